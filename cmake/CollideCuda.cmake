@@ -1,0 +1,28 @@
+# COLLIDE_CUDA: compile tests, programs and benchmarks as CUDA. ON by default where a CUDA compiler works; a toolkit
+# without a compiler, or a broken one, leaves the host build as it is.
+
+if(NOT DEFINED COLLIDE_CUDA)
+  include(CheckLanguage)
+  check_language(CUDA)
+endif()
+if(CMAKE_CUDA_COMPILER)
+  set(cuda_found ON)
+else()
+  set(cuda_found OFF)
+endif()
+option(COLLIDE_CUDA "Compile tests, programs and benchmarks as CUDA" ${cuda_found})
+
+if(COLLIDE_CUDA)
+  if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})
+    execute_process(COMMAND nvidia-smi -L RESULT_VARIABLE no_gpu OUTPUT_QUIET ERROR_QUIET)
+    if(no_gpu)
+      set(CMAKE_CUDA_ARCHITECTURES 90)
+    else()
+      set(CMAKE_CUDA_ARCHITECTURES native)
+    endif()
+  endif()
+  enable_language(CUDA)
+  message(STATUS "CUDA: ${CMAKE_CUDA_COMPILER} for ${CMAKE_CUDA_ARCHITECTURES}")
+else()
+  message(STATUS "CUDA: none, host only")
+endif()

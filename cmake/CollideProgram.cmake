@@ -1,0 +1,36 @@
+# collide_program(NAME SOURCE...): an executable of tests, examples or benchmarks. Its sources are .cpp files that are
+# compiled as CUDA where COLLIDE_CUDA is ON and as C++ otherwise. What all of them share is in collide_options.
+
+set(COLLIDE_EXTRA_INCLUDE "" CACHE PATH "Folder of third-party headers that the system lacks")
+
+find_package(OpenMP COMPONENTS CXX)
+find_package(Threads REQUIRED)
+
+add_library(collide_options INTERFACE)
+target_include_directories(collide_options SYSTEM INTERFACE ${COLLIDE_EXTRA_INCLUDE})
+target_link_libraries(collide_options INTERFACE collide::collide Threads::Threads)
+if(OpenMP_CXX_FOUND)
+  target_link_libraries(collide_options INTERFACE OpenMP::OpenMP_CXX)
+  target_compile_options(collide_options INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${OpenMP_CXX_FLAGS}>)
+endif()
+if(COLLIDE_CUDA)
+  target_link_libraries(collide_options INTERFACE collide::cuda)
+endif()
+
+# nvcc's own output is not pedantic C++, nor free of conversions.
+target_compile_options(
+  collide_options
+  INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall -Wextra -Wpedantic -Wconversion>
+            $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Xcompiler=-Wall,-Wextra>)
+if(COLLIDE_WERROR)
+  target_compile_options(collide_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>
+                                                   $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Werror=all-warnings>)
+endif()
+
+function(collide_program name)
+  add_executable(${name} ${ARGN})
+  target_link_libraries(${name} PRIVATE collide_options)
+  if(COLLIDE_CUDA)
+    set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
+  endif()
+endfunction()
