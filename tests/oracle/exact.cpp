@@ -1,0 +1,202 @@
+#include "exact.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/cpp_int.hpp>
+
+namespace oracle {
+namespace {
+
+namespace mp = boost::multiprecision;
+using real = mp::cpp_bin_float_100;
+
+/// A finite double as mantissa * 2^exponent, taken from its bits: no flag of the compiler or mode of the processor
+/// interferes.
+struct decoded {
+  std::int64_t mantissa;
+  int exponent;
+
+  explicit decoded(double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    auto const biased = static_cast<int>(bits >> 52 & 0x7ff);
+    auto const fraction = static_cast<std::int64_t>(bits & 0xfffffffffffff);
+    mantissa = biased == 0 ? fraction : fraction | std::int64_t{1} << 52;
+    exponent = std::max(biased, 1) - 1075;
+    for (; mantissa != 0 && mantissa % 2 == 0; mantissa /= 2) ++exponent;
+    if (bits >> 63) mantissa = -mantissa;
+  }
+
+  int bits() const {
+    int count = 0;
+    for (auto rest = mantissa; rest != 0; rest /= 2) ++count;
+    return count;
+  }
+};
+
+template <class Int>
+struct vec {
+  Int x, y, z;
+};
+
+template <class Int>
+vec<Int> operator-(vec<Int> const& u, vec<Int> const& v) {
+  return {u.x - v.x, u.y - v.y, u.z - v.z};
+}
+
+template <class Int>
+Int dot(vec<Int> const& u, vec<Int> const& v) {
+  return u.x * v.x + u.y * v.y + u.z * v.z;
+}
+
+template <class Int>
+vec<Int> cross(vec<Int> const& u, vec<Int> const& v) {
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
+/// A point of the triangle that may be the closest to the origin: its squared distance as num / den, den > 0, the point
+/// as at / den.
+template <class Int>
+struct candidate {
+  unsigned feature;
+  Int num, den;
+  vec<Int> at;
+};
+
+/// Calls f with every candidate: the three vertices, the foot of the perpendicular to every edge and to the face where
+/// it lies in the interior. The closest point to the origin is one of them, and all of them are points of the triangle.
+template <class Int, class F>
+void for_each_candidate(std::array<vec<Int>, 3> const& v, F f) {
+  vec<Int> edge[3];
+  for (unsigned i = 0; i < 3; ++i) {
+    auto const& a = v[i];
+    edge[i] = v[(i + 1) % 3] - a;
+    f(candidate<Int>{vertex_a << i, dot(a, a), 1, a});
+    Int const length2 = dot(edge[i], edge[i]), t = -dot(a, edge[i]);
+    if (t > 0 && t < length2) {
+      vec<Int> const at{a.x * length2 + edge[i].x * t, a.y * length2 + edge[i].y * t, a.z * length2 + edge[i].z * t};
+      f(candidate<Int>{edge_ab << i, dot(a, a) * length2 - t * t, length2, at});
+    }
+  }
+  vec<Int> const normal = cross(edge[0], edge[1]);
+  Int const area2 = dot(normal, normal);
+  if (area2 == 0) return;
+  for (unsigned i = 0; i < 3; ++i)
+    if (dot(normal, cross(v[i], edge[i])) <= 0)
+      return;  // cross(edge, 0 - v): the origin's side of the edge, seen along the normal
+  Int const height = dot(normal, v[0]);
+  f(candidate<Int>{face, height * height, area2, {normal.x * height, normal.y * height, normal.z * height}});
+}
+
+/// The inputs as integers: value = integer * 2^exponent, the same exponent for all of them.
+struct scaled {
+  std::array<decoded, 13> values;
+  int exponent, bits;
+
+  explicit scaled(triangle const& t, point const& p, double radius)
+      : values{{decoded(t.a.x), decoded(t.a.y), decoded(t.a.z), decoded(t.b.x), decoded(t.b.y), decoded(t.b.z),
+                decoded(t.c.x), decoded(t.c.y), decoded(t.c.z), decoded(p.x), decoded(p.y), decoded(p.z),
+                decoded(radius)}} {
+    int top = -5000;
+    exponent = 5000;
+    for (auto const& value : values)
+      if (value.mantissa != 0) {
+        exponent = std::min(exponent, value.exponent);
+        top = std::max(top, value.exponent + value.bits());
+      }
+    bits = std::max(top - exponent, 0);
+  }
+
+  template <class Int>
+  Int integer(std::size_t i) const {
+    auto const [mantissa, power] = values[i];
+    if (mantissa == 0) return 0;
+    Int const magnitude = Int(std::abs(mantissa)) << (power - exponent);  // checked integers shift no negative numbers
+    return mantissa < 0 ? Int(-magnitude) : magnitude;
+  }
+
+  template <class Int>
+  vec<Int> vector(std::size_t i) const {
+    return {integer<Int>(3 * i), integer<Int>(3 * i + 1), integer<Int>(3 * i + 2)};
+  }
+
+  /// The triangle as seen from the point.
+  template <class Int>
+  std::array<vec<Int>, 3> local() const {
+    auto const p = vector<Int>(3);
+    return {vector<Int>(0) - p, vector<Int>(1) - p, vector<Int>(2) - p};
+  }
+
+  template <class Int>
+  bool hit() const {
+    Int const radius = integer<Int>(12), radius2 = radius * radius;
+    bool found = false;
+    for_each_candidate<Int>(local<Int>(), [&](auto const& c) { found = found || c.num <= radius2 * c.den; });
+    return found;
+  }
+};
+
+bool finite(point const& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+/// The closest of all candidates; its `feature` collects the bits of all that are as close.
+candidate<mp::cpp_int> nearest(scaled const& s) {
+  candidate<mp::cpp_int> best{0, 0, 0, {}};
+  for_each_candidate<mp::cpp_int>(s.local<mp::cpp_int>(), [&](auto const& c) {
+    if (best.feature == 0 || c.num * best.den < best.num * c.den)
+      best = c;
+    else if (c.num * best.den == best.num * c.den)
+      best.feature |= c.feature;
+  });
+  return best;
+}
+
+real distance(scaled const& s) {
+  auto const best = nearest(s);
+  return ldexp(sqrt(real(best.num) / real(best.den)), s.exponent);
+}
+
+}  // namespace
+
+bool hit(triangle const& t, sphere const& s) {
+  if (!finite(t.a) || !finite(t.b) || !finite(t.c) || !finite(s.centre) || !(s.radius >= 0)) return false;
+  if (std::isinf(s.radius)) return true;
+  scaled const inputs(t, s.centre, s.radius);
+  // No intermediate is longer than 6 * bits + 12: the face's height^2, of degree 6 in coordinate differences.
+  // Were that wrong, the checked integers would throw.
+  if (inputs.bits <= 40) return inputs.hit<mp::checked_int256_t>();
+  if (inputs.bits <= 82) return inputs.hit<mp::checked_int512_t>();
+  return inputs.hit<mp::cpp_int>();
+}
+
+closest_point closest(triangle const& t, point const& p) {
+  scaled const inputs(t, p, 0);
+  auto const best = nearest(inputs);
+  auto const on_axis = [&](mp::cpp_int const& at, double centre) {
+    return static_cast<double>(ldexp(real(at) / real(best.den), inputs.exponent) + real(centre));
+  };
+  return {static_cast<double>(distance(inputs)),
+          {on_axis(best.at.x, p.x), on_axis(best.at.y, p.y), on_axis(best.at.z, p.z)},
+          best.feature};
+}
+
+double depth(triangle const& t, sphere const& s) {
+  return static_cast<double>(real(s.radius) - distance(scaled(t, s.centre, 0)));
+}
+
+int compare_distances(triangle const& s, triangle const& t, point const& p) {
+  scaled const from_s(s, p, 0), from_t(t, p, 0);
+  auto const best_s = nearest(from_s), best_t = nearest(from_t);
+  // squared distance = num / den * 4^exponent
+  int const shift = 2 * (from_s.exponent - from_t.exponent);
+  mp::cpp_int const left = best_s.num * best_t.den << std::max(shift, 0),
+                    right = best_t.num * best_s.den << std::max(-shift, 0);
+  return left.compare(right) < 0 ? -1 : left.compare(right) > 0;
+}
+
+}  // namespace oracle

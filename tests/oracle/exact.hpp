@@ -1,0 +1,50 @@
+/// The truth that the tests compare with: sphere against triangle in exact rational arithmetic on the floating-point
+/// numbers as they are. Shares no code, and no type, with the library.
+#pragma once
+
+namespace oracle {
+
+struct point {
+  double x, y, z;
+};
+
+struct triangle {
+  point a, b, c;
+};
+
+struct sphere {
+  point centre;
+  double radius;
+};
+
+/// The features of a triangle, as bits: a closest point lies on several where the triangle is a segment or a point.
+enum feature_bits : unsigned {
+  face = 1,
+  edge_ab = 2,
+  edge_bc = 4,
+  edge_ca = 8,
+  vertex_a = 16,
+  vertex_b = 32,
+  vertex_c = 64
+};
+
+/// Is min over x in conv(a, b, c) of |x - centre|^2 <= radius^2? The triangle may be a segment or a point; touching
+/// counts. A NaN or infinite coordinate, a NaN or a negative radius: no. An infinite radius: yes. -0 is 0. Floats
+/// convert to double without loss, so this is exact for both.
+bool hit(triangle const& t, sphere const& s);
+
+/// How a finite point lies to a finite triangle: exact, then rounded once to double.
+struct closest_point {
+  double distance;
+  point on_triangle;
+  unsigned features;  ///< feature_bits that contain the closest point in their relative interior
+};
+closest_point closest(triangle const& t, point const& p);
+
+/// radius - distance, rounded once to double: no cancellation, whatever the depth.
+double depth(triangle const& t, sphere const& s);
+
+/// -1, 0 or 1: is p nearer to s than to t, as near, or farther? Exact.
+int compare_distances(triangle const& s, triangle const& t, point const& p);
+
+}  // namespace oracle
