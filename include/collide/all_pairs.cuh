@@ -1,0 +1,133 @@
+/// \file
+/// Broad phase: every sphere against every triangle, in tiles. Includes the detector and everything to use it with: with nvcc
+/// the CUDA spaces too.
+///
+/// In the terms of the original study: all_pairs x host = `brute_force_seq`, all_pairs x cuda = `brute_force`, and
+/// all_pairs x cuda_shared = `brute_force_shamem`.
+#pragma once
+
+#include <collide/detail/bounding_sphere.hpp>
+#include <collide/detail/hits.hpp>
+#include <collide/detail/mesh_summary.hpp>
+#include <collide/detail/sphere_batch.hpp>
+#include <collide/detector.hpp>
+
+namespace collide {
+
+namespace detail {
+
+/// Kernel body: each lane keeps some spheres; tiles of bounding spheres of the triangles pass by, in shared memory where
+/// there is some; where a bounding sphere is reached, the narrow phase decides. With few spheres the mesh is split among
+/// `splits` blocks.
+template <class S, class NarrowPhase, class Sink>
+struct all_pairs_query {
+  static constexpr int items = 4;
+  static constexpr int tile = 512;
+
+  tester<S, NarrowPhase, Sink> tests;
+  bounding_sphere<S> const* bounds;
+  std::size_t splits;
+
+  template <class Block>
+  struct scratch {
+    typename Block::template staging<bounding_sphere<S>, tile> staged;
+    hit_buffer<Block> hits;
+  };
+
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    constexpr int n = Block::items;
+    typename Block::template per_lane<sphere_batch<S, n>> own;
+    std::size_t const first = block.index() / splits * Block::lanes * n;
+    std::size_t const triangles = tests.mesh.size();
+    std::size_t const share = (triangles + splits - 1) / splits;
+    std::size_t const begin = block.index() % splits * share;
+    std::size_t const end = smaller(begin + share, triangles);
+
+    tests.begin(block, s.hits);
+    auto const first_of = [&](int lane) { return first + static_cast<std::size_t>(lane) * n; };
+    block.each([&](int lane) { own[lane].load(tests.spheres, first_of(lane)); });
+    bool const one_radius = tests.spheres.one_radius();
+    for (std::size_t base = begin; base < end; base += tile) {
+      int const m = static_cast<int>(smaller(static_cast<std::size_t>(tile), end - base));
+      auto const* const staged = block.stage(s.staged, bounds + base, m);
+      block.each([&](int lane) {
+        auto const& mine = own[lane];
+        for (int t = 0; t < m; ++t) {
+          bounding_sphere<S> const ball = staged[t];
+          S const common = ball.reach(mine.radius[0]);
+          bool reached[n];
+          bool some = false;
+#if defined(__CUDA_ARCH__)
+#pragma unroll
+#endif
+          for (int k = 0; k < n; ++k) {
+            S const reach = one_radius ? common : ball.reach(mine.radius[k]);
+            reached[k] = ball.distance_squared(mine.centre[k].x(), mine.centre[k].y(), mine.centre[k].z()) <= reach;
+            some |= reached[k];
+          }
+          if (!some) continue;
+          for (int k = 0; k < n; ++k) {
+            if (!reached[k]) continue;
+            id const sphere_id = static_cast<id>(first_of(lane) + static_cast<std::size_t>(k));
+            if (sphere_id >= tests.spheres.size()) break;
+            tests.test(block, s.hits, {sphere_id, static_cast<id>(base) + static_cast<id>(t)},
+                       sphere<S>{mine.centre[k], mine.radius[k]});
+          }
+        }
+      });
+      tests.make_room(block, s.hits);
+    }
+    tests.flush(block, s.hits);
+  }
+};
+
+}  // namespace detail
+
+/// Broad phase: all pairs. Nothing but a bounding sphere per triangle is prepared, so it is the right choice for small meshes.
+/// Build O(triangles), query O(spheres * triangles); memory 4 scalars per triangle.
+struct all_pairs {
+  template <class S>
+  class index {
+   public:
+    template <class Space>
+    void build(Space& space, all_pairs const&, mesh_view<S> mesh) {
+      mesh_ = mesh;
+      bounds_.reserve(space.resource(), mesh.size());
+      space.for_each(mesh.size(), compute_bounds{mesh, bounds_.data()});
+    }
+
+    template <class Space>
+    void prepare(Space&, all_pairs const&, S) {}
+
+    template <class Space>
+    void prepare(Space&, all_pairs const&, sphere_view<S> const&) {}
+
+    template <class NarrowPhase, class Space, class Sink>
+    void query(Space& space, sphere_view<S> const& spheres, Sink const& sink) const {
+      detail::all_pairs_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink}, bounds_.data(), 1};
+      std::size_t const blocks = detail::blocks_for<Space>(spheres.size(), body);
+      std::size_t const tiles = (mesh_.size() + body.tile - 1) / body.tile;
+      std::size_t const wanted = (space.concurrency() + blocks - 1) / blocks;
+      body.splits = detail::larger<std::size_t>(1, detail::smaller(wanted, tiles));
+      space.launch(blocks * body.splits, body);
+    }
+
+    template <class Space>
+    double cell_width(Space&) const {
+      return 0;
+    }
+
+   private:
+    struct compute_bounds {
+      mesh_view<S> mesh;
+      detail::bounding_sphere<S>* bounds;
+      COLLIDE_HD void operator()(std::size_t i) const { bounds[i] = detail::bounds_of(mesh[i]); }
+    };
+
+    mesh_view<S> mesh_;
+    buffer<detail::bounding_sphere<S>> bounds_;
+  };
+};
+
+}  // namespace collide

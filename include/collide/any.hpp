@@ -1,0 +1,52 @@
+/// \file
+/// Sink: which spheres collide.
+#pragma once
+
+#include <collide/detail/sink.hpp>
+
+#include <vector>
+
+namespace collide {
+
+/// A flag per sphere: 1 if it touches any triangle, else 0. `query` does not wait for them.
+class any {
+ public:
+  /// The flags are kept in memory of the space.
+  any() = default;
+  /// The flags are written to the caller's memory (of the space), one byte per sphere.
+  explicit any(std::uint8_t* flags) : external_{flags} {}
+
+  /// The flags, in memory of the space.
+  std::uint8_t const* data() const { return flags_; }
+  /// Number of spheres of the last query.
+  std::size_t size() const { return size_; }
+  /// A copy of the flags on the host; waits for them.
+  std::vector<std::uint8_t> to_host() const { return download_(flags_, size_); }
+
+  template <class Space, class Query>
+  void run(Space& space, Query const& query) {
+    size_ = query.spheres.size();
+    flags_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), size_);
+    download_ = detail::downloader<std::uint8_t>(space);
+    space.fill(flags_, 0, size_);
+    query(handle{flags_});
+  }
+
+ private:
+  struct handle {
+    std::uint8_t* flags;
+    COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t) const { return 0; }
+    template <class Hit>
+    COLLIDE_HD_INLINE void store(std::uint64_t, Hit const& h) const {
+      detail::store_relaxed(flags + h.sphere, std::uint8_t{1});
+    }
+  };
+
+  std::uint8_t* external_ = nullptr;
+  std::uint8_t* flags_ = nullptr;
+  std::size_t size_ = 0;
+  buffer<std::uint8_t> own_;
+  detail::downloader<std::uint8_t> download_;
+};
+
+}  // namespace collide

@@ -1,0 +1,330 @@
+/// \file
+/// Broad phase: uniform grids of buckets. Includes the detector and everything to use it with: with nvcc the CUDA spaces too.
+///
+/// In the terms of the original study: bucket x host = `bucket_seq`, bucket x cuda = `bucket`, and
+/// bucket x cuda_shared = `bucket_shamem`.
+#pragma once
+
+#include <collide/detail/grid.hpp>
+#include <collide/detail/hits.hpp>
+#include <collide/detail/sphere_batch.hpp>
+#include <collide/detector.hpp>
+
+#include <algorithm>
+
+namespace collide {
+
+namespace detail {
+
+/// Kernel body: each lane looks up the cells of some spheres; the few spheres whose cell is not empty are compacted in scratch
+/// memory, and their candidates are spread evenly over all lanes.
+template <class S, class NarrowPhase, class Sink>
+struct bucket_query {
+  static constexpr int items = 4;
+
+  tester<S, NarrowPhase, Sink> tests;
+  bounding_sphere<S> const* bounds;  ///< null if there was no room for them
+  grid<S> const* grids;              ///< by falling reach
+  int grid_count;                    ///< 0: every sphere is tested with every triangle
+  std::uint32_t const* ends;         ///< of the entries of cell c: ends[c] .. ends[c + 1]
+  std::uint32_t const* total;        ///< number of entries
+  id const* entries;
+  std::size_t capacity;  ///< of entries
+
+  template <class Block>
+  struct scratch {
+    static constexpr int size = Block::lanes * Block::items;
+    id spheres[size];             ///< spheres with candidates
+    std::uint32_t first[size];    ///< their first entry
+    std::uint32_t counts[size];   ///< how many they have
+    std::uint32_t found;          ///< how many spheres that are
+    std::uint32_t unplaced;       ///< how many spheres no grid serves; they are listed in `first`
+    typename Block::balance_scratch balance;
+    hit_buffer<Block> hits;
+  };
+
+  template <class Block>
+  struct lane_state {
+    sphere_batch<S, Block::items> batch;
+    signed char grid_number[Block::items];  ///< or nowhere
+  };
+  static constexpr signed char nowhere = -1;
+
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    constexpr int n = Block::items;
+    typename Block::template per_lane<lane_state<Block>> own;
+    std::size_t const first = block.index() * Block::lanes * n;
+    auto const first_of = [&](int lane) { return static_cast<id>(first) + static_cast<id>(lane * n); };
+    int const usable = grid_count > 0 && *total <= capacity ? grid_count : 0;
+
+    tests.begin(block, s.hits);
+    block.each([&](int lane) {
+      if (lane != 0) return;
+      s.found = 0;
+      s.unplaced = 0;
+    });
+    block.each([&](int lane) {
+      auto& mine = own[lane];
+      mine.batch.load(tests.spheres, first + static_cast<std::size_t>(lane * n));
+      for (int k = 0; k < n; ++k) {
+        mine.grid_number[k] = nowhere;
+        S const r = mine.batch.radius[k];
+        if (!valid_radius(r)) continue;
+        int g = usable - 1;
+        while (g >= 0 && !(r <= grids[g].reach)) --g;
+        if (g < 0) {
+          s.first[block.add(s.unplaced, 1)] = first_of(lane) + static_cast<id>(k);
+        } else if (grids[g].contains(mine.batch.centre[k])) {
+          mine.grid_number[k] = static_cast<signed char>(g);
+        }
+      }
+    });
+    test_unplaced(block, s);
+
+    for (int g = 0; g < usable; ++g) {
+      for (int l = 0; l < grids[g].levels; ++l) {
+        grid_level<S> const& level = grids[g].level[l];
+        block.each([&](int lane) {
+          auto const& mine = own[lane];
+          for (int k = 0; k < n; ++k) {
+            if (mine.grid_number[k] != g) continue;
+            std::uint32_t const cell = grids[g].cell_of(level, mine.batch.centre[k]);
+            std::uint32_t const begin = ends[cell], end = ends[cell + 1];
+            if (begin == end) continue;
+            std::uint32_t const place = block.add(s.found, 1);
+            s.spheres[place] = first_of(lane) + static_cast<id>(k);
+            s.first[place] = begin;
+            s.counts[place] = end - begin;
+          }
+        });
+        std::uint32_t const found = block.shared(s.found);
+        if (found == 0) continue;
+        block.balanced(
+            s.balance, s.counts, found,
+            [&](std::uint32_t i, std::uint32_t k) { candidate(block, s, s.spheres[i], entries[s.first[i] + k]); },
+            [&] { tests.make_room(block, s.hits); });
+        block.each([&](int lane) {
+          if (lane == 0) s.found = 0;
+        });
+      }
+    }
+    tests.flush(block, s.hits);
+  }
+
+ private:
+  template <class Block>
+  COLLIDE_HD_INLINE void candidate(Block& block, scratch<Block>& s, id sphere_id, id triangle_id) const {
+    sphere<S> const ball = tests.spheres[sphere_id];
+    auto const around = bounds != nullptr ? bounds[triangle_id] : bounds_of(tests.mesh[triangle_id]);
+    if (around.reached(ball.centre, ball.radius)) tests.test(block, s.hits, {sphere_id, triangle_id}, ball);
+  }
+
+  /// Tests the spheres that are too large for every grid (or all, if there is none) with every triangle.
+  template <class Block>
+  COLLIDE_HD void test_unplaced(Block& block, scratch<Block>& s) const {
+    std::uint32_t const unplaced = block.shared(s.unplaced);
+    constexpr std::size_t stride = Block::lanes;
+    for (std::uint32_t i = 0; i < unplaced; ++i) {
+      for (std::size_t base = 0; base < tests.mesh.size(); base += stride) {
+        block.each([&](int lane) {
+          std::size_t const t = base + static_cast<std::size_t>(lane);
+          if (t < tests.mesh.size()) candidate(block, s, s.first[i], static_cast<id>(t));
+        });
+        tests.make_room(block, s.hits);
+      }
+    }
+  }
+};
+
+}  // namespace detail
+
+/// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid.hpp explains how.
+/// Build O(triangles), query O(spheres + candidates). Memory: at most 8 entries of 4 bytes, 4 scalars and up to 8 cells of 4 bytes per
+/// triangle and grid; several grids only where radii differ by more than a factor of 4.
+struct bucket {
+  /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
+  /// such cells go to levels of wider ones.
+  double cell_width = 0;
+
+  /// Bytes that the grids may take at most; 0 is no limit. Where the budget does not suffice for a grid, the spheres are
+  /// tested with every triangle: slower, with the same result.
+  std::size_t memory_budget = 0;
+
+  template <class S>
+  class index;
+};
+
+/// The buckets of a mesh.
+template <class S>
+class bucket::index {
+ public:
+  /// One pass over the mesh: bounding spheres, extent, sizes. The grids follow as soon as a radius is known.
+  template <class Space>
+  void build(Space& space, bucket const& options, mesh_view<S> mesh) {
+    if (options.memory_budget != 0 && mesh.size() != mesh_.size()) release();
+    mesh_ = mesh;
+    grid_count_ = 0;
+    radius_given_ = false;
+    has_bounds_ = options.memory_budget == 0 || fixed_bytes + bounds_bytes() <= options.memory_budget;
+    if (has_bounds_) bounds_.reserve(space.resource(), mesh.size());
+    if (options.memory_budget != 0 && fixed_bytes > options.memory_budget) return;
+    auto* const summary = summary_.reserve(space.resource(), 1);
+    detail::mesh_summary<S>::clear(space, summary);
+    detail::summarise_mesh<S> const body{mesh, summary, has_bounds_ ? bounds_.data() : nullptr};
+    space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
+  }
+
+  /// Makes a grid for spheres up to `radius`, which serves until the next build.
+  template <class Space>
+  void prepare(Space& space, bucket const& options, S radius) {
+    radius_given_ = true;
+    if (detail::valid_radius(radius) && detail::finite(radius)) make_grids(space, options, &radius, 1);
+  }
+
+  /// Makes the grids that the spheres need, unless they are there. Waits for the host to see the radii where they differ.
+  template <class Space>
+  void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
+    if (radius_given_) return;
+    S reaches[detail::max_grids];
+    int const n = spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
+    if (n == 0 || (n == grid_count_ && std::equal(reaches, reaches + n, reaches_))) return;
+    make_grids(space, options, reaches, n);
+  }
+
+  /// Puts one pass over the spheres on the space's stream.
+  template <class NarrowPhase, class Space, class Sink>
+  void query(Space& space, sphere_view<S> const& spheres, Sink const& sink) const {
+    detail::bucket_query<S, NarrowPhase, Sink> const body{
+        {mesh_, spheres, sink},
+        has_bounds_ ? bounds_.data() : nullptr,
+        grids_.data(),
+        grid_count_,
+        counts_.data(),
+        counts_.data() + cells_ + 1,
+        entries_.data(),
+        entries_.capacity()};
+    space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
+  }
+
+  /// Width of the finest cells in use; 0 if there is no grid.
+  template <class Space>
+  double cell_width(Space& space) const {
+    return grid_count_ == 0 ? 0.0 : static_cast<double>(space.read(&grids_.data()->width));
+  }
+
+ private:
+  static constexpr std::size_t fixed_bytes =
+      sizeof(detail::mesh_summary<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
+
+  /// The grid of one radius: the one that is there if it is not much too wide.
+  int reach_of(S radius, S* reaches) const {
+    if (!detail::valid_radius(radius) || !detail::finite(radius)) return 0;
+    bool const kept = grid_count_ == 1 && radius <= reaches_[0] && reaches_[0] <= 4 * radius;
+    reaches[0] = kept ? reaches_[0] : radius;
+    return 1;
+  }
+
+  /// The grids of many radii: reaches a factor of 4 or more apart, only where there are spheres.
+  template <class Space>
+  int reaches_of(Space& space, sphere_view<S> const& spheres, S* reaches) {
+    auto* const radii = radii_.reserve(space.resource(), 1);
+    detail::size_histogram::clear(space, radii);
+    detail::summarise_radii<S> const body{spheres, radii};
+    space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
+    detail::size_histogram const seen = space.read(radii);
+    if (seen.empty()) return 0;
+    constexpr int bins_per_factor_4 = 4;
+    int n = 0;
+    for (int b = seen.last(); b >= seen.first() && n < detail::max_grids; b -= bins_per_factor_4) {
+      while (seen.counts[b] == 0) --b;
+      float const end = detail::bin_end(static_cast<std::uint32_t>(b));
+      reaches[n++] = static_cast<S>(std::min(end, std::numeric_limits<float>::max()));
+    }
+    return n;
+  }
+
+  template <class Space>
+  void make_grids(Space& space, bucket const& options, S const* reaches, int wanted) {
+    std::size_t const n = mesh_.size();
+    layout const l = plan_memory(space, options, wanted);
+    grid_count_ = l.grids;
+    if (grid_count_ == 0) return;
+    std::copy(reaches, reaches + grid_count_, reaches_);
+    cells_ = static_cast<std::size_t>(grid_count_) << l.table_bits;
+
+    auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
+    detail::plan_grid<S> plan{summary_.data(), grids, {}, static_cast<S>(options.cell_width), l.entry_limit, l.table_bits};
+    std::copy(reaches, reaches + grid_count_, plan.reaches);
+    space.for_each(static_cast<std::size_t>(grid_count_), plan);
+
+    // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
+    auto* const counts = counts_.reserve(space.resource(), cells_ + 2);
+    detail::grid_insertion<S> const insertion{mesh_, grids, grid_count_};
+    space.fill(counts, 0, (cells_ + 2) * sizeof *counts);
+    space.for_each(n, detail::count_entries<S>{insertion, counts + 1});
+    space.exclusive_scan(counts + 1, cells_ + 1, scratch_);
+    // without a fixed width no triangle is in more than 8 cells of a grid, so the device need not be asked how many there are
+    bool const ask = Space::host_memory || options.cell_width > 0;
+    std::size_t const capacity = ask ? space.read(counts + cells_ + 1) : 8 * n * static_cast<std::size_t>(grid_count_);
+    entries_.reserve(space.resource(), capacity);
+    space.for_each(n, detail::fill_entries<S>{insertion, counts + 1, entries_.data(), entries_.capacity()});
+  }
+
+  struct layout {
+    int grids = 0;
+    std::uint32_t table_bits = 0;
+    float entry_limit = 0;  ///< per grid
+  };
+
+  /// How many grids with how many cells the budget allows; the more grids the better, then the more cells.
+  template <class Space>
+  layout plan_memory(Space& space, bucket const& options, int wanted) const {
+    constexpr std::size_t id_limit = std::numeric_limits<std::uint32_t>::max();
+    std::size_t const n = mesh_.size();
+    std::uint32_t most_bits = 12;
+    while (most_bits < 28 && (std::size_t{1} << most_bits) < 4 * n) ++most_bits;
+    for (int g = wanted; g > 0; --g) {
+      auto const grids = static_cast<std::size_t>(g);
+      if (8 * n * grids > id_limit) continue;
+      for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
+        std::size_t const cells = grids << bits;
+        std::size_t const base = fixed_bytes + (has_bounds_ ? bounds_bytes() : 0) + (cells + 2) * sizeof(std::uint32_t) +
+                                 space.scan_bytes(cells + 1);
+        std::size_t const least = base + 8 * n * grids * sizeof(id);
+        std::size_t most_entries = std::min(512 * n + (std::size_t{1} << 20), id_limit / grids);
+        if (options.memory_budget != 0) {
+          if (least > options.memory_budget) continue;
+          most_entries = std::min(most_entries, (options.memory_budget - base) / (grids * sizeof(id)));
+        }
+        return {g, bits, 0.99f * static_cast<float>(most_entries)};
+      }
+    }
+    return {};
+  }
+
+  std::size_t bounds_bytes() const { return mesh_.size() * sizeof(detail::bounding_sphere<S>); }
+
+  void release() {
+    bounds_.release();
+    counts_.release();
+    entries_.release();
+    scratch_.release();
+  }
+
+  mesh_view<S> mesh_;
+  buffer<detail::bounding_sphere<S>> bounds_;
+  buffer<detail::mesh_summary<S>> summary_;
+  buffer<detail::size_histogram> radii_;
+  buffer<detail::grid<S>> grids_;
+  buffer<std::uint32_t> counts_;
+  buffer<id> entries_;
+  buffer<unsigned char> scratch_;
+  std::size_t cells_ = 0;
+  int grid_count_ = 0;
+  S reaches_[detail::max_grids] = {};
+  bool radius_given_ = false;
+  bool has_bounds_ = false;
+};
+
+}  // namespace collide

@@ -1,0 +1,17 @@
+/// \file
+/// The host/device function markers and the version: the only macros of the library.
+#pragma once
+
+#if defined(__CUDACC__)
+/// Marks a function that runs on the host and on the device.
+#define COLLIDE_HD __host__ __device__
+/// Marks a function that runs on the host and on the device and must be inlined where it is called.
+#define COLLIDE_HD_INLINE __host__ __device__ __forceinline__
+#else
+#define COLLIDE_HD
+#define COLLIDE_HD_INLINE inline
+#endif
+
+#define COLLIDE_VERSION_MAJOR 0
+#define COLLIDE_VERSION_MINOR 1
+#define COLLIDE_VERSION_PATCH 0

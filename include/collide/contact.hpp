@@ -1,0 +1,43 @@
+/// \file
+/// What is known of a colliding pair: its ids, and where and how the two touch.
+#pragma once
+
+#include <collide/geometry.hpp>
+
+#include <cstdint>
+
+namespace collide {
+
+/// A colliding (sphere, triangle) pair.
+struct pair {
+  id sphere;
+  id triangle;
+
+  friend COLLIDE_HD bool operator==(pair p, pair q) { return p.sphere == q.sphere && p.triangle == q.triangle; }
+  friend COLLIDE_HD bool operator!=(pair p, pair q) { return !(p == q); }
+  /// Canonical order: by sphere, then by triangle.
+  friend COLLIDE_HD bool operator<(pair p, pair q) {
+    return p.sphere != q.sphere ? p.sphere < q.sphere : p.triangle < q.triangle;
+  }
+};
+
+/// Order of the pairs or contacts in an array. `canonical` is by sphere, then by triangle, and costs a sort.
+enum class order { unspecified, canonical };
+
+/// The part of a triangle that the closest point lies in.
+enum class feature : std::uint8_t { face, edge, vertex };
+
+/// Where and how a sphere touches a triangle.
+template <class S>
+struct contact {
+  id sphere;
+  id triangle;
+  vec3<S> point;       ///< closest point of the triangle to the centre
+  vec3<S> normal;      ///< unit vector from the triangle to the centre; a normal of the triangle if the centre is on it
+  S distance;          ///< from the centre to the triangle
+  S depth;             ///< radius - distance: how deep the triangle is in the sphere
+  feature kind;        ///< the part of the triangle that `point` lies in
+  std::uint8_t index;  ///< edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
+};
+
+}  // namespace collide

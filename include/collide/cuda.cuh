@@ -1,0 +1,353 @@
+/// \file
+/// The execution spaces of an NVIDIA GPU: `cuda`, a thread per work item, and `cuda_shared`, blocks of threads that work
+/// together through shared memory. Needs nvcc.
+#pragma once
+
+#if !defined(__CUDACC__)
+#error "collide/cuda.cuh needs nvcc; without CUDA include the headers of the host space alone"
+#endif
+
+#include <collide/contact.hpp>
+#include <collide/detail/block.hpp>
+#include <collide/error.hpp>
+#include <collide/memory.hpp>
+
+#include <cub/block/block_reduce.cuh>
+#include <cub/block/block_scan.cuh>
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+#include <cuda_runtime.h>
+#include <limits>
+#include <new>
+#include <string>
+
+namespace collide {
+
+/// A CUDA call that failed. `what()` names the call, the file and the line; `code()` is CUDA's error.
+class cuda_error : public error {
+ public:
+  cuda_error(cudaError_t code, char const* call, char const* file, int line)
+      : error(std::string("collide: ") + call + " failed: " + cudaGetErrorName(code) + " (" + cudaGetErrorString(code) +
+              ") at " + file + ":" + std::to_string(line)),
+        code_{code} {}
+
+  cudaError_t code() const { return code_; }
+
+ private:
+  cudaError_t code_;
+};
+
+/// Throws `cuda_error` unless `code` is cudaSuccess. `call` is the text of the call.
+inline void cuda_check(cudaError_t code, char const* call, char const* file = __builtin_FILE(),
+                       int line = __builtin_LINE()) {
+  if (code == cudaSuccess) return;
+  cudaGetLastError();  // a failed call must not be reported again by the next one
+  throw cuda_error(code, call, file, line);
+}
+
+/// Number of CUDA devices that can be used; 0 also where there is no driver.
+inline int cuda_device_count() {
+  int n = 0;
+  if (cudaGetDeviceCount(&n) != cudaSuccess) {
+    cudaGetLastError();
+    return 0;
+  }
+  return n;
+}
+
+/// Device memory by cudaMalloc and cudaFree, which wait for the device: the default of the CUDA spaces, which allocate only
+/// when something grows.
+class cuda_memory final : public std::pmr::memory_resource {
+ public:
+  /// The one instance.
+  static cuda_memory* get() {
+    static cuda_memory instance;
+    return &instance;
+  }
+
+ private:
+  void* do_allocate(std::size_t n, std::size_t) override {
+    void* p = nullptr;
+    cuda_check(cudaMalloc(&p, n), "cudaMalloc");
+    return p;
+  }
+  void do_deallocate(void* p, std::size_t, std::size_t) override { cudaFree(p); }
+  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
+};
+
+/// Device memory by cudaMallocAsync and cudaFreeAsync, in the order of a stream; never waits.
+class cuda_async_memory final : public std::pmr::memory_resource {
+ public:
+  explicit cuda_async_memory(cudaStream_t stream) : stream_{stream} {}
+
+ private:
+  void* do_allocate(std::size_t n, std::size_t) override {
+    void* p = nullptr;
+    cuda_check(cudaMallocAsync(&p, n, stream_), "cudaMallocAsync");
+    return p;
+  }
+  void do_deallocate(void* p, std::size_t, std::size_t) override { cudaFreeAsync(p, stream_); }
+  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
+
+  cudaStream_t stream_;
+};
+
+namespace detail {
+
+inline constexpr int cuda_lanes = 256;  ///< threads of a block, in every kernel
+
+/// A block of CUDA threads that share memory.
+template <int Items>
+class cuda_block {
+ public:
+  static constexpr int lanes = cuda_lanes, items = Items, pending = 2 * cuda_lanes;
+
+  template <class T>
+  struct per_lane {
+    T value;
+    __device__ __forceinline__ T& operator[](int) { return value; }
+  };
+  template <class T, int N>
+  struct staging {
+    T values[N];
+  };
+  using scan_scratch = typename cub::BlockScan<std::uint32_t, lanes>::TempStorage;
+  using balance_scratch = balancing<cuda_block>;
+  template <class T>
+  using reduce_scratch = typename cub::BlockReduce<T, lanes>::TempStorage;
+
+  __device__ explicit cuda_block(std::size_t index) : index_{index} {}
+
+  __device__ __forceinline__ std::size_t index() const { return index_; }
+
+  template <class F>
+  __device__ __forceinline__ void each(F const& f) {
+    f(static_cast<int>(threadIdx.x));
+    __syncthreads();
+  }
+
+  template <class T>
+  __device__ __forceinline__ T shared(T const& value) {
+    T const copy = value;
+    __syncthreads();
+    return copy;
+  }
+
+  __device__ __forceinline__ std::uint32_t add(std::uint32_t& counter, std::uint32_t n) { return atomicAdd(&counter, n); }
+
+  template <class T, int N>
+  __device__ __forceinline__ T const* stage(staging<T, N>& to, T const* from, int n) {
+    for (int i = static_cast<int>(threadIdx.x); i < n; i += lanes) to.values[i] = from[i];
+    __syncthreads();
+    return to.values;
+  }
+
+  /// Exclusive scan of at most lanes * items values in shared memory; returns their sum.
+  __device__ std::uint32_t scan(scan_scratch& s, std::uint32_t* values, std::uint32_t n) {
+    std::uint32_t own[Items], sum;
+    std::uint32_t const first = threadIdx.x * Items;
+    for (int k = 0; k < Items; ++k) own[k] = first + k < n ? values[first + k] : 0;
+    cub::BlockScan<std::uint32_t, lanes>(s).ExclusiveSum(own, own, sum);
+    for (int k = 0; k < Items; ++k) {
+      if (first + k < n) values[first + k] = own[k];
+    }
+    __syncthreads();
+    return sum;
+  }
+
+  template <class F, class Round>
+  __device__ __forceinline__ void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, F const& f,
+                                           Round const& after_round) {
+    s.run(*this, counts, n, f, after_round);
+  }
+
+  /// The combination of all lanes' values; valid in lane 0.
+  template <class T, class Combine>
+  __device__ __forceinline__ T reduce(reduce_scratch<T>& s, per_lane<T>& values, Combine const& combine) {
+    T const result = cub::BlockReduce<T, lanes>(s).Reduce(values.value, combine);
+    __syncthreads();
+    return result;
+  }
+
+ private:
+  std::size_t index_;
+};
+
+/// Runs a body in one thread per block.
+template <class Block, class Body>
+__global__ void __launch_bounds__(cuda_lanes) run_threads(std::size_t blocks, Body body) {
+  std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
+  if (i >= blocks) return;
+  typename Body::template scratch<Block> scratch;
+  Block here(i);
+  body(here, scratch);
+}
+
+/// Runs a body in one CUDA block per block.
+template <class Block, class Body>
+__global__ void __launch_bounds__(cuda_lanes) run_blocks(Body body) {
+  __shared__ typename Body::template scratch<Block> scratch;
+  Block here(blockIdx.x);
+  body(here, scratch);
+}
+
+template <class F>
+__global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
+  std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
+  if (i < n) f(i);
+}
+
+/// What both CUDA spaces have in common: a stream and memory.
+class cuda_space {
+ public:
+  /// `stream`: where all work is put. `resource`: where device memory comes from; null is `cuda_memory`. Both must outlive
+  /// everything that was made with the space. Throws `cuda_error` if there is no usable device.
+  explicit cuda_space(cudaStream_t stream = nullptr, std::pmr::memory_resource* resource = nullptr)
+      : stream_{stream}, resource_{resource != nullptr ? resource : cuda_memory::get()} {
+    int device = 0;
+    cuda_check(cudaGetDevice(&device), "cudaGetDevice");
+    cuda_check(cudaDeviceGetAttribute(&processors_, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
+  }
+
+  cudaStream_t stream() const { return stream_; }
+  std::pmr::memory_resource* resource() const { return resource_; }
+
+  /// Waits until all work on the stream is done.
+  void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
+
+  static constexpr bool host_memory = false;
+
+  template <class F>
+  void for_each(std::size_t n, F const& f) const {
+    if (n == 0) return;
+    run_for_each<<<grid_of(n), cuda_lanes, 0, stream_>>>(n, f);
+    cuda_check(cudaGetLastError(), "launch of run_for_each");
+  }
+
+  void fill(void* to, unsigned char byte, std::size_t bytes) const {
+    if (bytes != 0) cuda_check(cudaMemsetAsync(to, byte, bytes, stream_), "cudaMemsetAsync");
+  }
+
+  template <class T>
+  T read(T const* from) const {
+    T value;
+    copy_to_host(&value, from, 1);
+    return value;
+  }
+
+  /// Copies and waits.
+  template <class T>
+  void copy_to_host(T* to, T const* from, std::size_t n) const {
+    if (n == 0) return;
+    cuda_check(cudaMemcpyAsync(static_cast<void*>(to), from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_),
+               "cudaMemcpyAsync");
+    synchronize();
+  }
+
+  /// Copies; the source may be changed as soon as the call returns.
+  template <class T>
+  void copy_from_host(T* to, T const* from, std::size_t n) const {
+    if (n == 0) return;
+    cuda_check(cudaMemcpyAsync(static_cast<void*>(to), from, n * sizeof(T), cudaMemcpyHostToDevice, stream_),
+               "cudaMemcpyAsync");
+    synchronize();
+  }
+
+  std::size_t scan_bytes(std::size_t n) const {
+    std::size_t bytes = 0;
+    std::uint32_t* const none = nullptr;
+    cuda_check(cub::DeviceScan::ExclusiveSum(nullptr, bytes, none, none, n, stream_), "cub::DeviceScan::ExclusiveSum");
+    return bytes;
+  }
+
+  void exclusive_scan(std::uint32_t* values, std::size_t n, buffer<unsigned char>& scratch) const {
+    std::size_t bytes = scan_bytes(n);
+    void* const temporary = scratch.reserve(resource_, bytes);
+    cuda_check(cub::DeviceScan::ExclusiveSum(temporary, bytes, values, values, n, stream_),
+               "cub::DeviceScan::ExclusiveSum");
+  }
+
+  /// Sorts pairs into canonical order by radix: by triangle, then (stably) by sphere, only the bits that ids below
+  /// `spheres` and `triangles` have.
+  void sort(buffer<pair>& other, pair* pairs, std::size_t n, std::size_t spheres, std::size_t triangles,
+            buffer<unsigned char>& scratch) const {
+    static_assert(sizeof(pair) == sizeof(std::uint64_t), "a pair is one 64-bit key");
+    if (n < 2) return;
+    auto* const keys = reinterpret_cast<std::uint64_t*>(pairs);
+    auto* const sorted = reinterpret_cast<std::uint64_t*>(other.reserve(resource_, n));
+    std::size_t bytes = 0;
+    cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, bytes, keys, sorted, n, 0, 64, stream_),
+               "cub::DeviceRadixSort::SortKeys");
+    void* const temporary = scratch.reserve(resource_, bytes);
+    cuda_check(cub::DeviceRadixSort::SortKeys(temporary, bytes, keys, sorted, n, 32, 32 + bits_for(triangles), stream_),
+               "cub::DeviceRadixSort::SortKeys");
+    cuda_check(cub::DeviceRadixSort::SortKeys(temporary, bytes, sorted, keys, n, 0, bits_for(spheres), stream_),
+               "cub::DeviceRadixSort::SortKeys");
+  }
+
+ protected:
+  static unsigned grid_of(std::size_t n) {
+    std::size_t const blocks = (n + cuda_lanes - 1) / cuda_lanes;
+    if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+      throw error("collide: too much work for one CUDA launch");
+    }
+    return static_cast<unsigned>(blocks);
+  }
+
+  /// Bits that ids below `n` take; at least one.
+  static int bits_for(std::size_t n) {
+    int b = 1;
+    while (b < 32 && (std::size_t{1} << b) < n) ++b;
+    return b;
+  }
+
+  cudaStream_t stream_;
+  std::pmr::memory_resource* resource_;
+  int processors_ = 1;
+};
+
+}  // namespace detail
+
+/// Execution space: an NVIDIA GPU, each thread on its own. Views point to device memory; work is put on a stream.
+class cuda : public detail::cuda_space {
+ public:
+  using cuda_space::cuda_space;
+  static constexpr char const* name() { return "cuda"; }
+
+  template <class Body>
+  using block = detail::serial_block<Body::items, 0>;
+
+  template <class Body>
+  void launch(std::size_t blocks, Body const& body) const {
+    if (blocks == 0) return;
+    detail::run_threads<block<Body>><<<grid_of(blocks), detail::cuda_lanes, 0, stream_>>>(blocks, body);
+    cuda_check(cudaGetLastError(), "launch of run_threads");
+  }
+
+  std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 2048; }
+};
+
+/// Execution space: an NVIDIA GPU, the threads of a block working together through shared memory. Views point to device
+/// memory; work is put on a stream.
+class cuda_shared : public detail::cuda_space {
+ public:
+  using cuda_space::cuda_space;
+  static constexpr char const* name() { return "cuda_shared"; }
+
+  template <class Body>
+  using block = detail::cuda_block<Body::items>;
+
+  template <class Body>
+  void launch(std::size_t blocks, Body const& body) const {
+    if (blocks == 0) return;
+    if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+      throw error("collide: too much work for one CUDA launch");
+    }
+    detail::run_blocks<block<Body>><<<static_cast<unsigned>(blocks), detail::cuda_lanes, 0, stream_>>>(body);
+    cuda_check(cudaGetLastError(), "launch of run_blocks");
+  }
+
+  std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 8; }
+};
+
+}  // namespace collide

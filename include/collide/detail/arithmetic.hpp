@@ -1,0 +1,191 @@
+/// \file
+/// Arithmetic that gives the same bits on host and device, whatever the compiler may contract or approximate.
+///
+/// On the device every product, quotient and root is an explicitly rounded intrinsic, so that neither -fmad nor
+/// --use_fast_math changes it; sums of such products cannot be contracted either. On the host the target
+/// collide::collide adds -ffp-contract=off.
+#pragma once
+
+#include <collide/geometry.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+namespace collide::detail {
+
+COLLIDE_HD_INLINE float mul(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return __fmul_rn(a, b);
+#else
+  return a * b;
+#endif
+}
+
+COLLIDE_HD_INLINE double mul(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __dmul_rn(a, b);
+#else
+  return a * b;
+#endif
+}
+
+COLLIDE_HD_INLINE float div(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return __fdiv_rn(a, b);
+#else
+  return a / b;
+#endif
+}
+
+COLLIDE_HD_INLINE double div(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __ddiv_rn(a, b);
+#else
+  return a / b;
+#endif
+}
+
+COLLIDE_HD_INLINE float root(float a) {
+#if defined(__CUDA_ARCH__)
+  return __fsqrt_rn(a);
+#else
+  return std::sqrt(a);
+#endif
+}
+
+COLLIDE_HD_INLINE double root(double a) {
+#if defined(__CUDA_ARCH__)
+  return __dsqrt_rn(a);
+#else
+  return std::sqrt(a);
+#endif
+}
+
+template <class T>
+COLLIDE_HD_INLINE T dot(vec3<T> const& a, vec3<T> const& b) {
+  return mul(a.x(), b.x()) + mul(a.y(), b.y()) + mul(a.z(), b.z());
+}
+
+template <class T>
+COLLIDE_HD_INLINE vec3<T> cross(vec3<T> const& a, vec3<T> const& b) {
+  return {mul(a.y(), b.z()) - mul(a.z(), b.y()), mul(a.z(), b.x()) - mul(a.x(), b.z()),
+          mul(a.x(), b.y()) - mul(a.y(), b.x())};
+}
+
+template <class T>
+COLLIDE_HD_INLINE vec3<T> scaled(vec3<T> const& a, T s) {
+  return {mul(a.x(), s), mul(a.y(), s), mul(a.z(), s)};
+}
+
+template <class T>
+COLLIDE_HD_INLINE T smaller(T a, T b) {
+  return b < a ? b : a;
+}
+
+template <class T>
+COLLIDE_HD_INLINE T larger(T a, T b) {
+  return a < b ? b : a;
+}
+
+template <class T>
+COLLIDE_HD_INLINE vec3<T> smaller(vec3<T> const& a, vec3<T> const& b) {
+  return {smaller(a.x(), b.x()), smaller(a.y(), b.y()), smaller(a.z(), b.z())};
+}
+
+template <class T>
+COLLIDE_HD_INLINE vec3<T> larger(vec3<T> const& a, vec3<T> const& b) {
+  return {larger(a.x(), b.x()), larger(a.y(), b.y()), larger(a.z(), b.z())};
+}
+
+template <class T>
+COLLIDE_HD_INLINE T largest(vec3<T> const& a) {
+  return larger(larger(a.x(), a.y()), a.z());
+}
+
+/// The unsigned integer of the size of `T`.
+template <class T>
+using bits_of = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+
+template <class T>
+COLLIDE_HD_INLINE bits_of<T> bits(T x) {
+  bits_of<T> u;
+  std::memcpy(&u, &x, sizeof u);
+  return u;
+}
+
+template <class T>
+COLLIDE_HD_INLINE T from_bits(bits_of<T> u) {
+  T x;
+  std::memcpy(&x, &u, sizeof x);
+  return x;
+}
+
+template <class T>
+struct format;
+template <>
+struct format<float> {
+  static constexpr std::uint32_t exponent_mask = 0x7f800000u, sign_mask = 0x80000000u;
+  static constexpr int mantissa_bits = 23, bias = 127;
+  static constexpr float unit = 0x1p-24f;  ///< unit roundoff
+};
+template <>
+struct format<double> {
+  static constexpr std::uint64_t exponent_mask = 0x7ff0000000000000u, sign_mask = 0x8000000000000000u;
+  static constexpr int mantissa_bits = 52, bias = 1023;
+  static constexpr double unit = 0x1p-53;
+};
+
+/// Neither NaN nor infinite; decided on bits, because -ffinite-math-only deletes std::isfinite.
+template <class T>
+COLLIDE_HD_INLINE bool finite(T x) {
+  return (bits(x) & format<T>::exponent_mask) != format<T>::exponent_mask;
+}
+
+template <class T>
+COLLIDE_HD_INLINE bool finite(vec3<T> const& v) {
+  return finite(v.x()) && finite(v.y()) && finite(v.z());
+}
+
+template <class T>
+COLLIDE_HD_INLINE bool finite(triangle<T> const& t) {
+  return finite(t.a) && finite(t.b) && finite(t.c);
+}
+
+/// A radius that a point can be within: not NaN, not below zero (-0 is 0); decided on bits. +infinity passes.
+template <class T>
+COLLIDE_HD_INLINE bool valid_radius(T r) {
+  auto const u = bits(r);
+  return u <= format<T>::exponent_mask || u == format<T>::sign_mask;
+}
+
+/// Positive infinity; decided on bits.
+template <class T>
+COLLIDE_HD_INLINE bool infinite(T r) {
+  return bits(r) == format<T>::exponent_mask;
+}
+
+/// Maps floats to unsigned integers that sort alike (-infinity first, +infinity last).
+template <class T>
+COLLIDE_HD_INLINE bits_of<T> ordered(T x) {
+  auto const u = bits(x);
+  return (u & format<T>::sign_mask) != 0 ? ~u : (u | format<T>::sign_mask);
+}
+
+/// The inverse of `ordered`.
+template <class T>
+COLLIDE_HD_INLINE T from_ordered(bits_of<T> u) {
+  return from_bits<T>((u & format<T>::sign_mask) != 0 ? (u & ~format<T>::sign_mask) : ~u);
+}
+
+/// The power of two 2^-e with 2^e <= |x| < 2^(e+1), kept normal; 2^(bias - 1) for zero and subnormal x.
+template <class T>
+COLLIDE_HD_INLINE T reciprocal_power(T x) {
+  auto const e = static_cast<int>((bits(x) & format<T>::exponent_mask) >> format<T>::mantissa_bits);
+  int const r = 2 * format<T>::bias - e;  // biased exponent of 2^-(e - bias)
+  int const kept = r < 1 ? 1 : (r > 2 * format<T>::bias ? 2 * format<T>::bias : r);
+  return from_bits<T>(static_cast<bits_of<T>>(kept) << format<T>::mantissa_bits);
+}
+
+}  // namespace collide::detail

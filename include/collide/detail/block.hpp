@@ -1,0 +1,187 @@
+/// \file
+/// What a kernel body is written against: a block of lanes that work together.
+///
+/// A body is a function object `body(block, scratch)`. It runs once per block, on any execution space:
+///   - `block.each(f)` calls f(lane) for every lane, then waits for all of them;
+///   - `Block::per_lane<T>` is a value per lane (a register on CUDA);
+///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
+///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
+///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
+///   - `block.balanced(...)` spreads work items evenly over the lanes;
+///   - `block.reduce(...)` combines a value per lane.
+/// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
+/// Here are the two blocks of plain C++: `serial_block`, a single lane that does everything itself (the host's block, and a
+/// CUDA thread without shared memory), and `lockstep_block`, which runs the cooperative algorithms of a CUDA block on the
+/// host, for tests.
+#pragma once
+
+#include <collide/config.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace collide::detail {
+
+/// The cooperative algorithm behind `balanced`: scans the counts in scratch memory, then spreads all (item, k) with
+/// k < count[item] evenly over the lanes, each of which finds its item by binary search.
+template <class Block>
+struct balancing {
+  typename Block::scan_scratch scan;
+
+  template <class F, class Round>
+  COLLIDE_HD void run(Block& block, std::uint32_t* counts, std::uint32_t items, F const& f, Round const& after_round) {
+    std::uint32_t const total = block.scan(scan, counts, items);
+    for (std::uint32_t base = 0; base < total; base += Block::lanes) {
+      block.each([&](int lane) {
+        std::uint32_t const work = base + static_cast<std::uint32_t>(lane);
+        if (work >= total) return;
+        std::uint32_t item = 0, end = items;  // the last item that begins at or before `work`
+        while (end - item > 1) {
+          std::uint32_t const middle = (item + end) / 2;
+          if (counts[middle] <= work) {
+            item = middle;
+          } else {
+            end = middle;
+          }
+        }
+        f(item, work - counts[item]);
+      });
+      after_round();
+    }
+  }
+};
+
+/// A block of one lane with `Items` items; `Pending` hits are gathered before they go to the sink.
+template <int Items, int Pending>
+class serial_block {
+ public:
+  static constexpr int lanes = 1, items = Items, pending = Pending;
+
+  template <class T>
+  struct per_lane {
+    T value;
+    COLLIDE_HD_INLINE T& operator[](int) { return value; }
+  };
+  template <class T, int N>
+  struct staging {};
+  struct balance_scratch {};
+  template <class T>
+  struct reduce_scratch {};
+
+  COLLIDE_HD explicit serial_block(std::size_t index) : index_{index} {}
+
+  COLLIDE_HD_INLINE std::size_t index() const { return index_; }
+
+  template <class F>
+  COLLIDE_HD_INLINE void each(F const& f) {
+    f(0);
+  }
+
+  template <class T>
+  COLLIDE_HD_INLINE T shared(T const& value) {
+    return value;
+  }
+
+  COLLIDE_HD_INLINE std::uint32_t add(std::uint32_t& counter, std::uint32_t n) {
+    std::uint32_t const before = counter;
+    counter += n;
+    return before;
+  }
+
+  template <class T, int N>
+  COLLIDE_HD_INLINE T const* stage(staging<T, N>&, T const* from, int) {
+    return from;
+  }
+
+  template <class F, class Round>
+  COLLIDE_HD_INLINE void balanced(balance_scratch&, std::uint32_t const* counts, std::uint32_t n, F const& f,
+                                  Round const& after_round) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (std::uint32_t k = 0; k < counts[i]; ++k) f(i, k);
+      after_round();
+    }
+  }
+
+  template <class T, class Combine>
+  COLLIDE_HD_INLINE T reduce(reduce_scratch<T>&, per_lane<T>& values, Combine const&) {
+    return values.value;
+  }
+
+ private:
+  std::size_t index_;
+};
+
+/// A block of `Lanes` lanes that take turns, in order or in reverse: finds mistakes in the order of steps that a GPU would
+/// only show now and then.
+template <int Lanes, int Items, bool Reversed>
+class lockstep_block {
+ public:
+  static constexpr int lanes = Lanes, items = Items, pending = 2 * Lanes;
+
+  template <class T>
+  struct per_lane {
+    T value[Lanes];
+    T& operator[](int lane) { return value[lane]; }
+  };
+  template <class T, int N>
+  struct staging {
+    T values[N];
+  };
+  struct scan_scratch {};
+  using balance_scratch = balancing<lockstep_block>;
+  template <class T>
+  struct reduce_scratch {};
+
+  explicit lockstep_block(std::size_t index) : index_{index} {}
+
+  std::size_t index() const { return index_; }
+
+  template <class F>
+  void each(F const& f) {
+    for (int i = 0; i < Lanes; ++i) f(Reversed ? Lanes - 1 - i : i);
+  }
+
+  template <class T>
+  T shared(T const& value) {
+    return value;
+  }
+
+  std::uint32_t add(std::uint32_t& counter, std::uint32_t n) {
+    std::uint32_t const before = counter;
+    counter += n;
+    return before;
+  }
+
+  template <class T, int N>
+  T const* stage(staging<T, N>& to, T const* from, int n) {
+    for (int i = 0; i < n; ++i) to.values[i] = from[i];
+    return to.values;
+  }
+
+  std::uint32_t scan(scan_scratch&, std::uint32_t* values, std::uint32_t n) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      std::uint32_t const value = values[i];
+      values[i] = sum;
+      sum += value;
+    }
+    return sum;
+  }
+
+  template <class F, class Round>
+  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, F const& f, Round const& after_round) {
+    s.run(*this, counts, n, f, after_round);
+  }
+
+  template <class T, class Combine>
+  T reduce(reduce_scratch<T>&, per_lane<T>& values, Combine const& combine) {
+    T result = values[0];
+    for (int lane = 1; lane < Lanes; ++lane) result = combine(result, values[lane]);
+    return result;
+  }
+
+ private:
+  std::size_t index_;
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,147 @@
+/// \file
+/// The point of a triangle closest to a sphere's centre, in coordinates local to the sphere.
+#pragma once
+
+#include <collide/contact.hpp>
+#include <collide/detail/arithmetic.hpp>
+
+namespace collide::detail {
+
+/// A triangle as seen from a sphere's centre, scaled by the power of two `scale` so that its largest coordinate and the
+/// radius are below 2.
+template <class T>
+struct local_triangle {
+  vec3<T> a, b, c;
+  T radius;
+  T scale;
+};
+
+/// The largest of |x|, |y| and |z|.
+template <class T>
+COLLIDE_HD_INLINE T magnitude(vec3<T> const& v) {
+  return largest<T>(v.cwiseAbs());
+}
+
+/// Subtracts the centre (in the wider of `S` and `T`), rounds to `T` and scales. Finite input only.
+template <class T, class S>
+COLLIDE_HD_INLINE local_triangle<T> local(triangle<S> const& t, sphere<S> const& s) {
+  using W = std::common_type_t<S, T>;
+  auto const from = [&](W before) {
+    auto const point = [&](vec3<S> const& v) -> vec3<T> {
+      return {static_cast<T>(mul(W(v.x()), before) - mul(W(s.centre.x()), before)),
+              static_cast<T>(mul(W(v.y()), before) - mul(W(s.centre.y()), before)),
+              static_cast<T>(mul(W(v.z()), before) - mul(W(s.centre.z()), before))};
+    };
+    return local_triangle<T>{point(t.a), point(t.b), point(t.c), static_cast<T>(mul(W(s.radius), before)), T(before)};
+  };
+  auto const size = [](local_triangle<T> const& l) {
+    return larger(larger(magnitude(l.a), magnitude(l.b)), larger(magnitude(l.c), l.radius));
+  };
+  local_triangle<T> l = from(W(1));
+  if (!finite(size(l))) l = from(static_cast<W>(std::numeric_limits<T>::min()));  // the range of T was exceeded
+  T const scale = reciprocal_power(size(l));
+  return {scaled(l.a, scale), scaled(l.b, scale), scaled(l.c, scale), mul(l.radius, scale), mul(l.scale, scale)};
+}
+
+/// False if the normal (of squared length `nn`) of the triangle drowns in rounding: its corners are (nearly) collinear.
+template <class T>
+COLLIDE_HD_INLINE bool spans_plane(local_triangle<T> const& t, T nn) {
+  vec3<T> const u = t.b - t.a, v = t.c - t.a;
+  constexpr T small = 64 * format<T>::unit;
+  return nn > mul(mul(small, small), mul(dot(u, u), dot(v, v)));
+}
+
+/// True if the origin projects strictly inside the triangle along the normal `n`.
+template <class T>
+COLLIDE_HD_INLINE bool projects_inside(local_triangle<T> const& t, vec3<T> const& n) {
+  return dot(cross(t.a, t.b), n) > 0 && dot(cross(t.b, t.c), n) > 0 && dot(cross(t.c, t.a), n) > 0;
+}
+
+/// The closest point of a triangle to the origin, and the part of the triangle that it lies in.
+template <class T>
+struct closest_point {
+  vec3<T> point;
+  T distance_squared;
+  feature kind;
+  int index;
+};
+
+/// Closest point to the origin; the feature tests are those of C. Ericson, Real-Time Collision Detection, 5.1.5, taken
+/// edge by edge, so that segments and points need no special case.
+template <class T>
+COLLIDE_HD inline closest_point<T> closest_to_origin(local_triangle<T> const& t, vec3<T> const& n, bool plane) {
+  closest_point<T> best{t.a, dot(t.a, t.a), feature::vertex, 0};
+  auto const offer = [&](vec3<T> const& p, feature kind, int index) {
+    T const d = dot(p, p);
+    if (d < best.distance_squared) best = {p, d, kind, index};
+  };
+  offer(t.b, feature::vertex, 1);
+  offer(t.c, feature::vertex, 2);
+  auto const edge = [&](vec3<T> const& a, vec3<T> const& b, int index) {
+    vec3<T> const e = b - a;
+    T const along = -dot(a, e), ee = dot(e, e);
+    if (along > 0 && along < ee) offer(a + scaled(e, div(along, ee)), feature::edge, index);
+  };
+  edge(t.a, t.b, 0);
+  edge(t.b, t.c, 1);
+  edge(t.c, t.a, 2);
+  if (plane && projects_inside(t, n)) {
+    vec3<T> const p = scaled(n, div(dot(t.a, n), dot(n, n)));
+    best = {p, dot(p, p), feature::face, 0};
+  }
+  return best;
+}
+
+/// Unit vector along `v`, which is not zero.
+template <class T>
+COLLIDE_HD inline vec3<T> unit(vec3<T> const& v) {
+  vec3<T> const w = scaled(v, reciprocal_power(magnitude(v)));
+  return scaled(w, div(T(1), root(dot(w, w))));
+}
+
+/// A unit vector perpendicular to `v`, or (0, 0, 1) if `v` is zero.
+template <class T>
+COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
+  vec3<T> const m = v.cwiseAbs();
+  if (m.x() == 0 && m.y() == 0) return m.z() == 0 ? vec3<T>{0, 0, 1} : vec3<T>{1, 0, 0};
+  return m.z() >= larger(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
+}
+
+/// A normal of the triangle; of a segment or a point some unit vector perpendicular to it.
+template <class T>
+COLLIDE_HD inline vec3<T> normal_of(local_triangle<T> const& t, vec3<T> const& n, bool plane) {
+  if (plane) return unit(n);
+  vec3<T> const ab = t.b - t.a, bc = t.c - t.b, ca = t.a - t.c;
+  T const x = dot(ab, ab), y = dot(bc, bc), z = dot(ca, ca);
+  return perpendicular(x >= y && x >= z ? ab : (y >= z ? bc : ca));
+}
+
+/// The contact of a finite triangle and sphere, computed in double and rounded once; the ids are left to the caller.
+template <class S>
+COLLIDE_HD contact<S> contact_in_double(triangle<S> const& t, sphere<S> const& s) {
+  local_triangle<double> const l = local<double>(t, sphere<S>{s.centre, S(0)});
+  vec3<double> const n = cross<double>(l.b - l.a, l.c - l.a);
+  bool const plane = spans_plane(l, dot(n, n));
+  closest_point<double> const q = closest_to_origin(l, n, plane);
+  vec3<double> normal;
+  if (q.distance_squared == 0) {
+    normal = normal_of(l, n, plane);
+  } else if (q.kind == feature::face) {
+    normal = unit(n);
+    if (dot(l.a, n) > 0) normal = -normal;
+  } else {
+    normal = unit<double>(-q.point);
+  }
+  double const distance = div(root(q.distance_squared), l.scale);
+  vec3<double> const point = s.centre.template cast<double>() + scaled(q.point, div(1.0, l.scale));
+  return {no_id,
+          no_id,
+          point.template cast<S>(),
+          normal.template cast<S>(),
+          static_cast<S>(distance),
+          static_cast<S>(static_cast<double>(s.radius) - distance),
+          q.kind,
+          static_cast<std::uint8_t>(q.index)};
+}
+
+}  // namespace collide::detail

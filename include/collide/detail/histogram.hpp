@@ -1,0 +1,82 @@
+/// \file
+/// Histograms of sizes over half octaves: what the grid is planned from.
+#pragma once
+
+#include <collide/detail/arithmetic.hpp>
+#include <collide/detail/atomic.hpp>
+
+namespace collide::detail {
+
+/// Bins for all non-negative floats: two per octave, [2^k, 1.5 * 2^k) and [1.5 * 2^k, 2^(k+1)).
+inline constexpr int size_bins = 512;
+
+/// The bin of a size; sizes beyond the range of float count as its end.
+template <class S>
+COLLIDE_HD_INLINE std::uint32_t size_bin(S size) {
+  float const x = size < S(std::numeric_limits<float>::max()) ? static_cast<float>(size) : std::numeric_limits<float>::max();
+  return bits(x) >> 22;
+}
+
+/// A size that no size in the bin exceeds; +infinity for the last bin, which holds all sizes beyond float.
+COLLIDE_HD_INLINE float bin_end(std::uint32_t bin) {
+  std::uint32_t const end = (bin + 1) << 22;
+  return from_bits<float>(end < format<float>::exponent_mask ? end : format<float>::exponent_mask);
+}
+
+/// A histogram in memory. `lowest` and `highest` bound the bins in use; memory of all ones is "none" for both.
+struct size_histogram {
+  std::uint32_t lowest;
+  std::uint32_t highest;  ///< ~bin
+  std::uint32_t counts[size_bins];
+
+  /// Empties a histogram in memory of the space.
+  template <class Space>
+  static void clear(Space& space, size_histogram* h) {
+    space.fill(&h->lowest, 0xff, sizeof h->lowest + sizeof h->highest);
+    space.fill(h->counts, 0, sizeof h->counts);
+  }
+
+  COLLIDE_HD_INLINE void add(std::uint32_t bin, std::uint32_t n) {
+    fetch_add(counts + bin, n);
+    fetch_min(&lowest, bin);
+    fetch_min(&highest, ~bin);
+  }
+
+  COLLIDE_HD int first() const { return static_cast<int>(lowest); }
+  COLLIDE_HD int last() const { return static_cast<int>(~highest); }
+  COLLIDE_HD bool empty() const { return lowest == ~std::uint32_t{0}; }
+};
+
+/// Counts in scratch memory first, so that a bin in memory is touched once per block; blocks of one lane count in memory.
+template <class Block>
+struct block_histogram {
+  std::uint32_t counts[Block::lanes > 1 ? size_bins : 1];
+
+  COLLIDE_HD_INLINE void clear(Block& block) {
+    if constexpr (Block::lanes > 1) {
+      block.each([&](int lane) {
+        for (int b = lane; b < size_bins; b += Block::lanes) counts[b] = 0;
+      });
+    }
+  }
+
+  COLLIDE_HD_INLINE void add(Block& block, size_histogram* to, std::uint32_t bin) {
+    if constexpr (Block::lanes > 1) {
+      block.add(counts[bin], 1);
+    } else {
+      to->add(bin, 1);
+    }
+  }
+
+  COLLIDE_HD_INLINE void flush(Block& block, size_histogram* to) {
+    if constexpr (Block::lanes > 1) {
+      block.each([&](int lane) {
+        for (int b = lane; b < size_bins; b += Block::lanes) {
+          if (counts[b] != 0) to->add(static_cast<std::uint32_t>(b), counts[b]);
+        }
+      });
+    }
+  }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,107 @@
+/// \file
+/// From a hit in a kernel to the caller's sink.
+#pragma once
+
+#include <collide/contact.hpp>
+#include <collide/mesh.hpp>
+#include <collide/spheres.hpp>
+
+#include <cstdint>
+
+namespace collide {
+
+/// A colliding pair as a sink sees it: its ids, and on demand its geometry.
+template <class NarrowPhase, class S>
+class hit {
+ public:
+  id sphere;    ///< number of the sphere
+  id triangle;  ///< number of the triangle
+
+  COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, sphere_view<S> const& spheres)
+      : sphere{p.sphere}, triangle{p.triangle}, mesh_{mesh}, spheres_{spheres} {}
+
+  /// Where and how the two touch; computed here and now.
+  COLLIDE_HD collide::contact<S> contact() const {
+    collide::contact<S> c = NarrowPhase::contact_of(mesh_[triangle], spheres_[sphere]);
+    c.sphere = sphere;
+    c.triangle = triangle;
+    return c;
+  }
+
+ private:
+  mesh_view<S> const& mesh_;
+  sphere_view<S> const& spheres_;
+};
+
+namespace detail {
+
+/// The candidates' last stop: runs the narrow phase and hands the hits to the sink, `Block::pending` at a time, so that the
+/// sink's atomic counter is touched once per batch and the lanes share the work of storing.
+template <class Block>
+struct hit_buffer {
+  static constexpr std::uint32_t capacity = Block::pending;
+
+  pair hits[capacity > 0 ? capacity : 1];
+  std::uint32_t found;
+  std::uint64_t slot;
+};
+
+template <class S, class NarrowPhase, class Sink>
+struct tester {
+  mesh_view<S> mesh;
+  sphere_view<S> spheres;
+  Sink sink;
+
+  /// Runs the narrow phase on one candidate. Called by any lane.
+  template <class Block>
+  COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block>& b, pair p, sphere<S> const& s) const {
+    if (!NarrowPhase::intersects(mesh[p.triangle], s)) return;
+    if constexpr (hit_buffer<Block>::capacity > 0) {
+      std::uint32_t const place = block.add(b.found, 1);
+      if (place < hit_buffer<Block>::capacity) {
+        b.hits[place] = p;
+        return;
+      }
+    }
+    store(sink.reserve(1), p);
+  }
+
+  template <class Block>
+  COLLIDE_HD_INLINE void begin(Block& block, hit_buffer<Block>& b) const {
+    block.each([&](int lane) {
+      if (lane == 0) b.found = 0;
+    });
+  }
+
+  /// Empties the buffer into the sink. Called by the whole block.
+  template <class Block>
+  COLLIDE_HD_INLINE void flush(Block& block, hit_buffer<Block>& b) const {
+    if constexpr (hit_buffer<Block>::capacity > 0) {
+      std::uint32_t n = block.shared(b.found);
+      if (n == 0) return;
+      if (n > hit_buffer<Block>::capacity) n = hit_buffer<Block>::capacity;
+      block.each([&](int lane) {
+        if (lane != 0) return;
+        b.slot = sink.reserve(n);
+        b.found = 0;
+      });
+      block.each([&](int lane) {
+        for (std::uint32_t i = static_cast<std::uint32_t>(lane); i < n; i += Block::lanes) store(b.slot + i, b.hits[i]);
+      });
+    }
+  }
+
+  /// Makes room for one more hit per lane.
+  template <class Block>
+  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block>& b) const {
+    if (block.shared(b.found) + Block::lanes > hit_buffer<Block>::capacity) flush(block, b);
+  }
+
+ private:
+  COLLIDE_HD_INLINE void store(std::uint64_t slot, pair p) const {
+    sink.store(slot, hit<NarrowPhase, S>(p, mesh, spheres));
+  }
+};
+
+}  // namespace detail
+}  // namespace collide

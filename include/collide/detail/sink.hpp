@@ -1,0 +1,104 @@
+/// \file
+/// What the built-in sinks share.
+///
+/// A sink is a class with a member `template <class Space, class Query> void run(Space& space, Query const& query)`. It calls
+/// `query(handle)` as often as it needs to; each call puts one pass over the scene on the space's stream. The handle is
+/// trivially copyable, goes to the device, and has
+///   - `std::uint64_t reserve(std::uint64_t n) const`: called once per batch of n hits; returns the slot of the first;
+///   - `void store(std::uint64_t slot, Hit const& hit) const`: called once per hit (see `hit` in detail/hits.hpp).
+/// `query.mesh` and `query.spheres` are the views, `Query::narrow_phase` and `Query::scalar` are types.
+#pragma once
+
+#include <collide/contact.hpp>
+#include <collide/detail/atomic.hpp>
+#include <collide/detail/hits.hpp>
+#include <collide/memory.hpp>
+
+#include <new>
+#include <type_traits>
+#include <vector>
+
+namespace collide::detail {
+
+/// Remembers the space that an array lives in, whatever its type, to copy the array to the host later.
+template <class T>
+class downloader {
+ public:
+  downloader() = default;
+  template <class Space>
+  explicit downloader(Space const& space) {
+    static_assert(std::is_trivially_copyable<Space>::value && sizeof(Space) <= sizeof(space_),
+                  "collide: an execution space is a small trivially copyable value");
+    new (space_) Space(space);
+    copy_ = [](void const* s, T* to, T const* from, std::size_t n) {
+      static_cast<Space const*>(s)->copy_to_host(to, from, n);
+    };
+  }
+
+  std::vector<T> operator()(T const* from, std::size_t n) const {
+    std::vector<T> copy(n);
+    if (n != 0) copy_(space_, copy.data(), from, n);
+    return copy;
+  }
+
+ private:
+  alignas(16) unsigned char space_[64] = {};
+  void (*copy_)(void const*, T*, T const*, std::size_t) = nullptr;
+};
+
+/// Appends hits as pairs to an array of fixed capacity and counts those beyond it too.
+struct append {
+  std::uint64_t* total;
+  pair* to;
+  std::uint64_t capacity;
+
+  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return fetch_add(total, n); }
+  template <class Hit>
+  COLLIDE_HD_INLINE void store(std::uint64_t slot, Hit const& h) const {
+    if (slot < capacity) to[slot] = {h.sphere, h.triangle};
+  }
+};
+
+/// Collects all colliding pairs, in an array of its own that grows until they fit or in the caller's of fixed size.
+class collector {
+ public:
+  /// Runs the query into `to[0 .. capacity)`.
+  template <class Space, class Query>
+  void fill(Space& space, Query const& query, pair* to, std::uint64_t capacity) {
+    std::uint64_t* const counter = counter_.reserve(space.resource(), 1);
+    space.fill(counter, 0, sizeof *counter);
+    query(append{counter, to, capacity});
+    data_ = to;
+    total_ = space.read(counter);
+    size_ = static_cast<std::size_t>(total_ < capacity ? total_ : capacity);
+  }
+
+  /// Runs the query until everything fits: once if the array of the last time is large enough.
+  template <class Space, class Query>
+  void fill(Space& space, Query const& query) {
+    std::size_t const guess = query.spheres.size() / 8 + 1024;
+    pair* const to = own_.reserve(space.resource(), own_.capacity() > guess ? own_.capacity() : guess);
+    fill(space, query, to, own_.capacity());
+    if (total_ > own_.capacity()) fill(space, query, own_.reserve(space.resource(), total_), total_);
+  }
+
+  /// Sorts what was stored into canonical order.
+  template <class Space, class Query>
+  void sort(Space& space, Query const& query) {
+    space.sort(other_, data_, size_, query.spheres.size(), query.mesh.size(), scratch_);
+  }
+
+  pair* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  std::uint64_t total() const { return total_; }
+
+ private:
+  buffer<std::uint64_t> counter_;
+  buffer<pair> own_, other_;
+  buffer<unsigned char> scratch_;
+  pair* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::uint64_t total_ = 0;
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,152 @@
+/// \file
+/// The detector: broad phase x narrow phase x execution space, composed at compile time.
+#pragma once
+
+#include <collide/any.hpp>
+#include <collide/closest.hpp>
+#include <collide/contacts.hpp>
+#include <collide/count.hpp>
+#include <collide/host.hpp>
+#include <collide/karabassi.hpp>
+#include <collide/mesh.hpp>
+#include <collide/pairs.hpp>
+#include <collide/spheres.hpp>
+#include <collide/visit.hpp>
+#if defined(__CUDACC__)
+#include <collide/cuda.cuh>
+#endif
+
+#include <type_traits>
+#include <utility>
+
+namespace collide {
+
+namespace detail {
+
+template <class B, class = void>
+struct is_broad_phase : std::false_type {};
+template <class B>
+struct is_broad_phase<B, std::void_t<typename B::template index<float>>> : std::true_type {};
+
+template <class N, class = void>
+struct is_narrow_phase : std::false_type {};
+template <class N>
+struct is_narrow_phase<N, std::enable_if_t<std::is_convertible<decltype(N::intersects(std::declval<triangle<float> const&>(),
+                                                                                   std::declval<sphere<float> const&>())),
+                                                            bool>::value>> : std::true_type {};
+template <class E, class = void>
+struct is_execution_space : std::false_type {};
+template <class E>
+struct is_execution_space<E, std::void_t<decltype(std::declval<E const&>().resource()),
+                                         decltype(std::declval<E const&>().concurrency()), decltype(E::host_memory)>>
+    : std::true_type {};
+
+/// One pass of a query over the scene, as a sink sees it; see detail/sink.hpp.
+template <class Index, class NarrowPhase, class Space, class S>
+struct query_pass {
+  using narrow_phase = NarrowPhase;
+  using scalar = S;
+
+  Index const& index;
+  Space& space;
+  mesh_view<S> mesh;
+  sphere_view<S> spheres;
+
+  template <class Handle>
+  void operator()(Handle const& handle) const {
+    static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
+                  "collide: what a sink hands to the device must be a plain value");
+    if (mesh.size() == 0 || spheres.size() == 0) return;
+    index.template query<NarrowPhase>(space, spheres, handle);
+  }
+};
+
+template <class Sink, class Space, class Query, class = void>
+struct is_sink : std::false_type {};
+template <class Sink, class Space, class Query>
+struct is_sink<Sink, Space, Query,
+               std::void_t<decltype(std::declval<Sink&>().run(std::declval<Space&>(), std::declval<Query const&>()))>>
+    : std::true_type {};
+
+}  // namespace detail
+
+/// Finds all colliding (sphere, triangle) pairs of a scene.
+///
+/// \tparam BroadPhase      which triangles a sphere could touch: `bucket` (bucket.cuh) or `all_pairs` (all_pairs.cuh)
+/// \tparam NarrowPhase     whether a sphere touches a triangle: `karabassi<Precision>`
+/// \tparam ExecutionSpace  where and how it runs: `host`, `cuda`, `cuda_shared`
+/// \tparam Scalar          type of the coordinates: float or double; nothing is ever narrowed silently
+///
+/// Memory is taken from the space's resource and kept: after the first call with the same sizes nothing is allocated. In the
+/// CUDA spaces work is put on the space's stream and the host waits only to read a size back (see each sink). One detector
+/// is for one thread at a time. Everything thrown derives from `error`, except what the memory resource throws.
+template <class BroadPhase, class NarrowPhase = karabassi<>, class ExecutionSpace = host, class Scalar = float>
+class detector {
+  static_assert(detail::is_broad_phase<BroadPhase>::value,
+                "collide: the first parameter of a detector is a broad phase, such as bucket or all_pairs: a class with a "
+                "member template index<Scalar>");
+  static_assert(detail::is_narrow_phase<NarrowPhase>::value,
+                "collide: the second parameter of a detector is a narrow phase, such as karabassi<>: a class with a static "
+                "member intersects(triangle, sphere) that returns bool");
+  static_assert(detail::is_execution_space<ExecutionSpace>::value,
+                "collide: the third parameter of a detector is an execution space: host, cuda or cuda_shared");
+  static_assert(std::is_same<Scalar, float>::value || std::is_same<Scalar, double>::value,
+                "collide: the fourth parameter of a detector is the type of the coordinates, float or double");
+
+ public:
+  using broad_phase = BroadPhase;
+  using narrow_phase = NarrowPhase;
+  using execution_space = ExecutionSpace;
+  using scalar = Scalar;
+
+  explicit detector(ExecutionSpace space = ExecutionSpace(), BroadPhase options = BroadPhase())
+      : space_(std::move(space)), options_(std::move(options)) {}
+
+  /// Prepares what depends on the mesh only. Call it again when the mesh has moved. The mesh's memory must stay as it is
+  /// until the last query. O(triangles).
+  void build(mesh_view<Scalar> mesh) {
+    mesh_ = mesh;
+    if (mesh.size() != 0) index_.build(space_, options_, mesh);
+  }
+
+  /// The same, and everything that spheres of radius up to `radius` need, so that a query has nothing left to prepare.
+  /// Spheres with a larger radius are served all the same, more slowly.
+  void build(mesh_view<Scalar> mesh, Scalar radius) {
+    build(mesh);
+    if (mesh.size() != 0) index_.prepare(space_, options_, radius);
+  }
+
+  /// Hands every colliding pair, exactly once, to the sink (`count`, `any`, `pairs`, `contacts`, `closest`, `visit`, or one of
+  /// your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used again), else by value.
+  template <class Sink>
+  Sink query(sphere_view<Scalar> const& spheres, Sink&& sink) {
+    using pass = detail::query_pass<typename BroadPhase::template index<Scalar>, NarrowPhase, ExecutionSpace, Scalar>;
+    static_assert(detail::is_sink<std::remove_reference_t<Sink>, ExecutionSpace, pass>::value,
+                  "collide: the second argument of query is a sink, such as count, any, pairs, contacts, closest or visit: an "
+                  "object with a member run(space, query)");
+    if (mesh_.size() != 0 && spheres.size() != 0) index_.prepare(space_, options_, spheres);
+    sink.run(space_, pass{index_, space_, mesh_, spheres});
+    return std::forward<Sink>(sink);
+  }
+
+  /// `build` and `query` in one call.
+  template <class Sink>
+  Sink detect(mesh_view<Scalar> mesh, sphere_view<Scalar> const& spheres, Sink&& sink) {
+    build(mesh);
+    return query(spheres, std::forward<Sink>(sink));
+  }
+
+  /// The width of the finest cells in use; 0 if there are none. In the CUDA spaces it waits for the device.
+  double cell_width() const { return mesh_.size() == 0 ? 0.0 : index_.cell_width(space_); }
+
+  ExecutionSpace& space() { return space_; }
+  ExecutionSpace const& space() const { return space_; }
+
+ private:
+  ExecutionSpace space_;
+  BroadPhase options_;
+  mesh_view<Scalar> mesh_;
+  typename BroadPhase::template index<Scalar> index_;
+};
+
+}  // namespace collide

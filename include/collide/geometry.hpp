@@ -1,0 +1,35 @@
+/// \file
+/// Points, triangles and spheres: plain values, as small as their coordinates.
+#pragma once
+
+#include <collide/config.hpp>
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace collide {
+
+/// Number of a sphere or a triangle, from 0.
+using id = std::uint32_t;
+
+/// The id of nothing.
+inline constexpr id no_id = 0xffffffffu;
+
+/// A point or a vector of `S` = float or double, in the units of the scene.
+template <class S>
+using vec3 = Eigen::Matrix<S, 3, 1>;
+
+/// The closed triangle with the corners a, b, c; a segment or a point if the corners are collinear or equal.
+template <class S>
+struct triangle {
+  vec3<S> a, b, c;
+};
+
+/// The closed ball around `centre`; empty if the radius is negative or NaN.
+template <class S>
+struct sphere {
+  vec3<S> centre;
+  S radius;
+};
+
+}  // namespace collide

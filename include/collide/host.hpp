@@ -1,0 +1,140 @@
+/// \file
+/// The execution space of the CPU.
+#pragma once
+
+#include <collide/contact.hpp>
+#include <collide/detail/block.hpp>
+#include <collide/error.hpp>
+#include <collide/memory.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <numeric>
+#include <string>
+
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+namespace collide {
+
+/// Execution space: this computer's CPU, with OpenMP threads where the program is compiled with OpenMP, else one thread.
+/// Views point to host memory; every call has finished its work when it returns.
+class host {
+ public:
+  /// `threads`: how many; 0 is as many as OpenMP offers. `resource`: where the library's memory comes from; null is
+  /// std::pmr::get_default_resource(). The resource must outlive everything that was made with the space.
+  /// Throws `error` if `threads` is negative.
+  explicit host(int threads = 0, std::pmr::memory_resource* resource = nullptr)
+      : threads_{threads}, resource_{resource != nullptr ? resource : std::pmr::get_default_resource()} {
+    if (threads < 0) throw error("collide: host: the number of threads must not be negative");
+  }
+
+  /// How many threads work.
+  int threads() const {
+#if defined(_OPENMP)
+    return threads_ > 0 ? threads_ : omp_get_max_threads();
+#else
+    return 1;
+#endif
+  }
+
+  static constexpr char const* name() { return "host"; }
+  std::pmr::memory_resource* resource() const { return resource_; }
+  void synchronize() const {}
+
+  // What the library's algorithms need of a space:
+
+  template <class Body>
+  using block = detail::serial_block<64, 256>;
+
+  /// True if the host reads this memory without waiting for anything.
+  static constexpr bool host_memory = true;
+
+  /// Runs `body` once for each of `blocks` blocks.
+  template <class Body>
+  void launch(std::size_t blocks, Body const& body) const {
+    using block_type = block<Body>;
+    run(blocks, [&](std::size_t first, std::size_t last) {
+      typename Body::template scratch<block_type> scratch;
+      for (std::size_t i = first; i < last; ++i) {
+        block_type here(i);
+        body(here, scratch);
+      }
+    });
+  }
+
+  /// Calls f(i) for all i < n.
+  template <class F>
+  void for_each(std::size_t n, F const& f) const {
+    run((n + 1023) / 1024, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first * 1024; i < std::min(n, last * 1024); ++i) f(i);
+    });
+  }
+
+  /// How many blocks keep all threads busy.
+  std::size_t concurrency() const { return 4 * static_cast<std::size_t>(threads()); }
+
+  void fill(void* to, unsigned char byte, std::size_t bytes) const {
+    if (bytes != 0) std::memset(to, byte, bytes);
+  }
+
+  template <class T>
+  T read(T const* from) const {
+    return *from;
+  }
+
+  template <class T>
+  void copy_to_host(T* to, T const* from, std::size_t n) const {
+    if (n != 0) std::memcpy(static_cast<void*>(to), from, n * sizeof(T));
+  }
+
+  template <class T>
+  void copy_from_host(T* to, T const* from, std::size_t n) const {
+    if (n != 0) std::memcpy(static_cast<void*>(to), from, n * sizeof(T));
+  }
+
+  /// Bytes of temporary memory that `exclusive_scan` takes.
+  std::size_t scan_bytes(std::size_t) const { return 0; }
+
+  void exclusive_scan(std::uint32_t* values, std::size_t n, buffer<unsigned char>&) const {
+    std::exclusive_scan(values, values + n, values, std::uint32_t{0});
+  }
+
+  /// Sorts pairs into canonical order.
+  void sort(buffer<pair>&, pair* pairs, std::size_t n, std::size_t, std::size_t, buffer<unsigned char>&) const {
+    std::sort(pairs, pairs + n);
+  }
+
+ private:
+  /// Calls work(first, last) for ranges that cover 0 .. n, from all threads; the first exception is passed on.
+  template <class Work>
+  void run(std::size_t n, Work const& work) const {
+#if defined(_OPENMP)
+    if (threads() > 1 && n > 1) {
+      constexpr std::size_t grain = 16;
+      auto const chunks = static_cast<std::ptrdiff_t>((n + grain - 1) / grain);
+      std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic) num_threads(threads())
+      for (std::ptrdiff_t c = 0; c < chunks; ++c) {
+        try {
+          auto const first = static_cast<std::size_t>(c) * grain;
+          work(first, std::min(n, first + grain));
+        } catch (...) {
+#pragma omp critical(collide_host_failure)
+          if (!failure) failure = std::current_exception();
+        }
+      }
+      if (failure) std::rethrow_exception(failure);
+      return;
+    }
+#endif
+    work(0, n);
+  }
+
+  int threads_;
+  std::pmr::memory_resource* resource_;
+};
+
+}  // namespace collide

@@ -1,0 +1,72 @@
+/// \file
+/// Karabassi's sphere/triangle intersection test.
+#pragma once
+
+#include <collide/contact.hpp>
+#include <collide/detail/arithmetic.hpp>
+#include <collide/detail/closest_point.hpp>
+#include <collide/precision.hpp>
+
+namespace collide {
+
+/// Narrow phase: the static case of the particle/triangle test of E.-A. Karabassi, G. Papaioannou, T. Theoharis and
+/// A. Boehm, "Intersection test for collision detection in particle systems", J. Graphics Tools 4(1), 1999, in four steps:
+/// (1) the plane is farther than the radius: miss; (2) a vertex lies in the sphere: hit; (3) the centre projects into the
+/// triangle: hit; (4) a point on an edge lies in the sphere: hit; otherwise miss.
+///
+/// The centre is subtracted from the vertices first and all arithmetic is done in these local coordinates, scaled by a
+/// power of two so that nothing overflows: the error is then relative to the size of the triangle as seen from the sphere
+/// and not to the distance of both from the origin.
+///
+/// Triangles whose normal drowns in rounding are tested as their three edges; degenerate ones are the segment or point
+/// that they are. A NaN or infinite coordinate and a NaN or negative radius never collide; an infinite radius always does
+/// where the geometry is finite. `Precision` names the arithmetic of the verdict; the contact of a colliding pair is always
+/// computed in double.
+template <class Precision = single_precision>
+struct karabassi {
+  /// True if the closed ball touches the closed triangle.
+  template <class S>
+  static COLLIDE_HD_INLINE bool intersects(triangle<S> const& t, sphere<S> const& s) {
+    using T = typename Precision::scalar;
+    if (!detail::valid_radius(s.radius) || !detail::finite(s.centre) || !detail::finite(t)) return false;
+    if (detail::infinite(s.radius)) return true;
+    return four_steps(detail::local<T>(t, s));
+  }
+
+  /// Where and how a colliding pair touches; the ids are left to the caller. O(1), computed in double.
+  template <class S>
+  static COLLIDE_HD contact<S> contact_of(triangle<S> const& t, sphere<S> const& s) {
+    return detail::contact_in_double(t, s);
+  }
+
+ private:
+  template <class T>
+  static COLLIDE_HD_INLINE bool four_steps(detail::local_triangle<T> const& t) {
+    using namespace detail;
+    T const rr = mul(t.radius, t.radius);
+    vec3<T> const n = cross<T>(t.b - t.a, t.c - t.a);
+    T const nn = dot(n, n);
+    bool const flat = !spans_plane(t, nn);
+    if (!flat) {
+      T const d = dot(n, t.a);
+      if (mul(d, d) > mul(rr, nn)) return false;  // 1: the plane
+    }
+    if (smaller(smaller(dot(t.a, t.a), dot(t.b, t.b)), dot(t.c, t.c)) <= rr) return true;  // 2: the vertices
+    if (!flat && projects_inside(t, n)) return true;                                       // 3: the face
+    return on_edge(t.a, t.b, rr) || on_edge(t.b, t.c, rr) || on_edge(t.c, t.a, rr);        // 4: the edges
+  }
+
+  /// True if a point strictly between a and b is within the root of `rr` of the origin.
+  template <class T>
+  static COLLIDE_HD_INLINE bool on_edge(vec3<T> const& a, vec3<T> const& b, T rr) {
+    using namespace detail;
+    vec3<T> const e = b - a;
+    T const along = -dot(a, e);
+    T const ee = dot(e, e);
+    if (!(along > 0 && along < ee)) return false;
+    vec3<T> const q = a + scaled(e, div(along, ee));
+    return dot(q, q) <= rr;
+  }
+};
+
+}  // namespace collide

@@ -1,0 +1,73 @@
+/// \file
+/// Views of a triangle mesh in the caller's memory: indexed, or a soup of corners.
+#pragma once
+
+#include <collide/error.hpp>
+#include <collide/geometry.hpp>
+
+#include <cstddef>
+#include <string>
+#include <type_traits>
+
+namespace collide {
+
+/// A mesh in memory that somebody else owns: host memory for `host`, device memory for the CUDA spaces.
+/// Nothing is copied or checked (`validate` does that); an index outside the vertices is undefined behaviour.
+/// The memory must live as long as a detector that was built from the view. Made by `indexed_mesh` and `triangle_soup`.
+template <class S>
+class mesh_view {
+  static_assert(std::is_same<S, float>::value || std::is_same<S, double>::value,
+                "collide: a mesh has coordinates of type float or double");
+
+ public:
+  using scalar = S;
+
+  mesh_view() = default;
+  COLLIDE_HD mesh_view(S const* vertices, std::size_t vertex_count, id const* corners, std::size_t size)
+      : vertices_{vertices}, corners_{corners}, vertex_count_{vertex_count}, size_{size} {}
+
+  /// Number of triangles.
+  COLLIDE_HD std::size_t size() const { return size_; }
+
+  /// Triangle `i`, read from memory.
+  COLLIDE_HD_INLINE triangle<S> operator[](std::size_t i) const {
+    if (corners_ == nullptr) return {vertex(3 * i), vertex(3 * i + 1), vertex(3 * i + 2)};
+    return {vertex(corners_[3 * i]), vertex(corners_[3 * i + 1]), vertex(corners_[3 * i + 2])};
+  }
+
+  /// Vertex `i`, read from memory.
+  COLLIDE_HD_INLINE vec3<S> vertex(std::size_t i) const {
+    return {vertices_[3 * i], vertices_[3 * i + 1], vertices_[3 * i + 2]};
+  }
+
+  COLLIDE_HD S const* vertices() const { return vertices_; }
+  COLLIDE_HD std::size_t vertex_count() const { return vertex_count_; }
+  /// Three vertex numbers per triangle; null for a soup.
+  COLLIDE_HD id const* corners() const { return corners_; }
+
+ private:
+  S const* vertices_ = nullptr;
+  id const* corners_ = nullptr;
+  std::size_t vertex_count_ = 0;
+  std::size_t size_ = 0;
+};
+
+/// View of an indexed mesh: `vertices` holds 3 * `vertex_count` coordinates, `corners` 3 * `triangle_count` vertex numbers
+/// from 0, of any 32-bit integer type. Throws `error` if there are more triangles than ids.
+template <class S, class Index>
+mesh_view<S> indexed_mesh(S const* vertices, std::size_t vertex_count, Index const* corners,
+                          std::size_t triangle_count) {
+  static_assert(std::is_integral<Index>::value && sizeof(Index) == sizeof(id),
+                "collide: the corners of an indexed mesh are 32-bit integers");
+  if (triangle_count >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles");
+  return {vertices, vertex_count, reinterpret_cast<id const*>(corners), triangle_count};
+}
+
+/// View of a triangle soup: 9 coordinates per triangle, corner by corner.
+template <class S>
+mesh_view<S> triangle_soup(S const* coordinates, std::size_t triangle_count) {
+  if (triangle_count >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles");
+  return {coordinates, 3 * triangle_count, nullptr, triangle_count};
+}
+
+}  // namespace collide

@@ -1,0 +1,17 @@
+/// \file
+/// Precision policies: how sure a verdict must be, and so the type that a narrow phase computes in.
+#pragma once
+
+namespace collide {
+
+/// Arithmetic in float. Verdicts within a few units in the last place of contact may be wrong.
+struct single_precision {
+  using scalar = float;
+};
+
+/// Arithmetic in double. Verdicts within a few units in the last place (of double) of contact may be wrong.
+struct double_precision {
+  using scalar = double;
+};
+
+}  // namespace collide

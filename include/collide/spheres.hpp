@@ -1,0 +1,116 @@
+/// \file
+/// Views of a set of spheres in the caller's memory: packed, separate arrays or quadruples; one radius or one each.
+#pragma once
+
+#include <collide/error.hpp>
+#include <collide/geometry.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace collide {
+
+/// Spheres in memory that somebody else owns: host memory for `host`, device memory for the CUDA spaces. Nothing is copied.
+/// All layouts are the same view with other strides, so they share one kernel.
+/// Made by `spheres_xyz`, `spheres_soa` and `spheres_xyzr`.
+template <class S>
+class sphere_view {
+  static_assert(std::is_same<S, float>::value || std::is_same<S, double>::value,
+                "collide: spheres have coordinates of type float or double");
+
+ public:
+  using scalar = S;
+
+  sphere_view() = default;
+  /// Coordinates of sphere i at x[i * stride], y[i * stride], z[i * stride]; its radius at radii[i * radius_stride], or
+  /// `radius` for all if `radii` is null.
+  sphere_view(S const* x, S const* y, S const* z, std::size_t stride, S const* radii, std::size_t radius_stride,
+              S radius, std::size_t size)
+      : x_{x},
+        y_{y},
+        z_{z},
+        radii_{radii},
+        stride_{static_cast<unsigned>(stride)},
+        radius_stride_{static_cast<unsigned>(radius_stride)},
+        radius_{radius},
+        size_{size} {
+    if (size >= no_id) throw error("collide: a sphere set has at most 2^32 - 2 spheres");
+  }
+
+  /// Number of spheres.
+  COLLIDE_HD std::size_t size() const { return size_; }
+
+  COLLIDE_HD_INLINE vec3<S> centre(std::size_t i) const { return {x_[i * stride_], y_[i * stride_], z_[i * stride_]}; }
+
+  COLLIDE_HD_INLINE S radius(std::size_t i) const { return radii_ == nullptr ? radius_ : radii_[i * radius_stride_]; }
+
+  COLLIDE_HD_INLINE sphere<S> operator[](std::size_t i) const { return {centre(i), radius(i)}; }
+
+  /// Reads the four centres `first` .. `first + 3`; as three 16-byte loads where the layout allows it.
+  COLLIDE_HD_INLINE void four_centres(std::size_t first, vec3<S> (&out)[4]) const {
+#if defined(__CUDA_ARCH__)
+    if constexpr (sizeof(S) == 4) {
+      if (packed() && reinterpret_cast<std::uintptr_t>(x_ + 3 * first) % 16 == 0) {
+        auto const* const from = reinterpret_cast<float4 const*>(x_ + 3 * first);
+        float4 const u = from[0], v = from[1], w = from[2];
+        out[0] = {u.x, u.y, u.z};
+        out[1] = {u.w, v.x, v.y};
+        out[2] = {v.z, v.w, w.x};
+        out[3] = {w.y, w.z, w.w};
+        return;
+      }
+    }
+#endif
+    for (std::size_t k = 0; k < 4; ++k) out[k] = centre(first + k);
+  }
+
+  /// True if all spheres have the radius `common_radius()`.
+  COLLIDE_HD bool one_radius() const { return radii_ == nullptr; }
+  COLLIDE_HD S common_radius() const { return radius_; }
+
+  /// True if the centres lie as x0, y0, z0, x1, y1, z1, ...
+  COLLIDE_HD bool packed() const { return stride_ == 3 && y_ == x_ + 1 && z_ == x_ + 2; }
+
+ private:
+  S const* x_ = nullptr;
+  S const* y_ = nullptr;
+  S const* z_ = nullptr;
+  S const* radii_ = nullptr;
+  unsigned stride_ = 3;
+  unsigned radius_stride_ = 1;
+  S radius_ = 0;
+  std::size_t size_ = 0;
+};
+
+/// `n` spheres with packed centres (3 `n` coordinates) and one radius.
+template <class S>
+sphere_view<S> spheres_xyz(S const* xyz, std::size_t n, std::common_type_t<S> radius) {
+  return {xyz, xyz + 1, xyz + 2, 3, nullptr, 0, radius, n};
+}
+
+/// `n` spheres with packed centres (3 `n` coordinates) and `n` radii.
+template <class S>
+sphere_view<S> spheres_xyz(S const* xyz, std::size_t n, S const* radii) {
+  return {xyz, xyz + 1, xyz + 2, 3, radii, 1, S(0), n};
+}
+
+/// `n` spheres with the coordinates of their centres in three arrays and one radius.
+template <class S>
+sphere_view<S> spheres_soa(S const* x, S const* y, S const* z, std::size_t n, std::common_type_t<S> radius) {
+  return {x, y, z, 1, nullptr, 0, radius, n};
+}
+
+/// `n` spheres with the coordinates of their centres in three arrays and `n` radii.
+template <class S>
+sphere_view<S> spheres_soa(S const* x, S const* y, S const* z, std::size_t n, S const* radii) {
+  return {x, y, z, 1, radii, 1, S(0), n};
+}
+
+/// `n` spheres as quadruples (x, y, z, r), such as an array of float4.
+template <class S>
+sphere_view<S> spheres_xyzr(S const* xyzr, std::size_t n) {
+  return {xyzr, xyzr + 1, xyzr + 2, 4, xyzr + 3, 4, S(0), n};
+}
+
+}  // namespace collide

@@ -1,0 +1,35 @@
+/// \file
+/// Sink: a function of the caller's own, called for every hit.
+#pragma once
+
+#include <collide/detail/sink.hpp>
+
+namespace collide {
+
+/// Calls `f(hit)` once for every colliding pair and stores nothing; see `hit` for what f gets. In the CUDA spaces f is copied to
+/// the device and called there, from many threads at once, and so is trivially copyable with a __device__ operator(); on the
+/// host it is called from all threads of the space. `query` does not wait in the CUDA spaces.
+template <class F>
+class visit {
+ public:
+  explicit visit(F f) : f_{f} {}
+
+  template <class Space, class Query>
+  void run(Space&, Query const& query) {
+    query(handle{f_});
+  }
+
+ private:
+  struct handle {
+    F f;
+    COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t) const { return 0; }
+    template <class Hit>
+    COLLIDE_HD_INLINE void store(std::uint64_t, Hit const& h) const {
+      f(h);
+    }
+  };
+
+  F f_;
+};
+
+}  // namespace collide
