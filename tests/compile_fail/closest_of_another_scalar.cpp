@@ -1,0 +1,6 @@
+// expect: collide: closest<S> must have the scalar type of the detector
+#include <collide/bucket.cuh>
+
+void f(collide::detector<collide::bucket>& detector, collide::sphere_view<float> spheres) {
+  detector.query(spheres, collide::closest<double>());
+}

@@ -1,0 +1,2 @@
+// expect: collide/cuda.cuh needs nvcc
+#include <collide/cuda.cuh>
