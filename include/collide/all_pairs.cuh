@@ -56,23 +56,17 @@ struct all_pairs_query {
         for (int t = 0; t < m; ++t) {
           bounding_sphere<S> const ball = staged[t];
           S const common = ball.reach(mine.radius[0]);
-          bool reached[n];
-          bool some = false;
-#if defined(__CUDA_ARCH__)
-#pragma unroll
-#endif
+          std::uint64_t reached = 0;  // a bit per sphere
           for (int k = 0; k < n; ++k) {
             S const reach = one_radius ? common : ball.reach(mine.radius[k]);
-            reached[k] = ball.distance_squared(mine.centre[k].x(), mine.centre[k].y(), mine.centre[k].z()) <= reach;
-            some |= reached[k];
+            bool const hit = ball.distance_squared(mine.x[k], mine.y[k], mine.z[k]) <= reach;
+            reached |= static_cast<std::uint64_t>(hit) << k;
           }
-          if (!some) continue;
-          for (int k = 0; k < n; ++k) {
-            if (!reached[k]) continue;
-            id const sphere_id = static_cast<id>(first_of(lane) + static_cast<std::size_t>(k));
-            if (sphere_id >= tests.spheres.size()) break;
-            tests.test(block, s.hits, {sphere_id, static_cast<id>(base) + static_cast<id>(t)},
-                       sphere<S>{mine.centre[k], mine.radius[k]});
+          for (int k = 0; reached != 0; ++k, reached >>= 1) {
+            std::size_t const i = first_of(lane) + static_cast<std::size_t>(k);
+            if ((reached & 1) == 0 || i >= tests.spheres.size()) continue;
+            tests.test(block, s.hits, {static_cast<id>(i), static_cast<id>(base) + static_cast<id>(t)},
+                       tests.spheres[i]);
           }
         }
       });
@@ -80,6 +74,14 @@ struct all_pairs_query {
     }
     tests.flush(block, s.hits);
   }
+};
+
+/// Kernel body of `for_each` over triangles.
+template <class S>
+struct compute_bounds {
+  mesh_view<S> mesh;
+  bounding_sphere<S>* bounds;
+  COLLIDE_HD void operator()(std::size_t i) const { bounds[i] = bounds_of(mesh[i]); }
 };
 
 }  // namespace detail
@@ -94,7 +96,7 @@ struct all_pairs {
     void build(Space& space, all_pairs const&, mesh_view<S> mesh) {
       mesh_ = mesh;
       bounds_.reserve(space.resource(), mesh.size());
-      space.for_each(mesh.size(), compute_bounds{mesh, bounds_.data()});
+      space.for_each(mesh.size(), detail::compute_bounds<S>{mesh, bounds_.data()});
     }
 
     template <class Space>
@@ -119,12 +121,6 @@ struct all_pairs {
     }
 
    private:
-    struct compute_bounds {
-      mesh_view<S> mesh;
-      detail::bounding_sphere<S>* bounds;
-      COLLIDE_HD void operator()(std::size_t i) const { bounds[i] = detail::bounds_of(mesh[i]); }
-    };
-
     mesh_view<S> mesh_;
     buffer<detail::bounding_sphere<S>> bounds_;
   };

@@ -8,6 +8,19 @@
 
 namespace collide {
 
+namespace detail {
+
+struct raise_flag {
+  std::uint8_t* flags;
+  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t) const { return 0; }
+  template <class Hit>
+  COLLIDE_HD_INLINE void store(std::uint64_t, Hit const& h) const {
+    store_relaxed(flags + h.sphere, std::uint8_t{1});
+  }
+};
+
+}  // namespace detail
+
 /// A flag per sphere: 1 if it touches any triangle, else 0. `query` does not wait for them.
 class any {
  public:
@@ -29,19 +42,10 @@ class any {
     flags_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), size_);
     download_ = detail::downloader<std::uint8_t>(space);
     space.fill(flags_, 0, size_);
-    query(handle{flags_});
+    query(detail::raise_flag{flags_});
   }
 
  private:
-  struct handle {
-    std::uint8_t* flags;
-    COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t) const { return 0; }
-    template <class Hit>
-    COLLIDE_HD_INLINE void store(std::uint64_t, Hit const& h) const {
-      detail::store_relaxed(flags + h.sphere, std::uint8_t{1});
-    }
-  };
-
   std::uint8_t* external_ = nullptr;
   std::uint8_t* flags_ = nullptr;
   std::size_t size_ = 0;

@@ -43,12 +43,25 @@ struct bucket_query {
     hit_buffer<Block> hits;
   };
 
+  static constexpr int nowhere = -1;     ///< number of the grid of a sphere that touches nothing
+  static constexpr int everywhere = -2;  ///< number of the grid of a sphere that no grid serves
+
   template <class Block>
   struct lane_state {
     sphere_batch<S, Block::items> batch;
-    signed char grid_number[Block::items];  ///< or nowhere
+    int grid_number[Block::items];
+
+    /// Places the spheres that grid `g` can serve. Grids come by falling reach, so a sphere ends up in the tightest. Without
+    /// branches, for the CPU's vector unit.
+    COLLIDE_HD_INLINE void place(grid<S> const& box, int g) {
+      for (int k = 0; k < Block::items; ++k) {
+        bool const inside = (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) & (batch.y[k] >= box.lower[1]) &
+                            (batch.y[k] <= box.upper[1]) & (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
+        int const there = inside ? g : nowhere;
+        grid_number[k] = batch.radius[k] <= box.reach ? there : grid_number[k];
+      }
+    }
   };
-  static constexpr signed char nowhere = -1;
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
@@ -67,17 +80,10 @@ struct bucket_query {
     block.each([&](int lane) {
       auto& mine = own[lane];
       mine.batch.load(tests.spheres, first + static_cast<std::size_t>(lane * n));
+      for (int k = 0; k < n; ++k) mine.grid_number[k] = valid_radius(mine.batch.radius[k]) ? everywhere : nowhere;
+      for (int g = 0; g < usable; ++g) mine.place(grids[g], g);
       for (int k = 0; k < n; ++k) {
-        mine.grid_number[k] = nowhere;
-        S const r = mine.batch.radius[k];
-        if (!valid_radius(r)) continue;
-        int g = usable - 1;
-        while (g >= 0 && !(r <= grids[g].reach)) --g;
-        if (g < 0) {
-          s.first[block.add(s.unplaced, 1)] = first_of(lane) + static_cast<id>(k);
-        } else if (grids[g].contains(mine.batch.centre[k])) {
-          mine.grid_number[k] = static_cast<signed char>(g);
-        }
+        if (mine.grid_number[k] == everywhere) s.first[block.add(s.unplaced, 1)] = first_of(lane) + static_cast<id>(k);
       }
     });
     test_unplaced(block, s);
@@ -89,7 +95,7 @@ struct bucket_query {
           auto const& mine = own[lane];
           for (int k = 0; k < n; ++k) {
             if (mine.grid_number[k] != g) continue;
-            std::uint32_t const cell = grids[g].cell_of(level, mine.batch.centre[k]);
+            std::uint32_t const cell = grids[g].cell_of(level, {mine.batch.x[k], mine.batch.y[k], mine.batch.z[k]});
             std::uint32_t const begin = ends[cell], end = ends[cell + 1];
             if (begin == end) continue;
             std::uint32_t const place = block.add(s.found, 1);

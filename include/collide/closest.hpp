@@ -16,6 +16,45 @@ struct nearest {
   S distance;   ///< from the centre to the triangle; +infinity if the sphere touches nothing
 };
 
+namespace detail {
+
+/// Kernel body of `for_each` over spheres: nothing is near yet.
+template <class S>
+struct reset_nearest {
+  nearest<S>* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {no_id, std::numeric_limits<S>::infinity()}; }
+};
+
+/// Kernel body of `for_each` over pairs: the smallest distance of each sphere. Distances are not negative, so they sort like
+/// their bits.
+template <class NarrowPhase, class S>
+struct find_distance {
+  pair const* pairs;
+  nearest<S>* to;
+  mesh_view<S> mesh;
+  sphere_view<S> spheres;
+  COLLIDE_HD bits_of<S> distance(pair p) const {
+    return bits(hit<NarrowPhase, S>(p, mesh, spheres).contact().distance);
+  }
+  COLLIDE_HD void operator()(std::size_t i) const {
+    pair const p = pairs[i];
+    fetch_min(reinterpret_cast<bits_of<S>*>(&to[p.sphere].distance), distance(p));
+  }
+};
+
+/// Kernel body of `for_each` over pairs: the smallest id among the triangles at that distance.
+template <class NarrowPhase, class S>
+struct find_nearest {
+  find_distance<NarrowPhase, S> found;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    pair const p = found.pairs[i];
+    nearest<S>& best = found.to[p.sphere];
+    if (found.distance(p) == bits(best.distance)) fetch_min(&best.triangle, p.triangle);
+  }
+};
+
+}  // namespace detail
+
 /// Per sphere the colliding triangle that is nearest to its centre; of equally near ones that with the smallest id.
 /// Distances are those of `contact::distance`.
 template <class S = float>
@@ -39,45 +78,13 @@ class closest {
     size_ = query.spheres.size();
     collected_.fill(space, query);
     auto* const to = own_.reserve(space.resource(), size_);
-    space.for_each(size_, reset{to});
-    measure<narrow_phase> const step{collected_.data(), to, query.mesh, query.spheres};
+    space.for_each(size_, detail::reset_nearest<S>{to});
+    detail::find_distance<narrow_phase, S> const step{collected_.data(), to, query.mesh, query.spheres};
     space.for_each(collected_.size(), step);
-    space.for_each(collected_.size(), choose<narrow_phase>{step});
+    space.for_each(collected_.size(), detail::find_nearest<narrow_phase, S>{step});
   }
 
  private:
-  using distance_bits = detail::bits_of<S>;  // of distances, which are not negative and so sort like their bits
-
-  struct reset {
-    nearest<S>* to;
-    COLLIDE_HD void operator()(std::size_t i) const { to[i] = {no_id, std::numeric_limits<S>::infinity()}; }
-  };
-
-  /// First pass: the smallest distance of each sphere.
-  template <class NarrowPhase>
-  struct measure {
-    pair const* pairs;
-    nearest<S>* to;
-    mesh_view<S> mesh;
-    sphere_view<S> spheres;
-    COLLIDE_HD S distance(pair p) const { return hit<NarrowPhase, S>(p, mesh, spheres).contact().distance; }
-    COLLIDE_HD void operator()(std::size_t i) const {
-      pair const p = pairs[i];
-      detail::fetch_min(reinterpret_cast<distance_bits*>(&to[p.sphere].distance), detail::bits(distance(p)));
-    }
-  };
-
-  /// Second pass: the smallest id among the triangles at that distance.
-  template <class NarrowPhase>
-  struct choose {
-    measure<NarrowPhase> found;
-    COLLIDE_HD void operator()(std::size_t i) const {
-      pair const p = found.pairs[i];
-      nearest<S>& best = found.to[p.sphere];
-      if (detail::bits(found.distance(p)) == detail::bits(best.distance)) detail::fetch_min(&best.triangle, p.triangle);
-    }
-  };
-
   std::size_t size_ = 0;
   detail::collector collected_;
   buffer<nearest<S>> own_;

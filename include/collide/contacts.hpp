@@ -8,6 +8,22 @@
 
 namespace collide {
 
+namespace detail {
+
+/// Kernel body of `for_each` over pairs.
+template <class NarrowPhase, class S>
+struct compute_contacts {
+  pair const* pairs;
+  contact<S>* to;
+  mesh_view<S> mesh;
+  sphere_view<S> spheres;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    to[i] = hit<NarrowPhase, S>(pairs[i], mesh, spheres).contact();
+  }
+};
+
+}  // namespace detail
+
 /// The contact of every colliding pair: closest point, normal, distance, depth and feature. The pairs are found first and
 /// the contacts computed from them in a second pass over the pairs alone, so that a miss costs nothing.
 template <class S = float>
@@ -45,21 +61,11 @@ class contacts {
     size_ = collected_.size();
     if (fixed_ && size_ > capacity_) size_ = capacity_;
     data_ = fixed_ ? external_ : own_.reserve(space.resource(), size_);
-    space.for_each(size_, compute<typename Query::narrow_phase>{collected_.data(), data_, query.mesh, query.spheres});
+    using narrow_phase = typename Query::narrow_phase;
+    space.for_each(size_, detail::compute_contacts<narrow_phase, S>{collected_.data(), data_, query.mesh, query.spheres});
   }
 
  private:
-  template <class NarrowPhase>
-  struct compute {
-    pair const* pairs;
-    contact<S>* to;
-    mesh_view<S> mesh;
-    sphere_view<S> spheres;
-    COLLIDE_HD void operator()(std::size_t i) const {
-      to[i] = hit<NarrowPhase, S>(pairs[i], mesh, spheres).contact();
-    }
-  };
-
   contact<S>* external_ = nullptr;
   contact<S>* data_ = nullptr;
   std::size_t capacity_ = 0;

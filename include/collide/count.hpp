@@ -6,6 +6,17 @@
 
 namespace collide {
 
+namespace detail {
+
+struct add_up {
+  std::uint64_t* total;
+  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return fetch_add(total, n); }
+  template <class Hit>
+  COLLIDE_HD_INLINE void store(std::uint64_t, Hit const&) const {}
+};
+
+}  // namespace detail
+
 /// Counts the colliding pairs, in 64 bits. `query` waits until the number is known.
 class count {
  public:
@@ -16,18 +27,11 @@ class count {
   void run(Space& space, Query const& query) {
     std::uint64_t* const counter = counter_.reserve(space.resource(), 1);
     space.fill(counter, 0, sizeof *counter);
-    query(handle{counter});
+    query(detail::add_up{counter});
     total_ = space.read(counter);
   }
 
  private:
-  struct handle {
-    std::uint64_t* total;
-    COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return detail::fetch_add(total, n); }
-    template <class Hit>
-    COLLIDE_HD_INLINE void store(std::uint64_t, Hit const&) const {}
-  };
-
   buffer<std::uint64_t> counter_;
   std::uint64_t total_ = 0;
 };

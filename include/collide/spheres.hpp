@@ -6,7 +6,6 @@
 #include <collide/geometry.hpp>
 
 #include <cstddef>
-#include <cstdint>
 #include <type_traits>
 
 namespace collide {
@@ -41,29 +40,16 @@ class sphere_view {
   /// Number of spheres.
   COLLIDE_HD std::size_t size() const { return size_; }
 
-  COLLIDE_HD_INLINE vec3<S> centre(std::size_t i) const { return {x_[i * stride_], y_[i * stride_], z_[i * stride_]}; }
+  COLLIDE_HD_INLINE vec3<S> centre(std::size_t i) const { return {*x(i), *y(i), *z(i)}; }
 
   COLLIDE_HD_INLINE S radius(std::size_t i) const { return radii_ == nullptr ? radius_ : radii_[i * radius_stride_]; }
 
   COLLIDE_HD_INLINE sphere<S> operator[](std::size_t i) const { return {centre(i), radius(i)}; }
 
-  /// Reads the four centres `first` .. `first + 3`; as three 16-byte loads where the layout allows it.
-  COLLIDE_HD_INLINE void four_centres(std::size_t first, vec3<S> (&out)[4]) const {
-#if defined(__CUDA_ARCH__)
-    if constexpr (sizeof(S) == 4) {
-      if (packed() && reinterpret_cast<std::uintptr_t>(x_ + 3 * first) % 16 == 0) {
-        auto const* const from = reinterpret_cast<float4 const*>(x_ + 3 * first);
-        float4 const u = from[0], v = from[1], w = from[2];
-        out[0] = {u.x, u.y, u.z};
-        out[1] = {u.w, v.x, v.y};
-        out[2] = {v.z, v.w, w.x};
-        out[3] = {w.y, w.z, w.w};
-        return;
-      }
-    }
-#endif
-    for (std::size_t k = 0; k < 4; ++k) out[k] = centre(first + k);
-  }
+  /// Where the coordinates of sphere `i` are.
+  COLLIDE_HD_INLINE S const* x(std::size_t i) const { return x_ + i * stride_; }
+  COLLIDE_HD_INLINE S const* y(std::size_t i) const { return y_ + i * stride_; }
+  COLLIDE_HD_INLINE S const* z(std::size_t i) const { return z_ + i * stride_; }
 
   /// True if all spheres have the radius `common_radius()`.
   COLLIDE_HD bool one_radius() const { return radii_ == nullptr; }

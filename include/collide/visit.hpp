@@ -6,6 +6,23 @@
 
 namespace collide {
 
+namespace detail {
+
+template <class F>
+struct call {
+  F f;
+  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t) const { return 0; }
+#if defined(__CUDACC__)
+#pragma nv_exec_check_disable
+#endif
+  template <class Hit>
+  COLLIDE_HD_INLINE void store(std::uint64_t, Hit const& h) const {
+    f(h);
+  }
+};
+
+}  // namespace detail
+
 /// Calls `f(hit)` once for every colliding pair and stores nothing; see `hit` for what f gets. In the CUDA spaces f is copied to
 /// the device and called there, from many threads at once, and so is trivially copyable with a __device__ operator(); on the
 /// host it is called from all threads of the space. `query` does not wait in the CUDA spaces.
@@ -16,19 +33,10 @@ class visit {
 
   template <class Space, class Query>
   void run(Space&, Query const& query) {
-    query(handle{f_});
+    query(detail::call<F>{f_});
   }
 
  private:
-  struct handle {
-    F f;
-    COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t) const { return 0; }
-    template <class Hit>
-    COLLIDE_HD_INLINE void store(std::uint64_t, Hit const& h) const {
-      f(h);
-    }
-  };
-
   F f_;
 };
 

@@ -55,11 +55,6 @@ struct grid {
   int levels;  ///< 0 if there is nothing to collide with
   grid_level<S> level[max_levels];
 
-  COLLIDE_HD_INLINE bool contains(vec3<S> const& p) const {
-    return p.x() >= lower[0] && p.x() <= upper[0] && p.y() >= lower[1] && p.y() <= upper[1] && p.z() >= lower[2] &&
-           p.z() <= upper[2];
-  }
-
   /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.
   COLLIDE_HD_INLINE std::uint32_t coordinate(grid_level<S> const& l, S x, int axis) const {
     S const cells = mul(x - lower[axis], l.inverse_width);

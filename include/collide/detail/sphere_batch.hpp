@@ -5,38 +5,58 @@
 #include <collide/detail/arithmetic.hpp>
 #include <collide/spheres.hpp>
 
+#include <cstdint>
+
 namespace collide::detail {
 
-/// `Items` consecutive spheres, in registers on CUDA. Spheres beyond the end, and spheres that can touch nothing because
-/// their radius is negative or NaN, have a NaN radius.
+/// `Items` consecutive spheres: in registers on CUDA, eight or sixteen to a vector register on a CPU. Spheres beyond the end
+/// of the set have a NaN radius.
 template <class S, int Items>
 struct sphere_batch {
-  static_assert(Items % 4 == 0, "centres are loaded four at a time");
+  static_assert(Items % 4 == 0, "packed centres are loaded four at a time");
 
-  vec3<S> centre[Items];
-  S radius[Items];
+  S x[Items], y[Items], z[Items], radius[Items];
 
   COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
-    std::size_t const n = spheres.size();
+    if (first + Items <= spheres.size()) {
+      load_centres(spheres, first);
+      for (int k = 0; k < Items; ++k) radius[k] = spheres.radius(first + static_cast<std::size_t>(k));
+    } else {
+      for (int k = 0; k < Items; ++k) {
+        std::size_t const i = first + static_cast<std::size_t>(k);
+        bool const there = i < spheres.size();
+        sphere<S> const s = there ? spheres[i] : sphere<S>{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()};
+        x[k] = s.centre.x();
+        y[k] = s.centre.y();
+        z[k] = s.centre.z();
+        radius[k] = s.radius;
+      }
+    }
+  }
+
+ private:
+  COLLIDE_HD_INLINE void load_centres(sphere_view<S> const& spheres, std::size_t first) {
 #if defined(__CUDA_ARCH__)
-#pragma unroll
+    if constexpr (sizeof(S) == 4) {  // four packed centres are three 16-byte loads
+      S const* const packed = spheres.packed() ? spheres.x(first) : nullptr;
+      if (packed != nullptr && reinterpret_cast<std::uintptr_t>(packed) % 16 == 0) {
+        auto const* const from = reinterpret_cast<float4 const*>(packed);
+        for (int k = 0; k < Items; k += 4) {
+          float4 const read[3] = {from[3 * k / 4], from[3 * k / 4 + 1], from[3 * k / 4 + 2]};
+          x[k] = read[0].x, y[k] = read[0].y, z[k] = read[0].z;
+          x[k + 1] = read[0].w, y[k + 1] = read[1].x, z[k + 1] = read[1].y;
+          x[k + 2] = read[1].z, y[k + 2] = read[1].w, z[k + 2] = read[2].x;
+          x[k + 3] = read[2].y, y[k + 3] = read[2].z, z[k + 3] = read[2].w;
+        }
+        return;
+      }
+    }
 #endif
-    for (int k = 0; k < Items; k += 4) {
+    for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
-      vec3<S> four[4];
-      if (i + 4 <= n) {
-        spheres.four_centres(i, four);
-      } else {
-        for (std::size_t j = 0; j < 4; ++j) four[j] = i + j < n ? spheres.centre(i + j) : vec3<S>{0, 0, 0};
-      }
-#if defined(__CUDA_ARCH__)
-#pragma unroll
-#endif
-      for (std::size_t j = 0; j < 4; ++j) {
-        S const r = i + j < n ? spheres.radius(i + j) : S(-1);
-        centre[static_cast<std::size_t>(k) + j] = four[j];
-        radius[static_cast<std::size_t>(k) + j] = valid_radius(r) ? r : std::numeric_limits<S>::quiet_NaN();
-      }
+      x[k] = *spheres.x(i);
+      y[k] = *spheres.y(i);
+      z[k] = *spheres.z(i);
     }
   }
 };
