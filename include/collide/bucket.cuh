@@ -240,7 +240,7 @@ class bucket::index {
     space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
     detail::size_histogram const seen = space.read(radii);
     if (seen.empty()) return 0;
-    constexpr int bins_per_factor_4 = 4;
+    constexpr int bins_per_factor_4 = 8;
     int n = 0;
     for (int b = seen.last(); b >= seen.first() && n < detail::max_grids; b -= bins_per_factor_4) {
       while (seen.counts[b] == 0) --b;

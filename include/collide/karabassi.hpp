@@ -30,7 +30,8 @@ struct karabassi {
     using T = typename Precision::scalar;
     if (!detail::valid_radius(s.radius) || !detail::finite(s.centre) || !detail::finite(t)) return false;
     if (detail::infinite(s.radius)) return true;
-    return four_steps(detail::local<T>(t, s));
+    detail::local_triangle<T> const l = detail::local<T>(t, s);
+    return detail::box_in_reach(l) && four_steps(l);
   }
 
   /// Where and how a colliding pair touches; the ids are left to the caller. O(1), computed in double.

@@ -43,6 +43,13 @@ COLLIDE_HD_INLINE local_triangle<T> local(triangle<S> const& t, sphere<S> const&
   return {scaled(l.a, scale), scaled(l.b, scale), scaled(l.c, scale), mul(l.radius, scale), mul(l.scale, scale)};
 }
 
+/// False if the triangle's box is farther from the origin than the radius along some axis. Exact: rounding is monotone.
+template <class T>
+COLLIDE_HD_INLINE bool box_in_reach(local_triangle<T> const& t) {
+  vec3<T> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
+  return largest<T>(lower) <= t.radius && largest<T>(-upper) <= t.radius;
+}
+
 /// False if the normal (of squared length `nn`) of the triangle drowns in rounding: its corners are (nearly) collinear.
 template <class T>
 COLLIDE_HD_INLINE bool spans_plane(local_triangle<T> const& t, T nn) {

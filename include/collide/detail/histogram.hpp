@@ -1,5 +1,5 @@
 /// \file
-/// Histograms of sizes over half octaves: what the grid is planned from.
+/// Histograms of sizes over quarter octaves: what the grid is planned from.
 #pragma once
 
 #include <collide/detail/arithmetic.hpp>
@@ -7,19 +7,19 @@
 
 namespace collide::detail {
 
-/// Bins for all non-negative floats: two per octave, [2^k, 1.5 * 2^k) and [1.5 * 2^k, 2^(k+1)).
-inline constexpr int size_bins = 512;
+/// Bins for all non-negative floats: four per octave.
+inline constexpr int size_bins = 1024;
 
 /// The bin of a size; sizes beyond the range of float count as its end.
 template <class S>
 COLLIDE_HD_INLINE std::uint32_t size_bin(S size) {
   float const x = size < S(std::numeric_limits<float>::max()) ? static_cast<float>(size) : std::numeric_limits<float>::max();
-  return bits(x) >> 22;
+  return bits(x) >> 21;
 }
 
 /// A size that no size in the bin exceeds; +infinity for the last bin, which holds all sizes beyond float.
 COLLIDE_HD_INLINE float bin_end(std::uint32_t bin) {
-  std::uint32_t const end = (bin + 1) << 22;
+  std::uint32_t const end = (bin + 1) << 21;
   return from_bits<float>(end < format<float>::exponent_mask ? end : format<float>::exponent_mask);
 }
 
