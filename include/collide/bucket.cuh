@@ -108,7 +108,10 @@ struct bucket_query {
         if (found == 0) continue;
         block.balanced(
             s.balance, s.counts, found,
-            [&](std::uint32_t i, std::uint32_t k) { candidate(block, s, s.spheres[i], entries[s.first[i] + k]); },
+            [&](std::uint32_t i) {
+              return candidates{s.spheres[i], tests.spheres[s.spheres[i]], entries + s.first[i]};
+            },
+            [&](candidates const& c, std::uint32_t k) { test(block, s, c.number, c.ball, c.triangles[k]); },
             [&] { tests.make_room(block, s.hits); });
         block.each([&](int lane) {
           if (lane == 0) s.found = 0;
@@ -119,11 +122,17 @@ struct bucket_query {
   }
 
  private:
+  /// A sphere and the triangles of its cell.
+  struct candidates {
+    id number;
+    sphere<S> ball;
+    id const* triangles;
+  };
+
   template <class Block>
-  COLLIDE_HD_INLINE void candidate(Block& block, scratch<Block>& s, id sphere_id, id triangle_id) const {
-    sphere<S> const ball = tests.spheres[sphere_id];
-    auto const around = bounds != nullptr ? bounds[triangle_id] : bounds_of(tests.mesh[triangle_id]);
-    if (around.reached(ball.centre, ball.radius)) tests.test(block, s.hits, {sphere_id, triangle_id}, ball);
+  COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, id number, sphere<S> const& ball, id triangle) const {
+    auto const around = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
+    if (around.reached(ball.centre, ball.radius)) tests.test(block, s.hits, {number, triangle}, ball);
   }
 
   /// Tests the spheres that are too large for every grid (or all, if there is none) with every triangle.
@@ -132,10 +141,11 @@ struct bucket_query {
     std::uint32_t const unplaced = block.shared(s.unplaced);
     constexpr std::size_t stride = Block::lanes;
     for (std::uint32_t i = 0; i < unplaced; ++i) {
+      sphere<S> const ball = tests.spheres[s.first[i]];
       for (std::size_t base = 0; base < tests.mesh.size(); base += stride) {
         block.each([&](int lane) {
           std::size_t const t = base + static_cast<std::size_t>(lane);
-          if (t < tests.mesh.size()) candidate(block, s, s.first[i], static_cast<id>(t));
+          if (t < tests.mesh.size()) test(block, s, s.first[i], ball, static_cast<id>(t));
         });
         tests.make_room(block, s.hits);
       }

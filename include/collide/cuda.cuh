@@ -155,10 +155,10 @@ class cuda_block {
     return sum;
   }
 
-  template <class F, class Round>
-  __device__ __forceinline__ void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, F const& f,
-                                           Round const& after_round) {
-    s.run(*this, counts, n, f, after_round);
+  template <class Item, class F, class Round>
+  __device__ __forceinline__ void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item,
+                                           F const& f, Round const& after_round) {
+    s.run(*this, counts, n, item, f, after_round);
   }
 
   /// The combination of all lanes' values; valid in lane 0.

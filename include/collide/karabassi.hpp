@@ -28,10 +28,10 @@ struct karabassi {
   template <class S>
   static COLLIDE_HD_INLINE bool intersects(triangle<S> const& t, sphere<S> const& s) {
     using T = typename Precision::scalar;
+    detail::local_triangle<T> const l = detail::relative<T>(t, s);
+    if (!detail::box_in_reach(l)) return false;
     if (!detail::valid_radius(s.radius) || !detail::finite(s.centre) || !detail::finite(t)) return false;
-    if (detail::infinite(s.radius)) return true;
-    detail::local_triangle<T> const l = detail::local<T>(t, s);
-    return detail::box_in_reach(l) && four_steps(l);
+    return detail::infinite(s.radius) || four_steps(detail::normalised(l, t, s));
   }
 
   /// Where and how a colliding pair touches; the ids are left to the caller. O(1), computed in double.

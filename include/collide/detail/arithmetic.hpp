@@ -145,12 +145,12 @@ COLLIDE_HD_INLINE bool finite(T x) {
 
 template <class T>
 COLLIDE_HD_INLINE bool finite(vec3<T> const& v) {
-  return finite(v.x()) && finite(v.y()) && finite(v.z());
+  return finite(v.x()) & finite(v.y()) & finite(v.z());
 }
 
 template <class T>
 COLLIDE_HD_INLINE bool finite(triangle<T> const& t) {
-  return finite(t.a) && finite(t.b) && finite(t.c);
+  return finite(t.a) & finite(t.b) & finite(t.c);
 }
 
 /// A radius that a point can be within: not NaN, not below zero (-0 is 0); decided on bits. +infinity passes.

@@ -7,7 +7,7 @@
 ///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
-///   - `block.balanced(...)` spreads work items evenly over the lanes;
+///   - `block.balanced(...)` spreads work evenly over the lanes: f(item(i), k) for all k < counts[i];
 ///   - `block.reduce(...)` combines a value per lane.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
 /// Here are the two blocks of plain C++: `serial_block`, a single lane that does everything itself (the host's block, and a
@@ -22,29 +22,30 @@
 
 namespace collide::detail {
 
-/// The cooperative algorithm behind `balanced`: scans the counts in scratch memory, then spreads all (item, k) with
-/// k < count[item] evenly over the lanes, each of which finds its item by binary search.
+/// The cooperative algorithm behind `balanced`: scans the counts in scratch memory, then spreads all (i, k) with
+/// k < counts[i] evenly over the lanes, each of which finds its i by binary search.
 template <class Block>
 struct balancing {
   typename Block::scan_scratch scan;
 
-  template <class F, class Round>
-  COLLIDE_HD void run(Block& block, std::uint32_t* counts, std::uint32_t items, F const& f, Round const& after_round) {
-    std::uint32_t const total = block.scan(scan, counts, items);
+  template <class Item, class F, class Round>
+  COLLIDE_HD void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, F const& f,
+                      Round const& after_round) {
+    std::uint32_t const total = block.scan(scan, counts, n);
     for (std::uint32_t base = 0; base < total; base += Block::lanes) {
       block.each([&](int lane) {
         std::uint32_t const work = base + static_cast<std::uint32_t>(lane);
         if (work >= total) return;
-        std::uint32_t item = 0, end = items;  // the last item that begins at or before `work`
-        while (end - item > 1) {
-          std::uint32_t const middle = (item + end) / 2;
+        std::uint32_t i = 0, end = n;  // the last i whose work begins at or before this
+        while (end - i > 1) {
+          std::uint32_t const middle = (i + end) / 2;
           if (counts[middle] <= work) {
-            item = middle;
+            i = middle;
           } else {
             end = middle;
           }
         }
-        f(item, work - counts[item]);
+        f(item(i), work - counts[i]);
       });
       after_round();
     }
@@ -93,11 +94,12 @@ class serial_block {
     return from;
   }
 
-  template <class F, class Round>
-  COLLIDE_HD_INLINE void balanced(balance_scratch&, std::uint32_t const* counts, std::uint32_t n, F const& f,
-                                  Round const& after_round) {
+  template <class Item, class F, class Round>
+  COLLIDE_HD_INLINE void balanced(balance_scratch&, std::uint32_t const* counts, std::uint32_t n, Item const& item,
+                                  F const& f, Round const& after_round) {
     for (std::uint32_t i = 0; i < n; ++i) {
-      for (std::uint32_t k = 0; k < counts[i]; ++k) f(i, k);
+      auto const one = item(i);
+      for (std::uint32_t k = 0; k < counts[i]; ++k) f(one, k);
       after_round();
     }
   }
@@ -168,9 +170,10 @@ class lockstep_block {
     return sum;
   }
 
-  template <class F, class Round>
-  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, F const& f, Round const& after_round) {
-    s.run(*this, counts, n, f, after_round);
+  template <class Item, class F, class Round>
+  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item, F const& f,
+                Round const& after_round) {
+    s.run(*this, counts, n, item, f, after_round);
   }
 
   template <class T, class Combine>

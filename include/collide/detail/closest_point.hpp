@@ -7,8 +7,7 @@
 
 namespace collide::detail {
 
-/// A triangle as seen from a sphere's centre, scaled by the power of two `scale` so that its largest coordinate and the
-/// radius are below 2.
+/// A triangle as seen from a sphere's centre: local coordinates times `scale`, a power of two.
 template <class T>
 struct local_triangle {
   vec3<T> a, b, c;
@@ -22,24 +21,32 @@ COLLIDE_HD_INLINE T magnitude(vec3<T> const& v) {
   return largest<T>(v.cwiseAbs());
 }
 
-/// Subtracts the centre (in the wider of `S` and `T`), rounds to `T` and scales. Finite input only.
+/// Subtracts the centre, in the wider of `S` and `T`, and rounds to `T`.
 template <class T, class S>
-COLLIDE_HD_INLINE local_triangle<T> local(triangle<S> const& t, sphere<S> const& s) {
+COLLIDE_HD_INLINE local_triangle<T> relative(triangle<S> const& t, sphere<S> const& s) {
   using W = std::common_type_t<S, T>;
-  auto const from = [&](W before) {
-    auto const point = [&](vec3<S> const& v) -> vec3<T> {
-      return {static_cast<T>(mul(W(v.x()), before) - mul(W(s.centre.x()), before)),
-              static_cast<T>(mul(W(v.y()), before) - mul(W(s.centre.y()), before)),
-              static_cast<T>(mul(W(v.z()), before) - mul(W(s.centre.z()), before))};
-    };
-    return local_triangle<T>{point(t.a), point(t.b), point(t.c), static_cast<T>(mul(W(s.radius), before)), T(before)};
+  vec3<S> const& c = s.centre;
+  auto const from_centre = [&](vec3<S> const& v) -> vec3<T> {
+    return {static_cast<T>(W(v.x()) - W(c.x())), static_cast<T>(W(v.y()) - W(c.y())),
+            static_cast<T>(W(v.z()) - W(c.z()))};
   };
-  auto const size = [](local_triangle<T> const& l) {
-    return larger(larger(magnitude(l.a), magnitude(l.b)), larger(magnitude(l.c), l.radius));
-  };
-  local_triangle<T> l = from(W(1));
-  if (!finite(size(l))) l = from(static_cast<W>(std::numeric_limits<T>::min()));  // the range of T was exceeded
-  T const scale = reciprocal_power(size(l));
+  return {from_centre(t.a), from_centre(t.b), from_centre(t.c), static_cast<T>(s.radius),
+          T(1)};
+}
+
+/// `relative` scaled so that its largest coordinate and the radius are below 4 and the larger of them is at least 1, unless
+/// they are tiny. Finite input only.
+template <class T, class S>
+COLLIDE_HD_INLINE local_triangle<T> normalised(local_triangle<T> l, triangle<S> const& t, sphere<S> const& s) {
+  auto const size = [&] { return larger(larger(magnitude(l.a), magnitude(l.b)), larger(magnitude(l.c), l.radius)); };
+  if (!finite(size())) {  // the range of T was exceeded
+    constexpr T tiny = std::numeric_limits<T>::min();
+    S const by = S(tiny);
+    l = relative<T>(triangle<S>{scaled(t.a, by), scaled(t.b, by), scaled(t.c, by)},
+                    sphere<S>{scaled(s.centre, by), mul(s.radius, by)});
+    l.scale = tiny;
+  }
+  T const scale = reciprocal_power(size());
   return {scaled(l.a, scale), scaled(l.b, scale), scaled(l.c, scale), mul(l.radius, scale), mul(l.scale, scale)};
 }
 
@@ -126,7 +133,8 @@ COLLIDE_HD inline vec3<T> normal_of(local_triangle<T> const& t, vec3<T> const& n
 /// The contact of a finite triangle and sphere, computed in double and rounded once; the ids are left to the caller.
 template <class S>
 COLLIDE_HD contact<S> contact_in_double(triangle<S> const& t, sphere<S> const& s) {
-  local_triangle<double> const l = local<double>(t, sphere<S>{s.centre, S(0)});
+  sphere<S> const centre{s.centre, S(0)};
+  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
   vec3<double> const n = cross<double>(l.b - l.a, l.c - l.a);
   bool const plane = spans_plane(l, dot(n, n));
   closest_point<double> const q = closest_to_origin(l, n, plane);
