@@ -1,16 +1,17 @@
 /// \file
 /// The six methods of the study on the study's scene and on its scaling series.
 ///
-/// Names are METHOD/BROAD_x_SPACE/PRECISION/SINK/PHASE/SPHERES. Counters: pairs; tests_per_second (pairs of sphere and triangle
-/// that were decided, whether or not the broad phase had to look at them); spheres_per_second; over_floor (time over that
-/// of reading every centre once, measured in the same process).
+/// Names are METHOD/BROAD_x_SPACE/PRECISION/SINK/PHASE/SPHERES. Counters: pairs; tests_per_second (pairs of sphere and
+/// triangle that were decided, whether or not the broad phase had to look at them); spheres_per_second; over_floor
+/// (time over that of reading every centre once, measured in the same process).
+#include <map>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
 #include <collide/upload.hpp>
-
-#include <benchmark/benchmark.h>
-#include <map>
-#include <string>
 
 #include "io/scenes.hpp"
 #include "stopwatch.hpp"
@@ -82,11 +83,13 @@ void add(std::string const& method, phase what, std::size_t n, std::string const
          Space space) {
   static char const* const phases[] = {"build", "query", "both"};
   std::string const precision = std::is_same<Precision, collide::single_precision>::value ? "single" : "double";
-  std::string const name = method + "/" + precision + "/" + sink_name + "/" + phases[static_cast<int>(what)] + "/" +
-                           std::to_string(n) + "/";
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-    run<Broad, Precision, Space, S>(state, what, n, make_sink(), space);
-  })->UseManualTime()->Unit(benchmark::kMillisecond);
+  std::string const name =
+      method + "/" + precision + "/" + sink_name + "/" + phases[static_cast<int>(what)] + "/" + std::to_string(n) + "/";
+  benchmark::RegisterBenchmark(
+      name.c_str(),
+      [=](benchmark::State& state) { run<Broad, Precision, Space, S>(state, what, n, make_sink(), space); })
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond);
 }
 
 auto const pairs = [] { return collide::pairs(); };

@@ -2,13 +2,13 @@
 /// Time and floor of an execution space.
 #pragma once
 
-#include <collide/detector.hpp>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <collide/detector.hpp>
 
 namespace bench {
 
@@ -70,8 +70,8 @@ struct stopwatch_of {
 template <class Space>
 using stopwatch = typename stopwatch_of<Space>::type;
 
-/// Kernel body of `for_each` over groups of four scalars: reads them all, and writes where they sum to a value that they
-/// never sum to.
+/// Kernel body of `for_each` over groups of four scalars: reads them all, and writes where they sum to a value that
+/// they never sum to.
 template <class S>
 struct read_all {
   struct alignas(4 * sizeof(S)) four {

@@ -1,6 +1,6 @@
 /// \file
-/// Broad phase: every sphere against every triangle, in tiles. Includes the detector and everything to use it with: with nvcc
-/// the CUDA spaces too.
+/// Broad phase: every sphere against every triangle, in tiles. Includes the detector and everything to use it with:
+/// with nvcc the CUDA spaces too.
 ///
 /// In the terms of the original study: all_pairs x host = `brute_force_seq`, all_pairs x cuda = `brute_force`, and
 /// all_pairs x cuda_shared = `brute_force_shamem`.
@@ -16,9 +16,9 @@ namespace collide {
 
 namespace detail {
 
-/// Kernel body: each lane keeps some spheres; tiles of bounding spheres of the triangles pass by, in shared memory where
-/// there is some; where a bounding sphere is reached, the narrow phase decides. With few spheres the mesh is split among
-/// `splits` blocks.
+/// Kernel body: each lane keeps some spheres; tiles of bounding spheres of the triangles pass by, in shared memory
+/// where there is some; where a bounding sphere is reached, the narrow phase decides. With few spheres the mesh is
+/// split among `splits` blocks.
 template <class S, class NarrowPhase, class Sink>
 struct all_pairs_query {
   static constexpr int items = 4;
@@ -86,8 +86,8 @@ struct compute_bounds {
 
 }  // namespace detail
 
-/// Broad phase: all pairs. Nothing but a bounding sphere per triangle is prepared, so it is the right choice for small meshes.
-/// Build O(triangles), query O(spheres * triangles); memory 4 scalars per triangle.
+/// Broad phase: all pairs. Nothing but a bounding sphere per triangle is prepared, so it is the right choice for small
+/// meshes. Build O(triangles), query O(spheres * triangles); memory 4 scalars per triangle.
 struct all_pairs {
   template <class S>
   class index {

@@ -2,9 +2,9 @@
 /// Sink: which spheres collide.
 #pragma once
 
-#include <collide/detail/sink.hpp>
-
 #include <vector>
+
+#include <collide/detail/sink.hpp>
 
 namespace collide {
 

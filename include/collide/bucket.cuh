@@ -1,23 +1,24 @@
 /// \file
-/// Broad phase: uniform grids of buckets. Includes the detector and everything to use it with: with nvcc the CUDA spaces too.
+/// Broad phase: uniform grids of buckets. Includes the detector and everything to use it with: with nvcc the CUDA
+/// spaces too.
 ///
 /// In the terms of the original study: bucket x host = `bucket_seq`, bucket x cuda = `bucket`, and
 /// bucket x cuda_shared = `bucket_shamem`.
 #pragma once
+
+#include <algorithm>
 
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/sphere_batch.hpp>
 #include <collide/detector.hpp>
 
-#include <algorithm>
-
 namespace collide {
 
 namespace detail {
 
-/// Kernel body: each lane looks up the cells of some spheres; the few spheres whose cell is not empty are compacted in scratch
-/// memory, and their candidates are spread evenly over all lanes.
+/// Kernel body: each lane looks up the cells of some spheres; the few spheres whose cell is not empty are compacted in
+/// scratch memory, and their candidates are spread evenly over all lanes.
 template <class S, class NarrowPhase, class Sink>
 struct bucket_query {
   static constexpr int items = 4;
@@ -34,11 +35,11 @@ struct bucket_query {
   template <class Block>
   struct scratch {
     static constexpr int size = Block::lanes * Block::items;
-    id spheres[size];             ///< spheres with candidates
-    std::uint32_t first[size];    ///< their first entry
-    std::uint32_t counts[size];   ///< how many they have
-    std::uint32_t found;          ///< how many spheres that are
-    std::uint32_t unplaced;       ///< how many spheres no grid serves; they are listed in `first`
+    id spheres[size];            ///< spheres with candidates
+    std::uint32_t first[size];   ///< their first entry
+    std::uint32_t counts[size];  ///< how many they have
+    std::uint32_t found;         ///< how many spheres that are
+    std::uint32_t unplaced;      ///< how many spheres no grid serves; they are listed in `first`
     typename Block::balance_scratch balance;
     hit_buffer<Block> hits;
   };
@@ -51,8 +52,8 @@ struct bucket_query {
     sphere_batch<S, Block::items> batch;
     int grid_number[Block::items];
 
-    /// Places the spheres that grid `g` can serve. Grids come by falling reach, so a sphere ends up in the tightest. Without
-    /// branches, for the CPU's vector unit.
+    /// Places the spheres that grid `g` can serve. Grids come by falling reach, so a sphere ends up in the tightest.
+    /// Without branches, for the CPU's vector unit.
     COLLIDE_HD_INLINE void place(grid<S> const& box, int g) {
       for (int k = 0; k < Block::items; ++k) {
         bool const inside = (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) & (batch.y[k] >= box.lower[1]) &
@@ -156,15 +157,15 @@ struct bucket_query {
 }  // namespace detail
 
 /// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid.hpp explains how.
-/// Build O(triangles), query O(spheres + candidates). Memory: at most 8 entries of 4 bytes, 4 scalars and up to 8 cells of 4 bytes per
-/// triangle and grid; several grids only where radii differ by more than a factor of 4.
+/// Build O(triangles), query O(spheres + candidates). Memory: at most 8 entries of 4 bytes, 4 scalars and up to 8 cells
+/// of 4 bytes per triangle and grid; several grids only where radii differ by more than a factor of 4.
 struct bucket {
   /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
   /// such cells go to levels of wider ones.
   double cell_width = 0;
 
-  /// Bytes that the grids may take at most; 0 is no limit. Where the budget does not suffice for a grid, the spheres are
-  /// tested with every triangle: slower, with the same result.
+  /// Bytes that the grids may take at most; 0 is no limit. Where the budget does not suffice for a grid, the spheres
+  /// are tested with every triangle: slower, with the same result.
   std::size_t memory_budget = 0;
 
   template <class S>
@@ -184,7 +185,8 @@ class bucket::index {
     radius_given_ = false;
     has_bounds_ = options.memory_budget == 0 || fixed_bytes + bounds_bytes() <= options.memory_budget;
     if (has_bounds_) bounds_.reserve(space.resource(), mesh.size());
-    if (options.memory_budget != 0 && fixed_bytes > options.memory_budget) return;
+    has_summary_ = options.memory_budget == 0 || fixed_bytes <= options.memory_budget;
+    if (!has_summary_) return;
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
     detail::summarise_mesh<S> const body{mesh, summary, has_bounds_ ? bounds_.data() : nullptr};
@@ -195,15 +197,17 @@ class bucket::index {
   template <class Space>
   void prepare(Space& space, bucket const& options, S radius) {
     radius_given_ = true;
-    if (detail::valid_radius(radius) && detail::finite(radius)) make_grids(space, options, &radius, 1);
+    if (has_summary_ && detail::valid_radius(radius) && detail::finite(radius)) make_grids(space, options, &radius, 1);
   }
 
-  /// Makes the grids that the spheres need, unless they are there. Waits for the host to see the radii where they differ.
+  /// Makes the grids that the spheres need, unless they are there. Waits for the host to see the radii where they
+  /// differ.
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
-    if (radius_given_) return;
+    if (radius_given_ || !has_summary_) return;
     S reaches[detail::max_grids];
-    int const n = spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
+    int const n =
+        spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
     if (n == 0 || (n == grid_count_ && std::equal(reaches, reaches + n, reaches_))) return;
     make_grids(space, options, reaches, n);
   }
@@ -212,14 +216,10 @@ class bucket::index {
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, sphere_view<S> const& spheres, Sink const& sink) const {
     detail::bucket_query<S, NarrowPhase, Sink> const body{
-        {mesh_, spheres, sink},
-        has_bounds_ ? bounds_.data() : nullptr,
-        grids_.data(),
-        grid_count_,
-        counts_.data(),
-        counts_.data() + cells_ + 1,
-        entries_.data(),
-        entries_.capacity()};
+        {mesh_, spheres, sink}, has_bounds_ ? bounds_.data() : nullptr,
+        grids_.data(),          grid_count_,
+        counts_.data(),         counts_.data() + cells_ + 1,
+        entries_.data(),        entries_.capacity()};
     space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
   }
 
@@ -270,7 +270,8 @@ class bucket::index {
     cells_ = static_cast<std::size_t>(grid_count_) << l.table_bits;
 
     auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
-    detail::plan_grid<S> plan{summary_.data(), grids, {}, static_cast<S>(options.cell_width), l.entry_limit, l.table_bits};
+    detail::plan_grid<S> plan{summary_.data(), grids,       {}, static_cast<S>(options.cell_width),
+                              l.entry_limit,   l.table_bits};
     std::copy(reaches, reaches + grid_count_, plan.reaches);
     space.for_each(static_cast<std::size_t>(grid_count_), plan);
 
@@ -280,7 +281,8 @@ class bucket::index {
     space.fill(counts, 0, (cells_ + 2) * sizeof *counts);
     space.for_each(n, detail::count_entries<S>{insertion, counts + 1});
     space.exclusive_scan(counts + 1, cells_ + 1, scratch_);
-    // without a fixed width no triangle is in more than 8 cells of a grid, so the device need not be asked how many there are
+    // without a fixed width no triangle is in more than 8 cells of a grid, so the device need not be asked how many
+    // there are
     bool const ask = Space::host_memory || options.cell_width > 0;
     std::size_t const capacity = ask ? space.read(counts + cells_ + 1) : 8 * n * static_cast<std::size_t>(grid_count_);
     entries_.reserve(space.resource(), capacity);
@@ -305,8 +307,8 @@ class bucket::index {
       if (8 * n * grids > id_limit) continue;
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
         std::size_t const cells = grids << bits;
-        std::size_t const base = fixed_bytes + (has_bounds_ ? bounds_bytes() : 0) + (cells + 2) * sizeof(std::uint32_t) +
-                                 space.scan_bytes(cells + 1);
+        std::size_t const base = fixed_bytes + (has_bounds_ ? bounds_bytes() : 0) +
+                                 (cells + 2) * sizeof(std::uint32_t) + space.scan_bytes(cells + 1);
         std::size_t const least = base + 8 * n * grids * sizeof(id);
         std::size_t most_entries = std::min(512 * n + (std::size_t{1} << 20), id_limit / grids);
         if (options.memory_budget != 0) {
@@ -341,6 +343,7 @@ class bucket::index {
   S reaches_[detail::max_grids] = {};
   bool radius_given_ = false;
   bool has_bounds_ = false;
+  bool has_summary_ = false;
 };
 
 }  // namespace collide

@@ -2,10 +2,10 @@
 /// Sink: per sphere the nearest of the triangles that it collides with.
 #pragma once
 
+#include <vector>
+
 #include <collide/detail/arithmetic.hpp>
 #include <collide/detail/sink.hpp>
-
-#include <vector>
 
 namespace collide {
 
@@ -25,8 +25,8 @@ struct reset_nearest {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = {no_id, std::numeric_limits<S>::infinity()}; }
 };
 
-/// Kernel body of `for_each` over pairs: the smallest distance of each sphere. Distances are not negative, so they sort like
-/// their bits.
+/// Kernel body of `for_each` over pairs: the smallest distance of each sphere. Distances are not negative, so they sort
+/// like their bits.
 template <class NarrowPhase, class S>
 struct find_distance {
   pair const* pairs;

@@ -2,9 +2,9 @@
 /// What is known of a colliding pair: its ids, and where and how the two touch.
 #pragma once
 
-#include <collide/geometry.hpp>
-
 #include <cstdint>
+
+#include <collide/geometry.hpp>
 
 namespace collide {
 

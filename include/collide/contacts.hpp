@@ -2,9 +2,9 @@
 /// Sink: all colliding pairs with their contacts.
 #pragma once
 
-#include <collide/detail/sink.hpp>
-
 #include <vector>
+
+#include <collide/detail/sink.hpp>
 
 namespace collide {
 
@@ -17,23 +17,21 @@ struct compute_contacts {
   contact<S>* to;
   mesh_view<S> mesh;
   sphere_view<S> spheres;
-  COLLIDE_HD void operator()(std::size_t i) const {
-    to[i] = hit<NarrowPhase, S>(pairs[i], mesh, spheres).contact();
-  }
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = hit<NarrowPhase, S>(pairs[i], mesh, spheres).contact(); }
 };
 
 }  // namespace detail
 
-/// The contact of every colliding pair: closest point, normal, distance, depth and feature. The pairs are found first and
-/// the contacts computed from them in a second pass over the pairs alone, so that a miss costs nothing.
+/// The contact of every colliding pair: closest point, normal, distance, depth and feature. The pairs are found first
+/// and the contacts computed from them in a second pass over the pairs alone, so that a miss costs nothing.
 template <class S = float>
 class contacts {
  public:
   /// The contacts are kept in memory of the space, as many as there are.
   explicit contacts(order o = order::unspecified) : order_{o} {}
-  /// The contacts are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total` tells
-  /// how many there are all the same. Which ones are stored if they do not fit is unspecified, unless the order is
-  /// canonical: then they are the first ones.
+  /// The contacts are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total`
+  /// tells how many there are all the same. Which ones are stored if they do not fit is unspecified, unless the order
+  /// is canonical: then they are the first ones.
   contacts(contact<S>* buffer, std::size_t capacity, order o = order::unspecified)
       : external_{buffer}, capacity_{capacity}, order_{o}, fixed_{true} {}
 
@@ -62,7 +60,8 @@ class contacts {
     if (fixed_ && size_ > capacity_) size_ = capacity_;
     data_ = fixed_ ? external_ : own_.reserve(space.resource(), size_);
     using narrow_phase = typename Query::narrow_phase;
-    space.for_each(size_, detail::compute_contacts<narrow_phase, S>{collected_.data(), data_, query.mesh, query.spheres});
+    space.for_each(size_,
+                   detail::compute_contacts<narrow_phase, S>{collected_.data(), data_, query.mesh, query.spheres});
   }
 
  private:

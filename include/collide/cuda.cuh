@@ -1,25 +1,26 @@
 /// \file
-/// The execution spaces of an NVIDIA GPU: `cuda`, a thread per work item, and `cuda_shared`, blocks of threads that work
-/// together through shared memory. Needs nvcc.
+/// The execution spaces of an NVIDIA GPU: `cuda`, a thread per work item, and `cuda_shared`, blocks of threads that
+/// work together through shared memory. Needs nvcc.
 #pragma once
 
 #if !defined(__CUDACC__)
 #error "collide/cuda.cuh needs nvcc; without CUDA include the headers of the host space alone"
 #endif
 
-#include <collide/contact.hpp>
-#include <collide/detail/block.hpp>
-#include <collide/error.hpp>
-#include <collide/memory.hpp>
+#include <limits>
+#include <new>
+#include <string>
 
 #include <cub/block/block_reduce.cuh>
 #include <cub/block/block_scan.cuh>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <cuda_runtime.h>
-#include <limits>
-#include <new>
-#include <string>
+
+#include <collide/contact.hpp>
+#include <collide/detail/block.hpp>
+#include <collide/error.hpp>
+#include <collide/memory.hpp>
 
 namespace collide {
 
@@ -55,8 +56,8 @@ inline int cuda_device_count() {
   return n;
 }
 
-/// Device memory by cudaMalloc and cudaFree, which wait for the device: the default of the CUDA spaces, which allocate only
-/// when something grows.
+/// Device memory by cudaMalloc and cudaFree, which wait for the device: the default of the CUDA spaces, which allocate
+/// only when something grows.
 class cuda_memory final : public std::pmr::memory_resource {
  public:
   /// The one instance.
@@ -133,7 +134,9 @@ class cuda_block {
     return copy;
   }
 
-  __device__ __forceinline__ std::uint32_t add(std::uint32_t& counter, std::uint32_t n) { return atomicAdd(&counter, n); }
+  __device__ __forceinline__ std::uint32_t add(std::uint32_t& counter, std::uint32_t n) {
+    return atomicAdd(&counter, n);
+  }
 
   template <class T, int N>
   __device__ __forceinline__ T const* stage(staging<T, N>& to, T const* from, int n) {
@@ -200,8 +203,8 @@ __global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
 /// What both CUDA spaces have in common: a stream and memory.
 class cuda_space {
  public:
-  /// `stream`: where all work is put. `resource`: where device memory comes from; null is `cuda_memory`. Both must outlive
-  /// everything that was made with the space. Throws `cuda_error` if there is no usable device.
+  /// `stream`: where all work is put. `resource`: where device memory comes from; null is `cuda_memory`. Both must
+  /// outlive everything that was made with the space. Throws `cuda_error` if there is no usable device.
   explicit cuda_space(cudaStream_t stream = nullptr, std::pmr::memory_resource* resource = nullptr)
       : stream_{stream}, resource_{resource != nullptr ? resource : cuda_memory::get()} {
     int device = 0;

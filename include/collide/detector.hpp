@@ -31,9 +31,10 @@ struct is_broad_phase<B, std::void_t<typename B::template index<float>>> : std::
 template <class N, class = void>
 struct is_narrow_phase : std::false_type {};
 template <class N>
-struct is_narrow_phase<N, std::enable_if_t<std::is_convertible<decltype(N::intersects(std::declval<triangle<float> const&>(),
-                                                                                   std::declval<sphere<float> const&>())),
-                                                            bool>::value>> : std::true_type {};
+struct is_narrow_phase<
+    N, std::enable_if_t<std::is_convertible<decltype(N::intersects(std::declval<triangle<float> const&>(),
+                                                                   std::declval<sphere<float> const&>())),
+                                            bool>::value>> : std::true_type {};
 template <class E, class = void>
 struct is_execution_space : std::false_type {};
 template <class E>
@@ -77,17 +78,20 @@ struct is_sink<Sink, Space, Query,
 /// \tparam ExecutionSpace  where and how it runs: `host`, `cuda`, `cuda_shared`
 /// \tparam Scalar          type of the coordinates: float or double; nothing is ever narrowed silently
 ///
-/// Memory is taken from the space's resource and kept: after the first call with the same sizes nothing is allocated. In the
-/// CUDA spaces work is put on the space's stream and the host waits only to read a size back (see each sink). One detector
-/// is for one thread at a time. Everything thrown derives from `error`, except what the memory resource throws.
+/// Memory is taken from the space's resource and kept: after the first call with the same sizes nothing is allocated.
+/// In the CUDA spaces work is put on the space's stream and the host waits only to read a size back (see each sink).
+/// One detector is for one thread at a time. Everything thrown derives from `error`, except what the memory resource
+/// throws.
 template <class BroadPhase, class NarrowPhase = karabassi<>, class ExecutionSpace = host, class Scalar = float>
 class detector {
-  static_assert(detail::is_broad_phase<BroadPhase>::value,
-                "collide: the first parameter of a detector is a broad phase, such as bucket or all_pairs: a class with a "
-                "member template index<Scalar>");
-  static_assert(detail::is_narrow_phase<NarrowPhase>::value,
-                "collide: the second parameter of a detector is a narrow phase, such as karabassi<>: a class with a static "
-                "member intersects(triangle, sphere) that returns bool");
+  static_assert(
+      detail::is_broad_phase<BroadPhase>::value,
+      "collide: the first parameter of a detector is a broad phase, such as bucket or all_pairs: a class with a "
+      "member template index<Scalar>");
+  static_assert(
+      detail::is_narrow_phase<NarrowPhase>::value,
+      "collide: the second parameter of a detector is a narrow phase, such as karabassi<>: a class with a static "
+      "member intersects(triangle, sphere) that returns bool");
   static_assert(detail::is_execution_space<ExecutionSpace>::value,
                 "collide: the third parameter of a detector is an execution space: host, cuda or cuda_shared");
   static_assert(std::is_same<Scalar, float>::value || std::is_same<Scalar, double>::value,
@@ -102,8 +106,8 @@ class detector {
   explicit detector(ExecutionSpace space = ExecutionSpace(), BroadPhase options = BroadPhase())
       : space_(std::move(space)), options_(std::move(options)) {}
 
-  /// Prepares what depends on the mesh only. Call it again when the mesh has moved. The mesh's memory must stay as it is
-  /// until the last query. O(triangles).
+  /// Prepares what depends on the mesh only. Call it again when the mesh has moved. The mesh's memory must stay as it
+  /// is until the last query. O(triangles).
   void build(mesh_view<Scalar> mesh) {
     mesh_ = mesh;
     if (mesh.size() != 0) index_.build(space_, options_, mesh);
@@ -116,14 +120,16 @@ class detector {
     if (mesh.size() != 0) index_.prepare(space_, options_, radius);
   }
 
-  /// Hands every colliding pair, exactly once, to the sink (`count`, `any`, `pairs`, `contacts`, `closest`, `visit`, or one of
-  /// your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used again), else by value.
+  /// Hands every colliding pair, exactly once, to the sink (`count`, `any`, `pairs`, `contacts`, `closest`, `visit`, or
+  /// one of your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used again),
+  /// else by value.
   template <class Sink>
   Sink query(sphere_view<Scalar> const& spheres, Sink&& sink) {
     using pass = detail::query_pass<typename BroadPhase::template index<Scalar>, NarrowPhase, ExecutionSpace, Scalar>;
-    static_assert(detail::is_sink<std::remove_reference_t<Sink>, ExecutionSpace, pass>::value,
-                  "collide: the second argument of query is a sink, such as count, any, pairs, contacts, closest or visit: an "
-                  "object with a member run(space, query)");
+    static_assert(
+        detail::is_sink<std::remove_reference_t<Sink>, ExecutionSpace, pass>::value,
+        "collide: the second argument of query is a sink, such as count, any, pairs, contacts, closest or visit: an "
+        "object with a member run(space, query)");
     if (mesh_.size() != 0 && spheres.size() != 0) index_.prepare(space_, options_, spheres);
     sink.run(space_, pass{index_, space_, mesh_, spheres});
     return std::forward<Sink>(sink);

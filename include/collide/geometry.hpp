@@ -2,10 +2,11 @@
 /// Points, triangles and spheres: plain values, as small as their coordinates.
 #pragma once
 
-#include <collide/config.hpp>
+#include <cstdint>
 
 #include <Eigen/Core>
-#include <cstdint>
+
+#include <collide/config.hpp>
 
 namespace collide {
 

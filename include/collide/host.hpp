@@ -2,16 +2,16 @@
 /// The execution space of the CPU.
 #pragma once
 
-#include <collide/contact.hpp>
-#include <collide/detail/block.hpp>
-#include <collide/error.hpp>
-#include <collide/memory.hpp>
-
 #include <algorithm>
 #include <cstring>
 #include <exception>
 #include <numeric>
 #include <string>
+
+#include <collide/contact.hpp>
+#include <collide/detail/block.hpp>
+#include <collide/error.hpp>
+#include <collide/memory.hpp>
 
 #if defined(_OPENMP)
 #include <omp.h>
@@ -19,8 +19,8 @@
 
 namespace collide {
 
-/// Execution space: this computer's CPU, with OpenMP threads where the program is compiled with OpenMP, else one thread.
-/// Views point to host memory; every call has finished its work when it returns.
+/// Execution space: this computer's CPU, with OpenMP threads where the program is compiled with OpenMP, else one
+/// thread. Views point to host memory; every call has finished its work when it returns.
 class host {
  public:
   /// `threads`: how many; 0 is as many as OpenMP offers. `resource`: where the library's memory comes from; null is

@@ -2,19 +2,19 @@
 /// Memory of an execution space: buffers over a std::pmr::memory_resource, and an adaptor for Thrust-style allocators.
 #pragma once
 
-#include <collide/config.hpp>
-
 #include <cstddef>
 #include <memory>
 #include <memory_resource>
 #include <type_traits>
 #include <utility>
 
+#include <collide/config.hpp>
+
 namespace collide {
 
-/// Presents an allocator (of the standard's or of Thrust's form: `allocate(n)`, `deallocate(p, n)`, raw or fancy pointers) as the
-/// memory resource that an execution space takes. The allocator must return memory aligned to 256 bytes or to what it
-/// serves (cudaMalloc and Thrust's device allocators do).
+/// Presents an allocator (of the standard's or of Thrust's form: `allocate(n)`, `deallocate(p, n)`, raw or fancy
+/// pointers) as the memory resource that an execution space takes. The allocator must return memory aligned to 256
+/// bytes or to what it serves (cudaMalloc and Thrust's device allocators do).
 template <class Allocator>
 class allocator_resource final : public std::pmr::memory_resource {
   using bytes = typename std::allocator_traits<Allocator>::template rebind_alloc<unsigned char>;

@@ -2,12 +2,12 @@
 /// Views of a triangle mesh in the caller's memory: indexed, or a soup of corners.
 #pragma once
 
-#include <collide/error.hpp>
-#include <collide/geometry.hpp>
-
 #include <cstddef>
 #include <string>
 #include <type_traits>
+
+#include <collide/error.hpp>
+#include <collide/geometry.hpp>
 
 namespace collide {
 
@@ -52,8 +52,8 @@ class mesh_view {
   std::size_t size_ = 0;
 };
 
-/// View of an indexed mesh: `vertices` holds 3 * `vertex_count` coordinates, `corners` 3 * `triangle_count` vertex numbers
-/// from 0, of any 32-bit integer type. Throws `error` if there are more triangles than ids.
+/// View of an indexed mesh: `vertices` holds 3 * `vertex_count` coordinates, `corners` 3 * `triangle_count` vertex
+/// numbers from 0, of any 32-bit integer type. Throws `error` if there are more triangles than ids.
 template <class S, class Index>
 mesh_view<S> indexed_mesh(S const* vertices, std::size_t vertex_count, Index const* corners,
                           std::size_t triangle_count) {

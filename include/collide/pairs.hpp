@@ -2,20 +2,20 @@
 /// Sink: all colliding pairs.
 #pragma once
 
-#include <collide/detail/sink.hpp>
-
 #include <vector>
+
+#include <collide/detail/sink.hpp>
 
 namespace collide {
 
-/// Every colliding (sphere, triangle) pair, each exactly once. `query` waits once, for their number; the first one may run
-/// twice, when there are more pairs than it had room for.
+/// Every colliding (sphere, triangle) pair, each exactly once. `query` waits once, for their number; the first one may
+/// run twice, when there are more pairs than it had room for.
 class pairs {
  public:
   /// The pairs are kept in memory of the space, as many as there are.
   explicit pairs(order o = order::unspecified) : order_{o} {}
-  /// The pairs are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total` tells how
-  /// many there are all the same. Which ones are stored if they do not fit is unspecified.
+  /// The pairs are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total` tells
+  /// how many there are all the same. Which ones are stored if they do not fit is unspecified.
   pairs(pair* buffer, std::size_t capacity, order o = order::unspecified)
       : external_{buffer}, capacity_{capacity}, order_{o}, fixed_{true} {}
 

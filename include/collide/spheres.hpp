@@ -2,17 +2,17 @@
 /// Views of a set of spheres in the caller's memory: packed, separate arrays or quadruples; one radius or one each.
 #pragma once
 
-#include <collide/error.hpp>
-#include <collide/geometry.hpp>
-
 #include <cstddef>
 #include <type_traits>
 
+#include <collide/error.hpp>
+#include <collide/geometry.hpp>
+
 namespace collide {
 
-/// Spheres in memory that somebody else owns: host memory for `host`, device memory for the CUDA spaces. Nothing is copied.
-/// All layouts are the same view with other strides, so they share one kernel.
-/// Made by `spheres_xyz`, `spheres_soa` and `spheres_xyzr`.
+/// Spheres in memory that somebody else owns: host memory for `host`, device memory for the CUDA spaces. Nothing is
+/// copied. All layouts are the same view with other strides, so they share one kernel. Made by `spheres_xyz`,
+/// `spheres_soa` and `spheres_xyzr`.
 template <class S>
 class sphere_view {
   static_assert(std::is_same<S, float>::value || std::is_same<S, double>::value,

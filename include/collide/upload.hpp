@@ -2,11 +2,11 @@
 /// Copies of meshes and spheres in the memory of a space.
 #pragma once
 
+#include <vector>
+
 #include <collide/memory.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
-
-#include <vector>
 
 namespace collide {
 

@@ -2,14 +2,14 @@
 /// What is wrong with a mesh or a set of spheres, and where.
 #pragma once
 
+#include <array>
+#include <string>
+
 #include <collide/detail/arithmetic.hpp>
 #include <collide/detail/atomic.hpp>
 #include <collide/host.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
-
-#include <array>
-#include <string>
 
 namespace collide {
 
@@ -17,7 +17,8 @@ namespace collide {
 enum class problem : int {
   corner_out_of_range,  ///< a triangle names a vertex that does not exist: reading it is undefined behaviour
   triangle_not_finite,  ///< a corner has a NaN or infinite coordinate: the triangle never collides
-  triangle_degenerate,  ///< two corners are equal, or the cross product of two sides is zero in double: legal, a segment or point
+  triangle_degenerate,  ///< two corners are equal, or the cross product of two sides is zero in double: legal, a
+                        ///< segment or point
   centre_not_finite,    ///< a NaN or infinite coordinate: the sphere never collides
   radius_nan,           ///< the sphere never collides
   radius_negative,      ///< the sphere is empty and never collides
@@ -50,7 +51,8 @@ class report {
       finding const f = findings_[static_cast<std::size_t>(p)];
       if (f.count == 0) continue;
       if (!text.empty()) text += "; ";
-      text += std::to_string(f.count) + describe(static_cast<problem>(p)) + ", the first is number " + std::to_string(f.first);
+      text += std::to_string(f.count) + describe(static_cast<problem>(p)) + ", the first is number " +
+              std::to_string(f.first);
     }
     return text;
   }
@@ -71,13 +73,20 @@ class report {
 
   static char const* describe(problem p) {
     switch (p) {
-      case problem::corner_out_of_range: return " triangle(s) have a corner that is not a vertex of the mesh";
-      case problem::triangle_not_finite: return " triangle(s) have a NaN or infinite coordinate";
-      case problem::triangle_degenerate: return " triangle(s) are degenerate (a segment or a point)";
-      case problem::centre_not_finite: return " sphere(s) have a NaN or infinite coordinate";
-      case problem::radius_nan: return " sphere(s) have a NaN radius";
-      case problem::radius_negative: return " sphere(s) have a negative radius";
-      case problem::radius_infinite: return " sphere(s) have an infinite radius";
+      case problem::corner_out_of_range:
+        return " triangle(s) have a corner that is not a vertex of the mesh";
+      case problem::triangle_not_finite:
+        return " triangle(s) have a NaN or infinite coordinate";
+      case problem::triangle_degenerate:
+        return " triangle(s) are degenerate (a segment or a point)";
+      case problem::centre_not_finite:
+        return " sphere(s) have a NaN or infinite coordinate";
+      case problem::radius_nan:
+        return " sphere(s) have a NaN radius";
+      case problem::radius_negative:
+        return " sphere(s) have a negative radius";
+      case problem::radius_infinite:
+        return " sphere(s) have an infinite radius";
     }
     return "";
   }
@@ -111,7 +120,8 @@ struct inspect_triangle : inspection {
     }
     triangle<S> const t = mesh[i];
     if (!finite(t)) return this->found(problem::triangle_not_finite, i);
-    vec3<double> const a = t.a.template cast<double>(), b = t.b.template cast<double>(), c = t.c.template cast<double>();
+    vec3<double> const a = t.a.template cast<double>(), b = t.b.template cast<double>(),
+                       c = t.c.template cast<double>();
     vec3<double> const n = cross<double>(b - a, c - a);
     bool const flat = n.x() == 0 && n.y() == 0 && n.z() == 0;
     if (flat || a == b || b == c || c == a) this->found(problem::triangle_degenerate, i);

@@ -23,9 +23,9 @@ struct call {
 
 }  // namespace detail
 
-/// Calls `f(hit)` once for every colliding pair and stores nothing; see `hit` for what f gets. In the CUDA spaces f is copied to
-/// the device and called there, from many threads at once, and so is trivially copyable with a __device__ operator(); on the
-/// host it is called from all threads of the space. `query` does not wait in the CUDA spaces.
+/// Calls `f(hit)` once for every colliding pair and stores nothing; see `hit` for what f gets. In the CUDA spaces f is
+/// copied to the device and called there, from many threads at once, and so is trivially copyable with a __device__
+/// operator(); on the host it is called from all threads of the space. `query` does not wait in the CUDA spaces.
 template <class F>
 class visit {
  public:

@@ -6,12 +6,12 @@
 /// collide::collide adds -ffp-contract=off.
 #pragma once
 
-#include <collide/geometry.hpp>
-
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+
+#include <collide/geometry.hpp>
 
 namespace collide::detail {
 

@@ -2,9 +2,9 @@
 /// Atomic operations on plain memory, alike on host and device.
 #pragma once
 
-#include <collide/config.hpp>
-
 #include <cstdint>
+
+#include <collide/config.hpp>
 
 namespace collide::detail {
 

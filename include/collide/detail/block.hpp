@@ -10,15 +10,15 @@
 ///   - `block.balanced(...)` spreads work evenly over the lanes: f(item(i), k) for all k < counts[i];
 ///   - `block.reduce(...)` combines a value per lane.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
-/// Here are the two blocks of plain C++: `serial_block`, a single lane that does everything itself (the host's block, and a
-/// CUDA thread without shared memory), and `lockstep_block`, which runs the cooperative algorithms of a CUDA block on the
-/// host, for tests.
+/// Here are the two blocks of plain C++: `serial_block`, a single lane that does everything itself (the host's block,
+/// and a CUDA thread without shared memory), and `lockstep_block`, which runs the cooperative algorithms of a CUDA
+/// block on the host, for tests.
 #pragma once
-
-#include <collide/config.hpp>
 
 #include <cstddef>
 #include <cstdint>
+
+#include <collide/config.hpp>
 
 namespace collide::detail {
 
@@ -113,8 +113,8 @@ class serial_block {
   std::size_t index_;
 };
 
-/// A block of `Lanes` lanes that take turns, in order or in reverse: finds mistakes in the order of steps that a GPU would
-/// only show now and then.
+/// A block of `Lanes` lanes that take turns, in order or in reverse: finds mistakes in the order of steps that a GPU
+/// would only show now and then.
 template <int Lanes, int Items, bool Reversed>
 class lockstep_block {
  public:

@@ -7,14 +7,15 @@
 
 namespace collide::detail {
 
-/// A ball that contains a triangle; `radius` is NaN if the triangle has a NaN or infinite corner, so that nothing reaches it.
+/// A ball that contains a triangle; `radius` is NaN if the triangle has a NaN or infinite corner, so that nothing
+/// reaches it.
 template <class S>
 struct alignas(4 * sizeof(S)) bounding_sphere {
   S x, y, z, radius;
 
-  /// The squared distance within which a centre can reach the triangle with a sphere of radius `r`: rounded up so far that
-  /// `distance_squared(c) <= reach(r)` holds, in floating-point numbers, whenever |c - centre| <= radius + r in real ones.
-  /// Derivation in docs/numerics.md; NaN for an invalid triangle.
+  /// The squared distance within which a centre can reach the triangle with a sphere of radius `r`: rounded up so far
+  /// that `distance_squared(c) <= reach(r)` holds, in floating-point numbers, whenever |c - centre| <= radius + r in
+  /// real ones. Derivation in docs/numerics.md; NaN for an invalid triangle.
   COLLIDE_HD_INLINE S reach(S r) const {
     S const sum = radius + r;
     return sum * sum * (1 + 16 * format<S>::unit) + 2 * std::numeric_limits<S>::min();
@@ -37,9 +38,9 @@ COLLIDE_HD_INLINE bounding_sphere<S> bounds_of(triangle<S> const& t) {
   vec3<S> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
   vec3<S> const m = lower * S(0.5) + upper * S(0.5);
   bounding_sphere<S> const at{m.x(), m.y(), m.z(), S(0)};
-  S const far_squared = larger(larger(at.distance_squared(t.a.x(), t.a.y(), t.a.z()),
-                                      at.distance_squared(t.b.x(), t.b.y(), t.b.z())),
-                               at.distance_squared(t.c.x(), t.c.y(), t.c.z()));
+  S const far_squared =
+      larger(larger(at.distance_squared(t.a.x(), t.a.y(), t.a.z()), at.distance_squared(t.b.x(), t.b.y(), t.b.z())),
+             at.distance_squared(t.c.x(), t.c.y(), t.c.z()));
   // the root of the smallest normal number covers squares that underflow
   S const radius = root(far_squared) * (1 + 16 * format<S>::unit) + 2 * root(std::numeric_limits<S>::min());
   return {m.x(), m.y(), m.z(), radius};

@@ -30,21 +30,21 @@ COLLIDE_HD_INLINE local_triangle<T> relative(triangle<S> const& t, sphere<S> con
     return {static_cast<T>(W(v.x()) - W(c.x())), static_cast<T>(W(v.y()) - W(c.y())),
             static_cast<T>(W(v.z()) - W(c.z()))};
   };
-  return {from_centre(t.a), from_centre(t.b), from_centre(t.c), static_cast<T>(s.radius),
-          T(1)};
+  return {from_centre(t.a), from_centre(t.b), from_centre(t.c), static_cast<T>(s.radius), T(1)};
 }
 
-/// `relative` scaled so that its largest coordinate and the radius are below 4 and the larger of them is at least 1, unless
-/// they are tiny. Finite input only.
+/// `relative` scaled so that its largest coordinate and the radius are below 4 and the larger of them is at least 1,
+/// unless they are tiny. Finite input only.
 template <class T, class S>
 COLLIDE_HD_INLINE local_triangle<T> normalised(local_triangle<T> l, triangle<S> const& t, sphere<S> const& s) {
   auto const size = [&] { return larger(larger(magnitude(l.a), magnitude(l.b)), larger(magnitude(l.c), l.radius)); };
-  if (!finite(size())) {  // the range of T was exceeded
-    constexpr T tiny = std::numeric_limits<T>::min();
-    S const by = S(tiny);
-    l = relative<T>(triangle<S>{scaled(t.a, by), scaled(t.b, by), scaled(t.c, by)},
-                    sphere<S>{scaled(s.centre, by), mul(s.radius, by)});
-    l.scale = tiny;
+  if constexpr (sizeof(T) <= sizeof(S)) {
+    if (!finite(size())) {  // the range of T was exceeded
+      constexpr S tiny = std::numeric_limits<T>::min();
+      l = relative<T>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
+                      sphere<S>{scaled(s.centre, tiny), mul(s.radius, tiny)});
+      l.scale = T(tiny);
+    }
   }
   T const scale = reciprocal_power(size());
   return {scaled(l.a, scale), scaled(l.b, scale), scaled(l.c, scale), mul(l.radius, scale), mul(l.scale, scale)};
@@ -65,10 +65,15 @@ COLLIDE_HD_INLINE bool spans_plane(local_triangle<T> const& t, T nn) {
   return nn > mul(mul(small, small), mul(dot(u, u), dot(v, v)));
 }
 
-/// True if the origin projects strictly inside the triangle along the normal `n`.
+/// True if the origin projects strictly inside the triangle along its normal `n`; then `foot` is where, as a convex
+/// combination of the corners, and so a point of the triangle even where `n` is inaccurate.
 template <class T>
-COLLIDE_HD_INLINE bool projects_inside(local_triangle<T> const& t, vec3<T> const& n) {
-  return dot(cross(t.a, t.b), n) > 0 && dot(cross(t.b, t.c), n) > 0 && dot(cross(t.c, t.a), n) > 0;
+COLLIDE_HD_INLINE bool foot_inside(local_triangle<T> const& t, vec3<T> const& n, vec3<T>& foot) {
+  T const wa = dot(cross(t.b, t.c), n), wb = dot(cross(t.c, t.a), n), wc = dot(cross(t.a, t.b), n);
+  if (!(wa > 0 && wb > 0 && wc > 0)) return false;
+  T const sum = wa + wb + wc;
+  foot = t.a + (scaled<T>(t.b - t.a, div(wb, sum)) + scaled<T>(t.c - t.a, div(wc, sum)));
+  return true;
 }
 
 /// The closest point of a triangle to the origin, and the part of the triangle that it lies in.
@@ -83,7 +88,7 @@ struct closest_point {
 /// Closest point to the origin; the feature tests are those of C. Ericson, Real-Time Collision Detection, 5.1.5, taken
 /// edge by edge, so that segments and points need no special case.
 template <class T>
-COLLIDE_HD inline closest_point<T> closest_to_origin(local_triangle<T> const& t, vec3<T> const& n, bool plane) {
+COLLIDE_HD inline closest_point<T> closest_to_origin(local_triangle<T> const& t, vec3<T> const& n) {
   closest_point<T> best{t.a, dot(t.a, t.a), feature::vertex, 0};
   auto const offer = [&](vec3<T> const& p, feature kind, int index) {
     T const d = dot(p, p);
@@ -99,9 +104,9 @@ COLLIDE_HD inline closest_point<T> closest_to_origin(local_triangle<T> const& t,
   edge(t.a, t.b, 0);
   edge(t.b, t.c, 1);
   edge(t.c, t.a, 2);
-  if (plane && projects_inside(t, n)) {
-    vec3<T> const p = scaled(n, div(dot(t.a, n), dot(n, n)));
-    best = {p, dot(p, p), feature::face, 0};
+  vec3<T> foot;
+  if (foot_inside(t, n, foot) && dot(foot, foot) <= best.distance_squared) {
+    best = {foot, dot(foot, foot), feature::face, 0};
   }
   return best;
 }
@@ -136,11 +141,12 @@ COLLIDE_HD contact<S> contact_in_double(triangle<S> const& t, sphere<S> const& s
   sphere<S> const centre{s.centre, S(0)};
   local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
   vec3<double> const n = cross<double>(l.b - l.a, l.c - l.a);
-  bool const plane = spans_plane(l, dot(n, n));
-  closest_point<double> const q = closest_to_origin(l, n, plane);
+  closest_point<double> const q = closest_to_origin(l, n);
   vec3<double> normal;
-  if (q.distance_squared == 0) {
-    normal = normal_of(l, n, plane);
+  // a point on an edge is off by rounding, so closer than this its direction means nothing; l is at most 4
+  constexpr double noise = 32 * format<double>::unit;
+  if (q.distance_squared <= (q.kind == feature::edge ? noise * noise : 0)) {
+    normal = normal_of(l, n, spans_plane(l, dot(n, n)));
   } else if (q.kind == feature::face) {
     normal = unit(n);
     if (dot(l.a, n) > 0) normal = -normal;

@@ -1,20 +1,22 @@
 /// \file
 /// The uniform grids of the `bucket` broad phase.
 ///
-/// Every triangle, dilated by the reach (the largest radius asked for) and a slack for rounding, is put into every cell that
-/// its box touches; a sphere then looks into the one cell that holds its centre. No pair can appear twice, and the spheres
-/// need no sorting.
+/// Every triangle, dilated by the reach (the largest radius asked for) and a slack for rounding, is put into every cell
+/// that its box touches; a sphere then looks into the one cell that holds its centre. No pair can appear twice, and the
+/// spheres need no sorting.
 ///
 /// What keeps the grid from collapsing:
-///   - Levels. Triangles much larger than the rest go to a level of wider cells (each twice as wide as the one before), so
+///   - Levels. Triangles much larger than the rest go to a level of wider cells (each twice as wide as the one before),
+///   so
 ///     that a triangle never touches more than a few cells; a sphere looks into one cell per level that is in use.
-///   - Wrapping. A level has a fixed number of cells; where the scene has more, cell coordinates wrap around (modulo a power
+///   - Wrapping. A level has a fixed number of cells; where the scene has more, cell coordinates wrap around (modulo a
+///   power
 ///     of two). Triangles from far away then share a cell: more candidates, no wrong answer.
 ///   - Several grids, where radii differ much: each serves the spheres of one range of radii.
 ///
 /// The rounding: cell coordinates are floor((x - lower) * inverse_width), a monotone function, so rounding alone cannot
-/// separate a centre from a box that contains it. The slack of 64 units in the last place of the largest coordinate covers
-/// the rounding of the box itself and a compiler that reassociates. See docs/numerics.md.
+/// separate a centre from a box that contains it. The slack of 64 units in the last place of the largest coordinate
+/// covers the rounding of the box itself and a compiler that reassociates. See docs/numerics.md.
 #pragma once
 
 #include <collide/detail/mesh_summary.hpp>
@@ -87,16 +89,16 @@ struct grid {
   }
 };
 
-/// Kernel body of `for_each` over grids: chooses widths, levels and table sizes of each grid from the summary of the mesh.
-/// A single thread's work of some microseconds, so that a build on the device need not wait for the host.
+/// Kernel body of `for_each` over grids: chooses widths, levels and table sizes of each grid from the summary of the
+/// mesh. A single thread's work of some microseconds, so that a build on the device need not wait for the host.
 template <class S>
 struct plan_grid {
   mesh_summary<S> const* summary;
   grid<S>* grids;
   S reaches[max_grids];
-  S cell_width;               ///< asked for; 0 = choose
-  float entry_limit;          ///< how many entries a grid may have, if the width is asked for
-  std::uint32_t table_bits;   ///< log2 of the number of cells per grid
+  S cell_width;              ///< asked for; 0 = choose
+  float entry_limit;         ///< how many entries a grid may have, if the width is asked for
+  std::uint32_t table_bits;  ///< log2 of the number of cells per grid
 
   COLLIDE_HD void operator()(std::size_t i) const {
     grid<S>& g = grids[i];
@@ -136,7 +138,8 @@ struct plan_grid {
       while (width < widest && margin * size(g, bin) > width * span) width *= 2;
       if (!(width < widest)) width = widest;
       int next = bin + 1;
-      while (next <= top && (sizes.counts[next] == 0 || margin * size(g, next) <= width * span || !(width < widest))) ++next;
+      while (next <= top && (sizes.counts[next] == 0 || margin * size(g, next) <= width * span || !(width < widest)))
+        ++next;
       bool const last = next > top;
       grid_level<S>& l = g.level[g.levels++];
       if (g.levels == 1) g.width = width;
@@ -156,8 +159,8 @@ struct plan_grid {
   }
 
  private:
-  /// Cells are wider than the largest triangle of their level by this factor, so that rounding cannot make it touch more
-  /// than `span` + 1 of them on an axis.
+  /// Cells are wider than the largest triangle of their level by this factor, so that rounding cannot make it touch
+  /// more than `span` + 1 of them on an axis.
   static constexpr S margin = S(1.125);
 
   static COLLIDE_HD S abs_of(S x) { return x < 0 ? -x : x; }
@@ -193,8 +196,8 @@ struct plan_grid {
     return 1;
   }
 
-  /// Gives each axis of the level as many cells as the grid has, rounded up to a power of two, and halves the longest axes
-  /// until 2^bits cells suffice. Returns their number.
+  /// Gives each axis of the level as many cells as the grid has, rounded up to a power of two, and halves the longest
+  /// axes until 2^bits cells suffice. Returns their number.
   static COLLIDE_HD std::uint32_t dimension(grid<S> const& g, grid_level<S>& l, std::uint32_t bits) {
     std::uint32_t axis_bits[3], sum = 0;
     for (int k = 0; k < 3; ++k) {

@@ -13,7 +13,8 @@ inline constexpr int size_bins = 1024;
 /// The bin of a size; sizes beyond the range of float count as its end.
 template <class S>
 COLLIDE_HD_INLINE std::uint32_t size_bin(S size) {
-  float const x = size < S(std::numeric_limits<float>::max()) ? static_cast<float>(size) : std::numeric_limits<float>::max();
+  float const x =
+      size < S(std::numeric_limits<float>::max()) ? static_cast<float>(size) : std::numeric_limits<float>::max();
   return bits(x) >> 21;
 }
 
@@ -47,7 +48,8 @@ struct size_histogram {
   COLLIDE_HD bool empty() const { return lowest == ~std::uint32_t{0}; }
 };
 
-/// Counts in scratch memory first, so that a bin in memory is touched once per block; blocks of one lane count in memory.
+/// Counts in scratch memory first, so that a bin in memory is touched once per block; blocks of one lane count in
+/// memory.
 template <class Block>
 struct block_histogram {
   std::uint32_t counts[Block::lanes > 1 ? size_bins : 1];

@@ -2,11 +2,11 @@
 /// From a hit in a kernel to the caller's sink.
 #pragma once
 
+#include <cstdint>
+
 #include <collide/contact.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
-
-#include <cstdint>
 
 namespace collide {
 
@@ -35,8 +35,8 @@ class hit {
 
 namespace detail {
 
-/// The candidates' last stop: runs the narrow phase and hands the hits to the sink, `Block::pending` at a time, so that the
-/// sink's atomic counter is touched once per batch and the lanes share the work of storing.
+/// The candidates' last stop: runs the narrow phase and hands the hits to the sink, `Block::pending` at a time, so that
+/// the sink's atomic counter is touched once per batch and the lanes share the work of storing.
 template <class Block>
 struct hit_buffer {
   static constexpr std::uint32_t capacity = Block::pending;

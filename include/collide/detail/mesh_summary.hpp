@@ -45,8 +45,8 @@ COLLIDE_HD_INLINE S extent_of(triangle<S> const& t) {
   return largest<S>(upper - lower);
 }
 
-/// What a mesh looks like, over its finite triangles. `lower` and `upper` are kept such that memory of all ones is the empty
-/// box, and both are updated by a minimum.
+/// What a mesh looks like, over its finite triangles. `lower` and `upper` are kept such that memory of all ones is the
+/// empty box, and both are updated by a minimum.
 template <class S>
 struct mesh_summary {
   bits_of<S> lower[3];     ///< ordered(coordinate)

@@ -2,15 +2,15 @@
 /// The spheres that a lane works on.
 #pragma once
 
+#include <cstdint>
+
 #include <collide/detail/arithmetic.hpp>
 #include <collide/spheres.hpp>
 
-#include <cstdint>
-
 namespace collide::detail {
 
-/// `Items` consecutive spheres: in registers on CUDA, eight or sixteen to a vector register on a CPU. Spheres beyond the end
-/// of the set have a NaN radius.
+/// `Items` consecutive spheres: in registers on CUDA, eight or sixteen to a vector register on a CPU. Spheres beyond
+/// the end of the set have a NaN radius.
 template <class S, int Items>
 struct sphere_batch {
   static_assert(Items % 4 == 0, "packed centres are loaded four at a time");
