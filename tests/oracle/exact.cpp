@@ -156,9 +156,8 @@ candidate<mp::cpp_int> nearest(scaled const& s) {
   return best;
 }
 
-real distance(scaled const& s) {
-  auto const best = nearest(s);
-  return ldexp(sqrt(real(best.num) / real(best.den)), s.exponent);
+real distance(candidate<mp::cpp_int> const& c, int exponent) {
+  return ldexp(sqrt(real(c.num) / real(c.den)), exponent);
 }
 
 }  // namespace
@@ -177,16 +176,18 @@ bool hit(triangle const& t, sphere const& s) {
 closest_point closest(triangle const& t, point const& p) {
   scaled const inputs(t, p, 0);
   auto const best = nearest(inputs);
-  auto const on_axis = [&](mp::cpp_int const& at, double centre) {
-    return static_cast<double>(ldexp(real(at) / real(best.den), inputs.exponent) + real(centre));
+  auto const on_axis = [&](mp::cpp_int const& at, double origin) {
+    return static_cast<double>(ldexp(real(at) / real(best.den), inputs.exponent) + real(origin));
   };
-  return {static_cast<double>(distance(inputs)),
-          {on_axis(best.at.x, p.x), on_axis(best.at.y, p.y), on_axis(best.at.z, p.z)},
-          best.feature};
+  auto const seen_from = [&](point const& origin) {
+    return point{on_axis(best.at.x, origin.x), on_axis(best.at.y, origin.y), on_axis(best.at.z, origin.z)};
+  };
+  return {static_cast<double>(distance(best, inputs.exponent)), seen_from(p), seen_from({0, 0, 0}), best.feature};
 }
 
 double depth(triangle const& t, sphere const& s) {
-  return static_cast<double>(real(s.radius) - distance(scaled(t, s.centre, 0)));
+  scaled const inputs(t, s.centre, 0);
+  return static_cast<double>(real(s.radius) - distance(nearest(inputs), inputs.exponent));
 }
 
 int compare_distances(triangle const& s, triangle const& t, point const& p) {

@@ -37,6 +37,7 @@ bool hit(triangle const& t, sphere const& s);
 struct closest_point {
   double distance;
   point on_triangle;
+  point offset;       ///< on_triangle - p, without its cancellation
   unsigned features;  ///< feature_bits that contain the closest point in their relative interior
 };
 closest_point closest(triangle const& t, point const& p);

@@ -111,6 +111,7 @@ TEST_CASE("oracle: the two formulations agree on small integers, where every tie
     REQUIRE(nearest.distance == doctest::Approx(std::sqrt(static_cast<double>(squared))).epsilon(1e-15));
     REQUIRE(oracle::depth(t, s) == doctest::Approx(s.radius - nearest.distance).epsilon(1e-15));
     REQUIRE(oracle::closest(t, nearest.on_triangle).distance < 1e-14);
+    REQUIRE(std::hypot(nearest.offset.x, nearest.offset.y, nearest.offset.z) == doctest::Approx(nearest.distance));
     triangle const other{t.b, any(), t.c};
     rational const other_squared = squared_distance_by_regions(other, s.centre);
     REQUIRE(oracle::compare_distances(t, other, s.centre) == (squared < other_squared ? -1 : squared > other_squared));

@@ -1,0 +1,212 @@
+#include "checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+namespace tests {
+namespace {
+
+oracle::point operator-(oracle::point const& p, oracle::point const& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
+double dot(oracle::point const& p, oracle::point const& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
+double size(oracle::point const& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
+
+template <class S>
+oracle::point exact(collide::vec3<S> const& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+std::vector<oracle::id_pair> ids(std::vector<collide::pair> const& pairs) {
+  std::vector<oracle::id_pair> copy;
+  for (auto p : pairs) copy.push_back({p.sphere, p.triangle});
+  return copy;
+}
+
+template <class S>
+std::vector<collide::pair> pairs_of(std::vector<collide::contact<S>> const& contacts) {
+  std::vector<collide::pair> pairs;
+  for (auto const& c : contacts) pairs.push_back({c.sphere, c.triangle});
+  return pairs;
+}
+
+template <class S>
+void sort(std::vector<collide::contact<S>>& contacts) {
+  std::sort(contacts.begin(), contacts.end(), [](auto const& a, auto const& b) {
+    return collide::pair{a.sphere, a.triangle} < collide::pair{b.sphere, b.triangle};
+  });
+}
+
+template <class T>
+bool same_bits(T const& a, T const& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+/// The first pair that one list has and the other has not, for the message.
+std::string difference(std::vector<oracle::id_pair> const& wanted, std::vector<oracle::id_pair> const& among) {
+  for (auto p : wanted)
+    if (!std::binary_search(among.begin(), among.end(), p))
+      return "sphere " + std::to_string(p.sphere) + ", triangle " + std::to_string(p.triangle);
+  return "";
+}
+
+/// Per sphere the nearest of its contacts, of equally near ones that with the smallest triangle.
+template <class S>
+std::vector<nearest<S>> nearest_of(std::vector<collide::contact<S>> const& contacts, std::size_t spheres) {
+  std::vector<nearest<S>> best(spheres, {collide::no_id, std::numeric_limits<S>::infinity()});
+  for (auto const& c : contacts)  // in canonical order
+    if (auto& b = best[c.sphere]; b.triangle == collide::no_id || c.distance < b.distance) b = {c.triangle, c.distance};
+  return best;
+}
+
+/// The closed feature as a (degenerate) triangle.
+template <class S>
+oracle::triangle feature_of(collide::contact<S> const& c, oracle::triangle const& t) {
+  oracle::point const corners[3] = {t.a, t.b, t.c};
+  auto const& from = corners[c.index % 3];
+  if (c.kind == collide::feature::face) return t;
+  return {from, from, c.kind == collide::feature::edge ? corners[(c.index + 1) % 3] : from};
+}
+
+template <class S>
+unsigned feature_bit(collide::contact<S> const& c) {
+  if (c.kind == collide::feature::face) return oracle::face;
+  return (c.kind == collide::feature::edge ? oracle::edge_ab : oracle::vertex_a) << c.index;
+}
+
+}  // namespace
+
+template <class S>
+bool same(collide::contact<S> const& a, collide::contact<S> const& b) {
+  return a.sphere == b.sphere && a.triangle == b.triangle && same_bits(a.point, b.point) &&
+         same_bits(a.normal, b.normal) && same_bits(a.distance, b.distance) && same_bits(a.depth, b.depth) &&
+         a.kind == b.kind && a.index == b.index;
+}
+
+template <class S>
+bool same(std::vector<collide::contact<S>> const& a, std::vector<collide::contact<S>> const& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](auto const& x, auto const& y) { return same(x, y); });
+}
+
+template <class S>
+void check_contact(collide::contact<S> const& c, oracle::triangle const& t, oracle::sphere const& s, bool strict) {
+  CAPTURE(c.sphere);
+  CAPTURE(c.triangle);
+  auto const nearest = oracle::closest(t, s.centre);
+  // Contacts are computed in double, in coordinates as seen from the sphere, and rounded once.
+  double const seen = std::max({size(t.a - s.centre), size(t.b - s.centre), size(t.c - s.centre)}),
+               error = 1e-10 * seen;
+  double const unit = std::numeric_limits<S>::epsilon();
+  double const depth = oracle::depth(t, s);
+  CHECK(std::abs(c.distance - nearest.distance) <= unit * nearest.distance + error);
+  CHECK((c.depth == depth || std::abs(c.depth - depth) <= unit * std::abs(depth) + error));  // or both infinite
+
+  auto const point = exact<S>(c.point), normal = exact<S>(c.normal);
+  double const place = unit * (size(point) + size(s.centre)) + error;
+  CHECK(oracle::closest(t, point).distance <= 2 * place);
+  CHECK(std::abs(oracle::closest({point, point, point}, s.centre).distance - nearest.distance) <= 2 * place);
+
+  CHECK(std::abs(std::sqrt(dot(normal, normal)) - 1) <= 4 * unit);
+  if (nearest.distance > 100 * error)
+    CHECK(std::abs(dot(normal, nearest.offset) / nearest.distance + 1) <= 8 * unit + error / nearest.distance);
+  if (nearest.distance == 0 && nearest.features == oracle::face) {
+    CHECK(std::abs(dot(normal, t.b - t.a)) <= 8 * unit * size(t.b - t.a) + error);
+    CHECK(std::abs(dot(normal, t.c - t.a)) <= 8 * unit * size(t.c - t.a) + error);
+  }
+
+  CHECK(c.index < (c.kind == collide::feature::face ? 1 : 3));
+  if (strict)
+    CHECK((nearest.features & feature_bit(c)) != 0);
+  else
+    CHECK(oracle::closest(feature_of(c, t), s.centre).distance <= nearest.distance + error);
+}
+
+template <class S>
+std::vector<collide::pair> check_pairs(subject<S>& detector, oracle::expectation const& expected) {
+  auto const pairs = detector.pairs(collide::order::canonical);
+  auto const found = ids(pairs);
+  bool const once_and_ordered =
+      std::is_sorted(found.begin(), found.end()) && std::adjacent_find(found.begin(), found.end()) == found.end();
+  CHECK(once_and_ordered);
+  CHECK_MESSAGE(std::includes(found.begin(), found.end(), expected.certain.begin(), expected.certain.end()),
+                "missed: " << difference(expected.certain, found));
+  CHECK_MESSAGE(std::includes(expected.possible.begin(), expected.possible.end(), found.begin(), found.end()),
+                "false hit: " << difference(found, expected.possible));
+  return pairs;
+}
+
+template <class S>
+findings<S> check_sinks(subject<S>& detector, scene<S> const& made, oracle::expectation const& expected) {
+  findings<S> found;
+  found.pairs = check_pairs(detector, expected);
+
+  auto unordered = detector.pairs(collide::order::unspecified);
+  std::sort(unordered.begin(), unordered.end());
+  CHECK((unordered == found.pairs));
+  CHECK(detector.count() == found.pairs.size());
+
+  std::vector<std::uint8_t> flags(made.spheres.size(), 0);
+  for (auto p : found.pairs) flags[p.sphere] = 1;
+  CHECK((detector.any() == flags));
+
+  found.contacts = detector.contacts(collide::order::canonical);
+  CHECK((pairs_of(found.contacts) == found.pairs));
+  auto unordered_contacts = detector.contacts(collide::order::unspecified);
+  sort(unordered_contacts);
+  CHECK(same(unordered_contacts, found.contacts));
+  auto visited = detector.visit();
+  sort(visited);
+  CHECK(same(visited, found.contacts));
+
+  found.closest = detector.closest();
+  auto const best = nearest_of(found.contacts, made.spheres.size());
+  REQUIRE(found.closest.size() == best.size());
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < best.size(); ++i)
+    wrong += found.closest[i].triangle != best[i].triangle || !same_bits(found.closest[i].distance, best[i].distance);
+  CHECK(wrong == 0);
+  return found;
+}
+
+template <class S>
+std::vector<oracle::id_pair> check_all(scene<S> const& made, conditions const& how) {
+  auto const expected = made.expect(how.band);
+  for (char const* precision : {"single", "double"}) {
+    findings<S> first;
+    for (auto const& c : compositions<S>(precision)) {
+      CAPTURE(c.name());
+      auto const detector = c.make(how.policy);
+      detector->build(made.mesh, how.mesh);
+      detector->place(made.spheres, how.spheres);
+      auto const found = check_sinks(*detector, made, expected);
+      if (first.closest.empty()) {
+        first = found;
+        std::size_t const stride = 1 + found.contacts.size() / 2000;  // the exact answers take microseconds each
+        for (std::size_t i = 0; i < found.contacts.size(); i += stride) {
+          auto const& contact = found.contacts[i];
+          check_contact(contact, made.mesh[contact.triangle], made.spheres[contact.sphere], how.band == 0);
+        }
+      }
+      CHECK((found.pairs == first.pairs));
+      CHECK(same(found.contacts, first.contacts));  // and so the closest, which follow from the contacts
+    }
+  }
+  return expected.certain;
+}
+
+template bool same(collide::contact<float> const&, collide::contact<float> const&);
+template bool same(std::vector<collide::contact<float>> const&, std::vector<collide::contact<float>> const&);
+template void check_contact(collide::contact<float> const&, oracle::triangle const&, oracle::sphere const&, bool);
+template std::vector<collide::pair> check_pairs(subject<float>&, oracle::expectation const&);
+template findings<float> check_sinks(subject<float>&, scene<float> const&, oracle::expectation const&);
+template std::vector<oracle::id_pair> check_all(scene<float> const&, conditions const&);
+template bool same(collide::contact<double> const&, collide::contact<double> const&);
+template bool same(std::vector<collide::contact<double>> const&, std::vector<collide::contact<double>> const&);
+template void check_contact(collide::contact<double> const&, oracle::triangle const&, oracle::sphere const&, bool);
+template std::vector<collide::pair> check_pairs(subject<double>&, oracle::expectation const&);
+template findings<double> check_sinks(subject<double>&, scene<double> const&, oracle::expectation const&);
+template std::vector<oracle::id_pair> check_all(scene<double> const&, conditions const&);
+
+}  // namespace tests

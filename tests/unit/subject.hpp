@@ -1,0 +1,119 @@
+/// A detector under test whose composition is hidden behind virtual functions: every test case is compiled once and
+/// runs against all compositions, and only the files named compositions_* instantiate templates of the library.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <memory_resource>
+#include <string>
+#include <vector>
+
+#include <collide/contact.hpp>
+
+#include "scenes.hpp"
+
+namespace tests {
+
+/// How a mesh lies in memory.
+enum class mesh_form { indexed, soup };
+
+/// How spheres lie in memory; `_one` is with one radius for all.
+enum class sphere_form { xyz, xyz_one, soa, soa_one, xyzr };
+
+/// The parameters of policies that tests vary.
+struct options {
+  double cell_width = 0;
+  std::size_t memory_budget = 0;
+  int threads = 2;
+};
+
+/// What a sink with room for `capacity` elements left behind.
+template <class T>
+struct bounded {
+  std::vector<T> stored;
+  std::uint64_t total;
+  bool complete;
+  bool guards_intact;  ///< nothing was written before or behind the buffer
+};
+
+template <class S>
+struct nearest {
+  collide::id triangle;
+  S distance;
+};
+
+/// Counts what goes through it to another resource.
+class counting_resource final : public std::pmr::memory_resource {
+ public:
+  explicit counting_resource(std::pmr::memory_resource* upstream) : upstream_{upstream} {}
+
+  std::size_t allocations = 0;  ///< how many there were
+  std::size_t in_use = 0;       ///< bytes
+  std::size_t peak = 0;         ///< bytes, since it was last set to `in_use`
+
+ private:
+  void* do_allocate(std::size_t bytes, std::size_t alignment) override {
+    void* const p = upstream_->allocate(bytes, alignment);
+    ++allocations;
+    in_use += bytes;
+    peak = in_use > peak ? in_use : peak;
+    return p;
+  }
+  void do_deallocate(void* p, std::size_t bytes, std::size_t alignment) override {
+    in_use -= bytes;
+    upstream_->deallocate(p, bytes, alignment);
+  }
+  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
+
+  std::pmr::memory_resource* upstream_;
+};
+
+template <class S>
+class subject {
+ public:
+  virtual ~subject() = default;
+
+  virtual void build(mesh<S> const& m, mesh_form form) = 0;
+  virtual void build(mesh<S> const& m, mesh_form form, S radius) = 0;
+  /// Puts spheres where the space reads them: what the queries below look at.
+  virtual void place(spheres<S> const& s, sphere_form form) = 0;
+
+  virtual std::uint64_t count() = 0;
+  virtual std::vector<std::uint8_t> any() = 0;
+  virtual std::vector<collide::pair> pairs(collide::order o) = 0;
+  virtual std::vector<collide::contact<S>> contacts(collide::order o) = 0;
+  virtual std::vector<nearest<S>> closest() = 0;
+  /// What a visitor saw: the contact of each hit, with the ids of the hit itself.
+  virtual std::vector<collide::contact<S>> visit() = 0;
+
+  virtual bounded<collide::pair> pairs_within(std::size_t capacity, collide::order o) = 0;
+  virtual bounded<collide::contact<S>> contacts_within(std::size_t capacity, collide::order o) = 0;
+
+  virtual double cell_width() = 0;
+  /// The memory that the detector and its sinks take; none of what the tests themselves upload.
+  virtual counting_resource& memory() = 0;
+};
+
+/// An entry of the list of compositions.
+template <class S>
+struct composition {
+  std::string broad, precision, space;
+  std::function<std::unique_ptr<subject<S>>(options const&)> make;
+
+  std::string name() const { return broad + " x " + precision + " x " + space; }
+};
+
+/// Where the slices of the list put their compositions before main runs.
+template <class S>
+std::vector<composition<S>>& registry() {
+  static std::vector<composition<S>> all;
+  return all;
+}
+
+/// All compositions that this program tests, in the order of their names; of `precision` only, if it is not empty.
+template <class S>
+std::vector<composition<S>> compositions(std::string const& precision = "");
+
+}  // namespace tests

@@ -1,0 +1,79 @@
+/// The interface on the host.
+#include <atomic>
+
+#include "api.hpp"
+
+using collide::host;
+
+TEST_CASE("api: sinks on the host") {
+  tests::check_sink_interface<collide::all_pairs>(host());
+  tests::check_sink_interface<collide::bucket>(host(1));
+}
+
+TEST_CASE("api: uploads on the host") { tests::check_uploads(host()); }
+
+TEST_CASE("api: validate on the host") { tests::check_validate(host()); }
+
+TEST_CASE("api: memory of the host") {
+  tests::check_memory<host>([](std::pmr::memory_resource* from) { return host(2, from); },
+                            std::pmr::new_delete_resource());
+}
+
+TEST_CASE("api: views read what they are made of") {
+  double const vertices[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  unsigned const corners[] = {3, 0, 1};
+  auto const mesh = collide::indexed_mesh(vertices, 4, corners, 1);
+  CHECK(mesh.size() == 1);
+  CHECK(mesh[0].a == collide::vec3<double>(9, 10, 11));
+  CHECK(mesh[0].c == collide::vec3<double>(3, 4, 5));
+  CHECK(collide::triangle_soup(vertices, 1)[0].b == collide::vec3<double>(3, 4, 5));
+
+  CHECK(collide::spheres_xyz(vertices, 4, 2)[3].centre == collide::vec3<double>(9, 10, 11));
+  CHECK(collide::spheres_xyz(vertices, 4, 2)[3].radius == 2);
+  CHECK(collide::spheres_xyz(vertices, 4, vertices)[3].radius == 3);
+  auto const quadruple = collide::spheres_xyzr(vertices, 3)[2];
+  CHECK(quadruple.centre == collide::vec3<double>(8, 9, 10));
+  CHECK(quadruple.radius == 11);
+  auto const separate = collide::spheres_soa(vertices, vertices + 4, vertices + 8, 4, vertices + 1);
+  CHECK(separate[2].centre == collide::vec3<double>(2, 6, 10));
+  CHECK(separate[2].radius == 3);
+  CHECK(collide::spheres_soa(vertices, vertices + 4, vertices + 8, 4, 7).radius(3) == 7);
+  CHECK(collide::mesh_view<float>().size() == 0);
+  CHECK(collide::sphere_view<float>().size() == 0);
+}
+
+TEST_CASE("api: what cannot be is refused with an error") {
+  float const* const none = nullptr;
+  int const* const no_corners = nullptr;
+  CHECK_THROWS_AS(host(-1), collide::error);
+  CHECK_THROWS_AS(collide::triangle_soup(none, 0xffffffff), collide::error);
+  CHECK_THROWS_AS(collide::indexed_mesh(none, 0, no_corners, 0xffffffff), collide::error);
+  CHECK_THROWS_AS(collide::spheres_xyz(none, 0xffffffff, 1), collide::error);
+  CHECK_THROWS_AS(collide::spheres_xyzr(none, std::size_t{1} << 40), collide::error);
+  CHECK(collide::spheres_xyz(none, 0xfffffffe, 1).size() == 0xfffffffe);
+}
+
+TEST_CASE("api: a detector is composed by naming the broad phase alone") {
+  tests::small_scene const scene;
+  collide::detector<collide::bucket> bucket;
+  collide::detector<collide::all_pairs> all_pairs;
+  CHECK(bucket.detect(scene.mesh(), scene.spheres(), collide::count()).total() == 4);
+  CHECK(all_pairs.detect(scene.mesh(), scene.spheres(), collide::count()).total() == 4);
+  CHECK(bucket.cell_width() > 0);
+  CHECK(all_pairs.cell_width() == 0);
+}
+
+TEST_CASE("api: a visitor is called for each pair, and what it throws comes out of the query") {
+  tests::small_scene const scene;
+  collide::detector<collide::bucket> detector(host(3));
+  detector.build(scene.mesh());
+  std::atomic<int> calls{0};
+  detector.query(scene.spheres(), collide::visit([&](auto const& hit) {
+                   ++calls;
+                   if (hit.contact().sphere != hit.sphere || hit.contact().triangle != hit.triangle) calls += 100;
+                 }));
+  CHECK(calls == 4);
+  auto const refuse = [](auto const&) { throw std::runtime_error("enough"); };
+  CHECK_THROWS_WITH(detector.query(scene.spheres(), collide::visit(refuse)), "enough");
+  CHECK(detector.query(scene.spheres(), collide::count()).total() == 4);
+}
