@@ -172,7 +172,7 @@ inline scene slivers_scene(std::size_t spheres, std::size_t triangles, std::uint
   s.radius = 3;
   random_numbers random(seed);
   for (std::size_t i = 0; i < triangles; ++i) {
-    point const a = random.in_cube(500), along = random.in_cube(250), aside = random.in_cube(0.001);
+    point const a = random.in_cube(300), along = random.in_cube(250), aside = random.in_cube(0.001);
     point b{}, c{};
     for (std::size_t k = 0; k < 3; ++k) {
       b[k] = a[k] + along[k];
@@ -180,7 +180,7 @@ inline scene slivers_scene(std::size_t spheres, std::size_t triangles, std::uint
     }
     detail::add_triangle(s, a, b, c);
   }
-  detail::add_spheres(s, spheres, random, 592.2);
+  detail::add_spheres(s, spheres, random, 400);
   return s;
 }
 

@@ -1,0 +1,561 @@
+"""detect as its users see it."""
+
+import math
+import os
+import pty
+import random
+import resource
+import signal
+import stat
+import subprocess
+import unittest
+
+import programs
+from programs import ProgramTest, nearest, read_ply, true_pairs
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+ONE_SPHERE = "x,y,z\n0.2,0.2,0.1\n"
+CUBE = ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
+        [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
+         (3, 0, 4), (3, 4, 7)])
+COMPOSITIONS = [("--broad", b, "--precision", p) for b in ("all_pairs", "bucket") for p in ("single", "double")]
+
+
+def random_scene(seed, spread):
+    """Triangles of many shapes and spheres around them, as floats of few digits."""
+    rng = random.Random(seed)
+    number = lambda half: round(rng.uniform(-half, half) * 64) / 64
+    vertices, triangles = [], []
+    for _ in range(40):
+        centre, size = [number(4) for _ in range(3)], rng.choice([0, 0.25, 1, 8])
+        triangles.append([len(vertices) + k for k in range(3)])
+        vertices += [[c + number(size) for c in centre] for _ in range(3)]
+    spheres = [[number(6) for _ in range(3)] for _ in range(60)]
+    radii = [round(rng.uniform(0.5, 3) * rng.choice([1, spread]) * 64) / 64 for _ in spheres]
+    return vertices, triangles, spheres, radii
+
+
+class Answers(ProgramTest):
+    def test_the_cube(self):
+        spheres = [(0, 0, 0), (3, 3, 3), (.5, .5, .5), (1.3, 0, .5)]
+        self.scene(*CUBE, spheres)
+        truth = true_pairs(*CUBE, spheres, [.4] * 4)
+        self.assertEqual({s for s, _ in truth}, {0, 3})
+        for composition in COMPOSITIONS:
+            self.assertEqual(self.detect("mesh.obj", "spheres.csv", "--radius", .4, *composition), truth, composition)
+
+    def test_the_octahedron(self):
+        vertices = [(0, 0, 78), (45, 45, 0), (-45, 45, 0), (-45, -45, 0), (45, -45, 0), (0, 0, -78)]
+        faces = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1), (5, 2, 1), (5, 3, 2), (5, 4, 3), (5, 1, 4)]
+        self.scene(vertices, faces, [(0, 0, -90), (0, 0, 100)])
+        for composition in COMPOSITIONS:
+            found = self.detect("mesh.obj", "spheres.csv", "--radius", 20, *composition)
+            self.assertEqual(found, [(0, 4), (0, 5), (0, 6), (0, 7)], composition)
+
+    def test_random_scenes(self):
+        for seed in range(4):
+            vertices, triangles, spheres, radii = random_scene(seed, spread=1 + 3 * seed)
+            truth = true_pairs(vertices, triangles, spheres, radii)
+            self.assertGreater(len(truth), 50)
+            self.scene(vertices, triangles, spheres, radii)
+            for composition in COMPOSITIONS:
+                for more in ([], ["--cell-width", 0.5], ["--scalar", "double"], ["--threads", 1]):
+                    with self.subTest(seed=seed, options=[*composition, *more]):
+                        self.assertEqual(self.detect("mesh.obj", "spheres.csv", *composition, *more), truth)
+
+    def test_one_radius_for_all(self):
+        vertices, triangles, spheres, _ = random_scene(9, 1)
+        self.scene(vertices, triangles, spheres)
+        for radius in (0, 0.75, 4):
+            truth = true_pairs(vertices, triangles, spheres, [radius] * len(spheres))
+            for composition in COMPOSITIONS:
+                found = self.detect("mesh.obj", "spheres.csv", "--radius", radius, *composition)
+                self.assertEqual(found, truth, (radius, composition))
+
+    def test_touching_is_colliding(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", "x,y,z\n.25,.25,.5\n-.5,0,0\n.25,.25,.5000001\n.25,.25,0\n")
+        for composition in COMPOSITIONS:
+            found = self.detect("mesh.obj", "spheres.csv", "--radius", ".5", *composition)
+            self.assertEqual(found, [(0, 0), (1, 0), (3, 0)])
+            self.assertEqual(self.detect("mesh.obj", "spheres.csv", "--radius", "-0", *composition), [(3, 0)])
+
+    def test_the_form_of_the_study(self):
+        self.scene(*CUBE, [(0, 0, 0), (3, 3, 3)])
+        found = self.detect("mesh.obj", "spheres.csv", "--radius", .4)
+        self.assertNotEqual(found, [])
+        self.succeed("detect", "mesh.obj", "spheres.csv", .4, "study.csv")
+        self.assertEqual(self.pairs("study.csv"), found)
+        self.assertEqual(self.read("study.csv"), self.read("pairs.csv"))
+
+    def test_broad_phases_write_the_same_files(self):
+        self.succeed("generate", "--spheres", 3000, "--triangles", 5000, "mesh.obj", "spheres.csv")
+        outputs = set()
+        for i, options in enumerate((["--broad", "all_pairs"], ["--broad", "bucket"], ["--cell-width", 12], ["--threads", 1])):
+            self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 30, *options, "--output", f"p{i}", "--contacts", f"c{i}",
+                         "--ply", f"h{i}")
+            outputs.add((self.read(f"p{i}"), self.read(f"c{i}"), self.read(f"h{i}")))
+        self.assertEqual(len(outputs), 1)
+        self.assertGreater(len(self.pairs("p0")), 1000)
+
+    def test_single_precision_reads_float_and_double_reads_double(self):
+        # the plane x = 1 + 2^-30 is at distance 2^-30 from the sphere in double, and at distance 0 in float
+        self.write("mesh.obj", "v 1.000000000931322574615478515625 0 0\nv 1.000000000931322574615478515625 1 0\n"
+                               "v 1.000000000931322574615478515625 0 1\nf 1 2 3\n")
+        self.write("spheres.csv", "x,y,z\n1,.25,.25\n")
+        call = ["mesh.obj", "spheres.csv", "--radius", 0]
+        self.assertEqual(self.detect(*call), [(0, 0)])
+        self.assertEqual(self.detect(*call, "--precision", "double"), [])
+        self.assertEqual(self.detect(*call, "--precision", "double", "--scalar", "float"), [(0, 0)])
+
+
+class ObjForms(ProgramTest):
+    """One sphere at each point of interest of a plate 0 <= x <= 4, 0 <= y <= 4 tells which triangle is where."""
+
+    def triangles(self, obj):
+        """The corners of each triangle of the mesh, from the picture."""
+        self.write("mesh.obj", obj)
+        self.write("spheres.csv", "x,y,z\n1000,1000,1000\n")
+        self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 1, "--ply", "hits.ply")
+        vertices, faces = read_ply(self.read("hits.ply"))
+        return [tuple(tuple(int(x) for x in vertices[i][0][:2]) for i in corners) for corners, _ in faces]
+
+    square = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n"
+    two = [((0, 0), (4, 0), (4, 4)), ((0, 0), (4, 4), (0, 4))]
+
+    def test_faces_of_every_form(self):
+        for faces in ("f 1 2 3\nf 1 3 4\n", "f -4 -3 -2\nf -4 -2 -1\n", "f 1/1 2/2 3/3\nf 1/1 3/1 4/1", "f 1//1 2//1 3//1\nf 1//1 3//1 4//1\n",
+                      "f 1/1/1 2/1/1 3/1/1\nf -4/-1/-1 -2/-1/-1 -1/-1/-1\n", "f\t1  2\t 3 \nf 1 3 4 # a comment\n",
+                      "f 1 2 3\r\nf 1 3 4\r\n", "f 1 2 \\\n3\nf 1 3 4", "  f 1 2 3\n\n\n# f 1 2 4\nf 1 3 4"):
+            for extra in ("", "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n"):
+                with self.subTest(faces=faces):
+                    self.assertEqual(self.triangles(self.square + extra + faces), self.two)
+
+    def test_vertices_of_every_form(self):
+        for v in ("v 0 0 0 1\nv 4 0 0 1\nv 4 4 0 1\nv 0 4 0 1\n", "v 0 0 0 .5 .5 .5\nv 4 0 0 1 0 0\nv 4 4 0 0 0 0\nv 0 4 0 0 0 1\n",
+                  "v +0 -0 0.\nv 4e0 .0 0\nv 40E-1 +4.0 0e9\nv 0 4.00 0 # last\n", "\ufeffv 0 0 0\r\nv 4 0 0\r\nv 4 4 0\r\nv 0 4 0\r\n",
+                  "# C:\\models\\\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n"):
+            with self.subTest(vertices=v):
+                self.assertEqual(self.triangles(v + "f 1 2 3\nf 1 3 4\n"), self.two)
+
+    def test_objects_groups_and_materials_in_the_order_of_the_file(self):
+        obj = ("mtllib none.mtl\no first\nv 0 0 0\nv 4 0 0\nv 4 4 0\ng a b\nusemtl red\ns 1\nf 1 2 3\ns off\no second\nv 0 4 0\n"
+               "g\nusemtl blue\nl 1 2\np 1\nf 1 3 4\ng a\nf -3 -2 -1\nf 1 2 4\n")
+        self.assertEqual(self.triangles(obj), self.two + [((4, 0), (4, 4), (0, 4)), ((0, 0), (4, 0), (0, 4))])
+
+    def test_faces_before_their_vertices(self):
+        self.assertEqual(self.triangles("f 1 2 3\nf 1 3 4\n" + self.square), self.two)
+
+    def area(self, triangle):
+        (ax, ay), (bx, by), (cx, cy) = triangle
+        return ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2
+
+    def test_polygons(self):
+        shapes = {
+            "square": [(0, 0), (4, 0), (4, 4), (0, 4)],
+            "arrow, quadrangle": [(0, 0), (8, 0), (2, 2), (0, 8)],
+            "arrow, other start": [(8, 0), (2, 2), (0, 8), (0, 0)],
+            "pentagon": [(0, 0), (4, 0), (6, 3), (2, 6), (-2, 3)],
+            "far from the origin": [(100, 100), (104, 100), (106, 103), (102, 106), (98, 103)],
+            "corners in line": [(0, 0), (2, 0), (4, 0), (4, 4), (2, 4), (0, 4)],
+            "L": [(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)],
+            "L far away": [(90, 90), (96, 90), (96, 92), (92, 92), (92, 96), (90, 96)],
+            "comb": [(0, 0), (9, 0), (9, 9), (7, 9), (7, 2), (5, 2), (5, 9), (3, 9), (3, 2), (1, 2), (1, 9), (0, 9)],
+            "star": [(0, 9), (-2, 3), (-9, 3), (-4, -1), (-6, -8), (0, -4), (6, -8), (4, -1), (9, 3), (2, 3)],
+            "300 corners": [(round(1e6 * math.cos(i * math.pi / 150)), round(1e6 * math.sin(i * math.pi / 150))) for i in range(300)],
+        }
+        for name, corners in shapes.items():
+            whole = sum(x * v - u * y for (x, y), (u, v) in zip(corners, corners[1:] + corners[:1])) / 2
+            for shape in (corners, corners[::-1]):
+                sign = 1 if (shape is corners) == (whole > 0) else -1
+                obj = "".join("v %d %d 7\n" % c for c in shape) + "f " + " ".join(str(i + 1) for i in range(len(shape)))
+                found = self.triangles(obj)
+                with self.subTest(shape=name):
+                    # none is turned over and they add up: they tile the polygon
+                    self.assertEqual(len(found), len(corners) - 2)
+                    self.assertTrue(all(sign * self.area(t) >= 0 for t in found), found)
+                    self.assertEqual(sum(abs(self.area(t)) for t in found), abs(whole))
+
+    def test_degenerate_polygons_keep_their_triangles(self):
+        self.assertEqual(len(self.triangles("v 1 1 0\nf 1 1 1 1 1 1\n")), 4)
+        self.assertEqual(len(self.triangles("v 0 0 0\nv 1 1 0\nv 2 2 0\nv 3 3 0\nv 4 4 0\nf 1 2 3 4 5\nf 1 2 3 4\n")), 5)
+        self.assertEqual(len(self.triangles("v 0 0 0\nv 4 4 0\nv 4 0 0\nv 0 4 0\nv 2 9 0\nf 1 2 3 4 5\n")), 3)
+
+    def test_ids_count_over_polygons(self):
+        self.write("mesh.obj", self.square + "v 9 9 9\nv 10 9 9\nv 9 10 9\nf 1 2 3 4\nf 5 6 7\n")
+        self.write("spheres.csv", "x,y,z\n9,9,9\n2,2,0\n")
+        self.assertEqual(self.detect("mesh.obj", "spheres.csv", "--radius", 1), [(0, 2), (1, 0), (1, 1)])
+
+
+class CsvForms(ProgramTest):
+    def spheres(self, csv, *options):
+        """The spheres that touch a triangle around the origin."""
+        self.write("mesh.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n")
+        self.write("spheres.csv", csv)
+        return [s for s, _ in self.detect("mesh.obj", "spheres.csv", *options)]
+
+    def test_every_form(self):
+        forms = {
+            "plain": "x,y,z\n0,0,0\n5,5,5\n0,0,.5\n",
+            "no final newline": "x,y,z\n0,0,0\n5,5,5\n0,0,.5",
+            "CRLF": "x,y,z\r\n0,0,0\r\n5,5,5\r\n0,0,.5\r\n",
+            "CRLF, no final newline": "x,y,z\r\n0,0,0\r\n5,5,5\r\n0,0,.5",
+            "any order": "z,y,x\n0,0,0\n5,5,5\n.5,0,0\n",
+            "other columns": "id,x,name,y,z,t\n1,0,a,0,0,nan\n2,5,b c,5,5,\n3,0,,0,.5,-1\n",
+            "quotes": '"x","y","z","note"\n0,0,0,"a, b"\n"5","5","5","say ""hi"", twice"\n0,0,".5",""\n',
+            "blanks": " x , y ,\tz \n 0 , 0 , 0 \n 5,5,5\n0,0,\t.5\t\n",
+            "byte order mark": "\ufeffx,y,z\n0,0,0\n5,5,5\n0,0,.5\n",
+            "blank lines": "\nx,y,z\n0,0,0\n\n5,5,5\n  \n0,0,.5\n\n\n",
+            "NumPy's header": "# x,y,z\n0.000e+00,0.000e+00,0.000e+00\n5e0,5e0,5e0\n0,0,5.0e-01\n",
+            "numbers of every form": "x,y,z\n-0,+0,0.\n5.0,+5e0,.5E1\n0e5,-0.0,5e-1\n",
+            "too small to tell from 0": "x,y,z\n1e-400,-1e-5000,1e-46\n5,5,5\n0,0,.5\n",
+            "a byte that is no text elsewhere": "x,y,z,\u00e9\n0,0,0,\u00fc\n5,5,5,\n0,0,.5,\n",
+        }
+        for name, csv in forms.items():
+            with self.subTest(form=name):
+                self.assertEqual(self.spheres(csv, "--radius", 1), [0, 2])
+
+    def test_radii(self):
+        csv = "r,x,y,z\n.25,0,0,.5\n.5,0,0,.5\n0,0,0,0\n-0,0,0,0\n9,5,5,5\n"
+        self.assertEqual(self.spheres(csv), [1, 2, 3, 4])
+        self.assertEqual(self.spheres(csv, "--radius", 1), [1, 2, 3, 4])  # the file knows better
+        self.assertIn("column r", self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 1))
+
+    def test_no_spheres(self):
+        for csv in ("x,y,z\n", "x,y,z", "x,y,z\r\n\r\n"):
+            self.assertEqual(self.spheres(csv, "--radius", 1), [])
+            self.assertEqual(self.read("pairs.csv"), b"sphere,triangle\n")
+
+    def test_from_a_pipe(self):
+        self.write("mesh.obj", TRIANGLE)
+        out = subprocess.run([programs.PROGRAMS / "detect", "mesh.obj", "/dev/stdin", "1", "/dev/stdout"], cwd=self.folder,
+                             input=b"x,y,z\n0,0,0\n", capture_output=True)
+        self.assertEqual((out.returncode, out.stdout, out.stderr), (0, b"sphere,triangle\n0,0\n", b""))
+
+
+class Rounding(ProgramTest):
+    """Numbers reach the scalar type in one correct rounding: coordinates and radii are seen in the picture."""
+
+    numbers = [
+        "1.000000059604644775390625",  # halfway between two floats: to even, down
+        "1.0000000596046447753906250000000000000000000001",  # a hair above it: up; a double cannot tell
+        "1.0000000596046447753906249999999999999999999999",
+        "1.000000178813934326171875",  # halfway, to even, up
+        "0.1", "0.3", "16777217", "16777219", "123456789.123456789", "3.14159265358979323846264338327950288",
+        "2.2250738585072011e-308", "4.9e-324", "1e-45", "7.0064923216240853546186479164495e-46", "7.0064923216240853546186479164496e-46",
+        "1.17549435082228750797e-38", "340282346638528859811704183484516925440",
+        "9007199254740993", "9007199254740992.9999999999", "179769313486231570e21", "8.5e-10",
+        "0.000000000000000000000000000000000000011754942807573642918",
+    ]
+
+    def test_coordinates(self):
+        for scalar, kind in (("float", "f"), ("double", "d")):
+            for text in self.numbers:
+                with self.subTest(scalar=scalar, number=text):
+                    expected = nearest(text, kind)
+                    self.write("mesh.obj", f"v {text} 0 0\nv {text} 0 0\nv {text} 0 0\nf 1 2 3\n")
+                    self.write("spheres.csv", f"x,y,z\n{text},0,0\n")
+                    self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 0, "--scalar", scalar, "--precision", "double",
+                                 "--ply", "hits.ply", "--output", "pairs.csv")
+                    self.assertEqual(self.pairs("pairs.csv"), [(0, 0)])
+                    vertices, _ = read_ply(self.read("hits.ply"))
+                    self.assertEqual([v[0][0] for v in vertices], [expected] * 9)  # 3 corners and an octahedron of radius 0
+
+    def test_radii(self):
+        self.write("mesh.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n")
+        self.write("with.csv", "x,y,z,r\n" + "".join(f"0,0,0,{text}\n" for text in self.numbers))
+        self.write("without.csv", "x,y,z\n0,0,0\n")
+        for scalar, kind in (("float", "f"), ("double", "d")):
+            expected = [nearest(text, kind) for text in self.numbers]
+            self.succeed("detect", "mesh.obj", "with.csv", "--scalar", scalar, "--ply", "hits.ply")
+            vertices, _ = read_ply(self.read("hits.ply"))
+            self.assertEqual([v[0][0] for v in vertices[3::6]], expected)
+            for text, value in list(zip(self.numbers, expected))[:4]:
+                self.succeed("detect", "mesh.obj", "without.csv", "--radius", text, "--scalar", scalar, "--ply", "hits.ply")
+                vertices, _ = read_ply(self.read("hits.ply"))
+                self.assertEqual(vertices[3][0][0], value)
+
+    def test_contacts_read_back_the_same(self):
+        self.write("mesh.obj", "v 0.1 0 0\nv 0.1 0 0\nv 0.1 0 0\nf 1 2 3\n")
+        self.write("spheres.csv", "x,y,z\n0.1,0,0.5\n")
+        for scalar, text in (("float", "0.1"), ("double", "0.1")):
+            self.succeed("detect", "mesh.obj", "spheres.csv", "1", "--scalar", scalar, "--contacts", "c.csv")
+            row = self.read("c.csv").decode().splitlines()[1].split(",")
+            self.assertEqual(row[2], text)  # the shortest number that reads back the same
+
+
+class BadMesh(ProgramTest):
+    def test_bad_lines_are_named(self):
+        good = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+        for line in ("f 1 2", "f 1 2 3x", "f 1 2 4", "f 1 2 0", "f 0/1/1 1/1/1 2/1/1", "f 1 2 -4", "f 1 2 99999999999", "f 1 2 4294967297",
+                     "f 1.5 2 3", "f 1/2/3/4 2 3", "f a b c", "f", "f 1,2,3", "f /1 2 3", "v", "v 1", "v 1 2", "v 1 2 x", "v 1,2,3", "v 1 2 nan",
+                     "v inf 0 0", "v 0 -infinity 0", "v 1e999 0 0", "v 1e39 0 0", "v 0x10 0 0", "v +-1 0 0", "v -+1 0 0", "v 1e 0 0", "v 1.2.3 0 0",
+                     "v 1 2 3 x", "banana", "x,y,z", "vx 1 2 3", "v\0 0 0 0", "f 1 2 3\r4", "\x7fELF"):
+            with self.subTest(line=line):
+                self.write("mesh.obj", good + "# five\n" + line + "\nf 1 2 3\n")
+                self.write("spheres.csv", ONE_SPHERE)
+                self.fail_with(1, ["mesh.obj:6: "], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+
+    def test_the_line_is_right_after_continued_and_foreign_line_ends(self):
+        self.write("spheres.csv", ONE_SPHERE)
+        for text, line in (("v 0 0 0\r\nv 1 \\\r\n0 0\r\nbad\r\n", 4), ("v 0 0 \\\nx\n", 1), ("\n\n\nv 0 0\n", 4),
+                           ("v 0 0 0\nf 1 1 2\n# then\nv 0 0 0 0 x", 4), ("v 0 0 0\nf 1 1 9\nv 0 0 0\n", 2)):
+            self.write("mesh.obj", text)
+            self.fail_with(1, [f"mesh.obj:{line}: "], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+
+    def test_no_mesh(self):
+        self.write("spheres.csv", ONE_SPHERE)
+        self.write("empty.obj", "")
+        self.write("comments.obj", "# nothing\n\n")
+        self.write("points.obj", "v 0 0 0\n")
+        for mesh in ("missing.obj", "empty.obj", "comments.obj", "points.obj", ".", "spheres.csv", "no/such/folder.obj"):
+            self.fail_with(1, [mesh + ":"], "detect", mesh, "spheres.csv", 1, "out.csv")
+
+    def test_what_a_message_quotes_is_short_and_plain(self):
+        self.write("spheres.csv", ONE_SPHERE)
+        self.write("mesh.obj", b"\x1b[31m" + b"x" * 100000 + b"\n")
+        message = self.fail_with(1, ["mesh.obj:1"], "detect", "mesh.obj", "spheres.csv", 1)
+        self.assertLess(len(message), 200)
+        self.assertNotIn("\x1b", message)
+
+
+class BadSpheres(ProgramTest):
+    def test_bad_rows_are_named(self):
+        self.write("mesh.obj", TRIANGLE)
+        for row in ("1,2", "1", "1,2,3,4,5", "1,2,,1", ",,,", "1,2,x,1", "1 2,3,4,1", "1;2;3;4", "nan,0,0,1", "0,NaN,0,1", "0,0,inf,1", "0,-inf,0,1",
+                    "0,0,0,nan", "0,0,0,inf", "0,0,0,-1", "0,0,0,-1e-30", "1e999,0,0,1", "0,0,1e39,1", '"1,0,0,1', '"1"2,0,0,1', "0x1,0,0,1", "1e,0,0,1",
+                    "--1,0,0,1", "+-1,0,0,1", "x,y,z,r", "1,2,3,4,", "1,2,3,\0"):
+            with self.subTest(row=row):
+                self.write("spheres.csv", "x,y,z,r\n0,0,0,1\n\n" + row + "\n0,0,0,1\n")
+                self.fail_with(1, ["spheres.csv:4: "], "detect", "mesh.obj", "spheres.csv", "--output", "out.csv")
+                self.write("spheres.csv", "x,y,z,r\r\n0,0,0,1\r\n" + row)
+                self.fail_with(1, ["spheres.csv:3: "], "detect", "mesh.obj", "spheres.csv", "--output", "out.csv")
+
+    def test_a_number_that_is_too_large_for_float_only(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", "x,y,z\n1e39,0,0\n")
+        self.fail_with(1, ["spheres.csv:2: "], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+        self.assertEqual(self.detect("mesh.obj", "spheres.csv", "--radius", 1, "--precision", "double"), [])
+
+    def test_bad_headers(self):
+        self.write("mesh.obj", TRIANGLE)
+        for header, column in (("x,y", "z"), ("a,b,c", "x"), ("1,2,3", "x"), ("x y z", "x"), ("X,Y,Z", "x"), ("x;y;z", "x"), ("x,x,y,z", "x"),
+                               ('"x,y,z', "quotation")):
+            self.write("spheres.csv", header + "\n1,2,3\n")
+            self.fail_with(1, ["spheres.csv:1: ", column], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+
+    def test_no_spheres(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("empty.csv", "")
+        self.write("blank.csv", "\n \n")
+        for spheres in ("missing.csv", "empty.csv", "blank.csv", ".", "mesh.obj"):
+            self.fail_with(1, [spheres + ":"], "detect", "mesh.obj", spheres, 1, "out.csv")
+
+
+class BadUsage(ProgramTest):
+    def test_usage(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", ONE_SPHERE)
+        files = ["mesh.obj", "spheres.csv"]
+        for words, args in ((["mesh"], []), (["spheres"], ["mesh.obj"]), (["--radius"], files), (["--nonsense"], [*files, 1, "--nonsense"]),
+                            (["-q"], [*files, 1, "-q"]), (["five"], [*files, 1, "o", "five"]), (["--radius", "-1"], [*files, "--radius", -1]),
+                            (["--radius", "-1"], [*files, -1, "out.csv"]), (["--radius"], [*files, "--radius", "nan"]),
+                            (["--radius"], [*files, "--radius", "-nan"]), (["--radius"], [*files, "--radius", "-inf"]),
+                            (["--radius", "1x"], [*files, "--radius", "1x"]), (["--radius"], [*files, "--radius", ""]), (["--radius"], [*files, "--radius"]),
+                            (["--radius"], [*files, "--radius", 1, "--radius", 2]), (["--broad"], [*files, 1, "--broad", "tree"]),
+                            (["--broad"], [*files, 1, "--broad"]), (["--space"], [*files, 1, "--space", "moon"]),
+                            (["--precision"], [*files, 1, "--precision", "half"]), (["--scalar"], [*files, 1, "--scalar", "int"]),
+                            (["--threads"], [*files, 1, "--threads", -1]), (["--threads"], [*files, 1, "--threads", "two"]),
+                            (["--threads"], [*files, 1, "--threads", "1.5"]), (["--repeat"], [*files, 1, "--repeat", 0]),
+                            (["--repeat"], [*files, 1, "--repeat", "x"]), (["--cell-width"], [*files, 1, "--cell-width", -2]),
+                            (["--cell-width"], [*files, 1, "--cell-width", "nan"]), (["--cell-width"], [*files, 1, "--cell-width", "inf"]),
+                            (["--cell-width"], [*files, 1, "--cell-width", "wide"]), (["--output", "mesh.obj"], [*files, 1, "./mesh.obj"]),
+                            (["--report", "--output"], [*files, 1, "new", "--report", "new"]), (["--ply"], [*files, 1, "--ply", "spheres.csv"])):
+            with self.subTest(args=args):
+                self.fail_with(2, words, "detect", *args)
+        self.assertEqual(self.read("mesh.obj").decode(), TRIANGLE)
+
+    def test_cuda_that_is_not_there(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", ONE_SPHERE)
+        for space in ("cuda", "cuda_shared"):
+            done = self.run_program("detect", "mesh.obj", "spheres.csv", 1, "--space", space)
+            if done.returncode == 0:
+                self.skipTest("there is a CUDA device")
+            self.fail_with(1, ["--space", "CUDA"], "detect", "mesh.obj", "spheres.csv", 1, "--space", space)
+
+    def test_help_and_version(self):
+        text = self.succeed("detect", "--help")
+        for option in ("--radius", "--broad", "--space", "--precision", "--threads", "--cell-width", "--output", "--contacts", "--ply", "--report",
+                       "--repeat", "all_pairs", "bucket", "host", "cuda_shared", "single", "double"):
+            self.assertIn(option, text)
+        self.assertRegex(self.succeed("detect", "--version"), r"^detect .*\d+\.\d+\.\d+\n$")
+
+
+class Outputs(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.scene(*CUBE, [(0, 0, 0), (3, 3, 3), (.5, .5, .5), (1.3, 0, .5)])
+        self.call = ["mesh.obj", "spheres.csv", "--radius", ".4"]
+
+    def test_contacts(self):
+        self.succeed("detect", *self.call, "--contacts", "c.csv", "--output", "p.csv")
+        header, *rows = [line.split(",") for line in self.read("c.csv").decode().splitlines()]
+        self.assertEqual(header, "sphere,triangle,x,y,z,nx,ny,nz,depth,feature,index".split(","))
+        self.assertEqual([(int(r[0]), int(r[1])) for r in rows], self.pairs("p.csv"))
+        for row in rows:
+            values = dict(zip(header, row))
+            self.assertIn(values["feature"], ("face", "edge", "vertex"))
+            if row[0] == "3":
+                self.assertAlmostEqual(float(values["x"]), 1)
+                self.assertAlmostEqual(float(values["z"]), .5)
+                self.assertAlmostEqual(float(values["nx"]), 1)
+                self.assertAlmostEqual(float(values["depth"]), .1, 6)
+
+    def test_picture(self):
+        self.succeed("detect", *self.call, "--ply", "h.ply", "--output", "p.csv")
+        found = self.pairs("p.csv")
+        vertices, faces = read_ply(self.read("h.ply"))
+        self.assertEqual((len(vertices), len(faces)), (8 + 2 * 6, 12 + 2 * 8))
+        colours = [colour for _, colour in faces]
+        hit = {t for _, t in found}
+        self.assertNotEqual(len(hit), 12)
+        self.assertEqual([c == (214, 39, 40) for c in colours[:12]], [t in hit for t in range(12)])
+        self.assertEqual(set(colours[12:]), {(31, 119, 180)})
+        for centre, corners in ((0, vertices[8:14]), (1.3, vertices[14:20])):
+            self.assertAlmostEqual(sum(v[0][0] for v in corners) / 6, centre, 6)
+            self.assertAlmostEqual(max(v[0][2] for v in corners) - min(v[0][2] for v in corners), .8, 6)
+
+    def test_a_full_disk(self):
+        for option in ("--output", "--contacts", "--ply", "--report"):
+            self.fail_with(1, ["/dev/full", "space"], "detect", *self.call, option, "/dev/full")
+        # the others do not appear either, and what was there stays
+        self.write("pairs.csv", "old")
+        self.fail_with(1, ["/dev/full"], "detect", *self.call, "--output", "pairs.csv", "--contacts", "c.csv", "--report", "/dev/full")
+        self.assertEqual(self.read("pairs.csv"), b"old")
+        done = self.run_program("detect", *self.call)
+        self.assertEqual(done.returncode, 0)
+        with open("/dev/full", "wb") as full:
+            done = subprocess.run([programs.PROGRAMS / "detect", *self.call], cwd=self.folder, stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual((done.returncode, done.stderr.count(b"\n")), (1, 1))
+
+    def test_a_file_that_may_not_grow(self):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20, 20))
+        options = {"preexec_fn": limit, "restore_signals": False}
+        self.write("pairs.csv", "old")
+        self.fail_with(1, ["pairs.csv"], "detect", *self.call, "--output", "pairs.csv", **options)
+        self.assertEqual(self.read("pairs.csv"), b"old")
+
+    def test_places_that_cannot_be_written(self):
+        os.mkdir(self.path("folder"))
+        for path in ("no/such/folder/x.csv", "folder", "mesh.obj/x.csv"):
+            self.fail_with(1, [path], "detect", *self.call, "--output", path)
+
+    def test_replacing_keeps_links_and_permissions(self):
+        self.write("target.csv", "old")
+        os.chmod(self.path("target.csv"), 0o640)
+        os.symlink("target.csv", self.path("link.csv"))
+        self.succeed("detect", *self.call, "--output", "link.csv")
+        self.assertTrue(os.path.islink(self.path("link.csv")))
+        self.assertNotEqual(self.pairs("target.csv"), [])
+        self.assertEqual(stat.S_IMODE(os.stat(self.path("target.csv")).st_mode), 0o640)
+        self.assertEqual(self.files(), ["link.csv", "mesh.obj", "spheres.csv", "target.csv"])
+
+    def test_new_files_obey_the_umask(self):
+        self.succeed("detect", *self.call, "--output", "new.csv", preexec_fn=lambda: os.umask(0o027))
+        self.assertEqual(stat.S_IMODE(os.stat(self.path("new.csv")).st_mode), 0o640)
+
+    def test_standard_output(self):
+        self.succeed("detect", *self.call, "--output", "p.csv")
+        self.assertEqual(self.succeed("detect", *self.call, "--output", "/dev/stdout").encode(), self.read("p.csv"))
+        with open(self.path("redirected"), "wb") as out:
+            subprocess.run([programs.PROGRAMS / "detect", *self.call, "--output", "/dev/stdout"], cwd=self.folder, stdout=out, check=True)
+        self.assertEqual(self.read("redirected"), self.read("p.csv"))
+
+    def test_summary(self):
+        text = self.succeed("detect", *self.call)
+        self.assertIn(f"{len(self.detect(*self.call))} colliding pairs of 4 spheres and 12 triangles", text)
+
+
+class Report(ProgramTest):
+    def test_report(self):
+        self.scene(*CUBE, [(0, 0, 0), (3, 3, 3)])
+        for composition in COMPOSITIONS:
+            for repeat in (1, 4):
+                report = self.report("mesh.obj", "spheres.csv", .4, "--repeat", repeat, "--threads", 1, *composition)
+                for key in ("build_ms", "query_ms", "total_ms"):
+                    times = report[key]
+                    self.assertEqual(set(times), {"min", "median", "max"})
+                    self.assertTrue(0 <= times["min"] <= times["median"] <= times["max"], times)
+                    self.assertEqual(times["min"] == times["max"], repeat == 1)
+                self.assertGreaterEqual(report["total_ms"]["min"], report["query_ms"]["min"])
+                self.assertEqual([report[k] for k in ("space", "broad", "precision", "threads", "triangles", "spheres", "repeat")],
+                                 ["host", composition[1], composition[3], 1, 12, 2, repeat])
+                self.assertEqual(report["scalar"], "float" if composition[3] == "single" else "double")
+                self.assertEqual(report["cell_width"] > 0, composition[1] == "bucket")
+                self.assertNotEqual(report["device"], "")
+                self.assertEqual(report["pairs"], len(self.detect("mesh.obj", "spheres.csv", .4)))
+
+    def test_pairs_do_not_depend_on_what_is_written(self):
+        self.succeed("generate", "--spheres", 2000, "--triangles", 2000, "mesh.obj", "spheres.csv")
+        counts = {self.report("mesh.obj", "spheres.csv", 30, *options)["pairs"]
+                  for options in ([], ["out.csv"], ["--contacts", "c.csv"], ["--ply", "h.ply"], ["--repeat", 3], ["out.csv", "--repeat", 3])}
+        self.assertEqual(counts, {len(self.pairs("out.csv"))})
+
+    def test_a_fixed_cell_width(self):
+        self.succeed("generate", "--spheres", 100, "--triangles", 5000, "mesh.obj", "spheres.csv")
+        self.assertAlmostEqual(self.report("mesh.obj", "spheres.csv", 3, "--cell-width", 12)["cell_width"], 12, 4)
+
+    def test_memory_grows_with_the_scene(self):
+        peaks = []
+        for n in (1000, 100000):
+            self.succeed("generate", "--spheres", n, "--triangles", 2000, "mesh.obj", "spheres.csv")
+            peaks.append(self.report("mesh.obj", "spheres.csv", 3)["peak_bytes"])
+        self.assertGreaterEqual(peaks[1] - peaks[0], 12 * 99000)
+        self.assertLess(peaks[1], 100 * 2 ** 20)
+
+    def test_default_threads(self):
+        self.scene(*CUBE, [(0, 0, 0)])
+        self.assertIn(self.report("mesh.obj", "spheres.csv", 1)["threads"], (1, len(os.sched_getaffinity(0))))
+
+
+class Progress(ProgramTest):
+    def on_a_terminal(self, *args):
+        """Runs detect with a terminal as standard error; returns what a person would see fly by."""
+        terminal, slave = pty.openpty()
+        process = subprocess.Popen([programs.PROGRAMS / "detect", *map(str, args)], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=slave)
+        os.close(slave)
+        seen = b""
+        try:
+            while part := os.read(terminal, 4096):
+                seen += part
+        except OSError:
+            pass  # how Linux says that the other side is closed
+        os.close(terminal)
+        self.assertEqual(process.wait(), 0)
+        return seen.decode()
+
+    def test_long_work_shows_a_bar_and_finds_the_same(self):
+        self.succeed("generate", "--spheres", 6000, "mesh.obj", "spheres.csv")
+        call = ["mesh.obj", "spheres.csv", "--radius", 30, "--threads", 1, "--broad", "all_pairs"]
+        expected = self.detect(*call)
+        seen = self.on_a_terminal(*call, "--output", "watched.csv", "--repeat", 15)
+        self.assertRegex(seen, r"detecting \[#*\.*\] +\d+ %, \d+:\d\d left")
+        self.assertTrue(seen.endswith("\r\x1b[K"), seen[-80:])  # it goes away
+        self.assertEqual(self.pairs("watched.csv"), expected)
+
+    def test_short_work_shows_none(self):
+        self.scene(*CUBE, [(0, 0, 0)])
+        self.assertEqual(self.on_a_terminal("mesh.obj", "spheres.csv", 1, "out.csv"), "")
+
+    def test_queries_in_parts(self):
+        self.succeed("generate", "--scene", "radii", "--spheres", 60000, "mesh.obj", "spheres.csv")
+        expected = self.detect("mesh.obj", "spheres.csv", "--broad", "bucket")
+        self.assertIn("left", self.on_a_terminal("mesh.obj", "spheres.csv", "--threads", 1, "--broad", "all_pairs", "--output", "parts.csv"))
+        self.assertEqual(self.pairs("parts.csv"), expected)
+
+
+if __name__ == "__main__":
+    programs.main()
