@@ -157,8 +157,9 @@ struct bucket_query {
 }  // namespace detail
 
 /// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid.hpp explains how.
-/// Build O(triangles), query O(spheres + candidates). Memory: at most 8 entries of 4 bytes, 4 scalars and up to 8 cells
-/// of 4 bytes per triangle and grid; several grids only where radii differ by more than a factor of 4.
+/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 4 scalars, at most 8 entries of 4
+/// bytes in the CUDA spaces and 27 on the host, and up to 16 cells of 4 bytes;
+/// several grids only where radii differ by more than a factor of 4.
 struct bucket {
   /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
   /// such cells go to levels of wider ones.
@@ -233,6 +234,11 @@ class bucket::index {
   static constexpr std::size_t fixed_bytes =
       sizeof(detail::mesh_summary<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
 
+  /// How many cells a triangle may touch at most, unless a width is asked for.
+  template <class Space>
+  static constexpr std::size_t cells_per_triangle = std::size_t(Space::bucket_span + 1) * (Space::bucket_span + 1) *
+                                                    (Space::bucket_span + 1);
+
   /// The grid of one radius: the one that is there if it is not much too wide.
   int reach_of(S radius, S* reaches) const {
     if (!detail::valid_radius(radius) || !detail::finite(radius)) return 0;
@@ -270,8 +276,8 @@ class bucket::index {
     cells_ = static_cast<std::size_t>(grid_count_) << l.table_bits;
 
     auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
-    detail::plan_grid<S> plan{summary_.data(), grids,       {}, static_cast<S>(options.cell_width),
-                              l.entry_limit,   l.table_bits};
+    detail::plan_grid<S> plan{summary_.data(),    grids,         {},          static_cast<S>(options.cell_width),
+                              Space::bucket_span, l.entry_limit, l.table_bits};
     std::copy(reaches, reaches + grid_count_, plan.reaches);
     space.for_each(static_cast<std::size_t>(grid_count_), plan);
 
@@ -281,10 +287,11 @@ class bucket::index {
     space.fill(counts, 0, (cells_ + 2) * sizeof *counts);
     space.for_each(n, detail::count_entries<S>{insertion, counts + 1});
     space.exclusive_scan(counts + 1, cells_ + 1, scratch_);
-    // without a fixed width no triangle is in more than 8 cells of a grid, so the device need not be asked how many
+    // without a fixed width it is known how many cells of a grid a triangle may touch: the device need not be asked
     // there are
-    bool const ask = Space::host_memory || options.cell_width > 0;
-    std::size_t const capacity = ask ? space.read(counts + cells_ + 1) : 8 * n * static_cast<std::size_t>(grid_count_);
+    std::size_t const capacity = options.cell_width > 0
+                                     ? space.read(counts + cells_ + 1)
+                                     : cells_per_triangle<Space> * n * static_cast<std::size_t>(grid_count_);
     entries_.reserve(space.resource(), capacity);
     space.for_each(n, detail::fill_entries<S>{insertion, counts + 1, entries_.data(), entries_.capacity()});
   }
@@ -301,15 +308,15 @@ class bucket::index {
     constexpr std::size_t id_limit = std::numeric_limits<std::uint32_t>::max();
     std::size_t const n = mesh_.size();
     std::uint32_t most_bits = 12;
-    while (most_bits < 28 && (std::size_t{1} << most_bits) < 4 * n) ++most_bits;
+    while (most_bits < 28 && (std::size_t{1} << most_bits) < 8 * n) ++most_bits;
     for (int g = wanted; g > 0; --g) {
       auto const grids = static_cast<std::size_t>(g);
-      if (8 * n * grids > id_limit) continue;
+      if (cells_per_triangle<Space> * n * grids > id_limit) continue;
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
         std::size_t const cells = grids << bits;
         std::size_t const base = fixed_bytes + (has_bounds_ ? bounds_bytes() : 0) +
                                  (cells + 2) * sizeof(std::uint32_t) + space.scan_bytes(cells + 1);
-        std::size_t const least = base + 8 * n * grids * sizeof(id);
+        std::size_t const least = base + cells_per_triangle<Space> * n * grids * sizeof(id);
         std::size_t most_entries = std::min(512 * n + (std::size_t{1} << 20), id_limit / grids);
         if (options.memory_budget != 0) {
           if (least > options.memory_budget) continue;

@@ -220,6 +220,9 @@ class cuda_space {
 
   static constexpr bool host_memory = false;
 
+  /// Tuning of `bucket`; see `host`.
+  static constexpr int bucket_span = 1;
+
   template <class F>
   void for_each(std::size_t n, F const& f) const {
     if (n == 0) return;

@@ -6,40 +6,50 @@
 
 #include <collide/config.hpp>
 
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
 namespace collide::detail {
 
-/// Adds and returns the value before.
-COLLIDE_HD_INLINE std::uint32_t fetch_add(std::uint32_t* target, std::uint32_t n) {
-#if defined(__CUDA_ARCH__)
-  return atomicAdd(target, n);
+/// True if other threads may be working on the same memory: on the host only inside a parallel region. A locked
+/// instruction costs several times as much as a plain one.
+inline bool concurrent() {
+#if defined(_OPENMP)
+  return omp_in_parallel() != 0;
 #else
-  return __atomic_fetch_add(target, n, __ATOMIC_RELAXED);
+  return false;
 #endif
 }
 
-COLLIDE_HD_INLINE std::uint64_t fetch_add(std::uint64_t* target, std::uint64_t n) {
 #if defined(__CUDA_ARCH__)
-  return atomicAdd(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(n));
+/// The type that CUDA's atomic functions take for an unsigned integer.
+__device__ __forceinline__ unsigned int* as_cuda(std::uint32_t* p) { return p; }
+__device__ __forceinline__ unsigned long long* as_cuda(std::uint64_t* p) {
+  return reinterpret_cast<unsigned long long*>(p);
+}
+#endif
+
+/// Adds and returns the value before. `U` is std::uint32_t or std::uint64_t.
+template <class U>
+COLLIDE_HD_INLINE U fetch_add(U* target, U n) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(as_cuda(target), n);
 #else
-  return __atomic_fetch_add(target, n, __ATOMIC_RELAXED);
+  if (concurrent()) return __atomic_fetch_add(target, n, __ATOMIC_RELAXED);
+  U const before = *target;
+  *target += n;
+  return before;
 #endif
 }
 
-COLLIDE_HD_INLINE void fetch_min(std::uint32_t* target, std::uint32_t value) {
+/// Makes `*target` the smaller of itself and `value`.
+template <class U>
+COLLIDE_HD_INLINE void fetch_min(U* target, U value) {
 #if defined(__CUDA_ARCH__)
-  atomicMin(target, value);
+  atomicMin(as_cuda(target), value);
 #else
-  std::uint32_t seen = __atomic_load_n(target, __ATOMIC_RELAXED);
-  while (value < seen && !__atomic_compare_exchange_n(target, &seen, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-  }
-#endif
-}
-
-COLLIDE_HD_INLINE void fetch_min(std::uint64_t* target, std::uint64_t value) {
-#if defined(__CUDA_ARCH__)
-  atomicMin(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(value));
-#else
-  std::uint64_t seen = __atomic_load_n(target, __ATOMIC_RELAXED);
+  U seen = __atomic_load_n(target, __ATOMIC_RELAXED);
   while (value < seen && !__atomic_compare_exchange_n(target, &seen, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
 #endif

@@ -37,12 +37,12 @@ struct grid_level {
   S inverse_width;
   S largest;               ///< the largest dilated extent of a triangle of this level
   std::uint32_t mask[3];   ///< number of cells - 1 per axis; cell coordinates wrap
-  std::uint32_t shift[3];  ///< position of the axis' bits in the cell number
+  std::uint32_t shift[2];  ///< position of the bits of y and z in the cell number; those of x come first
   std::uint32_t first;     ///< number of the first cell
-  std::uint32_t unused;
 
-  COLLIDE_HD_INLINE std::uint32_t cell(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
-    return first + (((x & mask[0]) << shift[0]) | ((y & mask[1]) << shift[1]) | ((z & mask[2]) << shift[2]));
+  /// Number of the first cell of a row along x.
+  COLLIDE_HD_INLINE std::uint32_t row(std::uint32_t y, std::uint32_t z) const {
+    return first + (((y & mask[1]) << shift[0]) | ((z & mask[2]) << shift[1]));
   }
 };
 
@@ -66,7 +66,7 @@ struct grid {
 
   /// The cell that holds a point inside the grid.
   COLLIDE_HD_INLINE std::uint32_t cell_of(grid_level<S> const& l, vec3<S> const& p) const {
-    return l.cell(coordinate(l, p.x(), 0), coordinate(l, p.y(), 1), coordinate(l, p.z(), 2));
+    return l.row(coordinate(l, p.y(), 1), coordinate(l, p.z(), 2)) + (coordinate(l, p.x(), 0) & l.mask[0]);
   }
 
   /// The level that a finite triangle belongs to.
@@ -97,6 +97,7 @@ struct plan_grid {
   grid<S>* grids;
   S reaches[max_grids];
   S cell_width;              ///< asked for; 0 = choose
+  int usual_span;            ///< how many cells wide most triangles are, if the width is not asked for
   float entry_limit;         ///< how many entries a grid may have, if the width is asked for
   std::uint32_t table_bits;  ///< log2 of the number of cells per grid
 
@@ -128,8 +129,9 @@ struct plan_grid {
     S const widest = std::numeric_limits<S>::max() / 4;
     int const top = sizes.last();
     S const tallest = margin * size(g, top);
-    S width = larger(narrowest, cell_width > 0 ? cell_width : smaller(tallest, 2 * margin * size(g, median())));
-    S const span = cell_width > 0 ? span_for(g, width) : S(1);
+    S width = larger(narrowest,
+                     cell_width > 0 ? cell_width : smaller(tallest, 2 * margin * size(g, median())) / S(usual_span));
+    S const span = cell_width > 0 ? span_for(g, width) : S(usual_span);
     // half of the cells for the finest level, the rest for the others together; all if there are no others
     std::uint32_t next_cell = static_cast<std::uint32_t>(i) << table_bits;
     int bin = sizes.first();
@@ -212,12 +214,9 @@ struct plan_grid {
       --axis_bits[longest];
       --sum;
     }
-    std::uint32_t shift = 0;
-    for (int k = 0; k < 3; ++k) {
-      l.mask[k] = (1u << axis_bits[k]) - 1;
-      l.shift[k] = shift;
-      shift += axis_bits[k];
-    }
+    for (int k = 0; k < 3; ++k) l.mask[k] = (1u << axis_bits[k]) - 1;
+    l.shift[0] = axis_bits[0];
+    l.shift[1] = axis_bits[0] + axis_bits[1];
     return 1u << sum;
   }
 };
@@ -239,7 +238,8 @@ struct grid_insertion {
       cell_range const r = g.cells_of(l, t);
       for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
         for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) {
-          for (std::uint32_t x = r.lower[0]; x <= r.upper[0]; ++x) f(l.cell(x, y, z));
+          std::uint32_t const row = l.row(y, z);
+          for (std::uint32_t x = r.lower[0]; x <= r.upper[0]; ++x) f(row + (x & l.mask[0]));
         }
       }
     }
