@@ -48,31 +48,46 @@ struct all_pairs_query {
     auto const first_of = [&](int lane) { return first + static_cast<std::size_t>(lane) * n; };
     block.each([&](int lane) { own[lane].load(tests.spheres, first_of(lane)); });
     bool const one_radius = tests.spheres.one_radius();
+    S const radius = tests.spheres.common_radius();
     for (std::size_t base = begin; base < end; base += tile) {
       int const m = static_cast<int>(smaller(static_cast<std::size_t>(tile), end - base));
       auto const* const staged = block.stage(s.staged, bounds + base, m);
       block.each([&](int lane) {
         auto const& mine = own[lane];
-        for (int t = 0; t < m; ++t) {
-          bounding_sphere<S> const ball = staged[t];
-          S const common = ball.reach(mine.radius[0]);
-          std::uint64_t reached = 0;  // a bit per sphere
-          for (int k = 0; k < n; ++k) {
-            S const reach = one_radius ? common : ball.reach(mine.radius[k]);
-            bool const hit = ball.distance_squared(mine.x[k], mine.y[k], mine.z[k]) <= reach;
-            reached |= static_cast<std::uint64_t>(hit) << k;
+        auto const sweep = [&](auto const& reach_of) {
+          for (int t = 0; t < m; ++t) {
+            bounding_sphere<S> const ball = staged[t];
+            auto const reach = reach_of(ball);
+            bool some = false;  // no branch per sphere: few are reached
+            for (int k = 0; k < n; ++k) some |= ball.distance_squared(mine.x[k], mine.y[k], mine.z[k]) <= reach(k);
+            if (some) test_reached(block, s, first_of(lane), static_cast<id>(base) + static_cast<id>(t), ball);
           }
-          for (int k = 0; reached != 0; ++k, reached >>= 1) {
-            std::size_t const i = first_of(lane) + static_cast<std::size_t>(k);
-            if ((reached & 1) == 0 || i >= tests.spheres.size()) continue;
-            tests.test(block, s.hits, {static_cast<id>(i), static_cast<id>(base) + static_cast<id>(t)},
-                       tests.spheres[i]);
-          }
+        };
+        if (one_radius) {
+          sweep([&](bounding_sphere<S> const& ball) {
+            S const common = ball.reach(radius);
+            return [common](int) { return common; };
+          });
+        } else {
+          sweep([&](bounding_sphere<S> const& ball) { return [&](int k) { return ball.reach(mine.radius[k]); }; });
         }
       });
       tests.make_room(block, s.hits);
     }
     tests.flush(block, s.hits);
+  }
+
+ private:
+  /// Runs the narrow phase on those of a lane's spheres that reach the triangle's ball.
+  template <class Block>
+  COLLIDE_HD void test_reached(Block& block, scratch<Block>& s, std::size_t first, id triangle,
+                               bounding_sphere<S> const& ball) const {
+    for (std::size_t i = first; i < first + Block::items && i < tests.spheres.size(); ++i) {
+      sphere<S> const candidate = tests.spheres[i];
+      if (ball.reached(candidate.centre, candidate.radius)) {
+        tests.test(block, s.hits, {static_cast<id>(i), triangle}, candidate);
+      }
+    }
   }
 };
 
