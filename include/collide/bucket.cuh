@@ -180,6 +180,7 @@ class bucket::index {
   /// One pass over the mesh: bounding spheres, extent, sizes. The grids follow as soon as a radius is known.
   template <class Space>
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
+    if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
     if (options.memory_budget != 0 && mesh.size() != mesh_.size()) release();
     mesh_ = mesh;
     grid_count_ = 0;
@@ -268,32 +269,32 @@ class bucket::index {
 
   template <class Space>
   void make_grids(Space& space, bucket const& options, S const* reaches, int wanted) {
+    grid_count_ = 0;  // until all is done: an exception leaves no half-made grid behind
     std::size_t const n = mesh_.size();
     layout const l = plan_memory(space, options, wanted);
-    grid_count_ = l.grids;
-    if (grid_count_ == 0) return;
-    std::copy(reaches, reaches + grid_count_, reaches_);
-    cells_ = static_cast<std::size_t>(grid_count_) << l.table_bits;
+    if (l.grids == 0) return;
+    auto const count = static_cast<std::size_t>(l.grids);
+    cells_ = count << l.table_bits;
 
     auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
     detail::plan_grid<S> plan{summary_.data(),    grids,         {},          static_cast<S>(options.cell_width),
                               Space::bucket_span, l.entry_limit, l.table_bits};
-    std::copy(reaches, reaches + grid_count_, plan.reaches);
-    space.for_each(static_cast<std::size_t>(grid_count_), plan);
+    std::copy(reaches, reaches + count, plan.reaches);
+    space.for_each(count, plan);
 
     // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
     auto* const counts = counts_.reserve(space.resource(), cells_ + 2);
-    detail::grid_insertion<S> const insertion{mesh_, grids, grid_count_};
+    detail::grid_insertion<S> const insertion{mesh_, grids, l.grids};
     space.fill(counts, 0, (cells_ + 2) * sizeof *counts);
     space.for_each(n, detail::count_entries<S>{insertion, counts + 1});
     space.exclusive_scan(counts + 1, cells_ + 1, scratch_);
-    // without a fixed width it is known how many cells of a grid a triangle may touch: the device need not be asked
-    // there are
-    std::size_t const capacity = options.cell_width > 0
-                                     ? space.read(counts + cells_ + 1)
-                                     : cells_per_triangle<Space> * n * static_cast<std::size_t>(grid_count_);
+    // only a width that was asked for leaves open how many cells a triangle touches: then the device must be asked
+    std::size_t const capacity =
+        options.cell_width > 0 ? space.read(counts + cells_ + 1) : cells_per_triangle<Space> * n * count;
     entries_.reserve(space.resource(), capacity);
     space.for_each(n, detail::fill_entries<S>{insertion, counts + 1, entries_.data(), entries_.capacity()});
+    std::copy(reaches, reaches + count, reaches_);
+    grid_count_ = l.grids;
   }
 
   struct layout {

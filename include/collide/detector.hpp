@@ -107,10 +107,11 @@ class detector {
       : space_(std::move(space)), options_(std::move(options)) {}
 
   /// Prepares what depends on the mesh only. Call it again when the mesh has moved. The mesh's memory must stay as it
-  /// is until the last query. O(triangles).
+  /// is until the last query; before the first build nothing collides. O(triangles).
   void build(mesh_view<Scalar> mesh) {
-    mesh_ = mesh;
+    mesh_ = {};
     if (mesh.size() != 0) index_.build(space_, options_, mesh);
+    mesh_ = mesh;
   }
 
   /// The same, and everything that spheres of radius up to `radius` need, so that a query has nothing left to prepare.
