@@ -204,7 +204,8 @@ __global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
 class cuda_space {
  public:
   /// `stream`: where all work is put. `resource`: where device memory comes from; null is `cuda_memory`. Both must
-  /// outlive everything that was made with the space. Throws `cuda_error` if there is no usable device.
+  /// outlive everything that was made with the space. The device that is current now must be current in every later
+  /// call. Throws `cuda_error` if there is no usable device.
   explicit cuda_space(cudaStream_t stream = nullptr, std::pmr::memory_resource* resource = nullptr)
       : stream_{stream}, resource_{resource != nullptr ? resource : cuda_memory::get()} {
     int device = 0;

@@ -116,7 +116,7 @@ struct plan_grid {
     }
     S far = g.reach;
     for (int k = 0; k < 3; ++k) far = larger(far, larger(abs_of(summary->lower_of(k)), abs_of(summary->upper_of(k))));
-    g.dilation = g.reach + 64 * format<S>::unit * far + 64 * std::numeric_limits<S>::min();
+    g.dilation = g.reach * (1 + narrow_slack<S>)+64 * format<S>::unit * far + 64 * std::numeric_limits<S>::min();
     for (int k = 0; k < 3; ++k) {
       g.lower[k] = summary->lower_of(k) - g.dilation;
       g.upper[k] = summary->upper_of(k) + g.dilation;
