@@ -13,12 +13,15 @@ template <class S>
 struct alignas(4 * sizeof(S)) bounding_sphere {
   S x, y, z, radius;
 
+  /// Covers the rounding here and that of the coarsest narrow phase, which computes in float.
+  static constexpr S slack = 1 + 16 * S(format<float>::unit);
+
   /// The squared distance within which a centre can reach the triangle with a sphere of radius `r`: rounded up so far
   /// that `distance_squared(c) <= reach(r)` holds, in floating-point numbers, whenever |c - centre| <= radius + r in
   /// real ones. Derivation in docs/numerics.md; NaN for an invalid triangle.
   COLLIDE_HD_INLINE S reach(S r) const {
     S const sum = radius + r;
-    return sum * sum * (1 + 16 * format<S>::unit) + 2 * std::numeric_limits<S>::min();
+    return sum * sum * slack + 2 * std::numeric_limits<S>::min();
   }
 
   COLLIDE_HD_INLINE S distance_squared(S cx, S cy, S cz) const {
@@ -42,7 +45,7 @@ COLLIDE_HD_INLINE bounding_sphere<S> bounds_of(triangle<S> const& t) {
       larger(larger(at.distance_squared(t.a.x(), t.a.y(), t.a.z()), at.distance_squared(t.b.x(), t.b.y(), t.b.z())),
              at.distance_squared(t.c.x(), t.c.y(), t.c.z()));
   // the root of the smallest normal number covers squares that underflow
-  S const radius = root(far_squared) * (1 + 16 * format<S>::unit) + 2 * root(std::numeric_limits<S>::min());
+  S const radius = root(far_squared) * bounding_sphere<S>::slack + 2 * root(std::numeric_limits<S>::min());
   return {m.x(), m.y(), m.z(), radius};
 }
 

@@ -16,7 +16,9 @@
 ///
 /// The rounding: cell coordinates are floor((x - lower) * inverse_width), a monotone function, so rounding alone cannot
 /// separate a centre from a box that contains it. The slack of 64 units in the last place of the largest coordinate
-/// covers the rounding of the box itself and a compiler that reassociates. See docs/numerics.md.
+/// covers the rounding of the box itself and a compiler that reassociates. The reach is
+/// dilated by 4 units of float too, the coarsest arithmetic of a narrow phase, so that none of its hits is lost here,
+/// right or wrong. See docs/numerics.md.
 #pragma once
 
 #include <collide/detail/mesh_summary.hpp>
@@ -116,7 +118,8 @@ struct plan_grid {
     }
     S far = g.reach;
     for (int k = 0; k < 3; ++k) far = larger(far, larger(abs_of(summary->lower_of(k)), abs_of(summary->upper_of(k))));
-    g.dilation = g.reach * (1 + narrow_slack<S>)+64 * format<S>::unit * far + 64 * std::numeric_limits<S>::min();
+    g.dilation =
+        g.reach * (1 + 4 * S(format<float>::unit)) + 64 * format<S>::unit * far + 64 * std::numeric_limits<S>::min();
     for (int k = 0; k < 3; ++k) {
       g.lower[k] = summary->lower_of(k) - g.dilation;
       g.upper[k] = summary->upper_of(k) + g.dilation;
