@@ -162,12 +162,13 @@ void measure(options const& wish, Detector& detector, Input const& in, Sink& sin
       }
     }
     double spent = 0;
-    for (std::size_t first = 0; first < n || first == 0; first += step) {
+    std::size_t first = 0;
+    do {
       spent += query(first, std::min(step, n - first));
       if (run == 0) keep(sink, first);
-      bar.update(static_cast<double>(n) * run + static_cast<double>(std::min(first + step, n)));
-      if (n == 0) break;
-    }
+      first += step;
+      bar.update(static_cast<double>(n) * run + static_cast<double>(std::min(first, n)));
+    } while (first < n);
     out.build_ms.push_back(build);
     out.query_ms.push_back(spent);
     out.total_ms.push_back(build + spent);
@@ -212,7 +213,7 @@ findings<S> detect(options const& wish, scene<S> const& from, Broad const& broad
 template <class S>
 scene<S> read(options const& wish) {
   scene<S> from{io::read_obj<S>(wish.mesh), io::read_csv<S>(wish.spheres), {}};
-  if (from.spheres.radii.empty()) {
+  if (!from.spheres.has_radii) {
     if (wish.radius.empty()) throw io::usage_error("--radius: is required, as " + wish.spheres + " has no column r");
     io::parse_number(wish.radius, from.radius);
   }
@@ -257,7 +258,7 @@ void summarise(options const& wish, scene<S> const& from, findings<S> const& fou
   if (found.cell_width > 0) std::cout << ", cells of width " << found.cell_width;
   std::cout << "\nbuild " << median("build_ms") << " ms, query " << median("query_ms") << " ms, "
             << static_cast<double>(found.peak_bytes) / 1e6 << " MB\n";
-  if (!from.spheres.radii.empty() && !wish.radius.empty()) {
+  if (from.spheres.has_radii && !wish.radius.empty()) {
     std::cout << "radii are those of column r of " << wish.spheres << ", not --radius\n";
   }
 }

@@ -22,6 +22,7 @@ template <class S>
 struct sphere_data {
   std::vector<S> xyz;
   std::vector<S> radii;
+  bool has_radii = false;
 
   std::size_t size() const { return xyz.size() / 3; }
 };
@@ -51,6 +52,7 @@ class csv_reader {
     auto const rows = static_cast<std::size_t>(std::count(at_, end_, '\n')) + 1;
     sphere_data<S> spheres;
     spheres.xyz.reserve(3 * rows);
+    spheres.has_radii = has_radius_;
     if (has_radius_) spheres.radii.reserve(rows);
 
     progress bar("reading " + path_, static_cast<double>(text_.size()));

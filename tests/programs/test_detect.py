@@ -155,6 +155,8 @@ class ObjForms(ProgramTest):
             "square": [(0, 0), (4, 0), (4, 4), (0, 4)],
             "arrow, quadrangle": [(0, 0), (8, 0), (2, 2), (0, 8)],
             "arrow, other start": [(8, 0), (2, 2), (0, 8), (0, 0)],
+            "narrow arrow": [(-1, 0), (0, 8), (1, 0), (0, 12)],
+            "narrow arrow, other start": [(0, 8), (1, 0), (0, 12), (-1, 0)],
             "pentagon": [(0, 0), (4, 0), (6, 3), (2, 6), (-2, 3)],
             "far from the origin": [(100, 100), (104, 100), (106, 103), (102, 106), (98, 103)],
             "corners in line": [(0, 0), (2, 0), (4, 0), (4, 4), (2, 4), (0, 4)],
@@ -175,6 +177,13 @@ class ObjForms(ProgramTest):
                     self.assertEqual(len(found), len(corners) - 2)
                     self.assertTrue(all(sign * self.area(t) >= 0 for t in found), found)
                     self.assertEqual(sum(abs(self.area(t)) for t in found), abs(whole))
+
+    def test_quadrangles_are_cut_along_the_shorter_diagonal(self):
+        a, b, c, d = (0, 0), (4, 0), (6, 2), (2, 2)  # from b to d it is shorter
+        for corners, cut in (((a, b, c, d), [(a, b, d), (b, c, d)]), ((b, c, d, a), [(b, c, d), (b, d, a)])):
+            obj = "".join("v %d %d 0\n" % corner for corner in corners) + "f 1 2 3 4\n"
+            self.assertEqual(self.triangles(obj), cut)
+        self.assertEqual(self.triangles(self.square + "f 1 2 3 4\n"), [((0, 0), (4, 0), (0, 4)), ((4, 0), (4, 4), (0, 4))])
 
     def test_degenerate_polygons_keep_their_triangles(self):
         self.assertEqual(len(self.triangles("v 1 1 0\nf 1 1 1 1 1 1\n")), 4)
@@ -225,6 +234,8 @@ class CsvForms(ProgramTest):
         for csv in ("x,y,z\n", "x,y,z", "x,y,z\r\n\r\n"):
             self.assertEqual(self.spheres(csv, "--radius", 1), [])
             self.assertEqual(self.read("pairs.csv"), b"sphere,triangle\n")
+
+        self.assertEqual(self.spheres("x,y,z,r\n"), [])
 
     def test_from_a_pipe(self):
         self.write("mesh.obj", TRIANGLE)
