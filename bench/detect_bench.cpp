@@ -13,6 +13,7 @@
 #include <collide/bucket.cuh>
 #include <collide/upload.hpp>
 
+#include "io/device.hpp"
 #include "io/scenes.hpp"
 #include "stopwatch.hpp"
 
@@ -84,7 +85,7 @@ void add(std::string const& method, phase what, std::size_t n, std::string const
   static char const* const phases[] = {"build", "query", "both"};
   std::string const precision = std::is_same<Precision, collide::single_precision>::value ? "single" : "double";
   std::string const name =
-      method + "/" + precision + "/" + sink_name + "/" + phases[static_cast<int>(what)] + "/" + std::to_string(n) + "/";
+      method + "/" + precision + "/" + sink_name + "/" + phases[static_cast<int>(what)] + "/" + std::to_string(n);
   benchmark::RegisterBenchmark(
       name.c_str(),
       [=](benchmark::State& state) { run<Broad, Precision, Space, S>(state, what, n, make_sink(), space); })
@@ -130,6 +131,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
 
+  benchmark::AddCustomContext("processor", io::processor_name());
   collide::host const one(1), all;
   add_series<collide::bucket>("bucket_seq/bucket_x_host", full, one);
   add_sinks<collide::bucket>("bucket_seq/bucket_x_host", one);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <collide/contact.hpp>
+#include <collide/detail/atomic.hpp>
 #include <collide/detail/block.hpp>
 #include <collide/error.hpp>
 #include <collide/memory.hpp>
@@ -133,6 +134,7 @@ class host {
       return;
     }
 #endif
+    detail::work_alone const alone;
     work(0, n);
   }
 

@@ -6,21 +6,23 @@
 
 #include <collide/config.hpp>
 
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
-
 namespace collide::detail {
 
-/// True if other threads may be working on the same memory: on the host only inside a parallel region. A locked
-/// instruction costs several times as much as a plain one.
-inline bool concurrent() {
-#if defined(_OPENMP)
-  return omp_in_parallel() != 0;
-#else
-  return false;
-#endif
-}
+/// True while this thread is the only one that works for a space. A locked instruction costs several times as much as a
+/// plain one.
+inline thread_local bool working_alone = false;
+
+/// Sets `working_alone` for a scope.
+class work_alone {
+ public:
+  work_alone() { working_alone = true; }
+  work_alone(work_alone const&) = delete;
+  work_alone& operator=(work_alone const&) = delete;
+  ~work_alone() { working_alone = before_; }
+
+ private:
+  bool before_ = working_alone;
+};
 
 #if defined(__CUDA_ARCH__)
 /// The type that CUDA's atomic functions take for an unsigned integer.
@@ -36,7 +38,7 @@ COLLIDE_HD_INLINE U fetch_add(U* target, U n) {
 #if defined(__CUDA_ARCH__)
   return atomicAdd(as_cuda(target), n);
 #else
-  if (concurrent()) return __atomic_fetch_add(target, n, __ATOMIC_RELAXED);
+  if (!working_alone) return __atomic_fetch_add(target, n, __ATOMIC_RELAXED);
   U const before = *target;
   *target += n;
   return before;

@@ -56,7 +56,7 @@ struct grid {
   S width;     ///< of the cells of the finest level
   S lower[3];  ///< of the dilated mesh
   S upper[3];
-  int levels;  ///< 0 if there is nothing to collide with
+  int levels;  ///< 0 if no triangle is in the grid
   grid_level<S> level[max_levels];
 
   /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.
@@ -127,11 +127,15 @@ struct plan_grid {
 
     S extent = 0;
     for (int k = 0; k < 3; ++k) extent = larger(extent, g.upper[k] - g.lower[k]);
-    // between these widths, cell coordinates are exact enough for `margin`
-    S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
-    S const widest = std::numeric_limits<S>::max() / 4;
+    constexpr S end = std::numeric_limits<S>::max() / 16;
     int const top = sizes.last();
     S const tallest = margin * size(g, top);
+    if (!(extent < end && far < end && tallest < end)) {  // the range of S does not suffice: a grid that serves no sphere
+      g.reach = -1;
+      return;
+    }
+    // from this width on, cell coordinates are exact enough for `margin`
+    S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
     S width = larger(narrowest,
                      cell_width > 0 ? cell_width : smaller(tallest, 2 * margin * size(g, median())) / S(usual_span));
     S const span = cell_width > 0 ? span_for(g, width) : S(usual_span);
@@ -140,11 +144,9 @@ struct plan_grid {
     int bin = sizes.first();
     while (bin <= top) {
       if (g.levels + 1 == max_levels) width = larger(width, tallest / span);
-      while (width < widest && margin * size(g, bin) > width * span) width *= 2;
-      if (!(width < widest)) width = widest;
+      while (margin * size(g, bin) > width * span) width *= 2;
       int next = bin + 1;
-      while (next <= top && (sizes.counts[next] == 0 || margin * size(g, next) <= width * span || !(width < widest)))
-        ++next;
+      while (next <= top && (sizes.counts[next] == 0 || margin * size(g, next) <= width * span)) ++next;
       bool const last = next > top;
       grid_level<S>& l = g.level[g.levels++];
       if (g.levels == 1) g.width = width;
@@ -237,6 +239,7 @@ struct grid_insertion {
     if (!finite(t)) return;
     for (int n = 0; n < grid_count; ++n) {
       grid<S> const& g = grids[n];
+      if (g.levels == 0) continue;
       grid_level<S> const& l = g.level_of(t);
       cell_range const r = g.cells_of(l, t);
       for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
