@@ -24,7 +24,7 @@ usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
 has() {
   case $1 in
     /*) [[ -e $1 ]] ;;
-    */*) [[ -e /usr/include/$1 || -e /usr/local/include/$1 ]] ;;
+    */* | *.h) [[ -e /usr/include/$1 || -e /usr/local/include/$1 ]] ;;
     *) command -v "$1" > /dev/null ;;
   esac
 }
