@@ -14,7 +14,7 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
   S x, y, z, radius;
 
   /// Covers the rounding here and that of the coarsest narrow phase, which computes in float.
-  static constexpr S slack = 1 + 16 * S(format<float>::unit);
+  static constexpr S slack = 1 + 32 * S(format<float>::unit);
 
   /// The squared distance within which a centre can reach the triangle with a sphere of radius `r`: rounded up so far
   /// that `distance_squared(c) <= reach(r)` holds, in floating-point numbers, whenever |c - centre| <= radius + r in
