@@ -307,6 +307,12 @@ class BadMesh(ProgramTest):
                 self.write("spheres.csv", ONE_SPHERE)
                 self.fail_with(1, ["mesh.obj:6: "], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
 
+    def test_an_index_out_of_range_is_named(self):
+        self.write("spheres.csv", ONE_SPHERE)
+        for index in (0, 4, -4):
+            self.write("mesh.obj", f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}\n")
+            self.fail_with(1, ["mesh.obj:4: ", f"vertex {index} "], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+
     def test_the_line_is_right_after_continued_and_foreign_line_ends(self):
         self.write("spheres.csv", ONE_SPHERE)
         for text, line in (("v 0 0 0\r\nv 1 \\\r\n0 0\r\nbad\r\n", 4), ("v 0 0 \\\nx\n", 1), ("\n\n\nv 0 0\n", 4),
