@@ -183,6 +183,7 @@ std::vector<oracle::id_pair> check_all(scene<S> const& made, conditions const& h
       auto const found = check_sinks(*detector, made, expected);
       if (first.closest.empty()) {
         first = found;
+        CHECK((found.pairs == c.narrow_phase(made)));
         std::size_t const stride = 1 + found.contacts.size() / 2000;  // the exact answers take microseconds each
         for (std::size_t i = 0; i < found.contacts.size(); i += stride) {
           auto const& contact = found.contacts[i];
@@ -193,7 +194,7 @@ std::vector<oracle::id_pair> check_all(scene<S> const& made, conditions const& h
       CHECK(same(found.contacts, first.contacts));  // and so the closest, which follow from the contacts
     }
   }
-  return expected.certain;
+  return expected.possible;
 }
 
 template bool same(collide::contact<float> const&, collide::contact<float> const&);

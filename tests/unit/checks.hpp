@@ -20,10 +20,11 @@ struct conditions {
 
 /// Runs every composition of `S` through every sink on the scene, and checks that
 ///   - the pairs are those of the oracle, each once and in canonical order where that was asked for,
+///   - no broad phase changes a verdict of the narrow phase,
 ///   - all sinks agree with each other,
 ///   - all compositions of one precision return the same bits,
 ///   - contacts are as exact as they promise.
-/// Returns the exact pairs of the oracle.
+/// Returns the pairs that the oracle allows.
 template <class S>
 std::vector<oracle::id_pair> check_all(scene<S> const& made, conditions const& how);
 

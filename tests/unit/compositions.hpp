@@ -258,13 +258,26 @@ class typed_subject final : public subject<S> {
   collide::closest<S> closest_;
 };
 
+template <class Narrow, class S>
+std::vector<collide::pair> pairs_of_narrow_phase(scene<S> const& made) {
+  auto const mesh = collide::indexed_mesh(made.mesh.vertices.data(), made.mesh.vertices.size() / 3,
+                                          made.mesh.corners.data(), made.mesh.size());
+  auto const balls = collide::spheres_xyz(made.spheres.centres.data(), made.spheres.size(), made.spheres.radii.data());
+  std::vector<collide::pair> hits;
+  for (collide::id s = 0; s < balls.size(); ++s)
+    for (collide::id t = 0; t < mesh.size(); ++t)
+      if (Narrow::intersects(mesh[t], balls[s])) hits.push_back({s, t});
+  return hits;
+}
+
 /// Appends `Broad` with `Precision` in every one of the spaces.
 template <class S, class Precision, class Broad, class... Spaces>
 void add_spaces(list<Spaces...>) {
   (registry<S>().push_back({name_of(list<Broad>{}), name_of(list<Precision>{}), Spaces::name(),
                             [](options const& o) -> std::unique_ptr<subject<S>> {
                               return std::make_unique<typed_subject<Broad, Precision, Spaces, S>>(o);
-                            }}),
+                            },
+                            pairs_of_narrow_phase<collide::karabassi<Precision>, S>}),
    ...);
 }
 

@@ -101,6 +101,8 @@ template <class S>
 struct composition {
   std::string broad, precision, space;
   std::function<std::unique_ptr<subject<S>>(options const&)> make;
+  /// The narrow phase alone, on the host, for every sphere and every triangle.
+  std::function<std::vector<collide::pair>(scene<S> const&)> narrow_phase;
 
   std::string name() const { return broad + " x " + precision + " x " + space; }
 };

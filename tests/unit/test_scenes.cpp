@@ -1,9 +1,12 @@
 /// Whole scenes through every composition and every sink.
+#include <limits>
+
 #include <doctest/doctest.h>
 
 #include "checks.hpp"
 
 using tests::mesh_form;
+using tests::operator+;
 using tests::sphere_form;
 using pairs = std::vector<oracle::id_pair>;
 
@@ -69,6 +72,50 @@ TEST_CASE_TEMPLATE("far from the origin: verdicts are as good as at the origin",
     random.radius = 3;
     random.offset = {far, -far, far / 3};
     CHECK(tests::check_all(random.make<S>(), {mesh_form::indexed, sphere_form::xyzr, {}, 1e-4}).size() > 100);
+  }
+}
+
+TEST_CASE_TEMPLATE("tangent: where plain arithmetic may err, all broad phases and spaces err alike", S, float, double) {
+  for (double offset : {0., 100., 1e5}) {
+    tests::random_scene random;
+    random.seed = 12;
+    random.triangles = 400;
+    random.spheres = 0;
+    random.extent = 30;
+    random.triangle_size = 2;
+    random.offset = {offset, offset, -offset};
+    auto made = random.make<S>();
+    tests::dice roll(13);
+    for (std::size_t i = 0; i < made.mesh.size(); ++i) {
+      oracle::point along[] = {roll.in_cube(1), {0, 0, 0}};
+      (i % 3 == 0 ? along[1].x : i % 3 == 1 ? along[1].y : along[1].z) = roll.uniform(-1, 1);
+      made.spheres.add(made.mesh[i].a + along[i / 3 % 2],
+                       0);  // along an axis it may touch the end of the triangle's box
+      double const distance = oracle::closest(made.mesh[i], made.spheres[i].centre).distance;
+      // within some units in the last place of float, or of S
+      double const unit = roll.integer(0, 1) ? 0x1p-24 : std::numeric_limits<S>::epsilon() / 2;
+      made.spheres.radii[i] = static_cast<S>(distance * (1 + unit * roll.integer(-3, 3)));
+    }
+    CAPTURE(offset);
+    CHECK(tests::check_all(made, {mesh_form::indexed, sphere_form::xyz, {}, 1e-4}).size() > 100);
+  }
+}
+
+TEST_CASE_TEMPLATE("tangent: at the end of the grid and of the triangle's box and ball", S, float, double) {
+  tests::dice roll(14);
+  for (int i = 0; i < 60; ++i) {
+    double const sign = i % 2 ? 1 : -1, d = roll.uniform(0.1, 3), length = roll.uniform(0.1, 30);
+    auto const along = [&](double x) {
+      return oracle::point{i % 3 == 0 ? sign * x : 0, i % 3 == 1 ? sign * x : 0, i % 3 == 2 ? sign * x : 0};
+    };
+    tests::scene<S> made;
+    auto const end = i < 30 ? roll.in_cube(10) : oracle::point{0, 0, 0};
+    made.mesh.add({end, end + along(-length), end + along(-length / 2)});
+    for (int ulp = -4; ulp <= 4; ++ulp) made.spheres.add(end + along(d), d * (1 - ulp * 0x1p-24));
+    CAPTURE(i);
+    tests::check_all(made, {mesh_form::indexed, sphere_form::xyz, {}, 1e-4});
+    for (auto& r : made.spheres.radii) r = made.spheres.radii[static_cast<std::size_t>(i % 9)];
+    tests::check_all(made, {mesh_form::indexed, sphere_form::xyz_one, {}, 1e-4});
   }
 }
 
