@@ -1,6 +1,6 @@
 /// \file
-/// An execution space of one's own: the host, but every pass over the data is reported. Shows what a space must have, and
-/// what the bucket detector does.
+/// An execution space of one's own: the host, but every pass over the data is reported. Shows what a space must have,
+/// and what the bucket detector does.
 
 #include <cstdio>
 

@@ -1,0 +1,63 @@
+"""check.py code|links|examples: the README, the pages of docs/ and what they promise.
+
+code      The first block of C++ in the README is examples/minimal.cpp, and every other block of C++ stands word for word in
+          the file that the comment before it names (`<!-- from: FILE -->`).
+links     Every link to a file or a heading of this repository leads somewhere.
+examples  Every program of examples/ is mentioned in some page.
+"""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted((ROOT / "docs").glob("*.md"))
+
+
+def without_code(text):
+    return re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
+
+
+def code():
+    for page in PAGES:
+        text = page.read_text()
+        for match in re.finditer(r"^(?:<!-- from: (\S+) -->\n)?```cpp\n(.*?)^```", text, flags=re.M | re.S):
+            source = match[1] or ("examples/minimal.cpp" if page.name == "README.md" and page.parent == ROOT else None)
+            line = text.count("\n", 0, match.start()) + 1
+            if source is None:
+                yield f"{page}:{line}: code that is from no file"
+            elif match[1] is None and match[2] != (ROOT / source).read_text():
+                yield f"{page}:{line}: not {source}"
+            elif match[2] not in (ROOT / source).read_text():
+                yield f"{page}:{line}: does not stand in {source}"
+    if "```cpp" not in (ROOT / "README.md").read_text():
+        yield "README.md shows no code"
+
+
+def anchors(page):
+    headings = re.findall(r"^#+ +(.*?) *$", without_code(page.read_text()), flags=re.M)
+    return {re.sub(r"[^\w\- ]", "", h.lower()).replace(" ", "-") for h in headings}
+
+
+def links():
+    for page in PAGES:
+        for target in re.findall(r"\]\(([^)\s]+)\)", without_code(page.read_text())):
+            if re.match(r"[a-z]+:", target):
+                continue
+            name, _, anchor = target.partition("#")
+            path = (page.parent / name).resolve() if name else page
+            if not path.exists():
+                yield f"{page}: {target} does not exist"
+            elif anchor and anchor not in anchors(path):
+                yield f"{page}: {target}: there is no such heading"
+
+
+def examples():
+    text = "".join(page.read_text() for page in PAGES)
+    for program in sorted((ROOT / "examples").glob("*.cpp")):
+        if program.name not in text and f"`{program.stem}`" not in text:
+            yield f"no page mentions examples/{program.name}"
+
+
+problems = list({"code": code, "links": links, "examples": examples}[sys.argv[1]]())
+print("\n".join(problems) or "fine")
+sys.exit(bool(problems))
