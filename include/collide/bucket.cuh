@@ -27,6 +27,7 @@ struct bucket_query {
   bounding_sphere<S> const* bounds;  ///< null if there was no room for them
   grid<S> const* grids;              ///< by falling reach
   int grid_count;                    ///< 0: every sphere is tested with every triangle
+  std::uint32_t const* occupied;     ///< a bit per cell: most are empty, and all bits fit into a near cache
   std::uint32_t const* ends;         ///< of the entries of cell c: ends[c] .. ends[c + 1]
   std::uint32_t const* total;        ///< number of entries
   id const* entries;
@@ -97,8 +98,8 @@ struct bucket_query {
           for (int k = 0; k < n; ++k) {
             if (mine.grid_number[k] != g) continue;
             std::uint32_t const cell = grids[g].cell_of(level, {mine.batch.x[k], mine.batch.y[k], mine.batch.z[k]});
+            if ((occupied[cell / 32] >> cell % 32 & 1) == 0) continue;
             std::uint32_t const begin = ends[cell], end = ends[cell + 1];
-            if (begin == end) continue;
             std::uint32_t const place = block.add(s.found, 1);
             s.spheres[place] = first_of(lane) + static_cast<id>(k);
             s.first[place] = begin;
@@ -217,11 +218,15 @@ class bucket::index {
   /// Puts one pass over the spheres on the space's stream.
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, sphere_view<S> const& spheres, Sink const& sink) const {
-    detail::bucket_query<S, NarrowPhase, Sink> const body{
-        {mesh_, spheres, sink}, has_bounds_ ? bounds_.data() : nullptr,
-        grids_.data(),          grid_count_,
-        counts_.data(),         counts_.data() + cells_ + 1,
-        entries_.data(),        entries_.capacity()};
+    detail::bucket_query<S, NarrowPhase, Sink> const body{{mesh_, spheres, sink},
+                                                          has_bounds_ ? bounds_.data() : nullptr,
+                                                          grids_.data(),
+                                                          grid_count_,
+                                                          occupied(),
+                                                          counts_.data(),
+                                                          counts_.data() + cells_ + 1,
+                                                          entries_.data(),
+                                                          entries_.capacity()};
     space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
   }
 
@@ -283,10 +288,10 @@ class bucket::index {
     space.for_each(count, plan);
 
     // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
-    auto* const counts = counts_.reserve(space.resource(), cells_ + 2);
+    auto* const counts = counts_.reserve(space.resource(), table_size(cells_));
     detail::grid_insertion<S> const insertion{mesh_, grids, l.grids};
-    space.fill(counts, 0, (cells_ + 2) * sizeof *counts);
-    space.for_each(n, detail::count_entries<S>{insertion, counts + 1});
+    space.fill(counts, 0, table_size(cells_) * sizeof *counts);
+    space.for_each(n, detail::count_entries<S>{insertion, counts + 1, occupied()});
     space.exclusive_scan(counts + 1, cells_ + 1, scratch_);
     // only a width that was asked for leaves open how many cells a triangle touches: then the device must be asked
     std::size_t const capacity =
@@ -316,7 +321,7 @@ class bucket::index {
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
         std::size_t const cells = grids << bits;
         std::size_t const base = fixed_bytes + (has_bounds_ ? bounds_bytes() : 0) +
-                                 (cells + 2) * sizeof(std::uint32_t) + space.scan_bytes(cells + 1);
+                                 table_size(cells) * sizeof(std::uint32_t) + space.scan_bytes(cells + 1);
         std::size_t const least = base + cells_per_triangle<Space> * n * grids * sizeof(id);
         std::size_t most_entries = std::min(512 * n + (std::size_t{1} << 20), id_limit / grids);
         if (options.memory_budget != 0) {
@@ -328,6 +333,11 @@ class bucket::index {
     }
     return {};
   }
+
+  /// Size of `counts_`: a number per cell, one more at each end, and a bit per cell.
+  static std::size_t table_size(std::size_t cells) { return cells + 2 + cells / 32; }
+
+  std::uint32_t* occupied() const { return counts_.data() + cells_ + 2; }
 
   std::size_t bounds_bytes() const { return mesh_.size() * sizeof(detail::bounding_sphere<S>); }
 

@@ -146,10 +146,28 @@ class detector {
   /// The width of the finest cells in use; 0 if there are none. In the CUDA spaces it waits for the device.
   double cell_width() const { return mesh_.size() == 0 ? 0.0 : index_.cell_width(space_); }
 
+  // A mesh or spheres of another scalar type end here, with a sentence instead of a list of candidates.
+  template <class S>
+  void build(mesh_view<S>, double = 0) {
+    reject<S>();
+  }
+  template <class S, class Sink>
+  Sink query(sphere_view<S> const&, Sink&&) {
+    reject<S>();
+  }
+
   ExecutionSpace& space() { return space_; }
   ExecutionSpace const& space() const { return space_; }
 
  private:
+  template <class S>
+  static void reject() {
+    static_assert(
+        std::is_same<S, Scalar>::value,
+        "collide: mesh and spheres must have the scalar type of the detector, its fourth parameter: nothing is "
+        "narrowed silently");
+  }
+
   ExecutionSpace space_;
   BroadPhase options_;
   mesh_view<Scalar> mesh_;

@@ -138,7 +138,7 @@ class host {
     work(0, n);
   }
 
-  int threads_;
+  [[maybe_unused]] int threads_;
   std::pmr::memory_resource* resource_;
 };
 

@@ -33,6 +33,9 @@ class visit {
 
   template <class Space, class Query>
   void run(Space&, Query const& query) {
+    static_assert(
+        std::is_invocable<F const&, hit<typename Query::narrow_phase, typename Query::scalar> const&>::value,
+        "collide: visit(f) calls f(hit): f must be a function object with a const operator() that takes a hit");
     query(detail::call<F>{f_});
   }
 

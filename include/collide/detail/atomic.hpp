@@ -45,6 +45,15 @@ COLLIDE_HD_INLINE U fetch_add(U* target, U n) {
 #endif
 }
 
+/// Sets the bits of `mask`.
+COLLIDE_HD_INLINE void fetch_or(std::uint32_t* target, std::uint32_t mask) {
+#if defined(__CUDA_ARCH__)
+  atomicOr(target, mask);
+#else
+  __atomic_fetch_or(target, mask, __ATOMIC_RELAXED);
+#endif
+}
+
 /// Makes `*target` the smaller of itself and `value`.
 template <class U>
 COLLIDE_HD_INLINE void fetch_min(U* target, U value) {

@@ -130,7 +130,8 @@ struct plan_grid {
     constexpr S end = std::numeric_limits<S>::max() / 16;
     int const top = sizes.last();
     S const tallest = margin * size(g, top);
-    if (!(extent < end && far < end && tallest < end)) {  // the range of S does not suffice: a grid that serves no sphere
+    if (!(extent < end && far < end &&
+          tallest < end)) {  // the range of S does not suffice: a grid that serves no sphere
       g.reach = -1;
       return;
     }
@@ -252,13 +253,17 @@ struct grid_insertion {
   }
 };
 
-/// Kernel body of `for_each` over triangles: counts the entries of each cell.
+/// Kernel body of `for_each` over triangles: counts the entries of each cell, and sets a bit for every cell that has
+/// some.
 template <class S>
 struct count_entries {
   grid_insertion<S> insertion;
   std::uint32_t* counts;
+  std::uint32_t* occupied;
   COLLIDE_HD void operator()(std::size_t i) const {
-    insertion.each_cell(i, [&](std::uint32_t cell) { fetch_add(counts + cell, 1u); });
+    insertion.each_cell(i, [&](std::uint32_t cell) {
+      if (fetch_add(counts + cell, 1u) == 0) fetch_or(occupied + cell / 32, 1u << cell % 32);
+    });
   }
 };
 

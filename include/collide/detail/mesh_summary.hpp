@@ -132,7 +132,7 @@ struct summarise_radii {
         std::size_t const i = first + static_cast<std::size_t>(k) * Block::lanes + static_cast<std::size_t>(lane);
         if (i >= spheres.size()) break;
         S const r = spheres.radius(i);
-        if (valid_radius(r) && finite(r)) s.histogram.add(block, histogram, size_bin(larger(r, S(0))));
+        if (valid_radius(r) && finite(r)) s.histogram.add(block, histogram, size_bin(r > 0 ? r : S(0)));
       }
     });
     s.histogram.flush(block, histogram);
