@@ -1,5 +1,5 @@
 /// Grids that must not collapse, whatever the scene, the cell width and the memory.
-#include <cmath>
+#include <limits>
 
 #include <doctest/doctest.h>
 
@@ -25,6 +25,21 @@ void check_with(tests::scene<S> const& made, oracle::expectation const& expected
     // a counter of 8 bytes is the sink's own
     if (policy.memory_budget != 0) CHECK(detector->memory().peak <= policy.memory_budget + 8);
     tests::check_pairs(*detector, expected);
+  }
+}
+
+/// The grid has not collapsed: its cells are no wider than `largest`.
+template <class S>
+void check_width(tests::scene<S> const& made, double largest) {
+  for (auto const& c : tests::compositions<S>()) {
+    if (c.broad == "all_pairs") continue;
+    CAPTURE(c.name());
+    auto const detector = c.make({});
+    detector->build(made.mesh, mesh_form::indexed);
+    detector->place(made.spheres, sphere_form::xyz_one);
+    detector->count();
+    CHECK(detector->cell_width() > 0);
+    CHECK(detector->cell_width() <= largest);
   }
 }
 
@@ -84,6 +99,18 @@ TEST_CASE_TEMPLATE("grids: the width that is asked for is the width in use", S, 
   }
 }
 
+TEST_CASE_TEMPLATE("grids: triangles with bad values do not count", S, float, double) {
+  auto made = tests::lattice_scene<S>(30, 100, 10, 5);
+  for (auto& r : made.spheres.radii) r = 1;
+  double const everything = 2 * (5 + 4 + 1);  // the width of the scene without the bad triangles
+  double const nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  made.mesh.add({{nan, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  made.mesh.add({{0, 0, 0}, {1, infinity, 0}, {0, 1, 0}});
+  made.mesh.add({{0, 0, -infinity}, {1, nan, 0}, {0, 1, 0}});
+  check_with(made, made.expect(0), {});
+  check_width(made, everything);
+}
+
 TEST_CASE_TEMPLATE("grids: a soup with one triangle 1e6 times as large as the rest", S, float, double) {
   tests::random_scene random;
   random.seed = 25;
@@ -93,6 +120,7 @@ TEST_CASE_TEMPLATE("grids: a soup with one triangle 1e6 times as large as the re
   auto made = random.make<S>();
   made.mesh.add({{-1e5, -1e5, 0.3}, {1e5, -1e5, 0.3}, {0, 1e5, 0.3}});
   check_with_budgets(made, 1e-2);
+  check_width(made, 5);
 }
 
 TEST_CASE_TEMPLATE("grids: two objects 1e6 radii apart", S, float, double) {
@@ -109,6 +137,7 @@ TEST_CASE_TEMPLATE("grids: two objects 1e6 radii apart", S, float, double) {
   for (std::size_t i = 0; i < other.spheres.size(); ++i)
     made.spheres.add(other.spheres[i].centre, other.spheres[i].radius);
   check_with_budgets(made, 1e-4);
+  check_width(made, 5);
 }
 
 TEST_CASE_TEMPLATE("grids: all triangles in one cell", S, float, double) {
@@ -127,6 +156,7 @@ TEST_CASE_TEMPLATE("grids: all triangles in one cell", S, float, double) {
   for (std::size_t i = 0; i < wide.spheres.size(); ++i)
     made.spheres.add(wide.spheres[i].centre, wide.spheres[i].radius);
   check_with_budgets(made, 1e-4);
+  check_width(made, 5);
 }
 
 TEST_CASE_TEMPLATE("grids: radii spread 1000:1, and one sphere that holds everything", S, float, double) {
