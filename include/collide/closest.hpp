@@ -18,11 +18,12 @@ struct nearest {
 
 namespace detail {
 
-/// Kernel body of `for_each` over spheres: nothing is near yet.
+/// Kernel body of `for_each` over spheres: nothing is near yet. Memory of all ones has `no_id` for the triangle
+/// already.
 template <class S>
 struct reset_nearest {
   nearest<S>* to;
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {no_id, std::numeric_limits<S>::infinity()}; }
+  COLLIDE_HD void operator()(std::size_t i) const { to[i].distance = std::numeric_limits<S>::infinity(); }
 };
 
 /// Kernel body of `for_each` over pairs: the smallest distance of each sphere. Distances are not negative, so they sort
@@ -78,6 +79,7 @@ class closest {
     size_ = query.spheres.size();
     collected_.fill(space, query);
     auto* const to = own_.reserve(space.resource(), size_);
+    space.fill(to, 0xff, size_ * sizeof *to);
     space.for_each(size_, detail::reset_nearest<S>{to});
     detail::find_distance<narrow_phase, S> const step{collected_.data(), to, query.mesh, query.spheres};
     space.for_each(collected_.size(), step);

@@ -25,19 +25,19 @@ struct pair {
 enum class order { unspecified, canonical };
 
 /// The part of a triangle that the closest point lies in.
-enum class feature : std::uint8_t { face, edge, vertex };
+enum class feature : std::uint32_t { face, edge, vertex };
 
-/// Where and how a sphere touches a triangle.
+/// Where and how a sphere touches a triangle. Without padding: equal contacts are equal bytes.
 template <class S>
 struct contact {
   id sphere;
   id triangle;
-  vec3<S> point;       ///< closest point of the triangle to the centre
-  vec3<S> normal;      ///< unit vector from the triangle to the centre; a normal of the triangle if the centre is on it
-  S distance;          ///< from the centre to the triangle
-  S depth;             ///< radius - distance: how deep the triangle is in the sphere
-  feature kind;        ///< the part of the triangle that `point` lies in
-  std::uint8_t index;  ///< edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
+  vec3<S> point;   ///< closest point of the triangle to the centre
+  vec3<S> normal;  ///< unit vector from the triangle to the centre; a normal of the triangle if the centre is on it
+  S distance;      ///< from the centre to the triangle
+  S depth;         ///< radius - distance: how deep the triangle is in the sphere
+  feature kind;    ///< the part of the triangle that `point` lies in
+  std::uint32_t index;  ///< edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
 };
 
 }  // namespace collide

@@ -275,15 +275,15 @@ class cuda_space {
   }
 
   /// Sorts pairs into canonical order by radix: by triangle, then (stably) by sphere, only the bits that ids below
-  /// `spheres` and `triangles` have.
-  void sort(buffer<pair>& other, pair* pairs, std::size_t n, std::size_t spheres, std::size_t triangles,
-            buffer<unsigned char>& scratch) const {
+  /// `spheres` and `triangles` have. Takes temporary memory for `room` pairs, at least `n`.
+  void sort(buffer<pair>& other, pair* pairs, std::size_t n, std::size_t room, std::size_t spheres,
+            std::size_t triangles, buffer<unsigned char>& scratch) const {
     static_assert(sizeof(pair) == sizeof(std::uint64_t), "a pair is one 64-bit key");
     if (n < 2) return;
     auto* const keys = reinterpret_cast<std::uint64_t*>(pairs);
-    auto* const sorted = reinterpret_cast<std::uint64_t*>(other.reserve(resource_, n));
+    auto* const sorted = reinterpret_cast<std::uint64_t*>(other.reserve(resource_, room));
     std::size_t bytes = 0;
-    cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, bytes, keys, sorted, n, 0, 64, stream_),
+    cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, bytes, keys, sorted, room, 0, 64, stream_),
                "cub::DeviceRadixSort::SortKeys");
     void* const temporary = scratch.reserve(resource_, bytes);
     cuda_check(cub::DeviceRadixSort::SortKeys(temporary, bytes, keys, sorted, n, 32, 32 + bits_for(triangles), stream_),

@@ -107,7 +107,8 @@ class host {
   }
 
   /// Sorts pairs into canonical order.
-  void sort(buffer<pair>&, pair* pairs, std::size_t n, std::size_t, std::size_t, buffer<unsigned char>&) const {
+  void sort(buffer<pair>&, pair* pairs, std::size_t n, std::size_t, std::size_t, std::size_t,
+            buffer<unsigned char>&) const {
     std::sort(pairs, pairs + n);
   }
 

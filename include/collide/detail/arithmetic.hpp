@@ -143,14 +143,21 @@ COLLIDE_HD_INLINE bool finite(T x) {
   return (bits(x) & format<T>::exponent_mask) != format<T>::exponent_mask;
 }
 
+/// The bits of the coordinate that is largest without its sign: they sort like the coordinates, NaN last.
+template <class T>
+COLLIDE_HD_INLINE bits_of<T> largest_bits(vec3<T> const& v) {
+  constexpr bits_of<T> mask = ~format<T>::sign_mask;
+  return larger(larger(bits(v.x()) & mask, bits(v.y()) & mask), bits(v.z()) & mask);
+}
+
 template <class T>
 COLLIDE_HD_INLINE bool finite(vec3<T> const& v) {
-  return finite(v.x()) & finite(v.y()) & finite(v.z());
+  return largest_bits(v) < format<T>::exponent_mask;
 }
 
 template <class T>
 COLLIDE_HD_INLINE bool finite(triangle<T> const& t) {
-  return finite(t.a) & finite(t.b) & finite(t.c);
+  return larger(larger(largest_bits(t.a), largest_bits(t.b)), largest_bits(t.c)) < format<T>::exponent_mask;
 }
 
 /// A radius that a point can be within: not NaN, not below zero (-0 is 0); decided on bits. +infinity passes.

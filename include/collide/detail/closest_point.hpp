@@ -162,7 +162,7 @@ COLLIDE_HD contact<S> contact_in_double(triangle<S> const& t, sphere<S> const& s
           static_cast<S>(distance),
           static_cast<S>(static_cast<double>(s.radius) - distance),
           q.kind,
-          static_cast<std::uint8_t>(q.index)};
+          static_cast<std::uint32_t>(q.index)};
 }
 
 }  // namespace collide::detail

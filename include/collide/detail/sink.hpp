@@ -85,7 +85,9 @@ class collector {
   /// Sorts what was stored into canonical order.
   template <class Space, class Query>
   void sort(Space& space, Query const& query) {
-    space.sort(other_, data_, size_, query.spheres.size(), query.mesh.size(), scratch_);
+    // room as for the whole array, so that a few pairs more than last time are no reason to allocate
+    std::size_t const room = data_ == own_.data() ? own_.capacity() : size_;
+    space.sort(other_, data_, size_, room, query.spheres.size(), query.mesh.size(), scratch_);
   }
 
   pair* data() const { return data_; }
