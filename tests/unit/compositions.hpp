@@ -239,7 +239,8 @@ class typed_subject final : public subject<S> {
     Sink const sink = detector_.query(spheres_, Sink(reinterpret_cast<T*>(raw + guard), capacity, o));
     space_.copy_to_host(bytes.data(), raw, bytes.size());
     bounded<T> result{std::vector<T>(sink.size()), sink.total(), sink.complete(), true};
-    std::memcpy(static_cast<void*>(result.stored.data()), bytes.data() + guard, sink.size() * sizeof(T));
+    if (sink.size() != 0)
+      std::memcpy(static_cast<void*>(result.stored.data()), bytes.data() + guard, sink.size() * sizeof(T));
     for (std::size_t i = 0; i < guard; ++i)
       result.guards_intact = result.guards_intact && bytes[i] == pattern && bytes[bytes.size() - 1 - i] == pattern;
     return result;
