@@ -96,7 +96,7 @@ TEST_CASE("oracle: the swept cases that do not move are static cases, the others
 TEST_CASE("oracle: the two formulations agree on small integers, where every tie and degeneracy occurs") {
   std::mt19937 random(1);
   auto const coordinate = [&](int range) {
-    return static_cast<double>(static_cast<int>(random() % (2 * range + 1)) - range);
+    return static_cast<double>(random() % (2u * static_cast<unsigned>(range) + 1)) - range;
   };
   int hits = 0, degenerate = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -128,7 +128,7 @@ TEST_CASE("oracle: the two formulations agree on random floats and doubles of ev
   int hits = 0;
   for (int i = 0; i < 3000; ++i) {
     bool const single = i % 2 == 0;
-    int const spread = i % 3 == 0 ? 0 : 40;  // exponents all over the place need the long integers
+    unsigned const spread = i % 3 == 0 ? 0 : 40;  // exponents all over the place need the long integers
     int const size = static_cast<int>(random() % 200) - 100;
     auto const number = [&] {
       double const value = std::ldexp(uniform(random), size + (spread ? static_cast<int>(random() % spread) : 0));

@@ -159,8 +159,10 @@ void check_uploads(Space space) {
     z.push_back(scene.xyz[3 * i + 2]);
     for (float value : {x[i], y[i], z[i], scene.radii[i]}) xyzr.push_back(value);
   }
-  for (int corner : scene.corners)
-    soup.insert(soup.end(), &scene.vertices[3 * corner], &scene.vertices[3 * corner] + 3);
+  for (int corner : scene.corners) {
+    float const* const vertex = scene.vertices.data() + 3 * corner;
+    soup.insert(soup.end(), vertex, vertex + 3);
+  }
 
   collide::detector<collide::bucket, collide::karabassi<>, Space> detector(space);
   auto const hits = [&](collide::mesh_view<float> mesh, collide::sphere_view<float> spheres) {

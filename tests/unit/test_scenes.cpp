@@ -149,7 +149,7 @@ TEST_CASE_TEMPLATE("degenerate triangles are the segments and points that they a
         c[1] = c[2] = c[0];
         break;  // AAA
       case 4:   // collinear, b beyond c
-        for (int k = 0; k < 3; ++k) {
+        for (unsigned k = 0; k < 3; ++k) {
           S const* const v = made.mesh.vertices.data();
           made.mesh.vertices[3 * c[1] + k] = 2 * v[3 * c[2] + k] - v[3 * c[0] + k];
         }
