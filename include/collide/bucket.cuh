@@ -33,14 +33,23 @@ struct bucket_query {
   id const* entries;
   std::size_t capacity;  ///< of entries
 
+  /// How many spheres are listed, and how many of their lists of candidates are only begun.
+  struct listing {
+    std::uint32_t spheres, longer;
+  };
+
+  /// The most candidates of a sphere at a time: the block numbers those of all its spheres in 32 bits.
+  template <class Block>
+  static constexpr std::uint32_t longest = (1u << 31) / (Block::lanes * Block::items);
+
   template <class Block>
   struct scratch {
     static constexpr int size = Block::lanes * Block::items;
     id spheres[size];            ///< spheres with candidates
     std::uint32_t first[size];   ///< their first entry
     std::uint32_t counts[size];  ///< how many they have
-    std::uint32_t found;         ///< how many spheres that are
-    std::uint32_t unplaced;      ///< how many spheres no grid serves; they are listed in `first`
+    listing listed;
+    std::uint32_t unplaced;  ///< how many spheres no grid serves; they are listed in `first`
     typename Block::balance_scratch balance;
     hit_buffer<Block> hits;
   };
@@ -76,7 +85,7 @@ struct bucket_query {
     tests.begin(block, s.hits);
     block.each([&](int lane) {
       if (lane != 0) return;
-      s.found = 0;
+      s.listed = {0, 0};
       s.unplaced = 0;
     });
     block.each([&](int lane) {
@@ -93,31 +102,37 @@ struct bucket_query {
     for (int g = 0; g < usable; ++g) {
       for (int l = 0; l < grids[g].levels; ++l) {
         grid_level<S> const& level = grids[g].level[l];
-        block.each([&](int lane) {
-          auto const& mine = own[lane];
-          for (int k = 0; k < n; ++k) {
-            if (mine.grid_number[k] != g) continue;
-            std::uint32_t const cell = grids[g].cell_of(level, {mine.batch.x[k], mine.batch.y[k], mine.batch.z[k]});
-            if ((occupied[cell / 32] >> cell % 32 & 1) == 0) continue;
-            std::uint32_t const begin = ends[cell], end = ends[cell + 1];
-            std::uint32_t const place = block.add(s.found, 1);
-            s.spheres[place] = first_of(lane) + static_cast<id>(k);
-            s.first[place] = begin;
-            s.counts[place] = end - begin;
-          }
-        });
-        std::uint32_t const found = block.shared(s.found);
-        if (found == 0) continue;
-        block.balanced(
-            s.balance, s.counts, found,
-            [&](std::uint32_t i) {
-              return candidates{s.spheres[i], tests.spheres[s.spheres[i]], entries + s.first[i]};
-            },
-            [&](candidates const& c, std::uint32_t k) { test(block, s, c.number, c.ball, c.triangles[k]); },
-            [&] { tests.make_room(block, s.hits); });
-        block.each([&](int lane) {
-          if (lane == 0) s.found = 0;
-        });
+        bool more = true;
+        for (std::uint32_t skip = 0; more; skip += longest<Block>) {  // once, unless a list is longer than that
+          block.each([&](int lane) {
+            auto const& mine = own[lane];
+            for (int k = 0; k < n; ++k) {
+              if (mine.grid_number[k] != g) continue;
+              std::uint32_t const cell = grids[g].cell_of(level, {mine.batch.x[k], mine.batch.y[k], mine.batch.z[k]});
+              if ((occupied[cell / 32] >> cell % 32 & 1) == 0) continue;
+              std::uint32_t const begin = ends[cell], size = ends[cell + 1] - begin;
+              if (size <= skip) continue;
+              std::uint32_t const place = block.add(s.listed.spheres, 1);
+              s.spheres[place] = first_of(lane) + static_cast<id>(k);
+              s.first[place] = begin + skip;
+              s.counts[place] = smaller(size - skip, longest<Block>);
+              if (size - skip > longest<Block>) block.add(s.listed.longer, 1);
+            }
+          });
+          listing const listed = block.shared(s.listed);
+          more = listed.longer != 0;
+          if (listed.spheres == 0) continue;
+          block.balanced(
+              s.balance, s.counts, listed.spheres,
+              [&](std::uint32_t i) {
+                return candidates{s.spheres[i], tests.spheres[s.spheres[i]], entries + s.first[i]};
+              },
+              [&](candidates const& c, std::uint32_t k) { test(block, s, c.number, c.ball, c.triangles[k]); },
+              [&] { tests.make_room(block, s.hits); });
+          block.each([&](int lane) {
+            if (lane == 0) s.listed = {0, 0};
+          });
+        }
       }
     }
     tests.flush(block, s.hits);
@@ -182,9 +197,12 @@ class bucket::index {
   template <class Space>
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
     if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
-    if (options.memory_budget != 0 && mesh.size() != mesh_.size()) release();
+    if (options.memory_budget != 0 && mesh.size() != mesh_.size()) {
+      bounds_.release();
+      release_grids();
+    }
     mesh_ = mesh;
-    grid_count_ = 0;
+    grid_count_ = wanted_ = 0;
     radius_given_ = false;
     has_bounds_ = options.memory_budget == 0 || fixed_bytes + bounds_bytes() <= options.memory_budget;
     if (has_bounds_) bounds_.reserve(space.resource(), mesh.size());
@@ -211,7 +229,7 @@ class bucket::index {
     S reaches[detail::max_grids];
     int const n =
         spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
-    if (n == 0 || (n == grid_count_ && std::equal(reaches, reaches + n, reaches_))) return;
+    if (n == 0 || (n == wanted_ && std::equal(reaches, reaches + n, reaches_))) return;
     make_grids(space, options, reaches, n);
   }
 
@@ -248,7 +266,7 @@ class bucket::index {
   /// The grid of one radius: the one that is there if it is not much too wide.
   int reach_of(S radius, S* reaches) const {
     if (!detail::valid_radius(radius) || !detail::finite(radius)) return 0;
-    bool const kept = grid_count_ == 1 && radius <= reaches_[0] && reaches_[0] <= 4 * radius;
+    bool const kept = wanted_ == 1 && radius <= reaches_[0] && reaches_[0] <= 4 * radius;
     reaches[0] = kept ? reaches_[0] : radius;
     return 1;
   }
@@ -274,11 +292,16 @@ class bucket::index {
 
   template <class Space>
   void make_grids(Space& space, bucket const& options, S const* reaches, int wanted) {
-    grid_count_ = 0;  // until all is done: an exception leaves no half-made grid behind
+    grid_count_ = wanted_ = 0;  // until all is done: an exception leaves no half-made grid behind
     std::size_t const n = mesh_.size();
     layout const l = plan_memory(space, options, wanted);
-    if (l.grids == 0) return;
+    std::copy(reaches, reaches + wanted, reaches_);
+    if (l.grids == 0) {
+      wanted_ = wanted;
+      return;
+    }
     auto const count = static_cast<std::size_t>(l.grids);
+    if (options.memory_budget != 0 && cells_ != count << l.table_bits) release_grids();
     cells_ = count << l.table_bits;
 
     auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
@@ -298,8 +321,8 @@ class bucket::index {
         options.cell_width > 0 ? space.read(counts + cells_ + 1) : cells_per_triangle<Space> * n * count;
     entries_.reserve(space.resource(), capacity);
     space.for_each(n, detail::fill_entries<S>{insertion, counts + 1, entries_.data(), entries_.capacity()});
-    std::copy(reaches, reaches + count, reaches_);
     grid_count_ = l.grids;
+    wanted_ = wanted;
   }
 
   struct layout {
@@ -341,8 +364,8 @@ class bucket::index {
 
   std::size_t bounds_bytes() const { return mesh_.size() * sizeof(detail::bounding_sphere<S>); }
 
-  void release() {
-    bounds_.release();
+  /// What is held for another layout would come on top of what the budget was planned for.
+  void release_grids() {
     counts_.release();
     entries_.release();
     scratch_.release();
@@ -358,6 +381,7 @@ class bucket::index {
   buffer<unsigned char> scratch_;
   std::size_t cells_ = 0;
   int grid_count_ = 0;
+  int wanted_ = 0;  ///< how many grids the spheres asked for: the budget may have allowed fewer
   S reaches_[detail::max_grids] = {};
   bool radius_given_ = false;
   bool has_bounds_ = false;

@@ -58,7 +58,8 @@ class contacts {
     if (order_ == order::canonical) collected_.sort(space, query);
     size_ = collected_.size();
     if (fixed_ && size_ > capacity_) size_ = capacity_;
-    data_ = fixed_ ? external_ : own_.reserve(space.resource(), size_);
+    if (!fixed_ && size_ > own_.capacity()) own_.reserve(space.resource(), size_ + size_ / 4);
+    data_ = fixed_ ? external_ : own_.data();
     using narrow_phase = typename Query::narrow_phase;
     space.for_each(size_,
                    detail::compute_contacts<narrow_phase, S>{collected_.data(), data_, query.mesh, query.spheres});

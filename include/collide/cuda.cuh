@@ -72,7 +72,9 @@ class cuda_memory final : public std::pmr::memory_resource {
     cuda_check(cudaMalloc(&p, n), "cudaMalloc");
     return p;
   }
-  void do_deallocate(void* p, std::size_t, std::size_t) override { cudaFree(p); }
+  void do_deallocate(void* p, std::size_t, std::size_t) override {
+    if (cudaFree(p) != cudaSuccess) cudaGetLastError();
+  }
   bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
 };
 
@@ -87,7 +89,9 @@ class cuda_async_memory final : public std::pmr::memory_resource {
     cuda_check(cudaMallocAsync(&p, n, stream_), "cudaMallocAsync");
     return p;
   }
-  void do_deallocate(void* p, std::size_t, std::size_t) override { cudaFreeAsync(p, stream_); }
+  void do_deallocate(void* p, std::size_t, std::size_t) override {
+    if (cudaFreeAsync(p, stream_) != cudaSuccess) cudaGetLastError();
+  }
   bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
 
   cudaStream_t stream_;

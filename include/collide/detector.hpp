@@ -23,24 +23,40 @@ namespace collide {
 
 namespace detail {
 
-template <class B, class = void>
+template <class B, class E, class S, class = void>
 struct is_broad_phase : std::false_type {};
-template <class B>
-struct is_broad_phase<B, std::void_t<typename B::template index<float>>> : std::true_type {};
+template <class B, class E, class S>
+struct is_broad_phase<
+    B, E, S,
+    std::void_t<decltype(std::declval<typename B::template index<S>&>().build(
+                    std::declval<E&>(), std::declval<B const&>(), std::declval<mesh_view<S>>())),
+                decltype(std::declval<typename B::template index<S>&>().prepare(
+                    std::declval<E&>(), std::declval<B const&>(), std::declval<S>())),
+                decltype(std::declval<typename B::template index<S>&>().prepare(
+                    std::declval<E&>(), std::declval<B const&>(), std::declval<sphere_view<S> const&>()))>>
+    : std::true_type {};
 
-template <class N, class = void>
+template <class N, class S, class = void>
 struct is_narrow_phase : std::false_type {};
-template <class N>
+template <class N, class S>
 struct is_narrow_phase<
-    N, std::enable_if_t<std::is_convertible<decltype(N::intersects(std::declval<triangle<float> const&>(),
-                                                                   std::declval<sphere<float> const&>())),
-                                            bool>::value>> : std::true_type {};
+    N, S,
+    std::enable_if_t<std::is_convertible<
+        decltype(N::intersects(std::declval<triangle<S> const&>(), std::declval<sphere<S> const&>())), bool>::value>>
+    : std::true_type {};
+
 template <class E, class = void>
 struct is_execution_space : std::false_type {};
 template <class E>
 struct is_execution_space<E, std::void_t<decltype(std::declval<E const&>().resource()),
                                          decltype(std::declval<E const&>().concurrency()), decltype(E::host_memory)>>
     : std::true_type {};
+
+template <class H, class = void>
+struct is_handle : std::false_type {};
+template <class H>
+struct is_handle<H, std::void_t<decltype(std::declval<H const&>().reserve(std::uint64_t{})),
+                                decltype(&H::template store<hit<karabassi<>, float>>)>> : std::true_type {};
 
 /// One pass of a query over the scene, as a sink sees it; see detail/sink.hpp.
 template <class Index, class NarrowPhase, class Space, class S>
@@ -55,6 +71,9 @@ struct query_pass {
 
   template <class Handle>
   void operator()(Handle const& handle) const {
+    static_assert(
+        is_handle<Handle>::value,
+        "collide: what a sink passes to query has a const member reserve(n) and a const member store(slot, hit)");
     static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
                   "collide: what a sink hands to the device must be a plain value");
     if (mesh.size() == 0 || spheres.size() == 0) return;
@@ -84,18 +103,18 @@ struct is_sink<Sink, Space, Query,
 /// throws.
 template <class BroadPhase, class NarrowPhase = karabassi<>, class ExecutionSpace = host, class Scalar = float>
 class detector {
-  static_assert(
-      detail::is_broad_phase<BroadPhase>::value,
-      "collide: the first parameter of a detector is a broad phase, such as bucket or all_pairs: a class with a "
-      "member template index<Scalar>");
-  static_assert(
-      detail::is_narrow_phase<NarrowPhase>::value,
-      "collide: the second parameter of a detector is a narrow phase, such as karabassi<>: a class with a static "
-      "member intersects(triangle, sphere) that returns bool");
-  static_assert(detail::is_execution_space<ExecutionSpace>::value,
-                "collide: the third parameter of a detector is an execution space: host, cuda or cuda_shared");
   static_assert(std::is_same<Scalar, float>::value || std::is_same<Scalar, double>::value,
                 "collide: the fourth parameter of a detector is the type of the coordinates, float or double");
+  static_assert(detail::is_execution_space<ExecutionSpace>::value,
+                "collide: the third parameter of a detector is an execution space: host, cuda or cuda_shared");
+  static_assert(
+      detail::is_broad_phase<BroadPhase, ExecutionSpace, Scalar>::value,
+      "collide: the first parameter of a detector is a broad phase, such as bucket or all_pairs: a class with a "
+      "member template index<Scalar>, which has members build, prepare (for a radius and for spheres) and query");
+  static_assert(
+      detail::is_narrow_phase<NarrowPhase, Scalar>::value,
+      "collide: the second parameter of a detector is a narrow phase, such as karabassi<>: a class with a static "
+      "member intersects(triangle, sphere) that returns bool");
 
  public:
   using broad_phase = BroadPhase;

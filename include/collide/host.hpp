@@ -123,6 +123,7 @@ class host {
       std::exception_ptr failure;
 #pragma omp parallel for schedule(dynamic) num_threads(threads())
       for (std::ptrdiff_t c = 0; c < chunks; ++c) {
+        detail::work_alone const together(false);
         try {
           auto const first = static_cast<std::size_t>(c) * grain;
           work(first, std::min(n, first + grain));
@@ -135,7 +136,7 @@ class host {
       return;
     }
 #endif
-    detail::work_alone const alone;
+    detail::work_alone const alone(true);
     work(0, n);
   }
 

@@ -25,14 +25,19 @@ namespace collide {
 /// computed in double.
 template <class Precision = single_precision>
 struct karabassi {
+  static_assert(detail::is_precision<Precision>::value,
+                "collide: the parameter of karabassi is a precision, such as single_precision: a class with a member "
+                "type scalar");
+
   /// True if the closed ball touches the closed triangle.
   template <class S>
   static COLLIDE_HD_INLINE bool intersects(triangle<S> const& t, sphere<S> const& s) {
     using T = typename Precision::scalar;
-    detail::local_triangle<T> const l = detail::relative<T>(t, s);
+    using W = std::common_type_t<S, T>;
+    detail::local_triangle<W> const l = detail::relative<W>(t, s);
     if (!detail::box_in_reach(l)) return false;
     if (!detail::valid_radius(s.radius) || !detail::finite(s.centre) || !detail::finite(t)) return false;
-    return detail::infinite(s.radius) || four_steps(detail::normalised(l, t, s));
+    return detail::infinite(s.radius) || four_steps(detail::rounded<T>(detail::normalised(l, t, s)));
   }
 
   /// Where and how a colliding pair touches; the ids are left to the caller. O(1), computed in double.

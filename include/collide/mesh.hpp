@@ -60,6 +60,8 @@ mesh_view<S> indexed_mesh(S const* vertices, std::size_t vertex_count, Index con
   static_assert(std::is_integral<Index>::value && sizeof(Index) == sizeof(id),
                 "collide: the corners of an indexed mesh are 32-bit integers");
   if (triangle_count >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles");
+  if (corners == nullptr && triangle_count != 0)
+    throw error("collide: indexed_mesh: there are triangles but no corners");
   return {vertices, vertex_count, reinterpret_cast<id const*>(corners), triangle_count};
 }
 

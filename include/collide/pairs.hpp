@@ -8,26 +8,37 @@
 
 namespace collide {
 
-/// Every colliding (sphere, triangle) pair, each exactly once. `query` waits once, for their number; the first one may
-/// run twice, when there are more pairs than it had room for.
+namespace detail {
+
+/// Kernel body of `for_each` over pairs.
+struct copy_pairs {
+  pair const* from;
+  pair* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
+};
+
+}  // namespace detail
+
+/// Every colliding (sphere, triangle) pair, each exactly once. `query` waits once, for their number;
+/// where there are more than its memory has room for, it makes room and runs a second time.
 class pairs {
  public:
   /// The pairs are kept in memory of the space, as many as there are.
   explicit pairs(order o = order::unspecified) : order_{o} {}
   /// The pairs are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total` tells
-  /// how many there are all the same. Which ones are stored if they do not fit is unspecified.
+  /// how many there are all the same. If they do not fit, the first ones are stored in canonical order, else any.
   pairs(pair* buffer, std::size_t capacity, order o = order::unspecified)
       : external_{buffer}, capacity_{capacity}, order_{o}, fixed_{true} {}
 
   /// How many pairs collide.
   std::uint64_t total() const { return collected_.total(); }
   /// How many of them are stored.
-  std::size_t size() const { return collected_.size(); }
+  std::size_t size() const { return size_; }
   /// True if all of them are stored.
   bool complete() const { return size() == total(); }
 
   /// The stored pairs, in memory of the space.
-  pair const* data() const { return collected_.data(); }
+  pair const* data() const { return data_; }
   pair const* begin() const { return data(); }
   pair const* end() const { return data() + size(); }
   /// A copy of the stored pairs on the host.
@@ -36,16 +47,25 @@ class pairs {
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     download_ = detail::downloader<pair>(space);
-    if (fixed_) {
+    if (fixed_ && order_ == order::unspecified) {
       collected_.fill(space, query, external_, capacity_);
     } else {
       collected_.fill(space, query);
     }
-    if (order_ == order::canonical) collected_.sort(space, query);
+    data_ = collected_.data();
+    size_ = collected_.size();
+    if (order_ == order::unspecified) return;
+    collected_.sort(space, query);
+    if (!fixed_) return;
+    if (size_ > capacity_) size_ = capacity_;
+    space.for_each(size_, detail::copy_pairs{data_, external_});
+    data_ = external_;
   }
 
  private:
   pair* external_ = nullptr;
+  pair* data_ = nullptr;
+  std::size_t size_ = 0;
   std::size_t capacity_ = 0;
   order order_;
   bool fixed_ = false;

@@ -2,6 +2,8 @@
 /// Precision policies: how sure a verdict must be, and so the type that a narrow phase computes in.
 #pragma once
 
+#include <type_traits>
+
 namespace collide {
 
 /// Arithmetic in float. Verdicts within a few units in the last place of contact may be wrong.
@@ -14,4 +16,12 @@ struct double_precision {
   using scalar = double;
 };
 
+namespace detail {
+
+template <class P, class = void>
+struct is_precision : std::false_type {};
+template <class P>
+struct is_precision<P, std::void_t<typename P::scalar>> : std::is_floating_point<typename P::scalar> {};
+
+}  // namespace detail
 }  // namespace collide

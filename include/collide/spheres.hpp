@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 
 #include <collide/error.hpp>
@@ -34,6 +35,8 @@ class sphere_view {
         radius_stride_{static_cast<unsigned>(radius_stride)},
         radius_{radius},
         size_{size} {
+    constexpr std::size_t widest = std::numeric_limits<unsigned>::max();
+    if (stride > widest || radius_stride > widest) throw error("collide: the stride of a sphere set is too large");
     if (size >= no_id) throw error("collide: a sphere set has at most 2^32 - 2 spheres");
   }
 

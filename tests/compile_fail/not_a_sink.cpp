@@ -1,4 +1,6 @@
 // expect: collide: the second argument of query is a sink
 #include <collide/bucket.cuh>
 
-void f(collide::detector<collide::bucket>& detector, collide::sphere_view<float> spheres) { detector.query(spheres, 42); }
+void f(collide::detector<collide::bucket>& detector, collide::sphere_view<float> spheres) {
+  detector.query(spheres, 42);
+}

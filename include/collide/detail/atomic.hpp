@@ -12,10 +12,10 @@ namespace collide::detail {
 /// plain one.
 inline thread_local bool working_alone = false;
 
-/// Sets `working_alone` for a scope.
+/// Sets `working_alone` of this thread for a scope.
 class work_alone {
  public:
-  work_alone() { working_alone = true; }
+  explicit work_alone(bool alone) { working_alone = alone; }
   work_alone(work_alone const&) = delete;
   work_alone& operator=(work_alone const&) = delete;
   ~work_alone() { working_alone = before_; }

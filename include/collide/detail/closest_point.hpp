@@ -21,33 +21,37 @@ COLLIDE_HD_INLINE T magnitude(vec3<T> const& v) {
   return largest<T>(v.cwiseAbs());
 }
 
-/// Subtracts the centre, in the wider of `S` and `T`, and rounds to `T`.
-template <class T, class S>
-COLLIDE_HD_INLINE local_triangle<T> relative(triangle<S> const& t, sphere<S> const& s) {
-  using W = std::common_type_t<S, T>;
+/// Subtracts the centre. `W` holds all values of `S`.
+template <class W, class S>
+COLLIDE_HD_INLINE local_triangle<W> relative(triangle<S> const& t, sphere<S> const& s) {
   vec3<S> const& c = s.centre;
-  auto const from_centre = [&](vec3<S> const& v) -> vec3<T> {
-    return {static_cast<T>(W(v.x()) - W(c.x())), static_cast<T>(W(v.y()) - W(c.y())),
-            static_cast<T>(W(v.z()) - W(c.z()))};
+  auto const from_centre = [&](vec3<S> const& v) -> vec3<W> {
+    return {W(v.x()) - W(c.x()), W(v.y()) - W(c.y()), W(v.z()) - W(c.z())};
   };
-  return {from_centre(t.a), from_centre(t.b), from_centre(t.c), static_cast<T>(s.radius), T(1)};
+  return {from_centre(t.a), from_centre(t.b), from_centre(t.c), W(s.radius), W(1)};
 }
 
 /// `relative` scaled so that its largest coordinate and the radius are below 4 and the larger of them is at least 1,
 /// unless they are tiny. Finite input only.
-template <class T, class S>
-COLLIDE_HD_INLINE local_triangle<T> normalised(local_triangle<T> l, triangle<S> const& t, sphere<S> const& s) {
+template <class W, class S>
+COLLIDE_HD_INLINE local_triangle<W> normalised(local_triangle<W> l, triangle<S> const& t, sphere<S> const& s) {
   auto const size = [&] { return larger(larger(magnitude(l.a), magnitude(l.b)), larger(magnitude(l.c), l.radius)); };
-  if constexpr (sizeof(T) <= sizeof(S)) {
-    if (!finite(size())) {  // the range of T was exceeded
-      constexpr S tiny = std::numeric_limits<T>::min();
-      l = relative<T>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
+  if constexpr (sizeof(W) == sizeof(S)) {
+    if (!finite(size())) {  // a difference was beyond the range
+      constexpr W tiny = std::numeric_limits<W>::min();
+      l = relative<W>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
                       sphere<S>{scaled(s.centre, tiny), mul(s.radius, tiny)});
-      l.scale = T(tiny);
+      l.scale = tiny;
     }
   }
-  T const scale = reciprocal_power(size());
+  W const scale = reciprocal_power(size());
   return {scaled(l.a, scale), scaled(l.b, scale), scaled(l.c, scale), mul(l.radius, scale), mul(l.scale, scale)};
+}
+
+/// Rounds scaled local coordinates to `T`, whose range they fit.
+template <class T, class W>
+COLLIDE_HD_INLINE local_triangle<T> rounded(local_triangle<W> const& l) {
+  return {l.a.template cast<T>(), l.b.template cast<T>(), l.c.template cast<T>(), static_cast<T>(l.radius), T(0)};
 }
 
 /// False if the triangle's box is farther from the origin than the radius along some axis. Exact: rounding is monotone.

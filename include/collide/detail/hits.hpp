@@ -3,12 +3,25 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 
 #include <collide/contact.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide {
+
+namespace detail {
+
+template <class N, class S, class = void>
+struct has_contact : std::false_type {};
+template <class N, class S>
+struct has_contact<
+    N, S, std::void_t<decltype(N::contact_of(std::declval<triangle<S> const&>(), std::declval<sphere<S> const&>()))>>
+    : std::true_type {};
+
+}  // namespace detail
 
 /// A colliding pair as a sink sees it: its ids, and on demand its geometry.
 template <class NarrowPhase, class S>
@@ -22,6 +35,10 @@ class hit {
 
   /// Where and how the two touch; computed here and now.
   COLLIDE_HD collide::contact<S> contact() const {
+    static_assert(
+        detail::has_contact<NarrowPhase, S>::value,
+        "collide: contacts need a narrow phase with a static member contact_of(triangle, sphere) that returns a "
+        "contact");
     collide::contact<S> c = NarrowPhase::contact_of(mesh_[triangle], spheres_[sphere]);
     c.sphere = sphere;
     c.triangle = triangle;

@@ -79,7 +79,10 @@ class collector {
     std::size_t const guess = query.spheres.size() / 8 + 1024;
     pair* const to = own_.reserve(space.resource(), own_.capacity() > guess ? own_.capacity() : guess);
     fill(space, query, to, own_.capacity());
-    if (total_ > own_.capacity()) fill(space, query, own_.reserve(space.resource(), total_), total_);
+    if (total_ > own_.capacity()) {
+      std::size_t const room = total_ + total_ / 4;  // so that a few more next time fit too
+      fill(space, query, own_.reserve(space.resource(), room), room);
+    }
   }
 
   /// Sorts what was stored into canonical order.
