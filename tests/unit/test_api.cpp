@@ -77,3 +77,21 @@ TEST_CASE("api: a visitor is called for each pair, and what it throws comes out 
   CHECK_THROWS_WITH(detector.query(scene.spheres(), collide::visit(refuse)), "enough");
   CHECK(detector.query(scene.spheres(), collide::count()).total() == 4);
 }
+
+TEST_CASE("api: single precision over doubles that float cannot hold") {
+  for (double s : {1.0, 1e-46, 1e-100, 1e60}) {
+    CAPTURE(s);
+    double const corners[] = {-10 * s, -10 * s, 5 * s, 10 * s, -10 * s, 5 * s, 0, 10 * s, 5 * s};
+    double const centre[] = {0, 0, 0};
+    auto const hits = [&](auto detector, double radius) {
+      detector.build(collide::triangle_soup(corners, 1));
+      return detector.query(collide::spheres_xyz(centre, 1, radius), collide::count()).total();
+    };
+    using narrow = collide::karabassi<collide::single_precision>;
+    for (double const radius : {s, 6 * s}) {
+      std::uint64_t const expected = radius > 5 * s ? 1 : 0;
+      CHECK(hits(collide::detector<collide::all_pairs, narrow, collide::host, double>(), radius) == expected);
+      CHECK(hits(collide::detector<collide::bucket, narrow, collide::host, double>(), radius) == expected);
+    }
+  }
+}
