@@ -2,7 +2,6 @@
 /// Finds every pair of a sphere (CSV) and a triangle (OBJ) that touch.
 
 #include <chrono>
-#include <filesystem>
 #include <list>
 #include <optional>
 
@@ -57,21 +56,6 @@ struct scene {
 };
 
 double milliseconds(clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
-
-// ---- from names to types
-
-/// A policy under the name that the command line has for it.
-template <class T>
-struct named {
-  char const* name;
-  using type = T;
-};
-
-/// Calls f with the one of `choices` whose name it is.
-template <class F, class... Choices>
-void choose(std::string const& name, F const& f, Choices const&... choices) {
-  (void)((name == choices.name && (f(choices), true)) || ...);
-}
 
 // ---- detection
 
@@ -305,6 +289,7 @@ Broad broad_phase(options const& wish) {
 
 /// Runs the composition that the options name.
 void run(options const& wish) {
+  using io::choose, io::named;
   choose(
       wish.scalar,
       [&](auto scalar) {
@@ -315,16 +300,10 @@ void run(options const& wish) {
                   wish.broad,
                   [&](auto broad) {
                     using broad_type = typename decltype(broad)::type;
-                    choose(
-                        wish.space,
-                        [&](auto space) {
-                          run<broad_type, typename decltype(precision)::type, typename decltype(space)::type,
-                              typename decltype(scalar)::type>(wish, broad_phase<broad_type>(wish));
-                        },
-#if defined(__CUDACC__)
-                        named<collide::cuda>{"cuda"}, named<collide::cuda_shared>{"cuda_shared"},
-#endif
-                        named<collide::host>{"host"});
+                    io::choose_space(wish.space, [&](auto space) {
+                      run<broad_type, typename decltype(precision)::type, typename decltype(space)::type,
+                          typename decltype(scalar)::type>(wish, broad_phase<broad_type>(wish));
+                    });
                   },
                   named<collide::all_pairs>{"all_pairs"}, named<collide::bucket>{"bucket"});
             },
@@ -346,26 +325,9 @@ void check(options& wish) {
     throw io::usage_error("--cell-width: must be finite and not negative");
   }
   if (wish.scalar.empty()) wish.scalar = wish.precision == "single" ? "float" : "double";
-#if !defined(__CUDACC__)
-  if (wish.space != "host") throw std::runtime_error("--space " + wish.space + ": this program was built without CUDA");
-#endif
-
-  std::vector<std::pair<std::string, std::string>> named_files{{"MESH", wish.mesh}, {"SPHERES", wish.spheres}};
-  for (auto const& [option, path] : {std::pair<char const*, std::string const&>("--output", wish.output),
-                                     {"--contacts", wish.contacts},
-                                     {"--ply", wish.ply},
-                                     {"--report", wish.report}}) {
-    if (path.empty()) continue;
-    for (auto const& [other, file] : named_files) {
-      std::error_code none;
-      bool const same = path == file || std::filesystem::equivalent(path, file, none);
-      if (same && !(std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none))) {
-        throw io::usage_error(std::string(option) + ": " + path + " is also " + other);
-      }
-    }
-    named_files.emplace_back(option, path);
-    io::output_file::check(path);
-  }
+  io::check_outputs(
+      {{"MESH", wish.mesh}, {"SPHERES", wish.spheres}},
+      {{"--output", wish.output}, {"--contacts", wish.contacts}, {"--ply", wish.ply}, {"--report", wish.report}});
 }
 
 }  // namespace
@@ -373,10 +335,6 @@ void check(options& wish) {
 int main(int argc, char** argv) {
   options wish;
   CLI::App app("Finds every pair of a sphere and a triangle that touch.", "detect");
-  auto const one_of = [&](char const* name, std::string& value, std::vector<std::string> const& names,
-                          char const* about) {
-    app.add_option(name, value, about)->check(CLI::IsMember(names))->type_name("NAME")->capture_default_str();
-  };
   auto const file = [&](char const* name, std::string& path, char const* about) {
     return app.add_option(name, path, about)->type_name("FILE");
   };
@@ -387,11 +345,11 @@ int main(int argc, char** argv) {
   file("--contacts", wish.contacts, "contacts (CSV): point, normal, depth and feature touched");
   file("--ply", wish.ply, "picture of the hits (PLY) for ParaView or MeshLab");
   file("--report", wish.report, "measurements (JSON)");
-  one_of("--broad", wish.broad, {"all_pairs", "bucket"}, "broad phase");
-  one_of("--space", wish.space, {"host", "cuda", "cuda_shared"}, "execution space");
-  one_of("--precision", wish.precision, {"single", "double"}, "arithmetic of the verdicts");
-  one_of("--scalar", wish.scalar, {"float", "double"},
-         "type of the coordinates; float with single precision, else double");
+  io::add_choice(app, "--broad", wish.broad, {"all_pairs", "bucket"}, "broad phase");
+  io::add_choice(app, "--space", wish.space, {"host", "cuda", "cuda_shared"}, "execution space");
+  io::add_choice(app, "--precision", wish.precision, {"single", "double"}, "arithmetic of the verdicts");
+  io::add_choice(app, "--scalar", wish.scalar, {"float", "double"},
+                 "type of the coordinates; float with single precision, else double");
   app.add_option("--threads", wish.threads, "threads of the host; 0 for all")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");

@@ -11,6 +11,7 @@
 #include <memory_resource>
 #include <string>
 
+#include "choose.hpp"
 #include "error.hpp"
 #include "number.hpp"
 
@@ -51,5 +52,17 @@ struct device_of<collide::host> {
   static int threads(collide::host const& space) { return space.threads(); }
   static std::string name() { return processor_name(); }
 };
+
+/// Calls f with the space of that name, as `choose` does. Throws if this program was built without it.
+template <class F>
+void choose_space(std::string const& name, F const& f) {
+#if defined(__CUDACC__)
+  choose(name, f, named<collide::host>{"host"}, named<collide::cuda>{"cuda"},
+         named<collide::cuda_shared>{"cuda_shared"});
+#else
+  if (name != "host") throw std::runtime_error("--space " + name + ": this program was built without CUDA");
+  choose(name, f, named<collide::host>{"host"});
+#endif
+}
 
 }  // namespace io

@@ -2,6 +2,9 @@
 /// Numbers in text: read correctly rounded, whatever the locale.
 #pragma once
 
+#include <cctype>
+#include <cerrno>
+#include <cfenv>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -33,6 +36,29 @@ template <class S>
 bool parse_number(std::string_view text, S& value) {
   char const* const last = text.data() + text.size();
   return !text.empty() && read_number(text.data(), last, value) == last;
+}
+
+/// How a text became a number.
+enum class conversion { exact, rounded, out_of_range, not_a_number };
+
+/// Reads all of `text` as C's strtof and strtod do, which know hexadecimal numbers (0x1.8p-3), inf and nan: rounded
+/// once, straight to `S`. Too small a number becomes a subnormal or zero; too large a one is out of range.
+template <class S>
+conversion convert(std::string const& text, S& value) {
+  char* end = nullptr;
+  errno = 0;
+  std::feclearexcept(FE_INEXACT);
+  if constexpr (std::is_same<S, float>::value) {
+    value = std::strtof(text.c_str(), &end);
+  } else {
+    value = std::strtod(text.c_str(), &end);
+  }
+  bool const inexact = std::fetestexcept(FE_INEXACT) != 0;  // which C promises to be right (annex F.5)
+  if (text.empty() || std::isspace(static_cast<unsigned char>(text.front())) != 0 || end != text.data() + text.size()) {
+    return conversion::not_a_number;
+  }
+  if (errno == ERANGE && std::abs(value) > 1) return conversion::out_of_range;
+  return inexact ? conversion::rounded : conversion::exact;
 }
 
 /// `text` without blanks at its ends.

@@ -6,9 +6,13 @@
 #include <charconv>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <stdlib.h>
@@ -151,5 +155,27 @@ class output_file {
   int descriptor_ = -1;
   std::string buffer_;
 };
+
+/// A file by the name that the command line has for it, such as `--output`; the path is empty if it is not wanted.
+struct named_file {
+  std::string name;
+  std::string path;
+};
+
+/// Throws, before any work is done, if an output is also another file of the program or surely cannot be written.
+inline void check_outputs(std::vector<named_file> others, std::vector<named_file> const& outputs) {
+  for (auto const& out : outputs) {
+    if (out.path.empty()) continue;
+    for (auto const& other : others) {
+      std::error_code none;
+      bool const same = out.path == other.path || std::filesystem::equivalent(out.path, other.path, none);
+      if (same && !(std::filesystem::exists(out.path, none) && !std::filesystem::is_regular_file(out.path, none))) {
+        throw usage_error(out.name + ": " + out.path + " is also " + other.name);
+      }
+    }
+    others.push_back(out);
+    output_file::check(out.path);
+  }
+}
 
 }  // namespace io

@@ -1,5 +1,5 @@
 /// \file
-/// What `detect` and `generate` have in common: the version, and how they end.
+/// What `detect`, `generate` and `verdict` have in common: the version, options, and how they end.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +22,12 @@ namespace io {
 inline std::string version() {
   return std::to_string(COLLIDE_VERSION_MAJOR) + '.' + std::to_string(COLLIDE_VERSION_MINOR) + '.' +
          std::to_string(COLLIDE_VERSION_PATCH);
+}
+
+/// Adds an option whose value is one of `names`.
+inline void add_choice(CLI::App& app, char const* option, std::string& value, std::vector<std::string> const& names,
+                       char const* about) {
+  app.add_option(option, value, about)->check(CLI::IsMember(names))->type_name("NAME")->capture_default_str();
 }
 
 /// Parses the arguments, then calls `run`. Whatever goes wrong becomes one line on standard error and an exit

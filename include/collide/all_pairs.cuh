@@ -44,7 +44,7 @@ struct all_pairs_query {
     std::size_t const begin = block.index() % splits * share;
     std::size_t const end = smaller(begin + share, triangles);
 
-    tests.begin(block, s.hits);
+    if (!tests.begin(block, s.hits)) return;
     auto const first_of = [&](int lane) { return first + static_cast<std::size_t>(lane) * n; };
     block.each([&](int lane) { own[lane].load(tests.spheres, first_of(lane)); });
     bool const one_radius = tests.spheres.one_radius();

@@ -68,8 +68,10 @@ struct bucket_query {
       for (int k = 0; k < Block::items; ++k) {
         bool const inside = (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) & (batch.y[k] >= box.lower[1]) &
                             (batch.y[k] <= box.upper[1]) & (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
+        // a sphere that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
+        bool const served = (grid_number[k] != nowhere) & (batch.radius[k] <= box.reach);
         int const there = inside ? g : nowhere;
-        grid_number[k] = batch.radius[k] <= box.reach ? there : grid_number[k];
+        grid_number[k] = served ? there : grid_number[k];
       }
     }
   };
@@ -82,7 +84,7 @@ struct bucket_query {
     auto const first_of = [&](int lane) { return static_cast<id>(first) + static_cast<id>(lane * n); };
     int const usable = grid_count > 0 && *total <= capacity ? grid_count : 0;
 
-    tests.begin(block, s.hits);
+    if (!tests.begin(block, s.hits)) return;
     block.each([&](int lane) {
       if (lane != 0) return;
       s.listed = {0, 0};

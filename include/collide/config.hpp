@@ -7,9 +7,16 @@
 #define COLLIDE_HD __host__ __device__
 /// Marks a function that runs on the host and on the device and must be inlined where it is called.
 #define COLLIDE_HD_INLINE __host__ __device__ __forceinline__
+/// Marks a function that runs on the host and on the device and must not be inlined: it is called rarely.
+#define COLLIDE_HD_NOINLINE __host__ __device__ __noinline__
 #else
 #define COLLIDE_HD
 #define COLLIDE_HD_INLINE inline
+#if defined(__GNUC__)
+#define COLLIDE_HD_NOINLINE __attribute__((noinline))
+#else
+#define COLLIDE_HD_NOINLINE
+#endif
 #endif
 
 #define COLLIDE_VERSION_MAJOR 0

@@ -224,6 +224,7 @@ class cuda_space {
   void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
   static constexpr bool host_memory = false;
+  static constexpr bool defers = true;
 
   /// Tuning of `bucket`; see `host`.
   static constexpr int bucket_span = 1;

@@ -6,6 +6,7 @@
 #include <collide/closest.hpp>
 #include <collide/contacts.hpp>
 #include <collide/count.hpp>
+#include <collide/detail/undecided.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/mesh.hpp>
@@ -48,9 +49,9 @@ struct is_narrow_phase<
 template <class E, class = void>
 struct is_execution_space : std::false_type {};
 template <class E>
-struct is_execution_space<E, std::void_t<decltype(std::declval<E const&>().resource()),
-                                         decltype(std::declval<E const&>().concurrency()), decltype(E::host_memory)>>
-    : std::true_type {};
+struct is_execution_space<
+    E, std::void_t<decltype(std::declval<E const&>().resource()), decltype(std::declval<E const&>().concurrency()),
+                   decltype(E::host_memory), decltype(E::defers)>> : std::true_type {};
 
 template <class H, class = void>
 struct is_handle : std::false_type {};
@@ -68,6 +69,7 @@ struct query_pass {
   Space& space;
   mesh_view<S> mesh;
   sphere_view<S> spheres;
+  undecided_list& open;
 
   template <class Handle>
   void operator()(Handle const& handle) const {
@@ -77,7 +79,11 @@ struct query_pass {
     static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
                   "collide: what a sink hands to the device must be a plain value");
     if (mesh.size() == 0 || spheres.size() == 0) return;
-    index.template query<NarrowPhase>(space, spheres, handle);
+    if constexpr (Space::defers && has_attempt<NarrowPhase, S>::value) {
+      query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open.clear(space, spheres.size()));
+    } else {
+      index.template query<NarrowPhase>(space, spheres, handle);
+    }
   }
 };
 
@@ -151,7 +157,7 @@ class detector {
         "collide: the second argument of query is a sink, such as count, any, pairs, contacts, closest or visit: an "
         "object with a member run(space, query)");
     if (mesh_.size() != 0 && spheres.size() != 0) index_.prepare(space_, options_, spheres);
-    sink.run(space_, pass{index_, space_, mesh_, spheres});
+    sink.run(space_, pass{index_, space_, mesh_, spheres, open_});
     return std::forward<Sink>(sink);
   }
 
@@ -191,6 +197,7 @@ class detector {
   BroadPhase options_;
   mesh_view<Scalar> mesh_;
   typename BroadPhase::template index<Scalar> index_;
+  detail::undecided_list open_;
 };
 
 }  // namespace collide

@@ -56,6 +56,9 @@ class host {
   /// True if the host reads this memory without waiting for anything.
   static constexpr bool host_memory = true;
 
+  /// True if a pair that takes long to decide is better put on a list, as its neighbours would wait for it.
+  static constexpr bool defers = false;
+
   /// Runs `body` once for each of `blocks` blocks.
   template <class Body>
   void launch(std::size_t blocks, Body const& body) const {

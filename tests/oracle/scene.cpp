@@ -1,10 +1,13 @@
 #include "scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace oracle {
 namespace {
@@ -25,19 +28,38 @@ struct box {
   }
 };
 
+/// A number below all that round to x.
+double down(double x) { return std::nextafter(x, -std::numeric_limits<double>::infinity()); }
+
 }  // namespace
 
 expectation expect(std::vector<triangle> const& triangles, std::vector<sphere> const& spheres, double band) {
-  std::vector<box> const boxes(triangles.begin(), triangles.end());
+  std::vector<std::pair<box, std::uint32_t>> boxes;  // by their lower ends along x
+  double widest = 0;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    box const b(triangles[t]);
+    if (!std::isfinite(b.low.x) || !std::isfinite(b.high.x)) continue;  // touches nothing
+    boxes.emplace_back(b, t);
+    widest = std::max(widest, -down(b.low.x - b.high.x));
+  }
+  std::sort(boxes.begin(), boxes.end(), [](auto const& p, auto const& q) { return p.first.low.x < q.first.low.x; });
+
   expectation expected;
   for (std::uint32_t s = 0; s < spheres.size(); ++s) {
     sphere const less{spheres[s].centre, spheres[s].radius * (1 - band)},
         more{spheres[s].centre, spheres[s].radius * (1 + band)};
-    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-      if (boxes[t].apart_from(more)) continue;
-      bool const certain = hit(triangles[t], less);
+    // a box that begins before this, rounded down, ends before the sphere
+    double const begin = down(down(more.centre.x - more.radius) - widest);
+    auto b = std::lower_bound(boxes.begin(), boxes.end(), begin, [](auto const& p, double x) { return p.first.low.x < x; });
+    std::vector<std::uint32_t> near;
+    for (; b != boxes.end() && !(b->first.low.x - more.centre.x > more.radius); ++b)
+      if (!b->first.apart_from(more)) near.push_back(b->second);
+    std::sort(near.begin(), near.end());
+    for (std::uint32_t t : near) {
+      bool const certain = hit(triangles[t], less), exact = certain || (band != 0 && hit(triangles[t], spheres[s]));
       if (certain) expected.certain.push_back({s, t});
-      if (certain || (band != 0 && hit(triangles[t], more))) expected.possible.push_back({s, t});
+      if (exact) expected.exact.push_back({s, t});
+      if (exact || (band != 0 && hit(triangles[t], more))) expected.possible.push_back({s, t});
     }
   }
   return expected;

@@ -18,13 +18,15 @@ struct id_pair {
   }
 };
 
-/// What an answer may contain, by sphere, then triangle: every pair of `certain`, and no pair that `possible` lacks.
-/// certain are the pairs with radius * (1 - band), possible those with radius * (1 + band).
+/// What an answer may contain, by sphere, then triangle. An exact one is `exact`; another has every pair of `certain`,
+/// and no pair that `possible` lacks.
 struct expectation {
-  std::vector<id_pair> certain, possible;
+  std::vector<id_pair> exact;
+  std::vector<id_pair> certain;   ///< the pairs with radius * (1 - band)
+  std::vector<id_pair> possible;  ///< the pairs with radius * (1 + band)
 };
 
-/// Compares every sphere with every triangle. With band 0 certain and possible are the same: the exact answer.
+/// Compares every sphere with every triangle. With band 0 all three answers are the exact one.
 expectation expect(std::vector<triangle> const& triangles, std::vector<sphere> const& spheres, double band = 0);
 
 /// A row of the hard cases, see tests/data/README.md.

@@ -202,8 +202,10 @@ TEST_CASE("oracle: a scene is the same with and without the box test, and the ba
     for (unsigned t = 0; t < triangles.size(); ++t)
       if (oracle::hit(triangles[t], spheres[s])) plain.push_back({s, t});
   auto const exact = oracle::expect(triangles, spheres), banded = oracle::expect(triangles, spheres, 0.05);
+  CHECK(exact.exact == plain);
   CHECK(exact.certain == plain);
   CHECK(exact.possible == plain);
+  CHECK(banded.exact == plain);
   CHECK(plain.size() > 100);
   CHECK(banded.certain.size() < plain.size());
   CHECK(plain.size() < banded.possible.size());

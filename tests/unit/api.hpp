@@ -1,6 +1,7 @@
 /// The interface as a user meets it, checked alike in all spaces; instantiated by test_api.cpp and test_api_cuda.cpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -146,6 +147,36 @@ void check_sink_interface(Space space) {
   CHECK(none.total() == 4);
   CHECK(none.size() == 0);
   CHECK_FALSE(none.complete());
+}
+
+/// `baseline` finds what is well away from contact, and makes mistakes far from the origin, as it is there to show.
+template <class Broad, class Space>
+void check_baseline(Space space) {
+  random_scene random;
+  random.seed = 71;
+  auto const ids_of = [&](scene<float> const& made) {
+    auto const mesh = collide::upload(space, collide::indexed_mesh(made.mesh.vertices.data(), made.mesh.vertices.size() / 3,
+                                                                   made.mesh.corners.data(), made.mesh.size()));
+    auto const spheres = collide::upload(
+        space, collide::spheres_xyz(made.spheres.centres.data(), made.spheres.size(), made.spheres.radii.data()));
+    collide::detector<Broad, collide::karabassi<collide::baseline>, Space> detector(space);
+    std::vector<oracle::id_pair> found;
+    for (auto p : detector.detect(mesh.view(), spheres.view(), collide::pairs(collide::order::canonical)).to_host())
+      found.push_back({p.sphere, p.triangle});
+    return found;
+  };
+  auto made = random.make<float>();
+  auto const near = made.expect(1e-3);
+  for (auto p : near.possible)  // nothing may be close
+    if (!std::binary_search(near.certain.begin(), near.certain.end(), p)) made.spheres.radii[p.sphere] = -1;
+  auto const expected = made.expect(1e-3);
+  CHECK(expected.certain.size() > 100);
+  CHECK((expected.certain == expected.possible));
+  CHECK((ids_of(made) == expected.exact));
+
+  random.offset = {1e5, 1e5, 1e5};
+  auto const far = random.make<float>();
+  CHECK((ids_of(far) != far.expect(0).exact));
 }
 
 /// Every layout survives an upload, and nothing is lost on the way.

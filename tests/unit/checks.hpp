@@ -15,11 +15,12 @@ struct conditions {
   mesh_form mesh = mesh_form::indexed;
   sphere_form spheres = sphere_form::xyz;
   options policy;
-  double band = 0;  ///< see oracle::expect; 0: every verdict must be exact
+  double band = 0;  ///< see oracle::expect; 0: every verdict of every precision must be exact
 };
 
 /// Runs every composition of `S` through every sink on the scene, and checks that
-///   - the pairs are those of the oracle, each once and in canonical order where that was asked for,
+///   - the pairs are those of the oracle (with `exact` all of them, whatever the band), each once and in canonical order
+///     where that was asked for,
 ///   - no broad phase changes a verdict of the narrow phase,
 ///   - all sinks agree with each other,
 ///   - all compositions of one precision return the same bits,
@@ -43,7 +44,8 @@ findings<S> check_sinks(subject<S>& detector, scene<S> const& made, oracle::expe
 template <class S>
 std::vector<collide::pair> check_pairs(subject<S>& detector, oracle::expectation const& expected);
 
-/// Checks a contact against the exact closest point. `strict`: the feature must be exact, too.
+/// Checks a contact against the exact closest point: distance and depth within 4 units in the last place, the point on
+/// the triangle, the normal of length 1 and from there to the centre. `strict`: the feature must be exact, too.
 template <class S>
 void check_contact(collide::contact<S> const& c, oracle::triangle const& t, oracle::sphere const& s, bool strict);
 

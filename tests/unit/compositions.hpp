@@ -33,6 +33,7 @@ inline char const* name_of(list<collide::all_pairs>) { return "all_pairs"; }
 inline char const* name_of(list<collide::bucket>) { return "bucket"; }
 inline char const* name_of(list<collide::single_precision>) { return "single"; }
 inline char const* name_of(list<collide::double_precision>) { return "double"; }
+inline char const* name_of(list<collide::exact>) { return "exact"; }
 
 inline collide::all_pairs configure(list<collide::all_pairs>, options const&) { return {}; }
 inline collide::bucket configure(list<collide::bucket>, options const& o) { return {o.cell_width, o.memory_budget}; }
@@ -43,6 +44,7 @@ template <int Lanes, bool Reversed>
 class lockstep : public collide::host {
  public:
   using host::host;
+  static constexpr bool defers = true;  // as the CUDA spaces
   static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
 
   template <class Body>
@@ -131,6 +133,8 @@ class typed_subject final : public subject<S> {
  public:
   explicit typed_subject(options const& o)
       : space_(make_space<Space>(o.threads, &memory_)), detector_(space_, configure(list<Broad>{}, o)) {}
+
+  bool exact() const override { return std::is_same<Precision, collide::exact>::value; }
 
   void build(mesh<S> const& m, mesh_form form) override { detector_.build(view(m, form)); }
   void build(mesh<S> const& m, mesh_form form, S radius) override { detector_.build(view(m, form), radius); }

@@ -75,6 +75,9 @@ class subject {
  public:
   virtual ~subject() = default;
 
+  /// Must every verdict be right?
+  virtual bool exact() const = 0;
+
   virtual void build(mesh<S> const& m, mesh_form form) = 0;
   virtual void build(mesh<S> const& m, mesh_form form, S radius) = 0;
   /// Puts spheres where the space reads them: what the queries below look at.
@@ -113,6 +116,9 @@ std::vector<composition<S>>& registry() {
   static std::vector<composition<S>> all;
   return all;
 }
+
+/// The names of the precisions that are tested in every composition.
+inline constexpr char const* precisions[] = {"exact", "single", "double"};
 
 /// All compositions that this program tests, in the order of their names; of `precision` only, if it is not empty.
 template <class S>

@@ -10,6 +10,11 @@ TEST_CASE("api: sinks on the host") {
   tests::check_sink_interface<collide::bucket>(host(1));
 }
 
+TEST_CASE("api: the baseline precision on the host") {
+  tests::check_baseline<collide::all_pairs>(host());
+  tests::check_baseline<collide::bucket>(host());
+}
+
 TEST_CASE("api: uploads on the host") { tests::check_uploads(host()); }
 
 TEST_CASE("api: validate on the host") { tests::check_validate(host()); }

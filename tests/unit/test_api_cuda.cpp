@@ -8,6 +8,11 @@ TEST_CASE("api: sinks on the device") {
   tests::check_sink_interface<collide::bucket>(collide::cuda_shared());
 }
 
+TEST_CASE("api: the baseline precision on the device") {
+  tests::check_baseline<collide::all_pairs>(collide::cuda_shared());
+  tests::check_baseline<collide::bucket>(collide::cuda());
+}
+
 TEST_CASE("api: uploads to the device") { tests::check_uploads(collide::cuda_shared()); }
 
 TEST_CASE("api: validate on the device") { tests::check_validate(collide::cuda()); }

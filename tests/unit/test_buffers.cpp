@@ -36,7 +36,7 @@ void check_bounded(tests::bounded<T> const& got, std::vector<T> const& all, std:
 
 TEST_CASE_TEMPLATE("buffers: every capacity from none to one more than needed", S, float, double) {
   auto const made = tests::lattice_scene<S>(9, 25, 25, 2);
-  std::size_t const exact = made.expect(0).certain.size();
+  std::size_t const exact = made.expect(0).exact.size();
   REQUIRE(exact > 40);
   REQUIRE(exact < 200);
   for (auto const& c : tests::compositions<S>()) {

@@ -153,7 +153,7 @@ TEST_CASE_TEMPLATE("lifecycle: the same bits with 1, 2 and 5 threads, and run af
   random.triangles = 600;
   auto const made = random.make<S>();
   auto const expected = made.expect(1e-4);
-  for (char const* precision : {"single", "double"}) {
+  for (char const* precision : tests::precisions) {
     tests::findings<S> first;
     for (auto const& c : tests::compositions<S>(precision)) {
       CAPTURE(c.name());

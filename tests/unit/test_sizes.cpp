@@ -1,5 +1,6 @@
 /// Sizes one either side of every warp, block, tile and buffer.
 #include <algorithm>
+#include <cmath>
 
 #include <doctest/doctest.h>
 
@@ -23,8 +24,8 @@ tests::scene<S> chain(int triangles, int spheres) {
 
 oracle::expectation first_with_first(unsigned n) {
   oracle::expectation expected;
-  for (unsigned i = 0; i < n; ++i) expected.certain.push_back({i, i});
-  expected.possible = expected.certain;
+  for (unsigned i = 0; i < n; ++i) expected.exact.push_back({i, i});
+  expected.certain = expected.possible = expected.exact;
   return expected;
 }
 
@@ -71,5 +72,26 @@ TEST_CASE_TEMPLATE("sizes: everything touches everything, and no hit is lost in 
                     pairs[i].triangle == i % static_cast<unsigned>(n);
       CHECK(each_once);
     }
+  }
+}
+
+TEST_CASE_TEMPLATE("sizes: more pairs at exactly the radius than a list of undecided pairs holds", S, float, double) {
+  // half of the triangles lie in the plane z = 0, which 200 spheres touch, but for a third that misses by a unit
+  tests::scene<S> made;
+  for (int i = 0; i < 60; ++i) made.mesh.add({{-4, -4, 0}, {4, -4, 0}, {0, 4, i % 2 ? 0x1p-20 * i : 0}});
+  for (int i = 0; i < 200; ++i) {
+    S const distance = S(0.75) + S(i) / 256;
+    S const radius = i % 3 == 0 ? std::nextafter(distance, S(0)) : distance;
+    made.spheres.add({(i % 7 - 3) / 8.0, -1, i % 2 ? distance : -distance}, radius);
+  }
+  auto const expected = made.expect(0);
+  CHECK(expected.exact.size() > 4000);
+  CHECK(expected.exact.size() < 9000);
+  for (auto const& c : tests::compositions<S>("exact")) {
+    CAPTURE(c.name());
+    auto const detector = c.make({});
+    detector->build(made.mesh, mesh_form::indexed);
+    detector->place(made.spheres, sphere_form::xyzr);
+    tests::check_sinks(*detector, made, expected);
   }
 }

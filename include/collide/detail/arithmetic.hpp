@@ -63,6 +63,17 @@ COLLIDE_HD_INLINE double root(double a) {
 #endif
 }
 
+/// The value as it was computed: a compiler that may reassociate sums (-ffast-math) cannot look through it.
+template <class T>
+COLLIDE_HD_INLINE T settled(T x) {
+#if !defined(__CUDA_ARCH__) && (defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__))
+  T volatile const kept = x;
+  return kept;
+#else
+  return x;
+#endif
+}
+
 template <class T>
 COLLIDE_HD_INLINE T dot(vec3<T> const& a, vec3<T> const& b) {
   return mul(a.x(), b.x()) + mul(a.y(), b.y()) + mul(a.z(), b.z());
@@ -79,6 +90,16 @@ COLLIDE_HD_INLINE vec3<T> scaled(vec3<T> const& a, T s) {
   return {mul(a.x(), s), mul(a.y(), s), mul(a.z(), s)};
 }
 
+/// 1 / x to within two units in the last place, for x between 2^-126 and 2^126.
+COLLIDE_HD_INLINE float quick_reciprocal(float x) {
+#if defined(__CUDA_ARCH__)
+  return __fdividef(1.0f, x);
+#else
+  return 1 / x;
+#endif
+}
+COLLIDE_HD_INLINE double quick_reciprocal(double x) { return 1 / x; }
+
 template <class T>
 COLLIDE_HD_INLINE T smaller(T a, T b) {
   return b < a ? b : a;
@@ -87,6 +108,12 @@ COLLIDE_HD_INLINE T smaller(T a, T b) {
 template <class T>
 COLLIDE_HD_INLINE T larger(T a, T b) {
   return a < b ? b : a;
+}
+
+/// Limited to 0 .. 1.
+template <class T>
+COLLIDE_HD_INLINE T clamped(T x) {
+  return smaller(larger(x, T(0)), T(1));
 }
 
 template <class T>
@@ -129,12 +156,15 @@ struct format<float> {
   static constexpr std::uint32_t exponent_mask = 0x7f800000u, sign_mask = 0x80000000u;
   static constexpr int mantissa_bits = 23, bias = 127;
   static constexpr float unit = 0x1p-24f;  ///< unit roundoff
+  /// A sum at least this large is the same whether or not subnormal numbers are flushed to zero.
+  static constexpr float unflushed = 0x1p-99f;
 };
 template <>
 struct format<double> {
   static constexpr std::uint64_t exponent_mask = 0x7ff0000000000000u, sign_mask = 0x8000000000000000u;
   static constexpr int mantissa_bits = 52, bias = 1023;
   static constexpr double unit = 0x1p-53;
+  static constexpr double unflushed = 0x1p-960;
 };
 
 /// Neither NaN nor infinite; decided on bits, because -ffinite-math-only deletes std::isfinite.

@@ -44,6 +44,8 @@ COLLIDE_HD_INLINE bounding_sphere<S> bounds_of(triangle<S> const& t) {
   S const far_squared =
       larger(larger(at.distance_squared(t.a.x(), t.a.y(), t.a.z()), at.distance_squared(t.b.x(), t.b.y(), t.b.z())),
              at.distance_squared(t.c.x(), t.c.y(), t.c.z()));
+  // -ffast-math makes a NaN of the root of infinity
+  if (!finite(far_squared)) return {m.x(), m.y(), m.z(), std::numeric_limits<S>::infinity()};
   // the root of the smallest normal number covers squares that underflow
   S const radius = root(far_squared) * bounding_sphere<S>::slack + 2 * root(std::numeric_limits<S>::min());
   return {m.x(), m.y(), m.z(), radius};

@@ -52,6 +52,16 @@ class hit {
 
 namespace detail {
 
+/// Sinks of a query in steps; see detail/undecided.hpp.
+template <class Sink, class = void>
+struct can_defer : std::false_type {};
+template <class Sink>
+struct can_defer<Sink, std::void_t<decltype(std::declval<Sink const&>().defer(pair{}))>> : std::true_type {};
+template <class Sink, class = void>
+struct may_be_needless : std::false_type {};
+template <class Sink>
+struct may_be_needless<Sink, std::void_t<decltype(std::declval<Sink const&>().needed())>> : std::true_type {};
+
 /// The candidates' last stop: runs the narrow phase and hands the hits to the sink, `Block::pending` at a time, so that
 /// the sink's atomic counter is touched once per batch and the lanes share the work of storing.
 template <class Block>
@@ -72,7 +82,14 @@ struct tester {
   /// Runs the narrow phase on one candidate. Called by any lane.
   template <class Block>
   COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block>& b, pair p, sphere<S> const& s) const {
-    if (!NarrowPhase::intersects(mesh[p.triangle], s)) return;
+    if constexpr (can_defer<Sink>::value) {
+      auto const quick = NarrowPhase::attempt(mesh[p.triangle], s);
+      using verdict = std::remove_const_t<decltype(quick)>;
+      if (quick == verdict::unsure) sink.defer(p);
+      if (quick != verdict::hit) return;
+    } else {
+      if (!NarrowPhase::intersects(mesh[p.triangle], s)) return;
+    }
     if constexpr (hit_buffer<Block>::capacity > 0) {
       std::uint32_t const place = block.add(b.found, 1);
       if (place < hit_buffer<Block>::capacity) {
@@ -83,11 +100,16 @@ struct tester {
     store(sink.reserve(1), p);
   }
 
+  /// To be called first, by the whole block. False if there is nothing to do.
   template <class Block>
-  COLLIDE_HD_INLINE void begin(Block& block, hit_buffer<Block>& b) const {
+  COLLIDE_HD_INLINE bool begin(Block& block, hit_buffer<Block>& b) const {
+    if constexpr (may_be_needless<Sink>::value) {
+      if (!sink.needed()) return false;
+    }
     block.each([&](int lane) {
       if (lane == 0) b.found = 0;
     });
+    return true;
   }
 
   /// Empties the buffer into the sink. Called by the whole block.

@@ -1,0 +1,70 @@
+/// \file
+/// Pairs of a triangle and a sphere from a CSV file, with what the file says of them.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "csv_table.hpp"
+
+namespace io {
+
+/// Cases in the order of their file.
+template <class S>
+struct case_data {
+  std::vector<std::string> ids;
+  std::vector<std::string> families;
+  std::vector<S> corners;           ///< nine coordinates per case
+  std::vector<S> spheres;           ///< x, y, z and radius per case
+  std::vector<unsigned char> hits;  ///< 0 or 1 per case, or none if the file does not tell
+  bool has_hits = false;
+  std::size_t rounded = 0;  ///< how many numbers of the file are no values of `S`
+
+  std::size_t size() const { return ids.size(); }
+  std::size_t numbers() const { return corners.size() + spheres.size(); }
+};
+
+/// Reads cases from a CSV file with the columns id, family, ax .. cz (the triangle), px, py, pz and R (the sphere), and
+/// perhaps hit (0 or 1); see `csv_table`. Numbers are decimal or hexadecimal, nan, inf or -inf, and correctly rounded
+/// to `S`. Throws `data_error`, which names file and line, at what is none, at a number beyond the range of `S`, and at
+/// a swept case, which has something in a column dx, dy or dz.
+template <class S>
+case_data<S> read_cases(std::string const& path) {
+  constexpr std::size_t triangle = 9, numbers = 13, id = 13, family = 14, hit = 15;
+  csv_table table(path,
+                  {"ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz", "px", "py", "pz", "R", "id", "family", "hit",
+                   "dx", "dy", "dz"},
+                  hit);
+  case_data<S> cases;
+  cases.has_hits = table.has(hit);
+  S row[numbers];
+  auto const read = [&](std::size_t column) {
+    if (column < numbers) {
+      std::string const text(table.filled_field(column));
+      auto const done = convert(text, row[column]);
+      if (done == conversion::not_a_number) table.fail(column, text, "is not a number");
+      if (done == conversion::out_of_range) table.fail(column, text, "is beyond the largest number; infinity is inf");
+      if (done == conversion::rounded) ++cases.rounded;
+    } else if (column == id) {
+      auto const text = table.filled_field(column);
+      if (text.find_first_of(",\"") != text.npos) table.fail(column, text, "has a comma or a quotation mark");
+      cases.ids.emplace_back(text);
+    } else if (column == family) {
+      cases.families.emplace_back(table.field());
+    } else if (column == hit) {
+      auto const text = table.filled_field(column);
+      if (text != "0" && text != "1") table.fail(column, text, "is neither 0 nor 1");
+      cases.hits.push_back(text == "1");
+    } else if (!table.field().empty()) {
+      table.fail("a swept case, with dx, dy, dz, is not supported yet");
+    }
+  };
+  while (table.read_row(read)) {
+    cases.corners.insert(cases.corners.end(), row, row + triangle);
+    cases.spheres.insert(cases.spheres.end(), row + triangle, row + numbers);
+  }
+  return cases;
+}
+
+}  // namespace io

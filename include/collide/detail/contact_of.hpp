@@ -1,0 +1,86 @@
+/// \file
+/// The contact of a colliding pair.
+#pragma once
+
+#include <collide/detail/closest_point.hpp>
+#include <collide/detail/exact_triangle.hpp>
+
+namespace collide::detail {
+
+/// Unit vector along `v`, which is not zero.
+template <class T>
+COLLIDE_HD inline vec3<T> unit(vec3<T> const& v) {
+  vec3<T> const w = scaled(v, reciprocal_power(magnitude(v)));
+  return scaled(w, div(T(1), root(dot(w, w))));
+}
+
+/// A unit vector perpendicular to `v`, or (0, 0, 1) if `v` is zero.
+template <class T>
+COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
+  vec3<T> const m = v.cwiseAbs();
+  if (m.x() == 0 && m.y() == 0) return m.z() == 0 ? vec3<T>{0, 0, 1} : vec3<T>{1, 0, 0};
+  return m.z() >= larger(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
+}
+
+/// What doubles cannot tell of a contact: distance and depth of the closest foot to nearly all digits, however small
+/// they are, and its direction. `around` is the point of the triangle that doubles take for the closest.
+template <class S>
+COLLIDE_HD_NOINLINE void measure_exactly(triangle<S> const& t, sphere<S> const& s, local_triangle<double> const& l,
+                                         closest_point<double>& around, vec3<double>& normal, double& distance,
+                                         double& depth) {
+  exact_triangle const e(t, s);
+  exact_triangle::foot const f = e.nearest(l, around.distance_squared);
+  around.kind = f.kind;
+  around.index = f.index;
+  distance = f.distance();
+  depth = f.depth();
+  normal = f.towards_centre();
+  if (magnitude(normal) == 0) normal = e.normal();
+  if (magnitude(normal) == 0) {  // a segment or a point, and the centre lies on it
+    vec3<double> const ab = l.b - l.a, bc = l.c - l.b, ca = l.a - l.c;
+    double const x = dot(ab, ab), y = dot(bc, bc), z = dot(ca, ca);
+    normal = perpendicular(x >= y && x >= z ? ab : (y >= z ? bc : ca));
+  } else {
+    normal = unit(normal);
+  }
+}
+
+/// The contact of a finite triangle and a sphere, computed in double, rounded once, and computed exactly before that
+/// where the digits of a double do not suffice. The ids are left to the caller.
+template <class S>
+COLLIDE_HD contact<S> contact_between(triangle<S> const& t, sphere<S> const& s) {
+  sphere<S> const centre{s.centre, S(0)};
+  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
+  vec3<double> normal = cross<double>(l.b - l.a, l.c - l.a);
+  closest_point<double> q = closest_to_origin(l, normal);
+  double const local_distance = root(q.distance_squared);
+  double distance = div(local_distance, l.scale);
+  double depth = static_cast<double>(s.radius) - distance;
+
+  // l is below 4, and doubles are sure of a distance to within 2^-45; see docs/numerics.md
+  constexpr double enough = 0x1p-20;
+  double const local_depth = mul(depth, l.scale);
+  bool const clear =
+      sizeof(S) == sizeof(float) && local_distance >= enough && (local_depth >= enough || local_depth <= -enough);
+  if (!clear) {
+    bool const unlimited = infinite(s.radius);
+    measure_exactly(t, unlimited ? centre : s, l, q, normal, distance, depth);
+    if (unlimited) depth = static_cast<double>(s.radius);
+  } else if (q.kind == feature::face) {
+    normal = unit(normal);
+    if (dot(l.a, normal) > 0) normal = -normal;
+  } else {
+    normal = unit<double>(-q.point);
+  }
+  vec3<double> const point = s.centre.template cast<double>() + scaled(q.point, div(1.0, l.scale));
+  return {no_id,
+          no_id,
+          point.template cast<S>(),
+          normal.template cast<S>(),
+          static_cast<S>(distance),
+          static_cast<S>(depth),
+          q.kind,
+          static_cast<std::uint32_t>(q.index)};
+}
+
+}  // namespace collide::detail

@@ -1,0 +1,313 @@
+/// \file
+/// A sphere and a triangle in exact arithmetic: the last stage of a verdict, and depths without cancellation.
+///
+/// The closest point of a triangle is a corner, or the foot of a perpendicular inside an edge or inside the face. The
+/// sphere touches the triangle if and only if one of these, where there is such a foot, is within the radius. With
+/// everything relative to the centre, and so a corner v, an edge e from v, and the normal n:
+///
+///                foot is inside if                       squared distance
+///     corner                                             v.v
+///     edge       -v.e > 0 and (v + e).e > 0              |v x e|^2 / e.e
+///     face       (v x e).n > 0 for all three edges       (v.n)^2 / n.n
+///
+/// All of these are sums of products of at most six differences of coordinates.
+#pragma once
+
+#include <collide/detail/closest_point.hpp>
+#include <collide/detail/exact_sum.hpp>
+
+namespace collide::detail {
+
+/// Finite coordinates and a finite radius, not below 0.
+class exact_triangle {
+ public:
+  template <class S>
+  COLLIDE_HD exact_triangle(triangle<S> const& t, sphere<S> const& s) : radius_{decoded(s.radius)} {
+    vec3<S> const* const corners[3] = {&t.a, &t.b, &t.c};
+    int highest = top_of(radius_);
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        dyadic const from = decoded((*corners[i])[k]);
+        corner_[i][k] = {from, decoded(s.centre[k])};
+        edge_[i][k] = {decoded((*corners[(i + 1) % 3])[k]), from};
+        highest = larger(highest, top_of(corner_[i][k]));
+      }
+    }
+    scale_ = -highest;
+  }
+
+  /// True if the ball touches the triangle.
+  COLLIDE_HD bool in_reach() const {
+    bool reached = false;
+    for_each_foot([&](foot const& f) {
+      reached = f.within();
+      return reached;
+    });
+    return reached;
+  }
+
+  struct foot;
+
+  /// The foot that is the closest point. `l` is the same triangle in doubles, `normalised`, and `around` the square of
+  /// its distance.
+  COLLIDE_HD foot nearest(local_triangle<double> const& l, double around) const {
+    foot best{this, feature::vertex, 0};
+    double deepest = -std::numeric_limits<double>::infinity();
+    int found = 0;
+    auto const offer = [&](foot const& f) {
+      double const depth = f.depth();
+      if (found++ == 0 || depth > deepest) {
+        best = f;
+        deepest = depth;
+      }
+      return false;
+    };
+    for_each_foot(offer, near_feet(l, around));
+    if (found == 0) for_each_foot(offer);
+    return best;
+  }
+
+  /// (b - a) x (c - a), but for its length.
+  COLLIDE_HD vec3<double> normal() const {
+    return direction([&](int k, auto const& add) { cross(k, 1, edge_[0], edge_[1], add); });
+  }
+
+ private:
+  using vector = exact_difference[3];
+
+ public:
+  /// A point of the triangle that may be the closest one: corner `index`, the foot on edge `index`, or that on the
+  /// face.
+  struct foot {
+    exact_triangle const* of;
+    feature kind;
+    int index;
+
+    /// Sums the squared distance, multiplied by `length`.
+    template <class Add>
+    COLLIDE_HD void distance_squared(int weight, Add const& add) const {
+      vector const &v = of->corner_[index], &e = of->edge_[index];
+      if (kind == feature::vertex) {
+        for (int k = 0; k < 3; ++k) add(weight, v[k], v[k]);
+      } else if (kind == feature::edge) {
+        cross_squared(weight, v, e, add);
+      } else {
+        height_squared(weight, v, e, of->edge_[1], add);
+      }
+    }
+
+    /// Sums the squared length of the edge or of the normal, or 1, multiplied by the factors.
+    template <class Add, class... Factors>
+    COLLIDE_HD void length(int weight, Add const& add, Factors const&... factors) const {
+      vector const& e = of->edge_[index];
+      if (kind == feature::vertex) {
+        add(weight, factors...);
+      } else if (kind == feature::edge) {
+        for (int k = 0; k < 3; ++k) add(weight, e[k], e[k], factors...);
+      } else {
+        cross_squared(weight, e, of->edge_[1], add, factors...);
+      }
+    }
+
+    /// Sums what the square of the radius is above that of the distance, multiplied by `length`.
+    template <class Add>
+    COLLIDE_HD void excess(Add const& add) const {
+      length(1, add, of->radius_, of->radius_);
+      distance_squared(-1, add);
+    }
+
+    /// True if the ball reaches it.
+    COLLIDE_HD bool within() const {
+      return exact_sum::sign_of([&](auto const& add) { excess(add); }) >= 0;
+    }
+
+    /// From the centre; the error is a few units in the last place.
+    COLLIDE_HD double distance() const {
+      wide_number const by = denominator();
+      return scaled_distance(by, 0);
+    }
+
+    /// Radius - distance; the error is a few units in the last place, however small it is.
+    COLLIDE_HD double depth() const {
+      wide_number const by = denominator();
+      wide_number const above = exact_sum::of([&](auto const& add) { excess(add); });
+      // R - d = (R^2 - d^2) / (R + d)
+      int const scale = of->scale_;
+      double sum = scaled_distance(by, scale);
+      if (of->radius_.count() != 0) {
+        dyadic const r = of->radius_.part(0);
+        sum += times_power(static_cast<double>(r.mantissa), r.exponent + scale);
+      }
+      if (!(sum > 0)) return 0;
+      return times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent + scale);
+    }
+
+    /// From here to the centre, but for the length; 0 if the centre is here.
+    COLLIDE_HD vec3<double> towards_centre() const {
+      vector const &v = of->corner_[index], &e = of->edge_[index];
+      if (kind == feature::vertex) {
+        return direction([&](int k, auto const& add) { add(-1, v[k]); });
+      }
+      if (kind == feature::edge) {  // e (v.e) - v (e.e)
+        return direction([&](int k, auto const& add) {
+          for (int i = 0; i < 3; ++i) {
+            add(1, e[k], v[i], e[i]);
+            add(-1, v[k], e[i], e[i]);
+          }
+        });
+      }
+      int const side = exact_sum::sign_of([&](auto const& add) {
+        for (int s = 0; s < 6; ++s) {
+          int const i = s / 2, j = (i + 1 + s % 2) % 3, k = 3 - i - j;
+          add(s % 2 == 0 ? 1 : -1, v[i], e[j], of->edge_[1][k]);
+        }
+      });
+      return of->normal() * -side;
+    }
+
+   private:
+    COLLIDE_HD wide_number denominator() const {
+      exact_difference const one(dyadic{1, 0});
+      return exact_sum::of([&](auto const& add) { length(1, add, one); });
+    }
+
+    /// The distance, times 2^scale, if `by` is the denominator.
+    COLLIDE_HD double scaled_distance(wide_number const& by, int scale) const {
+      wide_number const square = exact_sum::of([&](auto const& add) { distance_squared(1, add); });
+      int const exponent = square.exponent - by.exponent + 2 * scale, half = exponent / 2;
+      return times_power(root(times_power(div(square.value, by.value), exponent - 2 * half)), half);
+    }
+  };
+
+ private:
+  /// Calls f(foot) for every foot that there is, until it returns true.
+  template <class F>
+  COLLIDE_HD void for_each_foot(F const& f) const {
+    for_each_foot(f, all_feet);
+  }
+
+  /// A bit for each corner, then for each edge, then for the face: whether to look at it.
+  static constexpr unsigned all_feet = 0x7f;
+
+  template <class F>
+  COLLIDE_HD void for_each_foot(F const& f, unsigned wanted) const {
+    for (int i = 0; i < 3; ++i) {
+      if ((wanted >> i & 1) != 0 && f(foot{this, feature::vertex, i})) return;
+    }
+    for (int i = 0; i < 3; ++i) {
+      if ((wanted >> (3 + i) & 1) != 0 && beside_edge(i) && f(foot{this, feature::edge, i})) return;
+    }
+    if ((wanted >> 6 & 1) != 0 && over_face()) f(foot{this, feature::face, 0});
+  }
+
+  /// The feet that are not certainly farther than the root of `around`, as far as doubles can tell.
+  static COLLIDE_HD unsigned near_feet(local_triangle<double> const& l, double around) {
+    double const reach = root(around) + 0x1p-46, limit = mul(mul(reach, reach), 1 + 0x1p-40);  // l is below 4
+    vec3<double> const v[3] = {l.a, l.b, l.c};
+    unsigned near = 1u << 6;
+    for (int i = 0; i < 3; ++i) {
+      vec3<double> const e = v[(i + 1) % 3] - v[i], c = detail::cross(v[i], e);
+      double const ee = dot(e, e);
+      if (dot(v[i], v[i]) <= limit) near |= 1u << i;
+      if (dot(c, c) <= mul(limit, ee)) near |= 8u << i;
+    }
+    return near;
+  }
+
+  /// A vector of three exact sums, but for its length.
+  template <class Component>
+  static COLLIDE_HD vec3<double> direction(Component const& component) {
+    wide_number w[3];
+    int top = -(1 << 30);
+    for (int k = 0; k < 3; ++k) {
+      w[k] = exact_sum::of([&](auto const& add) { component(k, add); });
+      if (w[k].value != 0) top = larger(top, w[k].exponent);
+    }
+    vec3<double> d;
+    for (int k = 0; k < 3; ++k)
+      d[k] = w[k].value == 0 ? 0 : times_power(w[k].value, larger(w[k].exponent - top, -2000));
+    return d;
+  }
+
+  /// Sums component k of p x q.
+  template <class Add>
+  static COLLIDE_HD void cross(int k, int weight, vector const& p, vector const& q, Add const& add) {
+    int const i = (k + 1) % 3, j = (k + 2) % 3;
+    add(weight, p[i], q[j]);
+    add(-weight, p[j], q[i]);
+  }
+
+  /// The centre projects into the edge.
+  COLLIDE_HD bool beside_edge(int i) const {
+    vector const& e = edge_[i];
+    auto const along = [&](vector const& v, int weight) {
+      return exact_sum::sign_of([&](auto const& add) {
+        for (int k = 0; k < 3; ++k) add(weight, v[k], e[k]);
+      });
+    };
+    return along(corner_[i], -1) > 0 && along(corner_[(i + 1) % 3], 1) > 0;
+  }
+
+  /// The centre projects into the face.
+  COLLIDE_HD bool over_face() const {
+    for (int i = 0; i < 3; ++i) {
+      int const side = exact_sum::sign_of([&](auto const& add) {
+        vector const &v = corner_[i], &e = edge_[i], &p = edge_[0], &q = edge_[1];
+        for (int k = 0; k < 3; ++k) {  // (v x e).(p x q)
+          int const l = (k + 1) % 3;
+          add(1, v[k], e[l], p[k], q[l]);
+          add(-1, v[k], e[l], p[l], q[k]);
+          add(-1, v[l], e[k], p[k], q[l]);
+          add(1, v[l], e[k], p[l], q[k]);
+        }
+      });
+      if (side <= 0) return false;
+    }
+    return true;
+  }
+
+  /// Sums |p x q|^2, multiplied by the factors.
+  template <class Add, class... Factors>
+  static COLLIDE_HD void cross_squared(int weight, vector const& p, vector const& q, Add const& add,
+                                       Factors const&... factors) {
+    for (int k = 0; k < 3; ++k) {
+      int const l = (k + 1) % 3;
+      add(weight, p[k], p[k], q[l], q[l], factors...);
+      add(weight, p[l], p[l], q[k], q[k], factors...);
+      add(-2 * weight, p[k], p[l], q[k], q[l], factors...);
+    }
+  }
+
+  /// Sums (v . (p x q))^2: the determinant has six products, every other one negative.
+  template <class Add>
+  static COLLIDE_HD void height_squared(int weight, vector const& v, vector const& p, vector const& q, Add const& add) {
+    for (int s = 0; s < 6; ++s) {
+      int const i = s / 2, j = (i + 1 + s % 2) % 3, k = 3 - i - j;
+      for (int t = 0; t <= s; ++t) {
+        int const l = t / 2, m = (l + 1 + t % 2) % 3, n = 3 - l - m;
+        add(((s + t) % 2 == 0 ? weight : -weight) * (s == t ? 1 : 2), v[i], p[j], q[k], v[l], p[m], q[n]);
+      }
+    }
+  }
+
+  /// An exponent of 2 that is at most one too small to be above x.
+  static COLLIDE_HD int top_of(exact_difference const& x) {
+    int top = -1100;
+    for (int i = 0; i < x.count(); ++i) top = larger(top, x.part(i).exponent + x.part(i).length());
+    return top;
+  }
+
+  /// x * 2^n, also where 2^n is beyond the range.
+  static COLLIDE_HD double times_power(double x, int n) {
+    for (; n > 1000; n -= 1000) x *= 0x1p1000;
+    for (; n < -1000; n += 1000) x *= 0x1p-1000;
+    return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
+  }
+
+  exact_difference corner_[3][3];  ///< relative to the centre
+  exact_difference edge_[3][3];    ///< from each corner to the next
+  exact_difference radius_;
+  int scale_;  ///< radius and corners are below 4 * 2^-scale
+};
+
+}  // namespace collide::detail
