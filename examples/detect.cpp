@@ -27,7 +27,7 @@ using clock = std::chrono::steady_clock;
 
 struct options {
   std::string mesh, spheres, radius;
-  std::string broad = "bucket", space = "host", precision = "single", scalar;
+  std::string broad = "bucket", space = "host", precision = "exact", scalar;
   std::string output, contacts, ply, report;
   double cell_width = 0;
   int threads = 0;
@@ -307,7 +307,8 @@ void run(options const& wish) {
                   },
                   named<collide::all_pairs>{"all_pairs"}, named<collide::bucket>{"bucket"});
             },
-            named<collide::single_precision>{"single"}, named<collide::double_precision>{"double"});
+            named<collide::exact>{"exact"}, named<collide::single_precision>{"single"},
+            named<collide::double_precision>{"double"});
       },
       named<float>{"float"}, named<double>{"double"});
 }
@@ -324,7 +325,7 @@ void check(options& wish) {
   if (!(wish.cell_width >= 0) || std::isinf(wish.cell_width)) {
     throw io::usage_error("--cell-width: must be finite and not negative");
   }
-  if (wish.scalar.empty()) wish.scalar = wish.precision == "single" ? "float" : "double";
+  if (wish.scalar.empty()) wish.scalar = wish.precision == "double" ? "double" : "float";
   io::check_outputs(
       {{"MESH", wish.mesh}, {"SPHERES", wish.spheres}},
       {{"--output", wish.output}, {"--contacts", wish.contacts}, {"--ply", wish.ply}, {"--report", wish.report}});
@@ -347,9 +348,9 @@ int main(int argc, char** argv) {
   file("--report", wish.report, "measurements (JSON)");
   io::add_choice(app, "--broad", wish.broad, {"all_pairs", "bucket"}, "broad phase");
   io::add_choice(app, "--space", wish.space, {"host", "cuda", "cuda_shared"}, "execution space");
-  io::add_choice(app, "--precision", wish.precision, {"single", "double"}, "arithmetic of the verdicts");
+  io::add_choice(app, "--precision", wish.precision, {"exact", "single", "double"}, "how sure verdicts are");
   io::add_choice(app, "--scalar", wish.scalar, {"float", "double"},
-                 "type of the coordinates; float with single precision, else double");
+                 "type of the coordinates; double with --precision double, else float");
   app.add_option("--threads", wish.threads, "threads of the host; 0 for all")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");

@@ -18,7 +18,7 @@ ONE_SPHERE = "x,y,z\n0.2,0.2,0.1\n"
 CUBE = ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
         [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
          (3, 0, 4), (3, 4, 7)])
-COMPOSITIONS = [("--broad", b, "--precision", p) for b in ("all_pairs", "bucket") for p in ("single", "double")]
+COMPOSITIONS = [("--broad", b, "--precision", p) for b in ("all_pairs", "bucket") for p in ("exact", "single", "double")]
 
 
 def random_scene(seed, spread):
@@ -404,7 +404,7 @@ class BadUsage(ProgramTest):
     def test_help_and_version(self):
         text = self.succeed("detect", "--help")
         for option in ("--radius", "--broad", "--space", "--precision", "--threads", "--cell-width", "--output", "--contacts", "--ply", "--report",
-                       "--repeat", "all_pairs", "bucket", "host", "cuda_shared", "single", "double"):
+                       "--repeat", "all_pairs", "bucket", "host", "cuda_shared", "exact", "single", "double"):
             self.assertIn(option, text)
         self.assertRegex(self.succeed("detect", "--version"), r"^detect .*\d+\.\d+\.\d+\n$")
 
@@ -510,7 +510,7 @@ class Report(ProgramTest):
                 self.assertGreaterEqual(report["total_ms"]["min"], report["query_ms"]["min"])
                 self.assertEqual([report[k] for k in ("space", "broad", "precision", "threads", "triangles", "spheres", "repeat")],
                                  ["host", composition[1], composition[3], 1, 12, 2, repeat])
-                self.assertEqual(report["scalar"], "float" if composition[3] == "single" else "double")
+                self.assertEqual(report["scalar"], "double" if composition[3] == "double" else "float")
                 self.assertEqual(report["cell_width"] > 0, composition[1] == "bucket")
                 self.assertNotEqual(report["device"], "")
                 self.assertEqual(report["pairs"], len(self.detect("mesh.obj", "spheres.csv", .4)))

@@ -154,6 +154,8 @@ template <class Broad, class Space>
 void check_baseline(Space space) {
   random_scene random;
   random.seed = 71;
+  random.triangles = 500;
+  random.spheres = 1000;
   auto const ids_of = [&](scene<float> const& made) {
     auto const mesh = collide::upload(space, collide::indexed_mesh(made.mesh.vertices.data(), made.mesh.vertices.size() / 3,
                                                                    made.mesh.corners.data(), made.mesh.size()));
@@ -165,16 +167,20 @@ void check_baseline(Space space) {
       found.push_back({p.sphere, p.triangle});
     return found;
   };
-  auto made = random.make<float>();
-  auto const near = made.expect(1e-3);
-  for (auto p : near.possible)  // nothing may be close
-    if (!std::binary_search(near.certain.begin(), near.certain.end(), p)) made.spheres.radii[p.sphere] = -1;
+  auto const all = random.make<float>();
+  scene<float> made{all.mesh, {}};
+  for (std::size_t i = 0; i < all.spheres.size(); ++i) {
+    scene<float> one{all.mesh, {}};
+    one.spheres.add(all.spheres[i].centre, all.spheres[i].radius);
+    auto const expected = one.expect(1e-3);
+    if (expected.certain == expected.possible) made.spheres.add(all.spheres[i].centre, all.spheres[i].radius);
+  }
   auto const expected = made.expect(1e-3);
-  CHECK(expected.certain.size() > 100);
+  CHECK(expected.exact.size() > 500);
   CHECK((expected.certain == expected.possible));
   CHECK((ids_of(made) == expected.exact));
 
-  random.offset = {1e5, 1e5, 1e5};
+  random.offset = {1e6, 1e6, 1e6};
   auto const far = random.make<float>();
   CHECK((ids_of(far) != far.expect(0).exact));
 }
