@@ -126,14 +126,15 @@ std::vector<collide::pair> detected(collide::mesh_view<S> mesh, collide::sphere_
   return detector.detect(mesh, spheres, collide::pairs(collide::order::canonical)).to_host();
 }
 
-/// Judges cases in scenes of 100, every sphere with every triangle. Wrong is a verdict that is not that of the file, and
+/// Judges cases in scenes of 16, every sphere with every triangle. Wrong is a verdict that is not that of the file, and
 /// a pair that a broad phase loses or makes up.
 template <class S>
 int count_wrong(table<S> const& cases) {
   int wrong = 0;
   space_type space;
-  for (std::size_t first = 0; first < cases.size(); first += 100) {
-    std::size_t const n = std::min<std::size_t>(100, cases.size() - first);
+  constexpr std::size_t most = 16;
+  for (std::size_t first = 0; first < cases.size(); first += most) {
+    std::size_t const n = std::min(most, cases.size() - first);
     auto const mesh = collide::upload(space, cases.mesh(first, n));
     auto const spheres = collide::upload(space, cases.balls(first, n));
     collide::buffer<std::uint8_t> hits_there;

@@ -46,7 +46,6 @@ class lockstep : public collide::host {
   using host::host;
   static constexpr bool defers = true;  // as the CUDA spaces
   static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
-  static constexpr bool defers = true;
 
   template <class Body>
   using block = collide::detail::lockstep_block<Lanes, Body::items, Reversed>;
