@@ -4,6 +4,7 @@
 /// through the candidates then has no part in the rare stages: neither their registers nor their branches.
 #pragma once
 
+#include <collide/detail/atomic.hpp>
 #include <collide/detail/certificate.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/sphere_batch.hpp>
