@@ -128,13 +128,13 @@ class cuda_block {
   template <class F>
   __device__ __forceinline__ void each(F const& f) {
     f(static_cast<int>(threadIdx.x));
-    __syncthreads();
+    sync();
   }
 
   template <class T>
   __device__ __forceinline__ T shared(T const& value) {
     T const copy = value;
-    __syncthreads();
+    sync();
     return copy;
   }
 
@@ -145,7 +145,7 @@ class cuda_block {
   template <class T, int N>
   __device__ __forceinline__ T const* stage(staging<T, N>& to, T const* from, int n) {
     for (int i = static_cast<int>(threadIdx.x); i < n; i += lanes) to.values[i] = from[i];
-    __syncthreads();
+    sync();
     return to.values;
   }
 
@@ -158,7 +158,7 @@ class cuda_block {
     for (int k = 0; k < Items; ++k) {
       if (first + k < n) values[first + k] = own[k];
     }
-    __syncthreads();
+    sync();
     return sum;
   }
 
@@ -172,11 +172,18 @@ class cuda_block {
   template <class T, class Combine>
   __device__ __forceinline__ T reduce(reduce_scratch<T>& s, per_lane<T>& values, Combine const& combine) {
     T const result = cub::BlockReduce<T, lanes>(s).Reduce(values.value, combine);
-    __syncthreads();
+    sync();
     return result;
   }
 
  private:
+  /// Waits for all lanes. A warp comes together first: ptxas 13.0 keeps loop counters in registers of the warp, but
+  /// lets its threads reach the barrier one after another where what was before it has called a function.
+  __device__ __forceinline__ void sync() {
+    __syncwarp();
+    __syncthreads();
+  }
+
   std::size_t index_;
 };
 

@@ -79,10 +79,10 @@ struct query_pass {
     static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
                   "collide: what a sink hands to the device must be a plain value");
     if (mesh.size() == 0 || spheres.size() == 0) return;
-    if constexpr (Space::defers && has_attempt<NarrowPhase, S>::value) {
+    if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
       query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open.clear(space, spheres.size()));
     } else {
-      index.template query<NarrowPhase>(space, spheres, handle);
+      index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
     }
   }
 };

@@ -39,18 +39,27 @@ struct karabassi {
     }
   }
 
-  /// With `exact`: a quick verdict, `unsure` if only `intersects` can tell.
-  template <class S, class P = Precision>
-  static COLLIDE_HD_INLINE std::enable_if_t<std::is_same<P, exact>::value, detail::verdict> attempt(
-      triangle<S> const& t, sphere<S> const& s) {
-    return detail::attempt(t, s).verdict;
-  }
-
   /// Where and how a colliding pair touches; the ids are left to the caller. O(1).
   template <class S>
   static COLLIDE_HD contact<S> contact_of(triangle<S> const& t, sphere<S> const& s) {
     return detail::contact_between(t, s);
   }
 };
+
+namespace detail {
+
+template <>
+struct in_stages<karabassi<exact>> : std::true_type {
+  template <class S>
+  static COLLIDE_HD_INLINE verdict attempt(triangle<S> const& t, sphere<S> const& s) {
+    return detail::attempt(t, s).verdict;
+  }
+  template <class S>
+  static COLLIDE_HD_INLINE bool finish(triangle<S> const& t, sphere<S> const& s) {
+    return detail::finish(t, s).hit;
+  }
+};
+
+}  // namespace detail
 
 }  // namespace collide

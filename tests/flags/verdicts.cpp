@@ -24,8 +24,10 @@
 
 #if defined(__CUDACC__)
 using space_type = collide::cuda;
+using bucket_space = collide::cuda_shared;
 #else
 using space_type = collide::host;
+using bucket_space = collide::host;
 #endif
 
 /// The number of `S` that is +-0xH.HHHp+-D, inf, -inf or nan; its bits are put together here, nothing is rounded.
@@ -120,9 +122,9 @@ struct judge {
   }
 };
 
-template <class S, class BroadPhase>
+template <class S, class BroadPhase, class Space>
 std::vector<collide::pair> detected(collide::mesh_view<S> mesh, collide::sphere_view<S> spheres) {
-  collide::detector<BroadPhase, collide::karabassi<collide::exact>, space_type, S> detector;
+  collide::detector<BroadPhase, collide::karabassi<collide::exact>, Space, S> detector;
   return detector.detect(mesh, spheres, collide::pairs(collide::order::canonical)).to_host();
 }
 
@@ -150,9 +152,9 @@ int count_wrong(table<S> const& cases) {
       for (collide::id t = 0; t < n; ++t)
         if (hits[s * n + t] != 0) pairs.push_back({s, t});
     }
-    if (detected<S, collide::all_pairs>(mesh.view(), spheres.view()) != pairs)
+    if (detected<S, collide::all_pairs, space_type>(mesh.view(), spheres.view()) != pairs)
       std::printf("rows from %zu: all_pairs\n", first), ++wrong;
-    if (detected<S, collide::bucket>(mesh.view(), spheres.view()) != pairs)
+    if (detected<S, collide::bucket, bucket_space>(mesh.view(), spheres.view()) != pairs)
       std::printf("rows from %zu: bucket\n", first), ++wrong;
   }
   return wrong;
@@ -162,7 +164,8 @@ template <class S>
 int judge_file(std::string const& path) {
   table<S> const cases(path);
   int const wrong = count_wrong(cases);
-  std::printf("%s as %s: %zu cases, %d wrong\n", path.c_str(), sizeof(S) == 4 ? "float" : "double", cases.size(), wrong);
+  std::printf("%s as %s: %zu cases, %d wrong\n", path.c_str(), sizeof(S) == 4 ? "float" : "double", cases.size(),
+              wrong);
   return wrong;
 }
 

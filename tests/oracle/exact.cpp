@@ -186,8 +186,13 @@ closest_point closest(triangle const& t, point const& p) {
 }
 
 double depth(triangle const& t, sphere const& s) {
-  scaled const inputs(t, s.centre, 0);
-  return static_cast<double>(real(s.radius) - distance(nearest(inputs), inputs.exponent));
+  scaled const inputs(t, s.centre, s.radius);
+  auto const best = nearest(inputs);
+  // R - d = (R^2 - d^2) / (R + d), and the difference of the squares is exact
+  mp::cpp_int const radius = inputs.integer<mp::cpp_int>(12), above = radius * radius * best.den - best.num;
+  if (above == 0) return 0;
+  real const sum = real(radius) + sqrt(real(best.num) / real(best.den));
+  return static_cast<double>(ldexp(real(above) / (real(best.den) * sum), inputs.exponent));
 }
 
 int compare_distances(triangle const& s, triangle const& t, point const& p) {

@@ -1,26 +1,75 @@
 /// Pairs that a quick attempt leaves open: the list of them, and what happens when it is full.
+#include <cmath>
+
 #include <doctest/doctest.h>
 
 #include "checks.hpp"
+#include "compositions.hpp"
 
 namespace {
 
-/// Spheres that touch `layers` triangles each, all in the same place, at exactly their radius: no certificate decides.
+/// Spheres next to `layers` triangles each, all in the same place: a third touches them at exactly the radius, which no
+/// certificate decides, a third is a unit in the last place (of float) too far away, and a third nearer by as much. So
+/// threads that decide side by side take unequally long.
 template <class S>
 tests::scene<S> touching_scene(int layers, int spheres) {
   tests::scene<S> made;
+  float const radii[] = {1.5f, std::nextafter(1.5f, 1.0f), std::nextafter(1.5f, 2.0f)};
   for (int i = 0; i < layers; ++i) made.mesh.add({{0, 0, 0}, {64, 0, 0}, {0, 64, 0}});
-  for (int i = 0; i < spheres; ++i) made.spheres.add({1.0 + i % 5, 1.0 + i % 7, i % 2 == 0 ? 1.5 : -1.5}, 1.5);
+  for (int i = 0; i < spheres; ++i) made.spheres.add({1.0 + i % 5, 1.0 + i % 7, i % 2 == 0 ? 1.5 : -1.5}, radii[i % 3]);
   return made;
+}
+
+/// A narrow phase that derives from one with a quick attempt, and decides otherwise.
+struct nothing_touches final : collide::karabassi<> {
+  template <class S>
+  static COLLIDE_HD bool intersects(collide::triangle<S> const&, collide::sphere<S> const&) {
+    return false;
+  }
+};
+
+/// A sink whose handle has members of its own, with names that the library uses elsewhere.
+struct counting_sink {
+  struct handle final {
+    int* count;
+    static bool needed() { return false; }
+    static bool takes() { return false; }
+    std::uint64_t reserve(std::uint64_t n) const { return *count += static_cast<int>(n), 0; }
+    template <class Hit>
+    void store(std::uint64_t, Hit const&) const {}
+  };
+  int total = 0;
+
+  template <class Space, class Query>
+  void run(Space&, Query const& query) {
+    query(handle{&total});
+  }
+};
+
+using stepwise = tests::lockstep<64, true>;
+
+template <class NarrowPhase, class Space>
+int count_touching() {
+  auto const made = touching_scene<float>(60, 60);
+  auto const mesh = collide::indexed_mesh(made.mesh.vertices.data(), made.mesh.vertices.size() / 3,
+                                          made.mesh.corners.data(), made.mesh.size());
+  auto const balls = collide::spheres_xyz(made.spheres.centres.data(), made.spheres.size(), made.spheres.radii.data());
+  collide::detector<collide::bucket, NarrowPhase, Space> detector;
+  return detector.detect(mesh, balls, counting_sink()).total;
 }
 
 }  // namespace
 
 TEST_CASE_TEMPLATE("undecided: a few open pairs", S, float, double) {
-  CHECK(tests::check_all(touching_scene<S>(3, 50), {}).size() == 150);
+  CHECK(tests::check_all(touching_scene<S>(3, 60), {}).size() == 120);
 }
 
 TEST_CASE_TEMPLATE("undecided: more open pairs than their list has room for", S, float, double) {
   // the list has room for 1024 pairs and one per sphere
-  CHECK(tests::check_all(touching_scene<S>(40, 60), {}).size() == 2400);
+  CHECK(tests::check_all(touching_scene<S>(60, 60), {}).size() == 2400);
+}
+
+TEST_CASE_TEMPLATE("undecided: sinks and narrow phases of a user", Space, collide::host, stepwise) {
+  CHECK(count_touching<collide::karabassi<>, Space>() == 2400);
+  CHECK(count_touching<nothing_touches, Space>() == 0);
 }

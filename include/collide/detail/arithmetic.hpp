@@ -63,6 +63,23 @@ COLLIDE_HD_INLINE double root(double a) {
 #endif
 }
 
+/// a * b + c: rounded once on the device, and on the host as the compiler likes.
+COLLIDE_HD_INLINE float fused(float a, float b, float c) {
+#if defined(__CUDA_ARCH__)
+  return __fmaf_rn(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+COLLIDE_HD_INLINE double fused(double a, double b, double c) {
+#if defined(__CUDA_ARCH__)
+  return __fma_rn(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
 /// The value as it was computed: a compiler that may reassociate sums (-ffast-math) cannot look through it.
 template <class T>
 COLLIDE_HD_INLINE T settled(T x) {
@@ -77,6 +94,11 @@ COLLIDE_HD_INLINE T settled(T x) {
 template <class T>
 COLLIDE_HD_INLINE T dot(vec3<T> const& a, vec3<T> const& b) {
   return mul(a.x(), b.x()) + mul(a.y(), b.y()) + mul(a.z(), b.z());
+}
+
+template <class T>
+COLLIDE_HD_INLINE T fused_dot(vec3<T> const& a, vec3<T> const& b) {
+  return fused(a.x(), b.x(), fused(a.y(), b.y(), mul(a.z(), b.z())));
 }
 
 template <class T>
@@ -221,8 +243,7 @@ template <class T>
 COLLIDE_HD_INLINE T reciprocal_power(T x) {
   auto const e = static_cast<int>((bits(x) & format<T>::exponent_mask) >> format<T>::mantissa_bits);
   int const r = 2 * format<T>::bias - e;  // biased exponent of 2^-(e - bias)
-  int const kept = r < 1 ? 1 : (r > 2 * format<T>::bias ? 2 * format<T>::bias : r);
-  return from_bits<T>(static_cast<bits_of<T>>(kept) << format<T>::mantissa_bits);
+  return from_bits<T>(static_cast<bits_of<T>>(larger(r, 1)) << format<T>::mantissa_bits);
 }
 
 }  // namespace collide::detail

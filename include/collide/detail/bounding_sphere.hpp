@@ -21,7 +21,7 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
   /// real ones. Derivation in docs/numerics.md; NaN for an invalid triangle.
   COLLIDE_HD_INLINE S reach(S r) const {
     S const sum = radius + r;
-    return sum * sum * slack + 2 * std::numeric_limits<S>::min();
+    return sum * sum * slack;
   }
 
   COLLIDE_HD_INLINE S distance_squared(S cx, S cy, S cz) const {

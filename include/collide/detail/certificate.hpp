@@ -3,7 +3,8 @@
 ///
 /// The closest point that is computed here may be wrong, and so may the region that it lies in: a verdict is only given
 /// where it holds all the same. Every line is proved in docs/numerics.md, for any order and any fusing of the sums,
-/// and with subnormal numbers or without.
+/// and with subnormal numbers or without. On the device each operation is spelled out all the same, so that a pair has
+/// the same outcome in every kernel; see undecided.hpp.
 #pragma once
 
 #include <collide/detail/closest_point.hpp>
@@ -44,12 +45,13 @@ COLLIDE_HD_INLINE verdict certify(local_triangle<T> const& t, T size) {
   using bounds = certificate_bounds<T>;
   vec3<T> const ab = t.b - t.a, ac = t.c - t.a;
   // The closest point as in C. Ericson, Real-Time Collision Detection, 5.1.5: its weights are v and w, as fractions.
-  T const d1 = -ab.dot(t.a), d2 = -ac.dot(t.a), d3 = -ab.dot(t.b), d4 = -ac.dot(t.b), d5 = -ab.dot(t.c),
-          d6 = -ac.dot(t.c);
-  T const va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  T const d1 = -fused_dot(ab, t.a), d2 = -fused_dot(ac, t.a), d3 = -fused_dot(ab, t.b), d4 = -fused_dot(ac, t.b),
+          d5 = -fused_dot(ab, t.c), d6 = -fused_dot(ac, t.c);
+  auto const minor = [](T p, T q, T r, T s) { return fused(p, q, -mul(r, s)); };
+  T const va = minor(d3, d6, d5, d4), vb = minor(d5, d2, d1, d6), vc = minor(d1, d4, d3, d2);
   T v = vb, w = vc, whole = va + vb + vc;
   // decided on bits; not finite if some coordinate is not
-  if (!(finite(whole) & valid_radius(t.radius))) return verdict::unsure;
+  if (!finite(whole) || !valid_radius(t.radius)) return verdict::unsure;
   bool face = true;
   auto const region = [&](bool inside, T v_there, T w_there, T whole_there) {
     v = inside ? v_there : v;
@@ -65,25 +67,26 @@ COLLIDE_HD_INLINE verdict certify(local_triangle<T> const& t, T size) {
   region((d1 <= 0) & (d2 <= 0), T(0), T(0), T(1));
   // Whatever came of that, v and w become weights: not negative, their sum not above 1.
   T const part = whole > std::numeric_limits<T>::min() ? quick_reciprocal(whole) : T(0);
-  v = clamped(v * part);
-  w = smaller(clamped(w * part), T(1) - v);
-  vec3<T> const q = t.a + (v * ab + w * ac);
-  T const s = q.dot(q);
-  T const error = bounds::error * size;
+  v = clamped(mul(v, part));
+  w = smaller(clamped(mul(w, part)), T(1) - v);
+  auto const combined = [&](int k) { return t.a[k] + fused(v, ab[k], mul(w, ac[k])); };
+  vec3<T> const q = {combined(0), combined(1), combined(2)};
+  T const s = fused_dot(q, q);
+  T const error = mul(bounds::error, size);
 
   T const inner = t.radius - error;
-  if (inner > 0 && s <= inner * inner) return verdict::hit;
+  if (inner > 0 && s <= mul(inner, inner)) return verdict::hit;
 
   T const outer = t.radius + error;
   auto const beyond = [&](vec3<T> const& g, T gg) {
-    T const least = smaller(smaller(t.a.dot(g), t.b.dot(g)), t.c.dot(g));
-    return gg >= bounds::shortest && least > 0 && least * least > outer * outer * gg;
+    T const least = smaller(smaller(fused_dot(t.a, g), fused_dot(t.b, g)), fused_dot(t.c, g));
+    return gg >= bounds::shortest && least > 0 && mul(least, least) > mul(mul(outer, outer), gg);
   };
   if (beyond(q, s)) return verdict::miss;
   if (face) {  // the plane's own normal is more certain than the way to a near foot
     vec3<T> n = cross(ab, ac);
-    if (t.a.dot(n) < 0) n = -n;
-    if (beyond(n, n.dot(n))) return verdict::miss;
+    if (fused_dot(t.a, n) < 0) n = -n;
+    if (beyond(n, fused_dot(n, n))) return verdict::miss;
   }
   return verdict::unsure;
 }

@@ -26,14 +26,11 @@ COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
 /// they are, and its direction. `around` is the point of the triangle that doubles take for the closest.
 template <class S>
 COLLIDE_HD_NOINLINE void measure_exactly(triangle<S> const& t, sphere<S> const& s, local_triangle<double> const& l,
-                                         closest_point<double>& around, vec3<double>& normal, double& distance,
-                                         double& depth) {
+                                         closest_point<double>& around, vec3<double>& normal, gap& measured) {
   exact_triangle const e(t, s);
-  exact_triangle::foot const f = e.nearest(l, around.distance_squared);
+  exact_triangle::foot const f = e.nearest(l, around.distance_squared, measured);
   around.kind = f.kind;
   around.index = f.index;
-  distance = f.distance();
-  depth = f.depth();
   normal = f.towards_centre();
   if (magnitude(normal) == 0) normal = e.normal();
   if (magnitude(normal) == 0) {  // a segment or a point, and the centre lies on it
@@ -54,31 +51,37 @@ COLLIDE_HD contact<S> contact_between(triangle<S> const& t, sphere<S> const& s) 
   vec3<double> normal = cross<double>(l.b - l.a, l.c - l.a);
   closest_point<double> q = closest_to_origin(l, normal);
   double const local_distance = root(q.distance_squared);
-  double distance = div(local_distance, l.scale);
-  double depth = static_cast<double>(s.radius) - distance;
+  gap measured{div(local_distance, l.scale), 0};
+  measured.depth = static_cast<double>(s.radius) - measured.distance;
 
   // l is below 4, and doubles are sure of a distance to within 2^-45; see docs/numerics.md
   constexpr double enough = 0x1p-20;
-  double const local_depth = mul(depth, l.scale);
+  double const local_depth = mul(measured.depth, l.scale);
   bool const clear =
       sizeof(S) == sizeof(float) && local_distance >= enough && (local_depth >= enough || local_depth <= -enough);
   if (!clear) {
     bool const unlimited = infinite(s.radius);
-    measure_exactly(t, unlimited ? centre : s, l, q, normal, distance, depth);
-    if (unlimited) depth = static_cast<double>(s.radius);
+    measure_exactly(t, unlimited ? centre : s, l, q, normal, measured);
+    if (unlimited) measured.depth = static_cast<double>(s.radius);
   } else if (q.kind == feature::face) {
     normal = unit(normal);
     if (dot(l.a, normal) > 0) normal = -normal;
   } else {
     normal = unit<double>(-q.point);
   }
-  vec3<double> const point = s.centre.template cast<double>() + scaled(q.point, div(1.0, l.scale));
+  vec3<double> const from = s.centre.template cast<double>();
+  vec3<double> point = from + scaled(q.point, div(1.0, l.scale));
+  if (!finite(point)) {  // the way there is longer than the largest number, or rounded up to more than that
+    constexpr double most = std::numeric_limits<double>::max() / 4;
+    point = scaled(from, 0.25) + scaled(q.point, div(0.25, l.scale));
+    for (int k = 0; k < 3; ++k) point[k] = mul(4.0, smaller(larger(point[k], -most), most));
+  }
   return {no_id,
           no_id,
           point.template cast<S>(),
           normal.template cast<S>(),
-          static_cast<S>(distance),
-          static_cast<S>(depth),
+          static_cast<S>(measured.distance),
+          static_cast<S>(measured.depth),
           q.kind,
           static_cast<std::uint32_t>(q.index)};
 }

@@ -2,6 +2,8 @@
 /// The exact verdict, in stages: each decides what it is sure of, and leaves the rest to the next.
 #pragma once
 
+#include <type_traits>
+
 #include <collide/detail/certificate.hpp>
 #include <collide/detail/exact_triangle.hpp>
 
@@ -22,7 +24,7 @@ struct attempted {
   stage by;
 };
 
-/// The later stages of `decide`.
+/// The later stages, out of line.
 template <class S>
 COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> const& s) {
   if (!valid_radius(s.radius) || !finite(s.centre) || !finite(t)) return {false, stage::integers};
@@ -36,7 +38,7 @@ COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> cons
   return {exact_triangle(t, s).in_reach(), stage::integers};
 }
 
-/// The first stages: `unsure` is left to `decide_closely`.
+/// The first stages: `unsure` is left to `finish`.
 template <class S>
 COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, sphere<S> const& s) {
   local_triangle<S> l = relative<S>(t, s);
@@ -46,14 +48,27 @@ COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, sphere<S> const& s) {
   return {certify(rounded<float>(l), static_cast<float>(size)), stage::single_certificate};
 }
 
+/// The later stages, for any pair.
+template <class S>
+COLLIDE_HD_INLINE decision finish(triangle<S> const& t, sphere<S> const& s) {
+  triangle<S> const far_triangle = t;  // copies, so that the call does not force the originals into memory
+  sphere<S> const far_sphere = s;
+  return decide_closely(far_triangle, far_sphere);
+}
+
 /// Whether the closed ball touches the closed triangle, in exact real arithmetic on the numbers as they are.
 template <class S>
 COLLIDE_HD_INLINE decision decide(triangle<S> const& t, sphere<S> const& s) {
   attempted const quick = attempt(t, s);
   if (quick.verdict != verdict::unsure) return {quick.verdict == verdict::hit, quick.by};
-  triangle<S> const far_triangle = t;  // copies, so that the call does not force the originals into memory
-  sphere<S> const far_sphere = s;
-  return decide_closely(far_triangle, far_sphere);
+  return finish(t, s);
 }
+
+/// True for narrow phases that have a quick test which may leave a verdict open, and a slow one for these; then it has
+/// static members attempt(triangle, sphere), which returns a `verdict`, and finish(triangle, sphere), which returns
+/// bool. On the device `attempt` must have the same outcome wherever it is inlined. A class that derives from such a
+/// narrow phase is not one itself: it may have another `intersects`.
+template <class NarrowPhase>
+struct in_stages : std::false_type {};
 
 }  // namespace collide::detail

@@ -18,22 +18,24 @@
 
 namespace collide::detail {
 
+/// How a point lies to a sphere: the distance from the centre, and how deep that is inside.
+struct gap {
+  double distance, depth;
+};
+
 /// Finite coordinates and a finite radius, not below 0.
 class exact_triangle {
  public:
   template <class S>
   COLLIDE_HD exact_triangle(triangle<S> const& t, sphere<S> const& s) : radius_{decoded(s.radius)} {
     vec3<S> const* const corners[3] = {&t.a, &t.b, &t.c};
-    int highest = top_of(radius_);
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
         dyadic const from = decoded((*corners[i])[k]);
         corner_[i][k] = {from, decoded(s.centre[k])};
         edge_[i][k] = {decoded((*corners[(i + 1) % 3])[k]), from};
-        highest = larger(highest, top_of(corner_[i][k]));
       }
     }
-    scale_ = -highest;
   }
 
   /// True if the ball touches the triangle.
@@ -48,17 +50,19 @@ class exact_triangle {
 
   struct foot;
 
-  /// The foot that is the closest point. `l` is the same triangle in doubles, `normalised`, and `around` the square of
-  /// its distance.
-  COLLIDE_HD foot nearest(local_triangle<double> const& l, double around) const {
+  /// The foot that is the closest point, and how it lies to the sphere. `l` is the same triangle in doubles,
+  /// `normalised`, and `around` the square of its distance.
+  COLLIDE_HD foot nearest(local_triangle<double> const& l, double around, gap& to_nearest) const {
     foot best{this, feature::vertex, 0};
-    double deepest = -std::numeric_limits<double>::infinity();
     int found = 0;
     auto const offer = [&](foot const& f) {
-      double const depth = f.depth();
-      if (found++ == 0 || depth > deepest) {
+      gap const there = f.measured();
+      // each of the two has all its digits where it is the smaller one
+      bool const nearer =
+          there.depth > there.distance ? there.distance < to_nearest.distance : there.depth > to_nearest.depth;
+      if (found++ == 0 || nearer) {
         best = f;
-        deepest = depth;
+        to_nearest = there;
       }
       return false;
     };
@@ -121,25 +125,20 @@ class exact_triangle {
       return exact_sum::sign_of([&](auto const& add) { excess(add); }) >= 0;
     }
 
-    /// From the centre; the error is a few units in the last place.
-    COLLIDE_HD double distance() const {
-      wide_number const by = denominator();
-      return scaled_distance(by, 0);
-    }
-
-    /// Radius - distance; the error is a few units in the last place, however small it is.
-    COLLIDE_HD double depth() const {
-      wide_number const by = denominator();
+    /// The errors are a few units in the last place, however small the numbers are.
+    COLLIDE_HD gap measured() const {
+      exact_difference const one(dyadic{1, 0});
+      wide_number const by = exact_sum::of([&](auto const& add) { length(1, add, one); });
+      wide_number const d = root_of_distance_squared(by);
+      double const distance = times_power(d.value, d.exponent);
       wide_number const above = exact_sum::of([&](auto const& add) { excess(add); });
-      // R - d = (R^2 - d^2) / (R + d)
-      int const scale = of->scale_;
-      double sum = scaled_distance(by, scale);
-      if (of->radius_.count() != 0) {
-        dyadic const r = of->radius_.part(0);
-        sum += times_power(static_cast<double>(r.mantissa), r.exponent + scale);
-      }
-      if (!(sum > 0)) return 0;
-      return times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent + scale);
+      if (above.value == 0) return {distance, 0};
+      // R - d = (R^2 - d^2) / (R + d), where R and d are divided by a power of two as large as the larger one
+      dyadic const r = of->radius_.count() == 0 ? dyadic{0, 0} : of->radius_.part(0);
+      int const top = r.mantissa == 0 ? d.exponent : larger(d.exponent, r.exponent + r.length());
+      double const sum =
+          times_power(static_cast<double>(r.mantissa), r.exponent - top) + times_power(d.value, d.exponent - top);
+      return {distance, times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent - top)};
     }
 
     /// From here to the centre, but for the length; 0 if the centre is here.
@@ -166,16 +165,13 @@ class exact_triangle {
     }
 
    private:
-    COLLIDE_HD wide_number denominator() const {
-      exact_difference const one(dyadic{1, 0});
-      return exact_sum::of([&](auto const& add) { length(1, add, one); });
-    }
-
-    /// The distance, times 2^scale, if `by` is the denominator.
-    COLLIDE_HD double scaled_distance(wide_number const& by, int scale) const {
+    /// The distance, if `by` is the denominator: a value between 1/2 and 2, or 0, times a power of two; that of 0 is
+    /// below all others.
+    COLLIDE_HD wide_number root_of_distance_squared(wide_number const& by) const {
       wide_number const square = exact_sum::of([&](auto const& add) { distance_squared(1, add); });
-      int const exponent = square.exponent - by.exponent + 2 * scale, half = exponent / 2;
-      return times_power(root(times_power(div(square.value, by.value), exponent - 2 * half)), half);
+      if (square.value == 0) return {0, -4000};
+      int const exponent = square.exponent - by.exponent, half = exponent / 2;
+      return {root(times_power(div(square.value, by.value), exponent - 2 * half)), half};
     }
   };
 
@@ -202,7 +198,7 @@ class exact_triangle {
 
   /// The feet that are not certainly farther than the root of `around`, as far as doubles can tell.
   static COLLIDE_HD unsigned near_feet(local_triangle<double> const& l, double around) {
-    double const reach = root(around) + 0x1p-46, limit = mul(mul(reach, reach), 1 + 0x1p-40);  // l is below 4
+    double const reach = root(around) + 0x1p-40, limit = mul(mul(reach, reach), 1 + 0x1p-40);  // l is below 4
     vec3<double> const v[3] = {l.a, l.b, l.c};
     unsigned near = 1u << 6;
     for (int i = 0; i < 3; ++i) {
@@ -290,13 +286,6 @@ class exact_triangle {
     }
   }
 
-  /// An exponent of 2 that is at most one too small to be above x.
-  static COLLIDE_HD int top_of(exact_difference const& x) {
-    int top = -1100;
-    for (int i = 0; i < x.count(); ++i) top = larger(top, x.part(i).exponent + x.part(i).length());
-    return top;
-  }
-
   /// x * 2^n, also where 2^n is beyond the range.
   static COLLIDE_HD double times_power(double x, int n) {
     for (; n > 1000; n -= 1000) x *= 0x1p1000;
@@ -307,7 +296,6 @@ class exact_triangle {
   exact_difference corner_[3][3];  ///< relative to the centre
   exact_difference edge_[3][3];    ///< from each corner to the next
   exact_difference radius_;
-  int scale_;  ///< radius and corners are below 4 * 2^-scale
 };
 
 }  // namespace collide::detail

@@ -52,15 +52,27 @@ class hit {
 
 namespace detail {
 
-/// Sinks of a query in steps; see detail/undecided.hpp.
-template <class Sink, class = void>
-struct can_defer : std::false_type {};
-template <class Sink>
-struct can_defer<Sink, std::void_t<decltype(std::declval<Sink const&>().defer(pair{}))>> : std::true_type {};
-template <class Sink, class = void>
-struct may_be_needless : std::false_type {};
-template <class Sink>
-struct may_be_needless<Sink, std::void_t<decltype(std::declval<Sink const&>().needed())>> : std::true_type {};
+/// What a pass over candidates does with them: decides each, and takes the hits to the handle of the caller's sink.
+/// Passes that put some off are in detail/undecided.hpp.
+template <class Handle>
+struct deciding {
+  Handle handle;
+
+  /// False if the pass has nothing to do.
+  COLLIDE_HD_INLINE bool needed() const { return true; }
+
+  /// True if the pair is a hit to be reported in this pass.
+  template <class NarrowPhase, class S>
+  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, sphere<S> const& s) const {
+    return NarrowPhase::intersects(t, s);
+  }
+
+  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return handle.reserve(n); }
+  template <class Hit>
+  COLLIDE_HD_INLINE void store(std::uint64_t slot, Hit const& hit) const {
+    handle.store(slot, hit);
+  }
+};
 
 /// The candidates' last stop: runs the narrow phase and hands the hits to the sink, `Block::pending` at a time, so that
 /// the sink's atomic counter is touched once per batch and the lanes share the work of storing.
@@ -82,14 +94,7 @@ struct tester {
   /// Runs the narrow phase on one candidate. Called by any lane.
   template <class Block>
   COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block>& b, pair p, sphere<S> const& s) const {
-    if constexpr (can_defer<Sink>::value) {
-      auto const quick = NarrowPhase::attempt(mesh[p.triangle], s);
-      using verdict = std::remove_const_t<decltype(quick)>;
-      if (quick == verdict::unsure) sink.defer(p);
-      if (quick != verdict::hit) return;
-    } else {
-      if (!NarrowPhase::intersects(mesh[p.triangle], s)) return;
-    }
+    if (!sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) return;
     if constexpr (hit_buffer<Block>::capacity > 0) {
       std::uint32_t const place = block.add(b.found, 1);
       if (place < hit_buffer<Block>::capacity) {
@@ -103,9 +108,7 @@ struct tester {
   /// To be called first, by the whole block. False if there is nothing to do.
   template <class Block>
   COLLIDE_HD_INLINE bool begin(Block& block, hit_buffer<Block>& b) const {
-    if constexpr (may_be_needless<Sink>::value) {
-      if (!sink.needed()) return false;
-    }
+    if (!sink.needed()) return false;
     block.each([&](int lane) {
       if (lane == 0) b.found = 0;
     });

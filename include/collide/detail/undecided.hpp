@@ -5,21 +5,12 @@
 #pragma once
 
 #include <collide/detail/atomic.hpp>
-#include <collide/detail/certificate.hpp>
+#include <collide/detail/decide.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/sphere_batch.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
-
-/// True for a narrow phase with a member attempt(triangle, sphere) that returns a `verdict`, `unsure` where only
-/// intersects(triangle, sphere) can tell.
-template <class N, class S, class = void>
-struct has_attempt : std::false_type {};
-template <class N, class S>
-struct has_attempt<
-    N, S, std::void_t<decltype(N::attempt(std::declval<triangle<S> const&>(), std::declval<sphere<S> const&>()))>>
-    : std::true_type {};
 
 /// A list of pairs that were left open. `total` counts also those that found no room.
 struct undecided {
@@ -48,14 +39,41 @@ class undecided_list {
   buffer<pair> pairs_;
 };
 
-/// The sink of the first step: as `Handle`, and pairs can be deferred.
+/// The first step: decides what a quick attempt can, and lists the rest.
 template <class Handle>
-struct deferring : Handle {
+struct deferring : deciding<Handle> {
   undecided open;
 
-  COLLIDE_HD_INLINE void defer(pair p) const {
-    std::uint64_t const slot = fetch_add(open.total, std::uint64_t{1});
-    if (slot < open.capacity) open.pairs[slot] = p;
+  template <class NarrowPhase, class S>
+  COLLIDE_HD_INLINE bool takes(pair p, triangle<S> const& t, sphere<S> const& s) const {
+    verdict const quick = in_stages<NarrowPhase>::attempt(t, s);
+    if (quick == verdict::unsure) {
+      std::uint64_t const slot = fetch_add(open.total, std::uint64_t{1});
+      if (slot < open.capacity) open.pairs[slot] = p;
+    }
+    return quick == verdict::hit;
+  }
+};
+
+/// The second step, in which all candidates are pairs of the list.
+template <class Handle>
+struct finishing : deciding<Handle> {
+  template <class NarrowPhase, class S>
+  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, sphere<S> const& s) const {
+    return in_stages<NarrowPhase>::finish(t, s);
+  }
+};
+
+/// The third step, if the list was too short: all candidates once more, of which it decides what the first has not.
+template <class Handle>
+struct completing : deciding<Handle> {
+  undecided open;
+
+  COLLIDE_HD_INLINE bool needed() const { return open.overflown(); }
+
+  template <class NarrowPhase, class S>
+  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, sphere<S> const& s) const {
+    return in_stages<NarrowPhase>::attempt(t, s) == verdict::unsure && in_stages<NarrowPhase>::finish(t, s);
   }
 };
 
@@ -64,7 +82,7 @@ template <class S, class NarrowPhase, class Handle>
 struct decide_listed {
   static constexpr int items = 1;
 
-  tester<S, NarrowPhase, Handle> tests;
+  tester<S, NarrowPhase, finishing<Handle>> tests;
   undecided open;
   std::size_t blocks;
 
@@ -88,32 +106,16 @@ struct decide_listed {
   }
 };
 
-/// The sink of the third step, which goes through all candidates once more if the list was too short for the first.
-template <class Handle>
-struct completing : Handle {
-  undecided open;
-
-  COLLIDE_HD_INLINE bool needed() const { return open.overflown(); }
-};
-
-/// The narrow phase of the third step: reports the hits that the first has deferred.
-template <class NarrowPhase>
-struct left_open : NarrowPhase {
-  template <class S>
-  static COLLIDE_HD bool intersects(triangle<S> const& t, sphere<S> const& s) {
-    return NarrowPhase::attempt(t, s) == verdict::unsure && NarrowPhase::intersects(t, s);
-  }
-};
-
-/// Runs all steps.
+/// Runs all steps. Every pair is reported once, because an attempt on the device has the same outcome in every kernel:
+/// no compiler is free to fuse or reorder what `attempt` computes there.
 template <class NarrowPhase, class Space, class Index, class S, class Handle>
 void query_in_steps(Space& space, Index const& index, mesh_view<S> const& mesh, sphere_view<S> const& spheres,
                     Handle const& handle, undecided const& open) {
-  index.template query<NarrowPhase>(space, spheres, deferring<Handle>{handle, open});
-  decide_listed<S, NarrowPhase, Handle> body{{mesh, spheres, handle}, open, 0};
+  index.template query<NarrowPhase>(space, spheres, deferring<Handle>{{handle}, open});
+  decide_listed<S, NarrowPhase, Handle> body{{mesh, spheres, {{handle}}}, open, 0};
   body.blocks = smaller(space.concurrency(), blocks_for<Space>(open.capacity, body));
   space.launch(body.blocks, body);
-  index.template query<left_open<NarrowPhase>>(space, spheres, completing<Handle>{handle, open});
+  index.template query<NarrowPhase>(space, spheres, completing<Handle>{{handle}, open});
 }
 
 }  // namespace collide::detail

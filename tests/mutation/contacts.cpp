@@ -1,0 +1,38 @@
+/// contacts FOLDER: how many rows have a contact whose distance or depth is more than 4 units in the last place off.
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include <collide/detail/contact_of.hpp>
+
+#include "rows.hpp"
+
+/// A number beyond the range must have become infinite.
+template <class S>
+bool within_4_ulp(S x, double exact) {
+  S const size = static_cast<S>(std::abs(exact));
+  if (std::isinf(size)) return x == std::copysign(size, static_cast<S>(exact));
+  S const before = std::nextafter(size, S(0)), next = std::nextafter(size, std::numeric_limits<S>::infinity());
+  double const unit = std::isinf(next) ? double(size) - before : double(next) - size;
+  return std::abs(x - exact) <= 4 * unit;
+}
+
+template <class S>
+int count_wrong(std::vector<tests::row<S>> const& rows) {
+  namespace detail = collide::detail;
+  int wrong = 0;
+  for (auto const& r : rows) {
+    auto const t = r.triangle();
+    auto const s = r.sphere();
+    if (!(detail::finite(t) && detail::finite(s.centre) && detail::finite(s.radius) && s.radius >= 0)) continue;
+    auto const c = detail::contact_between(t, s);
+    if (!within_4_ulp(c.distance, r.distance) || !within_4_ulp(c.depth, r.depth)) ++wrong;
+  }
+  return wrong;
+}
+
+int main(int, char** argv) {
+  int const wrong = count_wrong(tests::read_rows<float>(argv[1])) + count_wrong(tests::read_rows<double>(argv[1]));
+  std::printf("%d wrong\n", wrong);
+  return wrong != 0;
+}

@@ -1,0 +1,259 @@
+"""mutate.py names | table [--write] | judge NAME --rows FOLDER [--eigen FOLDER]: the guards of `exact`, one by one.
+
+Every mutation takes a guard out of the library, or loosens it; a small program, compiled with that, must then find
+something wrong, or fail; and nothing with the library as it is. The rows that it judges are those of tests/data, those
+of hunted_*.csv, which were looked for because no others show the guards that they name, and cases next to contact: see
+make_rows.cpp. `table` checks, or writes, the lists in docs/numerics.md.
+"""
+import argparse
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+PAGE = ROOT / "docs" / "numerics.md"
+DETAIL = pathlib.Path("collide") / "detail"
+SKIPPED = 77
+
+COMPILERS = {
+    "plain": "g++ -O1",
+    "fast": "g++ -O2 -ffast-math",
+    "checked": "g++ -O1 -fsanitize=address",
+    "clang-fast": "clang++ -O2 -ffast-math",
+}
+
+# The regions of Ericson are right as they are; the weights are kept in their limits for what they might be.
+NO_REGIONS = ("""    v = inside ? v_there : v;
+    w = inside ? w_there : w;
+    whole = inside ? whole_there : whole;
+""", "")
+
+# name: (file of include/collide/detail, what goes without the guard, program, compiler,
+#        [(text that stands there once, what takes its place)])
+MUTATIONS = {
+    "error": ("certificate.hpp", "the error of a length, 32 units: 3 instead", "stages", "plain",
+              [("error = 32 * format<T>::unit", "error = 3 * format<T>::unit")]),
+    "error-of-hit": ("certificate.hpp", "that error in hits", "stages", "plain", [("t.radius - error", "t.radius")]),
+    "error-of-miss": ("certificate.hpp", "that error in misses", "stages", "plain", [("t.radius + error", "t.radius")]),
+    "inner": ("certificate.hpp", "a radius below its error certifies no hit", "stages", "plain",
+              [("inner > 0 && ", "")]),
+    "least": ("certificate.hpp", "a direction that the triangle reaches to both sides of separates nothing", "stages", "plain",
+              [("least > 0 && ", "")]),
+    "shortest": ("certificate.hpp", "squared lengths that have lost digits to underflow", "stages", "plain",
+                 [("gg >= bounds::shortest && ", "")]),
+    "v-from-below": ("certificate.hpp", "v >= 0, whatever the region", "stages", "plain",
+                     [NO_REGIONS, ("v = clamped(mul(v, part))", "v = smaller(mul(v, part), T(1))")]),
+    "v-from-above": ("certificate.hpp", "v <= 1, whatever the region", "stages", "plain",
+                     [NO_REGIONS, ("v = clamped(mul(v, part))", "v = larger(mul(v, part), T(0))")]),
+    "w-from-below": ("certificate.hpp", "w >= 0, whatever the region", "stages", "plain",
+                     [NO_REGIONS, ("smaller(clamped(mul(w, part)), T(1) - v)", "smaller(mul(w, part), T(1) - v)")]),
+    "v-and-w": ("certificate.hpp", "v + w <= 1, whatever the region", "stages", "plain",
+                [NO_REGIONS, ("smaller(clamped(mul(w, part)), T(1) - v)", "clamped(mul(w, part))")]),
+    "whole": ("certificate.hpp", "coordinates that are not finite", "stages", "fast",
+              [("!finite(whole) || ", "")]),
+    "smallest": ("certificate.hpp", "sizes below which squares underflow", "stages", "plain",
+                 [("size >= bounds::smallest && ", "")]),
+    "largest": ("certificate.hpp", "sizes above which products overflow", "stages", "fast",
+                [("size >= bounds::smallest && size <= bounds::largest", "size >= bounds::smallest")]),
+    "floor-of-float": ("certificate.hpp", "sizes at which flushed subnormal numbers show, float", "stages", "plain",
+                       [("T(0x1p-60) : T(0x1p-900)", "T(0x1p-126) : T(0x1p-900)")]),
+    "floor-of-double": ("certificate.hpp", "the same, double", "stages", "plain",
+                        [("T(0x1p-60) : T(0x1p-900)", "T(0x1p-60) : T(0x1p-1022)")]),
+    "scaling": ("certificate.hpp", "scaling to a size that squares bear", "stages", "plain",
+                [("  t = scaled(t, reciprocal_power(size));\n", "")]),
+    "box": ("decide.hpp", "the box test where subnormal numbers are flushed", "stages", "plain",
+            [("larger(l.radius, format<S>::unflushed)", "l.radius")]),
+    "size-in-float": ("decide.hpp", "no certificate in float at the wrong size", "stages", "plain",
+                      [("  if (!brought_to_size<S>(l, size)) return {verdict::unsure, stage::single_certificate};\n",
+                        "  brought_to_size<S>(l, size);\n")]),
+    "size-in-double": ("decide.hpp", "no certificate in double at the wrong size", "stages", "plain",
+                       [("  if (brought_to_size<S>(l, size)) {", "  brought_to_size<S>(l, size);\n  {")]),
+    "bad-radius": ("decide.hpp", "radii that are negative or NaN", "stages", "plain",
+                   [("!valid_radius(s.radius) || ", "")]),
+    "bad-centre": ("decide.hpp", "centres that are not finite", "stages", "plain", [("!finite(s.centre) || ", "")]),
+    "bad-corner": ("decide.hpp", "corners that are not finite", "stages", "plain", [(" || !finite(t)", "")]),
+    "infinite-radius": ("decide.hpp", "an infinite radius reaches all", "stages", "plain",
+                        [("  if (infinite(s.radius)) return {true, stage::integers};\n", "")]),
+    "finite": ("arithmetic.hpp", "finite numbers are known by their bits", "stages", "fast",
+               [("return (bits(x) & format<T>::exponent_mask) != format<T>::exponent_mask", "return x - x == 0")]),
+    "finite-corner": ("arithmetic.hpp", "finite corners are known by their bits", "stages", "clang-fast",
+                      [("return larger(larger(largest_bits(t.a), largest_bits(t.b)), largest_bits(t.c)) < format<T>::exponent_mask",
+                        "return t.a.allFinite() && t.b.allFinite() && t.c.allFinite()")]),
+    "valid-radius": ("arithmetic.hpp", "valid radii are known by their bits", "stages", "fast",
+                     [("return u <= format<T>::exponent_mask || u == format<T>::sign_mask",
+                       "return r >= 0 || u == format<T>::sign_mask")]),
+    "kept-normal": ("arithmetic.hpp", "powers of two beside the largest numbers are kept normal", "contacts", "plain",
+                    [("larger(r, 1)", "larger(r, 0)")]),
+    "difference": ("exact_sum.hpp", "a difference is one number only if 62 bits suffice", "stages", "plain",
+                   [("<= 61", "<= 65")]),
+    "carry": ("exact_sum.hpp", "the carry from digit to digit", "stages", "plain",
+              [("digits_[i] + carry", "digits_[i]")]),
+    "window-carry": ("exact_sum.hpp", "the carry from window to window", "stages", "plain",
+                     [("begin_ += window) {", "begin_ += window) { carry = 0;")]),
+    "product-carry": ("exact_sum.hpp", "the carry within a product", "stages", "plain",
+                      [("carry = (carry >> 32) + (first >> 32)", "carry = (first >> 32)")]),
+    "product-room": ("exact_sum.hpp", "memory for a product of six", "stages", "checked",
+                     [("product[2 * most_factors + 1]", "product[2 * most_factors - 1]")]),
+    "spare": ("exact_sum.hpp", "digits for the sign of the sum: 32 bits fewer", "stages", "plain",
+              [("spare = 24", "spare = -8")]),
+    "sign": ("exact_sum.hpp", "the signs of factors", "stages", "plain",
+             [("negative = negative != (f.mantissa < 0)", "")]),
+    "twice": ("exact_sum.hpp", "weights of 2", "stages", "plain", [(" + (weight == 2 || weight == -2 ? 1 : 0)", "")]),
+    "subnormal": ("exact_sum.hpp", "the exponent of subnormal numbers", "stages", "plain",
+                  [("larger(biased, 1) -", "biased -")]),
+    "hidden-bit": ("exact_sum.hpp", "the leading bit of subnormal numbers", "stages", "plain",
+                   [("biased == 0 ? fraction : fraction", "fraction")]),
+    "first-digit": ("exact_sum.hpp", "products that begin below the window", "stages", "plain",
+                    [("first + words < 0", "first < 0")]),
+    "last-digit": ("exact_sum.hpp", "bits that a shift moves into one more digit", "stages", "plain",
+                   [("i <= words; ++i", "i < words; ++i")]),
+    "window": ("exact_sum.hpp", "digits outside of the window", "stages", "checked",
+               [("first + i >= 0 && first + i < window", "first + i >= 0")]),
+    "touching": ("exact_triangle.hpp", "touching counts", "stages", "plain",
+                 [("{ excess(add); }) >= 0", "{ excess(add); }) > 0")]),
+    "over-face": ("exact_triangle.hpp", "a degenerate triangle has no face", "stages", "plain",
+                  [("if (side <= 0) return false", "if (side < 0) return false")]),
+    "edge-begin": ("exact_triangle.hpp", "the foot is not before the edge", "stages", "plain",
+                   [("along(corner_[i], -1) > 0 && ", "")]),
+    "edge-end": ("exact_triangle.hpp", "the foot is not beyond the edge", "stages", "plain",
+                 [(" && along(corner_[(i + 1) % 3], 1) > 0", "")]),
+    "slack": ("bounding_sphere.hpp", "the rounding of a ball around a triangle", "stages", "plain",
+              [("1 + 32 * S(format<float>::unit)", "1")]),
+    "ball-underflow": ("bounding_sphere.hpp", "squares in its radius that underflow", "stages", "plain",
+                       [(" + 2 * root(std::numeric_limits<S>::min());", ";")]),
+    "ball-overflow": ("bounding_sphere.hpp", "squares in its radius that overflow", "verdicts", "clang-fast",
+                      [("if (!finite(far_squared))", "if (false)")]),
+    "first-step": ("undecided.hpp", "what was certain is not reported again", "scenes", "plain",
+                   [("== verdict::unsure && in_stages", "!= verdict::miss && in_stages")]),
+    "room": ("undecided.hpp", "pairs that find no room on the list", "scenes", "checked",
+             [("if (slot < open.capacity) ", "")]),
+    "listed": ("undecided.hpp", "a list that lacks pairs is not used", "scenes", "checked",
+               [("    if (open.overflown()) return;\n", "")]),
+    "second-time": ("undecided.hpp", "then all candidates are tested again", "scenes", "plain",
+                    [("bool needed() const { return open.overflown(); }", "bool needed() const { return false; }")]),
+    "needless": ("undecided.hpp", "and only then", "scenes", "plain",
+                 [("bool needed() const { return open.overflown(); }", "bool needed() const { return true; }")]),
+    "near-distance": ("contact_of.hpp", "distances of which doubles have too few digits", "contacts", "plain",
+                      [("local_distance >= enough && ", "")]),
+    "near-depth": ("contact_of.hpp", "depths of which doubles have too few digits", "contacts", "plain",
+                   [(" && (local_depth >= enough || local_depth <= -enough)", "")]),
+    "double-input": ("contact_of.hpp", "doubles in, doubles out: always exact", "contacts", "plain",
+                     [("sizeof(S) == sizeof(float) && local_distance", "local_distance")]),
+    "depth-of-a-tie": ("exact_triangle.hpp", "a centre on the triangle and a radius of 0", "contacts", "plain",
+                       [("      if (above.value == 0) return {distance, 0};\n", "")]),
+    "distance-of-0": ("exact_triangle.hpp", "a distance of 0 has no exponent", "contacts", "plain",
+                      [("      if (square.value == 0) return {0, -4000};\n", "")]),
+    "equally-deep": ("exact_triangle.hpp", "of feet that are equally deep the closest", "contacts", "plain",
+                     [("there.depth > there.distance ? there.distance < to_nearest.distance : there.depth", "there.depth")]),
+    "near-feet": ("exact_triangle.hpp", "feet that doubles take for farther by mistake", "contacts", "plain",
+                  [("root(around) + 0x1p-40", "root(around)"), ("mul(mul(reach, reach), 1 + 0x1p-40)", "mul(reach, reach)")]),
+    "power-above": ("exact_triangle.hpp", "powers of two beyond the range, above", "contacts", "plain",
+                    [("    for (; n > 1000; n -= 1000) x *= 0x1p1000;\n", "")]),
+    "power-below": ("exact_triangle.hpp", "powers of two beyond the range, below", "contacts", "plain",
+                    [("    for (; n < -1000; n += 1000) x *= 0x1p-1000;\n", "")]),
+}
+
+# The same without a mutation: nothing may be wrong.
+SOUND = {f"none.{program}.{compiler}": (None, None, program, compiler, [])
+         for program, compiler in sorted({(m[2], m[3]) for m in MUTATIONS.values()})}
+SOUND["none.regions"] = ("certificate.hpp", None, "stages", "plain", [NO_REGIONS])
+
+# (file, the guard as it stands there, why no row goes wrong without it)
+UNSEEN = [
+    ("certificate.hpp", " || !valid_radius(t.radius)",
+     "below 0 `inner > 0` fails, and with NaN every comparison; -ffinite-math-only promises neither, but g++ and clang++ do so"),
+    ("certificate.hpp", " && size <= std::numeric_limits<T>::max()",
+     "an infinite coordinate makes `whole` infinite or NaN, an infinite radius `inner` NaN; the same compilers"),
+    ("certificate.hpp", "whole > std::numeric_limits<T>::min() ? quick_reciprocal(whole) : T(0)",
+     "dividing by 0 gives NaN or limited weights, and so no certificate; the same compilers, and the limits of `__fdividef`"),
+    ("arithmetic.hpp", "T volatile const kept = x",
+     "C0 needs it where a compiler may reassociate; g++ 12 and clang++ 14 do not here, with -ffast-math"),
+    ("grid.hpp", "g.reach * (1 + 4 * S(format<float>::unit))", "is for single precision; `exact` needs lo - c <= r only"),
+    ("grid.hpp", " + 64 * format<S>::unit * far",
+     "rounding is monotone, so lo - r <= c implies fl(lo - r) <= c; is for compilers that reassociate"),
+]
+
+
+def mutated(name):
+    """The file that a mutation changes, and its new text."""
+    file, _, _, _, edits = (SOUND | MUTATIONS)[name]
+    text = (ROOT / "include" / DETAIL / file).read_text()
+    for old, new in edits:
+        if text.count(old) != 1:
+            raise SystemExit(f"{name}: this stands {text.count(old)} times in {file}: {old}")
+        text = text.replace(old, new)
+    return file, text
+
+
+def judge(name, rows, eigen):
+    """What is wrong with the verdicts: None if nothing is."""
+    file, _, program, compiler, _ = (SOUND | MUTATIONS)[name]
+    command = COMPILERS[compiler].split()
+    if not shutil.which(command[0]):
+        print(f"skipped: no {command[0]}")
+        raise SystemExit(SKIPPED)
+    with tempfile.TemporaryDirectory() as folder:
+        place = pathlib.Path(folder)
+        (place / DETAIL).mkdir(parents=True)
+        if file:
+            file, text = mutated(name)
+            (place / DETAIL / file).write_text(text)
+        source = ROOT / "tests" / ("flags" if program == "verdicts" else "mutation") / f"{program}.cpp"
+        subprocess.run([*command, "-std=c++17", "-w", f"-I{place}", f"-I{ROOT / 'include'}", "-isystem", eigen, source, "-o",
+                        place / "program"], check=True)
+        cases = ["float", ROOT / "tests" / "data" / "static_f32.csv"] if program == "verdicts" else [rows]
+        result = subprocess.run([place / "program", *cases], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    if result.returncode == 0:
+        return None
+    broken = re.search(r"ERROR: AddressSanitizer: (\S+)", result.stderr)
+    return broken[1] if broken else result.stdout.strip().split("\n")[-1] or f"ends with {result.returncode}"
+
+
+def tables():
+    yield "| mutation | takes away, or loosens | in | seen by |\n|---|---|---|---|\n"
+    for name, (file, what, program, compiler, _) in MUTATIONS.items():
+        mutated(name)
+        yield f"| `{name}` | {what} | `{file}` | `{program}`, `{COMPILERS[compiler]}` |\n"
+    yield "\nNo row is known that goes wrong without these:\n\n| guard | in | why |\n|---|---|---|\n"
+    for file, guard, why in UNSEEN:
+        if guard not in (ROOT / "include" / DETAIL / file).read_text():
+            raise SystemExit(f"this does not stand in {file}: {guard}")
+        yield f"| `{guard.strip()}` | `{file}` | {why} |\n"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    commands = parser.add_subparsers(dest="command", required=True)
+    commands.add_parser("names")
+    commands.add_parser("table").add_argument("--write", action="store_true")
+    one = commands.add_parser("judge")
+    one.add_argument("name", choices=SOUND | MUTATIONS)
+    one.add_argument("--rows", required=True, help="the folder that make_rows has written to")
+    one.add_argument("--eigen", default="/usr/include/eigen3")
+    args = parser.parse_args()
+
+    if args.command == "names":
+        print("\n".join(SOUND | MUTATIONS))
+        return 0
+    if args.command == "table":
+        begin, end = "<!-- mutations -->\n", "<!-- end mutations -->"
+        before, rest = PAGE.read_text().split(begin)
+        listed, after = rest.split(end)
+        wanted = "".join(tables())
+        if args.write:
+            PAGE.write_text(before + begin + wanted + end + after)
+        elif listed != wanted:
+            print(f"{PAGE} lists other mutations; tests/mutation/mutate.py table --write changes that")
+            return 1
+        return 0
+    said = judge(args.name, args.rows, args.eigen)
+    print(f"{args.name}: {said or 'nothing wrong'}")
+    return (said is None) != (args.name in SOUND)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,56 @@
+/// scenes FOLDER: how many rows go wrong as scenes of one pair, and how many scenes with more open pairs than the list
+/// of the undecided has room for.
+#include <cstdio>
+
+#include <collide/bucket.cuh>
+#include <collide/detector.hpp>
+
+#include "rows.hpp"
+
+/// The steps of a query that CUDA has, on the host.
+struct stepwise : collide::host {
+  static constexpr bool defers = true;
+};
+
+template <class S>
+struct scenes {
+  collide::detector<collide::bucket, collide::karabassi<>, stepwise, S> detector;
+  collide::pairs found;
+
+  /// Triangles and spheres of these rows, `copies` times each.
+  bool right(std::vector<tests::row<S>> const& rows, std::size_t copies) {
+    std::vector<S> corners, balls;
+    for (std::size_t i = 0; i < copies; ++i) {
+      for (auto const& r : rows) {
+        corners.insert(corners.end(), r.numbers.begin(), r.numbers.begin() + 9);
+        balls.insert(balls.end(), r.numbers.begin() + 9, r.numbers.end());
+      }
+    }
+    std::size_t expected = 0;
+    for (auto const& r : rows)
+      for (auto const& other : rows)
+        expected += collide::karabassi<>::intersects(other.triangle(), r.sphere()) ? copies * copies : 0;
+    std::size_t const n = copies * rows.size();
+    detector.detect(collide::triangle_soup(corners.data(), n), collide::spheres_xyzr(balls.data(), n), found);
+    return found.size() == expected;
+  }
+
+  int count_wrong(std::vector<tests::row<S>> const& rows) {
+    namespace detail = collide::detail;
+    int wrong = 0, open = 0;
+    tests::row<S> const certain{{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 1, 0, 1};
+    for (auto const& r : rows) {
+      wrong += right({r}, 1) ? 0 : 1;
+      bool const unsure = detail::attempt(r.triangle(), r.sphere()).verdict == detail::verdict::unsure;
+      if (unsure && open++ < 20) wrong += right({r, certain}, 50) ? 0 : 1;
+    }
+    return wrong;
+  }
+};
+
+int main(int, char** argv) {
+  int const wrong = scenes<float>().count_wrong(tests::read_rows<float>(argv[1])) +
+                    scenes<double>().count_wrong(tests::read_rows<double>(argv[1]));
+  std::printf("%d wrong\n", wrong);
+  return wrong != 0;
+}

@@ -1,0 +1,41 @@
+/// stages FOLDER: how many rows some stage of a verdict gets wrong, or the ball of the broad phase drops; subnormal
+/// numbers as they are and flushed to zero.
+#include <cstdio>
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+#include <collide/detail/bounding_sphere.hpp>
+#include <collide/detail/decide.hpp>
+
+#include "rows.hpp"
+
+template <class S>
+int count_wrong(std::vector<tests::row<S>> const& rows) {
+  namespace detail = collide::detail;
+  int wrong = 0;
+  for (auto const& r : rows) {
+    auto const t = r.triangle();
+    auto const s = r.sphere();
+    bool const hit = r.hit != 0;
+    bool const sound = detail::finite(t) && detail::finite(s.centre) && detail::valid_radius(s.radius);
+    if (detail::decide(t, s).hit != hit || detail::decide_closely(t, s).hit != hit ||
+        (sound && !detail::infinite(s.radius) && detail::exact_triangle(t, s).in_reach() != hit) ||
+        (hit && !detail::bounds_of(t).reached(s.centre, s.radius)))
+      ++wrong;
+  }
+  return wrong;
+}
+
+int main(int, char** argv) {
+  auto const floats = tests::read_rows<float>(argv[1]);
+  auto const doubles = tests::read_rows<double>(argv[1]);
+  int wrong = count_wrong(floats) + count_wrong(doubles);
+#if defined(__SSE__)
+  _mm_setcsr(_mm_getcsr() | 0x8040);
+  wrong += count_wrong(floats) + count_wrong(doubles);
+#endif
+  std::printf("%d wrong\n", wrong);
+  return wrong != 0;
+}
