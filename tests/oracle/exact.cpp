@@ -96,13 +96,13 @@ void for_each_candidate(std::array<vec<Int>, 3> const& v, F f) {
 
 /// The inputs as integers: value = integer * 2^exponent, the same exponent for all of them.
 struct scaled {
-  std::array<decoded, 13> values;
+  std::array<decoded, 16> values;
   int exponent, bits;
 
-  explicit scaled(triangle const& t, point const& p, double radius)
+  explicit scaled(triangle const& t, point const& p, double radius, point const& move = {0, 0, 0})
       : values{{decoded(t.a.x), decoded(t.a.y), decoded(t.a.z), decoded(t.b.x), decoded(t.b.y), decoded(t.b.z),
                 decoded(t.c.x), decoded(t.c.y), decoded(t.c.z), decoded(p.x), decoded(p.y), decoded(p.z),
-                decoded(radius)}} {
+                decoded(move.x), decoded(move.y), decoded(move.z), decoded(radius)}} {
     int top = -5000;
     exponent = 5000;
     for (auto const& value : values)
@@ -135,12 +135,47 @@ struct scaled {
 
   template <class Int>
   bool hit() const {
-    Int const radius = integer<Int>(12), radius2 = radius * radius;
+    Int const radius = integer<Int>(15), radius2 = radius * radius;
     bool found = false;
     for_each_candidate<Int>(local<Int>(), [&](auto const& c) { found = found || c.num <= radius2 * c.den; });
     return found;
   }
 };
+
+/// Does a ball around the origin touch the triangle, anywhere on its way along `move`? As seen from the ball, the triangle
+/// moves the other way and sweeps out a prism. The origin is within the radius of that if it is of one of the eight
+/// triangles that its surface is made of, or if it is inside: then the way goes through the triangle.
+template <class Int>
+bool swept_hit(std::array<vec<Int>, 3> const& v, vec<Int> const& move, Int const& radius) {
+  Int const radius2 = radius * radius;
+  std::array<vec<Int>, 3> const moved{v[0] - move, v[1] - move, v[2] - move};
+  bool found = false;
+  auto const try_triangle = [&](vec<Int> const& a, vec<Int> const& b, vec<Int> const& c) {
+    if (!found)
+      for_each_candidate<Int>({a, b, c}, [&](auto const& f) { found = found || f.num <= radius2 * f.den; });
+  };
+  try_triangle(v[0], v[1], v[2]);
+  try_triangle(moved[0], moved[1], moved[2]);
+  for (unsigned i = 0; i < 3; ++i) {
+    unsigned const j = (i + 1) % 3;
+    try_triangle(v[i], v[j], moved[i]);
+    try_triangle(moved[i], moved[j], v[j]);
+  }
+  if (found) return true;
+  // move * t = v0 + (v1 - v0) * f + (v2 - v0) * g, by Cramer's rule
+  vec<Int> const p = v[1] - v[0], q = v[2] - v[0];
+  Int const zero = 0;
+  Int whole = dot(move, cross(p, q));
+  if (whole == 0) return false;  // a flat prism is all surface
+  Int t = dot(v[0], cross(p, q)), f = dot(move, cross(q, v[0])), g = dot(move, cross(v[0], p));
+  if (whole < 0) {
+    whole = -whole;
+    t = -t;
+    f = -f;
+    g = -g;
+  }
+  return t >= zero && t <= whole && f >= zero && g >= zero && f + g <= whole;
+}
 
 bool finite(point const& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -171,6 +206,71 @@ bool hit(triangle const& t, sphere const& s) {
   if (inputs.bits <= 40) return inputs.hit<mp::checked_int256_t>();
   if (inputs.bits <= 82) return inputs.hit<mp::checked_int512_t>();
   return inputs.hit<mp::cpp_int>();
+}
+
+namespace {
+
+/// Is the triangle touched at some time from 0 to numerator / 2^shift?
+bool touched_until(triangle const& t, sphere const& s, point const& move, mp::cpp_int const& numerator, unsigned shift) {
+  if (!finite(t.a) || !finite(t.b) || !finite(t.c) || !finite(s.centre) || !finite(move)) return false;
+  if (!(s.radius >= 0)) return false;
+  if (std::isinf(s.radius)) return true;
+  scaled const inputs(t, s.centre, s.radius, move);
+  auto const check = [&](auto zero) {
+    using Int = decltype(zero);
+    auto const longer = [&](Int const& x) -> Int { return x * (Int(1) << shift); };
+    auto const longer_vector = [&](vec<Int> const& u) { return vec<Int>{longer(u.x), longer(u.y), longer(u.z)}; };
+    auto const v = inputs.local<Int>();
+    auto const d = inputs.vector<Int>(4);
+    Int const m(numerator);
+    return swept_hit<Int>({longer_vector(v[0]), longer_vector(v[1]), longer_vector(v[2])}, {d.x * m, d.y * m, d.z * m},
+                          longer(inputs.integer<Int>(15)));
+  };
+  // as below, with differences one bit longer
+  int const bits = inputs.bits + static_cast<int>(shift);
+  if (bits <= 38) return check(mp::checked_int256_t(0));
+  if (bits <= 80) return check(mp::checked_int512_t(0));
+  return check(mp::cpp_int(0));
+}
+
+bool touched_until(triangle const& t, sphere const& s, point const& move, double time, bool strictly) {
+  decoded const at(time);
+  auto shift = static_cast<unsigned>(std::max(-at.exponent, 0));
+  mp::cpp_int numerator = mp::cpp_int(at.mantissa) << std::max(at.exponent, 0);
+  if (strictly) {
+    if (time <= 0) return false;
+    numerator = (numerator << 300) - 1;
+    shift += 300;
+  }
+  return touched_until(t, s, move, numerator, shift);
+}
+
+}  // namespace
+
+bool hit(triangle const& t, sphere const& s, point const& move) { return touched_until(t, s, move, 1, 0); }
+
+bool hit_by(triangle const& t, sphere const& s, point const& move, double time) {
+  return touched_until(t, s, move, time, false);
+}
+
+bool hit_before(triangle const& t, sphere const& s, point const& move, double time) {
+  return touched_until(t, s, move, time, true);
+}
+
+double impact_time(triangle const& t, sphere const& s, point const& move) {
+  if (hit_by(t, s, move, 0)) return 0;
+  std::uint64_t low = 0, high;  // the bits of positive doubles sort as the doubles do
+  double const one = 1;
+  std::memcpy(&high, &one, sizeof high);
+  while (high - low > 1) {
+    std::uint64_t const middle = low + (high - low) / 2;
+    double time;
+    std::memcpy(&time, &middle, sizeof time);
+    (hit_by(t, s, move, time) ? high : low) = middle;
+  }
+  double first;
+  std::memcpy(&first, &high, sizeof first);
+  return first;
 }
 
 closest_point closest(triangle const& t, point const& p) {
