@@ -28,8 +28,8 @@ template <class S>
 COLLIDE_HD_NOINLINE void measure_exactly(triangle<S> const& t, sphere<S> const& s, local_triangle<double> const& l,
                                          closest_point<double>& around, vec3<double>& normal, double& distance,
                                          double& depth) {
-  exact_triangle const e(t, s);
-  exact_triangle::foot const f = e.nearest(l, around.distance_squared);
+  exact_triangle<> const e(t, s);
+  exact_triangle<>::foot const f = e.nearest(l, around.distance_squared);
   around.kind = f.kind;
   around.index = f.index;
   distance = f.distance();

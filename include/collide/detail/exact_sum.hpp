@@ -54,6 +54,11 @@ COLLIDE_HD dyadic decoded(S x) {
   return reduced((u & f::sign_mask) != 0 ? -m : m, larger(biased, 1) - f::bias - f::mantissa_bits);
 }
 
+/// As a double. Of no more than 53 bits, which it has, and an exponent from -1022.
+COLLIDE_HD inline double value_of(dyadic const& x) {
+  return mul(static_cast<double>(x.mantissa), from_bits<double>(static_cast<std::uint64_t>(x.exponent + 1023) << 52));
+}
+
 /// The parts whose sum a number is, wherever they are stored.
 struct parts_view {
   std::int64_t const* mantissas;
@@ -102,8 +107,8 @@ class exact_number {
   COLLIDE_HD parts_view parts() const { return {mantissas_, exponents_, count_}; }
 
  private:
-  std::int64_t mantissas_[Room];
-  std::int16_t exponents_[Room];
+  std::int64_t mantissas_[Room] = {};
+  std::int16_t exponents_[Room] = {};
   std::int32_t count_ = 0;
 };
 

@@ -1,0 +1,50 @@
+/// \file
+/// Verdicts on moving spheres that floating-point arithmetic can be sure of: as certificate.hpp, with a way to go.
+///
+/// As seen from the sphere the triangle sweeps out a prism, whose corners are the triangle's and the same less the
+/// displacement. A witness in the prism makes a hit, a direction in which all six corners are far makes a miss. Every
+/// line is proved in docs/numerics.md.
+#pragma once
+
+#include <collide/detail/certificate.hpp>
+#include <collide/detail/closest_approach.hpp>
+
+namespace collide::detail {
+
+/// Lengths of a sweep are known to within this times the size.
+template <class T>
+inline constexpr T sweep_error = 2 * certificate_bounds<T>::error;
+
+/// Whether the triangle comes within the radius of the way, where that is certain. `size` is `size_of(l)`, between the
+/// bounds. Coordinates may be off by `format<T>::unit` times the size. Bad values are never certain hits.
+template <class T>
+COLLIDE_HD_INLINE verdict certify(local_sweep<T> const& l, T size) {
+  local_triangle<T> const& t = l.shape;
+  T const error = sweep_error<T> * size, outer = t.radius + error;
+
+  vec3<T> const still = vec3<T>(T(0), T(0), T(0));
+  vec3<T> const lower = smaller(smaller(t.a, t.b), t.c) - larger(l.path, still);
+  vec3<T> const upper = larger(larger(t.a, t.b), t.c) - smaller(l.path, still);
+  if (largest<T>(lower) > outer || largest<T>(-upper) > outer) return verdict::miss;
+
+  closest_approach<T> const near = approach(l);
+  T const v = clamped(near.v), w = smaller(clamped(near.w), T(1) - v), time = clamped(near.time);
+  vec3<T> const q = (t.a + (v * (t.b - t.a) + w * (t.c - t.a))) - time * l.path;
+  T const s = q.dot(q);
+  // decided on bits; not finite if some coordinate is not
+  if (!(finite(s) & valid_radius(t.radius))) return verdict::unsure;
+
+  T const inner = t.radius - error;
+  if (inner > 0 && s <= inner * inner) return verdict::hit;
+
+  auto const beyond = [&](vec3<T> const& g, T gg) {
+    T const least = smaller(smaller(t.a.dot(g), t.b.dot(g)), t.c.dot(g)) - larger(l.path.dot(g), T(0));
+    return gg >= certificate_bounds<T>::shortest && least > 0 && least * least > outer * outer * gg;
+  };
+  if (beyond(q, s)) return verdict::miss;
+  vec3<T> n = near.normal;  // more certain than the way to a near point
+  if (n.dot(q) < 0) n = -n;
+  return beyond(n, n.dot(n)) ? verdict::miss : verdict::unsure;
+}
+
+}  // namespace collide::detail
