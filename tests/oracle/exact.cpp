@@ -142,31 +142,28 @@ struct scaled {
   }
 };
 
-/// Does a ball around the origin touch the triangle, anywhere on its way along `move`? As seen from the ball, the triangle
-/// moves the other way and sweeps out a prism. The origin is within the radius of that if it is of one of the eight
-/// triangles that its surface is made of, or if it is inside: then the way goes through the triangle.
-template <class Int>
-bool swept_hit(std::array<vec<Int>, 3> const& v, vec<Int> const& move, Int const& radius) {
-  Int const radius2 = radius * radius;
-  std::array<vec<Int>, 3> const moved{v[0] - move, v[1] - move, v[2] - move};
-  bool found = false;
-  auto const try_triangle = [&](vec<Int> const& a, vec<Int> const& b, vec<Int> const& c) {
-    if (!found)
-      for_each_candidate<Int>({a, b, c}, [&](auto const& f) { found = found || f.num <= radius2 * f.den; });
-  };
-  try_triangle(v[0], v[1], v[2]);
-  try_triangle(moved[0], moved[1], moved[2]);
+/// As seen from a ball that moves, the triangle moves the other way and sweeps out a prism: from `v` along -`move`. Calls
+/// f with three corners for each of the eight triangles that the prism's surface is made of, all of it if it is flat.
+template <class Int, class F>
+void for_each_side(std::array<vec<Int>, 3> const& v, vec<Int> const& move, F f) {
+  using corners = std::array<vec<Int>, 3>;
+  corners const moved{v[0] - move, v[1] - move, v[2] - move};
+  f(v);
+  f(moved);
   for (unsigned i = 0; i < 3; ++i) {
     unsigned const j = (i + 1) % 3;
-    try_triangle(v[i], v[j], moved[i]);
-    try_triangle(moved[i], moved[j], v[j]);
+    f(corners{v[i], v[j], moved[i]});
+    f(corners{moved[i], moved[j], v[j]});
   }
-  if (found) return true;
+}
+
+/// Is the origin in the prism, and that not flat? Then the ball's centre goes through the triangle.
+template <class Int>
+bool through(std::array<vec<Int>, 3> const& v, vec<Int> const& move) {
   // move * t = v0 + (v1 - v0) * f + (v2 - v0) * g, by Cramer's rule
   vec<Int> const p = v[1] - v[0], q = v[2] - v[0];
-  Int const zero = 0;
   Int whole = dot(move, cross(p, q));
-  if (whole == 0) return false;  // a flat prism is all surface
+  if (whole == 0) return false;
   Int t = dot(v[0], cross(p, q)), f = dot(move, cross(q, v[0])), g = dot(move, cross(v[0], p));
   if (whole < 0) {
     whole = -whole;
@@ -174,7 +171,18 @@ bool swept_hit(std::array<vec<Int>, 3> const& v, vec<Int> const& move, Int const
     f = -f;
     g = -g;
   }
-  return t >= zero && t <= whole && f >= zero && g >= zero && f + g <= whole;
+  return t >= 0 && t <= whole && f >= 0 && g >= 0 && f + g <= whole;
+}
+
+/// Does a ball around the origin touch the triangle, anywhere on its way along `move`?
+template <class Int>
+bool swept_hit(std::array<vec<Int>, 3> const& v, vec<Int> const& move, Int const& radius) {
+  Int const radius2 = radius * radius;
+  bool found = false;
+  for_each_side<Int>(v, move, [&](std::array<vec<Int>, 3> const& side) {
+    if (!found) for_each_candidate<Int>(side, [&](auto const& c) { found = found || c.num <= radius2 * c.den; });
+  });
+  return found || through<Int>(v, move);
 }
 
 bool finite(point const& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
@@ -288,6 +296,20 @@ closest_point closest(triangle const& t, point const& p) {
 double depth(triangle const& t, sphere const& s) {
   scaled const inputs(t, s.centre, 0);
   return static_cast<double>(real(s.radius) - distance(nearest(inputs), inputs.exponent));
+}
+
+double distance(triangle const& t, point const& p, point const& move) {
+  scaled const inputs(t, p, 0, move);
+  auto const v = inputs.local<mp::cpp_int>();
+  auto const d = inputs.vector<mp::cpp_int>(4);
+  if (through<mp::cpp_int>(v, d)) return 0;
+  candidate<mp::cpp_int> best{0, 0, 0, {}};
+  for_each_side<mp::cpp_int>(v, d, [&](auto const& side) {
+    for_each_candidate<mp::cpp_int>(side, [&](auto const& c) {
+      if (best.feature == 0 || c.num * best.den < best.num * c.den) best = c;
+    });
+  });
+  return static_cast<double>(distance(best, inputs.exponent));
 }
 
 int compare_distances(triangle const& s, triangle const& t, point const& p) {

@@ -59,6 +59,9 @@ closest_point closest(triangle const& t, point const& p);
 /// radius - distance, rounded once to double: no cancellation, whatever the depth.
 double depth(triangle const& t, sphere const& s);
 
+/// The distance of the triangle from the way from p to p + move, rounded once to double.
+double distance(triangle const& t, point const& p, point const& move);
+
 /// -1, 0 or 1: is p nearer to s than to t, as near, or farther? Exact.
 int compare_distances(triangle const& s, triangle const& t, point const& p);
 

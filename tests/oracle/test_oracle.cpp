@@ -111,7 +111,10 @@ TEST_CASE("oracle: a sweep touches if and only if some place on the way does") {
     sphere const s{any(), static_cast<double>(random() % 4) / 2};
     point const move = any();
     bool const touched = oracle::hit(t, s, move);
+    double const distance = oracle::distance(t, s.centre, move);
     CAPTURE(i);
+    REQUIRE(oracle::hit(t, {s.centre, distance + 1e-14}, move));
+    REQUIRE_FALSE(oracle::hit(t, {s.centre, distance - 1e-14}, move));
     auto const at = [&](double time) {
       return sphere{{s.centre.x + time * move.x, s.centre.y + time * move.y, s.centre.z + time * move.z}, s.radius};
     };
