@@ -64,7 +64,7 @@ COLLIDE_HD_NOINLINE S time_of_impact(triangle<S> const& t, moving_sphere<S> cons
       hit = middle;
     } else {
       missed = middle;
-      ahead *= 2;
+      if (ahead < steps) ahead *= 2;
     }
   }
   return rounded_down<S>(larger(time, missed * (1.0 / steps)));
