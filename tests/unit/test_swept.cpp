@@ -81,13 +81,14 @@ void check_impact(oracle::triangle const& t, oracle::sphere const& s, point cons
   double const travel = std::hypot(move.x, move.y, move.z);
   auto const closest = oracle::closest(t, centre);
   auto const distance = static_cast<double>(c.distance);
-  double const unit = std::numeric_limits<S>::epsilon();
-  REQUIRE(std::abs(distance - closest.distance) <= 4 * unit * distance + 0x1p-50 * (size + travel));
+  double const unit = std::numeric_limits<S>::epsilon(), least = 4.0 * std::numeric_limits<S>::denorm_min();
+  double const rounding = 4 * unit * distance + 0x1p-48 * (size + travel) + least;
+  REQUIRE(std::abs(distance - closest.distance) <= rounding);
   // it gets nearer by no more than it travels until it touches
-  REQUIRE(distance >= s.radius * (1 - 4 * unit));
-  REQUIRE(distance <= s.radius * (1 + 4 * unit) + 2 * most_early<S> * travel + 0x1p-50 * (size + travel));
-  collide::vec3<double> const there = c.point.template cast<double>() + distance * c.normal.template cast<double>();
-  REQUIRE((there - vector<double>(centre)).norm() <= 16 * unit * (size + travel + distance));
+  REQUIRE(distance >= s.radius * (1 - 4 * unit) - least);
+  REQUIRE(distance <= s.radius + most_early<S> * travel + rounding);
+  REQUIRE(oracle::closest(t, {c.point.x(), c.point.y(), c.point.z()}).distance <= 8 * unit * (size + travel) + least);
+  REQUIRE(std::abs(-c.normal.template cast<double>().dot(vector<double>(closest.offset)) - distance) <= 4 * rounding);
 }
 
 template <class S>
