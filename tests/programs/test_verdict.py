@@ -131,7 +131,7 @@ class Forms(VerdictTest):
                 self.assertEqual(self.verdicts("cases.csv", "--scalar", scalar)[0], [("0", 1), ("1", 0)])
 
     def test_swept_and_other_cases(self):
-        rows = [f"0,f,{MISS},,,", f"1,f,{MISS},0,0,-0.5", f"2,f,{MISS},0,0,-0.499", f"3,f,{HIT},0,0,9", f"4,f,{MISS},0,0,0",
+        rows = [f"0,f,{MISS},,,", f"1,f,{MISS},0,0,-0.5", f"2,f,{MISS},0,0,-0.484375", f"3,f,{HIT},0,0,9", f"4,f,{MISS},0,0,0",
                 f"5,f,{MISS},0,0,nan", f"6,f,{HIT},inf,0,0"]
         self.write("cases.csv", "\n".join([HEADER + ",dx,dy,dz", *rows]))
         for precision in PRECISIONS[1:]:
