@@ -30,8 +30,8 @@ struct case_data {
 
 /// Reads cases from a CSV file with the columns id, family, ax .. cz (the triangle), px, py, pz and R (the sphere), and
 /// perhaps hit (0 or 1), dx, dy and dz (the displacement of a swept case; nothing in any of them in others); see
-/// `csv_table`. Numbers are decimal or hexadecimal, nan, inf or -inf, and correctly rounded to `S`. Throws `data_error`,
-/// which names file and line, at what is none, and at a number beyond the range of `S`.
+/// `csv_table`. Numbers are decimal or hexadecimal, nan, inf or -inf, and correctly rounded to `S`. Throws
+/// `data_error`, which names file and line, at what is none, and at a number beyond the range of `S`.
 template <class S>
 case_data<S> read_cases(std::string const& path) {
   constexpr std::size_t triangle = 9, numbers = 13, id = 13, family = 14, hit = 15, displacement = 16, columns = 19;

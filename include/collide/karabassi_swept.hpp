@@ -11,9 +11,9 @@
 
 namespace collide {
 
-/// Narrow phase: the particle/triangle test of E.-A. Karabassi, G. Papaioannou, T. Theoharis and A. Boehm, "Intersection
-/// test for collision detection in particle systems", J. Graphics Tools 4(1), 1999: the way of a ball within a step is a
-/// cylinder with spherical caps; does the triangle touch that, when first, and where?
+/// Narrow phase: the particle/triangle test of E.-A. Karabassi, G. Papaioannou, T. Theoharis and A. Boehm,
+/// "Intersection test for collision detection in particle systems", J. Graphics Tools 4(1), 1999: the way of a ball
+/// within a step is a cylinder with spherical caps; does the triangle touch that, when first, and where?
 ///
 /// `Precision` says how sure the verdict must be: `exact` (never wrong), `double_precision` or `single_precision`. Time
 /// and contact of a colliding pair are the same with all of them.
@@ -23,9 +23,10 @@ namespace collide {
 /// move collides if and only if it does with `karabassi`.
 template <class Precision = exact>
 struct karabassi_swept {
-  static_assert(detail::is_precision<Precision>::value && !std::is_same<Precision, baseline>::value,
-                "collide: the parameter of karabassi_swept is exact, double_precision, single_precision or a precision of "
-                "your own: a class with a member type scalar");
+  static_assert(
+      detail::is_precision<Precision>::value && !std::is_same<Precision, baseline>::value,
+      "collide: the parameter of karabassi_swept is exact, double_precision, single_precision or a precision of "
+      "your own: a class with a member type scalar");
 
   /// True if the closed ball touches the closed triangle on its way.
   template <class S>
@@ -44,8 +45,8 @@ struct karabassi_swept {
     return detail::attempt(t, s).verdict;
   }
 
-  /// When a colliding pair first touches, from 0 to 1: never later than in exact arithmetic, and earlier by at most 2^-23
-  /// for floats and 2^-30 for doubles. 0 if the two overlap at the beginning.
+  /// When a colliding pair first touches, from 0 to 1: never later than in exact arithmetic, and earlier by at most
+  /// 2^-23 for floats and 2^-30 for doubles. 0 if the two overlap at the beginning.
   template <class S>
   static COLLIDE_HD S time_of_impact(triangle<S> const& t, moving_sphere<S> const& s) {
     return detail::time_of_impact(t, s);

@@ -23,8 +23,8 @@ struct certificate_bounds {
   static constexpr T shortest = T(0x1p-60);
 };
 
-/// Scales a problem with coordinates of `S` by a power of two until `certify` can work on it. False if that cannot be had
-/// without losing digits.
+/// Scales a problem with coordinates of `S` by a power of two until `certify` can work on it. False if that cannot be
+/// had without losing digits.
 template <class S, class Problem, class T>
 COLLIDE_HD_INLINE bool brought_to_size(Problem& p, T& size) {
   using bounds = certificate_bounds<T>;

@@ -21,11 +21,7 @@ template <class T>
 COLLIDE_HD_INLINE verdict certify(local_sweep<T> const& l, T size) {
   local_triangle<T> const& t = l.shape;
   T const error = sweep_error<T> * size, outer = t.radius + error;
-
-  vec3<T> const still = vec3<T>(T(0), T(0), T(0));
-  vec3<T> const lower = smaller(smaller(t.a, t.b), t.c) - larger(l.path, still);
-  vec3<T> const upper = larger(larger(t.a, t.b), t.c) - smaller(l.path, still);
-  if (largest<T>(lower) > outer || largest<T>(-upper) > outer) return verdict::miss;
+  if (!box_in_reach(l, outer)) return verdict::miss;
 
   closest_approach<T> const near = approach(l);
   T const v = clamped(near.v), w = smaller(clamped(near.w), T(1) - v), time = clamped(near.time);

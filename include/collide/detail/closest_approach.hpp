@@ -11,9 +11,9 @@ namespace collide::detail {
 template <class T>
 struct closest_approach {
   T time, v, w;
-  vec3<T> offset;    ///< from the place on the way to the point of the triangle
+  vec3<T> offset;  ///< from the place on the way to the point of the triangle
   T distance_squared;
-  vec3<T> normal;    ///< perpendicular to what the two lie in: way and edge, or face; not of length 1
+  vec3<T> normal;  ///< perpendicular to what the two lie in: way and edge, or face; not of length 1
 };
 
 /// x / y limited to 0 .. 1; 0 unless y > 0.
@@ -34,8 +34,8 @@ COLLIDE_HD_INLINE closest_approach<T> approach(local_sweep<T> const& l) {
     T const square = dot(offset, offset);
     if (square <= best.distance_squared) best = {time, v, w, offset, square, normal};
   };
-  // Two lines, after C. Ericson, Real-Time Collision Detection, 5.1.9: the time that is the best on the whole line of the
-  // edge, the best place on the edge for that time, and the best time for that place.
+  // Two lines, after C. Ericson, Real-Time Collision Detection, 5.1.9: the time that is the best on the whole line of
+  // the edge, the best place on the edge for that time, and the best time for that place.
   auto const along = [&](vec3<T> const& from, vec3<T> const& to, auto const& weights) {
     vec3<T> const e = to - from;
     T const ee = dot(e, e), de = dot(d, e), ev = dot(e, from), dv = dot(d, from);

@@ -18,7 +18,8 @@ COLLIDE_HD contact<S> contact_at(triangle<S> const& t, moving_sphere<S> const& s
   auto const exactly = [&] {
     return exact_triangle<path_parts<S>>(t, s, exact_path<S>(s.displacement, decoded(time)).to);
   };
-  vec3<double> const centre = s.centre.template cast<double>() + scaled<double>(s.displacement.template cast<double>(), at);
+  vec3<double> const centre =
+      s.centre.template cast<double>() + scaled<double>(s.displacement.template cast<double>(), at);
   return contact_from(seen_at(l, at), centre, s.radius, clear, exactly);
 }
 

@@ -47,9 +47,9 @@ COLLIDE_HD_NOINLINE void measure_exactly(exact_triangle<Moved> const& e, local_t
 /// Doubles are sure of a length from here on, in a problem of at most size 4: to within 2^-45; see docs/numerics.md.
 inline constexpr double clear_length = 0x1p-20;
 
-/// The contact of a finite triangle, as seen from `centre`, computed in double, rounded once, and computed exactly before
-/// that where the digits of a double do not suffice: `exactly()` makes an `exact_triangle`. `clear(distance, depth)`, both
-/// local, tells whether they do. The ids are left to the caller.
+/// The contact of a finite triangle, as seen from `centre`, computed in double, rounded once, and computed exactly
+/// before that where the digits of a double do not suffice: `exactly()` makes an `exact_triangle`. `clear(distance,
+/// depth)`, both local, tells whether they do. The ids are left to the caller.
 template <class S, class Clear, class Exactly>
 COLLIDE_HD contact<S> contact_from(local_triangle<double> const& l, vec3<double> const& centre, S radius,
                                    Clear const& clear, Exactly const& exactly) {

@@ -152,8 +152,8 @@ struct wide_number {
 class exact_sum {
  public:
   /// Calls `terms(add)` as often as needed, and always for the same sum: terms calls `add(weight, factors...)` for each
-  /// product, with a weight of -2, -1, 1 or 2 and at most 6 factors of type `exact_number`. With all combinations of their
-  /// parts, at most 2^20 products.
+  /// product, with a weight of -2, -1, 1 or 2 and at most 6 factors of type `exact_number`. With all combinations of
+  /// their parts, at most 2^20 products.
   template <class Terms>
   COLLIDE_HD static wide_number of(Terms const& terms) {
     exact_sum sum(terms);

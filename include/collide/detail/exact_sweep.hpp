@@ -88,8 +88,8 @@ class exact_sweep {
   }
 
   COLLIDE_HD bool across_edge(int i) const {
-    auto const &d = path_.to;
-    auto const &e = start_.edge(i);
+    auto const& d = path_.to;
+    auto const& e = start_.edge(i);
     auto const side = [&](auto const& v, auto const& along) {
       return sign([&](auto const& add) { sum_cross_dot_cross(1, v, along, d, e, add); });
     };
@@ -98,8 +98,8 @@ class exact_sweep {
   }
 
   COLLIDE_HD bool edge_within(int i) const {
-    auto const &d = path_.to;
-    auto const &e = start_.edge(i);
+    auto const& d = path_.to;
+    auto const& e = start_.edge(i);
     return sign([&](auto const& add) {
              sum_cross_squared(1, d, e, add, start_.radius(), start_.radius());
              sum_determinant_squared(-1, start_.corner(i), d, e, add);

@@ -51,6 +51,15 @@ COLLIDE_HD_INLINE local_sweep<T> rounded(local_sweep<W> const& l) {
   return {rounded<T>(l.shape), l.path.template cast<T>()};
 }
 
+/// False if, on some axis, the triangle's box is farther than `reach` from all of the way.
+template <class T>
+COLLIDE_HD_INLINE bool box_in_reach(local_sweep<T> const& l, T reach) {
+  vec3<T> const still = vec3<T>(T(0), T(0), T(0));
+  vec3<T> const lower = smaller(smaller(l.shape.a, l.shape.b), l.shape.c) - larger(l.path, still);
+  vec3<T> const upper = larger(larger(l.shape.a, l.shape.b), l.shape.c) - smaller(l.path, still);
+  return !(largest<T>(lower) > reach || largest<T>(-upper) > reach);
+}
+
 /// The triangle as seen from the centre at a time.
 template <class T>
 COLLIDE_HD_INLINE local_triangle<T> seen_at(local_sweep<T> const& l, T time) {

@@ -46,8 +46,8 @@ COLLIDE_HD S rounded_down(double x) {
   return static_cast<double>(nearest) > x ? from_bits<S>(bits(nearest) - 1) : nearest;
 }
 
-/// Never later than the first contact, and earlier by at most 2^-23 for floats and 2^-30 for doubles. 0 if the two overlap
-/// at the beginning. Of a sphere that does not touch the triangle at all: about when it is closest.
+/// Never later than the first contact, and earlier by at most 2^-23 for floats and 2^-30 for doubles. 0 if the two
+/// overlap at the beginning. Of a sphere that does not touch the triangle at all: about when it is closest.
 template <class S>
 COLLIDE_HD_NOINLINE S time_of_impact(triangle<S> const& t, moving_sphere<S> const& s) {
   if (decide(t, static_cast<sphere<S> const&>(s)).hit) return 0;
