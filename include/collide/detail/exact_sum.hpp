@@ -155,7 +155,7 @@ class exact_sum {
   /// product, with a weight of -2, -1, 1 or 2 and at most 6 factors of type `exact_number`. With all combinations of
   /// their parts, at most 2^20 products.
   template <class Terms>
-  COLLIDE_HD static wide_number of(Terms const& terms) {
+  COLLIDE_HD_NOINLINE static wide_number of(Terms const& terms) {
     exact_sum sum(terms);
     bool const negative = sum.add_up(terms, 1);
     if (negative) sum.add_up(terms, -1);
@@ -169,7 +169,7 @@ class exact_sum {
 
   /// -1, 0 or 1.
   template <class Terms>
-  COLLIDE_HD static int sign_of(Terms const& terms) {
+  COLLIDE_HD_NOINLINE static int sign_of(Terms const& terms) {
     exact_sum sum(terms);
     return sum.add_up(terms, 1) ? -1 : (sum.top_ == 0 ? 0 : 1);
   }
