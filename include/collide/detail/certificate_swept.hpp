@@ -23,6 +23,14 @@ COLLIDE_HD_INLINE verdict certify(local_sweep<T> const& l, T size) {
   T const error = sweep_error<T> * size, outer = t.radius + error;
   if (!box_in_reach(l, outer)) return verdict::miss;
 
+  auto const beyond = [&](vec3<T> const& g, T gg) {
+    T const least = smaller(smaller(t.a.dot(g), t.b.dot(g)), t.c.dot(g)) - larger(l.path.dot(g), T(0));
+    return gg >= certificate_bounds<T>::shortest && least > 0 && least * least > outer * outer * gg;
+  };
+  // for most, the way to the middle of the prism will do
+  vec3<T> const middle = (t.a + t.b + t.c) - T(1.5) * l.path;
+  if (beyond(middle, middle.dot(middle))) return verdict::miss;
+
   closest_approach<T> const near = approach(l);
   T const v = clamped(near.v), w = smaller(clamped(near.w), T(1) - v), time = clamped(near.time);
   vec3<T> const q = (t.a + (v * (t.b - t.a) + w * (t.c - t.a))) - time * l.path;
@@ -33,10 +41,6 @@ COLLIDE_HD_INLINE verdict certify(local_sweep<T> const& l, T size) {
   T const inner = t.radius - error;
   if (inner > 0 && s <= inner * inner) return verdict::hit;
 
-  auto const beyond = [&](vec3<T> const& g, T gg) {
-    T const least = smaller(smaller(t.a.dot(g), t.b.dot(g)), t.c.dot(g)) - larger(l.path.dot(g), T(0));
-    return gg >= certificate_bounds<T>::shortest && least > 0 && least * least > outer * outer * gg;
-  };
   if (beyond(q, s)) return verdict::miss;
   vec3<T> n = near.normal;  // more certain than the way to a near point
   if (n.dot(q) < 0) n = -n;
