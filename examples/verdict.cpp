@@ -6,6 +6,7 @@
 #include <map>
 
 #include <collide/karabassi.hpp>
+#include <collide/karabassi_swept.hpp>
 #include <collide/upload.hpp>
 
 #include "io/cases.hpp"
@@ -24,6 +25,21 @@ struct judge {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     hits[i] = collide::karabassi<Precision>::intersects(triangles[i], spheres[i]);
+  }
+};
+
+/// The same for spheres that may move.
+template <class Precision, class S>
+struct judge_swept {
+  collide::mesh_view<S> triangles;
+  collide::sphere_view<S> spheres;
+  S const* displacements;  ///< three numbers each
+  unsigned char* hits;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    S const* const d = displacements + 3 * i;
+    collide::moving_sphere<S> const moving{spheres[i], {d[0], d[1], d[2]}};
+    hits[i] = collide::karabassi_swept<Precision>::intersects(triangles[i], moving);
   }
 };
 
@@ -56,7 +72,14 @@ std::vector<unsigned char> decide(io::case_data<S> const& cases) {
   auto const spheres = upload(space, collide::spheres_xyzr(cases.spheres.data(), n));
   collide::buffer<unsigned char> found;
   unsigned char* const hits = found.reserve(space.resource(), n);
-  space.for_each(n, judge<Precision, S>{triangles.view(), spheres.view(), hits});
+  collide::buffer<S> ways;
+  if (cases.swept == 0) {
+    space.for_each(n, judge<Precision, S>{triangles.view(), spheres.view(), hits});
+  } else if constexpr (!std::is_same<Precision, collide::baseline>::value) {
+    S* const displacements = ways.reserve(space.resource(), 3 * n);
+    space.copy_from_host(displacements, cases.displacements.data(), 3 * n);
+    space.for_each(n, judge_swept<Precision, S>{triangles.view(), spheres.view(), displacements, hits});
+  }
   std::vector<unsigned char> verdicts(n);
   space.copy_to_host(verdicts.data(), hits, n);
   return verdicts;
@@ -107,6 +130,9 @@ void run(options const& wish) {
   using device = io::device_of<Space>;
   device::require();
   auto const cases = io::read_cases<S>(wish.cases);
+  if (cases.swept > 0 && std::is_same<Precision, collide::baseline>::value) {
+    throw io::data_error(wish.cases, "swept cases, with dx, dy, dz, have no baseline: choose another --precision");
+  }
   auto const hits = decide<Precision, Space>(cases);
   if (!wish.output.empty()) write(wish.output, cases.ids, hits);
   if (wish.output.empty() || !io::output_file::is_standard_output(wish.output)) {

@@ -2,6 +2,7 @@
 /// Pairs of a triangle and a sphere from a CSV file, with what the file says of them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -17,35 +18,40 @@ struct case_data {
   std::vector<std::string> families;
   std::vector<S> corners;           ///< nine coordinates per case
   std::vector<S> spheres;           ///< x, y, z and radius per case
+  std::vector<S> displacements;     ///< three numbers per case, 0 for those that are not swept
   std::vector<unsigned char> hits;  ///< 0 or 1 per case, or none if the file does not tell
   bool has_hits = false;
+  std::size_t swept = 0;    ///< how many cases have a displacement in the file
   std::size_t rounded = 0;  ///< how many numbers of the file are no values of `S`
 
   std::size_t size() const { return ids.size(); }
-  std::size_t numbers() const { return corners.size() + spheres.size(); }
+  std::size_t numbers() const { return corners.size() + spheres.size() + 3 * swept; }
 };
 
 /// Reads cases from a CSV file with the columns id, family, ax .. cz (the triangle), px, py, pz and R (the sphere), and
-/// perhaps hit (0 or 1); see `csv_table`. Numbers are decimal or hexadecimal, nan, inf or -inf, and correctly rounded
-/// to `S`. Throws `data_error`, which names file and line, at what is none, at a number beyond the range of `S`, and at
-/// a swept case, which has something in a column dx, dy or dz.
+/// perhaps hit (0 or 1), dx, dy and dz (the displacement of a swept case; nothing in any of them in others); see
+/// `csv_table`. Numbers are decimal or hexadecimal, nan, inf or -inf, and correctly rounded to `S`. Throws
+/// `data_error`, which names file and line, at what is none, and at a number beyond the range of `S`.
 template <class S>
 case_data<S> read_cases(std::string const& path) {
-  constexpr std::size_t triangle = 9, numbers = 13, id = 13, family = 14, hit = 15;
+  constexpr std::size_t triangle = 9, numbers = 13, id = 13, family = 14, hit = 15, displacement = 16, columns = 19;
   csv_table table(path,
                   {"ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz", "px", "py", "pz", "R", "id", "family", "hit",
                    "dx", "dy", "dz"},
                   hit);
   case_data<S> cases;
   cases.has_hits = table.has(hit);
-  S row[numbers];
+  S row[columns];
+  std::size_t moves;  // how many of dx, dy and dz there are
+  auto const number = [&](std::size_t column, std::string const& text) {
+    auto const done = convert(text, row[column]);
+    if (done == conversion::not_a_number) table.fail(column, text, "is not a number");
+    if (done == conversion::out_of_range) table.fail(column, text, "is beyond the largest number; infinity is inf");
+    if (done == conversion::rounded) ++cases.rounded;
+  };
   auto const read = [&](std::size_t column) {
     if (column < numbers) {
-      std::string const text(table.filled_field(column));
-      auto const done = convert(text, row[column]);
-      if (done == conversion::not_a_number) table.fail(column, text, "is not a number");
-      if (done == conversion::out_of_range) table.fail(column, text, "is beyond the largest number; infinity is inf");
-      if (done == conversion::rounded) ++cases.rounded;
+      number(column, std::string(table.filled_field(column)));
     } else if (column == id) {
       auto const text = table.filled_field(column);
       if (text.find_first_of(",\"") != text.npos) table.fail(column, text, "has a comma or a quotation mark");
@@ -56,13 +62,22 @@ case_data<S> read_cases(std::string const& path) {
       auto const text = table.filled_field(column);
       if (text != "0" && text != "1") table.fail(column, text, "is neither 0 nor 1");
       cases.hits.push_back(text == "1");
-    } else if (!table.field().empty()) {
-      table.fail("a swept case, with dx, dy, dz, is not supported yet");
+    } else if (std::string const text(table.field()); !text.empty()) {
+      number(column, text);
+      ++moves;
     }
   };
-  while (table.read_row(read)) {
+  auto const read_next = [&] {
+    std::fill(row + displacement, row + columns, S(0));
+    moves = 0;
+    return table.read_row(read);
+  };
+  while (read_next()) {
+    if (moves != 0 && moves != 3) table.fail("a swept case needs all of dx, dy and dz");
+    cases.swept += moves / 3;
     cases.corners.insert(cases.corners.end(), row, row + triangle);
     cases.spheres.insert(cases.spheres.end(), row + triangle, row + numbers);
+    cases.displacements.insert(cases.displacements.end(), row + displacement, row + columns);
   }
   return cases;
 }

@@ -33,4 +33,11 @@ struct sphere {
   S radius;
 };
 
+/// A ball whose centre moves from `centre` to `centre + displacement` within a step: at the time t, from 0 to 1, it is
+/// at centre + t * displacement, in real arithmetic.
+template <class S>
+struct moving_sphere : sphere<S> {
+  vec3<S> displacement;
+};
+
 }  // namespace collide

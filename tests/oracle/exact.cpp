@@ -96,13 +96,13 @@ void for_each_candidate(std::array<vec<Int>, 3> const& v, F f) {
 
 /// The inputs as integers: value = integer * 2^exponent, the same exponent for all of them.
 struct scaled {
-  std::array<decoded, 13> values;
+  std::array<decoded, 16> values;
   int exponent, bits;
 
-  explicit scaled(triangle const& t, point const& p, double radius)
+  explicit scaled(triangle const& t, point const& p, double radius, point const& move = {0, 0, 0})
       : values{{decoded(t.a.x), decoded(t.a.y), decoded(t.a.z), decoded(t.b.x), decoded(t.b.y), decoded(t.b.z),
                 decoded(t.c.x), decoded(t.c.y), decoded(t.c.z), decoded(p.x), decoded(p.y), decoded(p.z),
-                decoded(radius)}} {
+                decoded(move.x), decoded(move.y), decoded(move.z), decoded(radius)}} {
     int top = -5000;
     exponent = 5000;
     for (auto const& value : values)
@@ -135,12 +135,56 @@ struct scaled {
 
   template <class Int>
   bool hit() const {
-    Int const radius = integer<Int>(12), radius2 = radius * radius;
+    Int const radius = integer<Int>(15), radius2 = radius * radius;
     bool found = false;
     for_each_candidate<Int>(local<Int>(), [&](auto const& c) { found = found || c.num <= radius2 * c.den; });
     return found;
   }
 };
+
+/// As seen from a ball that moves, the triangle moves the other way and sweeps out a prism: from `v` along -`move`.
+/// Calls f with three corners for each of the eight triangles that the prism's surface is made of, all of it if it is
+/// flat.
+template <class Int, class F>
+void for_each_side(std::array<vec<Int>, 3> const& v, vec<Int> const& move, F f) {
+  using corners = std::array<vec<Int>, 3>;
+  corners const moved{v[0] - move, v[1] - move, v[2] - move};
+  f(v);
+  f(moved);
+  for (unsigned i = 0; i < 3; ++i) {
+    unsigned const j = (i + 1) % 3;
+    f(corners{v[i], v[j], moved[i]});
+    f(corners{moved[i], moved[j], v[j]});
+  }
+}
+
+/// Is the origin in the prism, and that not flat? Then the ball's centre goes through the triangle.
+template <class Int>
+bool through(std::array<vec<Int>, 3> const& v, vec<Int> const& move) {
+  // move * t = v0 + (v1 - v0) * f + (v2 - v0) * g, by Cramer's rule
+  vec<Int> const p = v[1] - v[0], q = v[2] - v[0];
+  Int whole = dot(move, cross(p, q));
+  if (whole == 0) return false;
+  Int t = dot(v[0], cross(p, q)), f = dot(move, cross(q, v[0])), g = dot(move, cross(v[0], p));
+  if (whole < 0) {
+    whole = -whole;
+    t = -t;
+    f = -f;
+    g = -g;
+  }
+  return t >= 0 && t <= whole && f >= 0 && g >= 0 && f + g <= whole;
+}
+
+/// Does a ball around the origin touch the triangle, anywhere on its way along `move`?
+template <class Int>
+bool swept_hit(std::array<vec<Int>, 3> const& v, vec<Int> const& move, Int const& radius) {
+  Int const radius2 = radius * radius;
+  bool found = false;
+  for_each_side<Int>(v, move, [&](std::array<vec<Int>, 3> const& side) {
+    if (!found) for_each_candidate<Int>(side, [&](auto const& c) { found = found || c.num <= radius2 * c.den; });
+  });
+  return found || through<Int>(v, move);
+}
 
 bool finite(point const& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -173,6 +217,72 @@ bool hit(triangle const& t, sphere const& s) {
   return inputs.hit<mp::cpp_int>();
 }
 
+namespace {
+
+/// Is the triangle touched at some time from 0 to numerator / 2^shift?
+bool touched_until(triangle const& t, sphere const& s, point const& move, mp::cpp_int const& numerator,
+                   unsigned shift) {
+  if (!finite(t.a) || !finite(t.b) || !finite(t.c) || !finite(s.centre) || !finite(move)) return false;
+  if (!(s.radius >= 0)) return false;
+  if (std::isinf(s.radius)) return true;
+  scaled const inputs(t, s.centre, s.radius, move);
+  auto const check = [&](auto zero) {
+    using Int = decltype(zero);
+    auto const longer = [&](Int const& x) -> Int { return x * (Int(1) << shift); };
+    auto const longer_vector = [&](vec<Int> const& u) { return vec<Int>{longer(u.x), longer(u.y), longer(u.z)}; };
+    auto const v = inputs.local<Int>();
+    auto const d = inputs.vector<Int>(4);
+    Int const m(numerator);
+    return swept_hit<Int>({longer_vector(v[0]), longer_vector(v[1]), longer_vector(v[2])}, {d.x * m, d.y * m, d.z * m},
+                          longer(inputs.integer<Int>(15)));
+  };
+  // as below, with differences one bit longer
+  int const bits = inputs.bits + static_cast<int>(shift);
+  if (bits <= 38) return check(mp::checked_int256_t(0));
+  if (bits <= 80) return check(mp::checked_int512_t(0));
+  return check(mp::cpp_int(0));
+}
+
+bool touched_until(triangle const& t, sphere const& s, point const& move, double time, bool strictly) {
+  decoded const at(time);
+  auto shift = static_cast<unsigned>(std::max(-at.exponent, 0));
+  mp::cpp_int numerator = mp::cpp_int(at.mantissa) << std::max(at.exponent, 0);
+  if (strictly) {
+    if (time <= 0) return false;
+    numerator = (numerator << 300) - 1;
+    shift += 300;
+  }
+  return touched_until(t, s, move, numerator, shift);
+}
+
+}  // namespace
+
+bool hit(triangle const& t, sphere const& s, point const& move) { return touched_until(t, s, move, 1, 0); }
+
+bool hit_by(triangle const& t, sphere const& s, point const& move, double time) {
+  return touched_until(t, s, move, time, false);
+}
+
+bool hit_before(triangle const& t, sphere const& s, point const& move, double time) {
+  return touched_until(t, s, move, time, true);
+}
+
+double impact_time(triangle const& t, sphere const& s, point const& move) {
+  if (hit_by(t, s, move, 0)) return 0;
+  std::uint64_t low = 0, high;  // the bits of positive doubles sort as the doubles do
+  double const one = 1;
+  std::memcpy(&high, &one, sizeof high);
+  while (high - low > 1) {
+    std::uint64_t const middle = low + (high - low) / 2;
+    double time;
+    std::memcpy(&time, &middle, sizeof time);
+    (hit_by(t, s, move, time) ? high : low) = middle;
+  }
+  double first;
+  std::memcpy(&first, &high, sizeof first);
+  return first;
+}
+
 closest_point closest(triangle const& t, point const& p) {
   scaled const inputs(t, p, 0);
   auto const best = nearest(inputs);
@@ -189,10 +299,24 @@ double depth(triangle const& t, sphere const& s) {
   scaled const inputs(t, s.centre, s.radius);
   auto const best = nearest(inputs);
   // R - d = (R^2 - d^2) / (R + d), and the difference of the squares is exact
-  mp::cpp_int const radius = inputs.integer<mp::cpp_int>(12), above = radius * radius * best.den - best.num;
+  mp::cpp_int const radius = inputs.integer<mp::cpp_int>(15), above = radius * radius * best.den - best.num;
   if (above == 0) return 0;
   real const sum = real(radius) + sqrt(real(best.num) / real(best.den));
   return static_cast<double>(ldexp(real(above) / (real(best.den) * sum), inputs.exponent));
+}
+
+double distance(triangle const& t, point const& p, point const& move) {
+  scaled const inputs(t, p, 0, move);
+  auto const v = inputs.local<mp::cpp_int>();
+  auto const d = inputs.vector<mp::cpp_int>(4);
+  if (through<mp::cpp_int>(v, d)) return 0;
+  candidate<mp::cpp_int> best{0, 0, 0, {}};
+  for_each_side<mp::cpp_int>(v, d, [&](auto const& side) {
+    for_each_candidate<mp::cpp_int>(side, [&](auto const& c) {
+      if (best.feature == 0 || c.num * best.den < best.num * c.den) best = c;
+    });
+  });
+  return static_cast<double>(distance(best, inputs.exponent));
 }
 
 int compare_distances(triangle const& s, triangle const& t, point const& p) {

@@ -33,6 +33,20 @@ enum feature_bits : unsigned {
 /// convert to double without loss, so this is exact for both.
 bool hit(triangle const& t, sphere const& s);
 
+/// The same for a ball whose centre moves along the vector `move`: is min over x and t in [0, 1] of
+/// |x - centre - t * move|^2 <= radius^2? A NaN or an infinity in `move`: no.
+bool hit(triangle const& t, sphere const& s, point const& move);
+
+/// The same with t in [0, time].
+bool hit_by(triangle const& t, sphere const& s, point const& move, double time);
+
+/// The same with t in [0, time): false if the first contact is at `time` or later. Exact but for contacts that are
+/// earlier by less than 2^-300 * time.
+bool hit_before(triangle const& t, sphere const& s, point const& move, double time);
+
+/// The first time of contact, rounded up to a double, of a ball that touches the triangle on its way.
+double impact_time(triangle const& t, sphere const& s, point const& move);
+
 /// How a finite point lies to a finite triangle: exact, then rounded once to double.
 struct closest_point {
   double distance;
@@ -44,6 +58,9 @@ closest_point closest(triangle const& t, point const& p);
 
 /// radius - distance, rounded once to double: no cancellation, whatever the depth.
 double depth(triangle const& t, sphere const& s);
+
+/// The distance of the triangle from the way from p to p + move, rounded once to double.
+double distance(triangle const& t, point const& p, point const& move);
 
 /// -1, 0 or 1: is p nearer to s than to t, as near, or farther? Exact.
 int compare_distances(triangle const& s, triangle const& t, point const& p);

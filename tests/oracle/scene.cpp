@@ -50,7 +50,8 @@ expectation expect(std::vector<triangle> const& triangles, std::vector<sphere> c
         more{spheres[s].centre, spheres[s].radius * (1 + band)};
     // a box that begins before this, rounded down, ends before the sphere
     double const begin = down(down(more.centre.x - more.radius) - widest);
-    auto b = std::lower_bound(boxes.begin(), boxes.end(), begin, [](auto const& p, double x) { return p.first.low.x < x; });
+    auto b =
+        std::lower_bound(boxes.begin(), boxes.end(), begin, [](auto const& p, double x) { return p.first.low.x < x; });
     std::vector<std::uint32_t> near;
     for (; b != boxes.end() && !(b->first.low.x - more.centre.x > more.radius); ++b)
       if (!b->first.apart_from(more)) near.push_back(b->second);

@@ -82,15 +82,74 @@ TEST_CASE("oracle: both formulations give the verdict of every hard case") {
   }
 }
 
-TEST_CASE("oracle: the swept cases that do not move are static cases, the others can be read") {
+TEST_CASE("oracle: every swept case") {
   int still = 0;
-  for (auto const& row : oracle::read_hard_cases(data + "/swept_f32.csv", true)) {
+  auto const cases = oracle::read_hard_cases(data + "/swept_f32.csv", true);
+  CHECK(cases.size() == 645);
+  for (auto const& row : cases) {
+    CAPTURE(row.id);
+    CAPTURE(row.sub);
+    CHECK(oracle::hit(row.shape, row.ball, row.move) == row.hit);
     if (row.move.x != 0 || row.move.y != 0 || row.move.z != 0) continue;
     ++still;
-    CAPTURE(row.id);
     CHECK(oracle::hit(row.shape, row.ball) == row.hit);
   }
   CHECK(still > 0);
+}
+
+TEST_CASE("oracle: a sweep touches if and only if some place on the way does") {
+  // Sampled: never a hit where the sweep has none; and the first contact is one, with none before.
+  std::mt19937 random(5);
+  auto const coordinate = [&](int range) {
+    return static_cast<double>(random() % (2u * static_cast<unsigned>(range) + 1)) - range;
+  };
+  int hits = 0, later = 0;
+  for (int i = 0; i < 5000; ++i) {
+    int const range = 1 + i % 4;
+    auto const any = [&] { return point{coordinate(range), coordinate(range), coordinate(range)}; };
+    triangle const t{any(), any(), any()};
+    sphere const s{any(), static_cast<double>(random() % 4) / 2};
+    point const move = any();
+    bool const touched = oracle::hit(t, s, move);
+    double const distance = oracle::distance(t, s.centre, move);
+    CAPTURE(i);
+    REQUIRE(oracle::hit(t, {s.centre, distance + 1e-14}, move));
+    REQUIRE_FALSE(oracle::hit(t, {s.centre, distance - 1e-14}, move));
+    auto const at = [&](double time) {
+      return sphere{{s.centre.x + time * move.x, s.centre.y + time * move.y, s.centre.z + time * move.z}, s.radius};
+    };
+    bool sampled = false;
+    for (int k = 0; k <= 32; ++k) {
+      bool const here = oracle::hit(t, at(k / 32.0));
+      sampled = sampled || here;
+      REQUIRE(oracle::hit_by(t, s, move, k / 32.0) >= sampled);
+    }
+    REQUIRE(touched >= sampled);
+    hits += touched;
+    if (!touched) continue;
+    double const first = oracle::impact_time(t, s, move);
+    REQUIRE(oracle::hit_by(t, s, move, first));
+    REQUIRE_FALSE(oracle::hit_before(t, s, move, std::nextafter(first, 0)));
+    REQUIRE((first == 0) == hit_by_regions(t, s));
+    if (first == 0) continue;
+    ++later;
+    sphere const there = at(first);  // rounded by 2^-50 at most
+    REQUIRE(hit_by_regions(t, {there.centre, there.radius + 1e-14}));
+  }
+  CHECK(hits > 1000);
+  CHECK(later > 300);
+}
+
+TEST_CASE("oracle: first contacts that are known") {
+  triangle const t{{-10, -10, 0}, {10, -10, 0}, {0, 10, 0}};
+  CHECK(oracle::impact_time(t, {{0, 0, 4}, 1}, {0, 0, -4}) == 0.75);
+  CHECK_FALSE(oracle::hit_before(t, {{0, 0, 4}, 1}, {0, 0, -4}, 0.75));
+  CHECK(oracle::hit_before(t, {{0, 0, 4}, 1}, {0, 0, -4}, std::nextafter(0.75, 1)));
+  CHECK(oracle::impact_time(t, {{0, 0, 4}, 1}, {0, 0, -9}) == 0.33333333333333337);  // rounded up
+  CHECK(oracle::impact_time(t, {{0, 0, 1}, 1}, {1, 0, -1}) == 0);
+  CHECK(oracle::impact_time(t, {{0, -20, 1}, 1}, {0, 20, 0}) == 0.5);  // touches the edge where it passes over it
+  CHECK(oracle::impact_time(t, {{0, 0, 1e-300}, 0}, {0, 0, -1}) == 1e-300);
+  CHECK_FALSE(oracle::hit(t, {{0, 0, 4}, 1}, {0, 0, -std::nextafter(3.0, 0)}));
 }
 
 TEST_CASE("oracle: the two formulations agree on small integers, where every tie and degeneracy occurs") {

@@ -59,26 +59,27 @@ class VerdictTest(ProgramTest):
 
 
 class HardCases(VerdictTest):
-    hard = (("static_f32.csv", "float"), ("static_f64.csv", "double"))
+    hard = (("static_f32.csv", "float"), ("static_f64.csv", "double"), ("swept_f32.csv", "float"))
 
     def test_exact_is_right_everywhere(self):
         for name, scalar in self.hard:
             truth = [(row["id"], int(row["hit"])) for row in rows_of(DATA / name)]
-            self.assertIn(len(truth), (4785, 486))
+            self.assertIn(len(truth), (4785, 486, 645))
             found, printed = self.verdicts(DATA / name, "--scalar", scalar)  # exact is what one gets unasked
             self.assertEqual([pair for pair in zip(found, truth) if pair[0] != pair[1]], [])
             self.assertIn(f"\n0 of {len(truth)} verdicts differ from the column hit\n", printed)
             self.assertEqual(self.verdicts(DATA / name, "--scalar", scalar, "--precision", "exact"), (found, printed))
 
     def test_floats_are_doubles(self):
-        found, _ = self.verdicts(DATA / "static_f32.csv", "--scalar", "float")
-        self.assertEqual(self.verdicts(DATA / "static_f32.csv", "--scalar", "double")[0], found)
+        for name in ("static_f32.csv", "swept_f32.csv"):
+            found, _ = self.verdicts(DATA / name, "--scalar", "float")
+            self.assertEqual(self.verdicts(DATA / name, "--scalar", "double")[0], found)
 
     def test_what_is_printed_is_what_differs(self):
         differing = {}
         for name, scalar in self.hard:
             truth = rows_of(DATA / name)
-            for precision in PRECISIONS:
+            for precision in PRECISIONS[name.startswith("swept"):]:  # which have no baseline
                 found, printed = self.verdicts(DATA / name, "--scalar", scalar, "--precision", precision)
                 self.assertEqual([case for case, _ in found], [row["id"] for row in truth])
                 expected = {}
@@ -90,8 +91,9 @@ class HardCases(VerdictTest):
                 self.assertEqual(self.table(printed), expected)
                 self.assertIn(f"{precision} precision, {scalar} coordinates", printed)
                 differing[name, precision] = expected["total"]["differ"]
-        for name, _ in self.hard:
+        for name in ("static_f32.csv", "static_f64.csv"):
             self.assertGreater(differing[name, "baseline"], differing[name, "double"])
+        self.assertGreater(differing["swept_f32.csv", "single"], differing["swept_f32.csv", "double"])
         self.assertGreater(differing["static_f32.csv", "baseline"], 400)
         self.assertGreater(differing["static_f32.csv", "baseline"], differing["static_f32.csv", "single"])
         self.assertGreater(differing["static_f32.csv", "single"], differing["static_f32.csv", "double"])
@@ -127,6 +129,13 @@ class Forms(VerdictTest):
                 self.write("cases.csv", csv)
                 scalar = "double" if name == "hexadecimal" else "float"
                 self.assertEqual(self.verdicts("cases.csv", "--scalar", scalar)[0], [("0", 1), ("1", 0)])
+
+    def test_swept_and_other_cases(self):
+        rows = [f"0,f,{MISS},,,", f"1,f,{MISS},0,0,-0.5", f"2,f,{MISS},0,0,-0.484375", f"3,f,{HIT},0,0,9", f"4,f,{MISS},0,0,0",
+                f"5,f,{MISS},0,0,nan", f"6,f,{HIT},inf,0,0"]
+        self.write("cases.csv", "\n".join([HEADER + ",dx,dy,dz", *rows]))
+        for precision in PRECISIONS[1:]:
+            self.assertEqual([hit for _, hit in self.verdicts("cases.csv", "--precision", precision)[0]], [0, 1, 0, 1, 0, 0, 0])
 
     def test_the_order_of_the_columns(self):
         names = HEADER.split(",")
@@ -300,11 +309,12 @@ class BadCases(VerdictTest):
             self.refused(header + "\n", ["cases.csv:1: "])
 
     def test_swept_cases(self):
-        for fields in ("1,,", ",0,", ",,nan", "0x1p0,0,0", "0,0,0", "x,y,z"):
+        for fields in ("1,,", ",0,", ",,nan", "0x1p0,0,", ",0,0"):
             for header, row in ((HEADER + ",dx,dy,dz", f"9,f,{HIT},{fields}"), ("dz,dy,dx," + HEADER, f"{fields},9,f,{HIT}")):
                 empty = f"0,f,{HIT},,," if header.startswith("id") else f",,,0,f,{HIT}"
                 self.refused(f"{header}\n{empty}\n{row}\n{empty}\n", ["cases.csv:3: ", "swept", "dx"])
-        message = self.fail_with(1, ["swept_f32.csv:2: ", "swept"], "verdict", DATA / "swept_f32.csv", "--output", "new.csv")
+        self.refused(f"{HEADER},dx,dy,dz\n0,f,{HIT},0,x,0\n", ["cases.csv:2: ", "'x'", "'dy'"])
+        message = self.fail_with(1, ["swept", "baseline"], "verdict", DATA / "swept_f32.csv", "--precision", "baseline", "--output", "new.csv")
         self.assertIn(str(DATA), message)
 
     def test_bad_rows(self):

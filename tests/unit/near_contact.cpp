@@ -83,6 +83,24 @@ bool append(std::vector<near_case>& to, oracle::triangle const& t, point const& 
   return true;
 }
 
+/// The same for a ball that moves.
+template <class S>
+bool append(std::vector<near_sweep>& to, oracle::triangle const& t, point const& centre, point const& move, int most,
+            dice& roll) {
+  double const distance = oracle::distance(t, centre, move);
+  if (!(distance < std::numeric_limits<S>::max())) return false;
+  double const middle = stepped<S>(distance, 0);
+  auto const hit = [&](int steps) { return oracle::hit(t, {centre, stepped<S>(middle, steps)}, move); };
+  if (hit(-1) || !hit(1)) throw std::logic_error("oracle: the distance is not where the verdict changes");
+  bool const touching = hit(0);
+  for (int steps = -most; steps <= most; ++steps) {
+    symmetry const turned(roll);
+    bool const expected = steps > 0 || (steps == 0 && touching);
+    to.push_back({{turned(t), {turned(centre), stepped<S>(middle, steps)}, expected}, turned(move)});
+  }
+  return true;
+}
+
 double power_of_ten(dice& roll, double low, double high) { return std::pow(10, roll.uniform(low, high)); }
 
 /// A triangle of about size 1, degenerate or a sliver now and then.
@@ -175,6 +193,12 @@ std::string describe(near_case const& c) {
   return text;
 }
 
+std::string describe(near_sweep const& c) {
+  char text[128];
+  std::snprintf(text, sizeof text, ", moving %a,%a,%a", c.move.x, c.move.y, c.move.z);
+  return describe(static_cast<near_case const&>(c)) + text;
+}
+
 template <class S>
 std::vector<near_case> near_contact(unsigned seed, std::size_t n) {
   dice roll(seed);
@@ -182,7 +206,8 @@ std::vector<near_case> near_contact(unsigned seed, std::size_t n) {
   while (made.size() < 9 * n) {
     oracle::triangle const t = any_triangle(roll);
     int const feature = roll.integer(0, 2);  // face, edge, vertex
-    double const to_b = feature == 2 ? 0 : roll.uniform(0, 1), to_c = feature == 0 ? roll.uniform(0, 1) * (1 - to_b) : 0;
+    double const to_b = feature == 2 ? 0 : roll.uniform(0, 1),
+                 to_c = feature == 0 ? roll.uniform(0, 1) * (1 - to_b) : 0;
     point const at = t.a + to_b * (t.b - t.a) + to_c * (t.c - t.a);
     point const centre = at + power_of_ten(roll, -6, 6) * outward(t, feature, roll);
     point const offset = roll.integer(0, 1) ? point{0, 0, 0} : roll.in_cube(power_of_ten(roll, 0, 6));
@@ -191,6 +216,52 @@ std::vector<near_case> near_contact(unsigned seed, std::size_t n) {
     oracle::triangle const shape{placed(t.a), placed(t.b), placed(t.c)};
     point const p = placed(centre);
     if (finite(shape) && finite(p)) append<S>(made, shape, p, 4, roll);
+  }
+  return made;
+}
+
+template <class S>
+std::vector<near_sweep> near_sweeps(unsigned seed, std::size_t n) {
+  dice roll(seed);
+  std::vector<near_sweep> made;
+  while (made.size() < 9 * n) {
+    oracle::triangle const t = any_triangle(roll);
+    int const feature = roll.integer(0, 2);  // face, edge, vertex
+    double const to_b = feature == 2 ? 0 : roll.uniform(0, 1),
+                 to_c = feature == 0 ? roll.uniform(0, 1) * (1 - to_b) : 0;
+    point const at = t.a + to_b * (t.b - t.a) + to_c * (t.c - t.a), away = outward(t, feature, roll);
+    point const closest = at + power_of_ten(roll, -6, 3) * away;
+    double const times[] = {0, 1, roll.uniform(0, 1), roll.uniform(0, 1)}, time = times[roll.integer(0, 3)];
+    point move = power_of_ten(roll, -3, 3) * roll.in_cube(1);
+    double const leaving = dot(move, away);
+    if (time != 0 && time != 1) move = move - leaving * away;
+    if ((time == 0 && leaving < 0) || (time == 1 && leaving > 0)) move = -1 * move;
+    point const offset = roll.integer(0, 1) ? point{0, 0, 0} : roll.in_cube(power_of_ten(roll, 0, 6));
+    double const scale = std::ldexp(1, scale_exponent(roll, sizeof(S) == 8));
+    auto const placed = [&](point const& p) { return rounded<S>(scale * (p + offset)); };
+    oracle::triangle const shape{placed(t.a), placed(t.b), placed(t.c)};
+    point const p = placed(closest - time * move), d = rounded<S>(scale * move);
+    if (finite(shape) && finite(p) && finite(d) && oracle::distance(shape, p, d) > 0) {
+      append<S>(made, shape, p, d, 4, roll);
+    }
+  }
+  return made;
+}
+
+template <class S>
+std::vector<near_sweep> lattice_sweeps(unsigned seed, std::size_t n) {
+  dice roll(seed);
+  std::vector<near_sweep> made;
+  for (std::size_t i = 0; i < n; ++i) {
+    int const half = 1 + static_cast<int>(i % 4);
+    auto const any = [&] {
+      lattice_point const p = in_lattice(roll, half);
+      return point{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+    };
+    oracle::triangle const t{any(), any(), any()};
+    oracle::sphere const s{any(), 0.5 * roll.integer(0, 3)};
+    point const move = any();
+    made.push_back({{t, s, oracle::hit(t, s, move)}, move});
   }
   return made;
 }
@@ -214,8 +285,8 @@ std::vector<near_case> ties(unsigned seed, std::size_t n) {
     auto const anywhere = [&] { return static_cast<std::int64_t>(roll.uniform(-limit, limit)); };
     lattice_point const offset{anywhere(), anywhere(), anywhere()};
     bool fits = true;
-    double const scale =
-        std::ldexp(1, roll.integer(0, 1) ? 0 : roll.integer(least_exponent, std::numeric_limits<S>::max_exponent - digits));
+    double const scale = std::ldexp(
+        1, roll.integer(0, 1) ? 0 : roll.integer(least_exponent, std::numeric_limits<S>::max_exponent - digits));
     auto const placed = [&](lattice_point p) {
       p = p + offset;
       for (auto x : {p.x, p.y, p.z}) fits = fits && std::abs(static_cast<double>(x)) <= std::ldexp(1, digits);
@@ -230,31 +301,71 @@ std::vector<near_case> ties(unsigned seed, std::size_t n) {
   return made;
 }
 
+namespace {
+
+/// Coordinates of a few exponents out of all that `S` has.
+template <class S>
+class mixed_coordinates {
+ public:
+  explicit mixed_coordinates(dice& roll) : roll_(roll) {
+    constexpr int least = std::numeric_limits<S>::min_exponent - std::numeric_limits<S>::digits,
+                  greatest = std::numeric_limits<S>::max_exponent - 1;
+    for (int& e : exponents_)
+      e = roll.integer(0, 3) == 0 ? greatest - roll.integer(0, 2) : roll.integer(least, greatest);
+    centre_ = anywhere();
+  }
+
+  point centre() const { return centre_; }
+
+  point anywhere() {
+    double const x = any(), y = any(), z = any();
+    return {x, y, z};
+  }
+
+  /// Some of the coordinates are equal, or next to equal, to those of the centre.
+  point corner() {
+    double const x = near(centre_.x), y = near(centre_.y), z = near(centre_.z);
+    return {x, y, z};
+  }
+
+ private:
+  double any() {
+    if (roll_.integer(0, 7) == 0) return 0;
+    double const mantissa = roll_.integer(0, 1) ? 1 : roll_.uniform(1, 2);
+    return static_cast<S>(std::ldexp(roll_.integer(0, 1) ? mantissa : -mantissa, exponents_[roll_.integer(0, 2)]));
+  }
+  double near(double x) {
+    int const kind = roll_.integer(0, 4);
+    return kind < 2 ? x : kind == 2 ? stepped<S>(x, roll_.integer(-3, 3)) : any();
+  }
+
+  dice& roll_;
+  int exponents_[3];
+  point centre_;
+};
+
+}  // namespace
+
 template <class S>
 std::vector<near_case> mixed_exponents(unsigned seed, std::size_t n) {
-  constexpr int least = std::numeric_limits<S>::min_exponent - std::numeric_limits<S>::digits,
-                greatest = std::numeric_limits<S>::max_exponent - 1;
   dice roll(seed);
   std::vector<near_case> made;
   while (made.size() < 3 * n) {
-    int exponents[3];
-    for (int& e : exponents) e = roll.integer(0, 3) == 0 ? greatest - roll.integer(0, 2) : roll.integer(least, greatest);
-    auto const any = [&]() -> double {
-      if (roll.integer(0, 7) == 0) return 0;
-      double const mantissa = roll.integer(0, 1) ? 1 : roll.uniform(1, 2);
-      return static_cast<S>(std::ldexp(roll.integer(0, 1) ? mantissa : -mantissa, exponents[roll.integer(0, 2)]));
-    };
-    auto const near = [&](double x) {
-      int const kind = roll.integer(0, 4);
-      return kind < 2 ? x : kind == 2 ? stepped<S>(x, roll.integer(-3, 3)) : any();
-    };
-    double const x = any(), y = any(), z = any();
-    auto const corner = [&] {
-      double const u = near(x), v = near(y), w = near(z);
-      return point{u, v, w};
-    };
-    point const a = corner(), b = corner(), c = corner();
-    if (finite(oracle::triangle{a, b, c})) append<S>(made, {a, b, c}, {x, y, z}, 1, roll);
+    mixed_coordinates<S> some(roll);
+    point const a = some.corner(), b = some.corner(), c = some.corner();
+    if (finite(oracle::triangle{a, b, c})) append<S>(made, {a, b, c}, some.centre(), 1, roll);
+  }
+  return made;
+}
+
+template <class S>
+std::vector<near_sweep> mixed_sweeps(unsigned seed, std::size_t n) {
+  dice roll(seed);
+  std::vector<near_sweep> made;
+  while (made.size() < 3 * n) {
+    mixed_coordinates<S> some(roll);
+    point const a = some.corner(), b = some.corner(), c = some.corner(), move = some.anywhere();
+    if (finite(oracle::triangle{a, b, c})) append<S>(made, {a, b, c}, some.centre(), move, 1, roll);
   }
   return made;
 }
@@ -265,5 +376,11 @@ template std::vector<near_case> ties<float>(unsigned, std::size_t);
 template std::vector<near_case> ties<double>(unsigned, std::size_t);
 template std::vector<near_case> mixed_exponents<float>(unsigned, std::size_t);
 template std::vector<near_case> mixed_exponents<double>(unsigned, std::size_t);
+template std::vector<near_sweep> near_sweeps<float>(unsigned, std::size_t);
+template std::vector<near_sweep> near_sweeps<double>(unsigned, std::size_t);
+template std::vector<near_sweep> lattice_sweeps<float>(unsigned, std::size_t);
+template std::vector<near_sweep> lattice_sweeps<double>(unsigned, std::size_t);
+template std::vector<near_sweep> mixed_sweeps<float>(unsigned, std::size_t);
+template std::vector<near_sweep> mixed_sweeps<double>(unsigned, std::size_t);
 
 }  // namespace tests

@@ -16,8 +16,14 @@ struct near_case {
   bool hit;
 };
 
+/// The same with a ball that moves.
+struct near_sweep : near_case {
+  oracle::point move;
+};
+
 /// The numbers in hexadecimal, for messages.
 std::string describe(near_case const& c);
+std::string describe(near_sweep const& c);
 
 /// Nine cases for each of `n` triangles and centres: the radius is the exact distance, rounded, and -4, -3 .. 4 units in
 /// the last place, and each of the nine is turned and mirrored in another way. Faces, edges and vertices are touched, of
@@ -37,5 +43,19 @@ std::vector<near_case> ties(unsigned seed, std::size_t n);
 /// either side.
 template <class S>
 std::vector<near_case> mixed_exponents(unsigned seed, std::size_t n);
+
+/// As `near_contact`, with balls that come closest at the beginning, at the end or in the middle of their way, which is
+/// 1e-3 to 1e3 times as long as the triangle is large.
+template <class S>
+std::vector<near_sweep> near_sweeps(unsigned seed, std::size_t n);
+
+/// Small integers, radii that are halves of them, and ways of any direction, null among them: every tie and degeneracy
+/// occurs. `n` cases.
+template <class S>
+std::vector<near_sweep> lattice_sweeps(unsigned seed, std::size_t n);
+
+/// As `mixed_exponents`, with ways of such coordinates too.
+template <class S>
+std::vector<near_sweep> mixed_sweeps(unsigned seed, std::size_t n);
 
 }  // namespace tests

@@ -1,7 +1,6 @@
 /// The scene of the study, at the origin and far from it, with exact verdicts.
-#include <io/scenes.hpp>
-
 #include <doctest/doctest.h>
+#include <io/scenes.hpp>
 
 #include "checks.hpp"
 

@@ -24,17 +24,18 @@ struct certificate_bounds {
   static constexpr T shortest = T(0x1p-60);
 };
 
-/// Scales by a power of two until `certify` can work on it. False if that cannot be had without losing digits.
-template <class S, class T>
-COLLIDE_HD_INLINE bool brought_to_size(local_triangle<T>& t, T& size) {
+/// Scales a problem with coordinates of `S` by a power of two until `certify` can work on it. False if that cannot be
+/// had without losing digits.
+template <class S, class Problem, class T>
+COLLIDE_HD_INLINE bool brought_to_size(Problem& p, T& size) {
   using bounds = certificate_bounds<T>;
-  size = size_of(t);
+  size = size_of(p);
   if (size >= bounds::smallest && size <= bounds::largest) return true;
   // beyond, subnormal coordinates that were flushed to zero would show, or a difference has overflowed
   constexpr T floor = sizeof(S) == sizeof(float) ? T(0x1p-60) : T(0x1p-900);
   if (!(size >= floor && size <= std::numeric_limits<T>::max())) return false;
-  t = scaled(t, reciprocal_power(size));
-  size = size_of(t);
+  p = scaled(p, reciprocal_power(size));
+  size = size_of(p);
   return true;
 }
 

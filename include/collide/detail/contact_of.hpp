@@ -24,11 +24,10 @@ COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
 
 /// What doubles cannot tell of a contact: distance and depth of the closest foot to nearly all digits, however small
 /// they are, and its direction. `around` is the point of the triangle that doubles take for the closest.
-template <class S>
-COLLIDE_HD_NOINLINE void measure_exactly(triangle<S> const& t, sphere<S> const& s, local_triangle<double> const& l,
+template <int Moved>
+COLLIDE_HD_NOINLINE void measure_exactly(exact_triangle<Moved> const& e, local_triangle<double> const& l,
                                          closest_point<double>& around, vec3<double>& normal, gap& measured) {
-  exact_triangle const e(t, s);
-  exact_triangle::foot const f = e.nearest(l, around.distance_squared, measured);
+  auto const f = e.nearest(l, around.distance_squared, measured);
   around.kind = f.kind;
   around.index = f.index;
   normal = f.towards_centre();
@@ -42,38 +41,33 @@ COLLIDE_HD_NOINLINE void measure_exactly(triangle<S> const& t, sphere<S> const& 
   }
 }
 
-/// The contact of a finite triangle and a sphere, computed in double, rounded once, and computed exactly before that
-/// where the digits of a double do not suffice. The ids are left to the caller.
-template <class S>
-COLLIDE_HD contact<S> contact_between(triangle<S> const& t, sphere<S> const& s) {
-  sphere<S> const centre{s.centre, S(0)};
-  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
+/// Doubles are sure of a length from here on, in a problem of at most size 4: to within 2^-45; see docs/numerics.md.
+inline constexpr double clear_length = 0x1p-20;
+
+/// The contact of a finite triangle, as seen from `centre`, computed in double, rounded once, and computed exactly
+/// before that where the digits of a double do not suffice: `exactly()` makes an `exact_triangle`. `clear(distance,
+/// depth)`, both local, tells whether they do. The ids are left to the caller.
+template <class S, class Clear, class Exactly>
+COLLIDE_HD contact<S> contact_from(local_triangle<double> const& l, vec3<double> const& centre, S radius,
+                                   Clear const& clear, Exactly const& exactly) {
   vec3<double> normal = cross<double>(l.b - l.a, l.c - l.a);
   closest_point<double> q = closest_to_origin(l, normal);
   double const local_distance = root(q.distance_squared);
   gap measured{div(local_distance, l.scale), 0};
-  measured.depth = static_cast<double>(s.radius) - measured.distance;
-
-  // l is below 4, and doubles are sure of a distance to within 2^-45; see docs/numerics.md
-  constexpr double enough = 0x1p-20;
-  double const local_depth = mul(measured.depth, l.scale);
-  bool const clear =
-      sizeof(S) == sizeof(float) && local_distance >= enough && (local_depth >= enough || local_depth <= -enough);
-  if (!clear) {
-    bool const unlimited = infinite(s.radius);
-    measure_exactly(t, unlimited ? centre : s, l, q, normal, measured);
-    if (unlimited) measured.depth = static_cast<double>(s.radius);
+  measured.depth = static_cast<double>(radius) - measured.distance;
+  if (!clear(local_distance, mul(measured.depth, l.scale))) {
+    measure_exactly(exactly(), l, q, normal, measured);
+    if (infinite(radius)) measured.depth = static_cast<double>(radius);
   } else if (q.kind == feature::face) {
     normal = unit(normal);
     if (dot(l.a, normal) > 0) normal = -normal;
   } else {
     normal = unit<double>(-q.point);
   }
-  vec3<double> const from = s.centre.template cast<double>();
-  vec3<double> point = from + scaled(q.point, div(1.0, l.scale));
+  vec3<double> point = centre + scaled(q.point, div(1.0, l.scale));
   if (!finite(point)) {  // the way there is longer than the largest number, or rounded up to more than that
     constexpr double most = std::numeric_limits<double>::max() / 4;
-    point = scaled(from, 0.25) + scaled(q.point, div(0.25, l.scale));
+    point = scaled(centre, 0.25) + scaled(q.point, div(0.25, l.scale));
     for (int k = 0; k < 3; ++k) point[k] = mul(4.0, smaller(larger(point[k], -most), most));
   }
   return {no_id,
@@ -84,6 +78,18 @@ COLLIDE_HD contact<S> contact_between(triangle<S> const& t, sphere<S> const& s) 
           static_cast<S>(measured.depth),
           q.kind,
           static_cast<std::uint32_t>(q.index)};
+}
+
+/// The contact of a finite triangle and a sphere.
+template <class S>
+COLLIDE_HD contact<S> contact_between(triangle<S> const& t, sphere<S> const& s) {
+  sphere<S> const centre{s.centre, S(0)};
+  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
+  auto const clear = [](double distance, double depth) {
+    return sizeof(S) == sizeof(float) && distance >= clear_length && (depth >= clear_length || depth <= -clear_length);
+  };
+  auto const exactly = [&] { return exact_triangle<>(t, infinite(s.radius) ? centre : s); };
+  return contact_from(l, s.centre.template cast<double>(), s.radius, clear, exactly);
 }
 
 }  // namespace collide::detail

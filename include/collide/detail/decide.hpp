@@ -35,7 +35,7 @@ COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> cons
     verdict const v = certify(l, size);
     if (v != verdict::unsure) return {v == verdict::hit, stage::double_certificate};
   }
-  return {exact_triangle(t, s).in_reach(), stage::integers};
+  return {exact_triangle<>(t, s).in_reach(), stage::integers};
 }
 
 /// The first stages: `unsure` is left to `finish`.

@@ -54,43 +54,93 @@ COLLIDE_HD dyadic decoded(S x) {
   return reduced((u & f::sign_mask) != 0 ? -m : m, larger(biased, 1) - f::bias - f::mantissa_bits);
 }
 
-/// An exact difference of two floating-point numbers: as one number if that has room for it, else as two.
-class exact_difference {
- public:
-  exact_difference() = default;
+/// As a double. Of no more than 53 bits, which it has, and an exponent from -1022.
+COLLIDE_HD inline double value_of(dyadic const& x) {
+  return mul(static_cast<double>(x.mantissa), from_bits<double>(static_cast<std::uint64_t>(x.exponent + 1023) << 52));
+}
 
-  COLLIDE_HD explicit exact_difference(dyadic const& x) { add(x); }
+/// The parts whose sum a number is, wherever they are stored.
+struct parts_view {
+  std::int64_t const* mantissas;
+  std::int16_t const* exponents;
+  std::int32_t count;
+
+  COLLIDE_HD dyadic operator[](int i) const { return {mantissas[i], exponents[i]}; }
+};
+
+/// An exact sum of a few floating-point numbers: as one number if that has room for it, else as up to `Room`.
+template <int Room>
+class exact_number {
+ public:
+  exact_number() = default;
+
+  COLLIDE_HD explicit exact_number(dyadic const& x) { add(x); }
 
   /// x - y
-  COLLIDE_HD exact_difference(dyadic const& x, dyadic const& y) {
-    bool const swapped = x.exponent < y.exponent;
-    dyadic const& high = swapped ? y : x;
-    dyadic const& low = swapped ? x : y;
-    int const shift = high.exponent - low.exponent;
-    if (x.mantissa != 0 && y.mantissa != 0 && high.length() + shift <= 61) {
-      std::int64_t const difference = high.mantissa * (std::int64_t{1} << shift) - low.mantissa;
-      add(reduced(swapped ? -difference : difference, low.exponent));
-    } else {
-      add(x);
-      add({-y.mantissa, y.exponent});
-    }
+  COLLIDE_HD exact_number(dyadic const& x, dyadic const& y) {
+    add(x);
+    subtract(y);
   }
 
-  /// How many parts there are; 0 is the number zero.
-  COLLIDE_HD int count() const { return count_; }
-  COLLIDE_HD dyadic part(int i) const { return {mantissas_[i], exponents_[i]}; }
+  COLLIDE_HD void subtract(dyadic const& x) { add({-x.mantissa, x.exponent}); }
 
- private:
-  COLLIDE_HD void add(dyadic const& x) {
+  COLLIDE_HD void add(dyadic x) {
+    if (x.mantissa == 0) return;
+    for (int i = 0; i < count_; ++i) {
+      dyadic const y = parts()[i];
+      bool const swapped = x.exponent < y.exponent;
+      dyadic const& high = swapped ? y : x;
+      dyadic const& low = swapped ? x : y;
+      int const shift = high.exponent - low.exponent;
+      if (high.length() + shift > 61 || low.length() > 61) continue;
+      x = reduced(high.mantissa * (std::int64_t{1} << shift) + low.mantissa, low.exponent);
+      mantissas_[i] = mantissas_[--count_];
+      exponents_[i] = exponents_[count_];
+      break;
+    }
     if (x.mantissa == 0) return;
     mantissas_[count_] = x.mantissa;
     exponents_[count_++] = static_cast<std::int16_t>(x.exponent);
   }
 
-  std::int64_t mantissas_[2];
-  std::int16_t exponents_[2];
+  /// 0 parts is the number zero.
+  COLLIDE_HD parts_view parts() const { return {mantissas_, exponents_, count_}; }
+
+ private:
+  std::int64_t mantissas_[Room] = {};
+  std::int16_t exponents_[Room] = {};
   std::int32_t count_ = 0;
 };
+
+using exact_difference = exact_number<2>;
+
+/// x - y
+template <int Room, int More>
+COLLIDE_HD exact_number<Room + More> minus(exact_number<Room> const& x, exact_number<More> const& y) {
+  exact_number<Room + More> difference;
+  for (int i = 0; i < x.parts().count; ++i) difference.add(x.parts()[i]);
+  for (int i = 0; i < y.parts().count; ++i) difference.subtract(y.parts()[i]);
+  return difference;
+}
+
+/// x * y, where neither has more than 53 bits, and both together at most 61 if there is room for one part only.
+template <int Room>
+COLLIDE_HD exact_number<Room> product(dyadic const& x, dyadic const& y) {
+  static_assert(Room == 1 || Room == 4);
+  exact_number<Room> p;
+  if (x.mantissa == 0 || y.mantissa == 0) return p;
+  if (Room == 1 || x.length() + y.length() <= 61) {
+    p.add(reduced(x.mantissa * y.mantissa, x.exponent + y.exponent));
+    return p;
+  }
+  constexpr int half_bits = 27;
+  constexpr std::int64_t half = std::int64_t{1} << half_bits;
+  std::int64_t const xs[] = {x.mantissa % half, x.mantissa / half}, ys[] = {y.mantissa % half, y.mantissa / half};
+  for (int i = 0; i < 2; ++i) {
+    for (int k = 0; k < 2; ++k) p.add(reduced(xs[i] * ys[k], x.exponent + y.exponent + half_bits * (i + k)));
+  }
+  return p;
+}
 
 /// A number of any size: value * 2^exponent, where |value| is 0 or between 2^63 and 2^64.
 struct wide_number {
@@ -102,9 +152,10 @@ struct wide_number {
 class exact_sum {
  public:
   /// Calls `terms(add)` as often as needed, and always for the same sum: terms calls `add(weight, factors...)` for each
-  /// product, with a weight of -2, -1, 1 or 2 and at most 6 factors of type `exact_difference`. At most 2^20 products.
+  /// product, with a weight of -2, -1, 1 or 2 and at most 6 factors of type `exact_number`. With all combinations of
+  /// their parts, at most 2^20 products.
   template <class Terms>
-  COLLIDE_HD static wide_number of(Terms const& terms) {
+  COLLIDE_HD_NOINLINE static wide_number of(Terms const& terms) {
     exact_sum sum(terms);
     bool const negative = sum.add_up(terms, 1);
     if (negative) sum.add_up(terms, -1);
@@ -118,7 +169,7 @@ class exact_sum {
 
   /// -1, 0 or 1.
   template <class Terms>
-  COLLIDE_HD static int sign_of(Terms const& terms) {
+  COLLIDE_HD_NOINLINE static int sign_of(Terms const& terms) {
     exact_sum sum(terms);
     return sum.add_up(terms, 1) ? -1 : (sum.top_ == 0 ? 0 : 1);
   }
@@ -136,17 +187,19 @@ class exact_sum {
 
   template <class Terms>
   COLLIDE_HD explicit exact_sum(Terms const& terms) {
-    terms([&](int, auto const&... factors) { extend(factors...); });
+    terms([&](int, auto const&... factors) { extend(factors.parts()...); });
   }
 
   template <class... Factors>
   COLLIDE_HD void extend(Factors const&... factors) {
-    if (((factors.count() == 0) || ...)) return;
+    if (((factors.count == 0) || ...)) return;
     int low = 0, high = 1;  // for a weight of 2
-    auto const extend_by = [&](exact_difference const& f) {
-      dyadic const first = f.part(0), last = f.part(f.count() - 1);
-      int const from = smaller(first.exponent, last.exponent);
-      int const to = larger(first.exponent + first.length(), last.exponent + last.length()) + 1;
+    auto const extend_by = [&](parts_view const& f) {
+      int from = f[0].exponent, to = from + f[0].length();
+      for (int i = 1; i < f.count; ++i) {
+        from = smaller(from, f[i].exponent);
+        to = larger(to, f[i].exponent + f[i].length());
+      }
       low += from;
       high += to;
     };
@@ -165,7 +218,7 @@ class exact_sum {
     for (begin_ = 0; begin_ < count; begin_ += window) {
       for (int i = 0; i < window; ++i) digits_[i] = 0;
       terms([&](int weight, auto const&... factors) {
-        exact_difference const* const all[] = {&factors...};
+        parts_view const all[] = {factors.parts()...};
         add(sign * weight, all, static_cast<int>(sizeof...(factors)));
       });
       for (int i = 0; i < window; ++i) {
@@ -186,16 +239,16 @@ class exact_sum {
   }
 
   /// Adds a product of sums: of all combinations of their parts.
-  COLLIDE_HD_NOINLINE void add(int weight, exact_difference const* const* factors, int n) {
+  COLLIDE_HD_NOINLINE void add(int weight, parts_view const* factors, int n) {
     int combinations = 1;
-    for (int i = 0; i < n; ++i) combinations *= factors[i]->count();
+    for (int i = 0; i < n; ++i) combinations *= factors[i].count;
     for (int c = 0; c < combinations; ++c) {
       int rest = c, exponent = -lowest_ + (weight == 2 || weight == -2 ? 1 : 0), words = 1;
       bool negative = weight < 0;
       std::uint32_t product[2 * most_factors + 1] = {1};
       for (int i = 0; i < n; ++i) {
-        dyadic const f = factors[i]->part(rest % factors[i]->count());
-        rest /= factors[i]->count();
+        dyadic const f = factors[i][rest % factors[i].count];
+        rest /= factors[i].count;
         exponent += f.exponent;
         negative = negative != (f.mantissa < 0);
         words = multiply(product, words, f.magnitude());

@@ -14,7 +14,7 @@
 #pragma once
 
 #include <collide/detail/closest_point.hpp>
-#include <collide/detail/exact_sum.hpp>
+#include <collide/detail/exact_vector.hpp>
 
 namespace collide::detail {
 
@@ -23,20 +23,36 @@ struct gap {
   double distance, depth;
 };
 
-/// Finite coordinates and a finite radius, not below 0.
+/// Finite coordinates and a finite radius, not below 0. The centre may be moved by a vector of `Moved` parts.
+template <int Moved = 0>
 class exact_triangle {
  public:
   template <class S>
-  COLLIDE_HD exact_triangle(triangle<S> const& t, sphere<S> const& s) : radius_{decoded(s.radius)} {
+  COLLIDE_HD exact_triangle(triangle<S> const& t, sphere<S> const& s) : exact_triangle(t, s, nullptr) {}
+
+  template <class S>
+  COLLIDE_HD exact_triangle(triangle<S> const& t, sphere<S> const& s, exact_number<Moved> const* moved)
+      : radius_{decoded(s.radius)} {
     vec3<S> const* const corners[3] = {&t.a, &t.b, &t.c};
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
         dyadic const from = decoded((*corners[i])[k]);
-        corner_[i][k] = {from, decoded(s.centre[k])};
+        exact_difference const corner(from, decoded(s.centre[k]));
+        if constexpr (Moved == 0) {
+          corner_[i][k] = corner;
+        } else {
+          corner_[i][k] = minus(corner, moved[k]);
+        }
         edge_[i][k] = {decoded((*corners[(i + 1) % 3])[k]), from};
       }
     }
   }
+
+  /// Relative to the centre.
+  COLLIDE_HD exact_vector<2 + Moved> const& corner(int i) const { return corner_[i]; }
+  /// From each corner to the next.
+  COLLIDE_HD exact_vector<2> const& edge(int i) const { return edge_[i]; }
+  COLLIDE_HD exact_difference const& radius() const { return radius_; }
 
   /// True if the ball touches the triangle.
   COLLIDE_HD bool in_reach() const {
@@ -73,13 +89,9 @@ class exact_triangle {
 
   /// (b - a) x (c - a), but for its length.
   COLLIDE_HD vec3<double> normal() const {
-    return direction([&](int k, auto const& add) { cross(k, 1, edge_[0], edge_[1], add); });
+    return direction([&](int k, auto const& add) { sum_cross(k, 1, edge_[0], edge_[1], add); });
   }
 
- private:
-  using vector = exact_difference[3];
-
- public:
   /// A point of the triangle that may be the closest one: corner `index`, the foot on edge `index`, or that on the
   /// face.
   struct foot {
@@ -90,26 +102,27 @@ class exact_triangle {
     /// Sums the squared distance, multiplied by `length`.
     template <class Add>
     COLLIDE_HD void distance_squared(int weight, Add const& add) const {
-      vector const &v = of->corner_[index], &e = of->edge_[index];
+      auto const& v = of->corner_[index];
+      auto const& e = of->edge_[index];
       if (kind == feature::vertex) {
-        for (int k = 0; k < 3; ++k) add(weight, v[k], v[k]);
+        sum_dot(weight, v, v, add);
       } else if (kind == feature::edge) {
-        cross_squared(weight, v, e, add);
+        sum_cross_squared(weight, v, e, add);
       } else {
-        height_squared(weight, v, e, of->edge_[1], add);
+        sum_determinant_squared(weight, v, e, of->edge_[1], add);
       }
     }
 
     /// Sums the squared length of the edge or of the normal, or 1, multiplied by the factors.
     template <class Add, class... Factors>
     COLLIDE_HD void length(int weight, Add const& add, Factors const&... factors) const {
-      vector const& e = of->edge_[index];
+      auto const& e = of->edge_[index];
       if (kind == feature::vertex) {
         add(weight, factors...);
       } else if (kind == feature::edge) {
-        for (int k = 0; k < 3; ++k) add(weight, e[k], e[k], factors...);
+        sum_dot(weight, e, e, add, factors...);
       } else {
-        cross_squared(weight, e, of->edge_[1], add, factors...);
+        sum_cross_squared(weight, e, of->edge_[1], add, factors...);
       }
     }
 
@@ -134,7 +147,7 @@ class exact_triangle {
       wide_number const above = exact_sum::of([&](auto const& add) { excess(add); });
       if (above.value == 0) return {distance, 0};
       // R - d = (R^2 - d^2) / (R + d), where R and d are divided by a power of two as large as the larger one
-      dyadic const r = of->radius_.count() == 0 ? dyadic{0, 0} : of->radius_.part(0);
+      dyadic const r = of->radius_.parts().count == 0 ? dyadic{0, 0} : of->radius_.parts()[0];
       int const top = r.mantissa == 0 ? d.exponent : larger(d.exponent, r.exponent + r.length());
       double const sum =
           times_power(static_cast<double>(r.mantissa), r.exponent - top) + times_power(d.value, d.exponent - top);
@@ -143,7 +156,8 @@ class exact_triangle {
 
     /// From here to the centre, but for the length; 0 if the centre is here.
     COLLIDE_HD vec3<double> towards_centre() const {
-      vector const &v = of->corner_[index], &e = of->edge_[index];
+      auto const& v = of->corner_[index];
+      auto const& e = of->edge_[index];
       if (kind == feature::vertex) {
         return direction([&](int k, auto const& add) { add(-1, v[k]); });
       }
@@ -155,12 +169,7 @@ class exact_triangle {
           }
         });
       }
-      int const side = exact_sum::sign_of([&](auto const& add) {
-        for (int s = 0; s < 6; ++s) {
-          int const i = s / 2, j = (i + 1 + s % 2) % 3, k = 3 - i - j;
-          add(s % 2 == 0 ? 1 : -1, v[i], e[j], of->edge_[1][k]);
-        }
-      });
+      int const side = exact_sum::sign_of([&](auto const& add) { sum_determinant(1, v, e, of->edge_[1], add); });
       return of->normal() * -side;
     }
 
@@ -225,65 +234,22 @@ class exact_triangle {
     return d;
   }
 
-  /// Sums component k of p x q.
-  template <class Add>
-  static COLLIDE_HD void cross(int k, int weight, vector const& p, vector const& q, Add const& add) {
-    int const i = (k + 1) % 3, j = (k + 2) % 3;
-    add(weight, p[i], q[j]);
-    add(-weight, p[j], q[i]);
-  }
-
   /// The centre projects into the edge.
   COLLIDE_HD bool beside_edge(int i) const {
-    vector const& e = edge_[i];
-    auto const along = [&](vector const& v, int weight) {
-      return exact_sum::sign_of([&](auto const& add) {
-        for (int k = 0; k < 3; ++k) add(weight, v[k], e[k]);
-      });
+    auto const along = [&](int corner, int weight) {
+      return exact_sum::sign_of([&](auto const& add) { sum_dot(weight, corner_[corner], edge_[i], add); });
     };
-    return along(corner_[i], -1) > 0 && along(corner_[(i + 1) % 3], 1) > 0;
+    return along(i, -1) > 0 && along((i + 1) % 3, 1) > 0;
   }
 
   /// The centre projects into the face.
   COLLIDE_HD bool over_face() const {
     for (int i = 0; i < 3; ++i) {
-      int const side = exact_sum::sign_of([&](auto const& add) {
-        vector const &v = corner_[i], &e = edge_[i], &p = edge_[0], &q = edge_[1];
-        for (int k = 0; k < 3; ++k) {  // (v x e).(p x q)
-          int const l = (k + 1) % 3;
-          add(1, v[k], e[l], p[k], q[l]);
-          add(-1, v[k], e[l], p[l], q[k]);
-          add(-1, v[l], e[k], p[k], q[l]);
-          add(1, v[l], e[k], p[l], q[k]);
-        }
-      });
+      int const side = exact_sum::sign_of(
+          [&](auto const& add) { sum_cross_dot_cross(1, corner_[i], edge_[i], edge_[0], edge_[1], add); });
       if (side <= 0) return false;
     }
     return true;
-  }
-
-  /// Sums |p x q|^2, multiplied by the factors.
-  template <class Add, class... Factors>
-  static COLLIDE_HD void cross_squared(int weight, vector const& p, vector const& q, Add const& add,
-                                       Factors const&... factors) {
-    for (int k = 0; k < 3; ++k) {
-      int const l = (k + 1) % 3;
-      add(weight, p[k], p[k], q[l], q[l], factors...);
-      add(weight, p[l], p[l], q[k], q[k], factors...);
-      add(-2 * weight, p[k], p[l], q[k], q[l], factors...);
-    }
-  }
-
-  /// Sums (v . (p x q))^2: the determinant has six products, every other one negative.
-  template <class Add>
-  static COLLIDE_HD void height_squared(int weight, vector const& v, vector const& p, vector const& q, Add const& add) {
-    for (int s = 0; s < 6; ++s) {
-      int const i = s / 2, j = (i + 1 + s % 2) % 3, k = 3 - i - j;
-      for (int t = 0; t <= s; ++t) {
-        int const l = t / 2, m = (l + 1 + t % 2) % 3, n = 3 - l - m;
-        add(((s + t) % 2 == 0 ? weight : -weight) * (s == t ? 1 : 2), v[i], p[j], q[k], v[l], p[m], q[n]);
-      }
-    }
   }
 
   /// x * 2^n, also where 2^n is beyond the range.
@@ -293,8 +259,8 @@ class exact_triangle {
     return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
   }
 
-  exact_difference corner_[3][3];  ///< relative to the centre
-  exact_difference edge_[3][3];    ///< from each corner to the next
+  exact_vector<2 + Moved> corner_[3];
+  exact_vector<2> edge_[3];
   exact_difference radius_;
 };
 

@@ -1,0 +1,26 @@
+/// \file
+/// The contact of a moving sphere, when it touches.
+#pragma once
+
+#include <collide/detail/contact_of.hpp>
+#include <collide/detail/exact_sweep.hpp>
+#include <collide/detail/local_sweep.hpp>
+
+namespace collide::detail {
+
+/// The contact at a time within the step; the depth, which is next to zero when the contact begins, is just that.
+template <class S>
+COLLIDE_HD contact<S> contact_at(triangle<S> const& t, moving_sphere<S> const& s, S time) {
+  if (time == 0) return contact_between(t, static_cast<sphere<S> const&>(s));
+  local_sweep<double> const l = normalised(relative<double>(t, s), t, s);
+  auto const at = static_cast<double>(time);
+  auto const clear = [](double distance, double) { return sizeof(S) == sizeof(float) && distance >= clear_length; };
+  auto const exactly = [&] {
+    return exact_triangle<path_parts<S>>(t, s, exact_path<S>(s.displacement, decoded(time)).to);
+  };
+  vec3<double> const centre =
+      s.centre.template cast<double>() + scaled<double>(s.displacement.template cast<double>(), at);
+  return contact_from(seen_at(l, at), centre, s.radius, clear, exactly);
+}
+
+}  // namespace collide::detail
