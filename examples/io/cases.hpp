@@ -42,7 +42,7 @@ case_data<S> read_cases(std::string const& path) {
   case_data<S> cases;
   cases.has_hits = table.has(hit);
   S row[columns];
-  std::size_t moves;  // how many of dx, dy and dz there are
+  std::size_t moves = 0;  // how many of dx, dy and dz there are
   auto const number = [&](std::size_t column, std::string const& text) {
     auto const done = convert(text, row[column]);
     if (done == conversion::not_a_number) table.fail(column, text, "is not a number");
