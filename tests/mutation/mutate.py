@@ -89,7 +89,7 @@ MUTATIONS = {
     "kept-normal": ("arithmetic.hpp", "powers of two beside the largest numbers are kept normal", "contacts", "plain",
                     [("larger(r, 1)", "larger(r, 0)")]),
     "difference": ("exact_sum.hpp", "a difference is one number only if 62 bits suffice", "stages", "plain",
-                   [("<= 61", "<= 65")]),
+                   [("high.length() + shift > 61", "high.length() + shift > 65")]),
     "carry": ("exact_sum.hpp", "the carry from digit to digit", "stages", "plain",
               [("digits_[i] + carry", "digits_[i]")]),
     "window-carry": ("exact_sum.hpp", "the carry from window to window", "stages", "plain",
