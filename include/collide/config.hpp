@@ -1,5 +1,5 @@
 /// \file
-/// The host/device function markers and the version: the only macros of the library.
+/// What marks functions and loops for host and device, and the version: the only macros of the library.
 #pragma once
 
 #if defined(__CUDACC__)
@@ -17,6 +17,13 @@
 #else
 #define COLLIDE_HD_NOINLINE
 #endif
+#endif
+
+#if defined(__CUDA_ARCH__)
+/// Before a loop that the device does not unroll.
+#define COLLIDE_ROLLED _Pragma("unroll 1")
+#else
+#define COLLIDE_ROLLED
 #endif
 
 #define COLLIDE_VERSION_MAJOR 0

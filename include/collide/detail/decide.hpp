@@ -6,6 +6,7 @@
 
 #include <collide/detail/certificate.hpp>
 #include <collide/detail/exact_triangle.hpp>
+#include <collide/detail/fixed_triangle.hpp>
 
 namespace collide::detail {
 
@@ -35,7 +36,8 @@ COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> cons
     verdict const v = certify(l, size);
     if (v != verdict::unsure) return {v == verdict::hit, stage::double_certificate};
   }
-  return {exact_triangle<>(t, s).in_reach(), stage::integers};
+  fixed_triangle const fixed(t, s);
+  return {fixed.holds() ? fixed.in_reach() : exact_triangle<>(t, s).in_reach(), stage::integers};
 }
 
 /// The first stages: `unsure` is left to `finish`.

@@ -40,7 +40,7 @@ struct dyadic {
 COLLIDE_HD inline dyadic reduced(std::int64_t mantissa, int exponent) {
   if (mantissa == 0) return {0, 0};
   int const zeros = trailing_zeros(static_cast<std::uint64_t>(mantissa));
-  return {mantissa / (std::int64_t{1} << zeros), exponent + zeros};
+  return {mantissa >> zeros, exponent + zeros};
 }
 
 /// The finite number `x`, from its bits: subnormal numbers are as good as others.
@@ -51,7 +51,8 @@ COLLIDE_HD dyadic decoded(S x) {
   auto const biased = static_cast<int>((u & f::exponent_mask) >> f::mantissa_bits);
   auto const fraction = static_cast<std::int64_t>(u & ((bits_of<S>{1} << f::mantissa_bits) - 1));
   std::int64_t const m = biased == 0 ? fraction : fraction | std::int64_t{1} << f::mantissa_bits;
-  return reduced((u & f::sign_mask) != 0 ? -m : m, larger(biased, 1) - f::bias - f::mantissa_bits);
+  dyadic const d = reduced(m, larger(biased, 1) - f::bias - f::mantissa_bits);
+  return {(u & f::sign_mask) != 0 ? -d.mantissa : d.mantissa, d.exponent};
 }
 
 /// As a double. Of no more than 53 bits, which it has, and an exponent from -1022.
