@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include <collide/detail/arithmetic.hpp>
-#include <collide/spheres.hpp>
+#include <collide/detail/enclosing.hpp>
+#include <collide/moving_spheres.hpp>
 
 namespace collide::detail {
 
@@ -16,6 +16,19 @@ struct sphere_batch {
   static_assert(Items % 4 == 0, "packed centres are loaded four at a time");
 
   S x[Items], y[Items], z[Items], radius[Items];
+
+  /// A ball around the way of each.
+  COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
+    for (int k = 0; k < Items; ++k) {
+      std::size_t const i = first + static_cast<std::size_t>(k);
+      bool const there = i < spheres.size();
+      sphere<S> const s = there ? enclosing(spheres[i]) : sphere<S>{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()};
+      x[k] = s.centre.x();
+      y[k] = s.centre.y();
+      z[k] = s.centre.z();
+      radius[k] = s.radius;
+    }
+  }
 
   COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
     if (first + Items <= spheres.size()) {
