@@ -60,17 +60,21 @@ struct bucket_query {
   static constexpr int nowhere = -1;     ///< number of the grid of a sphere that touches nothing
   static constexpr int everywhere = -2;  ///< number of the grid of a sphere that no grid serves
 
-  template <class Block>
+  /// The spheres of a lane, and which grid serves each. Grids come by falling reach, so a sphere ends up in the
+  /// tightest.
+  template <int Items, bool Still>
   struct lane_state {
-    sphere_batch<S, Block::items> batch;
-    int grid_number[Block::items];
-    std::uint32_t step[still ? 1 : Block::items];  ///< of a way, the next
-    std::uint32_t skip[still ? 1 : Block::items];  ///< how many entries of its cell have been listed
+    sphere_batch<S, Items> batch;
+    int grid_number[Items];
 
-    /// Places the spheres that grid `g` can serve. Grids come by falling reach, so a sphere ends up in the tightest.
-    /// Without branches, for the CPU's vector unit.
+    COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
+      batch.load(spheres, first);
+      for (int k = 0; k < Items; ++k) grid_number[k] = valid_radius(batch.radius[k]) ? everywhere : nowhere;
+    }
+
+    /// Places the spheres that grid `g` can serve. Without branches, for the CPU's vector unit.
     COLLIDE_HD_INLINE void place(grid<S> const& box, int g) {
-      for (int k = 0; k < Block::items; ++k) {
+      for (int k = 0; k < Items; ++k) {
         bool const inside = (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) & (batch.y[k] >= box.lower[1]) &
                             (batch.y[k] <= box.upper[1]) & (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
         // a sphere that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
@@ -81,10 +85,46 @@ struct bucket_query {
     }
   };
 
+  /// The same of spheres that move.
+  template <int Items>
+  struct lane_state<Items, false> {
+    moving_batch<S, Items> batch;
+    int grid_number[Items];
+    std::uint32_t step[Items];  ///< of the way, the next
+    std::uint32_t skip[Items];  ///< how many entries of its cell have been listed
+
+    COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
+      batch.load(spheres, first);
+      for (int k = 0; k < Items; ++k) {
+        bool const sound = valid_radius(batch.radius[k]) & finite(batch.centre(k)) & finite(batch.displacement(k));
+        grid_number[k] = sound ? everywhere : nowhere;
+      }
+    }
+
+    COLLIDE_HD_INLINE void place(grid<S> const& box, int g) {
+      S const inverse_width = box.levels > 0 ? box.level[0].inverse_width : S(0);
+      for (int k = 0; k < Items; ++k) {
+        bool const inside = way<S>::enters(box.lower[0], box.upper[0], batch.x[k], batch.dx[k]) &
+                            way<S>::enters(box.lower[1], box.upper[1], batch.y[k], batch.dy[k]) &
+                            way<S>::enters(box.lower[2], box.upper[2], batch.z[k], batch.dz[k]);
+        bool const walks = way<S>::can_walk(box.lower[0], box.upper[0], inverse_width, batch.x[k], batch.dx[k]) &
+                           way<S>::can_walk(box.lower[1], box.upper[1], inverse_width, batch.y[k], batch.dy[k]) &
+                           way<S>::can_walk(box.lower[2], box.upper[2], inverse_width, batch.z[k], batch.dz[k]);
+        bool const served = (grid_number[k] != nowhere) & (batch.radius[k] <= box.reach) & walks;
+        int const there = inside ? g : nowhere;
+        grid_number[k] = served ? there : grid_number[k];
+      }
+    }
+
+    COLLIDE_HD_INLINE void begin_level() {
+      for (int k = 0; k < Items; ++k) step[k] = skip[k] = 0;
+    }
+  };
+
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
-    typename Block::template per_lane<lane_state<Block>> own;
+    typename Block::template per_lane<lane_state<n, still>> own;
     std::size_t const first = block.index() * Block::lanes * n;
     auto const first_of = [&](int lane) { return static_cast<id>(first) + static_cast<id>(lane * n); };
     int const usable = grid_count > 0 && *total <= capacity ? grid_count : 0;
@@ -97,14 +137,8 @@ struct bucket_query {
     });
     block.each([&](int lane) {
       auto& mine = own[lane];
-      if constexpr (still) {
-        mine.batch.load(tests.spheres, first + static_cast<std::size_t>(lane * n));
-        for (int k = 0; k < n; ++k) mine.grid_number[k] = valid_radius(mine.batch.radius[k]) ? everywhere : nowhere;
-        for (int g = 0; g < usable; ++g) mine.place(grids[g], g);
-      } else {
-        for (int k = 0; k < n; ++k)
-          mine.grid_number[k] = grid_of(first + static_cast<std::size_t>(lane * n + k), usable);
-      }
+      mine.load(tests.spheres, first + static_cast<std::size_t>(lane * n));
+      for (int g = 0; g < usable; ++g) mine.place(grids[g], g);
       for (int k = 0; k < n; ++k) {
         if (mine.grid_number[k] == everywhere) s.first[block.add(s.unplaced, 1)] = first_of(lane) + static_cast<id>(k);
       }
@@ -115,9 +149,7 @@ struct bucket_query {
       for (int l = 0; l < grids[g].levels; ++l) {
         grid_level<S> const& level = grids[g].level[l];
         if constexpr (!still) {
-          block.each([&](int lane) {
-            for (int k = 0; k < n; ++k) own[lane].step[k] = own[lane].skip[k] = 0;
-          });
+          block.each([&](int lane) { own[lane].begin_level(); });
         }
         bool more = true;
         for (std::uint32_t skip = 0; more; skip += longest<Block>) {  // once, unless a list is longer than that
@@ -126,7 +158,8 @@ struct bucket_query {
             for (int k = 0; k < n; ++k) {
               if (mine.grid_number[k] != g) continue;
               if constexpr (!still) {
-                list_next(block, s, grids[g], level, first_of(lane) + static_cast<id>(k), mine.step[k], mine.skip[k]);
+                way<S> const path(grids[g], level, mine.batch.centre(k), mine.batch.displacement(k));
+                list_next(block, s, path, level, first_of(lane) + static_cast<id>(k), mine.step[k], mine.skip[k]);
                 continue;
               }
               std::uint32_t const cell = grids[g].cell_of(level, {mine.batch.x[k], mine.batch.y[k], mine.batch.z[k]});
@@ -150,7 +183,7 @@ struct bucket_query {
                 if constexpr (still) {
                   return candidates{s.spheres[i], ball, entries + s.first[i]};
                 } else {
-                  way<S> const path(grids[g], level, ball);
+                  way<S> const path(grids[g], level, ball.centre, ball.displacement);
                   return candidates_of_place{{s.spheres[i], ball, entries + s.first[i]}, path, path.at(s.steps[i])};
                 }
               },
@@ -186,23 +219,10 @@ struct bucket_query {
     typename way<S>::place here;
   };
 
-  /// The grid that serves a sphere that moves.
-  COLLIDE_HD int grid_of(std::size_t i, int usable) const {
-    if (i >= tests.spheres.size()) return nowhere;
-    auto const ball = tests.spheres[i];
-    if (!valid_radius(ball.radius)) return nowhere;
-    int number = everywhere;
-    for (int g = 0; g < usable; ++g) {
-      if (ball.radius <= grids[g].reach && way<S>::can_walk(grids[g], ball)) number = g;
-    }
-    return number;
-  }
-
   /// Lists a sphere with the next cell on its way that is not empty, if there is one.
   template <class Block>
-  COLLIDE_HD void list_next(Block& block, scratch<Block>& s, grid<S> const& box, grid_level<S> const& level, id number,
+  COLLIDE_HD void list_next(Block& block, scratch<Block>& s, way<S> const& path, grid_level<S> const& level, id number,
                             std::uint32_t& step, std::uint32_t& skip) const {
-    way<S> const path(box, level, tests.spheres[number]);
     for (; step < path.steps(); ++step, skip = 0) {
       auto const here = path.at(step);
       if (!here.is_cell) continue;

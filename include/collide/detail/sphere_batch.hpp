@@ -74,4 +74,25 @@ struct sphere_batch {
   }
 };
 
+/// The same of spheres that move.
+template <class S, int Items>
+struct moving_batch {
+  S x[Items], y[Items], z[Items], dx[Items], dy[Items], dz[Items], radius[Items];
+
+  COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
+    for (int k = 0; k < Items; ++k) {
+      std::size_t const i = first + static_cast<std::size_t>(k);
+      bool const there = i < spheres.size();
+      moving_sphere<S> const s =
+          there ? spheres[i] : moving_sphere<S>{{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()}, {0, 0, 0}};
+      x[k] = s.centre.x(), y[k] = s.centre.y(), z[k] = s.centre.z();
+      dx[k] = s.displacement.x(), dy[k] = s.displacement.y(), dz[k] = s.displacement.z();
+      radius[k] = s.radius;
+    }
+  }
+
+  COLLIDE_HD_INLINE vec3<S> centre(int k) const { return {x[k], y[k], z[k]}; }
+  COLLIDE_HD_INLINE vec3<S> displacement(int k) const { return {dx[k], dy[k], dz[k]}; }
+};
+
 }  // namespace collide::detail

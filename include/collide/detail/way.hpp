@@ -3,9 +3,9 @@
 ///
 /// If the sphere touches a triangle at some time, the centre is then in a cell that lists the triangle. So all cells
 /// of the way are looked into: the way is cut into pieces half as long as a cell is wide, and the box of a piece, with
-/// some slack for rounding, touches a few cells. A triangle may be listed in several of these; it counts in the first
-/// of them only, which is found without memory: the boxes of pieces move one way on each axis, so the pieces whose
-/// cells a triangle shares follow each other.
+/// some slack for rounding, touches a few cells. (Most ways are short, and are one piece.) A triangle may be listed in
+/// several of these; it counts in the first of them only, which is found without memory: the boxes of pieces move one
+/// way on each axis, so the pieces whose cells a triangle shares follow each other.
 #pragma once
 
 #include <collide/detail/closest_point.hpp>
@@ -17,41 +17,32 @@ namespace collide::detail {
 template <class S>
 class way {
  public:
-  /// For a sphere that `can_walk`.
-  COLLIDE_HD way(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& s)
-      : grid_{g}, level_{l}, from_{s.centre}, along_{s.displacement} {
-    S end = 1, longest = 0;
+  /// For a sphere that `can_walk` in the grid.
+  COLLIDE_HD way(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from, vec3<S> const& along)
+      : grid_{g}, level_{l}, from_{from}, along_{along} {
+    bool few = true;
     for (int k = 0; k < 3; ++k) {
-      S const slack = slack_of(from_[k], along_[k]);
-      if (along_[k] == 0) continue;
-      S const to_lower = div(g.lower[k] - slack - from_[k], along_[k]),
-              to_upper = div(g.upper[k] + slack - from_[k], along_[k]);
-      begin_ = larger(begin_, stretched(smaller(to_lower, to_upper), -1));
-      end = smaller(end, stretched(larger(to_lower, to_upper), 1));
+      S const to = from[k] + along[k], slack = slack_of(from[k], along[k]);
+      whole_.lower[k] = g.coordinate(l, smaller(from[k], to) - slack, k);
+      whole_.upper[k] = g.coordinate(l, larger(from[k], to) + slack, k);
+      span_[k] = whole_.upper[k] - whole_.lower[k] + 1;
+      few = few && span_[k] <= 2;
     }
-    if (!(begin_ <= end)) return;
-    length_ = end - begin_;
-    for (int k = 0; k < 3; ++k) longest = larger(longest, mul(abs_of(along_[k]), length_));
-    pieces_ = static_cast<std::uint32_t>(mul(longest, 2 * l.inverse_width)) + 1;
-    piece_length_ = div(length_, static_cast<S>(pieces_));
-    for (int k = 0; k < 3; ++k) {
-      S const extent = mul(abs_of(along_[k]), piece_length_) + 2 * slack_of(from_[k], along_[k]);
-      span_[k] = static_cast<std::uint32_t>(mul(extent, l.inverse_width) + S(0.125)) + 2;
-    }
+    if (!few) cut();
   }
 
-  /// True if its way, in the grid, is one of a reasonable number of steps.
-  static COLLIDE_HD bool can_walk(grid<S> const& g, moving_sphere<S> const& s) {
-    if (g.levels == 0) return true;
+  /// True if the way comes through the grid's box, which a sphere must to touch a triangle.
+  static COLLIDE_HD_INLINE bool enters(S lower, S upper, S from, S along) {
+    S const to = from + along, slack = slack_of(from, along);
+    return (smaller(from, to) - slack <= upper) & (larger(from, to) + slack >= lower);
+  }
+
+  /// True if its cells can be counted.
+  static COLLIDE_HD_INLINE bool can_walk(S lower, S upper, S inverse_width, S from, S along) {
     constexpr S end = std::numeric_limits<S>::max() / 16;
-    if (!(magnitude(s.centre) < end && magnitude(s.displacement) < end)) return false;
-    S const inverse_width = g.level[0].inverse_width;
-    for (int k = 0; k < 3; ++k) {
-      S const length = smaller(abs_of(s.displacement[k]), g.upper[k] - g.lower[k]);
-      if (!(mul(length, inverse_width) < S(1 << 20))) return false;
-      if (!(mul(slack_of(s.centre[k], s.displacement[k]), inverse_width) < 1)) return false;
-    }
-    return true;
+    S const length = smaller(abs_of(along), upper - lower);
+    return (abs_of(from) < end) & (abs_of(along) < end) & (mul(length, inverse_width) < S(1 << 20)) &
+           (mul(slack_of(from, along), inverse_width) < 1);
   }
 
   /// Steps are numbered; in each there is one cell, or none.
@@ -108,7 +99,30 @@ class way {
     return from_[k] + mul(begin_ + mul(static_cast<S>(cut), piece_length_), along_[k]);
   }
 
+  /// Cuts a way through many cells into pieces.
+  COLLIDE_HD void cut() {
+    S end = 1, longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (along_[k] == 0) continue;
+      S const slack = slack_of(from_[k], along_[k]);
+      S const to_lower = div(grid_.lower[k] - slack - from_[k], along_[k]),
+              to_upper = div(grid_.upper[k] + slack - from_[k], along_[k]);
+      begin_ = larger(begin_, stretched(smaller(to_lower, to_upper), -1));
+      end = smaller(end, stretched(larger(to_lower, to_upper), 1));
+    }
+    pieces_ = 0;
+    if (!(begin_ <= end)) return;
+    for (int k = 0; k < 3; ++k) longest = larger(longest, mul(abs_of(along_[k]), end - begin_));
+    pieces_ = static_cast<std::uint32_t>(mul(longest, 2 * level_.inverse_width)) + 1;
+    piece_length_ = div(end - begin_, static_cast<S>(pieces_));
+    for (int k = 0; k < 3; ++k) {
+      S const extent = mul(abs_of(along_[k]), piece_length_) + 2 * slack_of(from_[k], along_[k]);
+      span_[k] = static_cast<std::uint32_t>(mul(extent, level_.inverse_width) + S(0.125)) + 2;
+    }
+  }
+
   COLLIDE_HD cell_range cells_of(std::uint32_t piece) const {
+    if (piece_length_ == 0) return whole_;
     cell_range r;
     for (int k = 0; k < 3; ++k) {
       S const a = position(piece, k), b = position(piece + 1, k), slack = slack_of(from_[k], along_[k]);
@@ -121,9 +135,10 @@ class way {
   grid<S> const& grid_;
   grid_level<S> const& level_;
   vec3<S> from_, along_;
-  S begin_ = 0, length_ = 0, piece_length_ = 0;
-  std::uint32_t pieces_ = 0;
-  std::uint32_t span_[3] = {1, 1, 1};
+  cell_range whole_;       ///< the cells of the way's box
+  std::uint32_t span_[3];  ///< how many cells a piece has on an axis, at most
+  std::uint32_t pieces_ = 1;
+  S begin_ = 0, piece_length_ = 0;  ///< times; if there is but one piece, the whole way, its length is 0
 };
 
 }  // namespace collide::detail
