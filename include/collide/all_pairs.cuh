@@ -47,7 +47,7 @@ struct all_pairs_query {
     if (!tests.begin(block, s.hits)) return;
     auto const first_of = [&](int lane) { return first + static_cast<std::size_t>(lane) * n; };
     block.each([&](int lane) { own[lane].load(tests.spheres, first_of(lane)); });
-    bool const one_radius = tests.spheres.one_radius();
+    bool const one_radius = at_rest<NarrowPhase, S> && tests.spheres.one_radius();
     S const radius = tests.spheres.common_radius();
     for (std::size_t base = begin; base < end; base += tile) {
       int const m = static_cast<int>(smaller(static_cast<std::size_t>(tile), end - base));
@@ -83,8 +83,9 @@ struct all_pairs_query {
   COLLIDE_HD void test_reached(Block& block, scratch<Block>& s, std::size_t first, id triangle,
                                bounding_sphere<S> const& ball) const {
     for (std::size_t i = first; i < first + Block::items && i < tests.spheres.size(); ++i) {
-      sphere<S> const candidate = tests.spheres[i];
-      if (ball.reached(candidate.centre, candidate.radius)) {
+      auto const candidate = tests.spheres[i];
+      sphere<S> const around = enclosing(candidate);
+      if (ball.reached(around.centre, around.radius)) {
         tests.test(block, s.hits, {static_cast<id>(i), triangle}, candidate);
       }
     }
@@ -121,7 +122,7 @@ struct all_pairs {
     void prepare(Space&, all_pairs const&, sphere_view<S> const&) {}
 
     template <class NarrowPhase, class Space, class Sink>
-    void query(Space& space, sphere_view<S> const& spheres, Sink const& sink) const {
+    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
       detail::all_pairs_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink}, bounds_.data(), 1};
       std::size_t const blocks = detail::blocks_for<Space>(spheres.size(), body);
       std::size_t const tiles = (mesh_.size() + body.tile - 1) / body.tile;

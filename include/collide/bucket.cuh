@@ -11,6 +11,7 @@
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/sphere_batch.hpp>
+#include <collide/detail/way.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
@@ -22,6 +23,7 @@ namespace detail {
 template <class S, class NarrowPhase, class Sink>
 struct bucket_query {
   static constexpr int items = 4;
+  static constexpr bool still = at_rest<NarrowPhase, S>;
 
   tester<S, NarrowPhase, Sink> tests;
   bounding_sphere<S> const* bounds;  ///< null if there was no room for them
@@ -45,9 +47,10 @@ struct bucket_query {
   template <class Block>
   struct scratch {
     static constexpr int size = Block::lanes * Block::items;
-    id spheres[size];            ///< spheres with candidates
-    std::uint32_t first[size];   ///< their first entry
-    std::uint32_t counts[size];  ///< how many they have
+    id spheres[size];                       ///< spheres with candidates
+    std::uint32_t first[size];              ///< their first entry
+    std::uint32_t counts[size];             ///< how many they have
+    std::uint32_t steps[still ? 1 : size];  ///< and, of a sphere that moves, the step of its way
     listing listed;
     std::uint32_t unplaced;  ///< how many spheres no grid serves; they are listed in `first`
     typename Block::balance_scratch balance;
@@ -57,15 +60,21 @@ struct bucket_query {
   static constexpr int nowhere = -1;     ///< number of the grid of a sphere that touches nothing
   static constexpr int everywhere = -2;  ///< number of the grid of a sphere that no grid serves
 
-  template <class Block>
+  /// The spheres of a lane, and which grid serves each. Grids come by falling reach, so a sphere ends up in the
+  /// tightest.
+  template <int Items, bool Still>
   struct lane_state {
-    sphere_batch<S, Block::items> batch;
-    int grid_number[Block::items];
+    sphere_batch<S, Items> batch;
+    int grid_number[Items];
 
-    /// Places the spheres that grid `g` can serve. Grids come by falling reach, so a sphere ends up in the tightest.
-    /// Without branches, for the CPU's vector unit.
+    COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
+      batch.load(spheres, first);
+      for (int k = 0; k < Items; ++k) grid_number[k] = valid_radius(batch.radius[k]) ? everywhere : nowhere;
+    }
+
+    /// Places the spheres that grid `g` can serve. Without branches, for the CPU's vector unit.
     COLLIDE_HD_INLINE void place(grid<S> const& box, int g) {
-      for (int k = 0; k < Block::items; ++k) {
+      for (int k = 0; k < Items; ++k) {
         bool const inside = (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) & (batch.y[k] >= box.lower[1]) &
                             (batch.y[k] <= box.upper[1]) & (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
         // a sphere that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
@@ -76,10 +85,46 @@ struct bucket_query {
     }
   };
 
+  /// The same of spheres that move.
+  template <int Items>
+  struct lane_state<Items, false> {
+    moving_batch<S, Items> batch;
+    int grid_number[Items];
+    std::uint32_t step[Items];  ///< of the way, the next
+    std::uint32_t skip[Items];  ///< how many entries of its cell have been listed
+
+    COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
+      batch.load(spheres, first);
+      for (int k = 0; k < Items; ++k) {
+        bool const sound = valid_radius(batch.radius[k]) & finite(batch.centre(k)) & finite(batch.displacement(k));
+        grid_number[k] = sound ? everywhere : nowhere;
+      }
+    }
+
+    COLLIDE_HD_INLINE void place(grid<S> const& box, int g) {
+      S const inverse_width = box.levels > 0 ? box.level[0].inverse_width : S(0);
+      for (int k = 0; k < Items; ++k) {
+        bool const inside = way<S>::enters(box.lower[0], box.upper[0], batch.x[k], batch.dx[k]) &
+                            way<S>::enters(box.lower[1], box.upper[1], batch.y[k], batch.dy[k]) &
+                            way<S>::enters(box.lower[2], box.upper[2], batch.z[k], batch.dz[k]);
+        bool const walks = way<S>::can_walk(box.lower[0], box.upper[0], inverse_width, batch.x[k], batch.dx[k]) &
+                           way<S>::can_walk(box.lower[1], box.upper[1], inverse_width, batch.y[k], batch.dy[k]) &
+                           way<S>::can_walk(box.lower[2], box.upper[2], inverse_width, batch.z[k], batch.dz[k]);
+        bool const served = (grid_number[k] != nowhere) & (batch.radius[k] <= box.reach) & walks;
+        int const there = inside ? g : nowhere;
+        grid_number[k] = served ? there : grid_number[k];
+      }
+    }
+
+    COLLIDE_HD_INLINE void begin_level() {
+      for (int k = 0; k < Items; ++k) step[k] = skip[k] = 0;
+    }
+  };
+
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
-    typename Block::template per_lane<lane_state<Block>> own;
+    typename Block::template per_lane<lane_state<n, still>> own;
     std::size_t const first = block.index() * Block::lanes * n;
     auto const first_of = [&](int lane) { return static_cast<id>(first) + static_cast<id>(lane * n); };
     int const usable = grid_count > 0 && *total <= capacity ? grid_count : 0;
@@ -92,8 +137,7 @@ struct bucket_query {
     });
     block.each([&](int lane) {
       auto& mine = own[lane];
-      mine.batch.load(tests.spheres, first + static_cast<std::size_t>(lane * n));
-      for (int k = 0; k < n; ++k) mine.grid_number[k] = valid_radius(mine.batch.radius[k]) ? everywhere : nowhere;
+      mine.load(tests.spheres, first + static_cast<std::size_t>(lane * n));
       for (int g = 0; g < usable; ++g) mine.place(grids[g], g);
       for (int k = 0; k < n; ++k) {
         if (mine.grid_number[k] == everywhere) s.first[block.add(s.unplaced, 1)] = first_of(lane) + static_cast<id>(k);
@@ -104,12 +148,20 @@ struct bucket_query {
     for (int g = 0; g < usable; ++g) {
       for (int l = 0; l < grids[g].levels; ++l) {
         grid_level<S> const& level = grids[g].level[l];
+        if constexpr (!still) {
+          block.each([&](int lane) { own[lane].begin_level(); });
+        }
         bool more = true;
         for (std::uint32_t skip = 0; more; skip += longest<Block>) {  // once, unless a list is longer than that
           block.each([&](int lane) {
-            auto const& mine = own[lane];
+            auto& mine = own[lane];
             for (int k = 0; k < n; ++k) {
               if (mine.grid_number[k] != g) continue;
+              if constexpr (!still) {
+                way<S> const path(grids[g], level, mine.batch.centre(k), mine.batch.displacement(k));
+                list_next(block, s, path, level, first_of(lane) + static_cast<id>(k), mine.step[k], mine.skip[k]);
+                continue;
+              }
               std::uint32_t const cell = grids[g].cell_of(level, {mine.batch.x[k], mine.batch.y[k], mine.batch.z[k]});
               if ((occupied[cell / 32] >> cell % 32 & 1) == 0) continue;
               std::uint32_t const begin = ends[cell], size = ends[cell + 1] - begin;
@@ -122,14 +174,25 @@ struct bucket_query {
             }
           });
           listing const listed = block.shared(s.listed);
-          more = listed.longer != 0;
+          more = still ? listed.longer != 0 : listed.spheres != 0;
           if (listed.spheres == 0) continue;
           block.balanced(
               s.balance, s.counts, listed.spheres,
               [&](std::uint32_t i) {
-                return candidates{s.spheres[i], tests.spheres[s.spheres[i]], entries + s.first[i]};
+                auto const ball = tests.spheres[s.spheres[i]];
+                if constexpr (still) {
+                  return candidates{s.spheres[i], ball, entries + s.first[i]};
+                } else {
+                  way<S> const path(grids[g], level, ball.centre, ball.displacement);
+                  return candidates_of_place{{s.spheres[i], ball, entries + s.first[i]}, path, path.at(s.steps[i])};
+                }
               },
-              [&](candidates const& c, std::uint32_t k) { test(block, s, c.number, c.ball, c.triangles[k]); },
+              [&](auto const& c, std::uint32_t k) {
+                if constexpr (!still) {
+                  if (!c.path.meets_first(c.here, tests.mesh[c.triangles[k]])) return;
+                }
+                test(block, s, c.number, c.ball, c.triangles[k]);
+              },
               [&] { tests.make_room(block, s.hits); });
           block.each([&](int lane) {
             if (lane == 0) s.listed = {0, 0};
@@ -141,17 +204,47 @@ struct bucket_query {
   }
 
  private:
-  /// A sphere and the triangles of its cell.
+  using ball_type = std::decay_t<decltype(std::declval<spheres_of<NarrowPhase, S> const&>()[0])>;
+
+  /// A sphere and the triangles of a cell.
   struct candidates {
     id number;
-    sphere<S> ball;
+    ball_type ball;
     id const* triangles;
   };
 
+  /// The same, and the place on the sphere's way that the cell is.
+  struct candidates_of_place : candidates {
+    way<S> path;
+    typename way<S>::place here;
+  };
+
+  /// Lists a sphere with the next cell on its way that is not empty, if there is one.
   template <class Block>
-  COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, id number, sphere<S> const& ball, id triangle) const {
-    auto const around = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
-    if (around.reached(ball.centre, ball.radius)) tests.test(block, s.hits, {number, triangle}, ball);
+  COLLIDE_HD void list_next(Block& block, scratch<Block>& s, way<S> const& path, grid_level<S> const& level, id number,
+                            std::uint32_t& step, std::uint32_t& skip) const {
+    for (; step < path.steps(); ++step, skip = 0) {
+      auto const here = path.at(step);
+      if (!here.is_cell) continue;
+      std::uint32_t const cell = level.row(here.cell[1], here.cell[2]) + (here.cell[0] & level.mask[0]);
+      if ((occupied[cell / 32] >> cell % 32 & 1) == 0) continue;
+      std::uint32_t const begin = ends[cell], size = ends[cell + 1] - begin;
+      if (size <= skip) continue;
+      std::uint32_t const place = block.add(s.listed.spheres, 1);
+      s.spheres[place] = number;
+      s.first[place] = begin + skip;
+      s.counts[place] = smaller(size - skip, longest<Block>);
+      s.steps[place] = step;
+      skip += s.counts[place];
+      return;
+    }
+  }
+
+  template <class Block>
+  COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, id number, ball_type const& ball, id triangle) const {
+    auto const bound = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
+    sphere<S> const around = enclosing(ball);
+    if (bound.reached(around.centre, around.radius)) tests.test(block, s.hits, {number, triangle}, ball);
   }
 
   /// Tests the spheres that are too large for every grid (or all, if there is none) with every triangle.
@@ -160,7 +253,7 @@ struct bucket_query {
     std::uint32_t const unplaced = block.shared(s.unplaced);
     constexpr std::size_t stride = Block::lanes;
     for (std::uint32_t i = 0; i < unplaced; ++i) {
-      sphere<S> const ball = tests.spheres[s.first[i]];
+      auto const ball = tests.spheres[s.first[i]];
       for (std::size_t base = 0; base < tests.mesh.size(); base += stride) {
         block.each([&](int lane) {
           std::size_t const t = base + static_cast<std::size_t>(lane);
@@ -237,7 +330,7 @@ class bucket::index {
 
   /// Puts one pass over the spheres on the space's stream.
   template <class NarrowPhase, class Space, class Sink>
-  void query(Space& space, sphere_view<S> const& spheres, Sink const& sink) const {
+  void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
     detail::bucket_query<S, NarrowPhase, Sink> const body{{mesh_, spheres, sink},
                                                           has_bounds_ ? bounds_.data() : nullptr,
                                                           grids_.data(),

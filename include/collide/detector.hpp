@@ -37,15 +37,6 @@ struct is_broad_phase<
                     std::declval<E&>(), std::declval<B const&>(), std::declval<sphere_view<S> const&>()))>>
     : std::true_type {};
 
-template <class N, class S, class = void>
-struct is_narrow_phase : std::false_type {};
-template <class N, class S>
-struct is_narrow_phase<
-    N, S,
-    std::enable_if_t<std::is_convertible<
-        decltype(N::intersects(std::declval<triangle<S> const&>(), std::declval<sphere<S> const&>())), bool>::value>>
-    : std::true_type {};
-
 template <class E, class = void>
 struct is_execution_space : std::false_type {};
 template <class E>
@@ -68,7 +59,7 @@ struct query_pass {
   Index const& index;
   Space& space;
   mesh_view<S> mesh;
-  sphere_view<S> spheres;
+  spheres_of<NarrowPhase, S> spheres;
   undecided_list& open;
 
   template <class Handle>
@@ -118,7 +109,7 @@ class detector {
       "collide: the first parameter of a detector is a broad phase, such as bucket or all_pairs: a class with a "
       "member template index<Scalar>, which has members build, prepare (for a radius and for spheres) and query");
   static_assert(
-      detail::is_narrow_phase<NarrowPhase, Scalar>::value,
+      detail::judges<NarrowPhase, Scalar, moving_sphere<Scalar>>::value,
       "collide: the second parameter of a detector is a narrow phase, such as karabassi<>: a class with a static "
       "member intersects(triangle, sphere) that returns bool");
 
@@ -127,6 +118,8 @@ class detector {
   using narrow_phase = NarrowPhase;
   using execution_space = ExecutionSpace;
   using scalar = Scalar;
+  /// `sphere_view`, or `moving_sphere_view` if the narrow phase judges spheres that move.
+  using spheres_type = detail::spheres_of<NarrowPhase, Scalar>;
 
   explicit detector(ExecutionSpace space = ExecutionSpace(), BroadPhase options = BroadPhase())
       : space_(std::move(space)), options_(std::move(options)) {}
@@ -150,7 +143,7 @@ class detector {
   /// one of your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used again),
   /// else by value.
   template <class Sink>
-  Sink query(sphere_view<Scalar> const& spheres, Sink&& sink) {
+  Sink query(spheres_type const& spheres, Sink&& sink) {
     using pass = detail::query_pass<typename BroadPhase::template index<Scalar>, NarrowPhase, ExecutionSpace, Scalar>;
     static_assert(
         detail::is_sink<std::remove_reference_t<Sink>, ExecutionSpace, pass>::value,
@@ -163,7 +156,7 @@ class detector {
 
   /// `build` and `query` in one call.
   template <class Sink>
-  Sink detect(mesh_view<Scalar> mesh, sphere_view<Scalar> const& spheres, Sink&& sink) {
+  Sink detect(mesh_view<Scalar> mesh, spheres_type const& spheres, Sink&& sink) {
     build(mesh);
     return query(spheres, std::forward<Sink>(sink));
   }
@@ -179,6 +172,15 @@ class detector {
   template <class S, class Sink>
   Sink query(sphere_view<S> const&, Sink&&) {
     reject<S>();
+    static_assert(detail::at_rest<NarrowPhase, Scalar>,
+                  "collide: this narrow phase judges spheres that move: give query a moving_sphere_view, see `moving`");
+  }
+  template <class S, class Sink>
+  Sink query(moving_sphere_view<S> const&, Sink&&) {
+    reject<S>();
+    static_assert(
+        !detail::at_rest<NarrowPhase, Scalar>,
+        "collide: this narrow phase judges spheres that rest; for spheres that move there is karabassi_swept");
   }
 
   ExecutionSpace& space() { return space_; }

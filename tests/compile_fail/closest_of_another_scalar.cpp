@@ -1,4 +1,4 @@
-// expect: collide: closest<S> must have the scalar type of the detector
+// expect: collide: closest<S> and earliest<S> must have the scalar type of the detector
 #include <collide/bucket.cuh>
 
 void f(collide::detector<collide::bucket>& detector, collide::sphere_view<float> spheres) {

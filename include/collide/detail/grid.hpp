@@ -79,14 +79,21 @@ struct grid {
     return level[l];
   }
 
-  /// The cells that a triangle is put into: at most one whole turn of the level on each axis.
-  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, triangle<S> const& t) const {
+  /// The cells that a triangle's dilated box touches.
+  COLLIDE_HD_INLINE cell_range box_of(grid_level<S> const& l, triangle<S> const& t) const {
     vec3<S> const low = smaller(smaller(t.a, t.b), t.c), high = larger(larger(t.a, t.b), t.c);
     cell_range r;
     for (int k = 0; k < 3; ++k) {
       r.lower[k] = coordinate(l, low[k] - dilation, k);
-      r.upper[k] = smaller(coordinate(l, high[k] + dilation, k), r.lower[k] + l.mask[k]);
+      r.upper[k] = coordinate(l, high[k] + dilation, k);
     }
+    return r;
+  }
+
+  /// The cells that a triangle is put into: at most one whole turn of the level on each axis.
+  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, triangle<S> const& t) const {
+    cell_range r = box_of(l, t);
+    for (int k = 0; k < 3; ++k) r.upper[k] = smaller(r.upper[k], r.lower[k] + l.mask[k]);
     return r;
   }
 };

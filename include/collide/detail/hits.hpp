@@ -7,8 +7,9 @@
 #include <utility>
 
 #include <collide/contact.hpp>
+#include <collide/detail/spheres_of.hpp>
+#include <collide/impact.hpp>
 #include <collide/mesh.hpp>
-#include <collide/spheres.hpp>
 
 namespace collide {
 
@@ -18,7 +19,16 @@ template <class N, class S, class = void>
 struct has_contact : std::false_type {};
 template <class N, class S>
 struct has_contact<
-    N, S, std::void_t<decltype(N::contact_of(std::declval<triangle<S> const&>(), std::declval<sphere<S> const&>()))>>
+    N, S,
+    std::void_t<decltype(N::contact_of(std::declval<triangle<S> const&>(), std::declval<moving_sphere<S> const&>()))>>
+    : std::true_type {};
+
+template <class N, class S, class = void>
+struct has_impact : std::false_type {};
+template <class N, class S>
+struct has_impact<
+    N, S,
+    std::void_t<decltype(N::impact_of(std::declval<triangle<S> const&>(), std::declval<moving_sphere<S> const&>()))>>
     : std::true_type {};
 
 }  // namespace detail
@@ -30,7 +40,9 @@ class hit {
   id sphere;    ///< number of the sphere
   id triangle;  ///< number of the triangle
 
-  COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, sphere_view<S> const& spheres)
+  using spheres_type = detail::spheres_of<NarrowPhase, S>;
+
+  COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres)
       : sphere{p.sphere}, triangle{p.triangle}, mesh_{mesh}, spheres_{spheres} {}
 
   /// Where and how the two touch; computed here and now.
@@ -45,9 +57,21 @@ class hit {
     return c;
   }
 
+  /// When the two touch first within the step, and the contact then; computed here and now.
+  COLLIDE_HD collide::impact<S> impact() const {
+    static_assert(
+        detail::has_impact<NarrowPhase, S>::value,
+        "collide: impacts need a narrow phase for spheres that move, with a static member impact_of(triangle, "
+        "moving_sphere) that returns an impact, such as karabassi_swept");
+    collide::impact<S> i = NarrowPhase::impact_of(mesh_[triangle], spheres_[sphere]);
+    i.contact.sphere = sphere;
+    i.contact.triangle = triangle;
+    return i;
+  }
+
  private:
   mesh_view<S> const& mesh_;
-  sphere_view<S> const& spheres_;
+  spheres_type const& spheres_;
 };
 
 namespace detail {
@@ -62,8 +86,8 @@ struct deciding {
   COLLIDE_HD_INLINE bool needed() const { return true; }
 
   /// True if the pair is a hit to be reported in this pass.
-  template <class NarrowPhase, class S>
-  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, sphere<S> const& s) const {
+  template <class NarrowPhase, class S, class Ball>
+  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, Ball const& s) const {
     return NarrowPhase::intersects(t, s);
   }
 
@@ -88,12 +112,12 @@ struct hit_buffer {
 template <class S, class NarrowPhase, class Sink>
 struct tester {
   mesh_view<S> mesh;
-  sphere_view<S> spheres;
+  spheres_of<NarrowPhase, S> spheres;
   Sink sink;
 
   /// Runs the narrow phase on one candidate. Called by any lane.
-  template <class Block>
-  COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block>& b, pair p, sphere<S> const& s) const {
+  template <class Block, class Ball>
+  COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block>& b, pair p, Ball const& s) const {
     if (!sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) return;
     if constexpr (hit_buffer<Block>::capacity > 0) {
       std::uint32_t const place = block.add(b.found, 1);

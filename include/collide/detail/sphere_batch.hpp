@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include <collide/detail/arithmetic.hpp>
-#include <collide/spheres.hpp>
+#include <collide/detail/enclosing.hpp>
+#include <collide/moving_spheres.hpp>
 
 namespace collide::detail {
 
@@ -16,6 +16,19 @@ struct sphere_batch {
   static_assert(Items % 4 == 0, "packed centres are loaded four at a time");
 
   S x[Items], y[Items], z[Items], radius[Items];
+
+  /// A ball around the way of each.
+  COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
+    for (int k = 0; k < Items; ++k) {
+      std::size_t const i = first + static_cast<std::size_t>(k);
+      bool const there = i < spheres.size();
+      sphere<S> const s = there ? enclosing(spheres[i]) : sphere<S>{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()};
+      x[k] = s.centre.x();
+      y[k] = s.centre.y();
+      z[k] = s.centre.z();
+      radius[k] = s.radius;
+    }
+  }
 
   COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
     if (first + Items <= spheres.size()) {
@@ -59,6 +72,27 @@ struct sphere_batch {
       z[k] = *spheres.z(i);
     }
   }
+};
+
+/// The same of spheres that move.
+template <class S, int Items>
+struct moving_batch {
+  S x[Items], y[Items], z[Items], dx[Items], dy[Items], dz[Items], radius[Items];
+
+  COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
+    for (int k = 0; k < Items; ++k) {
+      std::size_t const i = first + static_cast<std::size_t>(k);
+      bool const there = i < spheres.size();
+      moving_sphere<S> const s =
+          there ? spheres[i] : moving_sphere<S>{{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()}, {0, 0, 0}};
+      x[k] = s.centre.x(), y[k] = s.centre.y(), z[k] = s.centre.z();
+      dx[k] = s.displacement.x(), dy[k] = s.displacement.y(), dz[k] = s.displacement.z();
+      radius[k] = s.radius;
+    }
+  }
+
+  COLLIDE_HD_INLINE vec3<S> centre(int k) const { return {x[k], y[k], z[k]}; }
+  COLLIDE_HD_INLINE vec3<S> displacement(int k) const { return {dx[k], dy[k], dz[k]}; }
 };
 
 }  // namespace collide::detail

@@ -44,8 +44,8 @@ template <class Handle>
 struct deferring : deciding<Handle> {
   undecided open;
 
-  template <class NarrowPhase, class S>
-  COLLIDE_HD_INLINE bool takes(pair p, triangle<S> const& t, sphere<S> const& s) const {
+  template <class NarrowPhase, class S, class Ball>
+  COLLIDE_HD_INLINE bool takes(pair p, triangle<S> const& t, Ball const& s) const {
     verdict const quick = in_stages<NarrowPhase>::attempt(t, s);
     if (quick == verdict::unsure) {
       std::uint64_t const slot = fetch_add(open.total, std::uint64_t{1});
@@ -58,8 +58,8 @@ struct deferring : deciding<Handle> {
 /// The second step, in which all candidates are pairs of the list.
 template <class Handle>
 struct finishing : deciding<Handle> {
-  template <class NarrowPhase, class S>
-  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, sphere<S> const& s) const {
+  template <class NarrowPhase, class S, class Ball>
+  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, Ball const& s) const {
     return in_stages<NarrowPhase>::finish(t, s);
   }
 };
@@ -71,8 +71,8 @@ struct completing : deciding<Handle> {
 
   COLLIDE_HD_INLINE bool needed() const { return open.overflown(); }
 
-  template <class NarrowPhase, class S>
-  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, sphere<S> const& s) const {
+  template <class NarrowPhase, class S, class Ball>
+  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, Ball const& s) const {
     return in_stages<NarrowPhase>::attempt(t, s) == verdict::unsure && in_stages<NarrowPhase>::finish(t, s);
   }
 };
@@ -109,8 +109,8 @@ struct decide_listed {
 /// Runs all steps. Every pair is reported once, because an attempt on the device has the same outcome in every kernel:
 /// no compiler is free to fuse or reorder what `attempt` computes there.
 template <class NarrowPhase, class Space, class Index, class S, class Handle>
-void query_in_steps(Space& space, Index const& index, mesh_view<S> const& mesh, sphere_view<S> const& spheres,
-                    Handle const& handle, undecided const& open) {
+void query_in_steps(Space& space, Index const& index, mesh_view<S> const& mesh,
+                    spheres_of<NarrowPhase, S> const& spheres, Handle const& handle, undecided const& open) {
   index.template query<NarrowPhase>(space, spheres, deferring<Handle>{{handle}, open});
   decide_listed<S, NarrowPhase, Handle> body{{mesh, spheres, {{handle}}}, open, 0};
   body.blocks = smaller(space.concurrency(), blocks_for<Space>(open.capacity, body));

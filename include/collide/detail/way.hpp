@@ -1,0 +1,144 @@
+/// \file
+/// The way of a moving sphere's centre through a grid.
+///
+/// If the sphere touches a triangle at some time, the centre is then in a cell that lists the triangle. So all cells
+/// of the way are looked into: the way is cut into pieces half as long as a cell is wide, and the box of a piece, with
+/// some slack for rounding, touches a few cells. (Most ways are short, and are one piece.) A triangle may be listed in
+/// several of these; it counts in the first of them only, which is found without memory: the boxes of pieces move one
+/// way on each axis, so the pieces whose cells a triangle shares follow each other.
+#pragma once
+
+#include <collide/detail/closest_point.hpp>
+#include <collide/detail/grid.hpp>
+
+namespace collide::detail {
+
+/// The cells of one level that a centre comes through, one after the other.
+template <class S>
+class way {
+ public:
+  /// For a sphere that `can_walk` in the grid.
+  COLLIDE_HD way(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from, vec3<S> const& along)
+      : grid_{g}, level_{l}, from_{from}, along_{along} {
+    bool few = true;
+    for (int k = 0; k < 3; ++k) {
+      S const to = from[k] + along[k], slack = slack_of(from[k], along[k]);
+      whole_.lower[k] = g.coordinate(l, smaller(from[k], to) - slack, k);
+      whole_.upper[k] = g.coordinate(l, larger(from[k], to) + slack, k);
+      span_[k] = whole_.upper[k] - whole_.lower[k] + 1;
+      few = few && span_[k] <= 2;
+    }
+    if (!few) cut();
+  }
+
+  /// True if the way comes through the grid's box, which a sphere must to touch a triangle.
+  static COLLIDE_HD_INLINE bool enters(S lower, S upper, S from, S along) {
+    S const to = from + along, slack = slack_of(from, along);
+    return (smaller(from, to) - slack <= upper) & (larger(from, to) + slack >= lower);
+  }
+
+  /// True if its cells can be counted.
+  static COLLIDE_HD_INLINE bool can_walk(S lower, S upper, S inverse_width, S from, S along) {
+    constexpr S end = std::numeric_limits<S>::max() / 16;
+    S const length = smaller(abs_of(along), upper - lower);
+    return (abs_of(from) < end) & (abs_of(along) < end) & (mul(length, inverse_width) < S(1 << 20)) &
+           (mul(slack_of(from, along), inverse_width) < 1);
+  }
+
+  /// Steps are numbered; in each there is one cell, or none.
+  COLLIDE_HD_INLINE std::uint32_t steps() const { return pieces_ * per_piece(); }
+
+  /// Where a step leads.
+  struct place {
+    std::uint32_t cell[3];
+    cell_range piece, before;  ///< the cells of the piece that it belongs to, and of the piece before
+    bool is_first;             ///< there is no piece before
+    bool is_cell;
+  };
+
+  COLLIDE_HD place at(std::uint32_t step) const {
+    std::uint32_t const piece = step / per_piece();
+    std::uint32_t const rest = step % per_piece();
+    place p;
+    p.piece = cells_of(piece);
+    p.is_first = piece == 0;
+    if (!p.is_first) p.before = cells_of(piece - 1);
+    std::uint32_t const offset[3] = {rest % span_[0], rest / span_[0] % span_[1], rest / (span_[0] * span_[1])};
+    p.is_cell = true;
+    for (int k = 0; k < 3; ++k) {
+      p.cell[k] = p.piece.lower[k] + offset[k];
+      p.is_cell = p.is_cell && p.cell[k] <= p.piece.upper[k];
+    }
+    return p;
+  }
+
+  /// True if this is the first place on the way that shares a cell with the triangle.
+  COLLIDE_HD bool meets_first(place const& p, triangle<S> const& t) const {
+    cell_range const r = grid_.box_of(level_, t);
+    bool here = true, before = !p.is_first;
+    for (int k = 0; k < 3; ++k) {
+      here = here && p.cell[k] == larger(r.lower[k], p.piece.lower[k]) && p.cell[k] <= r.upper[k];
+      before = before && p.before.lower[k] <= r.upper[k] && r.lower[k] <= p.before.upper[k];
+    }
+    return here && !before;
+  }
+
+ private:
+  static COLLIDE_HD S abs_of(S x) { return x < 0 ? -x : x; }
+
+  static COLLIDE_HD S slack_of(S from, S along) {
+    return 8 * format<S>::unit * (abs_of(from) + abs_of(along)) + 8 * std::numeric_limits<S>::min();
+  }
+
+  /// A bit farther in a direction than `t`, which may be inaccurate.
+  static COLLIDE_HD S stretched(S t, S direction) { return t + mul(direction * 8 * format<S>::unit, abs_of(t)); }
+
+  COLLIDE_HD std::uint32_t per_piece() const { return span_[0] * span_[1] * span_[2]; }
+
+  COLLIDE_HD S position(std::uint32_t cut, int k) const {
+    return from_[k] + mul(begin_ + mul(static_cast<S>(cut), piece_length_), along_[k]);
+  }
+
+  /// Cuts a way through many cells into pieces.
+  COLLIDE_HD void cut() {
+    S end = 1, longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (along_[k] == 0) continue;
+      S const slack = slack_of(from_[k], along_[k]);
+      S const to_lower = div(grid_.lower[k] - slack - from_[k], along_[k]),
+              to_upper = div(grid_.upper[k] + slack - from_[k], along_[k]);
+      begin_ = larger(begin_, stretched(smaller(to_lower, to_upper), -1));
+      end = smaller(end, stretched(larger(to_lower, to_upper), 1));
+    }
+    pieces_ = 0;
+    if (!(begin_ <= end)) return;
+    for (int k = 0; k < 3; ++k) longest = larger(longest, mul(abs_of(along_[k]), end - begin_));
+    pieces_ = static_cast<std::uint32_t>(mul(longest, 2 * level_.inverse_width)) + 1;
+    piece_length_ = div(end - begin_, static_cast<S>(pieces_));
+    for (int k = 0; k < 3; ++k) {
+      S const extent = mul(abs_of(along_[k]), piece_length_) + 2 * slack_of(from_[k], along_[k]);
+      span_[k] = static_cast<std::uint32_t>(mul(extent, level_.inverse_width) + S(0.125)) + 2;
+    }
+  }
+
+  COLLIDE_HD cell_range cells_of(std::uint32_t piece) const {
+    if (piece_length_ == 0) return whole_;
+    cell_range r;
+    for (int k = 0; k < 3; ++k) {
+      S const a = position(piece, k), b = position(piece + 1, k), slack = slack_of(from_[k], along_[k]);
+      r.lower[k] = grid_.coordinate(level_, smaller(a, b) - slack, k);
+      r.upper[k] = grid_.coordinate(level_, larger(a, b) + slack, k);
+    }
+    return r;
+  }
+
+  grid<S> const& grid_;
+  grid_level<S> const& level_;
+  vec3<S> from_, along_;
+  cell_range whole_;       ///< the cells of the way's box
+  std::uint32_t span_[3];  ///< how many cells a piece has on an axis, at most
+  std::uint32_t pieces_ = 1;
+  S begin_ = 0, piece_length_ = 0;  ///< times; if there is but one piece, the whole way, its length is 0
+};
+
+}  // namespace collide::detail

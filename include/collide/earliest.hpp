@@ -1,0 +1,36 @@
+/// \file
+/// Sink: per sphere that moves the first of the triangles that it hits.
+#pragma once
+
+#include <collide/detail/best_of_sphere.hpp>
+
+namespace collide {
+
+/// The triangle that a sphere hits first within the step.
+template <class S>
+struct first_impact {
+  id triangle;  ///< `no_id` if the sphere touches nothing
+  S time;       ///< in 0 .. 1; +infinity if the sphere touches nothing
+};
+
+namespace detail {
+
+struct time_of_hit {
+  template <class NarrowPhase, class S>
+  static COLLIDE_HD S of(hit<NarrowPhase, S> const& h) {
+    return h.impact().time;
+  }
+  template <class S>
+  static COLLIDE_HD S& number_of(first_impact<S>& entry) {
+    return entry.time;
+  }
+};
+
+}  // namespace detail
+
+/// Per sphere the triangle with the smallest time of impact; of equally early ones that with the smallest id. Needs a
+/// narrow phase for spheres that move.
+template <class S = float>
+class earliest : public detail::best_of_sphere<first_impact<S>, S, detail::time_of_hit> {};
+
+}  // namespace collide

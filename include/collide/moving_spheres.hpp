@@ -1,0 +1,45 @@
+/// \file
+/// Views of a set of spheres that move in a straight line within a step.
+#pragma once
+
+#include <collide/spheres.hpp>
+
+namespace collide {
+
+/// Spheres and their displacements within a step, in memory that somebody else owns. Made by `moving`.
+template <class S>
+class moving_sphere_view : public sphere_view<S> {
+ public:
+  moving_sphere_view() = default;
+  /// The displacement of sphere i is (x[i * stride], y[i * stride], z[i * stride]).
+  moving_sphere_view(sphere_view<S> const& spheres, S const* x, S const* y, S const* z, std::size_t stride)
+      : sphere_view<S>(spheres), x_{x}, y_{y}, z_{z}, stride_{stride} {}
+
+  COLLIDE_HD_INLINE vec3<S> displacement(std::size_t i) const {
+    return {x_[i * stride_], y_[i * stride_], z_[i * stride_]};
+  }
+
+  COLLIDE_HD_INLINE moving_sphere<S> operator[](std::size_t i) const {
+    return {sphere_view<S>::operator[](i), displacement(i)};
+  }
+
+ private:
+  S const* x_ = nullptr;
+  S const* y_ = nullptr;
+  S const* z_ = nullptr;
+  std::size_t stride_ = 3;
+};
+
+/// Spheres with packed displacements, 3 coordinates each.
+template <class S>
+moving_sphere_view<S> moving(sphere_view<S> const& spheres, S const* displacements) {
+  return {spheres, displacements, displacements + 1, displacements + 2, 3};
+}
+
+/// Spheres with the coordinates of their displacements in three arrays.
+template <class S>
+moving_sphere_view<S> moving(sphere_view<S> const& spheres, S const* x, S const* y, S const* z) {
+  return {spheres, x, y, z, 1};
+}
+
+}  // namespace collide

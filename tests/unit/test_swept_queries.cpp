@@ -1,0 +1,104 @@
+/// Spheres that move, in every composition of the host.
+#include "compositions.hpp"
+#include "swept_queries.hpp"
+
+namespace {
+
+/// A closed mesh around the origin: the octahedron |x| + |y| + |z| = 1, its faces divided, flattened along z.
+template <class S>
+std::vector<S> octahedron(double flat, int divisions) {
+  std::vector<S> corners;
+  auto const add = [&](double x, double y, double z) {
+    for (double v : {x, y, z * flat}) corners.push_back(static_cast<S>(v));
+  };
+  for (int side = 0; side < 8; ++side) {
+    double const sx = side % 2 == 0 ? 1 : -1, sy = side / 2 % 2 == 0 ? 1 : -1, sz = side / 4 == 0 ? 1 : -1;
+    auto const at = [&](int i, int k) {  // exact for divisions that are powers of two
+      double const x = double(i) / divisions, y = double(k) / divisions;
+      add(sx * x, sy * y, sz * (1 - x - y));
+    };
+    for (int i = 0; i < divisions; ++i)
+      for (int k = 0; i + k < divisions; ++k) {
+        at(i, k), at(i + 1, k), at(i, k + 1);
+        if (i + k + 1 < divisions) at(i + 1, k), at(i + 1, k + 1), at(i, k + 1);
+      }
+  }
+  return corners;
+}
+
+/// Spheres from outside to outside, through the middle of the mesh; how many are not reported.
+template <class S>
+std::size_t count_tunnels(std::vector<S> const& corners, double flat, std::size_t n, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<S> centres(3 * n), displacements(3 * n), radii(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    // a point well inside the equator, and a direction not too near to the plane of that
+    double const inside[] = {0.4 * uniform(engine), 0.4 * uniform(engine), 0};
+    double way[] = {uniform(engine), uniform(engine), uniform(engine) < 0 ? -1.0 : 1.0};
+    double const length = std::exp2(5 + 3 * uniform(engine)), before = 0.5 + 0.2 * uniform(engine);
+    for (std::size_t k = 0; k < 3; ++k) {
+      double const along = length * way[k] * (k == 2 ? std::max(1.0, flat) : 1);
+      centres[3 * i + k] = static_cast<S>(inside[k] - before * along);
+      displacements[3 * i + k] = static_cast<S>(along);
+    }
+    radii[i] = static_cast<S>(length * std::exp2(-10 + 3 * uniform(engine)));  // ways of 130 to 8,000 radii
+    if (i % 64 == 0) radii[i] = 0;
+  }
+  collide::detector<collide::bucket, collide::karabassi_swept<>, collide::host, S> detector(collide::host(2));
+  auto const view = collide::moving(collide::spheres_xyz(centres.data(), n, radii.data()), displacements.data());
+  auto const touched =
+      detector.detect(collide::triangle_soup(corners.data(), corners.size() / 9), view, collide::any());
+  auto const hit = touched.to_host();
+  return static_cast<std::size_t>(std::count(hit.begin(), hit.end(), 0));
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("swept queries: pairs, impacts and first impacts are those of the narrow phase alone", S, float,
+                   double) {
+  tests::check_motions<S>(collide::host(2));
+  tests::check_motions<S, tests::lockstep<256, false>>({});
+  tests::check_motions<S, tests::lockstep<64, true>>({});
+  tests::check_motions<S, collide::host, collide::single_precision>(collide::host(1));
+  tests::check_motions<S, collide::host, collide::double_precision>(collide::host(1));
+}
+
+TEST_CASE_TEMPLATE("swept queries: spheres that do not move collide as those at rest", S, float, double) {
+  tests::motion m;
+  m.longest = 0;
+  auto const made = tests::random_motion<S>(5, m);
+  collide::detector<collide::bucket, collide::karabassi<>, collide::host, S> at_rest;
+  collide::detector<collide::bucket, collide::karabassi_swept<>, collide::host, S> swept;
+  auto const pairs = at_rest.detect(made.mesh(), made.spheres(), collide::pairs(collide::order::canonical)).to_host();
+  CHECK(pairs.size() > 20);
+  CHECK((swept.detect(made.mesh(), made.moving(), collide::pairs(collide::order::canonical)).to_host() == pairs));
+}
+
+TEST_CASE_TEMPLATE("swept queries: bad values harm nothing else", S, float, double) {
+  auto made = tests::random_motion<S>(9, {});
+  S const bad[] = {std::numeric_limits<S>::quiet_NaN(), std::numeric_limits<S>::infinity(),
+                   -std::numeric_limits<S>::infinity(), std::numeric_limits<S>::max(),
+                   -std::numeric_limits<S>::max(),      std::numeric_limits<S>::denorm_min()};
+  for (std::size_t i = 0; i < 60; ++i) {
+    (i % 2 == 0 ? made.centres : made.displacements)[3 * (5 * i) + i % 3] = bad[i % 6];
+    if (i % 7 == 0) made.radii[5 * i + 1] = bad[i / 7 % 5];
+  }
+  using narrow_phase = collide::karabassi_swept<>;
+  auto const expected = tests::pairs_that_touch<narrow_phase>(made);
+  for (double const width : {0.0, 0.25}) {
+    collide::detector<collide::bucket, narrow_phase, collide::host, S> detector(collide::host(), {width});
+    CHECK(
+        (detector.detect(made.mesh(), made.moving(), collide::pairs(collide::order::canonical)).to_host() == expected));
+  }
+  collide::detector<collide::all_pairs, narrow_phase, collide::host, S> detector;
+  CHECK((detector.detect(made.mesh(), made.moving(), collide::pairs(collide::order::canonical)).to_host() == expected));
+}
+
+TEST_CASE("swept queries: of 1e7 fast spheres none tunnels through a closed, a thin or a finely divided mesh") {
+  CHECK(count_tunnels<float>(octahedron<float>(1, 1), 1, 2000000, 1) == 0);
+  CHECK(count_tunnels<float>(octahedron<float>(1e-4, 1), 1e-4, 2000000, 2) == 0);
+  CHECK(count_tunnels<float>(octahedron<float>(1e-6, 16), 1e-6, 2000000, 3) == 0);
+  CHECK(count_tunnels<float>(octahedron<float>(1e4, 4), 1e4, 2000000, 4) == 0);
+  CHECK(count_tunnels<double>(octahedron<double>(1e-9, 8), 1e-9, 2000000, 5) == 0);
+}

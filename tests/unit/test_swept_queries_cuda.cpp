@@ -1,0 +1,7 @@
+/// Spheres that move, on the GPU.
+#include "swept_queries.hpp"
+
+TEST_CASE("swept queries: on the GPU, floats") {
+  tests::check_motions<float>(collide::cuda());
+  tests::check_motions<float>(collide::cuda_shared());
+}
