@@ -1,5 +1,5 @@
-/// make_cases FOLDER: writes near_f32.csv and near_f64.csv, cases next to contact with the oracle's verdicts. Is not built
-/// with the flags that are under test.
+/// make_cases FOLDER: writes near_f32.csv and near_f64.csv, cases next to contact with the oracle's verdicts. Is not
+/// built with the flags that are under test.
 #include <fstream>
 #include <stdexcept>
 #include <string>

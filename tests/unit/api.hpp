@@ -157,8 +157,9 @@ void check_baseline(Space space) {
   random.triangles = 500;
   random.spheres = 1000;
   auto const ids_of = [&](scene<float> const& made) {
-    auto const mesh = collide::upload(space, collide::indexed_mesh(made.mesh.vertices.data(), made.mesh.vertices.size() / 3,
-                                                                   made.mesh.corners.data(), made.mesh.size()));
+    auto const mesh =
+        collide::upload(space, collide::indexed_mesh(made.mesh.vertices.data(), made.mesh.vertices.size() / 3,
+                                                     made.mesh.corners.data(), made.mesh.size()));
     auto const spheres = collide::upload(
         space, collide::spheres_xyz(made.spheres.centres.data(), made.spheres.size(), made.spheres.radii.data()));
     collide::detector<Broad, collide::karabassi<collide::baseline>, Space> detector(space);

@@ -19,7 +19,8 @@ struct conditions {
 };
 
 /// Runs every composition of `S` through every sink on the scene, and checks that
-///   - the pairs are those of the oracle (with `exact` all of them, whatever the band), each once and in canonical order
+///   - the pairs are those of the oracle (with `exact` all of them, whatever the band), each once and in canonical
+///   order
 ///     where that was asked for,
 ///   - no broad phase changes a verdict of the narrow phase,
 ///   - all sinks agree with each other,

@@ -25,16 +25,17 @@ struct near_sweep : near_case {
 std::string describe(near_case const& c);
 std::string describe(near_sweep const& c);
 
-/// Nine cases for each of `n` triangles and centres: the radius is the exact distance, rounded, and -4, -3 .. 4 units in
-/// the last place, and each of the nine is turned and mirrored in another way. Faces, edges and vertices are touched, of
-/// triangles in general position, of slivers down to 1e-7 and of degenerate triangles; the distance is 1e-6 to 1e6 times
-/// the triangle's size, the offset from the origin up to 1e6 times; scales are 2^-140 to 2^120, and with double all of
-/// its range.
+/// Nine cases for each of `n` triangles and centres: the radius is the exact distance, rounded, and -4, -3 .. 4 units
+/// in the last place, and each of the nine is turned and mirrored in another way. Faces, edges and vertices are
+/// touched, of triangles in general position, of slivers down to 1e-7 and of degenerate triangles; the distance is 1e-6
+/// to 1e6 times the triangle's size, the offset from the origin up to 1e6 times; scales are 2^-140 to 2^120, and with
+/// double all of its range.
 template <class S>
 std::vector<near_case> near_contact(unsigned seed, std::size_t n);
 
-/// Three cases for each of `n` triangles and centres: the distance is a number of `S`, as all coordinates are (Pythagorean
-/// quadruples, moved and scaled by powers of two), and the radius is the number before it, itself and the next.
+/// Three cases for each of `n` triangles and centres: the distance is a number of `S`, as all coordinates are
+/// (Pythagorean quadruples, moved and scaled by powers of two), and the radius is the number before it, itself and the
+/// next.
 template <class S>
 std::vector<near_case> ties(unsigned seed, std::size_t n);
 
