@@ -110,6 +110,7 @@ class way {
       begin_ = larger(begin_, stretched(smaller(to_lower, to_upper), -1));
       end = smaller(end, stretched(larger(to_lower, to_upper), 1));
     }
+    is_cut_ = true;
     pieces_ = 0;
     if (!(begin_ <= end)) return;
     for (int k = 0; k < 3; ++k) longest = larger(longest, mul(abs_of(along_[k]), end - begin_));
@@ -122,7 +123,7 @@ class way {
   }
 
   COLLIDE_HD cell_range cells_of(std::uint32_t piece) const {
-    if (piece_length_ == 0) return whole_;
+    if (!is_cut_) return whole_;
     cell_range r;
     for (int k = 0; k < 3; ++k) {
       S const a = position(piece, k), b = position(piece + 1, k), slack = slack_of(from_[k], along_[k]);
@@ -138,7 +139,8 @@ class way {
   cell_range whole_;       ///< the cells of the way's box
   std::uint32_t span_[3];  ///< how many cells a piece has on an axis, at most
   std::uint32_t pieces_ = 1;
-  S begin_ = 0, piece_length_ = 0;  ///< times; if there is but one piece, the whole way, its length is 0
+  bool is_cut_ = false;             ///< else the only piece is the whole way
+  S begin_ = 0, piece_length_ = 0;  ///< times
 };
 
 }  // namespace collide::detail
