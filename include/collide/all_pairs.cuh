@@ -6,6 +6,7 @@
 /// all_pairs x cuda_shared = `brute_force_shamem`.
 #pragma once
 
+#include <collide/detail/block.hpp>
 #include <collide/detail/bounding_sphere.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/mesh_summary.hpp>

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include <collide/detail/block.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/sphere_batch.hpp>

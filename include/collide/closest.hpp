@@ -19,7 +19,7 @@ struct distance_of_contact {
   template <class NarrowPhase, class S>
   static COLLIDE_HD S of(hit<NarrowPhase, S> const& h) {
     static_assert(at_rest<NarrowPhase, S>,
-                  "collide: closest is for spheres that rest; of those that move, earliest finds the first impact");
+                  "collide: closest is for spheres that rest: of those that move, earliest finds the first impact");
     return h.contact().distance;
   }
   template <class S>

@@ -180,7 +180,7 @@ class detector {
     reject<S>();
     static_assert(
         !detail::at_rest<NarrowPhase, Scalar>,
-        "collide: this narrow phase judges spheres that rest; for spheres that move there is karabassi_swept");
+        "collide: this narrow phase judges spheres that rest: for spheres that move there is karabassi_swept");
   }
 
   ExecutionSpace& space() { return space_; }

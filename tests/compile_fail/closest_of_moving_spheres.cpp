@@ -1,4 +1,4 @@
-// expect: collide: closest is for spheres that rest; of those that move, earliest finds the first impact
+// expect: collide: closest is for spheres that rest: of those that move, earliest finds the first impact
 #include <collide/all_pairs.cuh>
 #include <collide/karabassi_swept.hpp>
 

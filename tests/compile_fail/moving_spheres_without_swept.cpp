@@ -1,4 +1,4 @@
-// expect: collide: this narrow phase judges spheres that rest; for spheres that move there is karabassi_swept
+// expect: collide: this narrow phase judges spheres that rest: for spheres that move there is karabassi_swept
 #include <collide/all_pairs.cuh>
 
 int main() {

@@ -187,4 +187,12 @@ class lockstep_block {
   std::size_t index_;
 };
 
+/// Number of blocks that cover `n` items of `body` on the space.
+template <class Space, class Body>
+std::size_t blocks_for(std::size_t n, Body const&) {
+  using block = typename Space::template block<Body>;
+  constexpr std::size_t per_block = static_cast<std::size_t>(block::lanes) * block::items;
+  return (n + per_block - 1) / per_block;
+}
+
 }  // namespace collide::detail

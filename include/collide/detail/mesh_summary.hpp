@@ -139,12 +139,4 @@ struct summarise_radii {
   }
 };
 
-/// Number of blocks that cover `n` items of `body` on the space.
-template <class Space, class Body>
-std::size_t blocks_for(std::size_t n, Body const&) {
-  using block = typename Space::template block<Body>;
-  constexpr std::size_t per_block = static_cast<std::size_t>(block::lanes) * block::items;
-  return (n + per_block - 1) / per_block;
-}
-
 }  // namespace collide::detail

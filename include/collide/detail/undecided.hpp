@@ -5,9 +5,9 @@
 #pragma once
 
 #include <collide/detail/atomic.hpp>
+#include <collide/detail/block.hpp>
 #include <collide/detail/decide.hpp>
 #include <collide/detail/hits.hpp>
-#include <collide/detail/sphere_batch.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
