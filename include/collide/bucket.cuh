@@ -153,7 +153,7 @@ struct bucket_query {
           block.each([&](int lane) { own[lane].begin_level(); });
         }
         bool more = true;
-        for (std::uint32_t skip = 0; more; skip += longest<Block>) {  // once, unless a list is longer than that
+        for (std::uint32_t skip = 0; more; skip += longest<Block>) {  // once, unless a list is longer or spheres move
           block.each([&](int lane) {
             auto& mine = own[lane];
             for (int k = 0; k < n; ++k) {

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #if defined(COLLIDE_TESTS_CUDA)
-int cuda_devices();  // compositions_cuda's
+int cuda_devices();  // of test_api_cuda.cpp
 #endif
 
 /// Without a device the tests of the CUDA spaces end in 77, which CTest shows as skipped.

@@ -1,5 +1,6 @@
 /// A detector under test whose composition is hidden behind virtual functions: every test case is compiled once and
-/// runs against all compositions, and only the files named compositions_* instantiate templates of the library.
+/// runs against all compositions, and only slices and the files that include compositions.hpp instantiate templates of
+/// the library.
 #pragma once
 
 #include <cstddef>
