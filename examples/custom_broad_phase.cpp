@@ -21,7 +21,7 @@ struct one_box_query {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    if (!tests.begin(block, s.hits)) return;
+    block.each([&](int lane) { tests.begin(s.hits, lane); });
     for (std::size_t k = 0; k < std::size_t(Block::items); ++k) {
       std::size_t const first = (block.index() * Block::items + k) * Block::lanes;
       for (std::size_t t = 0; t < tests.mesh.size(); ++t) {

@@ -7,10 +7,8 @@
 #pragma once
 
 #include <collide/detail/block.hpp>
-#include <collide/detail/bounding_sphere.hpp>
 #include <collide/detail/hits.hpp>
-#include <collide/detail/mesh_summary.hpp>
-#include <collide/detail/sphere_batch.hpp>
+#include <collide/detail/lifted.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
@@ -18,93 +16,120 @@ namespace collide {
 namespace detail {
 
 /// Kernel body: each lane keeps some spheres; tiles of bounding spheres of the triangles pass by, in shared memory
-/// where there is some; where a bounding sphere is reached, the narrow phase decides. With few spheres the mesh is
-/// split among `splits` blocks.
+/// where there is some. Where one is reached by some sphere of a lane, the two are listed, and looked at closely by all
+/// lanes together. With few spheres the mesh is split among `splits` blocks.
 template <class S, class NarrowPhase, class Sink>
 struct all_pairs_query {
-  static constexpr int items = 4;
+  static constexpr int items = 8;
+  template <class Block>
+  static constexpr int residency = 3;
   static constexpr int tile = 512;
 
   tester<S, NarrowPhase, Sink> tests;
-  bounding_sphere<S> const* bounds;
+  lifted_bounds<S> const* bounds;
   std::size_t splits;
+
+  /// The spheres of a lane, and a triangle of the tile that some of them may touch.
+  struct encounter {
+    std::uint16_t lane, triangle;
+  };
 
   template <class Block>
   struct scratch {
-    typename Block::template staging<bounding_sphere<S>, tile> staged;
+    static constexpr std::uint32_t capacity = Block::lanes > 1 ? 2 * Block::lanes : 1;
+    typename Block::template staging<lifted_bounds<S>, tile> staged;
+    encounter encounters[capacity];
+    std::uint32_t count;  ///< may be more than there is room for
     hit_buffer<Block> hits;
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
-    typename Block::template per_lane<sphere_batch<S, n>> own;
     std::size_t const first = block.index() / splits * Block::lanes * n;
     std::size_t const triangles = tests.mesh.size();
     std::size_t const share = (triangles + splits - 1) / splits;
     std::size_t const begin = block.index() % splits * share;
     std::size_t const end = smaller(begin + share, triangles);
 
-    if (!tests.begin(block, s.hits)) return;
-    auto const first_of = [&](int lane) { return first + static_cast<std::size_t>(lane) * n; };
-    block.each([&](int lane) { own[lane].load(tests.spheres, first_of(lane)); });
-    bool const one_radius = at_rest<NarrowPhase, S> && tests.spheres.one_radius();
-    S const radius = tests.spheres.common_radius();
+    typename Block::template per_lane<lifted_batch<S, n>> own;
+    vec3<S> const origin = lifted_origin(tests.mesh);
+    block.each([&](int lane) {
+      tests.begin(s.hits, lane);
+      if (lane == 0) s.count = 0;
+      own[lane].load(tests.spheres, first + static_cast<std::size_t>(lane) * n, origin);
+    });
     for (std::size_t base = begin; base < end; base += tile) {
       int const m = static_cast<int>(smaller(static_cast<std::size_t>(tile), end - base));
       auto const* const staged = block.stage(s.staged, bounds + base, m);
-      block.each([&](int lane) {
-        auto const& mine = own[lane];
-        auto const sweep = [&](auto const& reach_of) {
-          for (int t = 0; t < m; ++t) {
-            bounding_sphere<S> const ball = staged[t];
-            auto const reach = reach_of(ball);
-            bool some = false;  // no branch per sphere: few are reached
-            for (int k = 0; k < n; ++k) some |= ball.distance_squared(mine.x[k], mine.y[k], mine.z[k]) <= reach(k);
-            if (some) test_reached(block, s, first_of(lane), static_cast<id>(base) + static_cast<id>(t), ball);
+      if constexpr (Block::lanes == 1) {
+        for (int t = 0; t < m; ++t) {
+          if (!own[0].any_reaches(staged[t])) continue;
+          for (int k = 0; k < n; ++k) {
+            look(block, s, first + static_cast<std::size_t>(k), base + static_cast<std::size_t>(t));
           }
-        };
-        if (one_radius) {
-          sweep([&](bounding_sphere<S> const& ball) {
-            S const common = ball.reach(radius);
-            return [common](int) { return common; };
-          });
-        } else {
-          sweep([&](bounding_sphere<S> const& ball) { return [&](int k) { return ball.reach(mine.radius[k]); }; });
+          tests.make_room(block, s.hits);
         }
-      });
-      tests.make_room(block, s.hits);
+      } else {
+        typename Block::template per_lane<int> next;
+        bool more = false;
+        do {  // again if there were more encounters than go on the list
+          block.each([&](int lane) {
+            auto const& mine = own[lane];
+            int t = more ? next[lane] : 0;
+            for (; t < m; ++t) {
+              if (!mine.any_reaches(staged[t])) continue;
+              std::uint32_t const place = block.add(s.count, 1);
+              if (place >= scratch<Block>::capacity) break;
+              s.encounters[place] = {static_cast<std::uint16_t>(lane), static_cast<std::uint16_t>(t)};
+            }
+            next[lane] = t;
+          });
+          std::uint32_t const found = block.shared(s.count);
+          more = found > scratch<Block>::capacity;
+          std::uint32_t const looks = smaller(found, scratch<Block>::capacity) * n;
+          for (std::uint32_t i = 0; i < looks; i += Block::lanes) {
+            block.each([&](int lane) {
+              if (lane == 0) s.count = 0;
+              std::uint32_t const own_look = i + static_cast<std::uint32_t>(lane);
+              if (own_look >= looks) return;
+              encounter const e = s.encounters[own_look / n];
+              look(block, s, first + std::size_t{e.lane} * n + own_look % n, base + e.triangle);
+            });
+            tests.make_room(block, s.hits);
+          }
+        } while (more);
+      }
     }
     tests.flush(block, s.hits);
   }
 
  private:
-  /// Runs the narrow phase on those of a lane's spheres that reach the triangle's ball.
+  /// Makes a sphere and a triangle a candidate if the sphere reaches the bounding sphere.
   template <class Block>
-  COLLIDE_HD void test_reached(Block& block, scratch<Block>& s, std::size_t first, id triangle,
-                               bounding_sphere<S> const& ball) const {
-    for (std::size_t i = first; i < first + Block::items && i < tests.spheres.size(); ++i) {
-      auto const candidate = tests.spheres[i];
-      sphere<S> const around = enclosing(candidate);
-      if (ball.reached(around.centre, around.radius)) {
-        tests.test(block, s.hits, {static_cast<id>(i), triangle}, candidate);
-      }
-    }
+  COLLIDE_HD_INLINE void look(Block& block, scratch<Block>& s, std::size_t i, std::size_t triangle) const {
+    if (i >= tests.spheres.size()) return;
+    auto const ball = tests.spheres[i];
+    sphere<S> const around = enclosing(ball);
+    if (!bounds_of(tests.mesh[triangle]).reached(around.centre, around.radius)) return;
+    tests.test(block, s.hits, {static_cast<id>(i), static_cast<id>(triangle)}, ball);
   }
 };
 
 /// Kernel body of `for_each` over triangles.
 template <class S>
-struct compute_bounds {
+struct compute_lifted_bounds {
   mesh_view<S> mesh;
-  bounding_sphere<S>* bounds;
-  COLLIDE_HD void operator()(std::size_t i) const { bounds[i] = bounds_of(mesh[i]); }
+  lifted_bounds<S>* bounds;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    bounds[i] = lifted_bounds<S>(bounds_of(mesh[i]), lifted_origin(mesh));
+  }
 };
 
 }  // namespace detail
 
 /// Broad phase: all pairs. Nothing but a bounding sphere per triangle is prepared, so it is the right choice for small
-/// meshes. Build O(triangles), query O(spheres * triangles); memory 4 scalars per triangle.
+/// meshes. Build O(triangles), query O(spheres * triangles); memory 8 scalars per triangle.
 struct all_pairs {
   template <class S>
   class index {
@@ -113,7 +138,7 @@ struct all_pairs {
     void build(Space& space, all_pairs const&, mesh_view<S> mesh) {
       mesh_ = mesh;
       bounds_.reserve(space.resource(), mesh.size());
-      space.for_each(mesh.size(), detail::compute_bounds<S>{mesh, bounds_.data()});
+      space.for_each(mesh.size(), detail::compute_lifted_bounds<S>{mesh, bounds_.data()});
     }
 
     template <class Space>
@@ -139,7 +164,7 @@ struct all_pairs {
 
    private:
     mesh_view<S> mesh_;
-    buffer<detail::bounding_sphere<S>> bounds_;
+    buffer<detail::lifted_bounds<S>> bounds_;
   };
 };
 

@@ -19,12 +19,16 @@ namespace collide {
 
 namespace detail {
 
-/// Kernel body: each lane looks up the cells of some spheres; the few spheres whose cell is not empty are compacted in
-/// scratch memory, and their candidates are spread evenly over all lanes.
+/// Kernel body: each lane places some spheres; the few that are inside a grid are listed in scratch memory, so that
+/// lanes look up the cells of as many of them at a time as there are lanes; those whose cell is not empty are listed
+/// again, and their candidates are spread evenly over all lanes.
 template <class S, class NarrowPhase, class Sink>
 struct bucket_query {
   static constexpr int items = 4;
+  template <class Block>
+  static constexpr int residency = Block::lanes > 1 ? 6 : 4;
   static constexpr bool still = at_rest<NarrowPhase, S>;
+  using ball_type = std::conditional_t<still, sphere<S>, moving_sphere<S>>;
 
   tester<S, NarrowPhase, Sink> tests;
   bounding_sphere<S> const* bounds;  ///< null if there was no room for them
@@ -41,19 +45,27 @@ struct bucket_query {
     std::uint32_t spheres, longer;
   };
 
+  /// A sphere of the block, and the number of the grid that serves it.
+  struct placed_sphere {
+    std::uint16_t sphere;
+    std::int16_t grid;
+  };
+
   /// The most candidates of a sphere at a time: the block numbers those of all its spheres in 32 bits.
   template <class Block>
-  static constexpr std::uint32_t longest = (1u << 31) / (Block::lanes * Block::items);
+  static constexpr std::uint32_t longest = (1u << 31) / Block::lanes;
 
   template <class Block>
   struct scratch {
-    static constexpr int size = Block::lanes * Block::items;
-    id spheres[size];                       ///< spheres with candidates
-    std::uint32_t first[size];              ///< their first entry
-    std::uint32_t counts[size];             ///< how many they have
-    std::uint32_t steps[still ? 1 : size];  ///< and, of a sphere that moves, the step of its way
+    placed_sphere placed[Block::lanes * Block::items];
+    std::uint32_t placed_count;
+    std::uint32_t unplaced;                         ///< how many spheres no grid serves; they are listed all the same
+    id spheres[Block::lanes];                       ///< spheres with candidates
+    ball_type balls[Block::lanes];                  ///< the same
+    std::uint32_t first[Block::lanes];              ///< their first entry
+    std::uint32_t counts[Block::lanes];             ///< how many they have
+    std::uint32_t steps[still ? 1 : Block::lanes];  ///< and, of a sphere that moves, the step of its way
     listing listed;
-    std::uint32_t unplaced;  ///< how many spheres no grid serves; they are listed in `first`
     typename Block::balance_scratch balance;
     hit_buffer<Block> hits;
   };
@@ -91,8 +103,6 @@ struct bucket_query {
   struct lane_state<Items, false> {
     moving_batch<S, Items> batch;
     int grid_number[Items];
-    std::uint32_t step[Items];  ///< of the way, the next
-    std::uint32_t skip[Items];  ///< how many entries of its cell have been listed
 
     COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
       batch.load(spheres, first);
@@ -116,88 +126,90 @@ struct bucket_query {
         grid_number[k] = served ? there : grid_number[k];
       }
     }
-
-    COLLIDE_HD_INLINE void begin_level() {
-      for (int k = 0; k < Items; ++k) step[k] = skip[k] = 0;
-    }
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
+    constexpr std::uint32_t lanes = Block::lanes;
     typename Block::template per_lane<lane_state<n, still>> own;
-    std::size_t const first = block.index() * Block::lanes * n;
-    auto const first_of = [&](int lane) { return static_cast<id>(first) + static_cast<id>(lane * n); };
-    int const usable = grid_count > 0 && *total <= capacity ? grid_count : 0;
+    std::size_t const first = block.index() * lanes * n;
 
-    if (!tests.begin(block, s.hits)) return;
     block.each([&](int lane) {
-      if (lane != 0) return;
-      s.listed = {0, 0};
-      s.unplaced = 0;
+      tests.begin(s.hits, lane);
+      if (lane == 0) {
+        s.placed_count = s.unplaced = 0;
+        s.listed = {0, 0};
+      }
+      own[lane].load(tests.spheres, first + static_cast<std::size_t>(lane * n));
     });
+    int const usable = grid_count > 0 && *total <= capacity ? grid_count : 0;
     block.each([&](int lane) {
       auto& mine = own[lane];
-      mine.load(tests.spheres, first + static_cast<std::size_t>(lane * n));
       for (int g = 0; g < usable; ++g) mine.place(grids[g], g);
+      std::uint32_t placed = 0, unplaced = 0;
       for (int k = 0; k < n; ++k) {
-        if (mine.grid_number[k] == everywhere) s.first[block.add(s.unplaced, 1)] = first_of(lane) + static_cast<id>(k);
+        placed += mine.grid_number[k] != nowhere;
+        unplaced += mine.grid_number[k] == everywhere;
+      }
+      if (placed == 0) return;
+      if (unplaced != 0) block.add(s.unplaced, unplaced);
+      std::uint32_t place = block.add(s.placed_count, placed);
+      for (int k = 0; k < n; ++k) {
+        if (mine.grid_number[k] == nowhere) continue;
+        s.placed[place++] = {static_cast<std::uint16_t>(lane * n + k), static_cast<std::int16_t>(mine.grid_number[k])};
       }
     });
-    test_unplaced(block, s);
 
-    for (int g = 0; g < usable; ++g) {
-      for (int l = 0; l < grids[g].levels; ++l) {
-        grid_level<S> const& level = grids[g].level[l];
-        if constexpr (!still) {
-          block.each([&](int lane) { own[lane].begin_level(); });
-        }
-        bool more = true;
-        for (std::uint32_t skip = 0; more; skip += longest<Block>) {  // once, unless a list is longer or spheres move
-          block.each([&](int lane) {
-            auto& mine = own[lane];
-            for (int k = 0; k < n; ++k) {
-              if (mine.grid_number[k] != g) continue;
-              if constexpr (!still) {
-                way<S> const path(grids[g], level, mine.batch.centre(k), mine.batch.displacement(k));
-                list_next(block, s, path, level, first_of(lane) + static_cast<id>(k), mine.step[k], mine.skip[k]);
-                continue;
-              }
-              std::uint32_t const cell = grids[g].cell_of(level, {mine.batch.x[k], mine.batch.y[k], mine.batch.z[k]});
-              if ((occupied[cell / 32] >> cell % 32 & 1) == 0) continue;
-              std::uint32_t const begin = ends[cell], size = ends[cell + 1] - begin;
-              if (size <= skip) continue;
-              std::uint32_t const place = block.add(s.listed.spheres, 1);
-              s.spheres[place] = first_of(lane) + static_cast<id>(k);
-              s.first[place] = begin + skip;
-              s.counts[place] = smaller(size - skip, longest<Block>);
-              if (size - skip > longest<Block>) block.add(s.listed.longer, 1);
-            }
-          });
-          listing const listed = block.shared(s.listed);
-          more = still ? listed.longer != 0 : listed.spheres != 0;
-          if (listed.spheres == 0) continue;
-          block.balanced(
-              s.balance, s.counts, listed.spheres,
-              [&](std::uint32_t i) {
-                auto const ball = tests.spheres[s.spheres[i]];
-                if constexpr (still) {
-                  return candidates{s.spheres[i], ball, entries + s.first[i]};
-                } else {
-                  way<S> const path(grids[g], level, ball.centre, ball.displacement);
-                  return candidates_of_place{{s.spheres[i], ball, entries + s.first[i]}, path, path.at(s.steps[i])};
-                }
-              },
-              [&](auto const& c, std::uint32_t k) {
-                if constexpr (!still) {
-                  if (!c.path.meets_first(c.here, tests.mesh[c.triangles[k]])) return;
-                }
-                test(block, s, c.number, c.ball, c.triangles[k]);
-              },
-              [&] { tests.make_room(block, s.hits); });
-          block.each([&](int lane) {
-            if (lane == 0) s.listed = {0, 0};
-          });
+    // the spheres of one level of one grid after the other, in the end those that no grid serves
+    for (int g = 0; g <= usable; ++g) {
+      bool const all = g == usable;
+      if (all && s.unplaced == 0) break;
+      for (int l = 0; l < (all ? 1 : grids[g].levels); ++l) {
+        cells const here{all ? nullptr : &grids[g], all ? nullptr : &grids[g].level[l]};
+        for (std::uint32_t base = 0; base < s.placed_count; base += lanes) {
+          typename Block::template per_lane<cursor> at;
+          bool more = false;
+          do {  // once, unless a list is very long or a sphere moves through several cells
+            block.each([&](int lane) {
+              if (!more) at[lane] = {0, 0};
+              std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
+              if (i >= s.placed_count || s.placed[i].grid != (all ? everywhere : g)) return;
+              list_next(block, s, here, static_cast<id>(first + s.placed[i].sphere), at[lane]);
+            });
+            listing const listed = block.shared(s.listed);
+            more = still ? listed.longer != 0 : listed.spheres != 0;
+            if (listed.spheres == 0) continue;
+            block.balanced(
+                s.balance, s.counts, listed.spheres,
+                [&](std::uint32_t i) {
+                  ball_type const ball = s.balls[i];
+                  if constexpr (still) {
+                    return candidates{s.spheres[i], ball, s.first[i]};
+                  } else {
+                    candidates_of_place c{{s.spheres[i], ball, s.first[i]}, {}, {}};
+                    if (all) return c;
+                    c.path = way<S>(*here.of, *here.level, ball.centre, ball.displacement);
+                    c.here = c.path.at(s.steps[i]);
+                    return c;
+                  }
+                },
+                [&](auto const& c, std::uint32_t k) {
+                  id const triangle = all ? static_cast<id>(c.first + k) : entries[c.first + k];
+                  if constexpr (!still) {
+                    if (!all && !c.path.meets_first(c.here, tests.mesh[triangle])) return;
+                  }
+                  auto const bound = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
+                  sphere<S> const around = enclosing(c.ball);
+                  if (bound.reached(around.centre, around.radius)) {
+                    tests.test(block, s.hits, {c.number, triangle}, c.ball);
+                  }
+                },
+                [&] { tests.make_room(block, s.hits); });
+            block.each([&](int lane) {
+              if (lane == 0) s.listed = {0, 0};
+            });
+          } while (more);
         }
       }
     }
@@ -205,13 +217,22 @@ struct bucket_query {
   }
 
  private:
-  using ball_type = std::decay_t<decltype(std::declval<spheres_of<NarrowPhase, S> const&>()[0])>;
+  /// The cells of a level of a grid; without a grid, one cell that lists all triangles.
+  struct cells {
+    grid<S> const* of;
+    grid_level<S> const* level;
+  };
 
-  /// A sphere and the triangles of a cell.
+  /// How far a sphere has come: steps of its way, and entries of its cell.
+  struct cursor {
+    std::uint32_t step, skip;
+  };
+
+  /// A sphere and the triangles of a cell: a range of entries, or of all triangles.
   struct candidates {
     id number;
     ball_type ball;
-    id const* triangles;
+    std::uint32_t first;
   };
 
   /// The same, and the place on the sphere's way that the cell is.
@@ -220,49 +241,44 @@ struct bucket_query {
     typename way<S>::place here;
   };
 
-  /// Lists a sphere with the next cell on its way that is not empty, if there is one.
+  /// Lists a sphere with the entries of its next cell that is not empty, or as many of them as go at a time.
   template <class Block>
-  COLLIDE_HD void list_next(Block& block, scratch<Block>& s, way<S> const& path, grid_level<S> const& level, id number,
-                            std::uint32_t& step, std::uint32_t& skip) const {
-    for (; step < path.steps(); ++step, skip = 0) {
-      auto const here = path.at(step);
-      if (!here.is_cell) continue;
-      std::uint32_t const cell = level.row(here.cell[1], here.cell[2]) + (here.cell[0] & level.mask[0]);
-      if ((occupied[cell / 32] >> cell % 32 & 1) == 0) continue;
-      std::uint32_t const begin = ends[cell], size = ends[cell + 1] - begin;
-      if (size <= skip) continue;
-      std::uint32_t const place = block.add(s.listed.spheres, 1);
-      s.spheres[place] = number;
-      s.first[place] = begin + skip;
-      s.counts[place] = smaller(size - skip, longest<Block>);
-      s.steps[place] = step;
-      skip += s.counts[place];
-      return;
-    }
-  }
-
-  template <class Block>
-  COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, id number, ball_type const& ball, id triangle) const {
-    auto const bound = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
-    sphere<S> const around = enclosing(ball);
-    if (bound.reached(around.centre, around.radius)) tests.test(block, s.hits, {number, triangle}, ball);
-  }
-
-  /// Tests the spheres that are too large for every grid (or all, if there is none) with every triangle.
-  template <class Block>
-  COLLIDE_HD void test_unplaced(Block& block, scratch<Block>& s) const {
-    std::uint32_t const unplaced = block.shared(s.unplaced);
-    constexpr std::size_t stride = Block::lanes;
-    for (std::uint32_t i = 0; i < unplaced; ++i) {
-      auto const ball = tests.spheres[s.first[i]];
-      for (std::size_t base = 0; base < tests.mesh.size(); base += stride) {
-        block.each([&](int lane) {
-          std::size_t const t = base + static_cast<std::size_t>(lane);
-          if (t < tests.mesh.size()) test(block, s, s.first[i], ball, static_cast<id>(t));
-        });
-        tests.make_room(block, s.hits);
+  COLLIDE_HD_INLINE void list_next(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
+    auto const ball = tests.spheres[number];
+    if (here.of == nullptr) {
+      list(block, s, number, ball, 0, static_cast<std::uint32_t>(tests.mesh.size()), at);
+    } else if constexpr (still) {
+      std::uint32_t const cell = here.of->cell_of(*here.level, ball.centre);
+      if (!is_empty(cell)) list(block, s, number, ball, ends[cell], ends[cell + 1], at);
+    } else {
+      way<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
+      for (; at.step < path.steps(); ++at.step, at.skip = 0) {
+        auto const place = path.at(at.step);
+        if (!place.is_cell) continue;
+        std::uint32_t const cell =
+            here.level->row(place.cell[1], place.cell[2]) + (place.cell[0] & here.level->mask[0]);
+        if (!is_empty(cell) && list(block, s, number, ball, ends[cell], ends[cell + 1], at)) return;
       }
     }
+  }
+
+  COLLIDE_HD_INLINE bool is_empty(std::uint32_t cell) const { return (occupied[cell / 32] >> cell % 32 & 1) == 0; }
+
+  /// Lists a sphere with the entries begin + skip .. end, if there are any.
+  template <class Block>
+  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, ball_type const& ball, std::uint32_t begin,
+                              std::uint32_t end, cursor& at) const {
+    std::uint32_t const left = end - begin - at.skip, listed = smaller(left, longest<Block>);
+    if (left == 0) return false;
+    std::uint32_t const place = block.add(s.listed.spheres, 1);
+    s.spheres[place] = number;
+    s.balls[place] = ball;
+    s.first[place] = begin + at.skip;
+    s.counts[place] = listed;
+    if constexpr (!still) s.steps[place] = at.step;
+    at.skip += listed;
+    if (left > listed) block.add(s.listed.longer, 1);
+    return true;
   }
 };
 

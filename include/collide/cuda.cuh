@@ -149,15 +149,11 @@ class cuda_block {
     return to.values;
   }
 
-  /// Exclusive scan of at most lanes * items values in shared memory; returns their sum.
+  /// Exclusive scan of at most as many values in shared memory as there are lanes; returns their sum.
   __device__ std::uint32_t scan(scan_scratch& s, std::uint32_t* values, std::uint32_t n) {
-    std::uint32_t own[Items], sum;
-    std::uint32_t const first = threadIdx.x * Items;
-    for (int k = 0; k < Items; ++k) own[k] = first + k < n ? values[first + k] : 0;
+    std::uint32_t own = threadIdx.x < n ? values[threadIdx.x] : 0, sum;
     cub::BlockScan<std::uint32_t, lanes>(s).ExclusiveSum(own, own, sum);
-    for (int k = 0; k < Items; ++k) {
-      if (first + k < n) values[first + k] = own[k];
-    }
+    if (threadIdx.x < n) values[threadIdx.x] = own;
     sync();
     return sum;
   }
@@ -187,9 +183,17 @@ class cuda_block {
   std::size_t index_;
 };
 
+/// How many blocks of a body a processor should hold at a time, which limits the registers of a thread: its member
+/// `residency<Block>`, or 1.
+template <class Body, class Block, class = void>
+inline constexpr int residency = 1;
+template <class Body, class Block>
+inline constexpr int residency<Body, Block, std::enable_if_t<(Body::template residency<Block> > 0)>> =
+    Body::template residency<Block>;
+
 /// Runs a body in one thread per block.
 template <class Block, class Body>
-__global__ void __launch_bounds__(cuda_lanes) run_threads(std::size_t blocks, Body body) {
+__global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_threads(std::size_t blocks, Body body) {
   std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
   if (i >= blocks) return;
   typename Body::template scratch<Block> scratch;
@@ -199,7 +203,7 @@ __global__ void __launch_bounds__(cuda_lanes) run_threads(std::size_t blocks, Bo
 
 /// Runs a body in one CUDA block per block.
 template <class Block, class Body>
-__global__ void __launch_bounds__(cuda_lanes) run_blocks(Body body) {
+__global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_blocks(Body body) {
   __shared__ typename Body::template scratch<Block> scratch;
   Block here(blockIdx.x);
   body(here, scratch);
@@ -234,7 +238,7 @@ class cuda_space {
   static constexpr bool defers = true;
 
   /// Tuning of `bucket`; see `host`.
-  static constexpr int bucket_span = 1;
+  static constexpr int bucket_span = 2;
 
   template <class F>
   void for_each(std::size_t n, F const& f) const {

@@ -71,7 +71,7 @@ struct query_pass {
                   "collide: what a sink hands to the device must be a plain value");
     if (mesh.size() == 0 || spheres.size() == 0) return;
     if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
-      query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open.clear(space, spheres.size()));
+      query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open);
     } else {
       index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
     }

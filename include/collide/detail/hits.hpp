@@ -76,14 +76,11 @@ class hit {
 
 namespace detail {
 
-/// What a pass over candidates does with them: decides each, and takes the hits to the handle of the caller's sink.
-/// Passes that put some off are in detail/undecided.hpp.
+/// What a pass over candidates does with them: decides each, and takes the hits to the handle of the caller's sink. A
+/// pass that puts some off is in detail/undecided.hpp.
 template <class Handle>
 struct deciding {
   Handle handle;
-
-  /// False if the pass has nothing to do.
-  COLLIDE_HD_INLINE bool needed() const { return true; }
 
   /// True if the pair is a hit to be reported in this pass.
   template <class NarrowPhase, class S, class Ball>
@@ -98,15 +95,20 @@ struct deciding {
   }
 };
 
-/// The candidates' last stop: runs the narrow phase and hands the hits to the sink, `Block::pending` at a time, so that
-/// the sink's atomic counter is touched once per batch and the lanes share the work of storing.
+/// The way of candidates to the sink, in the scratch memory of a block. Where lanes work together, each step is made
+/// for many pairs at once, so that no lane waits for another that has more to do: candidates are listed, then decided;
+/// hits are listed, then stored, so that the sink's atomic counter is touched once per batch. A single lane decides
+/// each candidate at once.
 template <class Block>
 struct hit_buffer {
   static constexpr std::uint32_t capacity = Block::pending;
+  static constexpr bool together = Block::lanes > 1;
 
+  pair candidates[together ? capacity : 1];
+  std::uint32_t candidate_count;
   pair hits[capacity > 0 ? capacity : 1];
-  std::uint32_t found;
-  std::uint64_t slot;
+  std::uint32_t hit_count;
+  std::uint64_t slot;  ///< the sink's, of the first hit
 };
 
 template <class S, class NarrowPhase, class Sink>
@@ -115,41 +117,79 @@ struct tester {
   spheres_of<NarrowPhase, S> spheres;
   Sink sink;
 
-  /// Runs the narrow phase on one candidate. Called by any lane.
+  /// To be called first, by every lane; what follows may be done when the block has waited.
+  template <class Block>
+  COLLIDE_HD_INLINE void begin(hit_buffer<Block>& b, int lane) const {
+    if (lane == 0) b.candidate_count = b.hit_count = 0;
+  }
+
+  /// Takes a candidate. Called by any lane; where lanes work together, at most once between two calls of `make_room`.
   template <class Block, class Ball>
   COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block>& b, pair p, Ball const& s) const {
-    if (!sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) return;
-    if constexpr (hit_buffer<Block>::capacity > 0) {
-      std::uint32_t const place = block.add(b.found, 1);
-      if (place < hit_buffer<Block>::capacity) {
-        b.hits[place] = p;
-        return;
-      }
+    if constexpr (hit_buffer<Block>::together) {
+      b.candidates[block.add(b.candidate_count, 1)] = p;
+    } else {
+      decide(block, b, p, s);
     }
-    store(sink.reserve(1), p);
   }
 
-  /// To be called first, by the whole block. False if there is nothing to do.
+  /// Makes room for one more candidate per lane. Called by the whole block.
   template <class Block>
-  COLLIDE_HD_INLINE bool begin(Block& block, hit_buffer<Block>& b) const {
-    if (!sink.needed()) return false;
-    block.each([&](int lane) {
-      if (lane == 0) b.found = 0;
-    });
-    return true;
+  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block>& b) const {
+    if constexpr (hit_buffer<Block>::together) {
+      std::uint32_t const n = block.shared(b.candidate_count);
+      if (n + Block::lanes > hit_buffer<Block>::capacity) decide_all(block, b, n);
+    } else {
+      if (b.hit_count == hit_buffer<Block>::capacity) store_all(block, b, b.hit_count);
+    }
   }
 
-  /// Empties the buffer into the sink. Called by the whole block.
+  /// Finishes everything. Called by the whole block, last.
   template <class Block>
   COLLIDE_HD_INLINE void flush(Block& block, hit_buffer<Block>& b) const {
+    if constexpr (hit_buffer<Block>::together) {
+      std::uint32_t const n = block.shared(b.candidate_count);
+      if (n != 0) decide_all(block, b, n);
+    }
+    store_all(block, b, block.shared(b.hit_count));
+  }
+
+ private:
+  template <class Block, class Ball>
+  COLLIDE_HD_INLINE void decide(Block& block, hit_buffer<Block>& b, pair p, Ball const& s) const {
+    if (!sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) return;
+    if constexpr (hit_buffer<Block>::together) {
+      b.hits[block.add(b.hit_count, 1)] = p;
+    } else if (b.hit_count < hit_buffer<Block>::capacity) {
+      b.hits[b.hit_count++] = p;
+    } else {
+      store(sink.reserve(1), p);
+    }
+  }
+
+  /// Decides the `n` candidates that are listed.
+  template <class Block>
+  COLLIDE_HD_INLINE void decide_all(Block& block, hit_buffer<Block>& b, std::uint32_t n) const {
+    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
+      block.each([&](int lane) {
+        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
+        if (lane == 0) b.candidate_count = 0;
+        if (i < n) decide(block, b, b.candidates[i], spheres[b.candidates[i].sphere]);
+      });
+      std::uint32_t const hits = block.shared(b.hit_count);
+      if (hits + Block::lanes > hit_buffer<Block>::capacity) store_all(block, b, hits);
+    }
+  }
+
+  /// Stores the `n` hits that are listed.
+  template <class Block>
+  COLLIDE_HD_INLINE void store_all(Block& block, hit_buffer<Block>& b, std::uint32_t n) const {
     if constexpr (hit_buffer<Block>::capacity > 0) {
-      std::uint32_t n = block.shared(b.found);
       if (n == 0) return;
-      if (n > hit_buffer<Block>::capacity) n = hit_buffer<Block>::capacity;
       block.each([&](int lane) {
         if (lane != 0) return;
         b.slot = sink.reserve(n);
-        b.found = 0;
+        b.hit_count = 0;
       });
       block.each([&](int lane) {
         for (std::uint32_t i = static_cast<std::uint32_t>(lane); i < n; i += Block::lanes) store(b.slot + i, b.hits[i]);
@@ -157,13 +197,6 @@ struct tester {
     }
   }
 
-  /// Makes room for one more hit per lane.
-  template <class Block>
-  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block>& b) const {
-    if (block.shared(b.found) + Block::lanes > hit_buffer<Block>::capacity) flush(block, b);
-  }
-
- private:
   COLLIDE_HD_INLINE void store(std::uint64_t slot, pair p) const {
     sink.store(slot, hit<NarrowPhase, S>(p, mesh, spheres));
   }

@@ -33,7 +33,11 @@ struct sphere_batch {
   COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
     if (first + Items <= spheres.size()) {
       load_centres(spheres, first);
-      for (int k = 0; k < Items; ++k) radius[k] = spheres.radius(first + static_cast<std::size_t>(k));
+      if (spheres.one_radius()) {
+        for (int k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
+      } else {
+        for (int k = 0; k < Items; ++k) radius[k] = spheres.radius(first + static_cast<std::size_t>(k));
+      }
     } else {
       for (int k = 0; k < Items; ++k) {
         std::size_t const i = first + static_cast<std::size_t>(k);

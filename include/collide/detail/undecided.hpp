@@ -1,42 +1,58 @@
 /// \file
 /// A query in two steps, for narrow phases whose last stages take long: most pairs are decided where they are found;
 /// the few that a quick attempt leaves open are listed, and decided by a kernel of their own. The kernel that goes
-/// through the candidates then has no part in the rare stages: neither their registers nor their branches.
+/// through the candidates then has no part in the rare stages: neither their registers nor their calls.
 #pragma once
 
 #include <collide/detail/atomic.hpp>
 #include <collide/detail/block.hpp>
+#include <collide/detail/bounding_sphere.hpp>
 #include <collide/detail/decide.hpp>
+#include <collide/detail/enclosing.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
 
-/// A list of pairs that were left open. `total` counts also those that found no room.
+/// A list of pairs that were left open.
 struct undecided {
-  std::uint64_t* total;
-  pair* pairs;
-  std::uint64_t capacity;
+  struct counters {
+    std::uint32_t total;  ///< counts also pairs that found no room, but stops well before it overflows
+    std::uint32_t ready;  ///< blocks of the second step that are done
+  };
 
-  COLLIDE_HD_INLINE bool overflown() const { return *total > capacity; }
+  counters* count;
+  pair* pairs;
+  std::uint32_t capacity;
+
+  COLLIDE_HD_INLINE void add(pair p) const {
+    if (count->total > capacity) return;
+    std::uint32_t const slot = fetch_add(&count->total, 1u);
+    if (slot < capacity) pairs[slot] = p;
+  }
 };
 
-/// The memory of the list.
+/// The memory of the list. The second step leaves it empty for the next query.
 class undecided_list {
  public:
-  /// An empty list for a query of so many spheres.
+  /// The empty list, for a query of so many spheres.
   template <class Space>
-  undecided clear(Space& space, std::size_t spheres) {
+  undecided begin(Space& space, std::size_t spheres) {
     constexpr std::size_t least = 1024, most = std::size_t{1} << 22;
     std::size_t const capacity = least + smaller(spheres, most);
-    undecided const list{total_.reserve(space.resource(), 1), pairs_.reserve(space.resource(), capacity), capacity};
-    space.fill(list.total, 0, sizeof *list.total);
-    return list;
+    auto* const count = count_.reserve(space.resource(), 1);
+    if (!empty_) space.fill(count, 0, sizeof *count);
+    empty_ = false;
+    return {count, pairs_.reserve(space.resource(), capacity), static_cast<std::uint32_t>(capacity)};
   }
 
+  /// To be called when both steps are on their way.
+  void end() { empty_ = true; }
+
  private:
-  buffer<std::uint64_t> total_;
+  buffer<undecided::counters> count_;
   buffer<pair> pairs_;
+  bool empty_ = false;  ///< at least when all work that was given to the space is done
 };
 
 /// The first step: decides what a quick attempt can, and lists the rest.
@@ -47,42 +63,33 @@ struct deferring : deciding<Handle> {
   template <class NarrowPhase, class S, class Ball>
   COLLIDE_HD_INLINE bool takes(pair p, triangle<S> const& t, Ball const& s) const {
     verdict const quick = in_stages<NarrowPhase>::attempt(t, s);
-    if (quick == verdict::unsure) {
-      std::uint64_t const slot = fetch_add(open.total, std::uint64_t{1});
-      if (slot < open.capacity) open.pairs[slot] = p;
-    }
+    if (quick == verdict::unsure) open.add(p);
     return quick == verdict::hit;
   }
 };
 
-/// The second step, in which all candidates are pairs of the list.
+/// The second step: what was left open. An attempt on the device has the same outcome in every kernel, as no compiler
+/// is free to fuse or reorder what it computes there; so it tells which pairs of others were left open.
 template <class Handle>
 struct finishing : deciding<Handle> {
+  bool listed;  ///< all pairs are of the list
+
   template <class NarrowPhase, class S, class Ball>
   COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, Ball const& s) const {
+    if (!listed && in_stages<NarrowPhase>::attempt(t, s) != verdict::unsure) return false;
     return in_stages<NarrowPhase>::finish(t, s);
   }
 };
 
-/// The third step, if the list was too short: all candidates once more, of which it decides what the first has not.
-template <class Handle>
-struct completing : deciding<Handle> {
-  undecided open;
-
-  COLLIDE_HD_INLINE bool needed() const { return open.overflown(); }
-
-  template <class NarrowPhase, class S, class Ball>
-  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, Ball const& s) const {
-    return in_stages<NarrowPhase>::attempt(t, s) == verdict::unsure && in_stages<NarrowPhase>::finish(t, s);
-  }
-};
-
-/// Kernel body of the second step: decides the pairs on the list, if all are there.
+/// Kernel body of the second step: decides the pairs on the list. If not all are there, it goes through all pairs of
+/// spheres and triangles, plainly: that is slow, but hardly ever happens, and loses nothing.
 template <class S, class NarrowPhase, class Handle>
-struct decide_listed {
+struct finish_undecided {
   static constexpr int items = 1;
 
-  tester<S, NarrowPhase, finishing<Handle>> tests;
+  mesh_view<S> mesh;
+  spheres_of<NarrowPhase, S> spheres;
+  Handle handle;
   undecided open;
   std::size_t blocks;
 
@@ -93,29 +100,47 @@ struct decide_listed {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    if (open.overflown()) return;
-    tests.begin(block, s.hits);
-    for (std::uint64_t base = block.index() * Block::lanes; base < *open.total; base += blocks * Block::lanes) {
-      block.each([&](int lane) {
-        std::uint64_t const i = base + static_cast<std::uint64_t>(lane);
-        if (i < *open.total) tests.test(block, s.hits, open.pairs[i], tests.spheres[open.pairs[i].sphere]);
-      });
-      tests.make_room(block, s.hits);
+    std::uint32_t const total = open.count->total;
+    bool const listed = total <= open.capacity;
+    if (total != 0) {
+      tester<S, NarrowPhase, finishing<Handle>> const tests{mesh, spheres, {{handle}, listed}};
+      std::uint64_t const work = listed ? total : std::uint64_t{spheres.size()} * mesh.size();
+      block.each([&](int lane) { tests.begin(s.hits, lane); });
+      for (std::uint64_t base = block.index() * Block::lanes; base < work; base += blocks * Block::lanes) {
+        block.each([&](int lane) {
+          std::uint64_t const i = base + static_cast<std::uint64_t>(lane);
+          if (i >= work) return;
+          if (listed) {
+            tests.test(block, s.hits, open.pairs[i], spheres[open.pairs[i].sphere]);
+            return;
+          }
+          pair const p{static_cast<id>(i / mesh.size()), static_cast<id>(i % mesh.size())};
+          auto const ball = spheres[p.sphere];
+          sphere<S> const around = enclosing(ball);
+          if (bounds_of(mesh[p.triangle]).reached(around.centre, around.radius)) tests.test(block, s.hits, p, ball);
+        });
+        tests.make_room(block, s.hits);
+      }
+      tests.flush(block, s.hits);
     }
-    tests.flush(block, s.hits);
+    // the last block to come here empties the list
+    block.each([&](int lane) {
+      if (lane != 0 || fetch_add(&open.count->ready, 1u) + 1 != blocks) return;
+      open.count->total = open.count->ready = 0;
+    });
   }
 };
 
-/// Runs all steps. Every pair is reported once, because an attempt on the device has the same outcome in every kernel:
-/// no compiler is free to fuse or reorder what `attempt` computes there.
+/// Runs both steps.
 template <class NarrowPhase, class Space, class Index, class S, class Handle>
 void query_in_steps(Space& space, Index const& index, mesh_view<S> const& mesh,
-                    spheres_of<NarrowPhase, S> const& spheres, Handle const& handle, undecided const& open) {
+                    spheres_of<NarrowPhase, S> const& spheres, Handle const& handle, undecided_list& list) {
+  undecided const open = list.begin(space, spheres.size());
   index.template query<NarrowPhase>(space, spheres, deferring<Handle>{{handle}, open});
-  decide_listed<S, NarrowPhase, Handle> body{{mesh, spheres, {{handle}}}, open, 0};
+  finish_undecided<S, NarrowPhase, Handle> body{mesh, spheres, handle, open, 0};
   body.blocks = smaller(space.concurrency(), blocks_for<Space>(open.capacity, body));
   space.launch(body.blocks, body);
-  index.template query<NarrowPhase>(space, spheres, completing<Handle>{{handle}, open});
+  list.end();
 }
 
 }  // namespace collide::detail

@@ -17,9 +17,12 @@ namespace collide::detail {
 template <class S>
 class way {
  public:
+  /// No way at all.
+  way() = default;
+
   /// For a sphere that `can_walk` in the grid.
   COLLIDE_HD way(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from, vec3<S> const& along)
-      : grid_{g}, level_{l}, from_{from}, along_{along} {
+      : grid_{&g}, level_{&l}, from_{from}, along_{along} {
     bool few = true;
     for (int k = 0; k < 3; ++k) {
       S const to = from[k] + along[k], slack = slack_of(from[k], along[k]);
@@ -74,7 +77,7 @@ class way {
 
   /// True if this is the first place on the way that shares a cell with the triangle.
   COLLIDE_HD bool meets_first(place const& p, triangle<S> const& t) const {
-    cell_range const r = grid_.box_of(level_, t);
+    cell_range const r = grid_->box_of(*level_, t);
     bool here = true, before = !p.is_first;
     for (int k = 0; k < 3; ++k) {
       here = here && p.cell[k] == larger(r.lower[k], p.piece.lower[k]) && p.cell[k] <= r.upper[k];
@@ -105,8 +108,8 @@ class way {
     for (int k = 0; k < 3; ++k) {
       if (along_[k] == 0) continue;
       S const slack = slack_of(from_[k], along_[k]);
-      S const to_lower = div(grid_.lower[k] - slack - from_[k], along_[k]),
-              to_upper = div(grid_.upper[k] + slack - from_[k], along_[k]);
+      S const to_lower = div(grid_->lower[k] - slack - from_[k], along_[k]),
+              to_upper = div(grid_->upper[k] + slack - from_[k], along_[k]);
       begin_ = larger(begin_, stretched(smaller(to_lower, to_upper), -1));
       end = smaller(end, stretched(larger(to_lower, to_upper), 1));
     }
@@ -114,11 +117,11 @@ class way {
     pieces_ = 0;
     if (!(begin_ <= end)) return;
     for (int k = 0; k < 3; ++k) longest = larger(longest, mul(abs_of(along_[k]), end - begin_));
-    pieces_ = static_cast<std::uint32_t>(mul(longest, 2 * level_.inverse_width)) + 1;
+    pieces_ = static_cast<std::uint32_t>(mul(longest, 2 * level_->inverse_width)) + 1;
     piece_length_ = div(end - begin_, static_cast<S>(pieces_));
     for (int k = 0; k < 3; ++k) {
       S const extent = mul(abs_of(along_[k]), piece_length_) + 2 * slack_of(from_[k], along_[k]);
-      span_[k] = static_cast<std::uint32_t>(mul(extent, level_.inverse_width) + S(0.125)) + 2;
+      span_[k] = static_cast<std::uint32_t>(mul(extent, level_->inverse_width) + S(0.125)) + 2;
     }
   }
 
@@ -127,14 +130,14 @@ class way {
     cell_range r;
     for (int k = 0; k < 3; ++k) {
       S const a = position(piece, k), b = position(piece + 1, k), slack = slack_of(from_[k], along_[k]);
-      r.lower[k] = grid_.coordinate(level_, smaller(a, b) - slack, k);
-      r.upper[k] = grid_.coordinate(level_, larger(a, b) + slack, k);
+      r.lower[k] = grid_->coordinate(*level_, smaller(a, b) - slack, k);
+      r.upper[k] = grid_->coordinate(*level_, larger(a, b) + slack, k);
     }
     return r;
   }
 
-  grid<S> const& grid_;
-  grid_level<S> const& level_;
+  grid<S> const* grid_ = nullptr;
+  grid_level<S> const* level_ = nullptr;
   vec3<S> from_, along_;
   cell_range whole_;       ///< the cells of the way's box
   std::uint32_t span_[3];  ///< how many cells a piece has on an axis, at most
