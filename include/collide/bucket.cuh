@@ -11,6 +11,7 @@
 #include <collide/detail/block.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
+#include <collide/detail/placed_spheres.hpp>
 #include <collide/detail/sphere_batch.hpp>
 #include <collide/detail/way.hpp>
 #include <collide/detector.hpp>
@@ -321,17 +322,30 @@ class bucket::index {
   /// differ.
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
-    if (radius_given_ || !has_summary_) return;
-    S reaches[detail::max_grids];
-    int const n =
-        spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
-    if (n == 0 || (n == wanted_ && std::equal(reaches, reaches + n, reaches_))) return;
-    make_grids(space, options, reaches, n);
+    prepare_grids(space, options, spheres);
+    if constexpr (Space::sorts_spheres) {
+      places_ = grid_count_ > 0 && options.memory_budget == 0;
+      if (places_) placed_.place(space, spheres, grids_.data(), grid_count_, occupied(), cell_bits());
+    }
+  }
+
+  /// Spheres that move are not sorted.
+  template <class Space>
+  void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
+    prepare_grids(space, options, spheres);
   }
 
   /// Puts one pass over the spheres on the space's stream.
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
+    if constexpr (Space::sorts_spheres && detail::at_rest<NarrowPhase, S>) {
+      if (places_) {
+        detail::placed_query<S, NarrowPhase, Sink> const body{
+            {mesh_, spheres, sink}, bounds_.data(), counts_.data(), entries_.data(), placed_.data(), placed_.size()};
+        space.launch(detail::blocks_for<Space>(placed_.size(), body), body);
+        return;
+      }
+    }
     detail::bucket_query<S, NarrowPhase, Sink> const body{{mesh_, spheres, sink},
                                                           has_bounds_ ? bounds_.data() : nullptr,
                                                           grids_.data(),
@@ -358,6 +372,16 @@ class bucket::index {
   template <class Space>
   static constexpr std::size_t cells_per_triangle = std::size_t(Space::bucket_span + 1) * (Space::bucket_span + 1) *
                                                     (Space::bucket_span + 1);
+
+  template <class Space>
+  void prepare_grids(Space& space, bucket const& options, sphere_view<S> const& spheres) {
+    if (radius_given_ || !has_summary_) return;
+    S reaches[detail::max_grids];
+    int const n =
+        spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
+    if (n == 0 || (n == wanted_ && std::equal(reaches, reaches + n, reaches_))) return;
+    make_grids(space, options, reaches, n);
+  }
 
   /// The grid of one radius: the one that is there if it is not much too wide.
   int reach_of(S radius, S* reaches) const {
@@ -458,6 +482,13 @@ class bucket::index {
 
   std::uint32_t* occupied() const { return counts_.data() + cells_ + 2; }
 
+  /// Cells have numbers below 2^cell_bits().
+  std::uint32_t cell_bits() const {
+    std::uint32_t bits = 0;
+    while (std::size_t{1} << bits < cells_) ++bits;
+    return bits;
+  }
+
   std::size_t bounds_bytes() const { return mesh_.size() * sizeof(detail::bounding_sphere<S>); }
 
   /// What is held for another layout would come on top of what the budget was planned for.
@@ -482,6 +513,8 @@ class bucket::index {
   bool radius_given_ = false;
   bool has_bounds_ = false;
   bool has_summary_ = false;
+  bool places_ = false;  ///< the spheres of the query are in `placed_`
+  detail::placed_spheres<S> placed_;
 };
 
 }  // namespace collide

@@ -59,6 +59,9 @@ class host {
   /// True if a pair that takes long to decide is better put on a list, as its neighbours would wait for it.
   static constexpr bool defers = false;
 
+  /// True if a query with buckets had better sort its spheres first: where a core with a large cache tests one at a time.
+  static constexpr bool sorts_spheres = true;
+
   /// Runs `body` once for each of `blocks` blocks.
   template <class Body>
   void launch(std::size_t blocks, Body const& body) const {
