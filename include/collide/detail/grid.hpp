@@ -63,7 +63,8 @@ struct grid {
   COLLIDE_HD_INLINE std::uint32_t coordinate(grid_level<S> const& l, S x, int axis) const {
     S const cells = mul(x - lower[axis], l.inverse_width);
     constexpr S end = S(1 << 30);
-    return cells > 0 ? static_cast<std::uint32_t>(cells < end ? cells : end) : 0u;
+    // by way of a signed integer, for which all processors have an instruction
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(cells > 0 ? (cells < end ? cells : end) : S(0)));
   }
 
   /// The cell that holds a point inside the grid.

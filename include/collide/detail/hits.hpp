@@ -111,6 +111,8 @@ struct hit_buffer {
 
 template <class S, class NarrowPhase, class Sink>
 struct tester {
+  using narrow_phase = NarrowPhase;
+
   mesh_view<S> mesh;
   spheres_of<NarrowPhase, S> spheres;
   Sink sink;
@@ -118,7 +120,12 @@ struct tester {
   /// Runs the narrow phase on one candidate. Called by any lane.
   template <class Block, class Ball>
   COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block>& b, pair p, Ball const& s) const {
-    if (!sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) return;
+    if (sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) keep(block, b, p);
+  }
+
+  /// Takes a hit. Called by any lane.
+  template <class Block>
+  COLLIDE_HD_INLINE void keep(Block& block, hit_buffer<Block>& b, pair p) const {
     if constexpr (hit_buffer<Block>::capacity > 0) {
       std::uint32_t const place = block.add(b.found, 1);
       if (place < hit_buffer<Block>::capacity) {

@@ -6,6 +6,7 @@
 /// triangles all over the place, each time from a far cache; in the order of the cells they read them from the nearest.
 #pragma once
 
+#include <collide/detail/candidate_batch.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/partition.hpp>
@@ -54,22 +55,15 @@ struct place_spheres {
     for (std::size_t first = begin; first < begin + batches * n && first < spheres.size(); first += n) {
       sphere_batch<S, n> batch;
       batch.load(spheres, first);
-      std::uint64_t open = 0;
-      {
-        unsigned char flags[n];
-        for (int k = 0; k < n; ++k) flags[k] = valid_radius(batch.radius[k]);
-        open = mask_of(flags);
-      }
+      std::uint64_t open = mask_of<n>([&](int k) { return valid_radius(batch.radius[k]); });
       // by rising reach, so that a sphere ends up in the tightest
       for (int g = grid_count - 1; g >= 0 && open != 0; --g) {
         grid<S> const& box = grids[g];
-        unsigned char flags[n], fits[n];
-        for (int k = 0; k < n; ++k) {
-          flags[k] = (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) & (batch.y[k] >= box.lower[1]) &
-                     (batch.y[k] <= box.upper[1]) & (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
-        }
-        for (int k = 0; k < n; ++k) fits[k] = batch.radius[k] <= box.reach;
-        std::uint64_t const served = open & mask_of(fits), inside = served & mask_of(flags);
+        std::uint64_t const served = open & mask_of<n>([&](int k) { return batch.radius[k] <= box.reach; });
+        std::uint64_t const inside = served & mask_of<n>([&](int k) {
+          return (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) & (batch.y[k] >= box.lower[1]) &
+                 (batch.y[k] <= box.upper[1]) & (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
+        });
         open &= ~served;
         if (inside == 0) continue;
         for (int l = 0; l < box.levels; ++l) {
@@ -99,10 +93,13 @@ struct place_spheres {
     return {cell, static_cast<id>(first) + static_cast<id>(k), {{batch.x[k], batch.y[k], batch.z[k]}, batch.radius[k]}};
   }
 
-  /// A bit for each of 64 bytes that are 0 or 1.
-  static COLLIDE_HD_INLINE std::uint64_t mask_of(unsigned char const* flags) {
+  /// Bit k is holds(k), for k < n <= 64. Without branches, for the processor's vector unit.
+  template <int n, class Holds>
+  static COLLIDE_HD_INLINE std::uint64_t mask_of(Holds const& holds) {
+    unsigned char flags[n];
+    for (int k = 0; k < n; ++k) flags[k] = holds(k);
     std::uint64_t mask = 0;
-    for (int k = 0; k < 64; k += 8) {
+    for (int k = 0; k < n; k += 8) {
       std::uint64_t bytes;
       std::memcpy(&bytes, flags + k, sizeof bytes);
       mask |= (bytes * 0x0102040810204080u >> 56) << k;
@@ -142,6 +139,7 @@ struct placed_query {
   struct scratch {
     static constexpr std::uint32_t most = 256;  ///< candidates at a time
     id reached[most];
+    candidate_batch<S> batch;
     hit_buffer<Block> hits;
   };
 
@@ -149,6 +147,7 @@ struct placed_query {
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::lanes == 1, "collide: spheres in the order of their cells are for blocks of one lane");
     if (!tests.begin(block, s.hits)) return;
+    s.batch.size = 0;
     std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, count);
     for (std::size_t i = begin; i < end; ++i) {
       placed<S> const& p = spheres[i];
@@ -160,6 +159,7 @@ struct placed_query {
         test_all(block, s, p.number, p.ball, ends[p.cell + 1] - ends[p.cell], [=](std::uint32_t k) { return list[k]; });
       }
     }
+    s.batch.decide(tests, block, s.hits);
     tests.flush(block, s.hits);
   }
 
@@ -177,8 +177,9 @@ struct placed_query {
         reached += bounds[t].reached(ball.centre, ball.radius);
       }
       for (std::uint32_t k = 0; k < reached; ++k) {
-        tests.test(block, s.hits, {number, s.reached[k]}, ball);
-        tests.make_room(block, s.hits);
+        id const t = s.reached[k];
+        s.batch.add({number, t}, tests.mesh[t], ball);
+        if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
       }
     }
   }
