@@ -93,14 +93,6 @@ struct all_pairs_query {
   }
 };
 
-/// Kernel body of `for_each` over triangles.
-template <class S>
-struct compute_bounds {
-  mesh_view<S> mesh;
-  bounding_sphere<S>* bounds;
-  COLLIDE_HD void operator()(std::size_t i) const { bounds[i] = bounds_of(mesh[i]); }
-};
-
 }  // namespace detail
 
 /// Broad phase: all pairs. Nothing but a bounding sphere per triangle is prepared, so it is the right choice for small

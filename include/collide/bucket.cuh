@@ -11,7 +11,7 @@
 #include <collide/detail/block.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
-#include <collide/detail/placed_spheres.hpp>
+#include <collide/detail/sorted_spheres.hpp>
 #include <collide/detail/sphere_batch.hpp>
 #include <collide/detail/way.hpp>
 #include <collide/detector.hpp>
@@ -301,13 +301,18 @@ class bucket::index {
     mesh_ = mesh;
     grid_count_ = wanted_ = 0;
     radius_given_ = false;
+    listed_ = swapped_ = false;
+    bool const swaps_here = swaps<Space>(options);
+    if (swaps_here) boxes_.reserve(space.resource(), mesh.size());
     has_bounds_ = options.memory_budget == 0 || fixed_bytes + bounds_bytes() <= options.memory_budget;
     if (has_bounds_) bounds_.reserve(space.resource(), mesh.size());
     has_summary_ = options.memory_budget == 0 || fixed_bytes <= options.memory_budget;
     if (!has_summary_) return;
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
-    detail::summarise_mesh<S> const body{mesh, summary, has_bounds_ ? bounds_.data() : nullptr};
+    // where spheres and triangles can swap, bounding spheres are only made with the lists
+    detail::summarise_mesh<S> const body{mesh, summary, has_bounds_ && !swaps_here ? bounds_.data() : nullptr,
+                                         swaps_here ? boxes_.data() : nullptr};
     space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
   }
 
@@ -323,26 +328,26 @@ class bucket::index {
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     prepare_grids(space, options, spheres);
+    swapped_ = grid_count_ > 0 && swaps<Space>(options) && spheres.size() >= mesh_.size();
     if constexpr (Space::sorts_spheres) {
-      places_ = grid_count_ > 0 && options.memory_budget == 0;
-      if (places_) placed_.place(space, spheres, grids_.data(), grid_count_, occupied(), cell_bits());
+      if (swapped_) sorted_.sort(space, spheres);
     }
+    if (!swapped_) make_lists(space, options);
   }
 
-  /// Spheres that move are not sorted.
+  /// Spheres that move always look for triangles.
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
     prepare_grids(space, options, spheres);
+    make_lists(space, options);
   }
 
   /// Puts one pass over the spheres on the space's stream.
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
     if constexpr (Space::sorts_spheres && detail::at_rest<NarrowPhase, S>) {
-      if (places_) {
-        detail::placed_query<S, NarrowPhase, Sink> const body{
-            {mesh_, spheres, sink}, bounds_.data(), counts_.data(), entries_.data(), placed_.data(), placed_.size()};
-        space.launch(detail::blocks_for<Space>(placed_.size(), body), body);
+      if (swapped_) {
+        sorted_.query(space, detail::tester<S, NarrowPhase, Sink>{mesh_, spheres, sink});
         return;
       }
     }
@@ -430,19 +435,40 @@ class bucket::index {
     std::copy(reaches, reaches + count, plan.reaches);
     space.for_each(count, plan);
 
+    if constexpr (Space::sorts_spheres) {
+      if (swaps<Space>(options)) sorted_.mark(space, boxes_.data(), n, grids, l.grids, cells_);
+    }
+    grid_count_ = l.grids;
+    wanted_ = wanted;
+    listed_ = false;
+    if (!swaps<Space>(options)) make_lists(space, options);
+  }
+
+  /// Enters the triangles into the cells, unless they are there.
+  template <class Space>
+  void make_lists(Space& space, bucket const& options) {
+    if (listed_ || grid_count_ == 0) return;
+    std::size_t const n = mesh_.size();
+    if (swaps<Space>(options)) space.for_each(n, detail::compute_bounds<S>{mesh_, bounds_.data()});
     // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
     auto* const counts = counts_.reserve(space.resource(), table_size(cells_));
-    detail::grid_insertion<S> const insertion{mesh_, grids, l.grids};
+    detail::grid_insertion<S> const insertion{mesh_, grids_.data(), grid_count_};
     space.fill(counts, 0, table_size(cells_) * sizeof *counts);
     space.for_each(n, detail::count_entries<S>{insertion, counts + 1, occupied()});
     space.exclusive_scan(counts + 1, cells_ + 1, scratch_);
     // only a width that was asked for leaves open how many cells a triangle touches: then the device must be asked
-    std::size_t const capacity =
-        options.cell_width > 0 ? space.read(counts + cells_ + 1) : cells_per_triangle<Space> * n * count;
+    std::size_t const capacity = options.cell_width > 0
+                                     ? space.read(counts + cells_ + 1)
+                                     : cells_per_triangle<Space> * n * static_cast<std::size_t>(grid_count_);
     entries_.reserve(space.resource(), capacity);
     space.for_each(n, detail::fill_entries<S>{insertion, counts + 1, entries_.data(), entries_.capacity()});
-    grid_count_ = l.grids;
-    wanted_ = wanted;
+    listed_ = true;
+  }
+
+  /// True if spheres can be sorted into the cells instead of triangles: what that takes is not part of a budget.
+  template <class Space>
+  static bool swaps(bucket const& options) {
+    return Space::sorts_spheres && options.memory_budget == 0;
   }
 
   struct layout {
@@ -482,13 +508,6 @@ class bucket::index {
 
   std::uint32_t* occupied() const { return counts_.data() + cells_ + 2; }
 
-  /// Cells have numbers below 2^cell_bits().
-  std::uint32_t cell_bits() const {
-    std::uint32_t bits = 0;
-    while (std::size_t{1} << bits < cells_) ++bits;
-    return bits;
-  }
-
   std::size_t bounds_bytes() const { return mesh_.size() * sizeof(detail::bounding_sphere<S>); }
 
   /// What is held for another layout would come on top of what the budget was planned for.
@@ -513,8 +532,10 @@ class bucket::index {
   bool radius_given_ = false;
   bool has_bounds_ = false;
   bool has_summary_ = false;
-  bool places_ = false;  ///< the spheres of the query are in `placed_`
-  detail::placed_spheres<S> placed_;
+  bool listed_ = false;   ///< the triangles are in the lists of the cells
+  bool swapped_ = false;  ///< the spheres are, for this query
+  buffer<detail::box<S>> boxes_;
+  detail::sorted_spheres<S> sorted_;
 };
 
 }  // namespace collide
