@@ -44,7 +44,7 @@ struct candidate_batch {
 
   /// Takes the hits to the tester and empties the batch.
   template <class Tester, class Block>
-  COLLIDE_HD void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
+  COLLIDE_HD_NOINLINE void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
     using narrow_phase = typename Tester::narrow_phase;
     if constexpr (in_stages<narrow_phase>::value) {
       for (int k = 0; k < size; ++k) {

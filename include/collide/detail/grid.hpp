@@ -62,9 +62,9 @@ struct grid {
   /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.
   COLLIDE_HD_INLINE std::uint32_t coordinate(grid_level<S> const& l, S x, int axis) const {
     S const cells = mul(x - lower[axis], l.inverse_width);
-    constexpr S end = S(1 << 30);
-    // by way of a signed integer, for which all processors have an instruction
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(cells > 0 ? (cells < end ? cells : end) : S(0)));
+    // without branches, and by way of a signed integer, for which all processors have an instruction
+    S const limited = smaller(larger(S(0), cells), S(1 << 30));
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(limited));
   }
 
   /// The cell that holds a point inside the grid.

@@ -34,14 +34,6 @@ struct box {
     return larger(larger(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
   }
 
-  /// False if the box is farther from the sphere along some axis than any arithmetic of a narrow phase takes for its
-  /// radius. See docs/numerics.md.
-  COLLIDE_HD_INLINE bool reached(sphere<S> const& s) const {
-    S gap = larger(lower[0] - s.centre[0], s.centre[0] - upper[0]);
-    for (int k = 1; k < 3; ++k) gap = larger(gap, larger(lower[k] - s.centre[k], s.centre[k] - upper[k]));
-    return gap <= larger(mul(s.radius, 1 + 32 * S(format<float>::unit)), format<S>::unflushed);
-  }
-
   struct unite {
     COLLIDE_HD box operator()(box const& a, box const& b) const {
       box c;

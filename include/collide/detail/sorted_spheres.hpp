@@ -17,6 +17,18 @@
 
 namespace collide::detail {
 
+/// Bit k is flags[k], for k < n <= 64; flags are 0 or 1.
+template <std::size_t n>
+COLLIDE_HD_INLINE std::uint64_t bits_of_flags(unsigned char const* flags) {
+  std::uint64_t mask = 0;
+  for (std::size_t k = 0; k < n; k += 8) {
+    std::uint64_t bytes;
+    std::memcpy(&bytes, flags + k, sizeof bytes);
+    mask |= (bytes * 0x0102040810204080u >> 56) << k;
+  }
+  return mask;
+}
+
 /// Kernel body of `for_each` over triangles: sets a bit for every cell that a triangle looks into.
 template <class S>
 struct mark_cells {
@@ -86,10 +98,15 @@ struct place_spheres {
                             cell};
         s.count += wanted;
       };
-      std::uint64_t open = mask_of<n>([&](int k) { return valid_radius(batch.radius[k]); });
+      // where all radii are equal, one comparison stands for all
+      auto const of_radii = [&](auto const& holds) {
+        if (!one_radius) return mask_of<n>([&](int k) { return holds(batch.radius[k]); });
+        return holds(spheres.common_radius()) ? first_bits(spheres.size() - first) : 0;
+      };
+      std::uint64_t open = of_radii([](S r) { return valid_radius(r); });
       for (int g = grid_count - 1; g >= 0 && open != 0; --g) {  // by rising reach: a sphere ends up in the tightest
         grid<S> const& box = grids[g];
-        std::uint64_t const served = open & mask_of<n>([&](int k) { return batch.radius[k] <= box.reach; });
+        std::uint64_t const served = open & of_radii([&](S r) { return r <= box.reach; });
         std::uint64_t const inside = served & mask_of<n>([&](int k) {
           return (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) & (batch.y[k] >= box.lower[1]) &
                  (batch.y[k] <= box.upper[1]) & (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
@@ -111,18 +128,13 @@ struct place_spheres {
   }
 
  private:
-  /// Bit k is holds(k), for k < n <= 64. Without branches, for the processor's vector unit.
+  static std::uint64_t first_bits(std::size_t n) { return n < 64 ? (std::uint64_t{1} << n) - 1 : ~std::uint64_t{0}; }
+
   template <int n, class Holds>
   static COLLIDE_HD_INLINE std::uint64_t mask_of(Holds const& holds) {
     unsigned char flags[n];
     for (int k = 0; k < n; ++k) flags[k] = holds(k);
-    std::uint64_t mask = 0;
-    for (int k = 0; k < n; k += 8) {
-      std::uint64_t bytes;
-      std::memcpy(&bytes, flags + k, sizeof bytes);
-      mask |= (bytes * 0x0102040810204080u >> 56) << k;
-    }
-    return mask;
+    return bits_of_flags<n>(flags);
   }
 
   template <class Scratch>
@@ -147,13 +159,50 @@ struct count_placed {
   COLLIDE_HD_INLINE void operator()(std::size_t i) const { fetch_add(counts + from[i].cell, 1u); }
 };
 
+/// Spheres in the order of the cells, number by number in arrays of their own.
+template <class S>
+struct sphere_columns {
+  static constexpr std::size_t lanes = 8;  ///< how many are compared with a box at a time, also beyond the end
+
+  S *x, *y, *z, *radius;
+  S* reach;  ///< how far from a box the centre is at most, if the sphere touches what is in the box
+  id* number;
+
+  COLLIDE_HD_INLINE sphere<S> operator[](std::uint32_t i) const { return {{x[i], y[i], z[i]}, radius[i]}; }
+
+  COLLIDE_HD_INLINE void set(std::uint32_t i, sphere<S> const& s, id n) const {
+    x[i] = s.centre.x();
+    y[i] = s.centre.y();
+    z[i] = s.centre.z();
+    radius[i] = s.radius;
+    reach[i] = larger(mul(s.radius, 1 + 32 * S(format<float>::unit)), format<S>::unflushed);
+    number[i] = n;
+  }
+
+  /// Bit k is whether sphere first + k can reach what is in the box, for k < lanes. Without branches, for the
+  /// processor's vector unit.
+  COLLIDE_HD_INLINE std::uint32_t reaching(box<S> const& b, std::uint32_t first) const {
+    bits_of<S> constexpr bit[lanes] = {1, 2, 4, 8, 16, 32, 64, 128};  // no processor shifts lanes by different amounts fast
+    bits_of<S> mask = 0;
+    for (std::size_t k = 0; k < lanes; ++k) {
+      S const px = x[first + k], py = y[first + k], pz = z[first + k];
+      S const gap = larger(larger(larger(b.lower[0] - px, px - b.upper[0]), larger(b.lower[1] - py, py - b.upper[1])),
+                           larger(b.lower[2] - pz, pz - b.upper[2]));
+      mask |= gap <= reach[first + k] ? bit[k] : bits_of<S>(0);
+    }
+    return static_cast<std::uint32_t>(mask);
+  }
+};
+
 /// Kernel body of `for_each` over placed spheres: brings them into the order of the cells.
 template <class S>
 struct sort_placed {
   placed_sphere<S> const* from;
-  placed_sphere<S>* to;
+  sphere_columns<S> to;
   std::uint32_t* begins;
-  COLLIDE_HD_INLINE void operator()(std::size_t i) const { to[fetch_add(begins + from[i].cell, 1u)] = from[i]; }
+  COLLIDE_HD_INLINE void operator()(std::size_t i) const {
+    to.set(fetch_add(begins + from[i].cell, 1u), from[i].ball, from[i].number);
+  }
 };
 
 /// Kernel body of a block of one lane: triangles look for spheres in the cells that they touch.
@@ -165,20 +214,20 @@ struct look_for_spheres {
   box<S> const* boxes;
   grid<S> const* grids;
   int grid_count;
-  placed_sphere<S> const* spheres;
+  sphere_columns<S> spheres;
   std::uint32_t const* ends;  ///< the spheres of cell c: ends[c] .. ends[c + 1]
   std::uint32_t everywhere;   ///< number of the cell behind the last
 
-  /// A sphere by its place in the order, and a triangle.
-  struct candidate {
-    std::uint32_t place;
+  /// Spheres `first` + k whose bit k is set, and a triangle whose box they reach.
+  struct reached {
+    std::uint32_t first, mask;
     id triangle;
   };
 
   template <class Block>
   struct scratch {
-    static constexpr std::uint32_t room = 512;
-    candidate found[room];
+    static constexpr std::uint32_t room = 256;
+    reached found[room];
     std::uint32_t count;
     candidate_batch<S> batch;
     hit_buffer<Block> hits;
@@ -192,11 +241,18 @@ struct look_for_spheres {
     s.batch.size = 0;
     std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, tests.mesh.size());
     for (std::size_t t = begin; t < end; ++t) {
-      auto const look = [&](std::uint32_t first, std::uint32_t n) {
-        list(block, s, static_cast<id>(t), ends[first], ends[first + n]);
+      box<S> const around = boxes[t];
+      if (around.is_empty()) continue;  // not finite
+      auto const look = [&](std::uint32_t cell, std::uint32_t n) {
+        std::uint32_t const last = ends[cell + n];
+        for (std::uint32_t i = ends[cell]; i < last; i += spheres.lanes) {
+          std::uint32_t const here = spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+          s.found[s.count] = {i, here, static_cast<id>(t)};
+          s.count += here != 0;  // no branch: it would often be mispredicted
+          if (s.count == s.room) test(block, s);
+        }
       };
-      if (boxes[t].is_empty()) continue;  // not finite
-      for (int g = 0; g < grid_count; ++g) grids[g].each_row(boxes[t], look);
+      for (int g = 0; g < grid_count; ++g) grids[g].each_row(around, look);
       look(everywhere, 1);
     }
     test(block, s);
@@ -205,36 +261,17 @@ struct look_for_spheres {
   }
 
  private:
-  /// Lists the spheres of places first .. last as candidates.
+  /// Tests what was found.
   template <class Block>
-  COLLIDE_HD_INLINE void list(Block& block, scratch<Block>& s, id t, std::uint32_t first, std::uint32_t last) const {
-    constexpr std::uint32_t few = 4;
-    if (s.count + few > s.room) test(block, s);
-    if (last - first <= few) {  // no branch per sphere: it would often be mispredicted
-      for (std::uint32_t k = 0; k < few; ++k) s.found[s.count + k] = {first + k, t};
-      s.count += last - first;
-      return;
-    }
-    for (; first < last; ++first) {
-      if (s.count == s.room) test(block, s);
-      s.found[s.count++] = {first, t};
-    }
-  }
-
-  /// Tests the listed candidates: their boxes first.
-  template <class Block>
-  COLLIDE_HD void test(Block& block, scratch<Block>& s) const {
-    std::uint32_t n = 0;
+  COLLIDE_HD_NOINLINE void test(Block& block, scratch<Block>& s) const {
     for (std::uint32_t i = 0; i < s.count; ++i) {
-      candidate const c = s.found[i];
-      s.found[n] = c;
-      n += boxes[c.triangle].reached(spheres[c.place].ball);
-    }
-    for (std::uint32_t i = 0; i < n; ++i) {
-      candidate const c = s.found[i];
-      placed_sphere<S> const& p = spheres[c.place];
-      if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
-      s.batch.add({p.number, c.triangle}, tests.mesh[c.triangle], p.ball);
+      reached const r = s.found[i];
+      triangle<S> const t = tests.mesh[r.triangle];
+      for (std::uint32_t rest = r.mask; rest != 0; rest &= rest - 1) {
+        std::uint32_t const place = r.first + static_cast<std::uint32_t>(__builtin_ctz(rest));
+        if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
+        s.batch.add({spheres.number[place], r.triangle}, t, spheres[place]);
+      }
     }
     s.count = 0;
   }
@@ -272,25 +309,35 @@ class sorted_spheres {
       if (*total <= room) break;
     }
     auto const n = static_cast<std::size_t>(*total);
-    auto* const sorted = sorted_.reserve(space.resource(), placed_.capacity());
+    columns_ = columns(space, placed_.capacity());
     // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
     std::size_t const table = cells_ + 2;
     auto* const counts = ends_.reserve(space.resource(), table);
     space.fill(counts, 0, table * sizeof *counts);
     space.for_each(n, count_placed<S>{placed_.data(), counts + 1});
     space.exclusive_scan(counts + 1, table - 1, scratch_);
-    space.for_each(n, sort_placed<S>{placed_.data(), sorted, counts + 1});
+    space.for_each(n, sort_placed<S>{placed_.data(), columns_, counts + 1});
   }
 
   /// One pass: the triangles look for the spheres.
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, tester<S, NarrowPhase, Sink> const& tests) const {
     look_for_spheres<S, NarrowPhase, Sink> const body{
-        tests, boxes_, grids_, grid_count_, sorted_.data(), ends_.data(), everywhere()};
+        tests, boxes_, grids_, grid_count_, columns_, ends_.data(), everywhere()};
     space.launch(blocks_for<Space>(tests.mesh.size(), body), body);
   }
 
  private:
+  template <class Space>
+  sphere_columns<S> columns(Space& space, std::size_t n) {
+    std::size_t const room = n + sphere_columns<S>::lanes;
+    bool const same = numbers_.capacity() == 5 * room;
+    S* const to = numbers_.reserve(space.resource(), 5 * room);
+    id* const ids = ids_.reserve(space.resource(), room);
+    if (!same) space.fill(to, 0, 5 * room * sizeof *to);  // also what is behind the end is read
+    return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids};
+  }
+
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
 
   box<S> const* boxes_ = nullptr;
@@ -299,7 +346,10 @@ class sorted_spheres {
   std::size_t cells_ = 0;
   buffer<std::uint32_t> occupied_, ends_;
   buffer<std::uint64_t> total_;
-  buffer<placed_sphere<S>> placed_, sorted_;
+  buffer<placed_sphere<S>> placed_;
+  buffer<S> numbers_;
+  buffer<id> ids_;
+  sphere_columns<S> columns_ = {};
   buffer<unsigned char> scratch_;
 };
 
