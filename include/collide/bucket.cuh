@@ -301,7 +301,7 @@ class bucket::index {
     mesh_ = mesh;
     grid_count_ = wanted_ = 0;
     radius_given_ = false;
-    listed_ = swapped_ = false;
+    listed_ = swapped_ = queried_ = false;
     bool const swaps_here = swaps<Space>(options);
     if (swaps_here) boxes_.reserve(space.resource(), mesh.size());
     has_bounds_ = options.memory_budget == 0 || fixed_bytes + bounds_bytes() <= options.memory_budget;
@@ -328,7 +328,9 @@ class bucket::index {
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     prepare_grids(space, options, spheres);
-    swapped_ = grid_count_ > 0 && swaps<Space>(options) && spheres.size() >= mesh_.size();
+    // The first time that is faster than making lists; later only if there are many spheres.
+    swapped_ = grid_count_ > 0 && swaps<Space>(options) && (!queried_ || spheres.size() / 4 >= mesh_.size());
+    queried_ = true;
     if constexpr (Space::sorts_spheres) {
       if (swapped_) sorted_.sort(space, spheres);
     }
@@ -534,6 +536,7 @@ class bucket::index {
   bool has_summary_ = false;
   bool listed_ = false;   ///< the triangles are in the lists of the cells
   bool swapped_ = false;  ///< the spheres are, for this query
+  bool queried_ = false;  ///< this is not the first query since the build
   buffer<detail::box<S>> boxes_;
   detail::sorted_spheres<S> sorted_;
 };

@@ -51,7 +51,7 @@ class host {
   using block = detail::serial_block<64, 256>;
 
   /// Tuning of `bucket`: how many cells wide most triangles are. Narrow cells have fewer candidates and more entries.
-  static constexpr int bucket_span = 2;
+  static constexpr int bucket_span = 1;
 
   /// True if the host reads this memory without waiting for anything.
   static constexpr bool host_memory = true;
