@@ -133,7 +133,7 @@ struct place_spheres {
   template <int n, class Holds>
   static COLLIDE_HD_INLINE std::uint64_t mask_of(Holds const& holds) {
     unsigned char flags[n];
-    for (int k = 0; k < n; ++k) flags[k] = holds(k);
+    for (int k = 0; k < n; ++k) flags[k] = static_cast<unsigned char>(holds(k));
     return bits_of_flags<n>(flags);
   }
 
@@ -170,7 +170,7 @@ struct sphere_columns {
 
   COLLIDE_HD_INLINE sphere<S> operator[](std::uint32_t i) const { return {{x[i], y[i], z[i]}, radius[i]}; }
 
-  COLLIDE_HD_INLINE void set(std::uint32_t i, sphere<S> const& s, id n) const {
+  COLLIDE_HD_INLINE void set(std::size_t i, sphere<S> const& s, id n) const {
     x[i] = s.centre.x();
     y[i] = s.centre.y();
     z[i] = s.centre.z();
@@ -194,14 +194,26 @@ struct sphere_columns {
   }
 };
 
-/// Kernel body of `for_each` over placed spheres: brings them into the order of the cells.
+/// Kernel body of `for_each` over placed spheres: gives each its place in the order of the cells.
+template <class S>
+struct number_placed {
+  placed_sphere<S> const* from;
+  std::uint32_t* order;
+  std::uint32_t* begins;
+  COLLIDE_HD_INLINE void operator()(std::size_t i) const {
+    order[fetch_add(begins + from[i].cell, 1u)] = static_cast<std::uint32_t>(i);
+  }
+};
+
+/// Kernel body of `for_each` over places: brings the spheres there. Threads write next to themselves only.
 template <class S>
 struct sort_placed {
   placed_sphere<S> const* from;
+  std::uint32_t const* order;
   sphere_columns<S> to;
-  std::uint32_t* begins;
   COLLIDE_HD_INLINE void operator()(std::size_t i) const {
-    to.set(fetch_add(begins + from[i].cell, 1u), from[i].ball, from[i].number);
+    placed_sphere<S> const& p = from[order[i]];
+    to.set(i, p.ball, p.number);
   }
 };
 
@@ -316,7 +328,9 @@ class sorted_spheres {
     space.fill(counts, 0, table * sizeof *counts);
     space.for_each(n, count_placed<S>{placed_.data(), counts + 1});
     space.exclusive_scan(counts + 1, table - 1, scratch_);
-    space.for_each(n, sort_placed<S>{placed_.data(), columns_, counts + 1});
+    auto* const order = order_.reserve(space.resource(), placed_.capacity());
+    space.for_each(n, number_placed<S>{placed_.data(), order, counts + 1});
+    space.for_each(n, sort_placed<S>{placed_.data(), order, columns_});
   }
 
   /// One pass: the triangles look for the spheres.
@@ -344,7 +358,7 @@ class sorted_spheres {
   grid<S> const* grids_ = nullptr;
   int grid_count_ = 0;
   std::size_t cells_ = 0;
-  buffer<std::uint32_t> occupied_, ends_;
+  buffer<std::uint32_t> occupied_, ends_, order_;
   buffer<std::uint64_t> total_;
   buffer<placed_sphere<S>> placed_;
   buffer<S> numbers_;
