@@ -59,7 +59,8 @@ class host {
   /// True if a pair that takes long to decide is better put on a list, as its neighbours would wait for it.
   static constexpr bool defers = false;
 
-  /// True if a query with buckets had better sort its spheres first: where a core with a large cache tests one at a time.
+  /// True if a query with buckets had better sort its spheres first: where a core with a large cache tests one at a
+  /// time.
   static constexpr bool sorts_spheres = true;
 
   /// Runs `body` once for each of `blocks` blocks.
@@ -125,9 +126,8 @@ class host {
       before[p] = std::accumulate(from, to, std::uint32_t{0});
     });
     std::exclusive_scan(before, before + parts, before, std::uint32_t{0});
-    each_part([&](std::size_t p, std::uint32_t* from, std::uint32_t* to) {
-      std::exclusive_scan(from, to, from, before[p]);
-    });
+    each_part(
+        [&](std::size_t p, std::uint32_t* from, std::uint32_t* to) { std::exclusive_scan(from, to, from, before[p]); });
   }
 
   /// Sorts pairs into canonical order.

@@ -4,6 +4,7 @@
 
 #include <collide/detail/decide.hpp>
 #include <collide/detail/hits.hpp>
+#include <collide/detail/vectorised.hpp>
 
 namespace collide::detail {
 
@@ -38,18 +39,19 @@ struct candidate_batch {
             {corners[6][k], corners[7][k], corners[8][k]}};
   }
 
-  COLLIDE_HD_INLINE sphere<S> sphere_of(int k) const {
-    return {{centre[0][k], centre[1][k], centre[2][k]}, radius[k]};
-  }
+  COLLIDE_HD_INLINE sphere<S> sphere_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius[k]}; }
 
   /// Takes the hits to the tester and empties the batch.
   template <class Tester, class Block>
   COLLIDE_HD_NOINLINE void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
     using narrow_phase = typename Tester::narrow_phase;
     if constexpr (in_stages<narrow_phase>::value) {
-      for (int k = 0; k < size; ++k) {
-        verdicts[k] = static_cast<std::int32_t>(in_stages<narrow_phase>::attempt_straight(triangle_of(k), sphere_of(k)));
-      }
+      vectorised([this] {
+        for (int k = 0; k < size; ++k) {
+          verdicts[k] =
+              static_cast<std::int32_t>(in_stages<narrow_phase>::attempt_straight(triangle_of(k), sphere_of(k)));
+        }
+      });
       int n = 0;  // no branch per pair: it would often be mispredicted
       for (int k = 0; k < size; ++k) {
         open[n] = static_cast<std::uint8_t>(k);

@@ -1,11 +1,11 @@
 /// \file
-/// Buckets the other way round, for a CPU and many spheres: the spheres are sorted into the cells, and the triangles look
-/// for them there.
+/// Buckets the other way round, for a CPU and many spheres: the spheres are sorted into the cells, and the triangles
+/// look for them there.
 ///
 /// The cells are those of detail/grid.hpp, and a triangle looks into those that it would be entered into, so the same
-/// pairs meet, each once. But nothing is entered: a bit per cell is all that is prepared. Most spheres are in cells that no
-/// triangle touches, and are sorted out at the pace of the memory; the few others are copied in the order of the
-/// cells. Neighbouring triangles, which most meshes have one after the other, then read the same spheres from the
+/// pairs meet, each once. But nothing is entered: a bit per cell is all that is prepared. Most spheres are in cells
+/// that no triangle touches, and are sorted out at the pace of the memory; the few others are copied in the order of
+/// the cells. Neighbouring triangles, which most meshes have one after the other, then read the same spheres from the
 /// nearest cache.
 #pragma once
 
@@ -13,6 +13,7 @@
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/sphere_batch.hpp>
+#include <collide/detail/vectorised.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
@@ -84,8 +85,15 @@ struct place_spheres {
 
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
+    static_assert(Block::lanes == 1 && Block::items == 64,
+                  "collide: spheres are sorted by blocks of one lane with 64 items");
+    vectorised([&] { place(block, s); });
+  }
+
+ private:
+  template <class Block>
+  COLLIDE_HD_INLINE void place(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
-    static_assert(Block::lanes == 1 && n == 64, "collide: spheres are sorted by blocks of one lane with 64 items");
     std::size_t const begin = block.index() * batches * n;
     bool const one_radius = spheres.one_radius();
     s.count = 0;
@@ -93,9 +101,8 @@ struct place_spheres {
       sphere_batch<S, n> batch;
       batch.load(spheres, first);
       auto const list = [&](int k, std::uint32_t cell, bool wanted) {
-        s.found[s.count] = {{{batch.x[k], batch.y[k], batch.z[k]}, batch.radius[k]},
-                            static_cast<id>(first) + static_cast<id>(k),
-                            cell};
+        s.found[s.count] = {
+            {{batch.x[k], batch.y[k], batch.z[k]}, batch.radius[k]}, static_cast<id>(first) + static_cast<id>(k), cell};
         s.count += wanted;
       };
       // where all radii are equal, one comparison stands for all
@@ -108,9 +115,10 @@ struct place_spheres {
         grid<S> const& box = grids[g];
         std::uint64_t const served = open & of_radii([&](S r) { return r <= box.reach; });
         std::uint64_t const inside = served & mask_of<n>([&](int k) {
-          return (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) & (batch.y[k] >= box.lower[1]) &
-                 (batch.y[k] <= box.upper[1]) & (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
-        });
+                                       return (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) &
+                                              (batch.y[k] >= box.lower[1]) & (batch.y[k] <= box.upper[1]) &
+                                              (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
+                                     });
         open &= ~served;
         for (int l = 0; l < box.levels && inside != 0; ++l) {
           make_room(s);
@@ -127,7 +135,6 @@ struct place_spheres {
     flush(s);
   }
 
- private:
   static std::uint64_t first_bits(std::size_t n) { return n < 64 ? (std::uint64_t{1} << n) - 1 : ~std::uint64_t{0}; }
 
   template <int n, class Holds>
@@ -182,7 +189,8 @@ struct sphere_columns {
   /// Bit k is whether sphere first + k can reach what is in the box, for k < lanes. Without branches, for the
   /// processor's vector unit.
   COLLIDE_HD_INLINE std::uint32_t reaching(box<S> const& b, std::uint32_t first) const {
-    bits_of<S> constexpr bit[lanes] = {1, 2, 4, 8, 16, 32, 64, 128};  // no processor shifts lanes by different amounts fast
+    bits_of<S> constexpr bit[lanes] = {1,  2,  4,  8,
+                                       16, 32, 64, 128};  // no processor shifts lanes by different amounts fast
     bits_of<S> mask = 0;
     for (std::size_t k = 0; k < lanes; ++k) {
       S const px = x[first + k], py = y[first + k], pz = z[first + k];
@@ -251,11 +259,21 @@ struct look_for_spheres {
     if (!tests.begin(block, s.hits)) return;
     s.count = 0;
     s.batch.size = 0;
+    vectorised([&] { look(block, s); });
+    test(block, s);
+    s.batch.decide(tests, block, s.hits);
+    tests.flush(block, s.hits);
+  }
+
+ private:
+  /// Finds the spheres near the triangles of a block.
+  template <class Block>
+  COLLIDE_HD_INLINE void look(Block& block, scratch<Block>& s) const {
     std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, tests.mesh.size());
     for (std::size_t t = begin; t < end; ++t) {
       box<S> const around = boxes[t];
       if (around.is_empty()) continue;  // not finite
-      auto const look = [&](std::uint32_t cell, std::uint32_t n) {
+      auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
         std::uint32_t const last = ends[cell + n];
         for (std::uint32_t i = ends[cell]; i < last; i += spheres.lanes) {
           std::uint32_t const here = spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
@@ -264,15 +282,11 @@ struct look_for_spheres {
           if (s.count == s.room) test(block, s);
         }
       };
-      for (int g = 0; g < grid_count; ++g) grids[g].each_row(around, look);
-      look(everywhere, 1);
+      for (int g = 0; g < grid_count; ++g) grids[g].each_row(around, look_into);
+      look_into(everywhere, 1);
     }
-    test(block, s);
-    s.batch.decide(tests, block, s.hits);
-    tests.flush(block, s.hits);
   }
 
- private:
   /// Tests what was found.
   template <class Block>
   COLLIDE_HD_NOINLINE void test(Block& block, scratch<Block>& s) const {
@@ -336,8 +350,8 @@ class sorted_spheres {
   /// One pass: the triangles look for the spheres.
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, tester<S, NarrowPhase, Sink> const& tests) const {
-    look_for_spheres<S, NarrowPhase, Sink> const body{
-        tests, boxes_, grids_, grid_count_, columns_, ends_.data(), everywhere()};
+    look_for_spheres<S, NarrowPhase, Sink> const body{tests,    boxes_,       grids_,      grid_count_,
+                                                      columns_, ends_.data(), everywhere()};
     space.launch(blocks_for<Space>(tests.mesh.size(), body), body);
   }
 
