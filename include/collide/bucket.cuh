@@ -11,6 +11,7 @@
 #include <collide/detail/block.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
+#include <collide/detail/sorted_spheres.hpp>
 #include <collide/detail/sphere_batch.hpp>
 #include <collide/detail/way.hpp>
 #include <collide/detector.hpp>
@@ -316,13 +317,18 @@ class bucket::index {
     mesh_ = mesh;
     grid_count_ = wanted_ = 0;
     radius_given_ = false;
+    listed_ = swapped_ = queried_ = false;
+    bool const swaps_here = swaps<Space>(options);
+    if (swaps_here) boxes_.reserve(space.resource(), mesh.size());
     has_bounds_ = options.memory_budget == 0 || fixed_bytes + bounds_bytes() <= options.memory_budget;
     if (has_bounds_) bounds_.reserve(space.resource(), mesh.size());
     has_summary_ = options.memory_budget == 0 || fixed_bytes <= options.memory_budget;
     if (!has_summary_) return;
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
-    detail::summarise_mesh<S> const body{mesh, summary, has_bounds_ ? bounds_.data() : nullptr};
+    // where spheres and triangles can swap, bounding spheres are only made with the lists
+    detail::summarise_mesh<S> const body{mesh, summary, has_bounds_ && !swaps_here ? bounds_.data() : nullptr,
+                                         swaps_here ? boxes_.data() : nullptr};
     space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
   }
 
@@ -337,17 +343,32 @@ class bucket::index {
   /// differ.
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
-    if (radius_given_ || !has_summary_) return;
-    S reaches[detail::max_grids];
-    int const n =
-        spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
-    if (n == 0 || (n == wanted_ && std::equal(reaches, reaches + n, reaches_))) return;
-    make_grids(space, options, reaches, n);
+    prepare_grids(space, options, spheres);
+    // The first time that is faster than making lists; later only if there are many spheres.
+    swapped_ = grid_count_ > 0 && swaps<Space>(options) && (!queried_ || spheres.size() / 4 >= mesh_.size());
+    queried_ = true;
+    if constexpr (Space::sorts_spheres) {
+      if (swapped_) sorted_.sort(space, spheres);
+    }
+    if (!swapped_) make_lists(space, options);
+  }
+
+  /// Spheres that move always look for triangles.
+  template <class Space>
+  void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
+    prepare_grids(space, options, spheres);
+    make_lists(space, options);
   }
 
   /// Puts one pass over the spheres on the space's stream.
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
+    if constexpr (Space::sorts_spheres && detail::at_rest<NarrowPhase, S>) {
+      if (swapped_) {
+        sorted_.query(space, detail::tester<S, NarrowPhase, Sink>{mesh_, spheres, sink});
+        return;
+      }
+    }
     detail::bucket_query<S, NarrowPhase, Sink> const body{{mesh_, spheres, sink},
                                                           has_bounds_ ? bounds_.data() : nullptr,
                                                           grids_.data(),
@@ -374,6 +395,16 @@ class bucket::index {
   template <class Space>
   static constexpr std::size_t cells_per_triangle = std::size_t(Space::bucket_span + 1) * (Space::bucket_span + 1) *
                                                     (Space::bucket_span + 1);
+
+  template <class Space>
+  void prepare_grids(Space& space, bucket const& options, sphere_view<S> const& spheres) {
+    if (radius_given_ || !has_summary_) return;
+    S reaches[detail::max_grids];
+    int const n =
+        spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
+    if (n == 0 || (n == wanted_ && std::equal(reaches, reaches + n, reaches_))) return;
+    make_grids(space, options, reaches, n);
+  }
 
   /// The grid of one radius: the one that is there if it is not much too wide.
   int reach_of(S radius, S* reaches) const {
@@ -422,19 +453,40 @@ class bucket::index {
     std::copy(reaches, reaches + count, plan.reaches);
     space.for_each(count, plan);
 
+    if constexpr (Space::sorts_spheres) {
+      if (swaps<Space>(options)) sorted_.mark(space, boxes_.data(), n, grids, l.grids, cells_);
+    }
+    grid_count_ = l.grids;
+    wanted_ = wanted;
+    listed_ = false;
+    if (!swaps<Space>(options)) make_lists(space, options);
+  }
+
+  /// Enters the triangles into the cells, unless they are there.
+  template <class Space>
+  void make_lists(Space& space, bucket const& options) {
+    if (listed_ || grid_count_ == 0) return;
+    std::size_t const n = mesh_.size();
+    if (swaps<Space>(options)) space.for_each(n, detail::compute_bounds<S>{mesh_, bounds_.data()});
     // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
     auto* const counts = counts_.reserve(space.resource(), table_size(cells_));
-    detail::grid_insertion<S> const insertion{mesh_, grids, l.grids};
+    detail::grid_insertion<S> const insertion{mesh_, grids_.data(), grid_count_};
     space.fill(counts, 0, table_size(cells_) * sizeof *counts);
     space.for_each(n, detail::count_entries<S>{insertion, counts + 1, occupied()});
     space.exclusive_scan(counts + 1, cells_ + 1, scratch_);
     // only a width that was asked for leaves open how many cells a triangle touches: then the device must be asked
-    std::size_t const capacity =
-        options.cell_width > 0 ? space.read(counts + cells_ + 1) : cells_per_triangle<Space> * n * count;
+    std::size_t const capacity = options.cell_width > 0
+                                     ? space.read(counts + cells_ + 1)
+                                     : cells_per_triangle<Space> * n * static_cast<std::size_t>(grid_count_);
     entries_.reserve(space.resource(), capacity);
     space.for_each(n, detail::fill_entries<S>{insertion, counts + 1, entries_.data(), entries_.capacity()});
-    grid_count_ = l.grids;
-    wanted_ = wanted;
+    listed_ = true;
+  }
+
+  /// True if spheres can be sorted into the cells instead of triangles: what that takes is not part of a budget.
+  template <class Space>
+  static bool swaps(bucket const& options) {
+    return Space::sorts_spheres && options.memory_budget == 0;
   }
 
   struct layout {
@@ -498,6 +550,11 @@ class bucket::index {
   bool radius_given_ = false;
   bool has_bounds_ = false;
   bool has_summary_ = false;
+  bool listed_ = false;   ///< the triangles are in the lists of the cells
+  bool swapped_ = false;  ///< the spheres are, for this query
+  bool queried_ = false;  ///< this is not the first query since the build
+  buffer<detail::box<S>> boxes_;
+  detail::sorted_spheres<S> sorted_;
 };
 
 }  // namespace collide

@@ -11,10 +11,11 @@
 #define COLLIDE_HD_NOINLINE __host__ __device__ __noinline__
 #else
 #define COLLIDE_HD
-#define COLLIDE_HD_INLINE inline
 #if defined(__GNUC__)
+#define COLLIDE_HD_INLINE __attribute__((always_inline)) inline
 #define COLLIDE_HD_NOINLINE __attribute__((noinline))
 #else
+#define COLLIDE_HD_INLINE inline
 #define COLLIDE_HD_NOINLINE
 #endif
 #endif

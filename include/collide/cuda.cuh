@@ -236,6 +236,7 @@ class cuda_space {
 
   static constexpr bool host_memory = false;
   static constexpr bool defers = true;
+  static constexpr bool sorts_spheres = false;
 
   /// Tuning of `bucket`; see `host`.
   static constexpr int bucket_span = 2;

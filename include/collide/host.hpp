@@ -51,13 +51,17 @@ class host {
   using block = detail::serial_block<64, 256>;
 
   /// Tuning of `bucket`: how many cells wide most triangles are. Narrow cells have fewer candidates and more entries.
-  static constexpr int bucket_span = 2;
+  static constexpr int bucket_span = 1;
 
   /// True if the host reads this memory without waiting for anything.
   static constexpr bool host_memory = true;
 
   /// True if a pair that takes long to decide is better put on a list, as its neighbours would wait for it.
   static constexpr bool defers = false;
+
+  /// True if a query with buckets had better sort its spheres first: where a core with a large cache tests one at a
+  /// time.
+  static constexpr bool sorts_spheres = true;
 
   /// Runs `body` once for each of `blocks` blocks.
   template <class Body>
@@ -106,7 +110,24 @@ class host {
   std::size_t scan_bytes(std::size_t) const { return 0; }
 
   void exclusive_scan(std::uint32_t* values, std::size_t n, buffer<unsigned char>&) const {
-    std::exclusive_scan(values, values + n, values, std::uint32_t{0});
+    constexpr std::size_t most = 64, least = 1 << 14;  // parts, and values in a part
+    std::size_t const parts = std::min(threads() > 1 ? n / least + 1 : 1, most), share = (n + parts - 1) / parts;
+    if (parts == 1) {
+      std::exclusive_scan(values, values + n, values, std::uint32_t{0});
+      return;
+    }
+    std::uint32_t before[most];
+    auto const each_part = [&](auto const& f) {
+      run<1>(parts, [&](std::size_t p, std::size_t last) {
+        for (; p < last; ++p) f(p, values + std::min(p * share, n), values + std::min((p + 1) * share, n));
+      });
+    };
+    each_part([&](std::size_t p, std::uint32_t const* from, std::uint32_t const* to) {
+      before[p] = std::accumulate(from, to, std::uint32_t{0});
+    });
+    std::exclusive_scan(before, before + parts, before, std::uint32_t{0});
+    each_part(
+        [&](std::size_t p, std::uint32_t* from, std::uint32_t* to) { std::exclusive_scan(from, to, from, before[p]); });
   }
 
   /// Sorts pairs into canonical order.
@@ -117,19 +138,18 @@ class host {
 
  private:
   /// Calls work(first, last) for ranges that cover 0 .. n, from all threads; the first exception is passed on.
-  template <class Work>
+  template <std::size_t Grain = 16, class Work>
   void run(std::size_t n, Work const& work) const {
 #if defined(_OPENMP)
     if (threads() > 1 && n > 1) {
-      constexpr std::size_t grain = 16;
-      auto const chunks = static_cast<std::ptrdiff_t>((n + grain - 1) / grain);
+      auto const chunks = static_cast<std::ptrdiff_t>((n + Grain - 1) / Grain);
       std::exception_ptr failure;
 #pragma omp parallel for schedule(dynamic) num_threads(threads())
       for (std::ptrdiff_t c = 0; c < chunks; ++c) {
         detail::work_alone const together(false);
         try {
-          auto const first = static_cast<std::size_t>(c) * grain;
-          work(first, std::min(n, first + grain));
+          auto const first = static_cast<std::size_t>(c) * Grain;
+          work(first, std::min(n, first + Grain));
         } catch (...) {
 #pragma omp critical(collide_host_failure)
           if (!failure) failure = std::current_exception();

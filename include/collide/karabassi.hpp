@@ -55,6 +55,10 @@ struct in_stages<karabassi<exact>> : std::true_type {
     return detail::attempt(t, s).verdict;
   }
   template <class S>
+  static COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& s) {
+    return detail::attempt_straight(t, s);
+  }
+  template <class S>
   static COLLIDE_HD_INLINE bool finish(triangle<S> const& t, sphere<S> const& s) {
     return detail::finish(t, s).hit;
   }

@@ -132,11 +132,6 @@ COLLIDE_HD_INLINE T larger(T a, T b) {
   return a < b ? b : a;
 }
 
-/// Limited to 0 .. 1.
-template <class T>
-COLLIDE_HD_INLINE T clamped(T x) {
-  return smaller(larger(x, T(0)), T(1));
-}
 
 template <class T>
 COLLIDE_HD_INLINE vec3<T> smaller(vec3<T> const& a, vec3<T> const& b) {
@@ -188,6 +183,24 @@ struct format<double> {
   static constexpr double unit = 0x1p-53;
   static constexpr double unflushed = 0x1p-960;
 };
+
+/// `a` if `condition` holds, else `b`. On the host without a branch that a compiler could move the computation of `a` or
+/// `b` into: loops in which it does so are not vectorised.
+template <class T>
+COLLIDE_HD_INLINE T select(bool condition, T a, T b) {
+#if defined(__CUDA_ARCH__)
+  return condition ? a : b;
+#else
+  auto const mask = static_cast<bits_of<T>>(-static_cast<bits_of<T>>(condition));
+  return from_bits<T>((bits(a) & mask) | (bits(b) & ~mask));
+#endif
+}
+
+/// Limited to 0 .. 1.
+template <class T>
+COLLIDE_HD_INLINE T clamped(T x) {
+  return select(x > T(0), select(x < T(1), x, T(1)), T(0));
+}
 
 /// Neither NaN nor infinite; decided on bits, because -ffinite-math-only deletes std::isfinite.
 template <class T>

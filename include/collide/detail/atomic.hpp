@@ -66,6 +66,16 @@ COLLIDE_HD_INLINE void fetch_min(U* target, U value) {
 #endif
 }
 
+/// A load of what other threads may change meanwhile.
+template <class T>
+COLLIDE_HD_INLINE T load_relaxed(T const* from) {
+#if defined(__CUDA_ARCH__)
+  return *from;
+#else
+  return __atomic_load_n(from, __ATOMIC_RELAXED);
+#endif
+}
+
 /// A store that other threads may make too.
 template <class T>
 COLLIDE_HD_INLINE void store_relaxed(T* target, T value) {

@@ -11,7 +11,7 @@
 
 namespace collide::detail {
 
-enum class verdict { miss, hit, unsure };
+enum class verdict { miss = 0, hit = 1, unsure = 2 };
 
 /// What a certificate in `T` relies on.
 template <class T>
@@ -41,7 +41,10 @@ COLLIDE_HD_INLINE bool brought_to_size(Problem& p, T& size) {
 
 /// Whether the triangle comes within `t.radius` of the origin, where that is certain. `size` is `size_of(t)`, between
 /// the bounds. Coordinates may be off by `format<T>::unit` times the size. Bad values are never certain.
-template <class T>
+///
+/// With `Straight` there are no branches, so that a compiler makes vector code of a loop over several pairs; else it
+/// stops as soon as the verdict is known.
+template <bool Straight = false, class T>
 COLLIDE_HD_INLINE verdict certify(local_triangle<T> const& t, T size) {
   using bounds = certificate_bounds<T>;
   vec3<T> const ab = t.b - t.a, ac = t.c - t.a;
@@ -52,12 +55,13 @@ COLLIDE_HD_INLINE verdict certify(local_triangle<T> const& t, T size) {
   T const va = minor(d3, d6, d5, d4), vb = minor(d5, d2, d1, d6), vc = minor(d1, d4, d3, d2);
   T v = vb, w = vc, whole = va + vb + vc;
   // decided on bits; not finite if some coordinate is not
-  if (!finite(whole) || !valid_radius(t.radius)) return verdict::unsure;
+  bool const bad = !finite(whole) | !valid_radius(t.radius);
+  if (!Straight && bad) return verdict::unsure;
   bool face = true;
   auto const region = [&](bool inside, T v_there, T w_there, T whole_there) {
-    v = inside ? v_there : v;
-    w = inside ? w_there : w;
-    whole = inside ? whole_there : whole;
+    v = select(inside, v_there, v);
+    w = select(inside, w_there, w);
+    whole = select(inside, whole_there, whole);
     face = face & !inside;
   };
   region((va <= 0) & (d4 >= d3) & (d5 >= d6), d5 - d6, d4 - d3, (d4 - d3) + (d5 - d6));
@@ -67,29 +71,34 @@ COLLIDE_HD_INLINE verdict certify(local_triangle<T> const& t, T size) {
   region((d3 >= 0) & (d4 <= d3), T(1), T(0), T(1));
   region((d1 <= 0) & (d2 <= 0), T(0), T(0), T(1));
   // Whatever came of that, v and w become weights: not negative, their sum not above 1.
-  T const part = whole > std::numeric_limits<T>::min() ? quick_reciprocal(whole) : T(0);
+  bool const divides = whole > std::numeric_limits<T>::min();
+  T const part = select(divides, quick_reciprocal(select(divides, whole, T(1))), T(0));
   v = clamped(mul(v, part));
-  w = smaller(clamped(mul(w, part)), T(1) - v);
+  T const rest = T(1) - v, limited = clamped(mul(w, part));
+  w = select(limited < rest, limited, rest);
   auto const combined = [&](int k) { return t.a[k] + fused(v, ab[k], mul(w, ac[k])); };
   vec3<T> const q = {combined(0), combined(1), combined(2)};
   T const s = fused_dot(q, q);
   T const error = mul(bounds::error, size);
 
   T const inner = t.radius - error;
-  if (inner > 0 && s <= mul(inner, inner)) return verdict::hit;
+  bool const hit = (inner > 0) & (s <= mul(inner, inner));
+  if (!Straight && hit) return verdict::hit;
 
   T const outer = t.radius + error;
   auto const beyond = [&](vec3<T> const& g, T gg) {
     T const least = smaller(smaller(fused_dot(t.a, g), fused_dot(t.b, g)), fused_dot(t.c, g));
-    return gg >= bounds::shortest && least > 0 && mul(least, least) > mul(mul(outer, outer), gg);
+    return (gg >= bounds::shortest) & (least > 0) & (mul(least, least) > mul(mul(outer, outer), gg));
   };
-  if (beyond(q, s)) return verdict::miss;
-  if (face) {  // the plane's own normal is more certain than the way to a near foot
+  bool miss = beyond(q, s);
+  if (Straight || (face && !miss)) {  // the plane's own normal is more certain than the way to a near foot
     vec3<T> n = cross(ab, ac);
-    if (fused_dot(t.a, n) < 0) n = -n;
-    if (beyond(n, fused_dot(n, n))) return verdict::miss;
+    T const sign = select(fused_dot(t.a, n) < 0, T(-1), T(1));
+    n = scaled(n, sign);
+    miss = miss | (face & beyond(n, fused_dot(n, n)));
   }
-  return verdict::unsure;
+  // hit is 1, miss is 0
+  return static_cast<verdict>(static_cast<int>(!bad & hit) | static_cast<int>(bad | !(hit | miss)) << 1);
 }
 
 }  // namespace collide::detail

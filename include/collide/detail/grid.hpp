@@ -62,8 +62,9 @@ struct grid {
   /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.
   COLLIDE_HD_INLINE std::uint32_t coordinate(grid_level<S> const& l, S x, int axis) const {
     S const cells = mul(x - lower[axis], l.inverse_width);
-    constexpr S end = S(1 << 30);
-    return cells > 0 ? static_cast<std::uint32_t>(cells < end ? cells : end) : 0u;
+    // without branches, and by way of a signed integer, for which all processors have an instruction
+    S const limited = smaller(larger(S(0), cells), S(1 << 30));
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(limited));
   }
 
   /// The cell that holds a point inside the grid.
@@ -71,30 +72,47 @@ struct grid {
     return l.row(coordinate(l, p.y(), 1), coordinate(l, p.z(), 2)) + (coordinate(l, p.x(), 0) & l.mask[0]);
   }
 
-  /// The level that a finite triangle belongs to.
-  COLLIDE_HD_INLINE grid_level<S> const& level_of(triangle<S> const& t) const {
-    S const size = S(bin_end(size_bin(extent_of(t)))) + 2 * dilation;  // as plan_grid has it
+  /// The level that a triangle with this box belongs to.
+  COLLIDE_HD_INLINE grid_level<S> const& level_of(box<S> const& b) const {
+    if (levels == 1) return level[0];
+    S const size = S(bin_end(size_bin(b.extent()))) + 2 * dilation;  // as plan_grid has it
     int l = 0;
     while (l + 1 < levels && !(size <= level[l].largest)) ++l;
     return level[l];
   }
 
   /// The cells that a triangle's dilated box touches.
-  COLLIDE_HD_INLINE cell_range box_of(grid_level<S> const& l, triangle<S> const& t) const {
-    vec3<S> const low = smaller(smaller(t.a, t.b), t.c), high = larger(larger(t.a, t.b), t.c);
+  COLLIDE_HD_INLINE cell_range range_of(grid_level<S> const& l, box<S> const& b) const {
     cell_range r;
     for (int k = 0; k < 3; ++k) {
-      r.lower[k] = coordinate(l, low[k] - dilation, k);
-      r.upper[k] = coordinate(l, high[k] + dilation, k);
+      r.lower[k] = coordinate(l, b.lower[k] - dilation, k);
+      r.upper[k] = coordinate(l, b.upper[k] + dilation, k);
     }
     return r;
   }
 
   /// The cells that a triangle is put into: at most one whole turn of the level on each axis.
-  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, triangle<S> const& t) const {
-    cell_range r = box_of(l, t);
+  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b) const {
+    cell_range r = range_of(l, b);
     for (int k = 0; k < 3; ++k) r.upper[k] = smaller(r.upper[k], r.lower[k] + l.mask[k]);
     return r;
+  }
+
+  /// Calls f(first, n) for runs of cells, first .. first + n, which are all that a triangle with this box is put into.
+  template <class F>
+  COLLIDE_HD_INLINE void each_row(box<S> const& b, F const& f) const {
+    if (levels == 0 || b.is_empty()) return;
+    grid_level<S> const& l = level_of(b);
+    cell_range const r = cells_of(l, b);
+    std::uint32_t const from = r.lower[0] & l.mask[0], n = r.upper[0] - r.lower[0] + 1;
+    std::uint32_t const to_end = l.mask[0] + 1 - from;
+    for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
+      for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) {
+        std::uint32_t const row = l.row(y, z);
+        f(row + from, smaller(n, to_end));
+        if (n > to_end) f(row, n - to_end);
+      }
+    }
   }
 };
 
@@ -243,19 +261,11 @@ struct grid_insertion {
 
   template <class F>
   COLLIDE_HD_INLINE void each_cell(std::size_t i, F const& f) const {
-    triangle<S> const t = mesh[i];
-    if (!finite(t)) return;
+    box<S> const b = box_of(mesh[i]);
     for (int n = 0; n < grid_count; ++n) {
-      grid<S> const& g = grids[n];
-      if (g.levels == 0) continue;
-      grid_level<S> const& l = g.level_of(t);
-      cell_range const r = g.cells_of(l, t);
-      for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
-        for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) {
-          std::uint32_t const row = l.row(y, z);
-          for (std::uint32_t x = r.lower[0]; x <= r.upper[0]; ++x) f(row + (x & l.mask[0]));
-        }
-      }
+      grids[n].each_row(b, [&](std::uint32_t first, std::uint32_t count) {
+        for (std::uint32_t k = 0; k < count; ++k) f(first + k);
+      });
     }
   }
 };

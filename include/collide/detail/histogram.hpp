@@ -48,36 +48,46 @@ struct size_histogram {
   COLLIDE_HD bool empty() const { return lowest == ~std::uint32_t{0}; }
 };
 
-/// Counts in scratch memory first, so that a bin in memory is touched once per block; blocks of one lane count in
-/// memory.
+/// Counts in scratch memory first, so that a bin in memory is touched once per block. A block of one lane has so few
+/// sizes, and most of them alike, that it counts the last ones only.
 template <class Block>
 struct block_histogram {
-  std::uint32_t counts[Block::lanes > 1 ? size_bins : 1];
+  static constexpr int kept = Block::lanes > 1 ? size_bins : 8;  ///< a power of two
+
+  std::uint32_t counts[kept];
+  std::uint32_t bins[Block::lanes > 1 ? 1 : kept];  ///< of one lane: whose counts they are
 
   COLLIDE_HD_INLINE void clear(Block& block) {
-    if constexpr (Block::lanes > 1) {
-      block.each([&](int lane) {
-        for (int b = lane; b < size_bins; b += Block::lanes) counts[b] = 0;
-      });
-    }
+    block.each([&](int lane) {
+      for (int b = lane; b < kept; b += Block::lanes) counts[b] = 0;
+    });
   }
 
   COLLIDE_HD_INLINE void add(Block& block, size_histogram* to, std::uint32_t bin) {
     if constexpr (Block::lanes > 1) {
       block.add(counts[bin], 1);
     } else {
-      to->add(bin, 1);
+      std::uint32_t const place = bin % kept;
+      if (counts[place] != 0 && bins[place] != bin) {
+        to->add(bins[place], counts[place]);
+        counts[place] = 0;
+      }
+      bins[place] = bin;
+      ++counts[place];
     }
   }
 
   COLLIDE_HD_INLINE void flush(Block& block, size_histogram* to) {
-    if constexpr (Block::lanes > 1) {
-      block.each([&](int lane) {
-        for (int b = lane; b < size_bins; b += Block::lanes) {
-          if (counts[b] != 0) to->add(static_cast<std::uint32_t>(b), counts[b]);
+    block.each([&](int lane) {
+      for (int b = lane; b < kept; b += Block::lanes) {
+        if (counts[b] == 0) continue;
+        if constexpr (Block::lanes > 1) {
+          to->add(static_cast<std::uint32_t>(b), counts[b]);
+        } else {
+          to->add(bins[b], counts[b]);
         }
-      });
-    }
+      }
+    });
   }
 };
 

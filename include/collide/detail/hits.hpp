@@ -113,6 +113,8 @@ struct hit_buffer {
 
 template <class S, class NarrowPhase, class Sink>
 struct tester {
+  using narrow_phase = NarrowPhase;
+
   mesh_view<S> mesh;
   spheres_of<NarrowPhase, S> spheres;
   Sink sink;
@@ -154,10 +156,9 @@ struct tester {
     store_all(block, b, block.shared(b.hit_count));
   }
 
- private:
-  template <class Block, class Ball>
-  COLLIDE_HD_INLINE void decide(Block& block, hit_buffer<Block>& b, pair p, Ball const& s) const {
-    if (!sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) return;
+  /// Takes a hit. Called by any lane; where lanes work together, once for each candidate at most.
+  template <class Block>
+  COLLIDE_HD_INLINE void keep(Block& block, hit_buffer<Block>& b, pair p) const {
     if constexpr (hit_buffer<Block>::together) {
       b.hits[block.add(b.hit_count, 1)] = p;
     } else if (b.hit_count < hit_buffer<Block>::capacity) {
@@ -165,6 +166,12 @@ struct tester {
     } else {
       store(sink.reserve(1), p);
     }
+  }
+
+ private:
+  template <class Block, class Ball>
+  COLLIDE_HD_INLINE void decide(Block& block, hit_buffer<Block>& b, pair p, Ball const& s) const {
+    if (sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) keep(block, b, p);
   }
 
   /// Decides the `n` candidates that are listed.

@@ -26,6 +26,14 @@ struct box {
     }
   }
 
+  /// True of the box of nothing, and of that of a triangle that is not finite.
+  COLLIDE_HD_INLINE bool is_empty() const { return !(lower[0] <= upper[0]); }
+
+  /// The largest side; +infinity if it overflows.
+  COLLIDE_HD_INLINE S extent() const {
+    return larger(larger(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+  }
+
   struct unite {
     COLLIDE_HD box operator()(box const& a, box const& b) const {
       box c;
@@ -38,11 +46,13 @@ struct box {
   };
 };
 
-/// The largest side of a triangle's box; +infinity if it overflows.
+/// The box of a triangle; empty if the triangle is not finite.
 template <class S>
-COLLIDE_HD_INLINE S extent_of(triangle<S> const& t) {
+COLLIDE_HD_INLINE box<S> box_of(triangle<S> const& t) {
+  constexpr S far = std::numeric_limits<S>::max();
+  if (!finite(t)) return {{far, far, far}, {-far, -far, -far}};
   vec3<S> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
-  return largest<S>(upper - lower);
+  return {{lower.x(), lower.y(), lower.z()}, {upper.x(), upper.y(), upper.z()}};
 }
 
 /// What a mesh looks like, over its finite triangles. `lower` and `upper` are kept such that memory of all ones is the
@@ -72,6 +82,7 @@ struct summarise_mesh {
   mesh_view<S> mesh;
   mesh_summary<S>* summary;
   bounding_sphere<S>* bounds;  ///< null if they are not wanted
+  box<S>* boxes;               ///< the same
 
   template <class Block>
   struct scratch {
@@ -81,30 +92,30 @@ struct summarise_mesh {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    typename Block::template per_lane<box<S>> boxes;
+    typename Block::template per_lane<box<S>> all;
     s.histogram.clear(block);
     std::size_t const first = block.index() * Block::lanes * Block::items;
     block.each([&](int lane) {
-      boxes[lane] = box<S>::empty();
+      all[lane] = box<S>::empty();
       for (int k = 0; k < Block::items; ++k) {
         std::size_t const i = first + static_cast<std::size_t>(k) * Block::lanes + static_cast<std::size_t>(lane);
         if (i >= mesh.size()) break;
         triangle<S> const t = mesh[i];
         if (bounds != nullptr) bounds[i] = bounds_of(t);
-        if (!finite(t)) continue;
-        boxes[lane].extend(t.a);
-        boxes[lane].extend(t.b);
-        boxes[lane].extend(t.c);
-        s.histogram.add(block, &summary->extents, size_bin(extent_of(t)));
+        box<S> const around = box_of(t);
+        if (boxes != nullptr) boxes[i] = around;
+        if (around.is_empty()) continue;
+        all[lane] = typename box<S>::unite{}(all[lane], around);
+        s.histogram.add(block, &summary->extents, size_bin(around.extent()));
       }
     });
     s.histogram.flush(block, &summary->extents);
-    box<S> const all = block.reduce(s.reduction, boxes, typename box<S>::unite{});
+    box<S> const extent = block.reduce(s.reduction, all, typename box<S>::unite{});
     block.each([&](int lane) {
       if (lane != 0) return;
       for (int k = 0; k < 3; ++k) {
-        fetch_min(&summary->lower[k], ordered(all.lower[k]));
-        fetch_min(&summary->upper[k], static_cast<bits_of<S>>(~ordered(all.upper[k])));
+        fetch_min(&summary->lower[k], ordered(extent.lower[k]));
+        fetch_min(&summary->upper[k], static_cast<bits_of<S>>(~ordered(extent.upper[k])));
       }
     });
   }

@@ -69,6 +69,15 @@ struct sphere_batch {
       }
     }
 #endif
+    if (spheres.packed()) {  // a stride that the compiler knows
+      S const* const from = spheres.x(first);
+      for (int k = 0; k < Items; ++k) {
+        x[k] = from[3 * k];
+        y[k] = from[3 * k + 1];
+        z[k] = from[3 * k + 2];
+      }
+      return;
+    }
     for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
       x[k] = *spheres.x(i);

@@ -77,7 +77,7 @@ class way {
 
   /// True if this is the first place on the way that shares a cell with the triangle.
   COLLIDE_HD bool meets_first(place const& p, triangle<S> const& t) const {
-    cell_range const r = grid_->box_of(*level_, t);
+    cell_range const r = grid_->range_of(*level_, box_of(t));
     bool here = true, before = !p.is_first;
     for (int k = 0; k < 3; ++k) {
       here = here && p.cell[k] == larger(r.lower[k], p.piece.lower[k]) && p.cell[k] <= r.upper[k];

@@ -1,0 +1,79 @@
+/// \file
+/// Candidates that are decided several at a time, in the lanes of the processor's vector unit.
+#pragma once
+
+#include <collide/detail/decide.hpp>
+#include <collide/detail/hits.hpp>
+#include <collide/detail/vectorised.hpp>
+
+namespace collide::detail {
+
+/// Pairs that wait for their verdict, number by number in arrays of their own.
+template <class S>
+struct candidate_batch {
+  static constexpr int room = 64;
+
+  int size;
+  pair ids[room];
+  S corners[9][room];
+  S centre[3][room];
+  S radius[room];
+  std::int32_t verdicts[room];
+  std::uint8_t open[room];
+
+  COLLIDE_HD_INLINE void add(pair p, triangle<S> const& t, sphere<S> const& s) {
+    int const k = size++;
+    ids[k] = p;
+    for (int c = 0; c < 3; ++c) {
+      corners[c][k] = t.a[c];
+      corners[3 + c][k] = t.b[c];
+      corners[6 + c][k] = t.c[c];
+      centre[c][k] = s.centre[c];
+    }
+    radius[k] = s.radius;
+  }
+
+  COLLIDE_HD_INLINE triangle<S> triangle_of(int k) const {
+    return {{corners[0][k], corners[1][k], corners[2][k]},
+            {corners[3][k], corners[4][k], corners[5][k]},
+            {corners[6][k], corners[7][k], corners[8][k]}};
+  }
+
+  COLLIDE_HD_INLINE sphere<S> sphere_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius[k]}; }
+
+  /// Takes the hits to the tester and empties the batch.
+  template <class Tester, class Block>
+  COLLIDE_HD_NOINLINE void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
+    using narrow_phase = typename Tester::narrow_phase;
+    if constexpr (in_stages<narrow_phase>::value) {
+      vectorised([this] {
+        for (int k = 0; k < size; ++k) {
+          verdicts[k] =
+              static_cast<std::int32_t>(in_stages<narrow_phase>::attempt_straight(triangle_of(k), sphere_of(k)));
+        }
+      });
+      int n = 0;  // no branch per pair: it would often be mispredicted
+      for (int k = 0; k < size; ++k) {
+        open[n] = static_cast<std::uint8_t>(k);
+        n += verdicts[k] != static_cast<std::int32_t>(verdict::miss);
+      }
+      for (int i = 0; i < n; ++i) {
+        int const k = open[i];
+        if (verdicts[k] == static_cast<std::int32_t>(verdict::hit)) {
+          tests.keep(block, hits, ids[k]);
+        } else {
+          tests.test(block, hits, ids[k], sphere_of(k));
+        }
+        tests.make_room(block, hits);
+      }
+    } else {
+      for (int k = 0; k < size; ++k) {
+        tests.test(block, hits, ids[k], sphere_of(k));
+        tests.make_room(block, hits);
+      }
+    }
+    size = 0;
+  }
+};
+
+}  // namespace collide::detail
