@@ -31,6 +31,28 @@ struct bucket_query {
   static constexpr bool still = at_rest<NarrowPhase, S>;
   using ball_type = std::conditional_t<still, sphere<S>, moving_sphere<S>>;
 
+  /// A sphere in scratch memory, which holds plain values only.
+  struct alignas(still ? 4 * sizeof(S) : sizeof(S)) plain_ball {
+    S numbers[still ? 4 : 7];
+
+    COLLIDE_HD_INLINE void set(ball_type const& b) {
+      for (int k = 0; k < 3; ++k) numbers[k] = b.centre[k];
+      numbers[3] = b.radius;
+      if constexpr (!still) {
+        for (int k = 0; k < 3; ++k) numbers[4 + k] = b.displacement[k];
+      }
+    }
+
+    COLLIDE_HD_INLINE ball_type get() const {
+      sphere<S> const b{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+      if constexpr (still) {
+        return b;
+      } else {
+        return {b, {numbers[4], numbers[5], numbers[6]}};
+      }
+    }
+  };
+
   tester<S, NarrowPhase, Sink> tests;
   bounding_sphere<S> const* bounds;  ///< null if there was no room for them
   grid<S> const* grids;              ///< by falling reach
@@ -62,7 +84,7 @@ struct bucket_query {
     std::uint32_t placed_count;
     std::uint32_t unplaced;                         ///< how many spheres no grid serves; they are listed all the same
     id spheres[Block::lanes];                       ///< spheres with candidates
-    ball_type balls[Block::lanes];                  ///< the same
+    plain_ball balls[Block::lanes];                 ///< the same
     std::uint32_t first[Block::lanes];              ///< their first entry
     std::uint32_t counts[Block::lanes];             ///< how many they have
     std::uint32_t steps[still ? 1 : Block::lanes];  ///< and, of a sphere that moves, the step of its way
@@ -184,7 +206,7 @@ struct bucket_query {
             block.balanced(
                 s.balance, s.counts, listed.spheres,
                 [&](std::uint32_t i) {
-                  ball_type const ball = s.balls[i];
+                  ball_type const ball = s.balls[i].get();
                   if constexpr (still) {
                     return candidates{s.spheres[i], ball, s.first[i]};
                   } else {
@@ -273,7 +295,7 @@ struct bucket_query {
     if (left == 0) return false;
     std::uint32_t const place = block.add(s.listed.spheres, 1);
     s.spheres[place] = number;
-    s.balls[place] = ball;
+    s.balls[place].set(ball);
     s.first[place] = begin + at.skip;
     s.counts[place] = listed;
     if constexpr (!still) s.steps[place] = at.step;
