@@ -57,8 +57,8 @@ struct bucket_query {
   bounding_sphere<S> const* bounds;  ///< null if there was no room for them
   grid<S> const* grids;              ///< by falling reach
   int grid_count;                    ///< 0: every sphere is tested with every triangle
-  std::uint32_t const* occupied;     ///< a bit per cell: most are empty, and all bits fit into a near cache
-  std::uint32_t const* ends;         ///< of the entries of cell c: ends[c] .. ends[c + 1]
+  std::uint8_t const* occupied;      ///< a bit per cell: most are empty, and all bits fit into a near cache
+  cell_list const* lists;            ///< the entries of each cell
   std::uint32_t const* total;        ///< number of entries
   id const* entries;
   std::size_t capacity;  ///< of entries
@@ -269,10 +269,11 @@ struct bucket_query {
   COLLIDE_HD_INLINE void list_next(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
     auto const ball = tests.spheres[number];
     if (here.of == nullptr) {
-      list(block, s, number, ball, 0, static_cast<std::uint32_t>(tests.mesh.size()), at);
+      auto const all = static_cast<std::uint32_t>(tests.mesh.size());
+      list(block, s, number, ball, {all, all}, at);
     } else if constexpr (still) {
       std::uint32_t const cell = here.of->cell_of(*here.level, ball.centre);
-      if (!is_empty(cell)) list(block, s, number, ball, ends[cell], ends[cell + 1], at);
+      if (!is_empty(cell)) list(block, s, number, ball, lists[cell], at);
     } else {
       way<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {
@@ -280,23 +281,23 @@ struct bucket_query {
         if (!place.is_cell) continue;
         std::uint32_t const cell =
             here.level->row(place.cell[1], place.cell[2]) + (place.cell[0] & here.level->mask[0]);
-        if (!is_empty(cell) && list(block, s, number, ball, ends[cell], ends[cell + 1], at)) return;
+        if (!is_empty(cell) && list(block, s, number, ball, lists[cell], at)) return;
       }
     }
   }
 
-  COLLIDE_HD_INLINE bool is_empty(std::uint32_t cell) const { return (occupied[cell / 32] >> cell % 32 & 1) == 0; }
+  COLLIDE_HD_INLINE bool is_empty(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) == 0; }
 
-  /// Lists a sphere with the entries begin + skip .. end, if there are any.
+  /// Lists a sphere with the entries of a cell from at.skip on, if there are any.
   template <class Block>
-  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, ball_type const& ball, std::uint32_t begin,
-                              std::uint32_t end, cursor& at) const {
-    std::uint32_t const left = end - begin - at.skip, listed = smaller(left, longest<Block>);
+  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, ball_type const& ball, cell_list const& cell,
+                              cursor& at) const {
+    std::uint32_t const left = cell.count - at.skip, listed = smaller(left, longest<Block>);
     if (left == 0) return false;
     std::uint32_t const place = block.add(s.listed.spheres, 1);
     s.spheres[place] = number;
     s.balls[place].set(ball);
-    s.first[place] = begin + at.skip;
+    s.first[place] = cell.end - left;
     s.counts[place] = listed;
     if constexpr (!still) s.steps[place] = at.step;
     at.skip += listed;
@@ -396,8 +397,8 @@ class bucket::index {
                                                           grids_.data(),
                                                           grid_count_,
                                                           occupied(),
-                                                          counts_.data(),
-                                                          counts_.data() + cells_ + 1,
+                                                          lists_.data(),
+                                                          lists_total(),
                                                           entries_.data(),
                                                           entries_.capacity()};
     space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
@@ -468,12 +469,13 @@ class bucket::index {
     auto const count = static_cast<std::size_t>(l.grids);
     if (options.memory_budget != 0 && cells_ != count << l.table_bits) release_grids();
     cells_ = count << l.table_bits;
+    table_bits_ = l.table_bits;
 
     auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
     detail::plan_grid<S> plan{summary_.data(),    grids,         {},          static_cast<S>(options.cell_width),
                               Space::bucket_span, l.entry_limit, l.table_bits};
     std::copy(reaches, reaches + count, plan.reaches);
-    space.for_each(count, plan);
+    space.launch(count, plan);
 
     if constexpr (Space::sorts_spheres) {
       if (swaps<Space>(options)) sorted_.mark(space, boxes_.data(), n, grids, l.grids, cells_);
@@ -490,18 +492,19 @@ class bucket::index {
     if (listed_ || grid_count_ == 0) return;
     std::size_t const n = mesh_.size();
     if (swaps<Space>(options)) space.for_each(n, detail::compute_bounds<S>{mesh_, bounds_.data()});
-    // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
-    auto* const counts = counts_.reserve(space.resource(), table_size(cells_));
+    auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
     detail::grid_insertion<S> const insertion{mesh_, grids_.data(), grid_count_};
-    space.fill(counts, 0, table_size(cells_) * sizeof *counts);
-    space.for_each(n, detail::count_entries<S>{insertion, counts + 1, occupied()});
-    space.exclusive_scan(counts + 1, cells_ + 1, scratch_);
-    // only a width that was asked for leaves open how many cells a triangle touches: then the device must be asked
+    space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
+    space.for_each(n, detail::count_entries<S>{insertion, lists});
+    detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
+                                                 lists,         occupied(),  &lists[cells_].count};
+    space.launch(detail::blocks_for<Space>(cells_, allocation), allocation);
+    // only a width that was asked for leaves open how many entries there are: then the device must be asked
     std::size_t const capacity = options.cell_width > 0
-                                     ? space.read(counts + cells_ + 1)
+                                     ? space.read(lists_total())
                                      : cells_per_triangle<Space> * n * static_cast<std::size_t>(grid_count_);
     entries_.reserve(space.resource(), capacity);
-    space.for_each(n, detail::fill_entries<S>{insertion, counts + 1, entries_.data(), entries_.capacity()});
+    space.for_each(n, detail::fill_entries<S>{insertion, lists, entries_.data(), entries_.capacity()});
     listed_ = true;
   }
 
@@ -519,18 +522,18 @@ class bucket::index {
 
   /// How many grids with how many cells the budget allows; the more grids the better, then the more cells.
   template <class Space>
-  layout plan_memory(Space& space, bucket const& options, int wanted) const {
+  layout plan_memory(Space const&, bucket const& options, int wanted) const {
     constexpr std::size_t id_limit = std::numeric_limits<std::uint32_t>::max();
     std::size_t const n = mesh_.size();
     std::uint32_t most_bits = 12;
-    while (most_bits < 28 && (std::size_t{1} << most_bits) < 8 * n) ++most_bits;
+    while (most_bits < 28 && (std::size_t{1} << most_bits) < 4 * n) ++most_bits;
     for (int g = wanted; g > 0; --g) {
       auto const grids = static_cast<std::size_t>(g);
       if (cells_per_triangle<Space> * n * grids > id_limit) continue;
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
         std::size_t const cells = grids << bits;
-        std::size_t const base = fixed_bytes + (has_bounds_ ? bounds_bytes() : 0) +
-                                 table_size(cells) * sizeof(std::uint32_t) + space.scan_bytes(cells + 1);
+        std::size_t const base =
+            fixed_bytes + (has_bounds_ ? bounds_bytes() : 0) + table_size(cells) * sizeof(detail::cell_list);
         std::size_t const least = base + cells_per_triangle<Space> * n * grids * sizeof(id);
         std::size_t most_entries = std::min(512 * n + (std::size_t{1} << 20), id_limit / grids);
         if (options.memory_budget != 0) {
@@ -543,18 +546,18 @@ class bucket::index {
     return {};
   }
 
-  /// Size of `counts_`: a number per cell, one more at each end, and a bit per cell.
-  static std::size_t table_size(std::size_t cells) { return cells + 2 + cells / 32; }
+  /// Size of `lists_`: a list per cell, the number of all entries, and a bit per cell.
+  static std::size_t table_size(std::size_t cells) { return cells + 1 + cells / 64; }
 
-  std::uint32_t* occupied() const { return counts_.data() + cells_ + 2; }
+  std::uint32_t const* lists_total() const { return &lists_.data()[cells_].count; }
+  std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
 
   std::size_t bounds_bytes() const { return mesh_.size() * sizeof(detail::bounding_sphere<S>); }
 
   /// What is held for another layout would come on top of what the budget was planned for.
   void release_grids() {
-    counts_.release();
+    lists_.release();
     entries_.release();
-    scratch_.release();
   }
 
   mesh_view<S> mesh_;
@@ -562,10 +565,10 @@ class bucket::index {
   buffer<detail::mesh_summary<S>> summary_;
   buffer<detail::size_histogram> radii_;
   buffer<detail::grid<S>> grids_;
-  buffer<std::uint32_t> counts_;
+  buffer<detail::cell_list> lists_;
   buffer<id> entries_;
-  buffer<unsigned char> scratch_;
   std::size_t cells_ = 0;
+  std::uint32_t table_bits_ = 0;
   int grid_count_ = 0;
   int wanted_ = 0;  ///< how many grids the spheres asked for: the budget may have allowed fewer
   S reaches_[detail::max_grids] = {};

@@ -66,6 +66,18 @@ COLLIDE_HD_INLINE void fetch_min(U* target, U value) {
 #endif
 }
 
+/// Makes `*target` the larger of itself and `value`.
+template <class U>
+COLLIDE_HD_INLINE void fetch_max(U* target, U value) {
+#if defined(__CUDA_ARCH__)
+  atomicMax(as_cuda(target), value);
+#else
+  U seen = __atomic_load_n(target, __ATOMIC_RELAXED);
+  while (value > seen && !__atomic_compare_exchange_n(target, &seen, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+#endif
+}
+
 /// A load of what other threads may change meanwhile.
 template <class T>
 COLLIDE_HD_INLINE T load_relaxed(T const* from) {

@@ -8,6 +8,7 @@
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
 ///   - `block.balanced(...)` spreads work evenly over the lanes: f(item(i), k) for all k < counts[i];
+///   - `block.scan(...)` makes of at most as many values as lanes the sums of those before each;
 ///   - `block.reduce(...)` combines a value per lane.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
 /// Here are the two blocks of plain C++: `serial_block`, a single lane that does everything itself (the host's block,
@@ -65,6 +66,7 @@ class serial_block {
   };
   template <class T, int N>
   struct staging {};
+  struct scan_scratch {};
   struct balance_scratch {};
   template <class T>
   struct reduce_scratch {};
@@ -92,6 +94,12 @@ class serial_block {
   template <class T, int N>
   COLLIDE_HD_INLINE T const* stage(staging<T, N>&, T const* from, int) {
     return from;
+  }
+
+  COLLIDE_HD_INLINE std::uint32_t scan(scan_scratch&, std::uint32_t* values, std::uint32_t) {
+    std::uint32_t const sum = values[0];
+    values[0] = 0;
+    return sum;
   }
 
   template <class Item, class F, class Round>

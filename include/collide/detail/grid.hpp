@@ -37,14 +37,14 @@ struct cell_range {
 template <class S>
 struct grid_level {
   S inverse_width;
-  S largest;               ///< the largest dilated extent of a triangle of this level
-  std::uint32_t mask[3];   ///< number of cells - 1 per axis; cell coordinates wrap
-  std::uint32_t shift[2];  ///< position of the bits of y and z in the cell number; those of x come first
-  std::uint32_t first;     ///< number of the first cell
+  S largest;                ///< the largest dilated extent of a triangle of this level
+  std::uint32_t mask[3];    ///< where cell coordinates wrap: a power of two - 1
+  std::uint32_t stride[2];  ///< how far the cells of neighbours in y and in z are apart
+  std::uint32_t first;      ///< number of the first cell
 
   /// Number of the first cell of a row along x.
   COLLIDE_HD_INLINE std::uint32_t row(std::uint32_t y, std::uint32_t z) const {
-    return first + (((y & mask[1]) << shift[0]) | ((z & mask[2]) << shift[1]));
+    return first + (y & mask[1]) * stride[0] + (z & mask[2]) * stride[1];
   }
 };
 
@@ -56,7 +56,8 @@ struct grid {
   S width;     ///< of the cells of the finest level
   S lower[3];  ///< of the dilated mesh
   S upper[3];
-  int levels;  ///< 0 if no triangle is in the grid
+  int levels;           ///< 0 if no triangle is in the grid
+  std::uint32_t cells;  ///< how many there are, of all levels
   grid_level<S> level[max_levels];
 
   /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.
@@ -116,10 +117,12 @@ struct grid {
   }
 };
 
-/// Kernel body of `for_each` over grids: chooses widths, levels and table sizes of each grid from the summary of the
-/// mesh. A single thread's work of some microseconds, so that a build on the device need not wait for the host.
+/// Kernel body of a block per grid: chooses widths, levels and table sizes from the summary of the mesh. A single
+/// lane's work of some microseconds, so that a build on the device need not wait for the host.
 template <class S>
 struct plan_grid {
+  static constexpr int items = 1;
+
   mesh_summary<S> const* summary;
   grid<S>* grids;
   S reaches[max_grids];
@@ -128,12 +131,30 @@ struct plan_grid {
   float entry_limit;         ///< how many entries a grid may have, if the width is asked for
   std::uint32_t table_bits;  ///< log2 of the number of cells per grid
 
-  COLLIDE_HD void operator()(std::size_t i) const {
+  template <class Block>
+  struct scratch {
+    size_histogram sizes;
+  };
+
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    if constexpr (Block::lanes > 1) {  // a lane alone would wait for every bin
+      block.each([&](int lane) { s.sizes.copy(summary->extents, lane, Block::lanes); });
+      block.each([&](int lane) {
+        if (lane == 0) plan(block.index(), s.sizes);
+      });
+    } else {
+      plan(block.index(), summary->extents);
+    }
+  }
+
+ private:
+  COLLIDE_HD void plan(std::size_t i, size_histogram const& sizes) const {
     grid<S>& g = grids[i];
     g.reach = reaches[i];
     g.levels = 0;
+    g.cells = 0;
     g.width = 0;
-    size_histogram const& sizes = summary->extents;
     if (sizes.empty()) {  // no finite triangle: a box that contains nothing
       for (int k = 0; k < 3; ++k) {
         g.lower[k] = 1;
@@ -162,11 +183,11 @@ struct plan_grid {
     }
     // from this width on, cell coordinates are exact enough for `margin`
     S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
-    S width = larger(narrowest,
-                     cell_width > 0 ? cell_width : smaller(tallest, 2 * margin * size(g, median())) / S(usual_span));
-    S const span = cell_width > 0 ? span_for(g, width) : S(usual_span);
+    S width = larger(
+        narrowest, cell_width > 0 ? cell_width : smaller(tallest, 2 * margin * size(g, median(sizes))) / S(usual_span));
+    S const span = cell_width > 0 ? span_for(g, width, sizes) : S(usual_span);
     // half of the cells for the finest level, the rest for the others together; all if there are no others
-    std::uint32_t next_cell = static_cast<std::uint32_t>(i) << table_bits;
+    std::uint32_t const first_cell = static_cast<std::uint32_t>(i) << table_bits;
     int bin = sizes.first();
     while (bin <= top) {
       if (g.levels + 1 == max_levels) width = larger(width, tallest / span);
@@ -178,14 +199,14 @@ struct plan_grid {
       if (g.levels == 1) g.width = width;
       l.inverse_width = div(S(1), width);
       l.largest = last ? std::numeric_limits<S>::infinity() : size(g, next - 1);
-      l.first = next_cell;
+      l.first = first_cell + g.cells;
       std::uint32_t bits = table_bits;
       if (g.levels > 1) {
         bits = table_bits - 5;
       } else if (!last) {
         bits = table_bits - 1;
       }
-      next_cell += dimension(g, l, bits);
+      g.cells += dimension(g, l, std::uint32_t{1} << bits);
       width *= 2;
       bin = next;
     }
@@ -204,8 +225,7 @@ struct plan_grid {
   }
 
   /// The bin that half of the triangles do not exceed.
-  COLLIDE_HD int median() const {
-    size_histogram const& sizes = summary->extents;
+  static COLLIDE_HD int median(size_histogram const& sizes) {
     std::uint64_t total = 0;
     for (int b = sizes.first(); b <= sizes.last(); ++b) total += sizes.counts[b];
     int b = sizes.first();
@@ -216,8 +236,7 @@ struct plan_grid {
 
   /// How many cells of the width asked for a triangle may span before it goes to a wider level: as many as the limit on
   /// entries allows, at most 64.
-  COLLIDE_HD S span_for(grid<S> const& g, S width) const {
-    size_histogram const& sizes = summary->extents;
+  COLLIDE_HD S span_for(grid<S> const& g, S width, size_histogram const& sizes) const {
     for (S span = 64; span > 1; span /= 2) {
       float entries = 0;
       for (int b = sizes.first(); b <= sizes.last(); ++b) {
@@ -229,26 +248,26 @@ struct plan_grid {
     return 1;
   }
 
-  /// Gives each axis of the level as many cells as the grid has, rounded up to a power of two, and halves the longest
-  /// axes until 2^bits cells suffice. Returns their number.
-  static COLLIDE_HD std::uint32_t dimension(grid<S> const& g, grid_level<S>& l, std::uint32_t bits) {
-    std::uint32_t axis_bits[3], sum = 0;
+  /// Gives each axis of the level as many cells as the grid has, and if that is more than `most` in all, cuts the
+  /// longest axes down to powers of two, where coordinates wrap. Returns the number of cells.
+  static COLLIDE_HD std::uint32_t dimension(grid<S> const& g, grid_level<S>& l, std::uint64_t most) {
+    std::uint64_t cells[3];
     for (int k = 0; k < 3; ++k) {
-      std::uint32_t const cells = g.coordinate(l, g.upper[k], k);
-      axis_bits[k] = 0;
-      while (axis_bits[k] < 30 && (1u << axis_bits[k]) <= cells) ++axis_bits[k];
-      sum += axis_bits[k];
+      cells[k] = std::uint64_t{g.coordinate(l, g.upper[k], k)} + 1;
+      l.mask[k] = (1u << 31) - 1;
     }
-    while (sum > bits) {
+    // no product overflows: there are at most 2^30 + 1 cells on an axis
+    while (cells[0] * cells[1] > most || cells[0] * cells[1] * cells[2] > most) {
       int longest = 0;
-      for (int k = 1; k < 3; ++k) longest = axis_bits[k] > axis_bits[longest] ? k : longest;
-      --axis_bits[longest];
-      --sum;
+      for (int k = 1; k < 3; ++k) longest = cells[k] > cells[longest] ? k : longest;
+      std::uint64_t power = 1;
+      while (2 * power < cells[longest]) power *= 2;
+      cells[longest] = power;
+      l.mask[longest] = static_cast<std::uint32_t>(power - 1);
     }
-    for (int k = 0; k < 3; ++k) l.mask[k] = (1u << axis_bits[k]) - 1;
-    l.shift[0] = axis_bits[0];
-    l.shift[1] = axis_bits[0] + axis_bits[1];
-    return 1u << sum;
+    l.stride[0] = static_cast<std::uint32_t>(cells[0]);
+    l.stride[1] = static_cast<std::uint32_t>(cells[0] * cells[1]);
+    return static_cast<std::uint32_t>(cells[0] * cells[1] * cells[2]);
   }
 };
 
@@ -270,31 +289,87 @@ struct grid_insertion {
   }
 };
 
-/// Kernel body of `for_each` over triangles: counts the entries of each cell, and sets a bit for every cell that has
-/// some.
+/// The triangles of a cell.
+struct alignas(8) cell_list {
+  std::uint32_t count;
+  std::uint32_t end;  ///< of its entries; while they are written, of those that are
+};
+
+/// Kernel body of `for_each` over triangles: counts the entries of each cell.
 template <class S>
 struct count_entries {
   grid_insertion<S> insertion;
-  std::uint32_t* counts;
-  std::uint32_t* occupied;
+  cell_list* cells;
   COLLIDE_HD void operator()(std::size_t i) const {
-    insertion.each_cell(i, [&](std::uint32_t cell) {
-      if (fetch_add(counts + cell, 1u) == 0) fetch_or(occupied + cell / 32, 1u << cell % 32);
+    insertion.each_cell(i, [&](std::uint32_t cell) { fetch_add(&cells[cell].count, 1u); });
+  }
+};
+
+/// Kernel body: finds a place for the entries of each cell, and sets a bit for every cell that has some. Which cell's
+/// come first is open; those of cells next to each other are next to each other, but for the ends of blocks.
+template <class S>
+struct allocate_entries {
+  static constexpr int items = 8;  ///< cells of a lane: their bits are a byte
+
+  grid<S> const* grids;
+  std::uint32_t table_bits;
+  std::size_t cell_count;  ///< of all grids
+  cell_list* cells;
+  std::uint8_t* occupied;
+  std::uint32_t* total;  ///< 0 at first
+
+  template <class Block>
+  struct scratch {
+    std::uint32_t sums[Block::lanes];
+    std::uint32_t begin;
+    typename Block::scan_scratch scan;
+  };
+
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    static_assert(Block::items % items == 0, "collide: bits of cells are written byte by byte");
+    constexpr auto n = static_cast<std::size_t>(Block::items);
+    std::size_t const first = block.index() * Block::lanes * n;
+    std::size_t const table = std::size_t{1} << table_bits;
+    // a part of the table that the grid does not need
+    if (table >= Block::lanes * n && first % table >= grids[first / table].cells) return;
+    block.each([&](int lane) {
+      std::uint32_t sum = 0;
+      std::size_t const first_own = first + static_cast<std::size_t>(lane) * n;
+      for (std::size_t c = first_own; c < first_own + n && c < cell_count; ++c) sum += cells[c].count;
+      s.sums[lane] = sum;
+    });
+    std::uint32_t const sum = block.scan(s.scan, s.sums, Block::lanes);
+    block.each([&](int lane) {
+      if (lane == 0) s.begin = fetch_add(total, sum);
+    });
+    block.each([&](int lane) {
+      std::size_t const first_own = first + static_cast<std::size_t>(lane) * n;
+      std::uint32_t begin = s.begin + s.sums[lane];
+      for (std::size_t c = first_own; c < first_own + n && c < cell_count; c += items) {
+        std::uint32_t bits = 0;
+        for (std::uint32_t k = 0; k < items; ++k) {
+          cell_list& list = cells[c + k];
+          list.end = begin;
+          begin += list.count;
+          bits |= (list.count != 0 ? 1u : 0u) << k;
+        }
+        occupied[c / items] = static_cast<std::uint8_t>(bits);
+      }
     });
   }
 };
 
-/// Kernel body of `for_each` over triangles: writes the entries. `begins` holds where each cell's begin, and after all
-/// triangles where they end.
+/// Kernel body of `for_each` over triangles: writes the entries.
 template <class S>
 struct fill_entries {
   grid_insertion<S> insertion;
-  std::uint32_t* begins;
+  cell_list* cells;
   id* entries;
   std::size_t capacity;
   COLLIDE_HD void operator()(std::size_t i) const {
     insertion.each_cell(i, [&](std::uint32_t cell) {
-      std::uint32_t const slot = fetch_add(begins + cell, 1u);
+      std::uint32_t const slot = fetch_add(&cells[cell].end, 1u);
       if (slot < capacity) entries[slot] = static_cast<id>(i);
     });
   }

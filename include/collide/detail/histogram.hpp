@@ -24,28 +24,36 @@ COLLIDE_HD_INLINE float bin_end(std::uint32_t bin) {
   return from_bits<float>(end < format<float>::exponent_mask ? end : format<float>::exponent_mask);
 }
 
-/// A histogram in memory. `lowest` and `highest` bound the bins in use; memory of all ones is "none" for both.
+/// A histogram in memory; memory of zeros is an empty one.
 struct size_histogram {
-  std::uint32_t lowest;
-  std::uint32_t highest;  ///< ~bin
+  std::uint32_t lowest;   ///< ~bin, of the lowest in use
+  std::uint32_t highest;  ///< bin + 1
   std::uint32_t counts[size_bins];
 
   /// Empties a histogram in memory of the space.
   template <class Space>
   static void clear(Space& space, size_histogram* h) {
-    space.fill(&h->lowest, 0xff, sizeof h->lowest + sizeof h->highest);
-    space.fill(h->counts, 0, sizeof h->counts);
+    space.fill(h, 0, sizeof *h);
   }
 
   COLLIDE_HD_INLINE void add(std::uint32_t bin, std::uint32_t n) {
     fetch_add(counts + bin, n);
-    fetch_min(&lowest, bin);
-    fetch_min(&highest, ~bin);
+    fetch_max(&lowest, ~bin);
+    fetch_max(&highest, bin + 1);
   }
 
-  COLLIDE_HD int first() const { return static_cast<int>(lowest); }
-  COLLIDE_HD int last() const { return static_cast<int>(~highest); }
-  COLLIDE_HD bool empty() const { return lowest == ~std::uint32_t{0}; }
+  /// Copies the part of one of several lanes.
+  COLLIDE_HD_INLINE void copy(size_histogram const& from, int lane, int lanes) {
+    if (lane == 0) {
+      lowest = from.lowest;
+      highest = from.highest;
+    }
+    for (int b = lane; b < size_bins; b += lanes) counts[b] = from.counts[b];
+  }
+
+  COLLIDE_HD int first() const { return static_cast<int>(~lowest); }
+  COLLIDE_HD int last() const { return static_cast<int>(highest) - 1; }
+  COLLIDE_HD bool empty() const { return highest == 0; }
 };
 
 /// Counts in scratch memory first, so that a bin in memory is touched once per block. A block of one lane has so few

@@ -55,23 +55,22 @@ COLLIDE_HD_INLINE box<S> box_of(triangle<S> const& t) {
   return {{lower.x(), lower.y(), lower.z()}, {upper.x(), upper.y(), upper.z()}};
 }
 
-/// What a mesh looks like, over its finite triangles. `lower` and `upper` are kept such that memory of all ones is the
-/// empty box, and both are updated by a minimum.
+/// What a mesh looks like, over its finite triangles. Memory of zeros is a summary of none: `lower` and `upper` are
+/// both updated by a maximum.
 template <class S>
 struct mesh_summary {
-  bits_of<S> lower[3];     ///< ordered(coordinate)
-  bits_of<S> upper[3];     ///< ~ordered(coordinate)
+  bits_of<S> lower[3];     ///< ~ordered(coordinate)
+  bits_of<S> upper[3];     ///< ordered(coordinate)
   size_histogram extents;  ///< of the triangles' boxes
 
   /// Makes a summary in memory of the space that of no triangles.
   template <class Space>
   static void clear(Space& space, mesh_summary* s) {
-    space.fill(s->lower, 0xff, sizeof s->lower + sizeof s->upper);
-    size_histogram::clear(space, &s->extents);
+    space.fill(s, 0, sizeof *s);
   }
 
-  COLLIDE_HD S lower_of(int k) const { return from_ordered<S>(lower[k]); }
-  COLLIDE_HD S upper_of(int k) const { return from_ordered<S>(static_cast<bits_of<S>>(~upper[k])); }
+  COLLIDE_HD S lower_of(int k) const { return from_ordered<S>(static_cast<bits_of<S>>(~lower[k])); }
+  COLLIDE_HD S upper_of(int k) const { return from_ordered<S>(upper[k]); }
 };
 
 /// Kernel body: fills the summary, and the bounding spheres if there is room for them.
@@ -114,8 +113,8 @@ struct summarise_mesh {
     block.each([&](int lane) {
       if (lane != 0) return;
       for (int k = 0; k < 3; ++k) {
-        fetch_min(&summary->lower[k], ordered(extent.lower[k]));
-        fetch_min(&summary->upper[k], static_cast<bits_of<S>>(~ordered(extent.upper[k])));
+        fetch_max(&summary->lower[k], static_cast<bits_of<S>>(~ordered(extent.lower[k])));
+        fetch_max(&summary->upper[k], ordered(extent.upper[k]));
       }
     });
   }

@@ -26,7 +26,7 @@ struct undecided {
   std::uint32_t capacity;
 
   COLLIDE_HD_INLINE void add(pair p) const {
-    if (count->total > capacity) return;
+    if (load_relaxed(&count->total) > capacity) return;
     std::uint32_t const slot = fetch_add(&count->total, 1u);
     if (slot < capacity) pairs[slot] = p;
   }
