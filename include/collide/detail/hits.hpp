@@ -161,7 +161,7 @@ struct tester {
   COLLIDE_HD_INLINE void keep(Block& block, hit_buffer<Block>& b, pair p) const {
     if constexpr (hit_buffer<Block>::together) {
       b.hits[block.add(b.hit_count, 1)] = p;
-    } else if (b.hit_count < hit_buffer<Block>::capacity) {
+    } else if (b.hit_count != hit_buffer<Block>::capacity) {
       b.hits[b.hit_count++] = p;
     } else {
       store(sink.reserve(1), p);
