@@ -62,16 +62,11 @@ struct bucket_query {
   std::uint32_t const* total;        ///< number of entries
   id const* entries;
   std::size_t capacity;  ///< of entries
+  std::size_t share;     ///< spheres of a block
 
   /// How many spheres are listed, and how many of their lists of candidates are only begun.
   struct listing {
     std::uint32_t spheres, longer;
-  };
-
-  /// A sphere of the block, and the number of the grid that serves it.
-  struct placed_sphere {
-    std::uint16_t sphere;
-    std::int16_t grid;
   };
 
   /// The most candidates of a sphere at a time: the block numbers those of all its spheres in 32 bits.
@@ -80,7 +75,9 @@ struct bucket_query {
 
   template <class Block>
   struct scratch {
-    placed_sphere placed[Block::lanes * Block::items];
+    static constexpr std::uint32_t room = 2 * Block::lanes * Block::items;
+    id placed[room];            ///< spheres inside a grid
+    std::int8_t grid_of[room];  ///< and in which
     std::uint32_t placed_count;
     std::uint32_t unplaced;                         ///< how many spheres no grid serves; they are listed all the same
     id spheres[Block::lanes];                       ///< spheres with candidates
@@ -153,82 +150,81 @@ struct bucket_query {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    constexpr int n = Block::items;
-    constexpr std::uint32_t lanes = Block::lanes;
-    typename Block::template per_lane<lane_state<n, still>> own;
-    std::size_t const first = block.index() * lanes * n;
+    constexpr std::size_t n = Block::items, batch = Block::lanes * n;
+    std::size_t next = block.index() * share;
+    std::size_t const end = smaller(next + share, tests.spheres.size());
 
     block.each([&](int lane) {
       tests.begin(s.hits, lane);
-      if (lane == 0) {
-        s.placed_count = s.unplaced = 0;
-        s.listed = {0, 0};
-      }
-      own[lane].load(tests.spheres, first + static_cast<std::size_t>(lane * n));
+      if (lane != 0) return;
+      s.placed_count = s.unplaced = 0;
+      s.listed = {0, 0};
     });
     int const usable = grid_count > 0 && *total <= capacity ? grid_count : 0;
-    block.each([&](int lane) {
-      auto& mine = own[lane];
-      for (int g = 0; g < usable; ++g) mine.place(grids[g], g);
-      std::uint32_t placed = 0, unplaced = 0;
-      for (int k = 0; k < n; ++k) {
-        placed += mine.grid_number[k] != nowhere;
-        unplaced += mine.grid_number[k] == everywhere;
-      }
-      if (placed == 0) return;
-      if (unplaced != 0) block.add(s.unplaced, unplaced);
-      std::uint32_t place = block.add(s.placed_count, placed);
-      for (int k = 0; k < n; ++k) {
-        if (mine.grid_number[k] == nowhere) continue;
-        s.placed[place++] = {static_cast<std::uint16_t>(lane * n + k), static_cast<std::int16_t>(mine.grid_number[k])};
-      }
-    });
+    while (next < end) {
+      std::uint32_t placed;
+      do {
+        block.each([&](int lane) { place_own(block, s, usable, next + static_cast<std::size_t>(lane) * n, end); });
+        next += batch;
+        placed = block.shared(s.placed_count);
+      } while (next < end && placed + batch <= scratch<Block>::room);
+      if (placed == 0) continue;
+      look_up(block, s, usable, placed);
+      block.each([&](int lane) {
+        if (lane == 0) s.placed_count = s.unplaced = 0;
+      });
+    }
+    tests.flush(block, s.hits);
+  }
 
+ private:
+  /// Lists those of a lane's next spheres, from `first` on, that are inside a grid or that no grid serves.
+  template <class Block>
+  COLLIDE_HD_INLINE void place_own(Block& block, scratch<Block>& s, int usable, std::size_t first,
+                                   std::size_t end) const {
+    constexpr int n = Block::items;
+    if (first >= end) return;
+    lane_state<n, still> own;
+    own.load(tests.spheres, first);
+    for (int g = 0; g < usable; ++g) own.place(grids[g], g);
+    std::uint32_t placed = 0, unplaced = 0;
+    for (int k = 0; k < n; ++k) {
+      placed += own.grid_number[k] != nowhere;
+      unplaced += own.grid_number[k] == everywhere;
+    }
+    if (placed == 0) return;
+    if (unplaced != 0) block.add(s.unplaced, unplaced);
+    std::uint32_t place = block.add(s.placed_count, placed);
+    for (int k = 0; k < n; ++k) {
+      if (own.grid_number[k] == nowhere) continue;
+      s.placed[place] = static_cast<id>(first) + static_cast<id>(k);
+      s.grid_of[place++] = static_cast<std::int8_t>(own.grid_number[k]);
+    }
+  }
+
+  /// Tests the `placed` spheres that are listed.
+  template <class Block>
+  COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, int usable, std::uint32_t placed) const {
     // the spheres of one level of one grid after the other, in the end those that no grid serves
     for (int g = 0; g <= usable; ++g) {
       bool const all = g == usable;
       if (all && s.unplaced == 0) break;
       for (int l = 0; l < (all ? 1 : grids[g].levels); ++l) {
         cells const here{all ? nullptr : &grids[g], all ? nullptr : &grids[g].level[l]};
-        for (std::uint32_t base = 0; base < s.placed_count; base += lanes) {
+        for (std::uint32_t base = 0; base < placed; base += Block::lanes) {
           typename Block::template per_lane<cursor> at;
           bool more = false;
           do {  // once, unless a list is very long or a sphere moves through several cells
             block.each([&](int lane) {
               if (!more) at[lane] = {0, 0};
               std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
-              if (i >= s.placed_count || s.placed[i].grid != (all ? everywhere : g)) return;
-              list_next(block, s, here, static_cast<id>(first + s.placed[i].sphere), at[lane]);
+              if (i >= placed || s.grid_of[i] != (all ? everywhere : g)) return;
+              list_next(block, s, here, s.placed[i], at[lane]);
             });
             listing const listed = block.shared(s.listed);
             more = still ? listed.longer != 0 : listed.spheres != 0;
             if (listed.spheres == 0) continue;
-            block.balanced(
-                s.balance, s.counts, listed.spheres,
-                [&](std::uint32_t i) {
-                  ball_type const ball = s.balls[i].get();
-                  if constexpr (still) {
-                    return candidates{s.spheres[i], ball, s.first[i]};
-                  } else {
-                    candidates_of_place c{{s.spheres[i], ball, s.first[i]}, {}, {}};
-                    if (all) return c;
-                    c.path = way<S>(*here.of, *here.level, ball.centre, ball.displacement);
-                    c.here = c.path.at(s.steps[i]);
-                    return c;
-                  }
-                },
-                [&](auto const& c, std::uint32_t k) {
-                  id const triangle = all ? static_cast<id>(c.first + k) : entries[c.first + k];
-                  if constexpr (!still) {
-                    if (!all && !c.path.meets_first(c.here, tests.mesh[triangle])) return;
-                  }
-                  auto const bound = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
-                  sphere<S> const around = enclosing(c.ball);
-                  if (bound.reached(around.centre, around.radius)) {
-                    tests.test(block, s.hits, {c.number, triangle}, c.ball);
-                  }
-                },
-                [&] { tests.make_room(block, s.hits); });
+            test_listed(block, s, here, listed.spheres);
             block.each([&](int lane) {
               if (lane == 0) s.listed = {0, 0};
             });
@@ -236,10 +232,8 @@ struct bucket_query {
         }
       }
     }
-    tests.flush(block, s.hits);
   }
 
- private:
   /// The cells of a level of a grid; without a grid, one cell that lists all triangles.
   struct cells {
     grid<S> const* of;
@@ -263,6 +257,38 @@ struct bucket_query {
     way<S> path;
     typename way<S>::place here;
   };
+
+  /// Makes the candidates of the `n` spheres that are listed: their triangles, spread evenly over the lanes.
+  template <class Block>
+  COLLIDE_HD_INLINE void test_listed(Block& block, scratch<Block>& s, cells const& here, std::uint32_t n) const {
+    bool const all = here.of == nullptr;
+    block.balanced(
+        s.balance, s.counts, n,
+        [&](std::uint32_t i) {
+          ball_type const ball = s.balls[i].get();
+          if constexpr (still) {
+            return candidates{s.spheres[i], ball, s.first[i]};
+          } else {
+            candidates_of_place c{{s.spheres[i], ball, s.first[i]}, {}, {}};
+            if (all) return c;
+            c.path = way<S>(*here.of, *here.level, ball.centre, ball.displacement);
+            c.here = c.path.at(s.steps[i]);
+            return c;
+          }
+        },
+        [&](auto const& c, std::uint32_t k) {
+          id const triangle = all ? static_cast<id>(c.first + k) : entries[c.first + k];
+          if constexpr (!still) {
+            if (!all && !c.path.meets_first(c.here, tests.mesh[triangle])) return;
+          }
+          auto const bound = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
+          sphere<S> const around = enclosing(c.ball);
+          if (bound.reached(around.centre, around.radius)) {
+            tests.test(block, s.hits, {c.number, triangle}, c.ball);
+          }
+        },
+        [&] { tests.make_room(block, s.hits); });
+  }
 
   /// Lists a sphere with the entries of its next cell that is not empty, or as many of them as go at a time.
   template <class Block>
@@ -392,16 +418,18 @@ class bucket::index {
         return;
       }
     }
-    detail::bucket_query<S, NarrowPhase, Sink> const body{{mesh_, spheres, sink},
-                                                          has_bounds_ ? bounds_.data() : nullptr,
-                                                          grids_.data(),
-                                                          grid_count_,
-                                                          occupied(),
-                                                          lists_.data(),
-                                                          lists_total(),
-                                                          entries_.data(),
-                                                          entries_.capacity()};
-    space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
+    detail::bucket_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink},
+                                                    has_bounds_ ? bounds_.data() : nullptr,
+                                                    grids_.data(),
+                                                    grid_count_,
+                                                    occupied(),
+                                                    lists_.data(),
+                                                    lists_total(),
+                                                    entries_.data(),
+                                                    entries_.capacity(),
+                                                    0};
+    body.share = detail::share_of<Space>(space, spheres.size(), body);
+    space.launch((spheres.size() + body.share - 1) / body.share, body);
   }
 
   /// Width of the finest cells in use; 0 if there is no grid.
@@ -493,9 +521,10 @@ class bucket::index {
     std::size_t const n = mesh_.size();
     if (swaps<Space>(options)) space.for_each(n, detail::compute_bounds<S>{mesh_, bounds_.data()});
     auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
-    detail::grid_insertion<S> const insertion{mesh_, grids_.data(), grid_count_};
+    constexpr int parts = Space::insertion_parts;
+    detail::grid_insertion<S, parts> const insertion{mesh_, grids_.data(), grid_count_};
     space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
-    space.for_each(n, detail::count_entries<S>{insertion, lists});
+    space.for_each(insertion.size(), detail::count_entries<S, parts>{insertion, lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
                                                  lists,         occupied(),  &lists[cells_].count};
     space.launch(detail::blocks_for<Space>(cells_, allocation), allocation);
@@ -504,7 +533,8 @@ class bucket::index {
                                      ? space.read(lists_total())
                                      : cells_per_triangle<Space> * n * static_cast<std::size_t>(grid_count_);
     entries_.reserve(space.resource(), capacity);
-    space.for_each(n, detail::fill_entries<S>{insertion, lists, entries_.data(), entries_.capacity()});
+    space.for_each(insertion.size(),
+                   detail::fill_entries<S, parts>{insertion, lists, entries_.data(), entries_.capacity()});
     listed_ = true;
   }
 

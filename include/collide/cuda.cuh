@@ -239,7 +239,7 @@ class cuda_space {
   static constexpr bool sorts_spheres = false;
 
   /// Tuning of `bucket`; see `host`.
-  static constexpr int bucket_span = 2;
+  static constexpr int bucket_span = 2, insertion_parts = 4;
 
   template <class F>
   void for_each(std::size_t n, F const& f) const {
@@ -349,6 +349,11 @@ class cuda : public detail::cuda_space {
   }
 
   std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 2048; }
+
+  template <class Body>
+  std::size_t wave() const {
+    return std::numeric_limits<std::size_t>::max();
+  }
 };
 
 /// Execution space: an NVIDIA GPU, the threads of a block working together through shared memory. Views point to device
@@ -372,6 +377,12 @@ class cuda_shared : public detail::cuda_space {
   }
 
   std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 8; }
+
+  /// How many blocks of a body are at work at a time.
+  template <class Body>
+  std::size_t wave() const {
+    return static_cast<std::size_t>(processors_) * detail::residency<Body, block<Body>>;
+  }
 };
 
 }  // namespace collide

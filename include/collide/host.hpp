@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -53,6 +54,9 @@ class host {
   /// Tuning of `bucket`: how many cells wide most triangles are. Narrow cells have fewer candidates and more entries.
   static constexpr int bucket_span = 1;
 
+  /// Tuning of `bucket`: how many threads put a triangle into its cells.
+  static constexpr int insertion_parts = 1;
+
   /// True if the host reads this memory without waiting for anything.
   static constexpr bool host_memory = true;
 
@@ -86,6 +90,12 @@ class host {
 
   /// How many blocks keep all threads busy.
   std::size_t concurrency() const { return 4 * static_cast<std::size_t>(threads()); }
+
+  /// How many blocks of a body can be at work at a time; here that does not matter.
+  template <class Body>
+  std::size_t wave() const {
+    return std::numeric_limits<std::size_t>::max();
+  }
 
   void fill(void* to, unsigned char byte, std::size_t bytes) const {
     if (bytes != 0) std::memset(to, byte, bytes);

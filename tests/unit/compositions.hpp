@@ -51,6 +51,11 @@ class lockstep : public collide::host {
   using block = collide::detail::lockstep_block<Lanes, Body::items, Reversed>;
 
   template <class Body>
+  std::size_t wave() const {
+    return Reversed ? 1 : 3;
+  }
+
+  template <class Body>
   void launch(std::size_t blocks, Body const& body) const {
     using scratch_type = typename Body::template scratch<block<Body>>;
     static_assert(std::is_trivially_copyable<scratch_type>::value, "scratch memory is never constructed on CUDA");

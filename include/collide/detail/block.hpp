@@ -203,4 +203,14 @@ std::size_t blocks_for(std::size_t n, Body const&) {
   return (n + per_block - 1) / per_block;
 }
 
+/// How many of `n` items a block takes, so that all blocks fit on the processor at a time, if it has such a limit: a
+/// multiple of what a lane has.
+template <class Space, class Body>
+std::size_t share_of(Space const& space, std::size_t n, Body const& body) {
+  using block = typename Space::template block<Body>;
+  std::size_t const most = blocks_for<Space>(n, body), wave = space.template wave<Body>();
+  std::size_t const blocks = most < wave ? most : wave, items = block::items;
+  return (n + blocks * items - 1) / (blocks * items) * items;
+}
+
 }  // namespace collide::detail

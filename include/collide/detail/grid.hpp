@@ -271,19 +271,28 @@ struct plan_grid {
   }
 };
 
-/// Visits all cells of a triangle in all grids: the common part of counting and filling.
-template <class S>
+/// Visits the cells of triangles in all grids: the common part of counting and filling. `Parts` threads share the rows
+/// of a triangle, because each cell's counter takes its time to answer.
+template <class S, int Parts>
 struct grid_insertion {
   mesh_view<S> mesh;
   grid<S> const* grids;
   int grid_count;
 
+  /// How many threads there are.
+  std::size_t size() const { return mesh.size() * Parts; }
+
+  COLLIDE_HD_INLINE id triangle(std::size_t thread) const { return static_cast<id>(thread / Parts); }
+
+  /// Calls f(first, n) for the rows of cells first .. first + n that are this thread's.
   template <class F>
-  COLLIDE_HD_INLINE void each_cell(std::size_t i, F const& f) const {
-    box<S> const b = box_of(mesh[i]);
+  COLLIDE_HD_INLINE void each_row(std::size_t thread, F const& f) const {
+    box<S> const b = box_of(mesh[triangle(thread)]);
+    int turn = static_cast<int>(thread % Parts);
     for (int n = 0; n < grid_count; ++n) {
       grids[n].each_row(b, [&](std::uint32_t first, std::uint32_t count) {
-        for (std::uint32_t k = 0; k < count; ++k) f(first + k);
+        if (turn == 0) f(first, count);
+        turn = turn == 0 ? Parts - 1 : turn - 1;
       });
     }
   }
@@ -295,13 +304,15 @@ struct alignas(8) cell_list {
   std::uint32_t end;  ///< of its entries; while they are written, of those that are
 };
 
-/// Kernel body of `for_each` over triangles: counts the entries of each cell.
-template <class S>
+/// Kernel body of `for_each` over an insertion's threads: counts the entries of each cell.
+template <class S, int Parts>
 struct count_entries {
-  grid_insertion<S> insertion;
+  grid_insertion<S, Parts> insertion;
   cell_list* cells;
-  COLLIDE_HD void operator()(std::size_t i) const {
-    insertion.each_cell(i, [&](std::uint32_t cell) { fetch_add(&cells[cell].count, 1u); });
+  COLLIDE_HD void operator()(std::size_t thread) const {
+    insertion.each_row(thread, [&](std::uint32_t first, std::uint32_t n) {
+      for (std::uint32_t k = 0; k < n; ++k) fetch_add(&cells[first + k].count, 1u);
+    });
   }
 };
 
@@ -360,17 +371,26 @@ struct allocate_entries {
   }
 };
 
-/// Kernel body of `for_each` over triangles: writes the entries.
-template <class S>
+/// Kernel body of `for_each` over an insertion's threads: writes the entries.
+template <class S, int Parts>
 struct fill_entries {
-  grid_insertion<S> insertion;
+  grid_insertion<S, Parts> insertion;
   cell_list* cells;
   id* entries;
   std::size_t capacity;
-  COLLIDE_HD void operator()(std::size_t i) const {
-    insertion.each_cell(i, [&](std::uint32_t cell) {
-      std::uint32_t const slot = fetch_add(&cells[cell].end, 1u);
-      if (slot < capacity) entries[slot] = static_cast<id>(i);
+  COLLIDE_HD void operator()(std::size_t thread) const {
+    id const triangle = insertion.triangle(thread);
+    insertion.each_row(thread, [&](std::uint32_t first, std::uint32_t n) {
+      constexpr std::uint32_t together = 4;  // so many counters are asked before one answers
+      for (std::uint32_t done = 0; done < n; done += together) {
+        std::uint32_t slots[together] = {};
+        for (std::uint32_t k = 0; k < together; ++k) {
+          if (done + k < n) slots[k] = fetch_add(&cells[first + done + k].end, 1u);
+        }
+        for (std::uint32_t k = 0; k < together; ++k) {
+          if (done + k < n && slots[k] < capacity) entries[slots[k]] = triangle;
+        }
+      }
     });
   }
 };

@@ -76,7 +76,7 @@ struct mesh_summary {
 /// Kernel body: fills the summary, and the bounding spheres if there is room for them.
 template <class S>
 struct summarise_mesh {
-  static constexpr int items = 4;
+  static constexpr int items = 2;
 
   mesh_view<S> mesh;
   mesh_summary<S>* summary;
