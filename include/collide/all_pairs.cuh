@@ -9,6 +9,7 @@
 #include <collide/detail/block.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/lifted.hpp>
+#include <collide/detail/vectorised.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
@@ -63,13 +64,15 @@ struct all_pairs_query {
       int const m = static_cast<int>(smaller(static_cast<std::size_t>(tile), end - base));
       auto const* const staged = block.stage(s.staged, bounds + base, m);
       if constexpr (Block::lanes == 1) {
-        for (int t = 0; t < m; ++t) {
-          if (!own[0].any_reaches(staged[t])) continue;
-          for (int k = 0; k < n; ++k) {
-            look(block, s, first + static_cast<std::size_t>(k), base + static_cast<std::size_t>(t));
+        vectorised([&] {
+          for (int t = 0; t < m; ++t) {
+            if (!own[0].any_reaches(staged[t])) continue;
+            for (int k = 0; k < n; ++k) {
+              look(block, s, first + static_cast<std::size_t>(k), base + static_cast<std::size_t>(t));
+            }
+            tests.make_room(block, s.hits);
           }
-          tests.make_room(block, s.hits);
-        }
+        });
       } else {
         typename Block::template per_lane<int> next;
         bool more = false;

@@ -140,10 +140,29 @@ class host {
         [&](std::size_t p, std::uint32_t* from, std::uint32_t* to) { std::exclusive_scan(from, to, from, before[p]); });
   }
 
-  /// Sorts pairs into canonical order.
-  void sort(buffer<pair>&, pair* pairs, std::size_t n, std::size_t, std::size_t, std::size_t,
+  /// Sorts pairs into canonical order: first into parts by the leading bits of the sphere, then each part. Takes
+  /// temporary memory for `room` pairs, at least `n`.
+  void sort(buffer<pair>& other, pair* pairs, std::size_t n, std::size_t room, std::size_t spheres, std::size_t,
             buffer<unsigned char>&) const {
-    std::sort(pairs, pairs + n);
+    constexpr std::size_t parts = 2048;
+    pair* const copy = other.reserve(resource_, room);
+    if (n < parts) {
+      std::sort(pairs, pairs + n);
+      return;
+    }
+    int shift = 0;
+    while (spheres >> shift > parts) ++shift;
+    std::size_t begin[parts + 2] = {};  // of part p at p + 1, while the pairs are brought there; then at p
+    for (std::size_t i = 0; i < n; ++i) ++begin[(pairs[i].sphere >> shift) + 2];
+    std::partial_sum(begin, begin + parts + 2, begin);
+    for (std::size_t i = 0; i < n; ++i) copy[begin[(pairs[i].sphere >> shift) + 1]++] = pairs[i];
+    run(parts, [&](std::size_t p, std::size_t last) {
+      pair* const from = copy + begin[p];
+      for (std::size_t const end = begin[last]; p < last; ++p) {
+        std::sort(copy + begin[p], copy + begin[p + 1]);
+        if (p + 1 == last) std::copy(from, copy + end, pairs + (from - copy));
+      }
+    });
   }
 
  private:

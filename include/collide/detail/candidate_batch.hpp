@@ -21,7 +21,7 @@ struct candidate_batch {
   std::int32_t verdicts[room];
   std::uint8_t open[room];
 
-  COLLIDE_HD_INLINE void add(pair p, triangle<S> const& t, sphere<S> const& s) {
+  void add(pair p, triangle<S> const& t, sphere<S> const& s) {
     int const k = size++;
     ids[k] = p;
     for (int c = 0; c < 3; ++c) {
@@ -33,17 +33,17 @@ struct candidate_batch {
     radius[k] = s.radius;
   }
 
-  COLLIDE_HD_INLINE triangle<S> triangle_of(int k) const {
+  triangle<S> triangle_of(int k) const {
     return {{corners[0][k], corners[1][k], corners[2][k]},
             {corners[3][k], corners[4][k], corners[5][k]},
             {corners[6][k], corners[7][k], corners[8][k]}};
   }
 
-  COLLIDE_HD_INLINE sphere<S> sphere_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius[k]}; }
+  sphere<S> sphere_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius[k]}; }
 
   /// Takes the hits to the tester and empties the batch.
   template <class Tester, class Block>
-  COLLIDE_HD_NOINLINE void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
+  void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
     using narrow_phase = typename Tester::narrow_phase;
     if constexpr (in_stages<narrow_phase>::value) {
       vectorised([this] {

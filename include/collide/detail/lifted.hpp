@@ -82,11 +82,13 @@ struct lifted_batch {
 
   /// True if any of the balls may come within reach of the bounding sphere. Without branches: few do.
   COLLIDE_HD_INLINE bool any_reaches(lifted_bounds<S> const& b) const {
-    bool some = false;
+    using flag = std::conditional_t<(Items > 4), bits_of<S>, bool>;  // of many: as wide as a lane of the vector unit
+    flag some = 0;
     for (int k = 0; k < Items; ++k) {
-      some |= x[k] * b.x + (y[k] * b.y + (z[k] * b.z + (radius[k] * b.radius + b.height))) >= threshold[k];
+      some |= static_cast<flag>(x[k] * b.x + (y[k] * b.y + (z[k] * b.z + (radius[k] * b.radius + b.height))) >=
+                                threshold[k]);
     }
-    return some;
+    return some != 0;
   }
 };
 

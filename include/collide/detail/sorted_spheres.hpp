@@ -20,7 +20,7 @@ namespace collide::detail {
 
 /// Bit k is flags[k], for k < n <= 64; flags are 0 or 1.
 template <std::size_t n>
-COLLIDE_HD_INLINE std::uint64_t bits_of_flags(unsigned char const* flags) {
+inline std::uint64_t bits_of_flags(unsigned char const* flags) {
   std::uint64_t mask = 0;
   for (std::size_t k = 0; k < n; k += 8) {
     std::uint64_t bytes;
@@ -38,7 +38,7 @@ struct mark_cells {
   int grid_count;
   std::uint32_t* occupied;
 
-  COLLIDE_HD_INLINE void operator()(std::size_t i) const {
+  void operator()(std::size_t i) const {
     for (int g = 0; g < grid_count; ++g) {
       grids[g].each_row(boxes[i], [&](std::uint32_t first, std::uint32_t n) {
         for (std::uint32_t const end = first + n; first < end;) {
@@ -92,7 +92,7 @@ struct place_spheres {
 
  private:
   template <class Block>
-  COLLIDE_HD_INLINE void place(Block& block, scratch<Block>& s) const {
+  void place(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
     std::size_t const begin = block.index() * batches * n;
     bool const one_radius = spheres.one_radius();
@@ -138,19 +138,19 @@ struct place_spheres {
   static std::uint64_t first_bits(std::size_t n) { return n < 64 ? (std::uint64_t{1} << n) - 1 : ~std::uint64_t{0}; }
 
   template <int n, class Holds>
-  static COLLIDE_HD_INLINE std::uint64_t mask_of(Holds const& holds) {
+  static std::uint64_t mask_of(Holds const& holds) {
     unsigned char flags[n];
     for (int k = 0; k < n; ++k) flags[k] = static_cast<unsigned char>(holds(k));
     return bits_of_flags<n>(flags);
   }
 
   template <class Scratch>
-  COLLIDE_HD_INLINE void make_room(Scratch& s) const {
+  void make_room(Scratch& s) const {
     if (s.count + 64 >= Scratch::room) flush(s);
   }
 
   template <class Scratch>
-  COLLIDE_HD_INLINE void flush(Scratch& s) const {
+  void flush(Scratch& s) const {
     if (s.count == 0) return;
     std::uint64_t const slot = fetch_add(total, std::uint64_t{s.count});
     if (slot + s.count <= capacity) std::copy(s.found, s.found + s.count, to + slot);
@@ -163,7 +163,7 @@ template <class S>
 struct count_placed {
   placed_sphere<S> const* from;
   std::uint32_t* counts;
-  COLLIDE_HD_INLINE void operator()(std::size_t i) const { fetch_add(counts + from[i].cell, 1u); }
+  void operator()(std::size_t i) const { fetch_add(counts + from[i].cell, 1u); }
 };
 
 /// Spheres in the order of the cells, number by number in arrays of their own.
@@ -175,9 +175,9 @@ struct sphere_columns {
   S* reach;  ///< how far from a box the centre is at most, if the sphere touches what is in the box
   id* number;
 
-  COLLIDE_HD_INLINE sphere<S> operator[](std::uint32_t i) const { return {{x[i], y[i], z[i]}, radius[i]}; }
+  sphere<S> operator[](std::uint32_t i) const { return {{x[i], y[i], z[i]}, radius[i]}; }
 
-  COLLIDE_HD_INLINE void set(std::size_t i, sphere<S> const& s, id n) const {
+  void set(std::size_t i, sphere<S> const& s, id n) const {
     x[i] = s.centre.x();
     y[i] = s.centre.y();
     z[i] = s.centre.z();
@@ -188,7 +188,7 @@ struct sphere_columns {
 
   /// Bit k is whether sphere first + k can reach what is in the box, for k < lanes. Without branches, for the
   /// processor's vector unit.
-  COLLIDE_HD_INLINE std::uint32_t reaching(box<S> const& b, std::uint32_t first) const {
+  std::uint32_t reaching(box<S> const& b, std::uint32_t first) const {
     bits_of<S> constexpr bit[lanes] = {1,  2,  4,  8,
                                        16, 32, 64, 128};  // no processor shifts lanes by different amounts fast
     bits_of<S> mask = 0;
@@ -208,7 +208,7 @@ struct number_placed {
   placed_sphere<S> const* from;
   std::uint32_t* order;
   std::uint32_t* begins;
-  COLLIDE_HD_INLINE void operator()(std::size_t i) const {
+  void operator()(std::size_t i) const {
     order[fetch_add(begins + from[i].cell, 1u)] = static_cast<std::uint32_t>(i);
   }
 };
@@ -219,7 +219,7 @@ struct sort_placed {
   placed_sphere<S> const* from;
   std::uint32_t const* order;
   sphere_columns<S> to;
-  COLLIDE_HD_INLINE void operator()(std::size_t i) const {
+  void operator()(std::size_t i) const {
     placed_sphere<S> const& p = from[order[i]];
     to.set(i, p.ball, p.number);
   }
@@ -268,7 +268,7 @@ struct look_for_spheres {
  private:
   /// Finds the spheres near the triangles of a block.
   template <class Block>
-  COLLIDE_HD_INLINE void look(Block& block, scratch<Block>& s) const {
+  void look(Block& block, scratch<Block>& s) const {
     std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, tests.mesh.size());
     for (std::size_t t = begin; t < end; ++t) {
       box<S> const around = boxes[t];
@@ -289,7 +289,7 @@ struct look_for_spheres {
 
   /// Tests what was found.
   template <class Block>
-  COLLIDE_HD_NOINLINE void test(Block& block, scratch<Block>& s) const {
+  void test(Block& block, scratch<Block>& s) const {
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
       triangle<S> const t = tests.mesh[r.triangle];
