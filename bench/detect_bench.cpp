@@ -46,6 +46,10 @@ struct scene_in {
 
 enum class phase { build, query, both };
 
+char const* name_of(collide::exact) { return "exact"; }
+char const* name_of(collide::single_precision) { return "single"; }
+char const* name_of(collide::double_precision) { return "double"; }
+
 template <class Broad, class Precision, class Space, class S, class Sink>
 void run(benchmark::State& state, phase what, std::size_t n, Sink sink, Space space) {
   auto& scene = scene_in<Space, S>::get(n, space);
@@ -83,9 +87,8 @@ template <class Broad, class Precision, class Space, class S, class Sink>
 void add(std::string const& method, phase what, std::size_t n, std::string const& sink_name, Sink const& make_sink,
          Space space) {
   static char const* const phases[] = {"build", "query", "both"};
-  std::string const precision = std::is_same<Precision, collide::single_precision>::value ? "single" : "double";
-  std::string const name =
-      method + "/" + precision + "/" + sink_name + "/" + phases[static_cast<int>(what)] + "/" + std::to_string(n);
+  std::string const name = method + "/" + name_of(Precision{}) + "/" + sink_name + "/" +
+                           phases[static_cast<int>(what)] + "/" + std::to_string(n);
   benchmark::RegisterBenchmark(
       name.c_str(),
       [=](benchmark::State& state) { run<Broad, Precision, Space, S>(state, what, n, make_sink(), space); })
@@ -98,24 +101,24 @@ auto const pairs = [] { return collide::pairs(); };
 /// A method on the scaling series and, up to `largest` spheres, the whole scene: build, query and both.
 template <class Broad, class Space>
 void add_series(std::string const& method, std::size_t largest, Space space) {
-  using collide::single_precision;
+  using collide::exact;
   for (std::size_t n = 1 << 10; n <= std::min<std::size_t>(largest, 1 << 20); n *= 2) {
-    add<Broad, single_precision, Space, float>(method, phase::both, n, "pairs", pairs, space);
-    add<Broad, single_precision, Space, float>(method, phase::query, n, "pairs", pairs, space);
+    add<Broad, exact, Space, float>(method, phase::both, n, "pairs", pairs, space);
+    add<Broad, exact, Space, float>(method, phase::query, n, "pairs", pairs, space);
   }
   if (largest < full) return;
   for (phase const p : {phase::build, phase::query, phase::both}) {
-    add<Broad, single_precision, Space, float>(method, p, full, "pairs", pairs, space);
+    add<Broad, exact, Space, float>(method, p, full, "pairs", pairs, space);
   }
+  add<Broad, collide::single_precision, Space, float>(method, phase::both, full, "pairs", pairs, space);
   add<Broad, collide::double_precision, Space, float>(method, phase::both, full, "pairs", pairs, space);
 }
 
 /// What each sink costs, on the whole scene.
 template <class Broad, class Space>
 void add_sinks(std::string const& method, Space space) {
-  using collide::single_precision;
   auto const with = [&](char const* name, auto const& make) {
-    add<Broad, single_precision, Space, float>(method, phase::query, full, name, make, space);
+    add<Broad, collide::exact, Space, float>(method, phase::query, full, name, make, space);
   };
   with("canonical", [] { return collide::pairs(collide::order::canonical); });
   with("count", [] { return collide::count(); });
@@ -137,7 +140,7 @@ int main(int argc, char** argv) {
   add_sinks<collide::bucket>("bucket_seq/bucket_x_host", one);
   if (all.threads() > 1) {
     std::string const name = "bucket_seq/bucket_x_host_" + std::to_string(all.threads()) + "_threads";
-    add<collide::bucket, collide::single_precision, collide::host, float>(name, phase::both, full, "pairs", pairs, all);
+    add<collide::bucket, collide::exact, collide::host, float>(name, phase::both, full, "pairs", pairs, all);
   }
   add_series<collide::all_pairs>("brute_force_seq/all_pairs_x_host", 1 << 13, one);
 

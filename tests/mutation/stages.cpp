@@ -13,8 +13,10 @@
 
 template <class S>
 bool some_integers_are_wrong(collide::triangle<S> const& t, collide::sphere<S> const& s, bool hit) {
-  collide::detail::fixed_triangle const fixed(t, s);
-  return (fixed.holds() && fixed.in_reach() != hit) || collide::detail::exact_triangle<>(t, s).in_reach() != hit;
+  collide::detail::fixed_triangle<1> const narrow(t, s);
+  collide::detail::fixed_triangle<2> const wide(t, s);
+  return (narrow.holds() && narrow.in_reach() != hit) || (wide.holds() && wide.in_reach() != hit) ||
+         collide::detail::exact_triangle<>(t, s).in_reach() != hit;
 }
 
 template <class S>

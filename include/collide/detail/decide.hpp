@@ -36,8 +36,10 @@ COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> cons
     verdict const v = certify(l, size);
     if (v != verdict::unsure) return {v == verdict::hit, stage::double_certificate};
   }
-  fixed_triangle const fixed(t, s);
-  return {fixed.holds() ? fixed.in_reach() : exact_triangle<>(t, s).in_reach(), stage::integers};
+  fixed_triangle<1> const narrow(t, s);
+  if (narrow.holds()) return {narrow.in_reach(), stage::integers};
+  fixed_triangle<2> const wide(t, s);  // as where a mesh has 1e-14 for 0
+  return {wide.holds() ? wide.in_reach() : exact_triangle<>(t, s).in_reach(), stage::integers};
 }
 
 /// The first stages: `unsure` is left to `finish`.

@@ -34,8 +34,11 @@ COLLIDE_HD_INLINE void turn(T (&x)[3]) {
   x[2] = first;
 }
 
-/// Finite coordinates and a finite radius, not below 0.
+/// Finite coordinates and a finite radius, not below 0; differences of coordinates take `Words` words of 64 bits.
+template <int Words>
 class fixed_triangle {
+  static_assert(Words == 1 || Words == 2, "collide: differences are computed in two words");
+
  public:
   template <class S>
   COLLIDE_HD fixed_triangle(triangle<S> const& t, sphere<S> const& s) {
@@ -58,14 +61,15 @@ class fixed_triangle {
     }
   }
 
-  /// True if all differences and the radius, in units of one power of two, are integers of at most 62 bits.
+  /// True if all differences and the radius, in units of one power of two, are integers of at most
+  /// 64 Words - 2 bits.
   COLLIDE_HD bool holds() const { return holds_; }
 
   /// True if the ball touches the triangle; if this holds.
   COLLIDE_HD bool in_reach() const {
     vector v[3] = {corner_[0], corner_[1], corner_[2]};
-    wide<2> own[3] = {}, next[3] = {};  // m_ii, and m_ik for the next corner k, of each corner i
-    wide<2> const square = radius_ * radius_;
+    wide<2 * Words> own[3] = {}, next[3] = {};  // m_ii, and m_ik for the next corner k, of each corner i
+    wide<2 * Words> const square = radius_ * radius_;
     COLLIDE_ROLLED
     for (int i = 0; i < 3; ++i) {
       own[0] = dot(v[0], v[0]) - square;
@@ -78,11 +82,11 @@ class fixed_triangle {
       if (next[0].negative() && !(own[0] * own[1] - next[0] * next[0]).positive()) return true;
       turn(own), turn(next);
     }
-    wide<2> row[3] = {own[0], next[0], next[2]};
-    wide<6> determinant{};
+    wide<2 * Words> row[3] = {own[0], next[0], next[2]};
+    wide<6 * Words> determinant{};
     COLLIDE_ROLLED
     for (int i = 0; i < 3; ++i) {
-      wide<4> const weight = (own[1] - next[1]) * (own[2] - next[2]) + (next[1] - next[0]) * (own[2] - next[1]);
+      wide<4 * Words> const weight = (own[1] - next[1]) * (own[2] - next[2]) + (next[1] - next[0]) * (own[2] - next[1]);
       if (!weight.positive()) return false;
       determinant = determinant + row[0] * weight;
       turn(row), turn(own), turn(next);
@@ -92,15 +96,15 @@ class fixed_triangle {
 
  private:
   struct vector {
-    wide<1> component[3];
+    wide<Words> component[3];
   };
 
-  static constexpr int most_bits = 62;
+  static constexpr int most_bits = 64 * Words - 2;
   static constexpr int most_shift = 73;  ///< of 53 bits in two words, less one for a difference and one for the sign
 
   int unit_ = 1 << 30;  ///< as a power of two
   bool holds_ = true;
-  wide<1> radius_;
+  wide<Words> radius_;
   vector corner_[3] = {};  ///< relative to the centre
 
   template <class S>
@@ -117,13 +121,15 @@ class fixed_triangle {
     return static_cast<two_words>(d.mantissa) << (shift & 127);
   }
 
-  COLLIDE_HD_INLINE wide<1> fitted(two_words x) {
+  COLLIDE_HD_INLINE wide<Words> fitted(two_words x) {
     constexpr two_words most = two_words{1} << most_bits;
     holds_ = holds_ && x + most <= 2 * most;  // from -most to most
-    return {{static_cast<std::uint64_t>(x)}};
+    wide<Words> w;
+    for (int i = 0; i < Words; ++i) w.word[i] = static_cast<std::uint64_t>(x >> (64 * i));
+    return w;
   }
 
-  static COLLIDE_HD_INLINE wide<2> dot(vector const& p, vector const& q) {
+  static COLLIDE_HD_INLINE wide<2 * Words> dot(vector const& p, vector const& q) {
     return p.component[0] * q.component[0] + p.component[1] * q.component[1] + p.component[2] * q.component[2];
   }
 };
