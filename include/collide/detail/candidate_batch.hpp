@@ -41,17 +41,20 @@ struct candidate_batch {
 
   sphere<S> sphere_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius[k]}; }
 
+  /// Sets the verdicts to what a quick test without branches says.
+  template <class Test>
+  void attempt(Test const& test) {
+    vectorised([&] {
+      for (int k = 0; k < size; ++k) verdicts[k] = static_cast<std::int32_t>(test(triangle_of(k), sphere_of(k)));
+    });
+  }
+
   /// Takes the hits to the tester and empties the batch.
   template <class Tester, class Block>
   void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
     using narrow_phase = typename Tester::narrow_phase;
     if constexpr (in_stages<narrow_phase>::value) {
-      vectorised([this] {
-        for (int k = 0; k < size; ++k) {
-          verdicts[k] =
-              static_cast<std::int32_t>(in_stages<narrow_phase>::attempt_straight(triangle_of(k), sphere_of(k)));
-        }
-      });
+      attempt([](triangle<S> const& t, sphere<S> const& b) { return in_stages<narrow_phase>::attempt_straight(t, b); });
       int n = 0;  // no branch per pair: it would often be mispredicted
       for (int k = 0; k < size; ++k) {
         open[n] = static_cast<std::uint8_t>(k);
