@@ -366,7 +366,7 @@ class bucket::index {
     mesh_ = mesh;
     grid_count_ = wanted_ = 0;
     radius_given_ = false;
-    listed_ = swapped_ = queried_ = false;
+    bounded_ = listed_ = swapped_ = queried_ = false;
     bool const swaps_here = swaps<Space>(options);
     if (swaps_here) boxes_.reserve(space.resource(), mesh.size());
     has_bounds_ = options.memory_budget == 0 || fixed_bytes + bounds_bytes() <= options.memory_budget;
@@ -376,7 +376,8 @@ class bucket::index {
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
     // where spheres and triangles can swap, bounding spheres are only made with the lists
-    detail::summarise_mesh<S> const body{mesh, summary, has_bounds_ && !swaps_here ? bounds_.data() : nullptr,
+    bounded_ = has_bounds_ && !swaps_here;
+    detail::summarise_mesh<S> const body{mesh, summary, bounded_ ? bounds_.data() : nullptr,
                                          swaps_here ? boxes_.data() : nullptr};
     space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
   }
@@ -394,7 +395,8 @@ class bucket::index {
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     prepare_grids(space, options, spheres);
     // The first time that is faster than making lists; later only if there are many spheres.
-    swapped_ = grid_count_ > 0 && swaps<Space>(options) && (!queried_ || spheres.size() / 4 >= mesh_.size());
+    swapped_ = grid_count_ > 0 && swaps<Space>(options) && spheres.size() <= detail::sorted_spheres<S>::most &&
+               (!queried_ || spheres.size() / 4 >= mesh_.size());
     queried_ = true;
     if constexpr (Space::sorts_spheres) {
       if (swapped_) sorted_.sort(space, spheres);
@@ -419,7 +421,7 @@ class bucket::index {
       }
     }
     detail::bucket_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink},
-                                                    has_bounds_ ? bounds_.data() : nullptr,
+                                                    bounded_ ? bounds_.data() : nullptr,
                                                     grids_.data(),
                                                     grid_count_,
                                                     occupied(),
@@ -514,12 +516,13 @@ class bucket::index {
     if (!swaps<Space>(options)) make_lists(space, options);
   }
 
-  /// Enters the triangles into the cells, unless they are there.
+  /// Makes bounding spheres and enters the triangles into the cells, unless they are there.
   template <class Space>
   void make_lists(Space& space, bucket const& options) {
-    if (listed_ || grid_count_ == 0) return;
     std::size_t const n = mesh_.size();
-    if (swaps<Space>(options)) space.for_each(n, detail::compute_bounds<S>{mesh_, bounds_.data()});
+    if (has_bounds_ && !bounded_) space.for_each(n, detail::compute_bounds<S>{mesh_, bounds_.data()});
+    bounded_ = has_bounds_;
+    if (listed_ || grid_count_ == 0) return;
     auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
     constexpr int parts = Space::insertion_parts;
     detail::grid_insertion<S, parts> const insertion{mesh_, grids_.data(), grid_count_};
@@ -603,7 +606,8 @@ class bucket::index {
   int wanted_ = 0;  ///< how many grids the spheres asked for: the budget may have allowed fewer
   S reaches_[detail::max_grids] = {};
   bool radius_given_ = false;
-  bool has_bounds_ = false;
+  bool has_bounds_ = false;  ///< there is room for bounding spheres
+  bool bounded_ = false;     ///< and they are there
   bool has_summary_ = false;
   bool listed_ = false;   ///< the triangles are in the lists of the cells
   bool swapped_ = false;  ///< the spheres are, for this query

@@ -1,6 +1,7 @@
 /// Buckets on the host, where either the spheres or the triangles are in the cells, and where candidates are decided
 /// several at a time.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -48,7 +49,7 @@ void check_sorted(io::scene const& scene) {
   REQUIRE(all / 4 > made.mesh().size());
   collide::detector<collide::all_pairs, collide::karabassi<>, collide::host, S> plain(collide::host(2));
   auto const expected = plain.detect(made.mesh(), made.spheres(all), collide::pairs(order::canonical)).to_host();
-  REQUIRE(expected.size() > 3000);
+  REQUIRE(expected.size() > 1000);
   auto const of_few =
       std::find_if(expected.begin(), expected.end(), [&](pair p) { return p.sphere >= few; }) - expected.begin();
   for (int threads : {1, 2, 3, 7}) {
@@ -73,35 +74,40 @@ void check_sorted(io::scene const& scene) {
   }
 }
 
-/// What is wrong with verdicts that are given several at a time, and with what the box of a triangle lets pass.
+/// Verdicts that are given several at a time, and what the box of a triangle lets pass: near contact, and with radii
+/// that are off by a part of 2^-24 to 2^-4.
 template <class S>
 void check_several(std::vector<tests::near_case> const& cases) {
   namespace detail = collide::detail;
   constexpr std::size_t lanes = detail::sphere_columns<S>::lanes;
-  std::size_t wrong = 0, unsure = 0, lost = 0;
+  std::size_t wrong = 0, sure = 0, lost = 0;
   detail::candidate_batch<S> batch;
   for (std::size_t first = 0; first < cases.size(); first += batch.room) {
     std::size_t const last = std::min(first + batch.room, cases.size());
+    bool hits[batch.room];
     batch.size = 0;
     for (std::size_t i = first; i < last; ++i) {
-      tests::narrow_case<S> const made(cases[i]);
+      tests::narrow_case<S> made(cases[i]);
+      if (i % 3 != 0) made.ball.radius *= 1 + std::ldexp(i % 3 == 1 ? S(1) : S(-1), -4 - static_cast<int>(i % 20));
+      bool const hit = detail::decide(made.shape, made.ball).hit;
+      hits[i - first] = hit;
       batch.add({}, made.shape, made.ball);
       S columns[5][lanes] = {};
       collide::id ids[lanes];
       detail::sphere_columns<S> const near{columns[0], columns[1], columns[2], columns[3], columns[4], ids};
       for (std::size_t k = 0; k < lanes; ++k) near.set(k, made.ball, 0);
-      lost += cases[i].hit && near.reaching(detail::box_of(made.shape), 0) != 0xff;
+      lost += hit && near.reaching(detail::box_of(made.shape), 0) != 0xff;
     }
     batch.attempt([](auto const& t, auto const& s) { return detail::attempt_straight(t, s); });
-    for (std::size_t i = first; i < last; ++i) {
-      auto const v = static_cast<detail::verdict>(batch.verdicts[i - first]);
-      unsure += v == detail::verdict::unsure;
-      wrong += v == (cases[i].hit ? detail::verdict::miss : detail::verdict::hit);
+    for (std::size_t i = 0; i < last - first; ++i) {
+      auto const v = static_cast<detail::verdict>(batch.verdicts[i]);
+      sure += v != detail::verdict::unsure;
+      wrong += v == (hits[i] ? detail::verdict::miss : detail::verdict::hit);
     }
   }
   CHECK(wrong == 0);
   CHECK(lost == 0);
-  CHECK(unsure < cases.size());
+  CHECK(sure > cases.size() / 20);
 }
 
 }  // namespace

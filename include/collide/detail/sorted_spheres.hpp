@@ -208,9 +208,7 @@ struct number_placed {
   placed_sphere<S> const* from;
   std::uint32_t* order;
   std::uint32_t* begins;
-  void operator()(std::size_t i) const {
-    order[fetch_add(begins + from[i].cell, 1u)] = static_cast<std::uint32_t>(i);
-  }
+  void operator()(std::size_t i) const { order[fetch_add(begins + from[i].cell, 1u)] = static_cast<std::uint32_t>(i); }
 };
 
 /// Kernel body of `for_each` over places: brings the spheres there. Threads write next to themselves only.
@@ -307,6 +305,9 @@ struct look_for_spheres {
 template <class S>
 class sorted_spheres {
  public:
+  /// The most spheres that can be sorted: places have 32 bits, and a sphere may be in a cell of each level.
+  static constexpr std::size_t most = std::size_t{0xffffffffu} / max_levels - sphere_columns<S>::lanes;
+
   /// Marks the cells that triangles touch. To be called for new grids.
   template <class Space>
   void mark(Space& space, box<S> const* boxes, std::size_t triangles, grid<S> const* grids, int grid_count,
