@@ -53,8 +53,6 @@ MUTATIONS = {
                      [NO_REGIONS, ("limited = clamped(mul(w, part))", "limited = mul(w, part)")]),
     "v-and-w": ("certificate.hpp", "v + w <= 1, whatever the region", "stages", "plain",
                 [NO_REGIONS, ("select(limited < rest, limited, rest)", "limited")]),
-    "whole": ("certificate.hpp", "coordinates that are not finite", "stages", "fast",
-              [("!finite(whole) | ", "")]),
     "smallest": ("certificate.hpp", "sizes below which squares underflow", "stages", "plain",
                  [("size >= bounds::smallest && ", "")]),
     "largest": ("certificate.hpp", "sizes above which products overflow", "stages", "fast",
@@ -192,6 +190,8 @@ SOUND["none.regions"] = ("certificate.hpp", None, "stages", "plain", [NO_REGIONS
 UNSEEN = [
     ("certificate.hpp", " | !valid_radius(t.radius)",
      "below 0 `inner > 0` fails, and with NaN every comparison; -ffinite-math-only promises neither, but g++ and clang++ do so"),
+    ("certificate.hpp", "!finite(whole) | ",
+     "weights are limited by selection, so a NaN becomes 0, and no comparison holds that follows; the same compilers"),
     ("certificate.hpp", " && size <= std::numeric_limits<T>::max()",
      "an infinite coordinate makes `whole` infinite or NaN, an infinite radius `inner` NaN; the same compilers"),
     ("certificate.hpp", "whole > std::numeric_limits<T>::min()",
