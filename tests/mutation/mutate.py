@@ -188,9 +188,9 @@ SOUND["none.regions"] = ("certificate.hpp", None, "stages", "plain", [NO_REGIONS
 
 # (file, the guard as it stands there, why no row goes wrong without it)
 UNSEEN = [
-    ("certificate.hpp", " | !valid_radius(t.radius)",
+    ("certificate.hpp", " | !ball",
      "below 0 `inner > 0` fails, and with NaN every comparison; -ffinite-math-only promises neither, but g++ and clang++ do so"),
-    ("certificate.hpp", "!finite(whole) | ",
+    ("certificate.hpp", "bad = !sound",
      "weights are limited by selection, so a NaN becomes 0, and no comparison holds that follows; the same compilers"),
     ("certificate.hpp", " && size <= std::numeric_limits<T>::max()",
      "an infinite coordinate makes `whole` infinite or NaN, an infinite radius `inner` NaN; the same compilers"),

@@ -9,6 +9,10 @@
 /// nearest cache.
 #pragma once
 
+#include <algorithm>
+#include <cstring>
+
+#include <collide/detail/block.hpp>
 #include <collide/detail/candidate_batch.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
