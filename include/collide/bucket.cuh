@@ -335,9 +335,11 @@ struct bucket_query {
 }  // namespace detail
 
 /// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid.hpp explains how.
-/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 4 scalars, at most 8 entries of 4
-/// bytes in the CUDA spaces and 27 on the host, and up to 16 cells of 4 bytes;
-/// several grids only where radii differ by more than a factor of 4.
+/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 4 scalars, at most 27 entries of 4
+/// bytes in the CUDA spaces and 8 on the host, and up to 8 cells of 8 bytes; several grids only where radii differ by
+/// more than a factor of 4. The host sorts the spheres instead where there are many (detail/sorted_spheres.hpp): that
+/// takes O(triangles + spheres) for a query, 6 scalars per triangle, 4 bytes per cell, and about 12 scalars for each
+/// sphere in a cell with triangles; no entries.
 struct bucket {
   /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
   /// such cells go to levels of wider ones.
