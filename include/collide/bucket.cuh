@@ -510,7 +510,7 @@ class bucket::index {
     space.launch(count, plan);
 
     if constexpr (Space::sorts_spheres) {
-      if (swaps<Space>(options)) sorted_.mark(space, boxes_.data(), n, grids, l.grids, cells_);
+      if (swaps<Space>(options)) sorted_.mark(space, boxes_.data(), n, grids, l.grids, l.table_bits);
     }
     grid_count_ = l.grids;
     wanted_ = wanted;

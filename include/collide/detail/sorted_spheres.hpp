@@ -312,15 +312,17 @@ class sorted_spheres {
   /// The most spheres that can be sorted: places have 32 bits, and a sphere may be in a cell of each level.
   static constexpr std::size_t most = std::size_t{0xffffffffu} / max_levels - sphere_columns<S>::lanes;
 
-  /// Marks the cells that triangles touch. To be called for new grids.
+  /// Marks the cells that triangles touch. To be called for new grids, the cells of each of which begin at a multiple
+  /// of 2^table_bits.
   template <class Space>
   void mark(Space& space, box<S> const* boxes, std::size_t triangles, grid<S> const* grids, int grid_count,
-            std::size_t cells) {
+            std::uint32_t table_bits) {
     boxes_ = boxes;
     grids_ = grids;
     grid_count_ = grid_count;
-    cells_ = cells;
-    std::size_t const words = cells / 32 + 1;
+    auto const last = static_cast<std::size_t>(grid_count - 1);
+    cells_ = (last << table_bits) + space.read(grids + last).cells;  // of many grids some cells are not in use
+    std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
     space.for_each(triangles, mark_cells<S>{boxes, grids, grid_count, occupied});
