@@ -38,9 +38,9 @@ int main() {
   float const centres[] = {0.9f, 0.1f, 0, 0.1f, 0.9f, 0, 5, 5, 5};
   collide::detector<collide::bucket, collide::karabassi<>, reporting> detector{reporting(1)};
 
-  std::printf("build\n");  // a summary of the mesh; then the plan of a grid, and its entries counted, scanned, filled
+  std::printf("build\n");  // a summary of the mesh; the plan of a grid; a bit for each cell that a triangle touches
   detector.build(collide::indexed_mesh(vertices, 4, corners, 2), 0.2f);
-  std::printf("query\n");
+  std::printf("query\n");  // spheres listed, counted, scanned, numbered, sorted; the triangles look for them
   auto const hits = detector.query(collide::spheres_xyz(centres, 3, 0.2f), collide::count());
   std::printf("%d hits\n", static_cast<int>(hits.total()));
 }

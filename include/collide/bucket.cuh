@@ -335,9 +335,11 @@ struct bucket_query {
 }  // namespace detail
 
 /// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid.hpp explains how.
-/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 4 scalars, at most 8 entries of 4
-/// bytes in the CUDA spaces and 27 on the host, and up to 16 cells of 4 bytes;
-/// several grids only where radii differ by more than a factor of 4.
+/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 4 scalars, at most 27 entries of 4
+/// bytes in the CUDA spaces and 8 on the host, and up to 8 cells of 8 bytes; several grids only where radii differ by
+/// more than a factor of 4. The host sorts the spheres instead where there are many (detail/sorted_spheres.hpp): that
+/// takes O(triangles + spheres) for a query, 6 scalars per triangle, 4 bytes per cell, and about 12 scalars for each
+/// sphere in a cell with triangles; no entries.
 struct bucket {
   /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
   /// such cells go to levels of wider ones.
@@ -366,7 +368,7 @@ class bucket::index {
     mesh_ = mesh;
     grid_count_ = wanted_ = 0;
     radius_given_ = false;
-    listed_ = swapped_ = queried_ = false;
+    bounded_ = listed_ = swapped_ = queried_ = false;
     bool const swaps_here = swaps<Space>(options);
     if (swaps_here) boxes_.reserve(space.resource(), mesh.size());
     has_bounds_ = options.memory_budget == 0 || fixed_bytes + bounds_bytes() <= options.memory_budget;
@@ -376,7 +378,8 @@ class bucket::index {
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
     // where spheres and triangles can swap, bounding spheres are only made with the lists
-    detail::summarise_mesh<S> const body{mesh, summary, has_bounds_ && !swaps_here ? bounds_.data() : nullptr,
+    bounded_ = has_bounds_ && !swaps_here;
+    detail::summarise_mesh<S> const body{mesh, summary, bounded_ ? bounds_.data() : nullptr,
                                          swaps_here ? boxes_.data() : nullptr};
     space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
   }
@@ -394,7 +397,8 @@ class bucket::index {
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     prepare_grids(space, options, spheres);
     // The first time that is faster than making lists; later only if there are many spheres.
-    swapped_ = grid_count_ > 0 && swaps<Space>(options) && (!queried_ || spheres.size() / 4 >= mesh_.size());
+    swapped_ = grid_count_ > 0 && swaps<Space>(options) && spheres.size() <= detail::sorted_spheres<S>::most &&
+               (!queried_ || spheres.size() / 4 >= mesh_.size());
     queried_ = true;
     if constexpr (Space::sorts_spheres) {
       if (swapped_) sorted_.sort(space, spheres);
@@ -419,7 +423,7 @@ class bucket::index {
       }
     }
     detail::bucket_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink},
-                                                    has_bounds_ ? bounds_.data() : nullptr,
+                                                    bounded_ ? bounds_.data() : nullptr,
                                                     grids_.data(),
                                                     grid_count_,
                                                     occupied(),
@@ -506,7 +510,7 @@ class bucket::index {
     space.launch(count, plan);
 
     if constexpr (Space::sorts_spheres) {
-      if (swaps<Space>(options)) sorted_.mark(space, boxes_.data(), n, grids, l.grids, cells_);
+      if (swaps<Space>(options)) sorted_.mark(space, boxes_.data(), n, grids, l.grids, l.table_bits);
     }
     grid_count_ = l.grids;
     wanted_ = wanted;
@@ -514,12 +518,13 @@ class bucket::index {
     if (!swaps<Space>(options)) make_lists(space, options);
   }
 
-  /// Enters the triangles into the cells, unless they are there.
+  /// Makes bounding spheres and enters the triangles into the cells, unless they are there.
   template <class Space>
   void make_lists(Space& space, bucket const& options) {
-    if (listed_ || grid_count_ == 0) return;
     std::size_t const n = mesh_.size();
-    if (swaps<Space>(options)) space.for_each(n, detail::compute_bounds<S>{mesh_, bounds_.data()});
+    if (has_bounds_ && !bounded_) space.for_each(n, detail::compute_bounds<S>{mesh_, bounds_.data()});
+    bounded_ = has_bounds_;
+    if (listed_ || grid_count_ == 0) return;
     auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
     constexpr int parts = Space::insertion_parts;
     detail::grid_insertion<S, parts> const insertion{mesh_, grids_.data(), grid_count_};
@@ -603,7 +608,8 @@ class bucket::index {
   int wanted_ = 0;  ///< how many grids the spheres asked for: the budget may have allowed fewer
   S reaches_[detail::max_grids] = {};
   bool radius_given_ = false;
-  bool has_bounds_ = false;
+  bool has_bounds_ = false;  ///< there is room for bounding spheres
+  bool bounded_ = false;     ///< and they are there
   bool has_summary_ = false;
   bool listed_ = false;   ///< the triangles are in the lists of the cells
   bool swapped_ = false;  ///< the spheres are, for this query

@@ -42,7 +42,7 @@ struct is_execution_space : std::false_type {};
 template <class E>
 struct is_execution_space<
     E, std::void_t<decltype(std::declval<E const&>().resource()), decltype(std::declval<E const&>().concurrency()),
-                   decltype(E::host_memory), decltype(E::defers)>> : std::true_type {};
+                   decltype(E::host_memory), decltype(E::defers), decltype(E::sorts_spheres)>> : std::true_type {};
 
 template <class H, class = void>
 struct is_handle : std::false_type {};

@@ -63,8 +63,8 @@ class host {
   /// True if a pair that takes long to decide is better put on a list, as its neighbours would wait for it.
   static constexpr bool defers = false;
 
-  /// True if a query with buckets had better sort its spheres first: where a core with a large cache tests one at a
-  /// time.
+  /// True if `bucket` had better sort many spheres into the cells and let triangles look for them than the other way
+  /// round: where a core does one thing at a time and waits for the memory. Blocks have one lane and 64 items then.
   static constexpr bool sorts_spheres = true;
 
   /// Runs `body` once for each of `blocks` blocks.

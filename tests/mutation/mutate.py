@@ -27,9 +27,9 @@ COMPILERS = {
 }
 
 # The regions of Ericson are right as they are; the weights are kept in their limits for what they might be.
-NO_REGIONS = ("""    v = inside ? v_there : v;
-    w = inside ? w_there : w;
-    whole = inside ? whole_there : whole;
+NO_REGIONS = ("""    v = select(inside, v_there, v);
+    w = select(inside, w_there, w);
+    whole = select(inside, whole_there, whole);
 """, "")
 
 # name: (file of include/collide/detail, what goes without the guard, program, compiler,
@@ -40,21 +40,19 @@ MUTATIONS = {
     "error-of-hit": ("certificate.hpp", "that error in hits", "stages", "plain", [("t.radius - error", "t.radius")]),
     "error-of-miss": ("certificate.hpp", "that error in misses", "stages", "plain", [("t.radius + error", "t.radius")]),
     "inner": ("certificate.hpp", "a radius below its error certifies no hit", "stages", "plain",
-              [("inner > 0 && ", "")]),
+              [("(inner > 0) & ", "")]),
     "least": ("certificate.hpp", "a direction that the triangle reaches to both sides of separates nothing", "stages", "plain",
-              [("least > 0 && ", "")]),
+              [("(least > 0) & ", "")]),
     "shortest": ("certificate.hpp", "squared lengths that have lost digits to underflow", "stages", "plain",
-                 [("gg >= bounds::shortest && ", "")]),
+                 [("(gg >= bounds::shortest) & ", "")]),
     "v-from-below": ("certificate.hpp", "v >= 0, whatever the region", "stages", "plain",
                      [NO_REGIONS, ("v = clamped(mul(v, part))", "v = smaller(mul(v, part), T(1))")]),
     "v-from-above": ("certificate.hpp", "v <= 1, whatever the region", "stages", "plain",
                      [NO_REGIONS, ("v = clamped(mul(v, part))", "v = larger(mul(v, part), T(0))")]),
     "w-from-below": ("certificate.hpp", "w >= 0, whatever the region", "stages", "plain",
-                     [NO_REGIONS, ("smaller(clamped(mul(w, part)), T(1) - v)", "smaller(mul(w, part), T(1) - v)")]),
+                     [NO_REGIONS, ("limited = clamped(mul(w, part))", "limited = mul(w, part)")]),
     "v-and-w": ("certificate.hpp", "v + w <= 1, whatever the region", "stages", "plain",
-                [NO_REGIONS, ("smaller(clamped(mul(w, part)), T(1) - v)", "clamped(mul(w, part))")]),
-    "whole": ("certificate.hpp", "coordinates that are not finite", "stages", "fast",
-              [("!finite(whole) || ", "")]),
+                [NO_REGIONS, ("select(limited < rest, limited, rest)", "limited")]),
     "smallest": ("certificate.hpp", "sizes below which squares underflow", "stages", "plain",
                  [("size >= bounds::smallest && ", "")]),
     "largest": ("certificate.hpp", "sizes above which products overflow", "stages", "fast",
@@ -190,11 +188,13 @@ SOUND["none.regions"] = ("certificate.hpp", None, "stages", "plain", [NO_REGIONS
 
 # (file, the guard as it stands there, why no row goes wrong without it)
 UNSEEN = [
-    ("certificate.hpp", " || !valid_radius(t.radius)",
+    ("certificate.hpp", " | !ball",
      "below 0 `inner > 0` fails, and with NaN every comparison; -ffinite-math-only promises neither, but g++ and clang++ do so"),
+    ("certificate.hpp", "bad = !sound",
+     "weights are limited by selection, so a NaN becomes 0, and no comparison holds that follows; the same compilers"),
     ("certificate.hpp", " && size <= std::numeric_limits<T>::max()",
      "an infinite coordinate makes `whole` infinite or NaN, an infinite radius `inner` NaN; the same compilers"),
-    ("certificate.hpp", "whole > std::numeric_limits<T>::min() ? quick_reciprocal(whole) : T(0)",
+    ("certificate.hpp", "whole > std::numeric_limits<T>::min()",
      "dividing by 0 gives NaN or limited weights, and so no certificate; the same compilers, and the limits of `__fdividef`"),
     ("arithmetic.hpp", "larger(r, 1)", "a subnormal power of two is as good where it is not flushed to zero"),
     ("contact_of.hpp", "distance >= clear_length && (depth",

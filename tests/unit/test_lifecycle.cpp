@@ -65,7 +65,7 @@ TEST_CASE_TEMPLATE("lifecycle: a mesh that moves and deforms is rebuilt without 
     auto const detector = c.make({});
     detector->build(made.mesh, mesh_form::indexed);
     detector->place(made.spheres, sphere_form::xyz_one);
-    tests::check_pairs(*detector, made.expect(1e-4));
+    for (int query = 0; query < 2; ++query) tests::check_pairs(*detector, made.expect(1e-4));
     auto const before = detector->memory().allocations;
     for (int frame = 1; frame <= 10; ++frame) {
       auto moved = made;
@@ -88,7 +88,7 @@ TEST_CASE_TEMPLATE("lifecycle: all memory is given back", S, float, double) {
     CHECK(idle == 0);
     detector->build(made.mesh, mesh_form::indexed);
     detector->place(made.spheres, sphere_form::xyz);
-    detector->pairs_within(10, order::canonical);
+    for (int query = 0; query < 2; ++query) detector->pairs_within(10, order::canonical);
     auto const held = detector->memory().in_use;
     CHECK(held > 0);
     detector->pairs_within(10, order::canonical);

@@ -41,39 +41,40 @@ struct candidate_batch {
 
   sphere<S> sphere_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius[k]}; }
 
+  /// Sets the verdicts to what a quick test without branches says.
+  template <class Test>
+  void attempt(Test const& test) {
+    vectorised([&] {
+      for (int k = 0; k < size; ++k) verdicts[k] = static_cast<std::int32_t>(test(triangle_of(k), sphere_of(k)));
+    });
+  }
+
   /// Takes the hits to the tester and empties the batch.
   template <class Tester, class Block>
   void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
     using narrow_phase = typename Tester::narrow_phase;
-    if constexpr (in_stages<narrow_phase>::value) {
-      vectorised([this] {
-        for (int k = 0; k < size; ++k) {
-          verdicts[k] =
-              static_cast<std::int32_t>(in_stages<narrow_phase>::attempt_straight(triangle_of(k), sphere_of(k)));
-        }
-      });
-      int n = 0;  // no branch per pair: it would often be mispredicted
-      for (int k = 0; k < size; ++k) {
-        open[n] = static_cast<std::uint8_t>(k);
-        n += verdicts[k] != static_cast<std::int32_t>(verdict::miss);
-      }
-      for (int i = 0; i < n; ++i) {
-        int const k = open[i];
-        if (verdicts[k] == static_cast<std::int32_t>(verdict::hit)) {
-          tests.keep(block, hits, ids[k]);
-        } else {
-          tests.test(block, hits, ids[k], sphere_of(k));
-        }
-        tests.make_room(block, hits);
-      }
-    } else {
-      for (int k = 0; k < size; ++k) {
+    attempt([](triangle<S> const& t, sphere<S> const& b) { return in_stages<narrow_phase>::attempt_straight(t, b); });
+    int n = 0;  // no branch per pair: it would often be mispredicted
+    for (int k = 0; k < size; ++k) {
+      open[n] = static_cast<std::uint8_t>(k);
+      n += verdicts[k] != static_cast<std::int32_t>(verdict::miss);
+    }
+    for (int i = 0; i < n; ++i) {
+      int const k = open[i];
+      if (verdicts[k] == static_cast<std::int32_t>(verdict::hit)) {
+        tests.keep(block, hits, ids[k]);
+      } else {
         tests.test(block, hits, ids[k], sphere_of(k));
-        tests.make_room(block, hits);
       }
+      tests.make_room(block, hits);
     }
     size = 0;
   }
 };
+
+/// True if candidates are decided several at a time: with a narrow phase that has a quick test without branches, and
+/// coordinates of the type that it works in.
+template <class NarrowPhase, class S>
+inline constexpr bool in_batches = in_stages<NarrowPhase>::value&& std::is_same<S, float>::value;
 
 }  // namespace collide::detail

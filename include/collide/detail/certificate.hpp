@@ -55,7 +55,7 @@ COLLIDE_HD_INLINE verdict certify(local_triangle<T> const& t, T size) {
   T const va = minor(d3, d6, d5, d4), vb = minor(d5, d2, d1, d6), vc = minor(d1, d4, d3, d2);
   T v = vb, w = vc, whole = va + vb + vc;
   // decided on bits; not finite if some coordinate is not
-  bool const bad = !finite(whole) | !valid_radius(t.radius);
+  bool const sound = finite(whole), ball = valid_radius(t.radius), bad = !sound | !ball;
   if (!Straight && bad) return verdict::unsure;
   bool face = true;
   auto const region = [&](bool inside, T v_there, T w_there, T whole_there) {
@@ -95,7 +95,8 @@ COLLIDE_HD_INLINE verdict certify(local_triangle<T> const& t, T size) {
     vec3<T> n = cross(ab, ac);
     T const sign = select(fused_dot(t.a, n) < 0, T(-1), T(1));
     n = scaled(n, sign);
-    miss = miss | (face & beyond(n, fused_dot(n, n)));
+    bool const above = beyond(n, fused_dot(n, n));
+    miss = miss | (face & above);
   }
   // hit is 1, miss is 0
   return static_cast<verdict>(static_cast<int>(!bad & hit) | static_cast<int>(bad | !(hit | miss)) << 1);

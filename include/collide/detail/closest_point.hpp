@@ -70,7 +70,8 @@ COLLIDE_HD_INLINE local_triangle<T> rounded(local_triangle<W> const& l) {
 template <class T>
 COLLIDE_HD_INLINE bool box_in_reach(local_triangle<T> const& t, T reach) {
   vec3<T> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
-  return (largest<T>(lower) <= reach) & (largest<T>(-upper) <= reach);
+  bool const below = largest<T>(lower) <= reach, above = largest<T>(-upper) <= reach;
+  return below & above;
 }
 
 /// True if the origin projects strictly inside the triangle along its normal `n`; then `foot` is where, as a convex

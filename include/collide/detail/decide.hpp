@@ -42,11 +42,17 @@ COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> cons
   return {wide.holds() ? wide.in_reach() : exact_triangle<>(t, s).in_reach(), stage::integers};
 }
 
+/// False if the triangle's box is out of reach.
+template <class S>
+COLLIDE_HD_INLINE bool box_is_near(local_triangle<S> const& l) {
+  return box_in_reach(l, larger(l.radius, format<S>::unflushed));
+}
+
 /// The first stages: `unsure` is left to `finish`.
 template <class S>
 COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, sphere<S> const& s) {
   local_triangle<S> l = relative<S>(t, s);
-  if (!box_in_reach(l, larger(l.radius, format<S>::unflushed))) return {verdict::miss, stage::box};
+  if (!box_is_near(l)) return {verdict::miss, stage::box};
   S size;
   if (!brought_to_size<S>(l, size)) return {verdict::unsure, stage::single_certificate};
   return {certify(rounded<float>(l), static_cast<float>(size)), stage::single_certificate};
@@ -58,7 +64,7 @@ template <class S>
 COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& s) {
   using bounds = certificate_bounds<float>;
   local_triangle<S> const l = relative<S>(t, s);
-  bool const near = box_in_reach(l, larger(l.radius, format<S>::unflushed));
+  bool const near = box_is_near(l);
   S const size = size_of(l);
   bool const sized = (size >= S(bounds::smallest)) & (size <= S(bounds::largest));
   int const sure = static_cast<int>(certify<true>(rounded<float>(l), static_cast<float>(size)));

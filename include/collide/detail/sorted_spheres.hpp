@@ -9,6 +9,10 @@
 /// nearest cache.
 #pragma once
 
+#include <algorithm>
+#include <cstring>
+
+#include <collide/detail/block.hpp>
 #include <collide/detail/candidate_batch.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
@@ -172,8 +176,19 @@ struct sphere_columns {
   static constexpr std::size_t lanes = 8;  ///< how many are compared with a box at a time, also beyond the end
 
   S *x, *y, *z, *radius;
-  S* reach;  ///< how far from a box the centre is at most, if the sphere touches what is in the box
+  S* reach;  ///< the square of how far from a box the centre is at most, if the sphere touches what is in the box
   id* number;
+
+  /// A box with room for the rounding of the coarsest narrow phase, as far as it goes with the triangle; the part that
+  /// goes with the radius is in `reach`. See docs/numerics.md.
+  static box<S> widened(box<S> b) {
+    S const slack = 16 * S(format<float>::unit) * b.extent();
+    for (int k = 0; k < 3; ++k) {
+      b.lower[k] -= slack;
+      b.upper[k] += slack;
+    }
+    return b;
+  }
 
   sphere<S> operator[](std::uint32_t i) const { return {{x[i], y[i], z[i]}, radius[i]}; }
 
@@ -182,21 +197,25 @@ struct sphere_columns {
     y[i] = s.centre.y();
     z[i] = s.centre.z();
     radius[i] = s.radius;
-    reach[i] = larger(mul(s.radius, 1 + 32 * S(format<float>::unit)), format<S>::unflushed);
+    reach[i] = s.radius * s.radius * (1 + 32 * S(format<float>::unit)) + 4 * std::numeric_limits<S>::min();
     number[i] = n;
   }
 
-  /// Bit k is whether sphere first + k can reach what is in the box, for k < lanes. Without branches, for the
-  /// processor's vector unit.
+  /// Bit k is whether sphere first + k can reach what is in the box, for k < lanes: whether it touches the box, which
+  /// is `widened`. Without branches, for the processor's vector unit.
   std::uint32_t reaching(box<S> const& b, std::uint32_t first) const {
     bits_of<S> constexpr bit[lanes] = {1,  2,  4,  8,
                                        16, 32, 64, 128};  // no processor shifts lanes by different amounts fast
     bits_of<S> mask = 0;
     for (std::size_t k = 0; k < lanes; ++k) {
       S const px = x[first + k], py = y[first + k], pz = z[first + k];
-      S const gap = larger(larger(larger(b.lower[0] - px, px - b.upper[0]), larger(b.lower[1] - py, py - b.upper[1])),
-                           larger(b.lower[2] - pz, pz - b.upper[2]));
-      mask |= gap <= reach[first + k] ? bit[k] : bits_of<S>(0);
+      auto const gap = [](S below, S above) {
+        S const outside = larger(below, above);
+        return select(outside > 0, outside, S(0));
+      };
+      S const gx = gap(b.lower[0] - px, px - b.upper[0]), gy = gap(b.lower[1] - py, py - b.upper[1]),
+              gz = gap(b.lower[2] - pz, pz - b.upper[2]);
+      mask |= gx * gx + (gy * gy + gz * gz) <= reach[first + k] ? bit[k] : bits_of<S>(0);
     }
     return static_cast<std::uint32_t>(mask);
   }
@@ -208,9 +227,7 @@ struct number_placed {
   placed_sphere<S> const* from;
   std::uint32_t* order;
   std::uint32_t* begins;
-  void operator()(std::size_t i) const {
-    order[fetch_add(begins + from[i].cell, 1u)] = static_cast<std::uint32_t>(i);
-  }
+  void operator()(std::size_t i) const { order[fetch_add(begins + from[i].cell, 1u)] = static_cast<std::uint32_t>(i); }
 };
 
 /// Kernel body of `for_each` over places: brings the spheres there. Threads write next to themselves only.
@@ -261,7 +278,7 @@ struct look_for_spheres {
     s.batch.size = 0;
     vectorised([&] { look(block, s); });
     test(block, s);
-    s.batch.decide(tests, block, s.hits);
+    if constexpr (in_batches<NarrowPhase, S>) s.batch.decide(tests, block, s.hits);
     tests.flush(block, s.hits);
   }
 
@@ -273,10 +290,11 @@ struct look_for_spheres {
     for (std::size_t t = begin; t < end; ++t) {
       box<S> const around = boxes[t];
       if (around.is_empty()) continue;  // not finite
+      box<S> const target = spheres.widened(around);
       auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
         std::uint32_t const last = ends[cell + n];
         for (std::uint32_t i = ends[cell]; i < last; i += spheres.lanes) {
-          std::uint32_t const here = spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+          std::uint32_t const here = spheres.reaching(target, i) & (0xffu >> (8 - smaller(last - i, 8u)));
           s.found[s.count] = {i, here, static_cast<id>(t)};
           s.count += here != 0;  // no branch: it would often be mispredicted
           if (s.count == s.room) test(block, s);
@@ -292,11 +310,17 @@ struct look_for_spheres {
   void test(Block& block, scratch<Block>& s) const {
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
-      triangle<S> const t = tests.mesh[r.triangle];
+      [[maybe_unused]] triangle<S> const t = tests.mesh[r.triangle];
       for (std::uint32_t rest = r.mask; rest != 0; rest &= rest - 1) {
         std::uint32_t const place = r.first + static_cast<std::uint32_t>(__builtin_ctz(rest));
-        if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
-        s.batch.add({spheres.number[place], r.triangle}, t, spheres[place]);
+        pair const p{spheres.number[place], r.triangle};
+        if constexpr (in_batches<NarrowPhase, S>) {
+          if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
+          s.batch.add(p, t, spheres[place]);
+        } else {
+          tests.test(block, s.hits, p, spheres[place]);
+          tests.make_room(block, s.hits);
+        }
       }
     }
     s.count = 0;
@@ -307,15 +331,20 @@ struct look_for_spheres {
 template <class S>
 class sorted_spheres {
  public:
-  /// Marks the cells that triangles touch. To be called for new grids.
+  /// The most spheres that can be sorted: places have 32 bits, and a sphere may be in a cell of each level.
+  static constexpr std::size_t most = std::size_t{0xffffffffu} / max_levels - sphere_columns<S>::lanes;
+
+  /// Marks the cells that triangles touch. To be called for new grids, the cells of each of which begin at a multiple
+  /// of 2^table_bits.
   template <class Space>
   void mark(Space& space, box<S> const* boxes, std::size_t triangles, grid<S> const* grids, int grid_count,
-            std::size_t cells) {
+            std::uint32_t table_bits) {
     boxes_ = boxes;
     grids_ = grids;
     grid_count_ = grid_count;
-    cells_ = cells;
-    std::size_t const words = cells / 32 + 1;
+    auto const last = static_cast<std::size_t>(grid_count - 1);
+    cells_ = (last << table_bits) + space.read(grids + last).cells;  // of many grids some cells are not in use
+    std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
     space.for_each(triangles, mark_cells<S>{boxes, grids, grid_count, occupied});

@@ -138,7 +138,7 @@ class way {
 
   grid<S> const* grid_ = nullptr;
   grid_level<S> const* level_ = nullptr;
-  vec3<S> from_, along_;
+  vec3<S> from_ = vec3<S>::Zero(), along_ = vec3<S>::Zero();
   cell_range whole_;       ///< the cells of the way's box
   std::uint32_t span_[3];  ///< how many cells a piece has on an axis, at most
   std::uint32_t pieces_ = 1;
