@@ -125,8 +125,8 @@ TEST_CASE("fixed triangle: what holds") {
   CHECK_FALSE(holds(0x1p62 - 512, -513));
   CHECK(holds(0, 0, 0x1p62));
   CHECK_FALSE(holds(0, 0, 0x1p62 + 0x1p10));
-  CHECK(holds(0x1p73, 0x1p73));  // but there are only two words for the numbers themselves
-  CHECK_FALSE(holds(0x1p74, 0x1p74));
+  CHECK(holds(0x1p125, 0x1p125));  // but there are only two words for the numbers themselves
+  CHECK_FALSE(holds(0x1p126, 0x1p126));
   double const long_one = 0x1p126 - 0x1p73;
   CHECK(holds(long_one, long_one));
   CHECK_FALSE(holds(long_one, -long_one));
@@ -135,7 +135,8 @@ TEST_CASE("fixed triangle: what holds") {
   CHECK_FALSE(holds<2>(long_one, -long_one));
   CHECK(holds<2>(0x1p62 + 0x1p10, 0));
   CHECK(holds<2>(0x1p73, 0, 0x1p73));
-  CHECK_FALSE(holds<2>(0x1p74, 0));  // 1 is the unit here, and a shift is 73 at most
+  CHECK(holds<2>(0x1p125, 0));
+  CHECK_FALSE(holds<2>(0x1p126, 0));
   CHECK_FALSE(holds(0x1p128, 0));
   CHECK_FALSE(holds(0x1p128, 0x1p128));
   CHECK_FALSE(holds(std::numeric_limits<double>::max(), 0));

@@ -100,7 +100,8 @@ class fixed_triangle {
   };
 
   static constexpr int most_bits = 64 * Words - 2;
-  static constexpr int most_shift = 73;  ///< of 53 bits in two words, less one for a difference and one for the sign
+  static constexpr int most_length =
+      126;  ///< of a number in two words, less a bit for a difference and one for the sign
 
   int unit_ = 1 << 30;  ///< as a power of two
   bool holds_ = true;
@@ -117,7 +118,7 @@ class fixed_triangle {
   COLLIDE_HD_INLINE two_words in_units(S x) {
     dyadic const d = decoded(x);
     int const shift = d.mantissa == 0 ? 0 : d.exponent - unit_;
-    holds_ = holds_ && shift <= most_shift;
+    holds_ = holds_ && shift + d.length() <= most_length;
     return static_cast<two_words>(d.mantissa) << (shift & 127);
   }
 
