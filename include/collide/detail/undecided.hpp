@@ -17,17 +17,16 @@ namespace collide::detail {
 /// A list of pairs that were left open.
 struct undecided {
   struct counters {
-    std::uint32_t total;  ///< counts also pairs that found no room, but stops well before it overflows
-    std::uint32_t ready;  ///< blocks of the second step that are done
+    std::uint64_t total;  ///< counts also pairs that found no room
+    std::uint64_t ready;  ///< blocks of the second step that are done
   };
 
   counters* count;
   pair* pairs;
-  std::uint32_t capacity;
+  std::uint64_t capacity;
 
   COLLIDE_HD_INLINE void add(pair p) const {
-    if (load_relaxed(&count->total) > capacity) return;
-    std::uint32_t const slot = fetch_add(&count->total, 1u);
+    std::uint64_t const slot = fetch_add(&count->total, std::uint64_t{1});
     if (slot < capacity) pairs[slot] = p;
   }
 };
@@ -43,7 +42,7 @@ class undecided_list {
     auto* const count = count_.reserve(space.resource(), 1);
     if (!empty_) space.fill(count, 0, sizeof *count);
     empty_ = false;
-    return {count, pairs_.reserve(space.resource(), capacity), static_cast<std::uint32_t>(capacity)};
+    return {count, pairs_.reserve(space.resource(), capacity), capacity};
   }
 
   /// To be called when both steps are on their way.
@@ -100,7 +99,7 @@ struct finish_undecided {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    std::uint32_t const total = open.count->total;
+    std::uint64_t const total = open.count->total;
     bool const listed = total <= open.capacity;
     if (total != 0) {
       tester<S, NarrowPhase, finishing<Handle>> const tests{mesh, spheres, {{handle}, listed}};
@@ -125,7 +124,7 @@ struct finish_undecided {
     }
     // the last block to come here empties the list
     block.each([&](int lane) {
-      if (lane != 0 || fetch_add(&open.count->ready, 1u) + 1 != blocks) return;
+      if (lane != 0 || fetch_add(&open.count->ready, std::uint64_t{1}) + 1 != blocks) return;
       open.count->total = open.count->ready = 0;
     });
   }
@@ -138,7 +137,7 @@ void query_in_steps(Space& space, Index const& index, mesh_view<S> const& mesh,
   undecided const open = list.begin(space, spheres.size());
   index.template query<NarrowPhase>(space, spheres, deferring<Handle>{{handle}, open});
   finish_undecided<S, NarrowPhase, Handle> body{mesh, spheres, handle, open, 0};
-  body.blocks = smaller(larger<std::size_t>(1, space.concurrency() / 8), blocks_for<Space>(open.capacity, body));
+  body.blocks = smaller(larger<std::size_t>(1, space.concurrency() / 4), blocks_for<Space>(open.capacity, body));
   space.launch(body.blocks, body);
   list.end();
 }
