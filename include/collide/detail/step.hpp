@@ -1,0 +1,347 @@
+/// \file
+/// The kernel of a simulation's step.
+///
+/// One pass over the particles: each lane takes groups of four, integrates them, and asks the broad phase whether there
+/// could be a triangle near. Mostly there is none. The few others are listed in scratch memory; their candidates are
+/// spread evenly over the lanes of the block, and each candidate that the narrow phase accepts offers itself as the next
+/// contact of its particle: the deepest, or of particles that move the earliest, wins, by a minimum over 64-bit keys,
+/// which does not depend on the order. One lane then lets the effects respond. This is repeated until no contact counts:
+///   - a contact counts only if its foot lies above the tangent planes of those before. In a corner both walls count; on
+///     a plane that is divided into triangles one does, and no inner edge is felt;
+///   - particles that move spend what is left of the step after each impact, from where they then are.
+#pragma once
+
+#include <collide/detail/lookup.hpp>
+#include <collide/detail/scene.hpp>
+#include <collide/detail/touching_mesh.hpp>
+
+namespace collide::detail {
+
+/// A particle that may touch the mesh in this step, in scratch memory. Plain numbers: scratch memory is not constructed.
+template <class S, bool Moves>
+struct survivor {
+  static constexpr int planes = 3;
+
+  S centre[3], radius, way[Moves ? 3 : 1];
+  S normals[planes][3], feet[planes][3];  ///< of the contacts that came before
+  S rest;                                 ///< of the step, after the impacts so far
+  std::uint64_t best;                     ///< key of the next contact
+  std::uint32_t offered;                  ///< how many candidates offered themselves
+  int before;                             ///< how many contacts came before
+  id number;
+  bool is_active;
+  candidate_cursor cursor;
+
+  COLLIDE_HD_INLINE auto ball() const {
+    if constexpr (Moves) {
+      return moving_sphere<S>{{{centre[0], centre[1], centre[2]}, radius}, {way[0], way[1], way[2]}};
+    } else {
+      return sphere<S>{{centre[0], centre[1], centre[2]}, radius};
+    }
+  }
+
+  COLLIDE_HD_INLINE void place(vec3<S> const& at, vec3<S> const& along) {
+    for (int k = 0; k < 3; ++k) {
+      centre[k] = at[k];
+      if constexpr (Moves) way[k] = along[k];
+    }
+  }
+
+  COLLIDE_HD_INLINE void remember(contact<S> const& c) {
+    int const slot = before % planes;
+    for (int k = 0; k < 3; ++k) {
+      normals[slot][k] = c.normal[k];
+      feet[slot][k] = c.point[k];
+    }
+    ++before;
+  }
+
+  /// True if a foot is part of the same surface as a contact before: not above its tangent plane.
+  COLLIDE_HD_INLINE bool knows(vec3<S> const& foot) const {
+    bool known = false;
+    for (int i = 0; i < planes; ++i) {
+      if (i >= before) break;
+      S above = 0;
+      for (int k = 0; k < 3; ++k) above += normals[i][k] * (foot[k] - feet[i][k]);
+      bool leaves = true;
+      if constexpr (Moves) leaves = !approaches({normals[i][0], normals[i][1], normals[i][2]});
+      known = known || (leaves && above <= tolerance * radius);
+    }
+    return known;
+  }
+
+  /// True if the way leads towards a surface with this normal, and not only along it.
+  COLLIDE_HD_INLINE bool approaches(vec3<S> const& normal) const {
+    vec3<S> const d(way[0], way[1], way[2]);
+    S const into = -dot(d, normal);
+    return into > 0 && into * into > tolerance * tolerance * dot(d, d);
+  }
+
+  /// What feet may differ in height, in radii, and normals in slope, due to rounding.
+  static constexpr S tolerance = sizeof(S) == sizeof(float) ? S(1e-5) : S(1e-9);
+};
+
+/// Keys of contacts: the smaller comes first. Ties go to the lower triangle number.
+inline constexpr std::uint64_t no_contact = ~std::uint64_t{0};
+
+template <class S>
+COLLIDE_HD_INLINE std::uint64_t contact_key(S time, S depth, id triangle) {
+  std::uint32_t const first = time > 0 ? (bits(static_cast<float>(time)) | 0x80000000u)
+                                       : ~ordered(static_cast<float>(depth)) >> 1;
+  return (std::uint64_t{first} << 32) | triangle;
+}
+
+/// Kernel body: one step of all particles. `NarrowPhase` judges balls at rest or balls that move.
+template <class S, class NarrowPhase, class Lookup, class Scene>
+struct step_body {
+  static constexpr int items = particles_per_group;
+  static constexpr bool moves = !at_rest<NarrowPhase, S>;
+  static constexpr int most_contacts = moves ? 8 : 4;  ///< of a particle in a step
+  static constexpr S part_before = S(Scene::integrator::before), part_after = S(Scene::integrator::after);
+
+  particle_state<S, typename Scene::all> state;
+  Scene scene;
+  Lookup lookup;
+  S dt;
+
+  using flying = particle<S, typename Scene::flight>;
+  using colliding = particle<S, typename Scene::contact>;
+
+  template <class Block, bool Touches>
+  struct scratch_of {};
+  template <class Block>
+  struct scratch_of<Block, true> {
+    static constexpr int size = Block::lanes * Block::items;
+    static constexpr int together = Block::lanes > 1 ? Block::lanes / 2 : size;  ///< how many are resolved at a time
+
+    std::uint32_t count;
+    id listed[size];
+    survivor<S, moves> those[together];
+    std::uint32_t ranges, active;
+    std::uint32_t owner[together], counts[together];
+    id const* from[together];
+    id first[together];
+    typename Block::balance_scratch balance;
+  };
+  template <class Block>
+  using scratch = scratch_of<Block, Scene::touches>;
+
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    if constexpr (Scene::touches) {
+      block.each([&](int lane) {
+        if (lane == 0) s.count = 0;
+      });
+      Lookup const near = lookup.opened();
+      fly(block, [&](flying const& p) {
+        if (near.empty(ball_of(p))) return false;
+        s.listed[block.add(s.count, 1)] = p.number;
+        return true;
+      });
+      std::uint32_t const n = block.shared(s.count);
+      for (std::uint32_t base = 0; base < n; base += scratch<Block>::together) {
+        collide(block, s, near, base, smaller(n - base, static_cast<std::uint32_t>(scratch<Block>::together)));
+      }
+    } else {
+      fly(block, [](flying const&) { return false; });
+    }
+  }
+
+ private:
+  /// Moves all particles of the block; calls list(p) of each for whether it may touch the mesh, and leaves those that
+  /// do (if balls move: before they have moved) to `collide`.
+  template <class Block, class List>
+  COLLIDE_HD_INLINE void fly(Block& block, List const& list) const {
+    std::size_t const first = block.index() * Block::lanes * Block::items;
+    block.each([&](int lane) {
+      for (int k = 0; k < Block::items; k += particles_per_group) {
+        std::size_t const i = first + static_cast<std::size_t>(lane * Block::items + k);
+        if (i < state.size) fly_group(i, list);
+      }
+    });
+  }
+
+  template <class List>
+  COLLIDE_HD_INLINE void fly_group(std::size_t first, List const& list) const {
+    bool skipped[particles_per_group] = {};
+    if constexpr (Scene::skips) {
+      particle<S, typename Scene::skipping> p[particles_per_group];
+      state.load_group(p, first);
+      bool all = true;
+      for (int k = 0; k < particles_per_group; ++k) {
+        skipped[k] = first + static_cast<std::size_t>(k) >= state.size || scene.is_skipped(p[k]);
+        all = all && skipped[k];
+      }
+      if (all) return;
+    }
+    flying p[particles_per_group];
+    state.load_group(p, first);
+    for (int k = 0; k < particles_per_group; ++k) {
+      if (skipped[k]) continue;
+      if constexpr (part_before != 0) scene.accelerate(p[k], part_before * dt);
+      if constexpr (!moves) p[k][position{}] += p[k][velocity{}] * dt;
+      if constexpr (Scene::touches) {
+        if (p[k].number < state.size && list(p[k])) continue;
+      }
+      if constexpr (moves) p[k][position{}] += p[k][velocity{}] * dt;
+      if constexpr (part_after != 0) scene.accelerate(p[k], part_after * dt);
+      scene.finish(p[k], dt);
+    }
+    state.store_group(p, first, typename Scene::flight_writes{});
+  }
+
+  /// What the narrow phase judges.
+  template <class P>
+  COLLIDE_HD_INLINE auto ball_of(P const& p) const {
+    if constexpr (moves) {
+      return moving_sphere<S>{{p[position{}], p.the_radius}, p[velocity{}] * dt};
+    } else {
+      return sphere<S>{p[position{}], p.the_radius};
+    }
+  }
+
+  /// Resolves the contacts of some listed particles.
+  template <class Block>
+  COLLIDE_HD void collide(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t base,
+                          std::uint32_t n) const {
+    auto const each_of_lane = [&](auto const& f) {
+      block.each([&](int lane) {
+        for (auto j = static_cast<std::uint32_t>(lane); j < n; j += Block::lanes) f(s.those[j], j);
+      });
+    };
+    each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
+      one.number = s.listed[base + j];
+      colliding p;
+      state.load(p, one.number);
+      one.radius = p.the_radius;
+      one.place(p[position{}], p[velocity{}] * dt);
+      one.rest = dt;
+      one.before = 0;
+      one.is_active = true;
+    });
+    for (bool more = true; more;) {
+      each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
+        one.best = no_contact;
+        one.offered = 0;
+        if (one.is_active) one.cursor = near.begin(one.ball());
+        if (j == 0) s.active = 0;
+      });
+      offer_all(block, s, near, each_of_lane);
+      each_of_lane([&](survivor<S, moves>& one, std::uint32_t) {
+        if (!one.is_active) return;
+        respond(one, near);
+        if (one.is_active) block.add(s.active, 1);
+      });
+      more = block.shared(s.active) != 0;
+    }
+  }
+
+  /// Offers all candidates of the active ones.
+  template <class Block, class Each>
+  COLLIDE_HD void offer_all(Block& block, scratch<Block>& s, Lookup const& near, Each const& each_of_lane) const {
+    constexpr std::uint32_t most = (1u << 31) / scratch<Block>::together;
+    for (;;) {
+      block.each([&](int lane) {
+        if (lane == 0) s.ranges = 0;
+      });
+      each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
+        candidate_range range;
+        if (!one.is_active || !near.next(one.ball(), one.cursor, most, range)) return;
+        std::uint32_t const place = block.add(s.ranges, 1);
+        s.owner[place] = j;
+        s.counts[place] = range.count;
+        s.from[place] = range.listed;
+        s.first[place] = range.first;
+      });
+      std::uint32_t const ranges = block.shared(s.ranges);
+      if (ranges == 0) return;
+      block.balanced(
+          s.balance, s.counts, ranges, [](std::uint32_t i) { return i; },
+          [&](std::uint32_t i, std::uint32_t k) {
+            offer(s.those[s.owner[i]], near, candidate_range{s.from[i], s.first[i], 0}.at(k));
+          },
+          [] {});
+    }
+  }
+
+  /// Offers a triangle as the next contact of a particle, if they touch and it counts.
+  COLLIDE_HD_INLINE void offer(survivor<S, moves>& one, Lookup const& near, id number) const {
+    auto const ball = one.ball();
+    if (!near.near(ball, number)) return;
+    triangle<S> const t = near.mesh[number];
+    if (!NarrowPhase::intersects(t, ball)) return;
+    S const time = time_of(t, ball);
+    contact<S> const c = contact_here(t, place_at(ball, time));
+    if (one.knows(c.point)) return;
+    if constexpr (moves) {
+      if (!one.approaches(c.normal)) return;
+    }
+    fetch_add(&one.offered, 1u);
+    fetch_min(&one.best, contact_key(time, c.depth, number));
+  }
+
+  static COLLIDE_HD_INLINE S time_of(triangle<S> const& t, moving_sphere<S> const& ball) {
+    return NarrowPhase::time_of_impact(t, ball);
+  }
+  static COLLIDE_HD_INLINE S time_of(triangle<S> const&, sphere<S> const&) { return 0; }
+  static COLLIDE_HD_INLINE sphere<S> place_at(moving_sphere<S> const& ball, S time) { return ball_at(ball, time); }
+  static COLLIDE_HD_INLINE sphere<S> const& place_at(sphere<S> const& ball, S) { return ball; }
+
+  /// Lets the effects respond to the contact that was found, and says whether to look for another. If there was none,
+  /// the particle's step ends.
+  COLLIDE_HD void respond(survivor<S, moves>& one, Lookup const& near) const {
+    colliding p;
+    state.load(p, one.number);
+    if (one.best == no_contact) {
+      if constexpr (moves) p[position{}] += p[velocity{}] * one.rest;
+      one.is_active = false;
+    } else {
+      auto const number = static_cast<id>(one.best);
+      auto const ball = one.ball();
+      triangle<S> const t = near.mesh[number];
+      S const time = time_of(t, ball);
+      sphere<S> const here = place_at(ball, time);
+      touching<S> c{contact_here(t, here), S(0), S(0)};
+      c.sphere = one.number;
+      c.triangle = number;
+      if constexpr (moves) {
+        p[position{}] = here.centre;
+        one.rest -= one.rest * time;
+      } else {
+        c.depth -= dot(c.normal, vec3<S>(p[position{}] - here.centre));  // earlier contacts have moved it
+      }
+      one.remember(c);
+      colliding next = p;
+      scene.accelerate(next, dt);
+      c.gain = dot(c.normal, vec3<S>(next[velocity{}] - p[velocity{}]));
+      scene.touch(p, c, dt);
+      one.is_active = one.before < most_contacts;
+      if constexpr (moves) {
+        one.place(p[position{}], p[velocity{}] * one.rest);
+        if (one.approaches(c.normal)) {  // nothing repels: it goes through
+          p[position{}] += p[velocity{}] * one.rest;
+          one.is_active = false;
+        }
+      } else {
+        one.is_active = one.is_active && one.offered > 1;
+      }
+      if (is_skipped(p)) one.is_active = false;
+    }
+    if (!one.is_active) {
+      if constexpr (part_after != 0) scene.accelerate(p, part_after * dt);
+      scene.finish(p, dt);
+    }
+    state.store(p, one.number, typename Scene::contact_writes{});
+  }
+
+  /// True if an effect has taken the particle out of the scene.
+  COLLIDE_HD_INLINE bool is_skipped(colliding& p) const {
+    if constexpr (Scene::skips) {
+      return scene.is_skipped(p);
+    } else {
+      return false;
+    }
+  }
+};
+
+}  // namespace collide::detail
