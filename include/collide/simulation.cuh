@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include <collide/detail/step.hpp>
+#include <collide/detail/respond.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
@@ -164,6 +164,11 @@ class simulation {
     std::size_t const padded = (room + group - 1) / group * group;
     memory_.reserve(space_.resource(), padded);
     state_ = memory_.state(room, particles.common_radius());
+    if constexpr (scene_type::touches) {
+      std::uint32_t* const counters = counters_.reserve(space_.resource(), 2);
+      space_.fill(counters, 0, 2 * sizeof *counters);
+      list_ = {counters, counters + 1, listed_.reserve(space_.resource(), room)};
+    }
     space_.for_each(padded, detail::place_particles<S, columns>{state_, particles, velocities});
     prepare();
   }
@@ -185,11 +190,21 @@ class simulation {
       if constexpr (scene_type::touches) {
         return mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
       } else {
-        return nothing{};
+        return detail::no_lookup{};
       }
     }();
-    detail::step_body<S, narrow_phase, std::decay_t<decltype(lookup)>, scene_type> const body{state_, scene_, lookup, dt};
-    space_.launch(detail::blocks_for<execution_space>(state_.size, body), body);
+    using lookup_type = std::decay_t<decltype(lookup)>;
+    detail::fly_body<S, narrow_phase, lookup_type, scene_type> const fly{state_, scene_, lookup, list_, dt};
+    space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
+    if constexpr (scene_type::touches) {
+      detail::respond_body<S, narrow_phase, lookup_type, scene_type> body{state_, scene_, lookup, list_, dt, 0};
+      using block = typename execution_space::template block<decltype(body)>;
+      std::size_t most = state_.size;
+      if constexpr (execution_space::host_memory) most = *list_.count;
+      body.blocks = (most + body.template together<block> - 1) / body.template together<block>;
+      if constexpr (!execution_space::host_memory) body.blocks = detail::smaller(body.blocks, space_.concurrency());
+      space_.launch(body.blocks, body);
+    }
   }
 
   /// Advances `n` times by `dt`.
@@ -246,7 +261,6 @@ class simulation {
 
  private:
   static constexpr std::size_t group = detail::particles_per_group;
-  struct nothing {};
 
   template <class Column>
   static constexpr void check() {
@@ -277,6 +291,9 @@ class simulation {
   index index_;
   detail::column_buffers<S, columns> memory_;
   state_type state_{};
+  buffer<std::uint32_t> counters_;
+  buffer<id> listed_;
+  detail::listed_particles list_{};
 };
 
 }  // namespace collide

@@ -53,6 +53,9 @@ struct triangle_lookup {
   }
 };
 
+/// In place of a lookup, if nothing asks.
+struct no_lookup {};
+
 /// The lookup of `all_pairs`.
 template <class S>
 struct all_pairs_lookup : triangle_lookup<S> {

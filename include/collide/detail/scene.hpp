@@ -229,12 +229,12 @@ struct scene : held_effect<E>... {
 
   /// Of two scenes' worth of reasons to leave a particle out, one suffices.
   template <class P>
-  COLLIDE_HD_INLINE bool is_skipped(P& p) const {
+  COLLIDE_HD_INLINE bool is_skipped([[maybe_unused]] P& p) const {
     return (skipped_by<E>(p) || ...);
   }
 
   template <class P>
-  COLLIDE_HD_INLINE void accelerate(P& p, S dt) const {
+  COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     (accelerate_by<E>(p, dt), ...);
   }
   template <class P>
@@ -246,13 +246,13 @@ struct scene : held_effect<E>... {
     (meet_by<E>(p, other, gap, dt), ...);
   }
   template <class P>
-  COLLIDE_HD_INLINE void finish(P& p, S dt) const {
+  COLLIDE_HD_INLINE void finish([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     (finish_by<E>(p, dt), ...);
   }
 
  private:
   template <class F, class P>
-  COLLIDE_HD_INLINE bool skipped_by(P& p) const {
+  COLLIDE_HD_INLINE bool skipped_by([[maybe_unused]] P& p) const {
     if constexpr (skips_in<F, S>::value) {
       seen_by<F, P> const seen(p);
       return of<F>().skips(seen);
@@ -261,21 +261,21 @@ struct scene : held_effect<E>... {
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void accelerate_by(P& p, S dt) const {
+  COLLIDE_HD_INLINE void accelerate_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (accelerates_in<F, S>::value) {
       seen_by<F, P> seen(p);
       of<F>().accelerate(seen, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void touch_by(P& p, touching<S>& t, S dt) const {
+  COLLIDE_HD_INLINE void touch_by([[maybe_unused]] P& p, [[maybe_unused]] touching<S>& t, [[maybe_unused]] S dt) const {
     if constexpr (touches_in<F, S>::value) {
       seen_by<F, P> seen(p);
       of<F>().touch(seen, t, dt);
     }
   }
   template <class F, class P, class Q>
-  COLLIDE_HD_INLINE void meet_by(P& p, Q& other, S gap, S dt) const {
+  COLLIDE_HD_INLINE void meet_by([[maybe_unused]] P& p, [[maybe_unused]] Q& other, [[maybe_unused]] S gap, [[maybe_unused]] S dt) const {
     if constexpr (meets_in<F, S>::value) {
       seen_by<F, P> seen(p);
       seen_by<F, Q> const seen_other(other);
@@ -283,7 +283,7 @@ struct scene : held_effect<E>... {
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void finish_by(P& p, S dt) const {
+  COLLIDE_HD_INLINE void finish_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (finishes_in<F, S>::value) {
       seen_by<F, P> seen(p);
       of<F>().finish(seen, dt);

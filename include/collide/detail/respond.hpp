@@ -1,18 +1,17 @@
 /// \file
-/// The kernel of a simulation's step.
+/// The second kernel of a simulation's step: finds the contacts of the particles that may touch the mesh, and lets the
+/// effects respond.
 ///
-/// One pass over the particles: each lane takes groups of four, integrates them, and asks the broad phase whether there
-/// could be a triangle near. Mostly there is none. The few others are listed in scratch memory; their candidates are
-/// spread evenly over the lanes of the block, and each candidate that the narrow phase accepts offers itself as the next
-/// contact of its particle: the deepest, or of particles that move the earliest, wins, by a minimum over 64-bit keys,
-/// which does not depend on the order. One lane then lets the effects respond. This is repeated until no contact counts:
+/// The candidates of some particles are spread evenly over the lanes of the block. Each candidate that the narrow phase
+/// accepts offers itself as the next contact of its particle: the deepest, or of particles that move the earliest, wins,
+/// by a minimum over 64-bit keys, which does not depend on the order. One lane then lets the effects respond. This is
+/// repeated until no contact counts:
 ///   - a contact counts only if its foot lies above the tangent planes of those before. In a corner both walls count; on
 ///     a plane that is divided into triangles one does, and no inner edge is felt;
 ///   - particles that move spend what is left of the step after each impact, from where they then are.
 #pragma once
 
-#include <collide/detail/lookup.hpp>
-#include <collide/detail/scene.hpp>
+#include <collide/detail/fly.hpp>
 #include <collide/detail/touching_mesh.hpp>
 
 namespace collide::detail {
@@ -91,118 +90,58 @@ COLLIDE_HD_INLINE std::uint64_t contact_key(S time, S depth, id triangle) {
   return (std::uint64_t{first} << 32) | triangle;
 }
 
-/// Kernel body: one step of all particles. `NarrowPhase` judges balls at rest or balls that move.
+/// Kernel body: the contacts of all listed particles, in `blocks` blocks that share the list.
 template <class S, class NarrowPhase, class Lookup, class Scene>
-struct step_body {
-  static constexpr int items = particles_per_group;
+struct respond_body {
+  static constexpr int items = 1;
   static constexpr bool moves = !at_rest<NarrowPhase, S>;
   static constexpr int most_contacts = moves ? 8 : 4;  ///< of a particle in a step
-  static constexpr S part_before = S(Scene::integrator::before), part_after = S(Scene::integrator::after);
+  static constexpr S part_after = S(Scene::integrator::after);
 
   particle_state<S, typename Scene::all> state;
   Scene scene;
   Lookup lookup;
+  listed_particles list;
   S dt;
+  std::size_t blocks;
 
-  using flying = particle<S, typename Scene::flight>;
-  using colliding = particle<S, typename Scene::contact>;
-
-  template <class Block, bool Touches>
-  struct scratch_of {};
+  /// How many particles a block resolves at a time.
   template <class Block>
-  struct scratch_of<Block, true> {
-    static constexpr int size = Block::lanes * Block::items;
-    static constexpr int together = Block::lanes > 1 ? Block::lanes / 2 : size;  ///< how many are resolved at a time
+  static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes / 4 : Block::items;
 
-    std::uint32_t count;
-    id listed[size];
-    survivor<S, moves> those[together];
+  template <class Block>
+  struct scratch {
+    static constexpr std::uint32_t size = together<Block>;
+
     std::uint32_t ranges, active;
-    std::uint32_t owner[together], counts[together];
-    id const* from[together];
-    id first[together];
+    survivor<S, moves> those[size];
+    std::uint32_t owner[size], counts[size];
+    id const* from[size];
+    id first[size];
     typename Block::balance_scratch balance;
   };
-  template <class Block>
-  using scratch = scratch_of<Block, Scene::touches>;
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    if constexpr (Scene::touches) {
-      block.each([&](int lane) {
-        if (lane == 0) s.count = 0;
-      });
-      Lookup const near = lookup.opened();
-      fly(block, [&](flying const& p) {
-        if (near.empty(ball_of(p))) return false;
-        s.listed[block.add(s.count, 1)] = p.number;
-        return true;
-      });
-      std::uint32_t const n = block.shared(s.count);
-      for (std::uint32_t base = 0; base < n; base += scratch<Block>::together) {
-        collide(block, s, near, base, smaller(n - base, static_cast<std::uint32_t>(scratch<Block>::together)));
-      }
-    } else {
-      fly(block, [](flying const&) { return false; });
+    std::uint32_t const n = *list.count;
+    Lookup const near = lookup.opened();
+    constexpr std::uint32_t size = together<Block>;
+    for (std::size_t base = block.index() * size; base < n; base += blocks * size) {
+      collide(block, s, near, list.numbers + base, smaller(n - static_cast<std::uint32_t>(base), size));
     }
-  }
-
- private:
-  /// Moves all particles of the block; calls list(p) of each for whether it may touch the mesh, and leaves those that
-  /// do (if balls move: before they have moved) to `collide`.
-  template <class Block, class List>
-  COLLIDE_HD_INLINE void fly(Block& block, List const& list) const {
-    std::size_t const first = block.index() * Block::lanes * Block::items;
     block.each([&](int lane) {
-      for (int k = 0; k < Block::items; k += particles_per_group) {
-        std::size_t const i = first + static_cast<std::size_t>(lane * Block::items + k);
-        if (i < state.size) fly_group(i, list);
-      }
+      if (lane != 0 || fetch_add(list.done, 1u) + 1 != blocks) return;
+      *list.count = 0;
+      *list.done = 0;
     });
   }
 
-  template <class List>
-  COLLIDE_HD_INLINE void fly_group(std::size_t first, List const& list) const {
-    bool skipped[particles_per_group] = {};
-    if constexpr (Scene::skips) {
-      particle<S, typename Scene::skipping> p[particles_per_group];
-      state.load_group(p, first);
-      bool all = true;
-      for (int k = 0; k < particles_per_group; ++k) {
-        skipped[k] = first + static_cast<std::size_t>(k) >= state.size || scene.is_skipped(p[k]);
-        all = all && skipped[k];
-      }
-      if (all) return;
-    }
-    flying p[particles_per_group];
-    state.load_group(p, first);
-    for (int k = 0; k < particles_per_group; ++k) {
-      if (skipped[k]) continue;
-      if constexpr (part_before != 0) scene.accelerate(p[k], part_before * dt);
-      if constexpr (!moves) p[k][position{}] += p[k][velocity{}] * dt;
-      if constexpr (Scene::touches) {
-        if (p[k].number < state.size && list(p[k])) continue;
-      }
-      if constexpr (moves) p[k][position{}] += p[k][velocity{}] * dt;
-      if constexpr (part_after != 0) scene.accelerate(p[k], part_after * dt);
-      scene.finish(p[k], dt);
-    }
-    state.store_group(p, first, typename Scene::flight_writes{});
-  }
-
-  /// What the narrow phase judges.
-  template <class P>
-  COLLIDE_HD_INLINE auto ball_of(P const& p) const {
-    if constexpr (moves) {
-      return moving_sphere<S>{{p[position{}], p.the_radius}, p[velocity{}] * dt};
-    } else {
-      return sphere<S>{p[position{}], p.the_radius};
-    }
-  }
+ private:
+  using colliding = particle<S, typename Scene::contact>;
 
   /// Resolves the contacts of some listed particles.
   template <class Block>
-  COLLIDE_HD void collide(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t base,
+  COLLIDE_HD void collide(Block& block, scratch<Block>& s, Lookup const& near, id const* numbers,
                           std::uint32_t n) const {
     auto const each_of_lane = [&](auto const& f) {
       block.each([&](int lane) {
@@ -210,7 +149,7 @@ struct step_body {
       });
     };
     each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
-      one.number = s.listed[base + j];
+      one.number = numbers[j];
       colliding p;
       state.load(p, one.number);
       one.radius = p.the_radius;
@@ -239,7 +178,7 @@ struct step_body {
   /// Offers all candidates of the active ones.
   template <class Block, class Each>
   COLLIDE_HD void offer_all(Block& block, scratch<Block>& s, Lookup const& near, Each const& each_of_lane) const {
-    constexpr std::uint32_t most = (1u << 31) / scratch<Block>::together;
+    constexpr std::uint32_t most = (1u << 31) / together<Block>;
     for (;;) {
       block.each([&](int lane) {
         if (lane == 0) s.ranges = 0;
@@ -258,13 +197,14 @@ struct step_body {
       block.balanced(
           s.balance, s.counts, ranges, [](std::uint32_t i) { return i; },
           [&](std::uint32_t i, std::uint32_t k) {
-            offer(s.those[s.owner[i]], near, candidate_range{s.from[i], s.first[i], 0}.at(k));
+            offer<Block>(s.those[s.owner[i]], near, candidate_range{s.from[i], s.first[i], 0}.at(k));
           },
           [] {});
     }
   }
 
   /// Offers a triangle as the next contact of a particle, if they touch and it counts.
+  template <class Block>
   COLLIDE_HD_INLINE void offer(survivor<S, moves>& one, Lookup const& near, id number) const {
     auto const ball = one.ball();
     if (!near.near(ball, number)) return;
@@ -276,8 +216,14 @@ struct step_body {
     if constexpr (moves) {
       if (!one.approaches(c.normal)) return;
     }
-    fetch_add(&one.offered, 1u);
-    fetch_min(&one.best, contact_key(time, c.depth, number));
+    std::uint64_t const key = contact_key(time, c.depth, number);
+    if constexpr (Block::lanes > 1) {
+      fetch_add(&one.offered, 1u);
+      fetch_min(&one.best, key);
+    } else {
+      ++one.offered;
+      one.best = smaller(one.best, key);
+    }
   }
 
   static COLLIDE_HD_INLINE S time_of(triangle<S> const& t, moving_sphere<S> const& ball) {
