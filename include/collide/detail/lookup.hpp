@@ -5,7 +5,8 @@
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
 ///     candidates, until it returns false; a triangle may appear more than once if the ball moves;
-///   - `range.at(k)` is a triangle's number, `near(ball, number)` a quick test whether the ball could touch it.
+///   - `range.at(k)` is a triangle's number, `near(around, number)` a quick test whether a ball could touch it
+///     all of whose way is in the ball `around`.
 #pragma once
 
 #include <collide/detail/bounding_sphere.hpp>
@@ -36,10 +37,8 @@ struct triangle_lookup {
   mesh_view<S> mesh;
   bounding_sphere<S> const* bounds;  ///< may be null
 
-  template <class Ball>
-  COLLIDE_HD_INLINE bool near(Ball const& ball, id number) const {
+  COLLIDE_HD_INLINE bool near(sphere<S> const& around, id number) const {
     bounding_sphere<S> const bound = bounds != nullptr ? bounds[number] : bounds_of(mesh[number]);
-    sphere<S> const around = enclosing(ball);
     return bound.reached(around.centre, around.radius);
   }
 
@@ -96,6 +95,9 @@ struct bucket_lookup : triangle_lookup<S> {
 
   template <class Ball>
   COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
+    if (is_simple(ball)) {  // no branches: which balls are near the mesh is not to be foreseen
+      return !(meets(grids[0], ball) & is_occupied(clamped_cell(grids[0], grids[0].level[0], ball.centre)));
+    }
     if (this->mesh.size() == 0) return true;
     int const g = grid_of(ball);
     if (g < 0) return g == nowhere;
@@ -123,6 +125,21 @@ struct bucket_lookup : triangle_lookup<S> {
 
  private:
   COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 32] >> cell % 32 & 1) != 0; }
+
+  /// True if there is one cell to look into, whatever the centre.
+  COLLIDE_HD_INLINE bool is_simple(sphere<S> const& ball) const {
+    return grid_count == 1 && grids[0].levels == 1 && ball.radius >= 0 && ball.radius <= grids[0].reach;
+  }
+  COLLIDE_HD_INLINE bool is_simple(moving_sphere<S> const&) const { return false; }
+
+  /// The cell of a centre that is in the grid, and some cell for any other, NaN too. Without branches.
+  static COLLIDE_HD_INLINE std::uint32_t clamped_cell(grid<S> const& g, grid_level<S> const& l, vec3<S> const& p) {
+    auto const coordinate = [&](int k) {
+      S const inside = smaller(g.upper[k], larger(g.lower[k], p[k]));
+      return static_cast<std::uint32_t>(static_cast<std::int32_t>(mul(inside - g.lower[k], l.inverse_width)));
+    };
+    return l.row(coordinate(1), coordinate(2)) + (coordinate(0) & l.mask[0]);
+  }
 
   /// The tightest grid that serves a ball; grids come by falling reach.
   template <class Ball>

@@ -195,20 +195,34 @@ struct respond_body {
       std::uint32_t const ranges = block.shared(s.ranges);
       if (ranges == 0) return;
       block.balanced(
-          s.balance, s.counts, ranges, [](std::uint32_t i) { return i; },
-          [&](std::uint32_t i, std::uint32_t k) {
-            offer<Block>(s.those[s.owner[i]], near, candidate_range{s.from[i], s.first[i], 0}.at(k));
+          s.balance, s.counts, ranges,
+          [&](std::uint32_t i) {
+            auto& one = s.those[s.owner[i]];
+            auto const ball = one.ball();
+            sphere<S> const around = enclosing(ball);
+            return candidates{one, ball, around, {s.from[i], s.first[i], 0}};
           },
-          [] {});
+          [&](candidates const& c, std::uint32_t k) { offer<Block>(c, near, c.range.at(k)); }, [] {});
     }
   }
 
+  /// A particle and some of its candidates.
+  struct candidates {
+    survivor<S, moves>& one;
+    std::conditional_t<moves, moving_sphere<S>, sphere<S>> ball;
+    sphere<S> around;
+    candidate_range range;
+  };
+
   /// Offers a triangle as the next contact of a particle, if they touch and it counts.
   template <class Block>
-  COLLIDE_HD_INLINE void offer(survivor<S, moves>& one, Lookup const& near, id number) const {
-    auto const ball = one.ball();
-    if (!near.near(ball, number)) return;
-    triangle<S> const t = near.mesh[number];
+  COLLIDE_HD_INLINE void offer(candidates const& c, Lookup const& near, id number) const {
+    if (!near.near(c.around, number)) return;
+    offer_near<Block>(c.one, c.ball, near.mesh[number], number);
+  }
+
+  template <class Block, class Ball>
+  COLLIDE_HD_INLINE void offer_near(survivor<S, moves>& one, Ball const& ball, triangle<S> const& t, id number) const {
     if (!NarrowPhase::intersects(t, ball)) return;
     S const time = time_of(t, ball);
     contact<S> const c = contact_here(t, place_at(ball, time));
