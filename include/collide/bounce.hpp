@@ -23,13 +23,14 @@ struct bounce {
     S const e = S(restitution), speed = -detail::dot(p[velocity{}], t.normal);
     S back = detail::larger(t.depth, S(0));
     if (speed > 0) {
-      bool const leaves = e * speed > -t.gain;
-      S const impulse = leaves ? speed + e * speed : speed;
+      t.rests = e * speed <= -detail::dot(t.gain, t.normal);
+      S const impulse = t.rests ? speed : speed + e * speed;
       p[velocity{}] += t.normal * impulse;
       t.impulse += impulse;
-      if (leaves) back += e * detail::smaller(back, speed * dt);
+      if (!t.rests) back += e * detail::smaller(back, speed * dt);
     }
     p[position{}] += t.normal * back;
+    t.depth -= back;
   }
 };
 

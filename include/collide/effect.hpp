@@ -15,14 +15,16 @@
 /// | `skips(particle)`                 | first: true if nothing happens to the particle in this step                   |
 /// | `accelerate(particle&, dt)`       | before positions move: change the velocity                                    |
 /// | `touch(particle&, touching&, dt)` | for each contact with the mesh, the deepest (swept: the earliest) first       |
-/// | `meet(particle&, other, gap, dt)` | for each other particle that overlaps it; only then spheres are sorted        |
+/// | `meet(particle&, self, other, dt)`| for each other particle that overlaps it; only then are particles sorted      |
+/// | `disturb(particle&, other)`       | instead, if the particle is skipped and the other is not                      |
 /// | `finish(particle&, dt)`           | at the end of the step                                                        |
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait. `meet` is
-/// called before the other members, with all particles as they were when the step began.
+/// called before the other members but `begin_step`: `self` and `other` are as they were when the step began, and what
+/// changes is `particle`, so that both of a pair see the same.
 ///
 /// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
-/// are its radius and its number, and `particle::has<C>` tells whether the scene has the column C. Members are called
+/// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. Members are called
 /// in the order of the scene's list. What a scene does not name costs nothing: neither memory nor instructions.
 #pragma once
 
@@ -36,11 +38,13 @@ template <class... Effect>
 struct effects {};
 
 /// A particle's contact with the mesh, as `touch` gets it. `depth` is how deep the triangle still is in the sphere,
-/// where the particle is now.
+/// where the particle is now: an effect that pushes the particle out takes off what it pushed.
 template <class S>
 struct touching : contact<S> {
-  S gain;     ///< what a step's acceleration adds to the velocity along the normal: below 0 if it presses on the mesh
-  S impulse;  ///< what effects that came before have added to the velocity along the normal: 0, or what repels
+  vec3<S> gain;  ///< what a step's acceleration adds to the velocity
+  S moved;       ///< for how long the particle has moved before it was stopped: the step, or 0 if its way is swept
+  S impulse;     ///< what the effects have added to the velocity along the normal: 0, or what repels
+  bool rests;    ///< an effect has found that the particle rests on the surface, or slides on it
 };
 
 }  // namespace collide

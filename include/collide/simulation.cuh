@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include <collide/detail/neighbours.hpp>
 #include <collide/detail/respond.hpp>
 #include <collide/detector.hpp>
 
@@ -23,7 +24,7 @@ struct place_particles {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     particle<S, All> p;
-    begin(p);
+    begin_particle(p);
     bool const there = i < spheres.size();
     if (there) {
       p[position{}] = spheres.centre(i);
@@ -35,12 +36,6 @@ struct place_particles {
     if constexpr (contains<All, present>) p[present{}] = there;
     state.store(p, i, All{});
   }
-
- private:
-  template <class... C>
-  static COLLIDE_HD void begin(particle<S, columns<C...>>& p) {
-    ((p[C{}] = initial_of<C, S>::value()), ...);
-  }
 };
 
 /// Kernel body of `for_each`.
@@ -51,26 +46,11 @@ struct copy_values {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
 };
 
-/// The memory of a column.
-template <class C, class S>
-struct buffer_of {
-  buffer<column_element<C, S>> memory;
-};
-
-/// The memory of all columns.
-template <class S, class List>
-struct column_buffers;
-template <class S, class... C>
-struct column_buffers<S, columns<C...>> : buffer_of<C, S>... {
-  static constexpr std::size_t bytes_per_particle = (column_bytes<C, S> + ... + std::size_t{0});
-
-  void reserve(std::pmr::memory_resource* resource, std::size_t n) {
-    (static_cast<buffer_of<C, S>&>(*this).memory.reserve(resource, n * std::size_t(column_layout<C, S>::width)), ...);
-  }
-
-  particle_state<S, columns<C...>> state(std::size_t size, S radius) const {
-    return {pointer_of<C, S>{static_cast<buffer_of<C, S> const&>(*this).memory.data()}..., size, radius};
-  }
+/// Kernel body of `for_each` over one item.
+struct advance_time {
+  double* time;
+  double dt;
+  COLLIDE_HD void operator()(std::size_t) const { *time += dt; }
 };
 
 template <class D, class = void>
@@ -163,13 +143,18 @@ class simulation {
     }
     std::size_t const padded = (room + group - 1) / group * group;
     memory_.reserve(space_.resource(), padded);
-    state_ = memory_.state(room, particles.common_radius());
+    state_ = memory_.state(room, n, particles.common_radius());
+    if constexpr (begins) {
+      state_.time = time_.reserve(space_.resource(), 1);
+      space_.fill(state_.time, 0, sizeof *state_.time);
+    }
     if constexpr (scene_type::touches) {
       std::uint32_t* const counters = counters_.reserve(space_.resource(), 2);
       space_.fill(counters, 0, 2 * sizeof *counters);
       list_ = {counters, counters + 1, listed_.reserve(space_.resource(), room)};
     }
     space_.for_each(padded, detail::place_particles<S, columns>{state_, particles, velocities});
+    if constexpr (scene_type::meets) neighbours_.reserve(space_, room, largest_radius(particles));
     prepare();
   }
 
@@ -179,6 +164,9 @@ class simulation {
     mesh_ = {};
     if (mesh.size() != 0) index_.build(space_, options_, mesh);
     mesh_ = mesh;
+    if constexpr (detail::contains<columns, slow_steps>) {  // what slept may have lost its support
+      if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
+    }
     prepare();
   }
 
@@ -186,6 +174,8 @@ class simulation {
   void step(S dt) {
     if (state_.size == 0) return;
     (begin<Effect>(dt), ...);
+    if constexpr (begins) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
+    if constexpr (scene_type::meets) neighbours_.meet(space_, state_, scene_, dt);
     auto const lookup = [&] {
       if constexpr (scene_type::touches) {
         return mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
@@ -261,6 +251,15 @@ class simulation {
 
  private:
   static constexpr std::size_t group = detail::particles_per_group;
+  static constexpr bool begins = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
+  struct no_neighbours {};
+  using neighbours = std::conditional_t<scene_type::meets, detail::neighbours<S, scene_type>, no_neighbours>;
+
+  S largest_radius(sphere_view<S> const& particles) {
+    if (particles.one_radius()) return particles.common_radius();
+    auto const radii = to_host<radius>();
+    return *std::max_element(radii.begin(), radii.end());
+  }
 
   template <class Column>
   static constexpr void check() {
@@ -291,6 +290,8 @@ class simulation {
   index index_;
   detail::column_buffers<S, columns> memory_;
   state_type state_{};
+  buffer<double> time_;
+  neighbours neighbours_;
   buffer<std::uint32_t> counters_;
   buffer<id> listed_;
   detail::listed_particles list_{};

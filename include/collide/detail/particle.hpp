@@ -33,6 +33,12 @@ struct particle<S, columns<C...>> : register_of<C, S>... {
   }
 };
 
+/// A particle with the initial values of all columns.
+template <class S, class... C>
+COLLIDE_HD_INLINE void begin_particle(particle<S, columns<C...>>& p) {
+  ((p[C{}] = initial_of<C, S>::value()), ...);
+}
+
 /// Where a column is in memory.
 template <class C, class S>
 struct pointer_of {
@@ -47,8 +53,12 @@ template <class S, class List>
 struct particle_state;
 template <class S, class... C>
 struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
-  std::size_t size;  ///< number of particles
-  S common_radius;   ///< if there is no column for it
+  using list = columns<C...>;
+
+  std::size_t size;    ///< number of particles, or of places for them
+  std::size_t placed;  ///< how many of them `set` has placed; effects that make particles use the others
+  S common_radius;     ///< if there is no column for it
+  double* time;        ///< since `set`, when the step begins; null unless an effect has a member begin_step
 
   template <class D>
   COLLIDE_HD_INLINE column_element<D, S>* at(D) const {

@@ -261,7 +261,7 @@ struct respond_body {
       triangle<S> const t = near.mesh[number];
       S const time = time_of(t, ball);
       sphere<S> const here = place_at(ball, time);
-      touching<S> c{contact_here(t, here), S(0), S(0)};
+      touching<S> c{contact_here(t, here), vec3<S>(S(0), S(0), S(0)), moves ? S(0) : dt, S(0), false};
       c.sphere = one.number;
       c.triangle = number;
       if constexpr (moves) {
@@ -273,7 +273,7 @@ struct respond_body {
       one.remember(c);
       colliding next = p;
       scene.accelerate(next, dt);
-      c.gain = dot(c.normal, vec3<S>(next[velocity{}] - p[velocity{}]));
+      c.gain = next[velocity{}] - p[velocity{}];
       scene.touch(p, c, dt);
       one.is_active = one.before < most_contacts;
       if constexpr (moves) {

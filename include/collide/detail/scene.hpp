@@ -109,7 +109,14 @@ template <class E, class S>
 struct meets_in<
     E, S,
     std::void_t<decltype(std::declval<E const&>().meet(std::declval<probed<E, S>&>(),
-                                                       std::declval<probed<E, S> const&>(), S{}, S{}))>>
+                                                       std::declval<probed<E, S> const&>(),
+                                                       std::declval<probed<E, S> const&>(), S{}))>> : std::true_type {};
+template <class E, class S, class = void>
+struct disturbs_in : std::false_type {};
+template <class E, class S>
+struct disturbs_in<E, S,
+                   std::void_t<decltype(std::declval<E const&>().disturb(std::declval<probed<E, S>&>(),
+                                                                         std::declval<probed<E, S> const&>()))>>
     : std::true_type {};
 template <class E, class S, class = void>
 struct finishes_in : std::false_type {};
@@ -200,6 +207,8 @@ struct scene : held_effect<E>... {
   static constexpr bool flies = accelerates_in<F, S>::value || finishes_in<F, S>::value || skips_in<F, S>::value;
   template <class F>
   static constexpr bool flies_and_writes = accelerates_in<F, S>::value || finishes_in<F, S>::value;
+  template <class F>
+  static constexpr bool meets_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
   using own_radius = std::conditional_t<contains<all, radius>, columns<radius>, columns<>>;
   template <bool Needed>
   using radius_if = std::conditional_t<Needed, own_radius, columns<>>;
@@ -213,8 +222,8 @@ struct scene : held_effect<E>... {
   using contact = joined_t<flight, reads_if<E, touches_in<E, S>::value>...>;
   using contact_writes = joined_t<flight_writes, writes_if<E, touches_in<E, S>::value>...>;
   /// The same for particles that meet; all of them are also copied.
-  using meeting = joined_t<columns<position>, reads_if<E, meets_in<E, S>::value>..., radius_if<meets>>;
-  using meeting_writes = joined_t<columns<>, writes_if<E, meets_in<E, S>::value>...>;
+  using meeting = joined_t<columns<position>, reads_if<E, meets_or_skips<E>>..., radius_if<meets>>;
+  using meeting_writes = joined_t<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>;
 
   explicit scene(E... e) : held_effect<E>{std::move(e)}... {}
 
@@ -241,9 +250,13 @@ struct scene : held_effect<E>... {
   COLLIDE_HD_INLINE void touch(P& p, touching<S>& t, S dt) const {
     (touch_by<E>(p, t, dt), ...);
   }
-  template <class P, class Q>
-  COLLIDE_HD_INLINE void meet(P& p, Q& other, S gap, S dt) const {
-    (meet_by<E>(p, other, gap, dt), ...);
+  template <class P>
+  COLLIDE_HD_INLINE void meet(P& p, P& self, P& other, S dt) const {
+    (meet_by<E>(p, self, other, dt), ...);
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void disturb(P& p, P& other) const {
+    (disturb_by<E>(p, other), ...);
   }
   template <class P>
   COLLIDE_HD_INLINE void finish([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
@@ -274,12 +287,21 @@ struct scene : held_effect<E>... {
       of<F>().touch(seen, t, dt);
     }
   }
-  template <class F, class P, class Q>
-  COLLIDE_HD_INLINE void meet_by([[maybe_unused]] P& p, [[maybe_unused]] Q& other, [[maybe_unused]] S gap, [[maybe_unused]] S dt) const {
+  template <class F, class P>
+  COLLIDE_HD_INLINE void meet_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
+                                 [[maybe_unused]] S dt) const {
     if constexpr (meets_in<F, S>::value) {
       seen_by<F, P> seen(p);
-      seen_by<F, Q> const seen_other(other);
-      of<F>().meet(seen, seen_other, gap, dt);
+      seen_by<F, P> const seen_self(self), seen_other(other);
+      of<F>().meet(seen, seen_self, seen_other, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void disturb_by([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {
+    if constexpr (disturbs_in<F, S>::value) {
+      seen_by<F, P> seen(p);
+      seen_by<F, P> const seen_other(other);
+      of<F>().disturb(seen, seen_other);
     }
   }
   template <class F, class P>
