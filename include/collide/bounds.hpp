@@ -9,8 +9,8 @@
 
 namespace collide {
 
-/// Walls of a box, which needs no mesh. A particle that is beyond a wall at the end of a step is put back to it, and its
-/// velocity turns around, times `restitution`. An infinite bound is no wall.
+/// Walls of a box, which needs no mesh. A particle that is beyond a wall at the end of a step is put back to it, and
+/// its velocity turns around, times `restitution`. An infinite bound is no wall.
 struct bounds {
   using writes = columns<position, velocity>;
 

@@ -10,22 +10,22 @@
 ///
 /// and has one or more of these members, each `COLLIDE_HD`, const, and a template over the type of the particle:
 ///
-/// | member                            | called                                                                        |
+/// | member                            | called |
 /// |-----------------------------------|-------------------------------------------------------------------------------|
-/// | `skips(particle)`                 | first: true if nothing happens to the particle in this step                   |
-/// | `accelerate(particle&, dt)`       | before positions move: change the velocity                                    |
-/// | `touch(particle&, touching&, dt)` | for each contact with the mesh, the deepest (swept: the earliest) first       |
-/// | `meet(particle&, self, other, dt)`| for each other particle that overlaps it; only then are particles sorted      |
-/// | `disturb(particle&, other)`       | instead, if the particle is skipped and the other is not                      |
-/// | `finish(particle&, dt)`           | at the end of the step                                                        |
+/// | `skips(particle)`                 | first: true if nothing happens to the particle in this step | |
+/// `accelerate(particle&, dt)`       | before positions move: change the velocity                                    |
+/// | `touch(particle&, touching&, dt)` | for each contact with the mesh, the deepest (swept: the earliest) first | |
+/// `meet(particle&, self, other, dt)`| for each other particle that overlaps it; only then are particles sorted      |
+/// | `disturb(particle&, other)`       | instead, if the particle is skipped and the other is not | |
+/// `finish(particle&, dt)`           | at the end of the step                                                        |
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait. `meet` is
 /// called before the other members but `begin_step`: `self` and `other` are as they were when the step began, and what
 /// changes is `particle`, so that both of a pair see the same.
 ///
 /// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
-/// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. Members are called
-/// in the order of the scene's list. What a scene does not name costs nothing: neither memory nor instructions.
+/// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. Members are
+/// called in the order of the scene's list. What a scene does not name costs nothing: neither memory nor instructions.
 #pragma once
 
 #include <collide/columns.hpp>

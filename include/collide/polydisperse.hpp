@@ -6,8 +6,8 @@
 
 namespace collide {
 
-/// Each particle has its own radius: a column more, read wherever a radius is needed. Without it there is one radius for
-/// all, which takes no memory.
+/// Each particle has its own radius: a column more, read wherever a radius is needed. Without it there is one radius
+/// for all, which takes no memory.
 struct polydisperse {
   using reads = columns<radius>;
 };

@@ -56,8 +56,9 @@ struct advance_time {
 template <class D, class = void>
 struct is_detector : std::false_type {};
 template <class D>
-struct is_detector<D, std::void_t<typename D::broad_phase, typename D::narrow_phase, typename D::execution_space,
-                                  typename D::scalar>> : std::true_type {};
+struct is_detector<
+    D, std::void_t<typename D::broad_phase, typename D::narrow_phase, typename D::execution_space, typename D::scalar>>
+    : std::true_type {};
 
 template <class Index, class = void>
 struct looks_up : std::false_type {};
@@ -75,13 +76,13 @@ struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup(
 /// \tparam Effect    what happens to a particle; see effect.hpp, and docs/effects.md for those of the library. They are
 ///                   applied in the order of the list. An integrator may be in the list too (velocity_verlet.hpp).
 ///
-/// The state is in memory of the execution space, in columns: an array for each thing that is known of a particle. There
-/// are exactly the columns that the effects name, and `position` and `velocity`. A simulation without effects moves
-/// particles in straight lines, and nothing else.
+/// The state is in memory of the execution space, in columns: an array for each thing that is known of a particle.
+/// There are exactly the columns that the effects name, and `position` and `velocity`. A simulation without effects
+/// moves particles in straight lines, and nothing else.
 ///
-/// `step` allocates nothing and never waits: in the CUDA spaces it puts one kernel on the stream of the space (more with
-/// `meet` or `begin_step`), and can be captured in a CUDA graph. The same steps give the same bits on every run in the
-/// same space. O(particles + candidates) per step. A simulation is for one thread at a time.
+/// `step` allocates nothing and never waits: in the CUDA spaces it puts one kernel on the stream of the space (more
+/// with `meet` or `begin_step`), and can be captured in a CUDA graph. The same steps give the same bits on every run in
+/// the same space. O(particles + candidates) per step. A simulation is for one thread at a time.
 template <class Detector, class... Effect>
 class simulation {
   static_assert(detail::is_detector<Detector>::value,
@@ -122,10 +123,11 @@ class simulation {
       : space_(std::move(space)), options_(std::move(options)), scene_(Effect()...) {}
 
   /// With parameters of all effects, in the order of the list.
-  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) && std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
-  explicit simulation(execution_space space, E... effects)
-      : space_(std::move(space)), scene_(std::move(effects)...) {}
-  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) && std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
+  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
+                                                 std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
+  explicit simulation(execution_space space, E... effects) : space_(std::move(space)), scene_(std::move(effects)...) {}
+  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
+                                                 std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
   simulation(execution_space space, broad_phase options, E... effects)
       : space_(std::move(space)), options_(std::move(options)), scene_(std::move(effects)...) {}
 
@@ -256,9 +258,13 @@ class simulation {
   using neighbours = std::conditional_t<scene_type::meets, detail::neighbours<S, scene_type>, no_neighbours>;
 
   S largest_radius(sphere_view<S> const& particles) {
-    if (particles.one_radius()) return particles.common_radius();
-    auto const radii = to_host<radius>();
-    return *std::max_element(radii.begin(), radii.end());
+    if constexpr (detail::contains<columns, radius>) {
+      if (!particles.one_radius()) {
+        auto const radii = to_host<radius>();
+        return radii.empty() ? S(0) : *std::max_element(radii.begin(), radii.end());
+      }
+    }
+    return particles.common_radius();
   }
 
   template <class Column>
@@ -280,7 +286,8 @@ class simulation {
 
   template <class E>
   void begin(S dt) {
-    if constexpr (detail::begins_in<E, execution_space, state_type, S>::value) effect<E>().begin_step(space_, state_, dt);
+    if constexpr (detail::begins_in<E, execution_space, state_type, S>::value)
+      effect<E>().begin_step(space_, state_, dt);
   }
 
   execution_space space_;

@@ -8,8 +8,8 @@
 namespace collide {
 
 /// A particle that has been slower than `speed` for `steps` steps (at most 255) sleeps: it is left out until another
-/// particle that is awake and faster than that overlaps it, or the mesh changes, and costs the byte that says so. Choose
-/// `steps` such that a particle at the top of its flight is not slow for so long: more than 2 speed / (g dt).
+/// particle that is awake and faster than that overlaps it, or the mesh changes, and costs the byte that says so.
+/// Choose `steps` such that a particle at the top of its flight is not slow for so long: more than 2 speed / (g dt).
 struct sleep {
   using reads = columns<velocity>;
   using writes = columns<slow_steps>;

@@ -17,8 +17,8 @@ struct uniform_field {
   }
 };
 
-/// Wind: drag (drag.hpp) relative to a medium with a velocity of its own. `Field` is a copyable function object: given a
-/// position, a COLLIDE_HD operator() const returns the velocity of the medium there.
+/// Wind: drag (drag.hpp) relative to a medium with a velocity of its own. `Field` is a copyable function object: given
+/// a position, a COLLIDE_HD operator() const returns the velocity of the medium there.
 template <class Field = uniform_field>
 struct wind {
   using reads = columns<position>;

@@ -136,7 +136,8 @@ void add_cube(world<S>& w, double half, int n) {
     for (double const side : {-half, half})
       for (int i = 0; i < n; ++i)
         for (int k = 0; k < n; ++k) {
-          double const u[] = {-half + cell * i, -half + cell * (i + 1)}, v[] = {-half + cell * k, -half + cell * (k + 1)};
+          double const u[] = {-half + cell * i, -half + cell * (i + 1)},
+                       v[] = {-half + cell * k, -half + cell * (k + 1)};
           std::vector<double> corners;
           for (auto [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}}) {
             double p[3];
@@ -292,8 +293,8 @@ template <class NarrowPhase, class Space, class Other>
 void check_determinism(Space const& space, Other const& other) {
   auto const run = [](auto const& there, auto broad) {
     using space_type = std::decay_t<decltype(there)>;
-    using simulation = collide::simulation<meets_mesh<space_type, NarrowPhase, float, decltype(broad)>, collide::gravity,
-                                           collide::bounce>;
+    using simulation = collide::simulation<meets_mesh<space_type, NarrowPhase, float, decltype(broad)>,
+                                           collide::gravity, collide::bounce>;
     auto const w = crowd<float>(500, 1, 0.1, 3, 11);
     running<simulation> made(there, w, collide::gravity{}, collide::bounce{0.7});
     made.simulation.steps(300, 4e-3f);
@@ -388,8 +389,7 @@ void check_own_effect(Space const& space) {
 /// Balls of different sizes rest at different heights.
 template <class Space>
 void check_radii(Space const& space) {
-  using simulation =
-      collide::simulation<meets_mesh<Space>, collide::gravity, collide::bounce, collide::polydisperse>;
+  using simulation = collide::simulation<meets_mesh<Space>, collide::gravity, collide::bounce, collide::polydisperse>;
   world<float> w;
   add_floor(w, 8, 8);
   for (int i = 0; i < 10; ++i) {

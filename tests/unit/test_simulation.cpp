@@ -21,7 +21,8 @@ static_assert(std::is_same<simulation<plain, gravity, bounce>::columns, simulati
               "gravity and bounce need no more");
 static_assert(simulation<plain>::bytes_per_particle == 24, "six floats");
 static_assert(simulation<plain, velocity_verlet, gravity>::bytes_per_particle == 24, "no memory for accelerations");
-static_assert(simulation<detector<collide::bucket, karabassi<>, host, double>>::bytes_per_particle == 48, "six doubles");
+static_assert(simulation<detector<collide::bucket, karabassi<>, host, double>>::bytes_per_particle == 48,
+              "six doubles");
 
 }  // namespace
 

@@ -1,10 +1,10 @@
 /// \file
 /// The first kernel of a simulation's step: moves all particles, and lists those that may touch the mesh.
 ///
-/// Each lane takes groups of four particles, integrates them, and asks the broad phase whether there could be a triangle
-/// near. Mostly there is none, and the particle's step is done. The few others are listed for the second kernel
-/// (respond.hpp), which has all the code that they need and this one has not: what most particles go through takes few
-/// registers, and the others are spread evenly over the device.
+/// Each lane takes groups of four particles, integrates them, and asks the broad phase whether there could be a
+/// triangle near. Mostly there is none, and the particle's step is done. The few others are listed for the second
+/// kernel (respond.hpp), which has all the code that they need and this one has not: what most particles go through
+/// takes few registers, and the others are spread evenly over the device.
 #pragma once
 
 #include <collide/detail/lookup.hpp>

@@ -1,11 +1,11 @@
 /// \file
 /// Which particles overlap each other: a grid of the particles, made anew in each step.
 ///
-/// Cells are as wide as the largest particle. They lie in a table of fixed size: blocks of 4 x 4 x 4 cells are spread over
-/// it by a hash function, so that any scene fits, and near cells are near in memory. Particles are counted into the
-/// cells, the counts are scanned, and the particles' columns are copied in the order of the cells, and within a cell of
-/// their numbers: so sums over neighbours have an order, and do not depend on which thread was first. Each particle
-/// looks into the 27 cells around it.
+/// Cells are as wide as the largest particle. They lie in a table of fixed size: blocks of 4 x 4 x 4 cells are spread
+/// over it by a hash function, so that any scene fits, and near cells are near in memory. Particles are counted into
+/// the cells, the counts are scanned, and the particles' columns are copied in the order of the cells, and within a
+/// cell of their numbers: so sums over neighbours have an order, and do not depend on which thread was first. Each
+/// particle looks into the 27 cells around it.
 #pragma once
 
 #include <collide/detail/atomic.hpp>
@@ -25,7 +25,9 @@ struct particle_cells {
     friend COLLIDE_HD_INLINE bool operator==(cell a, cell b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
   };
 
-  COLLIDE_HD_INLINE cell of(vec3<S> const& p) const { return {coordinate(p.x()), coordinate(p.y()), coordinate(p.z())}; }
+  COLLIDE_HD_INLINE cell of(vec3<S> const& p) const {
+    return {coordinate(p.x()), coordinate(p.y()), coordinate(p.z())};
+  }
 
   /// Place of a cell in the table.
   COLLIDE_HD_INLINE std::uint32_t number(cell c) const {

@@ -20,7 +20,7 @@ struct particle<S, columns<C...>> : register_of<C, S>... {
   using scalar = S;
   using list = columns<C...>;
 
-  id number;   ///< of the particle, from 0
+  id number;  ///< of the particle, from 0
   S the_radius;
 
   template <class D>
@@ -130,8 +130,7 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   COLLIDE_HD_INLINE void load_values(D, P (&p)[particles_per_group], std::size_t first) const {
     using layout = column_layout<D, S>;
     constexpr int width = layout::width;
-    auto const* const from =
-        reinterpret_cast<four<column_element<D, S>> const*>(at(D{}) + first * std::size_t(width));
+    auto const* const from = reinterpret_cast<four<column_element<D, S>> const*>(at(D{}) + first * std::size_t(width));
     four<column_element<D, S>> read[width];
     for (int k = 0; k < width; ++k) read[k] = from[k];
     for (int k = 0; k < particles_per_group; ++k) {

@@ -3,10 +3,11 @@
 /// effects respond.
 ///
 /// The candidates of some particles are spread evenly over the lanes of the block. Each candidate that the narrow phase
-/// accepts offers itself as the next contact of its particle: the deepest, or of particles that move the earliest, wins,
-/// by a minimum over 64-bit keys, which does not depend on the order. One lane then lets the effects respond. This is
-/// repeated until no contact counts:
-///   - a contact counts only if its foot lies above the tangent planes of those before. In a corner both walls count; on
+/// accepts offers itself as the next contact of its particle: the deepest, or of particles that move the earliest,
+/// wins, by a minimum over 64-bit keys, which does not depend on the order. One lane then lets the effects respond.
+/// This is repeated until no contact counts:
+///   - a contact counts only if its foot lies above the tangent planes of those before. In a corner both walls count;
+///   on
 ///     a plane that is divided into triangles one does, and no inner edge is felt;
 ///   - particles that move spend what is left of the step after each impact, from where they then are.
 #pragma once
@@ -16,7 +17,8 @@
 
 namespace collide::detail {
 
-/// A particle that may touch the mesh in this step, in scratch memory. Plain numbers: scratch memory is not constructed.
+/// A particle that may touch the mesh in this step, in scratch memory. Plain numbers: scratch memory is not
+/// constructed.
 template <class S, bool Moves>
 struct survivor {
   static constexpr int planes = 3;
@@ -85,8 +87,8 @@ inline constexpr std::uint64_t no_contact = ~std::uint64_t{0};
 
 template <class S>
 COLLIDE_HD_INLINE std::uint64_t contact_key(S time, S depth, id triangle) {
-  std::uint32_t const first = time > 0 ? (bits(static_cast<float>(time)) | 0x80000000u)
-                                       : ~ordered(static_cast<float>(depth)) >> 1;
+  std::uint32_t const first =
+      time > 0 ? (bits(static_cast<float>(time)) | 0x80000000u) : ~ordered(static_cast<float>(depth)) >> 1;
   return (std::uint64_t{first} << 32) | triangle;
 }
 

@@ -78,8 +78,8 @@ class seen_by {
 
 /// Sees all that an effect names; only to ask what members the effect has.
 template <class E, class S>
-using probe = particle<S, joined_t<typename reads_of<E>::type, typename writes_of<E>::type,
-                                   typename shares_of<E>::type>>;
+using probe =
+    particle<S, joined_t<typename reads_of<E>::type, typename writes_of<E>::type, typename shares_of<E>::type>>;
 template <class E, class S>
 using probed = seen_by<E, probe<E, S>>;
 
@@ -93,31 +93,29 @@ struct skips_in<E, S, std::void_t<decltype(std::declval<E const&>().skips(std::d
 template <class E, class S, class = void>
 struct accelerates_in : std::false_type {};
 template <class E, class S>
-struct accelerates_in<
-    E, S, std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<probed<E, S>&>(), S{}))>>
+struct accelerates_in<E, S,
+                      std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<probed<E, S>&>(), S{}))>>
     : std::true_type {};
 template <class E, class S, class = void>
 struct touches_in : std::false_type {};
 template <class E, class S>
 struct touches_in<E, S,
-                  std::void_t<decltype(std::declval<E const&>().touch(std::declval<probed<E, S>&>(),
-                                                                      std::declval<touching<S>&>(), S{}))>>
-    : std::true_type {};
+                  std::void_t<decltype(std::declval<E const&>().touch(
+                      std::declval<probed<E, S>&>(), std::declval<touching<S>&>(), S{}))>> : std::true_type {};
 template <class E, class S, class = void>
 struct meets_in : std::false_type {};
 template <class E, class S>
 struct meets_in<
     E, S,
-    std::void_t<decltype(std::declval<E const&>().meet(std::declval<probed<E, S>&>(),
-                                                       std::declval<probed<E, S> const&>(),
-                                                       std::declval<probed<E, S> const&>(), S{}))>> : std::true_type {};
+    std::void_t<decltype(std::declval<E const&>().meet(
+        std::declval<probed<E, S>&>(), std::declval<probed<E, S> const&>(), std::declval<probed<E, S> const&>(), S{}))>>
+    : std::true_type {};
 template <class E, class S, class = void>
 struct disturbs_in : std::false_type {};
 template <class E, class S>
 struct disturbs_in<E, S,
-                   std::void_t<decltype(std::declval<E const&>().disturb(std::declval<probed<E, S>&>(),
-                                                                         std::declval<probed<E, S> const&>()))>>
-    : std::true_type {};
+                   std::void_t<decltype(std::declval<E const&>().disturb(
+                       std::declval<probed<E, S>&>(), std::declval<probed<E, S> const&>()))>> : std::true_type {};
 template <class E, class S, class = void>
 struct finishes_in : std::false_type {};
 template <class E, class S>
@@ -126,9 +124,9 @@ struct finishes_in<E, S, std::void_t<decltype(std::declval<E const&>().finish(st
 template <class E, class Space, class State, class S, class = void>
 struct begins_in : std::false_type {};
 template <class E, class Space, class State, class S>
-struct begins_in<E, Space, State, S,
-                 std::void_t<decltype(std::declval<E&>().begin_step(std::declval<Space&>(),
-                                                                    std::declval<State const&>(), S{}))>>
+struct begins_in<
+    E, Space, State, S,
+    std::void_t<decltype(std::declval<E&>().begin_step(std::declval<Space&>(), std::declval<State const&>(), S{}))>>
     : std::true_type {};
 
 /// An integrator is named in the same list; see velocity_verlet.hpp.
@@ -168,7 +166,8 @@ struct integrator_of {
 };
 template <class E, class... Later>
 struct integrator_of<E, Later...> {
-  using type = typename std::conditional_t<is_integrator<E>::value, std::enable_if<true, E>, integrator_of<Later...>>::type;
+  using type =
+      typename std::conditional_t<is_integrator<E>::value, std::enable_if<true, E>, integrator_of<Later...>>::type;
 };
 
 // ---- the scene
@@ -197,7 +196,8 @@ struct scene : held_effect<E>... {
   /// What `E` reads or writes in members of which `Has` says whether there is one.
   template <class F, bool Has>
   using reads_if = std::conditional_t<
-      Has, joined_t<typename reads_of<F>::type, typename writes_of<F>::type, common_t<typename shares_of<F>::type, all>>,
+      Has,
+      joined_t<typename reads_of<F>::type, typename writes_of<F>::type, common_t<typename shares_of<F>::type, all>>,
       columns<>>;
   template <class F, bool Has>
   using writes_if =
