@@ -10,6 +10,7 @@
 #include <collide/detail/neighbours.hpp>
 #include <collide/detail/respond.hpp>
 #include <collide/detector.hpp>
+#include <collide/moving_spheres.hpp>
 
 namespace collide {
 
@@ -280,7 +281,10 @@ class simulation {
 
   void prepare() {
     if constexpr (scene_type::touches) {
-      if (mesh_.size() != 0 && state_.size != 0) index_.prepare(space_, options_, spheres());
+      // as spheres that move: what they ask for is the triangles near a sphere, wherever that may come to be
+      if (mesh_.size() != 0 && state_.size != 0) {
+        index_.prepare(space_, options_, moving(spheres(), static_cast<S const*>(data<velocity>())));
+      }
     }
   }
 

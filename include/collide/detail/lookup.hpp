@@ -96,7 +96,7 @@ struct bucket_lookup : triangle_lookup<S> {
   template <class Ball>
   COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
     if (is_simple(ball)) {  // no branches: which balls are near the mesh is not to be foreseen
-      return !(meets(grids[0], ball) & is_occupied(clamped_cell(grids[0], grids[0].level[0], ball.centre)));
+      return !(meets(grids[0], ball) & is_occupied(grids[0].cell_of(grids[0].level[0], ball.centre)));
     }
     if (this->mesh.size() == 0) return true;
     int const g = grid_of(ball);
@@ -131,15 +131,6 @@ struct bucket_lookup : triangle_lookup<S> {
     return grid_count == 1 && grids[0].levels == 1 && ball.radius >= 0 && ball.radius <= grids[0].reach;
   }
   COLLIDE_HD_INLINE bool is_simple(moving_sphere<S> const&) const { return false; }
-
-  /// The cell of a centre that is in the grid, and some cell for any other, NaN too. Without branches.
-  static COLLIDE_HD_INLINE std::uint32_t clamped_cell(grid<S> const& g, grid_level<S> const& l, vec3<S> const& p) {
-    auto const coordinate = [&](int k) {
-      S const inside = smaller(g.upper[k], larger(g.lower[k], p[k]));
-      return static_cast<std::uint32_t>(static_cast<std::int32_t>(mul(inside - g.lower[k], l.inverse_width)));
-    };
-    return l.row(coordinate(1), coordinate(2)) + (coordinate(0) & l.mask[0]);
-  }
 
   /// The tightest grid that serves a ball; grids come by falling reach.
   template <class Ball>
