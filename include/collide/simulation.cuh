@@ -10,7 +10,6 @@
 #include <collide/detail/neighbours.hpp>
 #include <collide/detail/respond.hpp>
 #include <collide/detector.hpp>
-#include <collide/moving_spheres.hpp>
 
 namespace collide {
 
@@ -52,6 +51,15 @@ struct advance_time {
   double* time;
   double dt;
   COLLIDE_HD void operator()(std::size_t) const { *time += dt; }
+};
+
+/// A space as a broad phase sees it that is asked for the triangles near single spheres: they are sorted, not the
+/// spheres, and into narrow cells, as a look-up is cheap and a candidate is not.
+template <class Space>
+struct looking_up : Space {
+  explicit looking_up(Space const& space) : Space(space) {}
+  static constexpr bool sorts_spheres = false;
+  static constexpr int bucket_span = 2;
 };
 
 template <class D, class = void>
@@ -144,7 +152,8 @@ class simulation {
     if (room > n && !detail::contains<columns, present>) {
       throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
     }
-    std::size_t const padded = (room + group - 1) / group * group;
+    std::size_t const padded =
+        (room + detail::particle_padding - 1) / detail::particle_padding * detail::particle_padding;
     memory_.reserve(space_.resource(), padded);
     state_ = memory_.state(room, n, particles.common_radius());
     if constexpr (begins) {
@@ -165,7 +174,8 @@ class simulation {
   /// Allocates unless there was a mesh of this size before; may wait. O(triangles).
   void set_mesh(mesh_view<S> mesh) {
     mesh_ = {};
-    if (mesh.size() != 0) index_.build(space_, options_, mesh);
+    detail::looking_up<execution_space> there(space_);
+    if (mesh.size() != 0) index_.build(there, options_, mesh);
     mesh_ = mesh;
     if constexpr (detail::contains<columns, slow_steps>) {  // what slept may have lost its support
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
@@ -253,7 +263,6 @@ class simulation {
   execution_space const& space() const { return space_; }
 
  private:
-  static constexpr std::size_t group = detail::particles_per_group;
   static constexpr bool begins = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
   struct no_neighbours {};
   using neighbours = std::conditional_t<scene_type::meets, detail::neighbours<S, scene_type>, no_neighbours>;
@@ -281,10 +290,8 @@ class simulation {
 
   void prepare() {
     if constexpr (scene_type::touches) {
-      // as spheres that move: what they ask for is the triangles near a sphere, wherever that may come to be
-      if (mesh_.size() != 0 && state_.size != 0) {
-        index_.prepare(space_, options_, moving(spheres(), static_cast<S const*>(data<velocity>())));
-      }
+      detail::looking_up<execution_space> there(space_);
+      if (mesh_.size() != 0 && state_.size != 0) index_.prepare(there, options_, spheres());
     }
   }
 

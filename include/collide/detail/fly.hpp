@@ -27,6 +27,11 @@ struct fly_body {
   static constexpr bool moves = !at_rest<NarrowPhase, S>;
   static constexpr S part_before = S(Scene::integrator::before), part_after = S(Scene::integrator::after);
 
+  /// How many particles a lane moves at a time.
+  template <class Block>
+  static constexpr int at_a_time = Block::items % 16 == 0 ? 16 : particles_per_group;
+  static_assert(particle_padding % 16 == 0, "the last ones are read and written with those that are not there");
+
   particle_state<S, typename Scene::all> state;
   Scene scene;
   Lookup lookup;
@@ -50,65 +55,96 @@ struct fly_body {
         if (lane == 0) s.count = 0;
       });
       Lookup const near = lookup.opened();
-      fly(block, [&](flying const& p) {
-        if (p.number >= state.size || near.empty(ball_of(p))) return false;
-        s.listed[block.add(s.count, 1)] = p.number;
-        return true;
+      bool const simple = has_one_radius && near.is_simple(state.common_radius);
+      constexpr int n = at_a_time<Block>;
+      fly(block, [&](auto const& p, auto const& skipped, auto& listed) {
+        if (moves || !simple) {
+          for (int k = 0; k < n; ++k) listed[k] = !near.empty(ball_of(p[k]));
+        } else {
+          mark_near(near, p, listed);
+        }
+        for (int k = 0; k < n; ++k) {
+          listed[k] = listed[k] && !skipped[k] && p[k].number < state.size;
+          if (listed[k]) s.listed[block.add(s.count, 1)] = p[k].number;
+        }
       });
-      std::uint32_t const n = block.shared(s.count);
-      if (n == 0) return;
+      std::uint32_t const found = block.shared(s.count);
+      if (found == 0) return;
       block.each([&](int lane) {
-        if (lane == 0) s.first = fetch_add(list.count, n);
+        if (lane == 0) s.first = fetch_add(list.count, found);
       });
       block.each([&](int lane) {
-        for (auto i = static_cast<std::uint32_t>(lane); i < n; i += Block::lanes) {
+        for (auto i = static_cast<std::uint32_t>(lane); i < found; i += Block::lanes) {
           list.numbers[s.first + i] = s.listed[i];
         }
       });
     } else {
-      fly(block, [](flying const&) { return false; });
+      fly(block, [](auto const&, auto const&, auto const&) {});
     }
   }
 
  private:
   using flying = particle<S, typename Scene::flight>;
+  static constexpr int group = particles_per_group;
 
+  static constexpr bool has_one_radius = !contains<typename Scene::all, radius>;
+
+  /// Moves the particles of a block. `list(particles, skipped, listed)` sets listed[k] for those that may touch the
+  /// mesh.
   template <class Block, class List>
-  COLLIDE_HD_INLINE void fly(Block& block, List const& is_listed) const {
+  COLLIDE_HD_INLINE void fly(Block& block, List const& list) const {
     std::size_t const first = block.index() * Block::lanes * Block::items;
     block.each([&](int lane) {
-      for (int k = 0; k < Block::items; k += particles_per_group) {
+      constexpr int n = at_a_time<Block>;
+      for (int k = 0; k < Block::items; k += n) {
         std::size_t const i = first + static_cast<std::size_t>(lane * Block::items + k);
-        if (i < state.size) fly_group(i, is_listed);
+        if (i < state.size) fly_some<n>(i, list);
       }
     });
   }
 
-  template <class List>
-  COLLIDE_HD_INLINE void fly_group(std::size_t first, List const& is_listed) const {
-    bool skipped[particles_per_group] = {};
+  template <int N, class List>
+  COLLIDE_HD_INLINE void fly_some(std::size_t first, List const& list) const {
+    bool skipped[N] = {}, listed[N] = {};
     if constexpr (Scene::skips) {
-      particle<S, typename Scene::skipping> p[particles_per_group];
-      state.load_group(p, first);
+      particle<S, typename Scene::skipping> p[N];
+      for (int k = 0; k < N; k += group) state.load_group(p + k, first + static_cast<std::size_t>(k));
       bool all = true;
-      for (int k = 0; k < particles_per_group; ++k) {
+      for (int k = 0; k < N; ++k) {
         skipped[k] = first + static_cast<std::size_t>(k) >= state.size || scene.is_skipped(p[k]);
         all = all && skipped[k];
       }
       if (all) return;
     }
-    flying p[particles_per_group];
-    state.load_group(p, first);
-    for (int k = 0; k < particles_per_group; ++k) {
+    flying p[N];
+    for (int k = 0; k < N; k += group) state.load_group(p + k, first + static_cast<std::size_t>(k));
+    for (int k = 0; k < N; ++k) {
       if (skipped[k]) continue;
       if constexpr (part_before != 0) scene.accelerate(p[k], part_before * dt);
       if constexpr (!moves) p[k][position{}] += p[k][velocity{}] * dt;
-      if (is_listed(p[k])) continue;
+    }
+    list(p, skipped, listed);
+    for (int k = 0; k < N; ++k) {
+      if (skipped[k] || listed[k]) continue;
       if constexpr (moves) p[k][position{}] += p[k][velocity{}] * dt;
       if constexpr (part_after != 0) scene.accelerate(p[k], part_after * dt);
       scene.finish(p[k], dt);
     }
-    state.store_group(p, first, typename Scene::flight_writes{});
+    for (int k = 0; k < N; k += group) {
+      state.store_group(p + k, first + static_cast<std::size_t>(k), typename Scene::flight_writes{});
+    }
+  }
+
+  /// Of one radius and in one grid of one level: without branches, for the CPU's vector unit, as which particles are
+  /// near the mesh is not to be foreseen.
+  template <int N>
+  COLLIDE_HD_INLINE void mark_near(Lookup const& near, flying const (&p)[N], bool (&listed)[N]) const {
+    S x[N], y[N], z[N];
+    for (int k = 0; k < N; ++k) {
+      vec3<S> const& c = p[k][position{}];
+      x[k] = c.x(), y[k] = c.y(), z[k] = c.z();
+    }
+    near.mark(x, y, z, listed);
   }
 
   /// What the narrow phase judges.

@@ -2,7 +2,9 @@
 /// Which triangles a single sphere could touch, asked from inside a kernel: what a broad phase gives a simulation.
 ///
 /// An index gives a trivially copyable `lookup()`. In a kernel, `opened()` is that lookup for use, and then
-///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
+///   - `empty(ball)` is true if the ball can touch no triangle: it is quick; `is_simple(radius)` is true if for balls
+///   of
+///     this radius it is quicker still to ask for several at a time, `mark(x, y, z, near)`;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
 ///     candidates, until it returns false; a triangle may appear more than once if the ball moves;
 ///   - `range.at(k)` is a triangle's number, `near(around, number)` a quick test whether a ball could touch it
@@ -64,6 +66,9 @@ struct all_pairs_lookup : triangle_lookup<S> {
   COLLIDE_HD bool empty(Ball const&) const {
     return this->mesh.size() == 0;
   }
+  COLLIDE_HD bool is_simple(S) const { return false; }
+  template <int N>
+  COLLIDE_HD void mark(S const (&)[N], S const (&)[N], S const (&)[N], bool (&)[N]) const {}
   template <class Ball>
   COLLIDE_HD candidate_cursor begin(Ball const&) const {
     return {0, 0, 0, 0};
@@ -95,9 +100,6 @@ struct bucket_lookup : triangle_lookup<S> {
 
   template <class Ball>
   COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
-    if (is_simple(ball)) {  // no branches: which balls are near the mesh is not to be foreseen
-      return !(meets(grids[0], ball) & is_occupied(grids[0].cell_of(grids[0].level[0], ball.centre)));
-    }
     if (this->mesh.size() == 0) return true;
     int const g = grid_of(ball);
     if (g < 0) return g == nowhere;
@@ -105,6 +107,25 @@ struct bucket_lookup : triangle_lookup<S> {
       if (!empty_level(grids[g], grids[g].level[l], ball)) return false;
     }
     return true;
+  }
+
+  /// True if a ball of this radius looks into one cell, wherever it is.
+  COLLIDE_HD_INLINE bool is_simple(S radius) const {
+    return grid_count == 1 && grids[0].levels == 1 && valid_radius(radius) && radius <= grids[0].reach;
+  }
+
+  /// Then `empty` is not near[k], for several balls.
+  template <int N>
+  COLLIDE_HD_INLINE void mark(S const (&x)[N], S const (&y)[N], S const (&z)[N], bool (&near)[N]) const {
+    grid<S> const& g = grids[0];
+    grid_level<S> const& l = g.level[0];
+    std::uint32_t cells[N], inside[N];
+    for (int k = 0; k < N; ++k) {
+      inside[k] = (x[k] >= g.lower[0]) & (x[k] <= g.upper[0]) & (y[k] >= g.lower[1]) & (y[k] <= g.upper[1]) &
+                  (z[k] >= g.lower[2]) & (z[k] <= g.upper[2]);
+      cells[k] = g.cell_of(l, {x[k], y[k], z[k]});
+    }
+    for (int k = 0; k < N; ++k) near[k] = (inside[k] & occupied[cells[k] / 32] >> cells[k] % 32 & 1) != 0;
   }
 
   template <class Ball>
@@ -125,12 +146,6 @@ struct bucket_lookup : triangle_lookup<S> {
 
  private:
   COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 32] >> cell % 32 & 1) != 0; }
-
-  /// True if there is one cell to look into, whatever the centre.
-  COLLIDE_HD_INLINE bool is_simple(sphere<S> const& ball) const {
-    return grid_count == 1 && grids[0].levels == 1 && ball.radius >= 0 && ball.radius <= grids[0].reach;
-  }
-  COLLIDE_HD_INLINE bool is_simple(moving_sphere<S> const&) const { return false; }
 
   /// The tightest grid that serves a ball; grids come by falling reach.
   template <class Ball>

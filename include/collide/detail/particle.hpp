@@ -48,7 +48,9 @@ struct pointer_of {
 /// How many particles are read or written together: four coordinates are 16 bytes.
 inline constexpr int particles_per_group = 4;
 
-/// All columns of a simulation in memory. Each has room for a whole number of groups.
+/// All columns of a simulation in memory. Each has room for a multiple of this many particles.
+inline constexpr std::size_t particle_padding = 16;
+
 template <class S, class List>
 struct particle_state;
 template <class S, class... C>
@@ -81,7 +83,7 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
 
   /// A group of particles from `first` on, which is a multiple of their number.
   template <class... D>
-  COLLIDE_HD_INLINE void load_group(particle<S, columns<D...>> (&p)[particles_per_group], std::size_t first) const {
+  COLLIDE_HD_INLINE void load_group(particle<S, columns<D...>>* p, std::size_t first) const {
     (load_values(D{}, p, first), ...);
     for (int k = 0; k < particles_per_group; ++k) {
       p[k].number = static_cast<id>(first) + static_cast<id>(k);
@@ -90,7 +92,7 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   }
 
   template <class P, class... E>
-  COLLIDE_HD_INLINE void store_group(P const (&p)[particles_per_group], std::size_t first, columns<E...>) const {
+  COLLIDE_HD_INLINE void store_group(P const* p, std::size_t first, columns<E...>) const {
     (store_values(E{}, p, first), ...);
   }
 
@@ -127,7 +129,7 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   }
 
   template <class D, class P>
-  COLLIDE_HD_INLINE void load_values(D, P (&p)[particles_per_group], std::size_t first) const {
+  COLLIDE_HD_INLINE void load_values(D, P* p, std::size_t first) const {
     using layout = column_layout<D, S>;
     constexpr int width = layout::width;
     auto const* const from = reinterpret_cast<four<column_element<D, S>> const*>(at(D{}) + first * std::size_t(width));
@@ -139,7 +141,7 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   }
 
   template <class D, class P>
-  COLLIDE_HD_INLINE void store_values(D, P const (&p)[particles_per_group], std::size_t first) const {
+  COLLIDE_HD_INLINE void store_values(D, P const* p, std::size_t first) const {
     using layout = column_layout<D, S>;
     constexpr int width = layout::width;
     auto* const to = reinterpret_cast<four<column_element<D, S>>*>(at(D{}) + first * std::size_t(width));
