@@ -103,6 +103,7 @@ struct bucket_lookup : triangle_lookup<S> {
     if (this->mesh.size() == 0) return true;
     int const g = grid_of(ball);
     if (g < 0) return g == nowhere;
+    COLLIDE_ROLLED
     for (int l = 0; l < grids[g].levels; ++l) {
       if (!empty_level(grids[g], grids[g].level[l], ball)) return false;
     }
@@ -152,6 +153,7 @@ struct bucket_lookup : triangle_lookup<S> {
   COLLIDE_HD_INLINE int grid_of(Ball const& ball) const {
     if (!valid_radius(ball.radius) || !finite_way(ball)) return nowhere;
     int number = everywhere;
+    COLLIDE_ROLLED
     for (int g = 0; g < grid_count; ++g) {
       if (!serves(grids[g], ball)) continue;
       number = meets(grids[g], ball) ? g : nowhere;
