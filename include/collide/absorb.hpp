@@ -37,7 +37,7 @@ struct absorb_in {
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
       S const x = p[position{}][k];
-      inside = inside & (x >= S(lower[k])) & (x <= S(upper[k]));
+      inside = inside && x >= S(lower[k]) && x <= S(upper[k]);
     }
     if (inside) p[present{}] = 0;
   }

@@ -7,8 +7,10 @@
 /// takes few registers, and the others are spread evenly over the device.
 #pragma once
 
+#include <collide/detail/atomic.hpp>
 #include <collide/detail/lookup.hpp>
 #include <collide/detail/scene.hpp>
+#include <collide/detail/spheres_of.hpp>
 
 namespace collide::detail {
 

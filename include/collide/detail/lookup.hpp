@@ -122,8 +122,12 @@ struct bucket_lookup : triangle_lookup<S> {
     grid_level<S> const& l = g.level[0];
     std::uint32_t cells[N], inside[N];
     for (int k = 0; k < N; ++k) {
-      inside[k] = (x[k] >= g.lower[0]) & (x[k] <= g.upper[0]) & (y[k] >= g.lower[1]) & (y[k] <= g.upper[1]) &
-                  (z[k] >= g.lower[2]) & (z[k] <= g.upper[2]);
+      inside[k] = x[k] >= g.lower[0] ? 1u : 0u;
+      inside[k] &= x[k] <= g.upper[0] ? 1u : 0u;
+      inside[k] &= y[k] >= g.lower[1] ? 1u : 0u;
+      inside[k] &= y[k] <= g.upper[1] ? 1u : 0u;
+      inside[k] &= z[k] >= g.lower[2] ? 1u : 0u;
+      inside[k] &= z[k] <= g.upper[2] ? 1u : 0u;
       cells[k] = g.cell_of(l, {x[k], y[k], z[k]});
     }
     for (int k = 0; k < N; ++k) near[k] = (inside[k] & occupied[cells[k] / 32] >> cells[k] % 32 & 1) != 0;
@@ -170,7 +174,7 @@ struct bucket_lookup : triangle_lookup<S> {
   static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& ball) { return ball.radius <= g.reach; }
   static COLLIDE_HD_INLINE bool meets(grid<S> const& g, sphere<S> const& ball) {
     bool inside = true;
-    for (int k = 0; k < 3; ++k) inside = inside & (ball.centre[k] >= g.lower[k]) & (ball.centre[k] <= g.upper[k]);
+    for (int k = 0; k < 3; ++k) inside = inside && ball.centre[k] >= g.lower[k] && ball.centre[k] <= g.upper[k];
     return inside;
   }
 
@@ -178,14 +182,14 @@ struct bucket_lookup : triangle_lookup<S> {
     S const inverse_width = g.levels > 0 ? g.level[0].inverse_width : S(0);
     bool served = ball.radius <= g.reach;
     for (int k = 0; k < 3; ++k) {
-      served = served & way<S>::can_walk(g.lower[k], g.upper[k], inverse_width, ball.centre[k], ball.displacement[k]);
+      served = served && way<S>::can_walk(g.lower[k], g.upper[k], inverse_width, ball.centre[k], ball.displacement[k]);
     }
     return served;
   }
   static COLLIDE_HD_INLINE bool meets(grid<S> const& g, moving_sphere<S> const& ball) {
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
-      inside = inside & way<S>::enters(g.lower[k], g.upper[k], ball.centre[k], ball.displacement[k]);
+      inside = inside && way<S>::enters(g.lower[k], g.upper[k], ball.centre[k], ball.displacement[k]);
     }
     return inside;
   }

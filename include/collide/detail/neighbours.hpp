@@ -8,6 +8,7 @@
 /// particle looks into the 27 cells around it.
 #pragma once
 
+#include <collide/detail/arithmetic.hpp>
 #include <collide/detail/atomic.hpp>
 #include <collide/detail/column_buffers.hpp>
 #include <collide/detail/scene.hpp>
