@@ -2,15 +2,27 @@
 /// What a step of a simulation costs: on the study's scene, for each effect, beside kernels written by hand.
 ///
 ///     simulation_bench [SPHERES [REPETITIONS]]
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
+#include <collide/absorb.hpp>
 #include <collide/bounce.hpp>
+#include <collide/bounds.hpp>
 #include <collide/bucket.cuh>
+#include <collide/drag.hpp>
+#include <collide/emit.hpp>
+#include <collide/friction.hpp>
 #include <collide/gravity.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/polydisperse.hpp>
 #include <collide/simulation.cuh>
+#include <collide/sleep.hpp>
+#include <collide/sphere_contact.hpp>
+#include <collide/spin.hpp>
+#include <collide/stick.hpp>
 #include <collide/upload.hpp>
+#include <collide/wind.hpp>
 
 #include "io/scenes.hpp"
 #include "stopwatch.hpp"
@@ -49,14 +61,19 @@ struct move_all {
   }
 };
 
-/// Median seconds.
+/// Seconds of a call of f, of which some follow each other: the median of such series.
 template <class Space, class F>
 double median(Space const& space, std::size_t times, F const& f) {
+  constexpr int series = Space::host_memory ? 1 : 20;
   bench::stopwatch<Space> watch(space);
   std::vector<double> seconds;
-  for (std::size_t i = 0; i < times; ++i) seconds.push_back(watch(f));
+  for (std::size_t i = 0; i < times; ++i) {
+    seconds.push_back(watch([&] {
+      for (int k = 0; k < series; ++k) f();
+    }));
+  }
   std::nth_element(seconds.begin(), seconds.begin() + static_cast<std::ptrdiff_t>(times / 2), seconds.end());
-  return seconds[times / 2];
+  return seconds[times / 2] / series;
 }
 
 /// The study's scene in memory of the space.
@@ -84,13 +101,31 @@ struct placed {
   }
 
   template <class Simulation>
-  void run(char const* name, Simulation&& simulation) {
+  void run(char const* name, Simulation&& simulation, float dt = 0.01f) {
     simulation.set(spheres.view());
     simulation.set_mesh(mesh.view());
-    float const dt = 0.01f;
     simulation.steps(10, dt);
-    double const seconds = median(space, times, [&] { simulation.step(dt); });
-    std::printf("%-12s %-34s %9.1f us  %5.2fx  %3zu bytes\n", Space::name(), name, seconds * 1e6, seconds / floor,
+    report<Simulation>(name, median(space, times, [&] { simulation.step(dt); }));
+  }
+
+  /// Balls that fill space, each in touch with six others.
+  template <class Simulation>
+  void run_packed(char const* name, Simulation&& simulation) {
+    std::vector<float> centres;
+    auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t at : {i % side, i / side % side, i / side / side})
+        centres.push_back(1.98f * radius * static_cast<float>(at));
+    auto const packed = collide::upload(space, collide::spheres_xyz(centres.data(), n, radius));
+    simulation.set(packed.view());
+    simulation.set_mesh(mesh.view());
+    simulation.steps(2, 1e-4f);
+    report<Simulation>(name, median(space, times, [&] { simulation.step(1e-4f); }));
+  }
+
+  template <class Simulation>
+  void report(char const* name, double seconds) const {
+    std::printf("%-12s %-42s %9.1f us  %5.2fx  %3zu bytes\n", Space::name(), name, seconds * 1e6, seconds / floor,
                 std::decay_t<Simulation>::bytes_per_particle);
     std::fflush(stdout);
   }
@@ -105,8 +140,8 @@ void measure(Space const& space, std::size_t n, std::size_t times) {
   auto* const v = reinterpret_cast<four<float>*>(plain.template data<velocity>());
   scene.floor = median(space, 101, [&] { space.for_each(3 * n / 4, touch_all{x, v, 1e-3f}); });
   double const move = median(space, 101, [&] { space.for_each(3 * n / 4, move_all{x, v, 1e-3f}); });
-  std::printf("%-12s %-34s %9.1f us\n", Space::name(), "read and write both", scene.floor * 1e6);
-  std::printf("%-12s %-34s %9.1f us  %5.2fx\n", Space::name(), "move, by hand", move * 1e6, move / scene.floor);
+  std::printf("%-12s %-42s %9.1f us\n", Space::name(), "read and write both", scene.floor * 1e6);
+  std::printf("%-12s %-42s %9.1f us  %5.2fx\n", Space::name(), "move, by hand", move * 1e6, move / scene.floor);
 
   using still = collide::detector<collide::bucket, collide::karabassi<>, Space>;
   using swept = collide::detector<collide::bucket, collide::karabassi_swept<>, Space>;
@@ -116,6 +151,28 @@ void measure(Space const& space, std::size_t n, std::size_t times) {
   scene.run("gravity, bounce", simulation<still, gravity, bounce>(space));
   scene.run("velocity_verlet, gravity, bounce", simulation<still, velocity_verlet, gravity, bounce>(space));
   scene.run("swept: gravity, bounce", simulation<swept, gravity, bounce>(space));
+  scene.run("gravity, drag", simulation<still, gravity, drag>(space, gravity{}, drag{0.1, 0.01}));
+  scene.run("gravity, wind", simulation<still, gravity, wind<>>(space, gravity{}, wind<>{0.1, 0.01, {1, 0, 0}}));
+  scene.run("gravity, bounds", simulation<still, gravity, bounds>(space));
+  scene.run("gravity, periodic",
+            simulation<still, gravity, periodic>(space, gravity{}, periodic{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}}));
+  scene.run("gravity, bounce, polydisperse", simulation<still, gravity, bounce, polydisperse>(space));
+  scene.run("gravity, bounce, friction", simulation<still, gravity, bounce, friction>(space));
+  scene.run("gravity, bounce, friction, spin", simulation<still, gravity, bounce, friction, spin>(space));
+  scene.run("gravity, bounce, stick", simulation<still, gravity, bounce, stick>(space));
+  scene.run("sleep, gravity, bounce", simulation<still, sleep, gravity, bounce>(space));
+  scene.run("sleep, gravity, bounce: all asleep",
+            simulation<still, sleep, gravity, bounce>(space, sleep{1e30, 5}, gravity{}, bounce{}));
+  scene.run("gravity, absorb", simulation<still, gravity, absorb>(space));
+  scene.run("emit, gravity, bounce",
+            simulation<still, emit, gravity, bounce>(space, emit{1e5, {}}, gravity{}, bounce{}));
+  auto const contact = sphere_contact::of_collision(0.5, 2e-3, double(scene.radius), 1);
+  scene.run("sphere_contact, gravity, bounce",
+            simulation<still, sphere_contact, gravity, bounce>(space, contact, gravity{}, bounce{}));
+  scene.run_packed("packed: sphere_contact, gravity",
+                   simulation<still, sphere_contact, gravity>(space, contact, gravity{}));
+  scene.run_packed("packed: sphere_contact, gravity, bounce",
+                   simulation<still, sphere_contact, gravity, bounce>(space, contact, gravity{}, bounce{}));
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ struct bounds {
   }
 };
 
-/// A box that repeats: a particle that leaves on one side comes in on the other. The mesh does not repeat.
+/// A box that repeats: a particle that leaves on one side comes in on the other. Neither the mesh nor contacts between
+/// spheres repeat.
 struct periodic {
   using writes = columns<position>;
 

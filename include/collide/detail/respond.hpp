@@ -133,8 +133,11 @@ struct respond_body {
     for (std::size_t base = block.index() * size; base < n; base += blocks * size) {
       collide(block, s, near, list.numbers + base, smaller(n - static_cast<std::uint32_t>(base), size));
     }
+    // the last block that had something to do empties the list for the next step; those that come later find it so
+    std::size_t const busy = smaller(blocks, (n + std::size_t{size} - 1) / size);
+    if (block.index() >= busy) return;
     block.each([&](int lane) {
-      if (lane != 0 || fetch_add(list.done, 1u) + 1 != blocks) return;
+      if (lane != 0 || fetch_add(list.done, 1u) + 1 != busy) return;
       *list.count = 0;
       *list.done = 0;
     });
