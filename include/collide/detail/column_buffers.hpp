@@ -20,7 +20,7 @@ template <class S, class... C>
 struct column_buffers<S, columns<C...>> : buffer_of<C, S>... {
   static constexpr std::size_t bytes_per_particle = (column_bytes<C, S> + ... + std::size_t{0});
 
-  void reserve(std::pmr::memory_resource* resource, std::size_t n) {
+  void reserve([[maybe_unused]] std::pmr::memory_resource* resource, [[maybe_unused]] std::size_t n) {
     (static_cast<buffer_of<C, S>&>(*this).memory.reserve(resource, n * std::size_t(column_layout<C, S>::width)), ...);
   }
 

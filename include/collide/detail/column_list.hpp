@@ -48,6 +48,16 @@ struct common<columns<>, B> {
 template <class A, class B>
 using common_t = typename common<A, B>::type;
 
+/// The columns of A that are not in B.
+template <class A, class B>
+struct remaining;
+template <class... C, class B>
+struct remaining<columns<C...>, B> {
+  using type = joined_t<columns<>, std::conditional_t<contains<B, C>, columns<>, columns<C>>...>;
+};
+template <class A, class B>
+using remaining_t = typename remaining<A, B>::type;
+
 /// A value of a column is `width` numbers of type `element`, one after the other.
 template <class V>
 struct layout_of {

@@ -23,7 +23,6 @@ struct particle_cells {
 
   struct cell {
     std::int32_t x, y, z;
-    friend COLLIDE_HD_INLINE bool operator==(cell a, cell b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
   };
 
   COLLIDE_HD_INLINE cell of(vec3<S> const& p) const {
@@ -33,9 +32,9 @@ struct particle_cells {
   /// Place of a cell in the table.
   COLLIDE_HD_INLINE std::uint32_t number(cell c) const {
     auto const u = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
-    std::uint32_t const block = u(c.x >> 2) * 73856093u ^ u(c.y >> 2) * 19349663u ^ u(c.z >> 2) * 83492791u;
+    std::uint32_t const block = u(c.x >> 4) * 73856093u ^ u(c.y >> 1) * 19349663u ^ u(c.z >> 1) * 83492791u;
     std::uint32_t const mixed = (block ^ block >> 15) * 0x2c1b3c6du;
-    return ((mixed ^ mixed >> 13) << 6 | (u(c.z) & 3) << 4 | (u(c.y) & 3) << 2 | (u(c.x) & 3)) & mask;
+    return ((mixed ^ mixed >> 13) << 6 | (u(c.z) & 1) << 5 | (u(c.y) & 1) << 4 | (u(c.x) & 15)) & mask;
   }
 
  private:
@@ -92,19 +91,47 @@ struct sort_cells {
   }
 };
 
-/// Kernel body of `for_each` over places in the order: copies what particles must know of each other.
+/// What decides whether two particles overlap, to be read at once.
+template <class S>
+struct alignas(4 * sizeof(S)) near_sphere {
+  S x, y, z, radius;
+};
+
+/// The particles in the order of the grid, with all that they must know of each other.
+template <class S, class Scene>
+struct ordered_particles {
+  particle_order order;
+  std::uint32_t const* total;
+  near_sphere<S>* spheres;
+  particle_state<S, typename Scene::meeting_copies> copies;
+
+  using meeting = particle<S, typename Scene::meeting>;
+
+  COLLIDE_HD_INLINE meeting operator[](std::size_t i) const {
+    meeting p;
+    p.number = order.numbers[i];
+    near_sphere<S> const s = spheres[i];
+    p[position{}] = vec3<S>(s.x, s.y, s.z);
+    p.the_radius = s.radius;
+    if constexpr (contains<typename Scene::meeting, radius>) p[radius{}] = s.radius;
+    copies.load(p, i, typename Scene::meeting_copies{});
+    return p;
+  }
+};
+
+/// Kernel body of `for_each` over places in the order.
 template <class S, class Scene>
 struct copy_in_order {
   particle_state<S, typename Scene::all> state;
-  particle_state<S, typename Scene::meeting> copies;
-  particle_order order;
-  std::uint32_t const* total;
+  ordered_particles<S, Scene> to;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (i >= *total) return;
-    particle<S, typename Scene::meeting> p;
-    state.load(p, order.numbers[i]);
-    copies.store(p, i, typename Scene::meeting{});
+    if (i >= *to.total) return;
+    typename ordered_particles<S, Scene>::meeting p;
+    state.load(p, to.order.numbers[i]);
+    vec3<S> const& c = p[position{}];
+    to.spheres[i] = {c.x(), c.y(), c.z(), p.the_radius};
+    to.copies.store(p, i, typename Scene::meeting_copies{});
   }
 };
 
@@ -112,37 +139,33 @@ struct copy_in_order {
 template <class S, class Scene>
 struct meet_neighbours {
   particle_state<S, typename Scene::all> state;
-  particle_state<S, typename Scene::meeting> copies;
+  ordered_particles<S, Scene> particles;
   particle_cells<S> cells;
-  particle_order order;
-  std::uint32_t const* total;
   Scene scene;
   S dt;
 
-  using meeting = particle<S, typename Scene::meeting>;
+  using meeting = typename ordered_particles<S, Scene>::meeting;
   using cell = typename particle_cells<S>::cell;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (i >= *total) return;
-    meeting self;
-    load(self, i);
+    if (i >= *particles.total) return;
+    meeting self = particles[i];
     meeting changed = self;
     bool const sleeps = is_skipped(self);
     bool met = false;
     cell const here = cells.of(self[position{}]);
-    for (int offset = 0; offset < 27; ++offset) {
-      cell const there{here.x + offset % 3 - 1, here.y + offset / 3 % 3 - 1, here.z + offset / 9 - 1};
-      std::uint32_t const c = cells.number(there);
-      for (std::uint32_t k = order.ends[c], end = order.ends[c + 1]; k < end; ++k) {
-        if (k == i) continue;
-        particle<S, near> close;
-        copies.load(close, k);
-        vec3<S> const between = self[position{}] - close[position{}];
-        S const reach = self.the_radius + close.the_radius;
-        if (!(dot(between, between) < mul(reach, reach))) continue;
-        if (!(cells.of(close[position{}]) == there)) continue;  // another cell at the same place of the table
-        meeting other;
-        load(other, k);
+    std::uint32_t const* const ends = particles.order.ends;
+    auto const look = [&](std::uint32_t first, std::uint32_t count, cell from) {
+      std::uint32_t const end = ends[first + count];
+      for (std::uint32_t k = ends[first]; k < end; ++k) {
+        near_sphere<S> const close = particles.spheres[k];
+        vec3<S> const at(close.x, close.y, close.z), between = self[position{}] - at;
+        S const reach = self.the_radius + close.radius;
+        if (!(dot(between, between) < mul(reach, reach)) || k == i) continue;
+        cell const there = cells.of(at);  // others may be at the same place of the table
+        std::int32_t const along = there.x - from.x;
+        if (there.y != from.y || there.z != from.z || along < 0 || along >= static_cast<std::int32_t>(count)) continue;
+        meeting other = particles[k];
         if (!sleeps) {
           scene.meet(changed, self, other, dt);
         } else if (!is_skipped(other)) {
@@ -152,18 +175,23 @@ struct meet_neighbours {
         }
         met = true;
       }
+    };
+    for (int row = 0; row < 9; ++row) {
+      cell const from{here.x - 1, here.y + row % 3 - 1, here.z + row / 3 - 1};
+      std::uint32_t const first = cells.number(from);
+      if ((from.x & 15) < 14) {  // the next two follow it
+        look(first, 3, from);
+      } else {
+        for (std::int32_t k = 0; k < 3; ++k) {
+          cell const one{from.x + k, from.y, from.z};
+          look(cells.number(one), 1, one);
+        }
+      }
     }
     if (met) state.store(changed, self.number, typename Scene::meeting_writes{});
   }
 
  private:
-  using near = joined_t<columns<position>, common_t<columns<radius>, typename Scene::all>>;
-
-  COLLIDE_HD_INLINE void load(meeting& p, std::size_t i) const {
-    copies.load(p, i);
-    p.number = order.numbers[i];
-  }
-
   COLLIDE_HD_INLINE bool is_skipped(meeting& p) const {
     if constexpr (Scene::skips) {
       return scene.is_skipped(p);
@@ -190,22 +218,23 @@ class neighbours {
     ends_.reserve(resource, count_ + 2);
     numbers_.reserve(resource, n);
     memory_.reserve(resource, n);
+    spheres_.reserve(resource, n);
     scratch_.reserve(resource, larger<std::size_t>(space.scan_bytes(count_ + 1), 1));
   }
 
   /// One pass of `meet` over all pairs.
   template <class Space>
   void meet(Space& space, particle_state<S, typename Scene::all> const& state, Scene const& scene, S dt) {
-    auto const copies = memory_.state(state.size, state.placed, state.common_radius);
     particle_order const order{ends_.data(), numbers_.data()};
-    std::uint32_t const* const total = order.ends + count_;
+    ordered_particles<S, Scene> const ordered{order, order.ends + count_, spheres_.data(),
+                                              memory_.state(state.size, state.placed, state.common_radius)};
     space.fill(order.ends, 0, (count_ + 2) * sizeof *order.ends);
     space.for_each(state.size, sort_into_cells<S, Scene, false>{state, cells_, order});
     space.exclusive_scan(order.ends + 1, count_ + 1, scratch_);
     space.for_each(state.size, sort_into_cells<S, Scene, true>{state, cells_, order});
     space.for_each(count_, sort_cells{order});
-    space.for_each(state.size, copy_in_order<S, Scene>{state, copies, order, total});
-    space.for_each(state.size, meet_neighbours<S, Scene>{state, copies, cells_, order, total, scene, dt});
+    space.for_each(state.size, copy_in_order<S, Scene>{state, ordered});
+    space.for_each(state.size, meet_neighbours<S, Scene>{state, ordered, cells_, scene, dt});
   }
 
  private:
@@ -213,7 +242,8 @@ class neighbours {
   std::size_t count_ = 0;
   buffer<std::uint32_t> ends_;
   buffer<id> numbers_;
-  column_buffers<S, typename Scene::meeting> memory_;
+  buffer<near_sphere<S>> spheres_;
+  column_buffers<S, typename Scene::meeting_copies> memory_;
   buffer<unsigned char> scratch_;
 };
 

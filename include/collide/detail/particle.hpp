@@ -77,6 +77,11 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
 
   /// The columns `E` of one particle.
   template <class P, class... E>
+  COLLIDE_HD_INLINE void load(P& p, std::size_t i, columns<E...>) const {
+    (load_value(E{}, p[E{}], i), ...);
+  }
+
+  template <class P, class... E>
   COLLIDE_HD_INLINE void store(P const& p, std::size_t i, columns<E...>) const {
     (store_value(E{}, p[E{}], i), ...);
   }

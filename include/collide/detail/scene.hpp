@@ -223,6 +223,7 @@ struct scene : held_effect<E>... {
   using contact_writes = joined_t<flight_writes, writes_if<E, touches_in<E, S>::value>...>;
   /// The same for particles that meet; all of them are also copied.
   using meeting = joined_t<columns<position>, reads_if<E, meets_or_skips<E>>..., radius_if<meets>>;
+  using meeting_copies = remaining_t<meeting, columns<position, radius>>;  ///< these two are kept together
   using meeting_writes = joined_t<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>;
 
   explicit scene(E... e) : held_effect<E>{std::move(e)}... {}
