@@ -160,9 +160,9 @@ void measure(Space const& space, std::size_t n, std::size_t times) {
   scene.run("gravity, bounce, friction", simulation<still, gravity, bounce, friction>(space));
   scene.run("gravity, bounce, friction, spin", simulation<still, gravity, bounce, friction, spin>(space));
   scene.run("gravity, bounce, stick", simulation<still, gravity, bounce, stick>(space));
-  scene.run("sleep, gravity, bounce", simulation<still, sleep, gravity, bounce>(space));
+  scene.run("sleep, gravity, bounce", simulation<still, collide::sleep, gravity, bounce>(space));
   scene.run("sleep, gravity, bounce: all asleep",
-            simulation<still, sleep, gravity, bounce>(space, sleep{1e30, 5}, gravity{}, bounce{}));
+            simulation<still, collide::sleep, gravity, bounce>(space, collide::sleep{1e30, 5}, gravity{}, bounce{}));
   scene.run("gravity, absorb", simulation<still, gravity, absorb>(space));
   scene.run("emit, gravity, bounce",
             simulation<still, emit, gravity, bounce>(space, emit{1e5, {}}, gravity{}, bounce{}));
