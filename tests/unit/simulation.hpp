@@ -252,6 +252,47 @@ void check_inner_edges(Space const& space) {
   }
 }
 
+/// In a corner all three walls count, in the step in which they are met.
+template <class NarrowPhase, class S, class Space>
+void check_corner(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, collide::bounce>;
+  world<S> w;
+  add_cube(w, 1, 5);
+  w.radius = S(0.25);
+  w.particle(-0.73, -0.72, -0.73, -1, -2, -3);
+  w.particle(0.73, -0.74, 0.2, 1, -2, 0);
+  running<simulation> made(space, w, collide::bounce{0.5});
+  made.simulation.step(S(0.05));
+  auto const x = made.positions(), v = made.velocities();
+  for (std::size_t k = 0; k < 6; ++k) {
+    CHECK(double(v[k]) == doctest::Approx(-0.5 * double(w.velocities[k])).epsilon(1e-5));
+    if (k != 5) CHECK(std::abs(double(x[k])) < 0.75);
+  }
+}
+
+/// However coarse the step, elastic bounces neither gain nor lose height on average.
+template <class Simulation>
+void check_coarse_bounces(typename Simulation::execution_space const& space) {
+  world<float> w;
+  add_floor(w, 8, 8);
+  w.radius = 0.1f;
+  std::mt19937 engine(9);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  double before = 0, after = 0;
+  for (int i = 0; i < 256; ++i) {
+    double const height = 1 + 0.3 * uniform(engine);
+    w.particle(7 * uniform(engine), 7 * uniform(engine), 0.1 + height);
+    before += 9.81 * height;
+  }
+  running<Simulation> made(space, w);
+  made.simulation.template effect<collide::bounce>().restitution = 1;
+  made.simulation.steps(8000, 5e-3f);
+  auto const x = made.positions(), v = made.velocities();
+  for (std::size_t i = 0; i < w.size(); ++i)
+    after += 9.81 * (double(x[3 * i + 2]) - 0.1) + double(v[3 * i + 2]) * double(v[3 * i + 2]) / 2;
+  CHECK(after == doctest::Approx(before).epsilon(0.03));
+}
+
 /// A world of particles at random in a cube.
 template <class S>
 world<S> crowd(std::size_t n, double half, double radius, double speed, unsigned seed) {

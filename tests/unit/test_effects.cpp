@@ -7,6 +7,21 @@ using collide::karabassi;
 using collide::karabassi_swept;
 using tests::lockstep;
 
+namespace {
+
+/// Does what is to be done in any order in the reverse order.
+class reversed : public host {
+ public:
+  using host::host;
+
+  template <class F>
+  void for_each(std::size_t n, F const& f) const {
+    for (std::size_t i = n; i-- > 0;) f(i);
+  }
+};
+
+}  // namespace
+
 TEST_CASE("effects: drag leads to the terminal velocity, as the closed form has it") { tests::check_drag(host(1)); }
 
 TEST_CASE("effects: wind, uniform and a user's field") { tests::check_wind(host(1)); }
@@ -32,6 +47,7 @@ TEST_CASE("effects: a pile of spheres stays in a closed mesh for 1e5 steps") {
 TEST_CASE("effects: spheres that meet do so in the same bits on every run") {
   tests::check_meeting_determinism(host(1), host(2));
   tests::check_meeting_determinism(host(1), lockstep<256, true>());
+  tests::check_meeting_determinism(host(1), reversed());
 }
 
 TEST_CASE("effects: what rests sleeps until it is hit") { tests::check_sleep(host(1)); }

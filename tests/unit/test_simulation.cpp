@@ -45,6 +45,16 @@ TEST_CASE_TEMPLATE("simulation: a ball feels no bump at the inner edges of a pla
   tests::check_inner_edges<karabassi_swept<>, S>(host(2));
 }
 
+TEST_CASE_TEMPLATE("simulation: all walls of a corner count", S, float, double) {
+  tests::check_corner<karabassi<>, S>(host(1));
+  tests::check_corner<karabassi_swept<>, S>(host(1));
+}
+
+TEST_CASE("simulation: elastic bounces keep their height on average, however coarse the step") {
+  tests::check_coarse_bounces<simulation<plain, gravity, bounce>>(host(2));
+  tests::check_coarse_bounces<simulation<plain, velocity_verlet, gravity, bounce>>(host(2));
+}
+
 TEST_CASE("simulation: particles stay in a closed mesh for 1e5 steps") {
   tests::check_closed_mesh<karabassi<>, float>(host(1), 100000, 3);
   tests::check_closed_mesh<karabassi_swept<>, float>(host(1), 100000, 3, 8);
