@@ -9,6 +9,7 @@
 #include <collide/detail/block.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/lifted.hpp>
+#include <collide/detail/lookup.hpp>
 #include <collide/detail/vectorised.hpp>
 #include <collide/detector.hpp>
 
@@ -159,6 +160,9 @@ struct all_pairs {
       body.splits = detail::larger<std::size_t>(1, detail::smaller(wanted, tiles));
       space.launch(blocks * body.splits, body);
     }
+
+    /// What a kernel asks for the triangles near a single sphere; valid until the next build.
+    detail::all_pairs_lookup<S> lookup() const { return {{mesh_, nullptr}}; }
 
     template <class Space>
     double cell_width(Space&) const {

@@ -11,6 +11,7 @@
 #include <collide/detail/block.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/hits.hpp>
+#include <collide/detail/lookup.hpp>
 #include <collide/detail/sorted_spheres.hpp>
 #include <collide/detail/sphere_batch.hpp>
 #include <collide/detail/way.hpp>
@@ -434,6 +435,18 @@ class bucket::index {
                                                     0};
     body.share = detail::share_of<Space>(space, spheres.size(), body);
     space.launch((spheres.size() + body.share - 1) / body.share, body);
+  }
+
+  /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
+  detail::bucket_lookup<S> lookup() const {
+    return {{mesh_, has_bounds_ ? bounds_.data() : nullptr},
+            grids_.data(),
+            grid_count_,
+            occupied(),
+            counts_.data(),
+            counts_.data() + cells_ + 1,
+            entries_.data(),
+            entries_.capacity()};
   }
 
   /// Width of the finest cells in use; 0 if there is no grid.

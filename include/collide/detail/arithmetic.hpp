@@ -132,7 +132,6 @@ COLLIDE_HD_INLINE T larger(T a, T b) {
   return a < b ? b : a;
 }
 
-
 template <class T>
 COLLIDE_HD_INLINE vec3<T> smaller(vec3<T> const& a, vec3<T> const& b) {
   return {smaller(a.x(), b.x()), smaller(a.y(), b.y()), smaller(a.z(), b.z())};
@@ -184,8 +183,8 @@ struct format<double> {
   static constexpr double unflushed = 0x1p-960;
 };
 
-/// `a` if `condition` holds, else `b`. On the host without a branch that a compiler could move the computation of `a` or
-/// `b` into: loops in which it does so are not vectorised.
+/// `a` if `condition` holds, else `b`. On the host without a branch that a compiler could move the computation of `a`
+/// or `b` into: loops in which it does so are not vectorised.
 template <class T>
 COLLIDE_HD_INLINE T select(bool condition, T a, T b) {
 #if defined(__CUDA_ARCH__)

@@ -1,0 +1,37 @@
+/// \file
+/// Effect: the mesh is solid.
+#pragma once
+
+#include <collide/detail/arithmetic.hpp>
+#include <collide/effect.hpp>
+
+namespace collide {
+
+/// The mesh repels: the velocity along the normal turns around, times `restitution` (1: elastic, 0: not at all), and
+/// the particle is put back to the surface. A particle that comes in so slowly that the step's acceleration would take
+/// the bounce back within a step rests on the surface.
+///
+/// What is left of the step after the impact, depth / speed, is spent on the way back, so that bounces lose or gain
+/// no height on average, whatever the step.
+struct bounce {
+  using writes = columns<position, velocity>;
+
+  double restitution = 0.5;
+
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void touch(Particle& p, touching<S>& t, S dt) const {
+    S const e = S(restitution), speed = -detail::dot(p[velocity{}], t.normal);
+    S back = detail::larger(t.depth, S(0));
+    if (speed > 0) {
+      t.rests = e * speed <= -detail::dot(t.gain, t.normal);
+      S const impulse = t.rests ? speed : speed + e * speed;
+      p[velocity{}] += t.normal * impulse;
+      t.impulse += impulse;
+      if (!t.rests) back += e * detail::smaller(back, speed * dt);
+    }
+    p[position{}] += t.normal * back;
+    t.depth -= back;
+  }
+};
+
+}  // namespace collide

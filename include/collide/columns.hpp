@@ -1,0 +1,70 @@
+/// \file
+/// The columns of a simulation's state: what is known of each particle.
+///
+/// A column is a type with a member template `value<S>`: what a particle has of it, where S is the scalar of the
+/// simulation: `vec3<S>`, `S`, or a plain integer. `static constexpr value<S> initial<S>` may say what a particle
+/// begins with; else it is zero. A user's effect may name columns of its own:
+///
+///     struct temperature {
+///       template <class S> using value = S;
+///       template <class S> static constexpr S initial = S(20);
+///     };
+#pragma once
+
+#include <cstdint>
+
+#include <collide/geometry.hpp>
+
+namespace collide {
+
+/// A list of columns.
+template <class... Column>
+struct columns {
+  static constexpr std::size_t size = sizeof...(Column);
+};
+
+/// The centre.
+struct position {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// The velocity, in units of length per unit of time.
+struct velocity {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// The radius, where each particle has its own; see `polydisperse`.
+struct radius {
+  template <class S>
+  using value = S;
+};
+
+/// Radians per unit of time, around the axis that it points along; see `spin`.
+struct angular_velocity {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// 1 if the particle is there, 0 if its place is free; see `emit` and `absorb`.
+struct present {
+  template <class S>
+  using value = std::uint8_t;
+  template <class S>
+  static constexpr std::uint8_t initial = 1;
+};
+
+/// For how many steps the particle has been slow; see `sleep`.
+struct slow_steps {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+/// 1 if the particle sticks to the mesh; see `stick`.
+struct stuck {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+}  // namespace collide

@@ -1,0 +1,162 @@
+/// \file
+/// The first kernel of a simulation's step: moves all particles, and lists those that may touch the mesh.
+///
+/// Each lane takes groups of four particles, integrates them, and asks the broad phase whether there could be a
+/// triangle near. Mostly there is none, and the particle's step is done. The few others are listed for the second
+/// kernel (respond.hpp), which has all the code that they need and this one has not: what most particles go through
+/// takes few registers, and the others are spread evenly over the device.
+#pragma once
+
+#include <collide/detail/atomic.hpp>
+#include <collide/detail/lookup.hpp>
+#include <collide/detail/scene.hpp>
+#include <collide/detail/spheres_of.hpp>
+
+namespace collide::detail {
+
+/// The particles that may touch the mesh in a step, in memory of the space.
+struct listed_particles {
+  std::uint32_t* count;
+  std::uint32_t* done;  ///< blocks that have finished with the list: the last one empties it for the next step
+  id* numbers;          ///< room for all particles
+};
+
+/// Kernel body: moves all particles. `NarrowPhase` judges balls at rest, or balls that move: then those that are listed
+/// stay where they were.
+template <class S, class NarrowPhase, class Lookup, class Scene>
+struct fly_body {
+  static constexpr int items = particles_per_group;
+  static constexpr bool moves = !at_rest<NarrowPhase, S>;
+  static constexpr S part_before = S(Scene::integrator::before), part_after = S(Scene::integrator::after);
+
+  /// How many particles a lane moves at a time.
+  template <class Block>
+  static constexpr int at_a_time = Block::items % 16 == 0 ? 16 : particles_per_group;
+  static_assert(particle_padding % 16 == 0, "the last ones are read and written with those that are not there");
+
+  particle_state<S, typename Scene::all> state;
+  Scene scene;
+  Lookup lookup;
+  listed_particles list;
+  S dt;
+
+  template <class Block, bool Touches>
+  struct scratch_of {};
+  template <class Block>
+  struct scratch_of<Block, true> {
+    std::uint32_t count, first;
+    id listed[Block::lanes * Block::items];
+  };
+  template <class Block>
+  using scratch = scratch_of<Block, Scene::touches>;
+
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    if constexpr (Scene::touches) {
+      block.each([&](int lane) {
+        if (lane == 0) s.count = 0;
+      });
+      Lookup const near = lookup.opened();
+      bool const simple = has_one_radius && near.is_simple(state.common_radius);
+      constexpr int n = at_a_time<Block>;
+      fly(block, [&](auto const& p, auto const& skipped, auto& listed) {
+        if (moves || !simple) {
+          for (int k = 0; k < n; ++k) listed[k] = !near.empty(ball_of(p[k]));
+        } else {
+          mark_near(near, p, listed);
+        }
+        for (int k = 0; k < n; ++k) {
+          listed[k] = listed[k] && !skipped[k] && p[k].number < state.size;
+          if (listed[k]) s.listed[block.add(s.count, 1)] = p[k].number;
+        }
+      });
+      std::uint32_t const found = block.shared(s.count);
+      if (found == 0) return;
+      block.each([&](int lane) {
+        if (lane == 0) s.first = fetch_add(list.count, found);
+      });
+      block.each([&](int lane) {
+        for (auto i = static_cast<std::uint32_t>(lane); i < found; i += Block::lanes) {
+          list.numbers[s.first + i] = s.listed[i];
+        }
+      });
+    } else {
+      fly(block, [](auto const&, auto const&, auto const&) {});
+    }
+  }
+
+ private:
+  using flying = particle<S, typename Scene::flight>;
+  static constexpr int group = particles_per_group;
+
+  static constexpr bool has_one_radius = !contains<typename Scene::all, radius>;
+
+  /// Moves the particles of a block. `list(particles, skipped, listed)` sets listed[k] for those that may touch the
+  /// mesh.
+  template <class Block, class List>
+  COLLIDE_HD_INLINE void fly(Block& block, List const& list) const {
+    std::size_t const first = block.index() * Block::lanes * Block::items;
+    block.each([&](int lane) {
+      constexpr int n = at_a_time<Block>;
+      for (int k = 0; k < Block::items; k += n) {
+        std::size_t const i = first + static_cast<std::size_t>(lane * Block::items + k);
+        if (i < state.size) fly_some<n>(i, list);
+      }
+    });
+  }
+
+  template <int N, class List>
+  COLLIDE_HD_INLINE void fly_some(std::size_t first, List const& list) const {
+    bool skipped[N] = {}, listed[N] = {};
+    if constexpr (Scene::skips) {
+      particle<S, typename Scene::skipping> p[N];
+      for (int k = 0; k < N; k += group) state.load_group(p + k, first + static_cast<std::size_t>(k));
+      bool all = true;
+      for (int k = 0; k < N; ++k) {
+        skipped[k] = first + static_cast<std::size_t>(k) >= state.size || scene.is_skipped(p[k]);
+        all = all && skipped[k];
+      }
+      if (all) return;
+    }
+    flying p[N];
+    for (int k = 0; k < N; k += group) state.load_group(p + k, first + static_cast<std::size_t>(k));
+    for (int k = 0; k < N; ++k) {
+      if (skipped[k]) continue;
+      if constexpr (part_before != 0) scene.accelerate(p[k], part_before * dt);
+      if constexpr (!moves) p[k][position{}] += p[k][velocity{}] * dt;
+    }
+    list(p, skipped, listed);
+    for (int k = 0; k < N; ++k) {
+      if (skipped[k] || listed[k]) continue;
+      if constexpr (moves) p[k][position{}] += p[k][velocity{}] * dt;
+      if constexpr (part_after != 0) scene.accelerate(p[k], part_after * dt);
+      scene.finish(p[k], dt);
+    }
+    for (int k = 0; k < N; k += group) {
+      state.store_group(p + k, first + static_cast<std::size_t>(k), typename Scene::flight_writes{});
+    }
+  }
+
+  /// Of one radius and in one grid of one level: without branches, for the CPU's vector unit, as which particles are
+  /// near the mesh is not to be foreseen.
+  template <int N>
+  COLLIDE_HD_INLINE void mark_near(Lookup const& near, flying const (&p)[N], bool (&listed)[N]) const {
+    S x[N], y[N], z[N];
+    for (int k = 0; k < N; ++k) {
+      vec3<S> const& c = p[k][position{}];
+      x[k] = c.x(), y[k] = c.y(), z[k] = c.z();
+    }
+    near.mark(x, y, z, listed);
+  }
+
+  /// What the narrow phase judges.
+  COLLIDE_HD_INLINE auto ball_of(flying const& p) const {
+    if constexpr (moves) {
+      return moving_sphere<S>{{p[position{}], p.the_radius}, p[velocity{}] * dt};
+    } else {
+      return sphere<S>{p[position{}], p.the_radius};
+    }
+  }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,249 @@
+/// \file
+/// Which triangles a single sphere could touch, asked from inside a kernel: what a broad phase gives a simulation.
+///
+/// An index gives a trivially copyable `lookup()`. In a kernel, `opened()` is that lookup for use, and then
+///   - `empty(ball)` is true if the ball can touch no triangle: it is quick; `is_simple(radius)` is true if for balls
+///   of
+///     this radius it is quicker still to ask for several at a time, `mark(x, y, z, near)`;
+///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
+///     candidates, until it returns false; a triangle may appear more than once if the ball moves;
+///   - `range.at(k)` is a triangle's number, `near(around, number)` a quick test whether a ball could touch it
+///     all of whose way is in the ball `around`.
+#pragma once
+
+#include <collide/detail/bounding_sphere.hpp>
+#include <collide/detail/enclosing.hpp>
+#include <collide/detail/grid.hpp>
+#include <collide/detail/way.hpp>
+
+namespace collide::detail {
+
+/// Candidates that follow each other in memory, or in number.
+struct candidate_range {
+  id const* listed;  ///< null: the triangles themselves are numbered from `first`
+  id first;
+  std::uint32_t count;
+
+  COLLIDE_HD_INLINE id at(std::uint32_t k) const { return listed != nullptr ? listed[k] : first + k; }
+};
+
+/// How far the candidates of a ball have been gone through.
+struct candidate_cursor {
+  int grid, level;
+  std::uint32_t step, skip;
+};
+
+/// What both lookups share: the triangles, and a cheap test for each.
+template <class S>
+struct triangle_lookup {
+  mesh_view<S> mesh;
+  bounding_sphere<S> const* bounds;  ///< may be null
+
+  COLLIDE_HD_INLINE bool near(sphere<S> const& around, id number) const {
+    bounding_sphere<S> const bound = bounds != nullptr ? bounds[number] : bounds_of(mesh[number]);
+    return bound.reached(around.centre, around.radius);
+  }
+
+  /// All triangles, one range after the other.
+  COLLIDE_HD bool next_of_all(candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    auto const n = static_cast<std::uint32_t>(mesh.size());
+    if (c.skip >= n) return false;
+    range = {nullptr, c.skip, smaller(n - c.skip, most)};
+    c.skip += range.count;
+    return true;
+  }
+};
+
+/// In place of a lookup, if nothing asks.
+struct no_lookup {};
+
+/// The lookup of `all_pairs`.
+template <class S>
+struct all_pairs_lookup : triangle_lookup<S> {
+  COLLIDE_HD all_pairs_lookup const& opened() const { return *this; }
+
+  template <class Ball>
+  COLLIDE_HD bool empty(Ball const&) const {
+    return this->mesh.size() == 0;
+  }
+  COLLIDE_HD bool is_simple(S) const { return false; }
+  template <int N>
+  COLLIDE_HD void mark(S const (&)[N], S const (&)[N], S const (&)[N], bool (&)[N]) const {}
+  template <class Ball>
+  COLLIDE_HD candidate_cursor begin(Ball const&) const {
+    return {0, 0, 0, 0};
+  }
+  template <class Ball>
+  COLLIDE_HD bool next(Ball const&, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    return this->next_of_all(c, most, range);
+  }
+};
+
+/// The lookup of `bucket`: the grids, as bucket.cuh has them.
+template <class S>
+struct bucket_lookup : triangle_lookup<S> {
+  grid<S> const* grids;
+  int grid_count;
+  std::uint32_t const* occupied;
+  std::uint32_t const* ends;
+  std::uint32_t const* total;
+  id const* entries;
+  std::size_t capacity;
+
+  static constexpr int nowhere = -1, everywhere = -2;  ///< in place of a grid's number
+
+  COLLIDE_HD bucket_lookup opened() const {
+    bucket_lookup open = *this;
+    if (grid_count > 0 && *total > capacity) open.grid_count = 0;
+    return open;
+  }
+
+  template <class Ball>
+  COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
+    if (this->mesh.size() == 0) return true;
+    int const g = grid_of(ball);
+    if (g < 0) return g == nowhere;
+    COLLIDE_ROLLED
+    for (int l = 0; l < grids[g].levels; ++l) {
+      if (!empty_level(grids[g], grids[g].level[l], ball)) return false;
+    }
+    return true;
+  }
+
+  /// True if a ball of this radius looks into one cell, wherever it is.
+  COLLIDE_HD_INLINE bool is_simple(S radius) const {
+    return grid_count == 1 && grids[0].levels == 1 && valid_radius(radius) && radius <= grids[0].reach;
+  }
+
+  /// Then `empty` is not near[k], for several balls.
+  template <int N>
+  COLLIDE_HD_INLINE void mark(S const (&x)[N], S const (&y)[N], S const (&z)[N], bool (&near)[N]) const {
+    grid<S> const& g = grids[0];
+    grid_level<S> const& l = g.level[0];
+    std::uint32_t cells[N], inside[N];
+    for (int k = 0; k < N; ++k) {
+      inside[k] = x[k] >= g.lower[0] ? 1u : 0u;
+      inside[k] &= x[k] <= g.upper[0] ? 1u : 0u;
+      inside[k] &= y[k] >= g.lower[1] ? 1u : 0u;
+      inside[k] &= y[k] <= g.upper[1] ? 1u : 0u;
+      inside[k] &= z[k] >= g.lower[2] ? 1u : 0u;
+      inside[k] &= z[k] <= g.upper[2] ? 1u : 0u;
+      cells[k] = g.cell_of(l, {x[k], y[k], z[k]});
+    }
+    for (int k = 0; k < N; ++k) near[k] = (inside[k] & occupied[cells[k] / 32] >> cells[k] % 32 & 1) != 0;
+  }
+
+  template <class Ball>
+  COLLIDE_HD candidate_cursor begin(Ball const& ball) const {
+    return {this->mesh.size() == 0 ? nowhere : grid_of(ball), 0, 0, 0};
+  }
+
+  template <class Ball>
+  COLLIDE_HD bool next(Ball const& ball, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    if (c.grid == nowhere) return false;
+    if (c.grid == everywhere) return this->next_of_all(c, most, range);
+    grid<S> const& g = grids[c.grid];
+    for (; c.level < g.levels; ++c.level, c.step = 0) {
+      if (next_of_level(g, g.level[c.level], ball, c, most, range)) return true;
+    }
+    return false;
+  }
+
+ private:
+  COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 32] >> cell % 32 & 1) != 0; }
+
+  /// The tightest grid that serves a ball; grids come by falling reach.
+  template <class Ball>
+  COLLIDE_HD_INLINE int grid_of(Ball const& ball) const {
+    if (!valid_radius(ball.radius) || !finite_way(ball)) return nowhere;
+    int number = everywhere;
+    COLLIDE_ROLLED
+    for (int g = 0; g < grid_count; ++g) {
+      if (!serves(grids[g], ball)) continue;
+      number = meets(grids[g], ball) ? g : nowhere;
+    }
+    return number;
+  }
+
+  /// Of a ball at rest this is not asked: it is in no grid if its centre is NaN.
+  static COLLIDE_HD_INLINE bool finite_way(sphere<S> const&) { return true; }
+  static COLLIDE_HD_INLINE bool finite_way(moving_sphere<S> const& ball) {
+    return finite(ball.centre) && finite(ball.displacement);
+  }
+
+  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& ball) { return ball.radius <= g.reach; }
+  static COLLIDE_HD_INLINE bool meets(grid<S> const& g, sphere<S> const& ball) {
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) inside = inside && ball.centre[k] >= g.lower[k] && ball.centre[k] <= g.upper[k];
+    return inside;
+  }
+
+  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, moving_sphere<S> const& ball) {
+    S const inverse_width = g.levels > 0 ? g.level[0].inverse_width : S(0);
+    bool served = ball.radius <= g.reach;
+    for (int k = 0; k < 3; ++k) {
+      served = served && way<S>::can_walk(g.lower[k], g.upper[k], inverse_width, ball.centre[k], ball.displacement[k]);
+    }
+    return served;
+  }
+  static COLLIDE_HD_INLINE bool meets(grid<S> const& g, moving_sphere<S> const& ball) {
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      inside = inside && way<S>::enters(g.lower[k], g.upper[k], ball.centre[k], ball.displacement[k]);
+    }
+    return inside;
+  }
+
+  COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball) const {
+    return !is_occupied(g.cell_of(l, ball.centre));
+  }
+  COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball) const {
+    way<S> const path(g, l, ball.centre, ball.displacement);
+    constexpr std::uint32_t few = 8;  // a longer way is looked at more closely when it is walked
+    std::uint32_t const n = path.steps();
+    if (n > few) return false;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      auto const here = path.at(i);
+      if (here.is_cell && is_occupied(l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]))) return false;
+    }
+    return true;
+  }
+
+  /// The entries of a cell that have not been gone through; then the cursor is at the next step.
+  COLLIDE_HD bool next_of_cell(std::uint32_t cell, candidate_cursor& c, std::uint32_t most,
+                               candidate_range& range) const {
+    if (is_occupied(cell)) {
+      std::uint32_t const begin = ends[cell] + c.skip, end = ends[cell + 1];
+      if (begin < end) {
+        range = {entries + begin, 0, smaller(end - begin, most)};
+        c.skip += range.count;
+        return true;
+      }
+    }
+    ++c.step;
+    c.skip = 0;
+    return false;
+  }
+
+  COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball, candidate_cursor& c,
+                                std::uint32_t most, candidate_range& range) const {
+    return c.step == 0 && next_of_cell(g.cell_of(l, ball.centre), c, most, range);
+  }
+
+  COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball,
+                                candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    way<S> const path(g, l, ball.centre, ball.displacement);
+    while (c.step < path.steps()) {
+      auto const here = path.at(c.step);
+      if (!here.is_cell) {
+        ++c.step;
+        c.skip = 0;
+        continue;
+      }
+      if (next_of_cell(l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]), c, most, range)) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,161 @@
+/// \file
+/// Particles in registers, and their columns in memory.
+#pragma once
+
+#include <collide/detail/column_list.hpp>
+
+namespace collide::detail {
+
+/// The value of one column, in a base class that is found by its type.
+template <class C, class S>
+struct register_of {
+  column_value<C, S> value;
+};
+
+/// A particle with the columns of a list.
+template <class S, class List>
+struct particle;
+template <class S, class... C>
+struct particle<S, columns<C...>> : register_of<C, S>... {
+  using scalar = S;
+  using list = columns<C...>;
+
+  id number;  ///< of the particle, from 0
+  S the_radius;
+
+  template <class D>
+  COLLIDE_HD_INLINE column_value<D, S>& operator[](D) {
+    return static_cast<register_of<D, S>&>(*this).value;
+  }
+  template <class D>
+  COLLIDE_HD_INLINE column_value<D, S> const& operator[](D) const {
+    return static_cast<register_of<D, S> const&>(*this).value;
+  }
+};
+
+/// A particle with the initial values of all columns.
+template <class S, class... C>
+COLLIDE_HD_INLINE void begin_particle(particle<S, columns<C...>>& p) {
+  ((p[C{}] = initial_of<C, S>::value()), ...);
+}
+
+/// Where a column is in memory.
+template <class C, class S>
+struct pointer_of {
+  column_element<C, S>* value;
+};
+
+/// How many particles are read or written together: four coordinates are 16 bytes.
+inline constexpr int particles_per_group = 4;
+
+/// All columns of a simulation in memory. Each has room for a multiple of this many particles.
+inline constexpr std::size_t particle_padding = 16;
+
+template <class S, class List>
+struct particle_state;
+template <class S, class... C>
+struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
+  using list = columns<C...>;
+
+  std::size_t size;    ///< number of particles, or of places for them
+  std::size_t placed;  ///< how many of them `set` has placed; effects that make particles use the others
+  S common_radius;     ///< if there is no column for it
+  double* time;        ///< since `set`, when the step begins; null unless an effect has a member begin_step
+
+  template <class D>
+  COLLIDE_HD_INLINE column_element<D, S>* at(D) const {
+    return static_cast<pointer_of<D, S> const&>(*this).value;
+  }
+
+  /// One particle.
+  template <class... D>
+  COLLIDE_HD_INLINE void load(particle<S, columns<D...>>& p, std::size_t i) const {
+    p.number = static_cast<id>(i);
+    (load_value(D{}, p[D{}], i), ...);
+    p.the_radius = radius_of(p);
+  }
+
+  /// The columns `E` of one particle.
+  template <class P, class... E>
+  COLLIDE_HD_INLINE void load(P& p, std::size_t i, columns<E...>) const {
+    (load_value(E{}, p[E{}], i), ...);
+  }
+
+  template <class P, class... E>
+  COLLIDE_HD_INLINE void store(P const& p, std::size_t i, columns<E...>) const {
+    (store_value(E{}, p[E{}], i), ...);
+  }
+
+  /// A group of particles from `first` on, which is a multiple of their number.
+  template <class... D>
+  COLLIDE_HD_INLINE void load_group(particle<S, columns<D...>>* p, std::size_t first) const {
+    (load_values(D{}, p, first), ...);
+    for (int k = 0; k < particles_per_group; ++k) {
+      p[k].number = static_cast<id>(first) + static_cast<id>(k);
+      p[k].the_radius = radius_of(p[k]);
+    }
+  }
+
+  template <class P, class... E>
+  COLLIDE_HD_INLINE void store_group(P const* p, std::size_t first, columns<E...>) const {
+    (store_values(E{}, p, first), ...);
+  }
+
+ private:
+  /// What is read or written at once.
+  template <class T>
+  struct alignas(4 * sizeof(T)) four {
+    T v[4];
+  };
+
+  template <class P>
+  COLLIDE_HD_INLINE S radius_of(P const& p) const {
+    if constexpr (contains<typename P::list, radius>) {
+      return p[radius{}];
+    } else {
+      return common_radius;
+    }
+  }
+
+  template <class D>
+  COLLIDE_HD_INLINE void load_value(D, column_value<D, S>& value, std::size_t i) const {
+    using layout = column_layout<D, S>;
+    for (int k = 0; k < layout::width; ++k) {
+      layout::at(value, k) = at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)];
+    }
+  }
+
+  template <class D>
+  COLLIDE_HD_INLINE void store_value(D, column_value<D, S> const& value, std::size_t i) const {
+    using layout = column_layout<D, S>;
+    for (int k = 0; k < layout::width; ++k) {
+      at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)] = layout::at(value, k);
+    }
+  }
+
+  template <class D, class P>
+  COLLIDE_HD_INLINE void load_values(D, P* p, std::size_t first) const {
+    using layout = column_layout<D, S>;
+    constexpr int width = layout::width;
+    auto const* const from = reinterpret_cast<four<column_element<D, S>> const*>(at(D{}) + first * std::size_t(width));
+    four<column_element<D, S>> read[width];
+    for (int k = 0; k < width; ++k) read[k] = from[k];
+    for (int k = 0; k < particles_per_group; ++k) {
+      for (int c = 0; c < width; ++c) layout::at(p[k][D{}], c) = read[(k * width + c) / 4].v[(k * width + c) % 4];
+    }
+  }
+
+  template <class D, class P>
+  COLLIDE_HD_INLINE void store_values(D, P const* p, std::size_t first) const {
+    using layout = column_layout<D, S>;
+    constexpr int width = layout::width;
+    auto* const to = reinterpret_cast<four<column_element<D, S>>*>(at(D{}) + first * std::size_t(width));
+    four<column_element<D, S>> write[width];
+    for (int k = 0; k < particles_per_group; ++k) {
+      for (int c = 0; c < width; ++c) write[(k * width + c) / 4].v[(k * width + c) % 4] = layout::at(p[k][D{}], c);
+    }
+    for (int k = 0; k < width; ++k) to[k] = write[k];
+  }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,87 @@
+/// \file
+/// Effect: a source of particles.
+#pragma once
+
+#include <cmath>
+
+#include <collide/detail/arithmetic.hpp>
+#include <collide/detail/particle.hpp>
+#include <collide/effect.hpp>
+
+namespace collide {
+
+/// A nozzle: particles begin in a cube around a place, with about the same velocity.
+struct nozzle {
+  double at[3] = {0, 0, 0};
+  double width = 0;  ///< half of the cube's
+  double along[3] = {0, 0, 0};
+  double spread = 0;  ///< how much the coordinates of the velocity differ at most
+
+  template <class S>
+  COLLIDE_HD void operator()(std::uint64_t number, vec3<S>& x, vec3<S>& v) const {
+    for (int k = 0; k < 3; ++k) {
+      x[k] = S(at[k] + width * random(6 * number + static_cast<std::uint64_t>(k)));
+      v[k] = S(along[k] + spread * random(6 * number + 3 + static_cast<std::uint64_t>(k)));
+    }
+  }
+
+ private:
+  /// Between -1 and 1, always the same for a number: splitmix64 by S. Vigna.
+  static COLLIDE_HD double random(std::uint64_t number) {
+    std::uint64_t z = (number + 1) * 0x9e3779b97f4a7c15u;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-52 - 1;
+  }
+};
+
+namespace detail {
+
+/// Kernel body of `for_each` over the particles of a step.
+template <class S, class State, class Source>
+struct emit_particles {
+  State state;
+  Source source;
+  double rate, dt;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const begin = static_cast<std::uint64_t>(*state.time * rate);
+    auto const end = static_cast<std::uint64_t>((*state.time + dt) * rate);
+    std::uint64_t const number = begin + i, room = state.size - state.placed;
+    if (number >= end || end - number > room) return;
+    particle<S, typename State::list> p;
+    begin_particle(p);
+    if constexpr (contains<typename State::list, radius>) p[radius{}] = state.common_radius;
+    source(number, p[position{}], p[velocity{}]);
+    state.store(p, state.placed + static_cast<std::size_t>(number % room), typename State::list{});
+  }
+};
+
+}  // namespace detail
+
+/// A source: `rate` particles per unit of time, in the places that `simulation::set` got as capacity beyond the
+/// particles that it placed. Where all are taken, the oldest make room. `Source` is a copyable function object:
+/// COLLIDE_HD source(number, position&, velocity&) const says how particle number 0, 1, ... begins.
+template <class Source = nozzle>
+struct emit_from {
+  using writes = columns<position, velocity, present>;
+
+  double rate = 0;
+  Source source = Source();
+
+  template <class Particle>
+  COLLIDE_HD_INLINE bool skips(Particle const& p) const {
+    return p[present{}] == 0;
+  }
+  template <class Space, class State, class S>
+  void begin_step(Space& space, State const& state, S dt) const {
+    if (!(rate > 0) || state.size == state.placed) return;
+    auto const most = static_cast<std::size_t>(std::ceil(rate * static_cast<double>(dt))) + 1;
+    space.for_each(most, detail::emit_particles<S, State, Source>{state, source, rate, static_cast<double>(dt)});
+  }
+};
+
+/// A source that is a nozzle.
+using emit = emit_from<>;
+
+}  // namespace collide

@@ -1,0 +1,21 @@
+/// \file
+/// Effect: a constant acceleration.
+#pragma once
+
+#include <collide/effect.hpp>
+
+namespace collide {
+
+/// A constant acceleration, in units of length per unit of time squared.
+struct gravity {
+  using writes = columns<velocity>;
+
+  double x = 0, y = 0, z = -9.81;
+
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
+    p[velocity{}] += vec3<S>(S(x), S(y), S(z)) * dt;
+  }
+};
+
+}  // namespace collide

@@ -1,0 +1,15 @@
+/// \file
+/// Effect: each particle has its own radius.
+#pragma once
+
+#include <collide/effect.hpp>
+
+namespace collide {
+
+/// Each particle has its own radius: a column more, read wherever a radius is needed. Without it there is one radius
+/// for all, which takes no memory.
+struct polydisperse {
+  using reads = columns<radius>;
+};
+
+}  // namespace collide

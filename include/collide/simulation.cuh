@@ -1,0 +1,318 @@
+/// \file
+/// Particles that move, and collide with a mesh and with each other: a detector and the effects that a scene names.
+#pragma once
+
+#include <array>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <collide/detail/neighbours.hpp>
+#include <collide/detail/respond.hpp>
+#include <collide/detector.hpp>
+
+namespace collide {
+
+namespace detail {
+
+/// Kernel body of `for_each` over places of particles: what each begins with.
+template <class S, class All>
+struct place_particles {
+  particle_state<S, All> state;
+  sphere_view<S> spheres;
+  S const* velocities;  ///< null: they rest
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    particle<S, All> p;
+    begin_particle(p);
+    bool const there = i < spheres.size();
+    if (there) {
+      p[position{}] = spheres.centre(i);
+      if (velocities != nullptr) {
+        p[velocity{}] = vec3<S>(velocities[3 * i], velocities[3 * i + 1], velocities[3 * i + 2]);
+      }
+    }
+    if constexpr (contains<All, radius>) p[radius{}] = there ? spheres.radius(i) : spheres.common_radius();
+    if constexpr (contains<All, present>) p[present{}] = there;
+    state.store(p, i, All{});
+  }
+};
+
+/// Kernel body of `for_each`.
+template <class T>
+struct copy_values {
+  T const* from;
+  T* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
+};
+
+/// Kernel body of `for_each` over one item.
+struct advance_time {
+  double* time;
+  double dt;
+  COLLIDE_HD void operator()(std::size_t) const { *time += dt; }
+};
+
+/// A space as a broad phase sees it that is asked for the triangles near single spheres: they are sorted, not the
+/// spheres, and into narrow cells, as a look-up is cheap and a candidate is not.
+template <class Space>
+struct looking_up : Space {
+  explicit looking_up(Space const& space) : Space(space) {}
+  static constexpr bool sorts_spheres = false;
+  static constexpr int bucket_span = 2;
+};
+
+template <class D, class = void>
+struct is_detector : std::false_type {};
+template <class D>
+struct is_detector<
+    D, std::void_t<typename D::broad_phase, typename D::narrow_phase, typename D::execution_space, typename D::scalar>>
+    : std::true_type {};
+
+template <class Index, class = void>
+struct looks_up : std::false_type {};
+template <class Index>
+struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
+
+}  // namespace detail
+
+/// Particles, a mesh, and what happens to the particles in a step: only what the scene names.
+///
+/// \tparam Detector  `detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>`: how particles meet the mesh. With
+///                   `karabassi` a step ends where a particle is, and it touches what it then overlaps: one that moves
+///                   farther than its radius in a step may pass through. With `karabassi_swept` it stops at each impact
+///                   on its way, and passes through nothing.
+/// \tparam Effect    what happens to a particle; see effect.hpp, and docs/effects.md for those of the library. They are
+///                   applied in the order of the list. An integrator may be in the list too (velocity_verlet.hpp).
+///
+/// The state is in memory of the execution space, in columns: an array for each thing that is known of a particle.
+/// There are exactly the columns that the effects name, and `position` and `velocity`. A simulation without effects
+/// moves particles in straight lines, and nothing else.
+///
+/// `step` allocates nothing and never waits: in the CUDA spaces it puts one kernel on the stream of the space (more
+/// with `meet` or `begin_step`), and can be captured in a CUDA graph. The same steps give the same bits on every run in
+/// the same space. O(particles + candidates) per step. A simulation is for one thread at a time.
+template <class Detector, class... Effect>
+class simulation {
+  static_assert(detail::is_detector<Detector>::value,
+                "collide: the first parameter of a simulation is a detector, such as detector<bucket>");
+
+ public:
+  using detector_type = Detector;
+  using execution_space = typename Detector::execution_space;
+  using scalar = typename Detector::scalar;
+  using scene_type = detail::scene<scalar, Effect...>;
+
+ private:
+  using S = scalar;
+  using broad_phase = typename Detector::broad_phase;
+  using narrow_phase = typename Detector::narrow_phase;
+  using index = typename broad_phase::template index<S>;
+
+  static_assert((detail::is_effect<Effect, execution_space, S> && ...),
+                "collide: what follows the detector in a simulation are effects, such as gravity or bounce: copyable "
+                "classes with at least one of the members that effect.hpp names");
+  static_assert(((int(detail::is_integrator<Effect>::value)) + ... + 0) <= 1,
+                "collide: a simulation has one integrator");
+  static_assert(detail::well_ordered<Effect...>,
+                "collide: an effect comes after those whose result it uses: name friction after bounce");
+  static_assert(!scene_type::touches || detail::looks_up<index>::value,
+                "collide: effects that touch the mesh need a broad phase whose index has a member lookup(), such as "
+                "bucket or all_pairs");
+
+ public:
+  /// The state that a particle has.
+  using columns = typename scene_type::all;
+  /// Bytes of state of each particle.
+  static constexpr std::size_t bytes_per_particle = detail::column_buffers<S, columns>::bytes_per_particle;
+  /// Pointers to all columns, for kernels; see detail/particle.hpp.
+  using state_type = detail::particle_state<S, columns>;
+
+  explicit simulation(execution_space space = execution_space(), broad_phase options = broad_phase())
+      : space_(std::move(space)), options_(std::move(options)), scene_(Effect()...) {}
+
+  /// With parameters of all effects, in the order of the list.
+  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
+                                                 std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
+  explicit simulation(execution_space space, E... effects) : space_(std::move(space)), scene_(std::move(effects)...) {}
+  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
+                                                 std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
+  simulation(execution_space space, broad_phase options, E... effects)
+      : space_(std::move(space)), options_(std::move(options)), scene_(std::move(effects)...) {}
+
+  /// Copies particles from memory of the space: centres, radii, and three packed coordinates of velocity each, or null
+  /// for particles that rest. The other columns get their initial values. `capacity` is for how many there is room, if
+  /// an effect makes more. Radii that differ need `polydisperse` in the scene. Allocates; may wait.
+  void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
+    constexpr bool differ = detail::contains<columns, radius>;
+    if (!particles.one_radius() && !differ) {
+      throw error("collide: simulation: the radii differ: name the effect polydisperse in the scene");
+    }
+    std::size_t const n = particles.size(), room = detail::larger(n, capacity);
+    if (room > n && !detail::contains<columns, present>) {
+      throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
+    }
+    std::size_t const padded =
+        (room + detail::particle_padding - 1) / detail::particle_padding * detail::particle_padding;
+    memory_.reserve(space_.resource(), padded);
+    state_ = memory_.state(room, n, particles.common_radius());
+    if constexpr (begins) {
+      state_.time = time_.reserve(space_.resource(), 1);
+      space_.fill(state_.time, 0, sizeof *state_.time);
+    }
+    if constexpr (scene_type::touches) {
+      std::uint32_t* const counters = counters_.reserve(space_.resource(), 2);
+      space_.fill(counters, 0, 2 * sizeof *counters);
+      list_ = {counters, counters + 1, listed_.reserve(space_.resource(), room)};
+    }
+    space_.for_each(padded, detail::place_particles<S, columns>{state_, particles, velocities});
+    if constexpr (scene_type::meets) neighbours_.reserve(space_, room, largest_radius(particles));
+    prepare();
+  }
+
+  /// The mesh that particles touch, which must stay as it is while it is used; call it again when the mesh has moved.
+  /// Allocates unless there was a mesh of this size before; may wait. O(triangles).
+  void set_mesh(mesh_view<S> mesh) {
+    mesh_ = {};
+    detail::looking_up<execution_space> there(space_);
+    if (mesh.size() != 0) index_.build(there, options_, mesh);
+    mesh_ = mesh;
+    if constexpr (detail::contains<columns, slow_steps>) {  // what slept may have lost its support
+      if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
+    }
+    prepare();
+  }
+
+  /// Advances by `dt`.
+  void step(S dt) {
+    if (state_.size == 0) return;
+    (begin<Effect>(dt), ...);
+    if constexpr (begins) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
+    if constexpr (scene_type::meets) neighbours_.meet(space_, state_, scene_, dt);
+    auto const lookup = [&] {
+      if constexpr (scene_type::touches) {
+        return mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
+      } else {
+        return detail::no_lookup{};
+      }
+    }();
+    using lookup_type = std::decay_t<decltype(lookup)>;
+    detail::fly_body<S, narrow_phase, lookup_type, scene_type> const fly{state_, scene_, lookup, list_, dt};
+    space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
+    if constexpr (scene_type::touches) {
+      detail::respond_body<S, narrow_phase, lookup_type, scene_type> body{state_, scene_, lookup, list_, dt, 0};
+      using block = typename execution_space::template block<decltype(body)>;
+      std::size_t most = state_.size;
+      if constexpr (execution_space::host_memory) most = *list_.count;
+      body.blocks = (most + body.template together<block> - 1) / body.template together<block>;
+      if constexpr (!execution_space::host_memory) body.blocks = detail::smaller(body.blocks, space_.concurrency());
+      space_.launch(body.blocks, body);
+    }
+  }
+
+  /// Advances `n` times by `dt`.
+  void steps(std::size_t n, S dt) {
+    for (std::size_t i = 0; i < n; ++i) step(dt);
+  }
+
+  /// Number of particles, or of places for them, if an effect makes or removes some; see `present`.
+  std::size_t size() const { return state_.size; }
+
+  /// A column in memory of the space: three coordinates a particle, or one number. Valid until the next `set`.
+  template <class Column>
+  detail::column_element<Column, S>* data() const {
+    check<Column>();
+    return state_.at(Column{});
+  }
+
+  /// A copy of a column. Waits.
+  template <class Column>
+  std::vector<detail::column_element<Column, S>> to_host() const {
+    check<Column>();
+    std::vector<detail::column_element<Column, S>> copy(numbers<Column>());
+    space_.copy_to_host(copy.data(), state_.at(Column{}), copy.size());
+    return copy;
+  }
+
+  /// Gives all particles a column's values, from memory of the space.
+  template <class Column>
+  void assign(detail::column_element<Column, S> const* values) {
+    check<Column>();
+    space_.for_each(numbers<Column>(),
+                    detail::copy_values<detail::column_element<Column, S>>{values, state_.at(Column{})});
+  }
+
+  /// The particles as spheres, for a query.
+  sphere_view<S> spheres() const {
+    S const* const xyz = state_.at(position{});
+    if constexpr (detail::contains<columns, radius>) {
+      return spheres_xyz(xyz, state_.size, static_cast<S const*>(state_.at(radius{})));
+    } else {
+      return spheres_xyz(xyz, state_.size, state_.common_radius);
+    }
+  }
+
+  /// The parameters of an effect, which may be changed between steps.
+  template <class E>
+  E& effect() {
+    return scene_.template of<E>();
+  }
+
+  state_type const& state() const { return state_; }
+  execution_space& space() { return space_; }
+  execution_space const& space() const { return space_; }
+
+ private:
+  static constexpr bool begins = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
+  struct no_neighbours {};
+  using neighbours = std::conditional_t<scene_type::meets, detail::neighbours<S, scene_type>, no_neighbours>;
+
+  S largest_radius(sphere_view<S> const& particles) {
+    if constexpr (detail::contains<columns, radius>) {
+      if (!particles.one_radius()) {
+        auto const radii = to_host<radius>();
+        return radii.empty() ? S(0) : *std::max_element(radii.begin(), radii.end());
+      }
+    }
+    return particles.common_radius();
+  }
+
+  template <class Column>
+  static constexpr void check() {
+    static_assert(detail::contains<columns, Column>,
+                  "collide: no effect of this simulation names the column, so it does not have it");
+  }
+
+  template <class Column>
+  std::size_t numbers() const {
+    return state_.size * std::size_t(detail::column_layout<Column, S>::width);
+  }
+
+  void prepare() {
+    if constexpr (scene_type::touches) {
+      detail::looking_up<execution_space> there(space_);
+      if (mesh_.size() != 0 && state_.size != 0) index_.prepare(there, options_, spheres());
+    }
+  }
+
+  template <class E>
+  void begin(S dt) {
+    if constexpr (detail::begins_in<E, execution_space, state_type, S>::value)
+      effect<E>().begin_step(space_, state_, dt);
+  }
+
+  execution_space space_;
+  broad_phase options_;
+  scene_type scene_;
+  mesh_view<S> mesh_;
+  index index_;
+  detail::column_buffers<S, columns> memory_;
+  state_type state_{};
+  buffer<double> time_;
+  neighbours neighbours_;
+  buffer<std::uint32_t> counters_;
+  buffer<id> listed_;
+  detail::listed_particles list_{};
+};
+
+}  // namespace collide

@@ -1,0 +1,41 @@
+/// \file
+/// Effect: what rests costs nothing.
+#pragma once
+
+#include <collide/detail/arithmetic.hpp>
+#include <collide/effect.hpp>
+
+namespace collide {
+
+/// A particle that has been slower than `speed` for `steps` steps (at most 255) sleeps: it is left out until another
+/// particle that is awake and faster than that overlaps it, or the mesh changes, and costs the byte that says so.
+/// Choose `steps` such that a particle at the top of its flight is not slow for so long: more than 2 speed / (g dt).
+struct sleep {
+  using reads = columns<velocity>;
+  using writes = columns<slow_steps>;
+
+  double speed = 0.01;
+  int steps = 50;
+
+  template <class Particle>
+  COLLIDE_HD_INLINE bool skips(Particle const& p) const {
+    return p[slow_steps{}] >= steps;
+  }
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void finish(Particle& p, S) const {
+    p[slow_steps{}] = is_slow(p) ? static_cast<std::uint8_t>(p[slow_steps{}] + 1) : std::uint8_t{0};
+  }
+  template <class Particle, class Other>
+  COLLIDE_HD_INLINE void disturb(Particle& p, Other const& other) const {
+    if (!is_slow(other)) p[slow_steps{}] = 0;
+  }
+
+ private:
+  template <class Particle>
+  COLLIDE_HD_INLINE bool is_slow(Particle const& p) const {
+    using S = typename Particle::scalar;
+    return detail::dot(p[velocity{}], p[velocity{}]) < S(speed) * S(speed);
+  }
+};
+
+}  // namespace collide

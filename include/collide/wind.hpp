@@ -1,0 +1,39 @@
+/// \file
+/// Effect: the resistance of a medium that moves.
+#pragma once
+
+#include <collide/detail/arithmetic.hpp>
+#include <collide/effect.hpp>
+
+namespace collide {
+
+/// The same velocity everywhere.
+struct uniform_field {
+  double x = 0, y = 0, z = 0;
+
+  template <class S>
+  COLLIDE_HD_INLINE vec3<S> operator()(vec3<S> const&) const {
+    return {S(x), S(y), S(z)};
+  }
+};
+
+/// Wind: drag (drag.hpp) relative to a medium with a velocity of its own. `Field` is a copyable function object: given
+/// a position, a COLLIDE_HD operator() const returns the velocity of the medium there.
+template <class Field = uniform_field>
+struct wind {
+  using reads = columns<position>;
+  using writes = columns<velocity>;
+
+  double linear = 0, quadratic = 0;
+  Field field = Field();
+
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
+    vec3<S> const there = field(p[position{}]);
+    vec3<S> const v = p[velocity{}] - there;
+    S const k = S(linear) + S(quadratic) * detail::root(detail::dot(v, v));
+    p[velocity{}] = there + v * (1 / (1 + k * dt));
+  }
+};
+
+}  // namespace collide

@@ -1,0 +1,446 @@
+/// Simulations in a space, against closed forms; instantiated by test_simulation.cpp and test_simulation_cuda.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <collide/all_pairs.cuh>
+#include <collide/bounce.hpp>
+#include <collide/bucket.cuh>
+#include <collide/gravity.hpp>
+#include <collide/karabassi_swept.hpp>
+#include <collide/polydisperse.hpp>
+#include <collide/simulation.cuh>
+
+namespace tests {
+
+using collide::position;
+using collide::velocity;
+
+/// Counts allocations.
+class counting_calls final : public std::pmr::memory_resource {
+ public:
+  explicit counting_calls(std::pmr::memory_resource* from) : from_{from} {}
+  std::size_t calls = 0, bytes = 0;
+
+ private:
+  void* do_allocate(std::size_t n, std::size_t alignment) override {
+    ++calls;
+    bytes += n;
+    return from_->allocate(n, alignment);
+  }
+  void do_deallocate(void* p, std::size_t n, std::size_t alignment) override {
+    bytes -= n;
+    from_->deallocate(p, n, alignment);
+  }
+  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
+
+  std::pmr::memory_resource* from_;
+};
+
+/// Numbers in memory of a space.
+template <class T>
+class placed {
+ public:
+  template <class Space>
+  placed(Space const& space, std::vector<T> const& from) : size_{from.size()} {
+    space.copy_from_host(memory_.reserve(space.resource(), from.size() + 1), from.data(), from.size());
+  }
+  T const* data() const { return memory_.data(); }
+  std::size_t size() const { return size_; }
+
+ private:
+  collide::buffer<T> memory_;
+  std::size_t size_;
+};
+
+/// A mesh as a soup of corners, and particles, on the host.
+template <class S>
+struct world {
+  std::vector<S> corners, centres, velocities;
+  S radius = 0;
+  std::vector<S> radii;  ///< if they differ
+
+  void triangle(std::initializer_list<double> nine) {
+    for (double x : nine) corners.push_back(static_cast<S>(x));
+  }
+  void particle(double x, double y, double z, double u = 0, double v = 0, double w = 0) {
+    for (double c : {x, y, z}) centres.push_back(static_cast<S>(c));
+    for (double c : {u, v, w}) velocities.push_back(static_cast<S>(c));
+  }
+  std::size_t size() const { return centres.size() / 3; }
+};
+
+/// A simulation in which the world has been placed, with the memory of the mesh.
+template <class Simulation>
+class running {
+ public:
+  using S = typename Simulation::scalar;
+
+  template <class... Effect>
+  running(typename Simulation::execution_space space, world<S> const& w, Effect... effects)
+      : simulation(space, effects...), corners_(space, w.corners) {
+    placed<S> const centres(space, w.centres), velocities(space, w.velocities), radii(space, w.radii);
+    simulation.set(w.radii.empty() ? collide::spheres_xyz(centres.data(), w.size(), w.radius)
+                                   : collide::spheres_xyz(centres.data(), w.size(), radii.data()),
+                   velocities.data());
+    simulation.set_mesh(collide::triangle_soup(corners_.data(), corners_.size() / 9));
+    simulation.space().synchronize();
+  }
+
+  std::vector<S> positions() const { return simulation.template to_host<position>(); }
+  std::vector<S> velocities() const { return simulation.template to_host<velocity>(); }
+
+  Simulation simulation;
+
+ private:
+  placed<S> corners_;
+};
+
+template <class Space, class NarrowPhase = collide::karabassi<>, class S = float, class BroadPhase = collide::bucket>
+using meets_mesh = collide::detector<BroadPhase, NarrowPhase, Space, S>;
+
+/// The square |x|, |y| <= half at height z, divided into 2 n^2 triangles with corners moved at random within the plane.
+template <class S>
+void add_floor(world<S>& w, double half, int n, double z = 0) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-0.3, 0.3);
+  double const cell = 2 * half / n;
+  std::vector<double> x, y;
+  for (int i = 0; i <= n; ++i)
+    for (int k = 0; k <= n; ++k) {
+      bool const inner = i > 0 && k > 0 && i < n && k < n;
+      x.push_back(-half + cell * (i + (inner ? uniform(engine) : 0)));
+      y.push_back(-half + cell * (k + (inner ? uniform(engine) : 0)));
+    }
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) {
+      auto const a = static_cast<std::size_t>(i * (n + 1) + k), b = a + std::size_t(n) + 1;
+      w.triangle({x[a], y[a], z, x[b], y[b], z, x[b + 1], y[b + 1], z});
+      w.triangle({x[a], y[a], z, x[b + 1], y[b + 1], z, x[a + 1], y[a + 1], z});
+    }
+}
+
+/// The cube |x|, |y|, |z| <= half, its sides divided.
+template <class S>
+void add_cube(world<S>& w, double half, int n) {
+  double const cell = 2 * half / n;
+  for (int axis = 0; axis < 3; ++axis)
+    for (double const side : {-half, half})
+      for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+          double const u[] = {-half + cell * i, -half + cell * (i + 1)},
+                       v[] = {-half + cell * k, -half + cell * (k + 1)};
+          std::vector<double> corners;
+          for (auto [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}}) {
+            double p[3];
+            p[axis] = side, p[(axis + 1) % 3] = u[a], p[(axis + 2) % 3] = v[b];
+            corners.insert(corners.end(), p, p + 3);
+          }
+          for (double c : corners) w.corners.push_back(static_cast<S>(c));
+        }
+}
+
+// ---- the checks
+
+/// Without effects particles move in straight lines; under gravity as the integrator's closed form has it.
+template <class S, class Space>
+void check_free_flight(Space const& space) {
+  world<S> w;
+  for (int i = 0; i < 1027; ++i) w.particle(i, 2 * i, -i, 1, 0.5 * i, -2);
+  w.radius = S(0.1);
+  int const steps = 64;
+  S const dt = S(1) / 128;
+  double const t = steps * double(dt), g = -9.81;
+  double const rounding = steps * 2048 * double(std::numeric_limits<S>::epsilon());
+  auto const check = [&](auto const& made, double acceleration, double lag) {
+    auto const x = made.positions(), v = made.velocities();
+    REQUIRE(x.size() == w.centres.size());
+    bool right = true;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      double const a = i % 3 == 2 ? acceleration : 0;
+      right = right && std::abs(double(v[i]) - (double(w.velocities[i]) + a * t)) <= rounding;
+      double const expected = double(w.centres[i]) + double(w.velocities[i]) * t + a * t * (t + lag) / 2;
+      right = right && std::abs(double(x[i]) - expected) <= rounding;
+    }
+    CHECK(right);
+  };
+  using detector = meets_mesh<Space, collide::karabassi<>, S>;
+  running<collide::simulation<detector>> straight(space, w);
+  straight.simulation.steps(steps, dt);
+  check(straight, 0, 0);
+  running<collide::simulation<detector, collide::gravity>> euler(space, w);
+  euler.simulation.steps(steps, dt);
+  check(euler, g, double(dt));
+  running<collide::simulation<detector, collide::velocity_verlet, collide::gravity>> verlet(space, w);
+  verlet.simulation.steps(steps, dt);
+  check(verlet, g, 0);
+}
+
+/// The n-th bounce is e^(2n) as high as the fall, and in the end the ball rests on the floor.
+template <class Simulation>
+void check_bounces(typename Simulation::execution_space const& space) {
+  using S = typename Simulation::scalar;
+  double const e = 0.8, height = 1, radius = 0.1;
+  world<S> w;
+  add_floor(w, 4, 8);
+  w.radius = S(radius);
+  for (double x : {0.03, 0.91, -1.37}) w.particle(x, 0.2 + x, radius + height);
+  auto made = [&] {
+    if constexpr (std::is_same<typename Simulation::scene_type::integrator, collide::velocity_verlet>::value) {
+      return running<Simulation>(space, w, collide::velocity_verlet{}, collide::gravity{}, collide::bounce{e});
+    } else {
+      return running<Simulation>(space, w, collide::gravity{}, collide::bounce{e});
+    }
+  }();
+  S const dt = S(1e-4);
+  std::vector<double> peaks;
+  double before = 2, highest = 0;
+  bool rises = false;
+  for (int i = 0; i < 3000; ++i) {
+    made.simulation.steps(10, dt);
+    double const z = double(made.positions()[2]) - radius;
+    if (z > before) rises = true;
+    if (rises) highest = std::max(highest, z);
+    if (rises && z < before - 1e-3) {
+      peaks.push_back(highest);
+      highest = 0;
+      rises = false;
+    }
+    before = z;
+    if (peaks.size() == 5) break;
+  }
+  REQUIRE(peaks.size() == 5);
+  for (int n = 1; n <= 5; ++n)
+    CHECK(peaks[static_cast<std::size_t>(n - 1)] == doctest::Approx(height * std::pow(e, 2 * n)).epsilon(0.005));
+  made.simulation.steps(40000, dt);
+  auto const x = made.positions(), v = made.velocities();
+  double const slow = 9.81 * double(dt) * 0.51;  // velocity Verlet: half a step's acceleration
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    CHECK(double(x[3 * i + 2]) == doctest::Approx(radius).epsilon(1e-5));
+    CHECK(std::abs(double(v[3 * i + 2])) <= slow);
+    CHECK(x[3 * i] == w.centres[3 * i]);
+    CHECK(v[3 * i] == 0);
+  }
+}
+
+/// A ball that slides on a plane made of triangles feels no bump at inner edges.
+template <class NarrowPhase, class S, class Space>
+void check_inner_edges(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, collide::gravity, collide::bounce>;
+  world<S> w;
+  add_floor(w, 8, 40);
+  w.radius = S(0.25);
+  for (int i = 0; i < 32; ++i) w.particle(-6, -4 + 0.25 * i, 0.25, 2, 0.3 * std::cos(i), 0);
+  running<simulation> made(space, w, collide::gravity{}, collide::bounce{0.9});
+  made.simulation.steps(5000, S(1e-3));
+  auto const x = made.positions(), v = made.velocities();
+  S const little = sizeof(S) == 4 ? S(2e-6) : S(1e-12);
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    CHECK(std::abs(v[3 * i] - w.velocities[3 * i]) <= little);
+    CHECK(std::abs(v[3 * i + 1] - w.velocities[3 * i + 1]) <= little);
+    CHECK(std::abs(v[3 * i + 2]) <= little);
+    CHECK(std::abs(x[3 * i + 2] - w.radius) <= little);
+    CHECK(double(x[3 * i]) == doctest::Approx(4).epsilon(1e-4));
+  }
+}
+
+/// In a corner all three walls count, in the step in which they are met.
+template <class NarrowPhase, class S, class Space>
+void check_corner(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, collide::bounce>;
+  world<S> w;
+  add_cube(w, 1, 5);
+  w.radius = S(0.25);
+  w.particle(-0.73, -0.72, -0.73, -1, -2, -3);
+  w.particle(0.73, -0.74, 0.2, 1, -2, 0);
+  running<simulation> made(space, w, collide::bounce{0.5});
+  made.simulation.step(S(0.05));
+  auto const x = made.positions(), v = made.velocities();
+  for (std::size_t k = 0; k < 6; ++k) {
+    CHECK(double(v[k]) == doctest::Approx(-0.5 * double(w.velocities[k])).epsilon(1e-5));
+    if (k != 5) CHECK(std::abs(double(x[k])) < 0.75);
+  }
+}
+
+/// However coarse the step, elastic bounces neither gain nor lose height on average.
+template <class Simulation>
+void check_coarse_bounces(typename Simulation::execution_space const& space) {
+  world<float> w;
+  add_floor(w, 8, 8);
+  w.radius = 0.1f;
+  std::mt19937 engine(9);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  double before = 0, after = 0;
+  for (int i = 0; i < 256; ++i) {
+    double const height = 1 + 0.3 * uniform(engine);
+    w.particle(7 * uniform(engine), 7 * uniform(engine), 0.1 + height);
+    before += 9.81 * height;
+  }
+  running<Simulation> made(space, w);
+  made.simulation.template effect<collide::bounce>().restitution = 1;
+  made.simulation.steps(8000, 5e-3f);
+  auto const x = made.positions(), v = made.velocities();
+  for (std::size_t i = 0; i < w.size(); ++i)
+    after += 9.81 * (double(x[3 * i + 2]) - 0.1) + double(v[3 * i + 2]) * double(v[3 * i + 2]) / 2;
+  CHECK(after == doctest::Approx(before).epsilon(0.03));
+}
+
+/// A world of particles at random in a cube.
+template <class S>
+world<S> crowd(std::size_t n, double half, double radius, double speed, unsigned seed) {
+  world<S> w;
+  add_cube(w, half, 6);
+  w.radius = static_cast<S>(radius);
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  auto const inside = [&] { return (half - radius) * uniform(engine); };
+  for (std::size_t i = 0; i < n; ++i)
+    w.particle(inside(), inside(), inside(), speed * uniform(engine), speed * uniform(engine), speed * uniform(engine));
+  return w;
+}
+
+/// The farthest that a coordinate is out of the cube in which the balls must stay.
+template <class S>
+double excess(std::vector<S> const& x, double half, double radius) {
+  double worst = -half;
+  for (S c : x) worst = std::max(worst, std::abs(double(c)) - (half - radius));
+  return worst;
+}
+
+/// Particles in a closed mesh stay there.
+template <class NarrowPhase, class S, class Space>
+void check_closed_mesh(Space const& space, std::size_t steps, double speed, std::size_t n = 64) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, collide::gravity, collide::bounce>;
+  auto const w = crowd<S>(n, 1, 0.1, speed, 7);
+  running<simulation> made(space, w, collide::gravity{0, 0, -9.81}, collide::bounce{0.95});
+  double worst = -1;
+  for (int i = 0; i < 10; ++i) {
+    made.simulation.steps(steps / 10, S(1e-3));
+    worst = std::max(worst, excess(made.positions(), 1, 0.1));
+  }
+  CHECK(worst <= 1e-5);
+}
+
+/// The same bits on every run, with any number of threads, and with both broad phases.
+template <class NarrowPhase, class Space, class Other>
+void check_determinism(Space const& space, Other const& other) {
+  auto const run = [](auto const& there, auto broad) {
+    using space_type = std::decay_t<decltype(there)>;
+    using simulation = collide::simulation<meets_mesh<space_type, NarrowPhase, float, decltype(broad)>,
+                                           collide::gravity, collide::bounce>;
+    auto const w = crowd<float>(500, 1, 0.1, 3, 11);
+    running<simulation> made(there, w, collide::gravity{}, collide::bounce{0.7});
+    made.simulation.steps(300, 4e-3f);
+    return std::make_pair(made.positions(), made.velocities());
+  };
+  auto const first = run(space, collide::bucket());
+  CHECK((run(space, collide::bucket()) == first));
+  CHECK((run(other, collide::bucket()) == first));
+  if constexpr (Space::host_memory) CHECK((run(space, collide::all_pairs()) == first));
+}
+
+/// `set` allocates the columns of the scene and nothing else that grows with the particles but the list of those that
+/// may touch the mesh; `step` allocates nothing.
+template <class Space, class MakeSpace>
+void check_memory_of_steps(MakeSpace make, std::pmr::memory_resource* upstream) {
+  auto const bytes_of = [&](auto type, std::size_t n) {
+    using simulation = typename decltype(type)::type;
+    counting_calls counting(upstream);
+    Space const plain = make(nullptr);
+    auto const w = crowd<float>(n, 1, 0.01, 1, 5);
+    placed<float> const centres(plain, w.centres), corners(plain, w.corners);
+    simulation made(make(&counting));
+    made.set(collide::spheres_xyz(centres.data(), n, w.radius));
+    std::size_t const bytes = counting.bytes;
+    made.set_mesh(collide::triangle_soup(corners.data(), w.corners.size() / 9));
+    std::size_t const calls = counting.calls;
+    made.steps(5, 1e-3f);
+    made.space().synchronize();
+    CHECK(counting.calls == calls);
+    made.set_mesh(collide::triangle_soup(corners.data(), w.corners.size() / 9));
+    made.step(1e-3f);
+    made.space().synchronize();
+    CHECK(counting.calls == calls);
+    return bytes;
+  };
+  using detector = meets_mesh<Space>;
+  using none = std::common_type<collide::simulation<detector>>;
+  using falls = std::common_type<collide::simulation<detector, collide::gravity>>;
+  using bounces = std::common_type<collide::simulation<detector, collide::gravity, collide::bounce>>;
+  using sizes = std::common_type<collide::simulation<detector, collide::polydisperse>>;
+  std::size_t const n = 4096;
+  CHECK(bytes_of(none{}, n) == 24 * n);
+  CHECK(bytes_of(falls{}, n) == 24 * n);
+  CHECK(bytes_of(sizes{}, n) == 28 * n);
+  CHECK(bytes_of(bounces{}, n) == 24 * n + 4 * n + 8);
+}
+
+/// A column and an effect of a user: what touches the mesh becomes warm, and cools down.
+struct temperature {
+  template <class S>
+  using value = S;
+  template <class S>
+  static constexpr S initial = S(20);
+};
+
+struct warmth {
+  using writes = collide::columns<temperature>;
+
+  double hot = 100, rate = 0.5;
+
+  template <class Particle, class S>
+  COLLIDE_HD void touch(Particle& p, collide::touching<S>&, S) const {
+    p[temperature{}] = S(hot);
+  }
+  template <class Particle, class S>
+  COLLIDE_HD void finish(Particle& p, S dt) const {
+    p[temperature{}] -= S(rate) * (p[temperature{}] - S(20)) * dt;
+  }
+};
+
+template <class Space>
+void check_own_effect(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, collide::gravity, collide::bounce, warmth>;
+  static_assert(std::is_same<typename simulation::columns, collide::columns<position, velocity, temperature>>::value,
+                "the columns are the union of what the effects name");
+  static_assert(simulation::bytes_per_particle == 28, "three and three and one floats");
+  world<float> w;
+  add_floor(w, 4, 8);
+  w.radius = 0.1f;
+  w.particle(0, 0, 0.1);
+  w.particle(1, 1, 3);
+  running<simulation> made(space, w, collide::gravity{}, collide::bounce{}, warmth{80, 0.5});
+  made.simulation.steps(100, 1e-3f);
+  auto const t = made.simulation.template to_host<temperature>();
+  CHECK(t[0] == doctest::Approx(80).epsilon(1e-3));
+  CHECK(t[1] == 20);
+  std::vector<float> const cold = {1, 2};
+  made.simulation.template assign<temperature>(placed<float>(space, cold).data());
+  CHECK((made.simulation.template to_host<temperature>() == cold));
+}
+
+/// Balls of different sizes rest at different heights.
+template <class Space>
+void check_radii(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, collide::gravity, collide::bounce, collide::polydisperse>;
+  world<float> w;
+  add_floor(w, 8, 8);
+  for (int i = 0; i < 10; ++i) {
+    w.radii.push_back(0.02f * std::exp2(0.5f * static_cast<float>(i)));
+    w.particle(-5 + i, 0, 1);
+  }
+  running<simulation> made(space, w);
+  made.simulation.steps(20000, 5e-4f);
+  auto const x = made.positions();
+  for (std::size_t i = 0; i < w.size(); ++i) CHECK(x[3 * i + 2] == doctest::Approx(w.radii[i]).epsilon(1e-3));
+}
+
+}  // namespace tests

@@ -1,0 +1,67 @@
+/// Effects on the host.
+#include "compositions.hpp"
+#include "effects.hpp"
+
+using collide::host;
+using collide::karabassi;
+using collide::karabassi_swept;
+using tests::lockstep;
+
+namespace {
+
+/// Does what is to be done in any order in the reverse order.
+class reversed : public host {
+ public:
+  using host::host;
+
+  template <class F>
+  void for_each(std::size_t n, F const& f) const {
+    for (std::size_t i = n; i-- > 0;) f(i);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("effects: drag leads to the terminal velocity, as the closed form has it") { tests::check_drag(host(1)); }
+
+TEST_CASE("effects: wind, uniform and a user's field") { tests::check_wind(host(1)); }
+
+TEST_CASE("effects: what is on an incline slides if and only if it is steeper than friction holds") {
+  tests::check_incline<karabassi<>>(host(2));
+  tests::check_incline<karabassi_swept<>>(host(2));
+}
+
+TEST_CASE("effects: sliding becomes rolling at 5/7 of the speed") {
+  tests::check_rolling<karabassi<>>(host(1));
+  tests::check_rolling<karabassi_swept<>>(host(1));
+}
+
+TEST_CASE_TEMPLATE("effects: spheres that meet conserve momentum, and energy if e = 1", S, float, double) {
+  tests::check_collisions<S>(host(1));
+}
+
+TEST_CASE("effects: a pile of spheres stays in a closed mesh for 1e5 steps") {
+  tests::check_pile(host(1), 100000, 200);
+}
+
+TEST_CASE("effects: spheres that meet do so in the same bits on every run") {
+  tests::check_meeting_determinism(host(1), host(2));
+  tests::check_meeting_determinism(host(1), lockstep<256, true>());
+  tests::check_meeting_determinism(host(1), reversed());
+}
+
+TEST_CASE("effects: what rests sleeps until it is hit") { tests::check_sleep(host(1)); }
+
+TEST_CASE("effects: what sticks stays until it is pulled off") {
+  tests::check_stick<karabassi<>>(host(1));
+  tests::check_stick<karabassi_swept<>>(host(1));
+}
+
+TEST_CASE("effects: boxes with walls and boxes that repeat") { tests::check_bounds(host(1)); }
+
+TEST_CASE("effects: particles vanish in sinks") {
+  tests::check_absorb<karabassi<>>(host(1));
+  tests::check_absorb<karabassi_swept<>>(lockstep<64, true>());
+}
+
+TEST_CASE("effects: particles come out of sources") { tests::check_emit(host(1)); }
