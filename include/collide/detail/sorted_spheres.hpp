@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include <collide/detail/atomic.hpp>
 #include <collide/detail/block.hpp>
 #include <collide/detail/candidate_batch.hpp>
 #include <collide/detail/grid.hpp>
@@ -363,10 +364,16 @@ class sorted_spheres {
     std::size_t const table = cells_ + 2;
     auto* const counts = ends_.reserve(space.resource(), table);
     space.fill(counts, 0, table * sizeof *counts);
-    space.for_each(n, count_placed<S>{placed_.data(), counts + 1});
+    // counters all over a table: few are counted sooner than threads have passed them to each other
+    auto const each_placed = [&](auto const& f) {
+      if (n > (std::size_t{1} << 17)) return space.for_each(n, f);
+      work_alone const alone(true);
+      for (std::size_t i = 0; i < n; ++i) f(i);
+    };
+    each_placed(count_placed<S>{placed_.data(), counts + 1});
     space.exclusive_scan(counts + 1, table - 1, scratch_);
     auto* const order = order_.reserve(space.resource(), placed_.capacity());
-    space.for_each(n, number_placed<S>{placed_.data(), order, counts + 1});
+    each_placed(number_placed<S>{placed_.data(), order, counts + 1});
     space.for_each(n, sort_placed<S>{placed_.data(), order, columns_});
   }
 
