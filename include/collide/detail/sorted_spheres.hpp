@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include <collide/detail/atomic.hpp>
 #include <collide/detail/block.hpp>
 #include <collide/detail/candidate_batch.hpp>
 #include <collide/detail/grid.hpp>
@@ -176,19 +177,12 @@ struct sphere_columns {
   static constexpr std::size_t lanes = 8;  ///< how many are compared with a box at a time, also beyond the end
 
   S *x, *y, *z, *radius;
-  S* reach;  ///< the square of how far from a box the centre is at most, if the sphere touches what is in the box
+  S* reach;  ///< how far from a triangle's box the centre is at most, if the two touch; `slack` apart
   id* number;
 
-  /// A box with room for the rounding of the coarsest narrow phase, as far as it goes with the triangle; the part that
-  /// goes with the radius is in `reach`. See docs/numerics.md.
-  static box<S> widened(box<S> b) {
-    S const slack = 16 * S(format<float>::unit) * b.extent();
-    for (int k = 0; k < 3; ++k) {
-      b.lower[k] -= slack;
-      b.upper[k] += slack;
-    }
-    return b;
-  }
+  /// Room for the rounding of the coarsest narrow phase, as far as it goes with the triangle; the part that goes with
+  /// the radius is in `reach`. See docs/numerics.md.
+  static S slack(box<S> const& b) { return 16 * S(format<float>::unit) * b.extent(); }
 
   sphere<S> operator[](std::uint32_t i) const { return {{x[i], y[i], z[i]}, radius[i]}; }
 
@@ -197,15 +191,16 @@ struct sphere_columns {
     y[i] = s.centre.y();
     z[i] = s.centre.z();
     radius[i] = s.radius;
-    reach[i] = s.radius * s.radius * (1 + 32 * S(format<float>::unit)) + 4 * std::numeric_limits<S>::min();
+    // the root of the smallest normal number covers squares that underflow
+    reach[i] = s.radius * (1 + 16 * S(format<float>::unit)) + 2 * root(std::numeric_limits<S>::min());
     number[i] = n;
   }
 
-  /// Bit k is whether sphere first + k can reach what is in the box, for k < lanes: whether it touches the box, which
-  /// is `widened`. Without branches, for the processor's vector unit.
+  /// Bit k is whether sphere first + k can reach what is in the box, for k < lanes. Without branches, for the
+  /// processor's vector unit.
   std::uint32_t reaching(box<S> const& b, std::uint32_t first) const {
-    bits_of<S> constexpr bit[lanes] = {1,  2,  4,  8,
-                                       16, 32, 64, 128};  // no processor shifts lanes by different amounts fast
+    bits_of<S> constexpr bit[lanes] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
+    S const more = slack(b);
     bits_of<S> mask = 0;
     for (std::size_t k = 0; k < lanes; ++k) {
       S const px = x[first + k], py = y[first + k], pz = z[first + k];
@@ -215,7 +210,8 @@ struct sphere_columns {
       };
       S const gx = gap(b.lower[0] - px, px - b.upper[0]), gy = gap(b.lower[1] - py, py - b.upper[1]),
               gz = gap(b.lower[2] - pz, pz - b.upper[2]);
-      mask |= gx * gx + (gy * gy + gz * gz) <= reach[first + k] ? bit[k] : bits_of<S>(0);
+      S const most = reach[first + k] + more;
+      mask |= gx * gx + (gy * gy + gz * gz) <= most * most ? bit[k] : bits_of<S>(0);
     }
     return static_cast<std::uint32_t>(mask);
   }
@@ -290,11 +286,10 @@ struct look_for_spheres {
     for (std::size_t t = begin; t < end; ++t) {
       box<S> const around = boxes[t];
       if (around.is_empty()) continue;  // not finite
-      box<S> const target = spheres.widened(around);
       auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
         std::uint32_t const last = ends[cell + n];
         for (std::uint32_t i = ends[cell]; i < last; i += spheres.lanes) {
-          std::uint32_t const here = spheres.reaching(target, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+          std::uint32_t const here = spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
           s.found[s.count] = {i, here, static_cast<id>(t)};
           s.count += here != 0;  // no branch: it would often be mispredicted
           if (s.count == s.room) test(block, s);
@@ -369,10 +364,16 @@ class sorted_spheres {
     std::size_t const table = cells_ + 2;
     auto* const counts = ends_.reserve(space.resource(), table);
     space.fill(counts, 0, table * sizeof *counts);
-    space.for_each(n, count_placed<S>{placed_.data(), counts + 1});
+    // counters all over a table: few are counted sooner than threads have passed them to each other
+    auto const each_placed = [&](auto const& f) {
+      if (n > (std::size_t{1} << 17)) return space.for_each(n, f);
+      work_alone const alone(true);
+      for (std::size_t i = 0; i < n; ++i) f(i);
+    };
+    each_placed(count_placed<S>{placed_.data(), counts + 1});
     space.exclusive_scan(counts + 1, table - 1, scratch_);
     auto* const order = order_.reserve(space.resource(), placed_.capacity());
-    space.for_each(n, number_placed<S>{placed_.data(), order, counts + 1});
+    each_placed(number_placed<S>{placed_.data(), order, counts + 1});
     space.for_each(n, sort_placed<S>{placed_.data(), order, columns_});
   }
 
