@@ -439,12 +439,12 @@ class bucket::index {
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
   detail::bucket_lookup<S> lookup() const {
-    return {{mesh_, has_bounds_ ? bounds_.data() : nullptr},
+    return {{mesh_, bounded_ ? bounds_.data() : nullptr},
             grids_.data(),
             grid_count_,
             occupied(),
-            counts_.data(),
-            counts_.data() + cells_ + 1,
+            lists_.data(),
+            lists_total(),
             entries_.data(),
             entries_.capacity()};
   }

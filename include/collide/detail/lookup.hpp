@@ -84,8 +84,8 @@ template <class S>
 struct bucket_lookup : triangle_lookup<S> {
   grid<S> const* grids;
   int grid_count;
-  std::uint32_t const* occupied;
-  std::uint32_t const* ends;
+  std::uint8_t const* occupied;
+  cell_list const* lists;
   std::uint32_t const* total;
   id const* entries;
   std::size_t capacity;
@@ -128,9 +128,10 @@ struct bucket_lookup : triangle_lookup<S> {
       inside[k] &= y[k] <= g.upper[1] ? 1u : 0u;
       inside[k] &= z[k] >= g.lower[2] ? 1u : 0u;
       inside[k] &= z[k] <= g.upper[2] ? 1u : 0u;
-      cells[k] = g.cell_of(l, {x[k], y[k], z[k]});
+      std::uint32_t const cell = g.cell_of(l, {x[k], y[k], z[k]});
+      cells[k] = inside[k] != 0 ? cell : l.first;  // outside there are no cells
     }
-    for (int k = 0; k < N; ++k) near[k] = (inside[k] & occupied[cells[k] / 32] >> cells[k] % 32 & 1) != 0;
+    for (int k = 0; k < N; ++k) near[k] = (inside[k] & occupied[cells[k] / 8] >> cells[k] % 8 & 1) != 0;
   }
 
   template <class Ball>
@@ -150,7 +151,7 @@ struct bucket_lookup : triangle_lookup<S> {
   }
 
  private:
-  COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 32] >> cell % 32 & 1) != 0; }
+  COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) != 0; }
 
   /// The tightest grid that serves a ball; grids come by falling reach.
   template <class Ball>
@@ -213,9 +214,9 @@ struct bucket_lookup : triangle_lookup<S> {
   COLLIDE_HD bool next_of_cell(std::uint32_t cell, candidate_cursor& c, std::uint32_t most,
                                candidate_range& range) const {
     if (is_occupied(cell)) {
-      std::uint32_t const begin = ends[cell] + c.skip, end = ends[cell + 1];
-      if (begin < end) {
-        range = {entries + begin, 0, smaller(end - begin, most)};
+      std::uint32_t const left = lists[cell].count - c.skip;
+      if (left != 0) {
+        range = {entries + (lists[cell].end - left), 0, smaller(left, most)};
         c.skip += range.count;
         return true;
       }
