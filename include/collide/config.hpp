@@ -11,11 +11,14 @@
 #define COLLIDE_HD_NOINLINE __host__ __device__ __noinline__
 #else
 #define COLLIDE_HD
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__)  // what a sanitizer adds is too much to be inlined
 #define COLLIDE_HD_INLINE __attribute__((always_inline)) inline
-#define COLLIDE_HD_NOINLINE __attribute__((noinline))
 #else
 #define COLLIDE_HD_INLINE inline
+#endif
+#if defined(__GNUC__)
+#define COLLIDE_HD_NOINLINE __attribute__((noinline))
+#else
 #define COLLIDE_HD_NOINLINE
 #endif
 #endif
