@@ -2,9 +2,11 @@
 /// What a step of a simulation costs: on the study's scene, for each effect, beside kernels written by hand.
 ///
 ///     simulation_bench [SPHERES [REPETITIONS]]
+///     simulation_bench many SPHERES
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include <collide/absorb.hpp>
 #include <collide/bounce.hpp>
@@ -131,26 +133,12 @@ struct placed {
   }
 };
 
+/// What the effects cost. Of every scene a kernel or two has to be compiled, which takes minutes for a GPU.
 template <class Space>
-void measure(Space const& space, std::size_t n, std::size_t times) {
-  auto scene = placed<Space>::make(space, n, times);
-  collide::simulation<collide::detector<collide::bucket, collide::karabassi<>, Space>> plain(space);
-  plain.set(scene.spheres.view());
-  auto* const x = reinterpret_cast<four<float>*>(plain.template data<position>());
-  auto* const v = reinterpret_cast<four<float>*>(plain.template data<velocity>());
-  scene.floor = median(space, 101, [&] { space.for_each(3 * n / 4, touch_all{x, v, 1e-3f}); });
-  double const move = median(space, 101, [&] { space.for_each(3 * n / 4, move_all{x, v, 1e-3f}); });
-  std::printf("%-12s %-42s %9.1f us\n", Space::name(), "read and write both", scene.floor * 1e6);
-  std::printf("%-12s %-42s %9.1f us  %5.2fx\n", Space::name(), "move, by hand", move * 1e6, move / scene.floor);
-
-  using still = collide::detector<collide::bucket, collide::karabassi<>, Space>;
-  using swept = collide::detector<collide::bucket, collide::karabassi_swept<>, Space>;
+void measure_effects(placed<Space>& scene) {
   using namespace collide;
-  scene.run("no effects", simulation<still>(space));
-  scene.run("gravity", simulation<still, gravity>(space));
-  scene.run("gravity, bounce", simulation<still, gravity, bounce>(space));
-  scene.run("velocity_verlet, gravity, bounce", simulation<still, velocity_verlet, gravity, bounce>(space));
-  scene.run("swept: gravity, bounce", simulation<swept, gravity, bounce>(space));
+  using still = detector<bucket, karabassi<>, Space>;
+  Space const& space = scene.space;
   scene.run("gravity, drag", simulation<still, gravity, drag>(space, gravity{}, drag{0.1, 0.01}));
   scene.run("gravity, wind", simulation<still, gravity, wind<>>(space, gravity{}, wind<>{0.1, 0.01, {1, 0, 0}}));
   scene.run("gravity, bounds", simulation<still, gravity, bounds>(space));
@@ -175,17 +163,107 @@ void measure(Space const& space, std::size_t n, std::size_t times) {
                    simulation<still, sphere_contact, gravity, bounce>(space, contact, gravity{}, bounce{}));
 }
 
+/// The headline; with `all` every effect too.
+template <class Space, bool All>
+void measure(Space const& space, std::size_t n, std::size_t times) {
+  auto scene = placed<Space>::make(space, n, times);
+  collide::simulation<collide::detector<collide::bucket, collide::karabassi<>, Space>> plain(space);
+  plain.set(scene.spheres.view());
+  auto* const x = reinterpret_cast<four<float>*>(plain.template data<position>());
+  auto* const v = reinterpret_cast<four<float>*>(plain.template data<velocity>());
+  scene.floor = median(space, 101, [&] { space.for_each(3 * n / 4, touch_all{x, v, 1e-3f}); });
+  double const move = median(space, 101, [&] { space.for_each(3 * n / 4, move_all{x, v, 1e-3f}); });
+  std::printf("%-12s %-42s %9.1f us\n", Space::name(), "read and write both", scene.floor * 1e6);
+  std::printf("%-12s %-42s %9.1f us  %5.2fx\n", Space::name(), "move, by hand", move * 1e6, move / scene.floor);
+
+  using still = collide::detector<collide::bucket, collide::karabassi<>, Space>;
+  using swept = collide::detector<collide::bucket, collide::karabassi_swept<>, Space>;
+  using namespace collide;
+  scene.run("no effects", simulation<still>(space));
+  scene.run("gravity", simulation<still, gravity>(space));
+  scene.run("gravity, bounce", simulation<still, gravity, bounce>(space));
+  if constexpr (All) {
+    scene.run("velocity_verlet, gravity, bounce", simulation<still, velocity_verlet, gravity, bounce>(space));
+    scene.run("swept: gravity, bounce", simulation<swept, gravity, bounce>(space));
+  }
+  if constexpr (All) measure_effects(scene);
+}
+
+/// Kernel body of `for_each` over spheres that fill space.
+struct fill_space {
+  float* xyz;
+  std::size_t side;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    xyz[3 * i] = 0.0198f * static_cast<float>(i % side);
+    xyz[3 * i + 1] = 0.0198f * static_cast<float>(i / side % side);
+    xyz[3 * i + 2] = 0.0198f * static_cast<float>(i / side / side);
+  }
+};
+
+/// Memory of a resource, counted.
+class counting final : public std::pmr::memory_resource {
+ public:
+  explicit counting(std::pmr::memory_resource* from) : from_{from} {}
+  std::size_t bytes = 0;
+
+ private:
+  void* do_allocate(std::size_t n, std::size_t alignment) override {
+    bytes += n;
+    return from_->allocate(n, alignment);
+  }
+  void do_deallocate(void* p, std::size_t n, std::size_t alignment) override {
+    bytes -= n;
+    from_->deallocate(p, n, alignment);
+  }
+  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
+
+  std::pmr::memory_resource* from_;
+};
+
+/// Very many frictionless spheres that touch each other: memory and time.
+template <class Space, class MakeSpace>
+void measure_many(MakeSpace const& make, std::size_t n) {
+  using namespace collide;
+  Space const plain = make(nullptr);
+  counting counted(plain.resource());
+  Space const space = make(&counted);
+  auto const contact = sphere_contact::of_collision(0.5, 2e-3, 0.01, 1000);
+  simulation<detector<bucket, karabassi<>, Space>, sphere_contact, gravity, bounds> made(space, contact, gravity{},
+                                                                                         bounds{});
+  {
+    buffer<float> centres;
+    auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
+    plain.for_each(n, fill_space{centres.reserve(plain.resource(), 3 * n), side});
+    made.set(spheres_xyz(static_cast<float const*>(centres.data()), n, 0.01f));
+    plain.synchronize();
+  }
+  made.steps(2, 1e-4f);
+  double const seconds = median(space, 3, [&] { made.step(1e-4f); });
+  std::printf("%-12s %zu spheres that touch: %.2f ms a step, %.1f bytes a sphere\n", Space::name(), n, seconds * 1e3,
+              static_cast<double>(counted.bytes) / static_cast<double>(n));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::size_t const n = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : io::study_spheres;
-  std::size_t const times = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 21;
+  bool const many = argc > 2 && std::strcmp(argv[1], "many") == 0;
+  std::size_t const n = argc > 1 ? std::strtoull(argv[many ? 2 : 1], nullptr, 10) : io::study_spheres;
+  std::size_t const times = argc > 2 && !many ? std::strtoull(argv[2], nullptr, 10) : 21;
 #if defined(__CUDACC__)
   if (collide::cuda_device_count() > 0) {
-    measure(collide::cuda_shared(), n, times);
-    measure(collide::cuda(), n, times);
+    if (many) {
+      measure_many<collide::cuda_shared>(
+          [](std::pmr::memory_resource* from) { return collide::cuda_shared(nullptr, from); }, n);
+    } else {
+      measure<collide::cuda_shared, true>(collide::cuda_shared(), n, times);
+      measure<collide::cuda, false>(collide::cuda(), n, times);
+    }
     return 0;
   }
 #endif
-  measure(collide::host(), n, times);
+  if (many) {
+    measure_many<collide::host>([](std::pmr::memory_resource* from) { return collide::host(0, from); }, n);
+  } else {
+    measure<collide::host, true>(collide::host(), n, times);
+  }
 }
