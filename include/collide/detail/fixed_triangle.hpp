@@ -117,7 +117,8 @@ class fixed_triangle {
   template <class S>
   COLLIDE_HD_INLINE two_words in_units(S x) {
     dyadic const d = decoded(x);
-    int const shift = d.mantissa == 0 ? 0 : d.exponent - unit_;
+    if (d.mantissa == 0) return 0;
+    int const shift = d.exponent - unit_;
     holds_ = holds_ && shift + d.length() <= most_length;
     return static_cast<two_words>(d.mantissa) << (shift & 127);
   }
