@@ -1,0 +1,177 @@
+/// \file
+/// What the GPU itself takes for a build and a query, without the host: both as CUDA graphs of one launch, into an
+/// array of fixed size, beside a graph of one kernel that reads every centre once, in the same run.
+///
+/// Names are BROAD/PRECISION/PHASE. Counters: pairs; floor_us; over_floor.
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include <collide/all_pairs.cuh>
+#include <collide/bucket.cuh>
+#include <collide/upload.hpp>
+
+#include "io/scenes.hpp"
+#include "stopwatch.hpp"
+
+#if defined(__CUDACC__)
+
+namespace {
+
+/// A sink that never waits: pairs into the caller's array, which must be large enough.
+struct into_array {
+  collide::pair* to;
+  std::uint64_t capacity;
+  std::uint64_t* total;
+
+  template <class Space, class Query>
+  void run(Space& space, Query const& query) {
+    space.fill(total, 0, sizeof *total);
+    query(collide::detail::append{total, to, capacity});
+  }
+};
+
+/// What a function puts on a stream, as a graph.
+class graph {
+ public:
+  template <class F>
+  graph(cudaStream_t stream, F const& f) : stream_{stream} {
+    f();  // everything is allocated now
+    collide::cuda_check(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
+    cudaGraph_t captured = nullptr;
+    collide::cuda_check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
+    f();
+    collide::cuda_check(cudaStreamEndCapture(stream, &captured), "cudaStreamEndCapture");
+    collide::cuda_check(cudaGraphInstantiate(&graph_, captured, 0), "cudaGraphInstantiate");
+    collide::cuda_check(cudaGraphDestroy(captured), "cudaGraphDestroy");
+  }
+  graph(graph const&) = delete;
+  graph& operator=(graph const&) = delete;
+  ~graph() { cudaGraphExecDestroy(graph_); }
+
+  void operator()() const { collide::cuda_check(cudaGraphLaunch(graph_, stream_), "cudaGraphLaunch"); }
+
+ private:
+  cudaStream_t stream_;
+  cudaGraphExec_t graph_ = nullptr;
+};
+
+__global__ void read_centres(float4 const* centres, std::size_t n, float* never) {
+  std::size_t const i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  if (i >= n) return;
+  float4 const a = centres[3 * i], b = centres[3 * i + 1], c = centres[3 * i + 2];
+  float const sum = a.x + a.y + a.z + a.w + b.x + b.y + b.z + b.w + c.x + c.y + c.z + c.w;
+  if (sum == 0.12345f) *never = sum;
+}
+
+struct scene {
+  cudaStream_t stream = nullptr;
+  collide::cuda_shared space{make_stream(stream)};
+  std::optional<collide::uploaded_mesh<float>> mesh;
+  std::optional<collide::uploaded_spheres<float>> spheres;
+  collide::buffer<collide::pair> pairs;
+  collide::buffer<std::uint64_t> total;
+  float radius;
+  double floor;
+
+  static constexpr std::size_t capacity = std::size_t{1} << 20;
+
+  static scene& get() {
+    static scene s;
+    return s;
+  }
+
+ private:
+  scene() {
+    io::scene const s = io::study_scene(io::study_spheres);
+    std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()),
+        centres(s.centres.begin(), s.centres.end());
+    radius = static_cast<float>(s.radius);
+    mesh = collide::upload(
+        space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count()));
+    spheres = collide::upload(space, collide::spheres_xyz(centres.data(), centres.size() / 3, radius));
+    pairs.reserve(space.resource(), capacity);
+    total.reserve(space.resource(), 1);
+    std::size_t const threads = centres.size() / 12;
+    auto const* const from = reinterpret_cast<float4 const*>(spheres->view().x(0));
+    graph const reading(stream, [&] {
+      read_centres<<<static_cast<unsigned>((threads + 255) / 256), 256, 0, stream>>>(
+          from, threads, reinterpret_cast<float*>(total.data()));
+    });
+    bench::stopwatch<collide::cuda_shared> watch(space);
+    std::vector<double> times;
+    for (int i = 0; i < 101; ++i) times.push_back(watch(reading));
+    std::sort(times.begin(), times.end());
+    floor = times[times.size() / 2];
+  }
+
+  static cudaStream_t make_stream(cudaStream_t& stream) {
+    collide::cuda_check(cudaStreamCreate(&stream), "cudaStreamCreate");
+    return stream;
+  }
+};
+
+template <class Broad, class Precision>
+void run(benchmark::State& state, bool builds, bool queries) {
+  scene& s = scene::get();
+  collide::detector<Broad, collide::karabassi<Precision>, collide::cuda_shared> detector(s.space);
+  into_array sink{s.pairs.data(), s.capacity, s.total.data()};
+  auto const mesh = s.mesh->view();
+  auto const spheres = s.spheres->view();
+  detector.build(mesh, s.radius);
+  detector.query(spheres, sink);
+  std::uint64_t const pairs = s.space.read(s.total.data());
+  if (pairs > s.capacity) return state.SkipWithError("the array is too small");
+  graph const all(s.stream, [&] {
+    if (builds) detector.build(mesh, s.radius);
+    if (queries) detector.query(spheres, sink);
+  });
+  bench::stopwatch<collide::cuda_shared> watch(s.space);
+  double seconds = 0;
+  for (auto _ : state) {
+    double const t = watch(all);
+    state.SetIterationTime(t);
+    seconds += t;
+  }
+  state.counters["pairs"] = static_cast<double>(pairs);
+  state.counters["floor_us"] = s.floor * 1e6;
+  state.counters["over_floor"] = seconds / static_cast<double>(state.iterations()) / s.floor;
+}
+
+template <class Broad, class Precision>
+void add(std::string const& name) {
+  auto const with = [&](char const* phase, bool builds, bool queries) {
+    benchmark::RegisterBenchmark((name + "/" + phase).c_str(),
+                                 [=](benchmark::State& state) { run<Broad, Precision>(state, builds, queries); })
+        ->UseManualTime()
+        ->Unit(benchmark::kMicrosecond);
+  };
+  with("build", true, false);
+  with("query", false, true);
+  with("both", true, true);
+}
+
+}  // namespace
+
+#endif
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
+#if defined(__CUDACC__)
+  if (collide::cuda_device_count() > 0) {
+    benchmark::AddCustomContext("device", bench::device_name<collide::cuda_shared>());
+    add<collide::bucket, collide::single_precision>("bucket/single");
+    add<collide::bucket, collide::exact>("bucket/exact");
+    add<collide::all_pairs, collide::single_precision>("all_pairs/single");
+    add<collide::all_pairs, collide::exact>("all_pairs/exact");
+  }
+#endif
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
