@@ -100,8 +100,7 @@ class fixed_triangle {
   };
 
   static constexpr int most_bits = 64 * Words - 2;
-  static constexpr int most_length =
-      126;  ///< of a number in two words, less a bit for a difference and one for the sign
+  static constexpr int most_length = 126;  ///< of a number: a bit of two words is for differences, one for the sign
 
   int unit_ = 1 << 30;  ///< as a power of two
   bool holds_ = true;
