@@ -94,7 +94,8 @@ struct is_sink<Sink, Space, Query,
 /// \tparam ExecutionSpace  where and how it runs: `host`, `cuda`, `cuda_shared`
 /// \tparam Scalar          type of the coordinates: float or double; nothing is ever narrowed silently
 ///
-/// Memory is taken from the space's resource and kept: after the first call with the same sizes nothing is allocated.
+/// Memory is taken from the space's resource and kept: once everything has run with the same sizes nothing is allocated
+/// (on the host that takes two queries, as the second may go another way; see docs/concepts.md).
 /// In the CUDA spaces work is put on the space's stream and the host waits only to read a size back (see each sink).
 /// One detector is for one thread at a time. Everything thrown derives from `error`, except what the memory resource
 /// throws.

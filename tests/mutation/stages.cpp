@@ -8,6 +8,7 @@
 
 #include <collide/detail/bounding_sphere.hpp>
 #include <collide/detail/decide.hpp>
+#include <collide/detail/lifted.hpp>
 
 #include "rows.hpp"
 
@@ -25,6 +26,19 @@ bool some_attempt_is_wrong(collide::triangle<S> const& t, collide::sphere<S> con
   using collide::detail::verdict;
   verdict const no = hit ? verdict::miss : verdict::hit;
   return collide::detail::attempt(t, s).verdict == no || collide::detail::attempt_straight(t, s) == no;
+}
+
+/// True if the lifted ball of the broad phase lets a sphere pass, relative to a corner or to the origin of the world.
+template <class S>
+bool passes(collide::triangle<S> const& t, collide::sphere<S> const& s) {
+  namespace detail = collide::detail;
+  S const numbers[4] = {s.centre.x(), s.centre.y(), s.centre.z(), s.radius};
+  for (collide::vec3<S> const& origin : {t.a, collide::vec3<S>(0, 0, 0)}) {
+    detail::lifted_batch<S, 4> batch;
+    batch.load(collide::spheres_xyzr(numbers, 1), 0, origin);
+    if (!batch.any_reaches(detail::lifted_bounds<S>(detail::bounds_of(t), origin))) return false;
+  }
+  return true;
 }
 
 template <class S>
