@@ -153,6 +153,13 @@ MUTATIONS = {
               [("1 + 32 * S(format<float>::unit)", "1")]),
     "ball-underflow": ("bounding_sphere.hpp", "squares in its radius that underflow", "stages", "plain",
                        [(" + 2 * root(std::numeric_limits<S>::min());", ";")]),
+    "lifted-slack": ("lifted.hpp", "the rounding of squares that cancel", "stages", "plain",
+                     [("lifted_slack = 32 * format<S>::unit", "lifted_slack = 0 * format<S>::unit")]),
+    "lifted-overflow": ("lifted.hpp", "squares of a triangle's ball that overflow", "stages", "plain",
+                        [("    if (finite(centre + square) && centre + square <= lifted_limit<S>) return;\n", "    return;\n")]),
+    "lifted-sphere": ("lifted.hpp", "squares of a sphere that overflow", "stages", "plain",
+                      [("      if (finite(centre + square) && centre + square <= lifted_limit<S> && valid_radius(radius[k])) continue;\n",
+                        "      continue;\n")]),
     "room": ("undecided.hpp", "pairs that find no room on the list", "scenes", "checked",
              [("if (slot < capacity) ", "")]),
     "listed": ("undecided.hpp", "a list that lacks pairs is not used", "scenes", "checked",
@@ -186,6 +193,9 @@ SOUND["none.regions"] = ("certificate.hpp", None, "stages", "plain", [NO_REGIONS
 
 # (file, the guard as it stands there, why no row goes wrong without it)
 UNSEEN = [
+    ("lifted.hpp", "lifted_radius_slack = 32 * S(format<float>::unit)",
+     "is for narrow phases that compute in float; of real contacts the other slack takes care"),
+    ("lifted.hpp", "32 * std::numeric_limits<S>::min()", "the ball's radius has room for squares that underflow already"),
     ("bounding_sphere.hpp", "if (!finite(far_squared))",
      "the root of infinity is infinity, but a NaN with -ffast-math in kernels that read the ball from memory; "
      "`verdicts` saw it until the host came to do without balls"),
