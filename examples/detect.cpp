@@ -114,8 +114,8 @@ void append(Sink const& sink, std::size_t first, std::vector<Found>& to) {
 
 /// Builds and queries as often as wanted, and calls keep(sink, first) with what the first run finds.
 ///
-/// If someone watches and it takes longer than a second, the spheres are queried in parts of about a fifth of a second,
-/// for the progress bar; otherwise all at once.
+/// If someone watches and it takes longer than a person has patience for, the spheres are queried in parts of about a
+/// fifth of that time, for the progress bar; otherwise all at once.
 template <class Detector, class Input, class Sink, class S, class Keep>
 void measure(options const& wish, Detector& detector, Input const& in, Sink& sink, findings<S>& out, Keep const& keep) {
   std::size_t const n = in.size();
@@ -141,8 +141,9 @@ void measure(options const& wish, Detector& detector, Input const& in, Sink& sin
     constexpr std::size_t probe = 1024;
     if (run == 0 && io::progress::watched() && n > probe) {
       double const once = query(0, probe);
-      if (once * static_cast<double>(n / probe) > 1000) {
-        step = std::max<std::size_t>(1, static_cast<std::size_t>(probe * std::min(200 / once, 1e6)));
+      double const patience = 1000 * io::progress::patience();
+      if (once * static_cast<double>(n / probe) > patience) {
+        step = std::max<std::size_t>(1, static_cast<std::size_t>(probe * std::min(patience / 5 / once, 1e6)));
       }
     }
     double spent = 0;

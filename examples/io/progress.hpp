@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -13,7 +14,7 @@
 namespace io {
 
 /// A bar on standard error for work of `total` units (of any kind). It appears only on a terminal, only once the work
-/// is expected to take longer than a second, and leaves nothing behind.
+/// is expected to take longer than `patience()`, and leaves nothing behind.
 class progress {
   using clock = std::chrono::steady_clock;
 
@@ -28,13 +29,20 @@ class progress {
   /// True if somebody may see it.
   static bool watched() { return ::isatty(STDERR_FILENO) == 1; }
 
+  /// How many seconds of work need no bar: 1, or what COLLIDE_PATIENCE in the environment says.
+  static double patience() {
+    static char const* const said = std::getenv("COLLIDE_PATIENCE");
+    static double const is = said == nullptr ? 1 : std::strtod(said, nullptr);
+    return is;
+  }
+
   /// Says that `done` units of the total are done. Cheap enough to be called thousands of times a second.
   void update(double done) {
     if (!visible_ || done <= 0) return;
     auto const now = clock::now();
     double const elapsed = seconds(now - start_);
     double const left = elapsed * std::max(0.0, total_ / done - 1);
-    if (elapsed < 0.2 || elapsed + left < 1 || (drawn_ && seconds(now - last_) < 0.1)) return;
+    if (elapsed < 0.2 * patience() || elapsed + left < patience() || (drawn_ && seconds(now - last_) < 0.1)) return;
     draw(std::min(1.0, done / total_), left);
     last_ = now;
     drawn_ = true;

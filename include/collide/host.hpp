@@ -151,7 +151,7 @@ class host {
       return;
     }
     int shift = 0;
-    while (spheres >> shift > parts) ++shift;
+    while ((spheres - 1) >> shift >= parts) ++shift;
     std::size_t begin[parts + 2] = {};  // of part p at p + 1, while the pairs are brought there; then at p
     for (std::size_t i = 0; i < n; ++i) ++begin[(pairs[i].sphere >> shift) + 2];
     std::partial_sum(begin, begin + parts + 2, begin);

@@ -144,3 +144,21 @@ TEST_CASE("sorted spheres: running sums, in parts or not") {
     }
   }
 }
+
+TEST_CASE("sorted spheres: pairs in canonical order, whatever the number of spheres") {
+  for (std::size_t spheres : {2047, 2048, 2049, 4095, 4096, 4097, 6000, 65537}) {
+    std::vector<collide::pair> pairs;  // each sphere touches triangles 2 and 0; the last sphere comes first
+    for (std::size_t i = spheres; i-- > 0;) {
+      for (collide::id t : {2, 0}) pairs.push_back({static_cast<collide::id>(i), t});
+    }
+    auto expected = pairs;
+    std::sort(expected.begin(), expected.end());
+    for (int threads : {1, 3}) {
+      auto sorted = pairs;
+      collide::buffer<collide::pair> other;
+      collide::buffer<unsigned char> scratch;
+      collide::host(threads).sort(other, sorted.data(), sorted.size(), sorted.size(), spheres, 3, scratch);
+      CHECK(sorted == expected);
+    }
+  }
+}
