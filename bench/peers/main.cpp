@@ -1,0 +1,49 @@
+/// \file
+/// Other libraries at the study's job, on the host: every pair of a sphere and a triangle that touch, build included.
+///
+/// With one thread and with all; OMP_NUM_THREADS says how many that are. CMake found out which libraries there are.
+#include "io/device.hpp"
+#include "peer.hpp"
+#include "peers.hpp"
+
+namespace {
+
+/// This library, with the precision that is the default.
+class ours {
+ public:
+  ours(peers::scene const& from, int threads) : from_{from}, detector_{collide::host(threads)} {
+    detector_.build(from.mesh(), from.radius);
+  }
+  peers::pair_list query() { return detector_.query(from_.view(), collide::pairs()).to_host(); }
+
+ private:
+  peers::scene const& from_;
+  collide::detector<collide::bucket> detector_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  std::vector<int> threads{1};
+  if (int const all = collide::host().threads(); all > 1) threads.push_back(all);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
+  benchmark::AddCustomContext("processor", io::processor_name());
+  peers::add<ours>("collide, bucket x host", threads);
+#if defined(COLLIDE_HAVE_EMBREE)
+  peers::add_embree(threads);
+#endif
+#if defined(COLLIDE_HAVE_CGAL)
+  peers::add_cgal(threads);
+#endif
+#if defined(COLLIDE_HAVE_BULLET)
+  peers::add_bullet(threads);
+#endif
+#if defined(COLLIDE_HAVE_FCL)
+  peers::add_fcl(threads);
+#endif
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
