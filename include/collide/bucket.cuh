@@ -397,9 +397,9 @@ class bucket::index {
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     prepare_grids(space, options, spheres);
-    // The first time that is faster than making lists; later only if there are many spheres.
+    // The first time that is faster than making lists; later only if there are many spheres (docs/performance.md).
     swapped_ = grid_count_ > 0 && swaps<Space>(options) && spheres.size() <= detail::sorted_spheres<S>::most &&
-               (!queried_ || spheres.size() / 4 >= mesh_.size());
+               (!queried_ || spheres.size() / 3 >= mesh_.size() / 2);
     queried_ = true;
     if constexpr (Space::sorts_spheres) {
       if (swapped_) sorted_.sort(space, spheres);

@@ -128,7 +128,7 @@ class host {
     }
     std::uint32_t before[most];
     auto const each_part = [&](auto const& f) {
-      run<1>(parts, [&](std::size_t p, std::size_t last) {
+      run(parts, [&](std::size_t p, std::size_t last) {
         for (; p < last; ++p) f(p, values + std::min(p * share, n), values + std::min((p + 1) * share, n));
       });
     };
@@ -166,19 +166,23 @@ class host {
   }
 
  private:
-  /// Calls work(first, last) for ranges that cover 0 .. n, from all threads; the first exception is passed on.
-  template <std::size_t Grain = 16, class Work>
+  /// Calls work(first, last) for ranges that cover 0 .. n, from all threads; the first exception is passed on. A thread
+  /// takes some `shares` ranges, as it gets free: enough that none waits long for the others, and few enough that
+  /// memory is read in long stretches.
+  template <class Work>
   void run(std::size_t n, Work const& work) const {
 #if defined(_OPENMP)
     if (threads() > 1 && n > 1) {
-      auto const chunks = static_cast<std::ptrdiff_t>((n + Grain - 1) / Grain);
+      constexpr std::size_t shares = 8;
+      std::size_t const range = (n - 1) / (shares * static_cast<std::size_t>(threads())) + 1;
+      auto const ranges = static_cast<std::ptrdiff_t>((n - 1) / range + 1);
       std::exception_ptr failure;
 #pragma omp parallel for schedule(dynamic) num_threads(threads())
-      for (std::ptrdiff_t c = 0; c < chunks; ++c) {
+      for (std::ptrdiff_t r = 0; r < ranges; ++r) {
         detail::work_alone const together(false);
         try {
-          auto const first = static_cast<std::size_t>(c) * Grain;
-          work(first, std::min(n, first + Grain));
+          auto const first = static_cast<std::size_t>(r) * range;
+          work(first, std::min(n, first + range));
         } catch (...) {
 #pragma omp critical(collide_host_failure)
           if (!failure) failure = std::current_exception();
