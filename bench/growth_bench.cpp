@@ -1,0 +1,152 @@
+/// \file
+/// How the time of a whole detection grows: growth_bench [LARGEST] [OPTION OF GOOGLE BENCHMARK...]
+///
+/// Names are growth/AXIS/BROAD_x_SPACE/VALUE, on scenes around the study's torus:
+///   spheres    so many of radius 3, uniform in the study's cube;
+///   triangles  so many, with radii that shrink with them, so that a sphere touches about as many;
+///   hits       the radius, in hundredths, of spheres on the surface: from hardly a triangle to a thousand for each;
+///   radii      the largest radius, 30, over the smallest; as many spheres of each order of magnitude;
+///   cluster    the spheres are in a cube of this half-width around a point of the surface, in the end in one cell.
+/// The time is that of build and query, into the sink `pairs`. Counters: spheres, triangles, pairs; ns_per_item, the
+/// time over their sum: linear growth is a line that does not rise. LARGEST bounds spheres and triangles.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include <collide/bucket.cuh>
+#include <collide/upload.hpp>
+
+#include "io/device.hpp"
+#include "io/scenes.hpp"
+#include "stopwatch.hpp"
+
+namespace {
+
+using make_scene = io::scene (*)(std::size_t value, std::size_t largest);
+
+std::size_t at_most(std::size_t n, std::size_t largest) { return n < largest ? n : largest; }
+
+io::scene of_spheres(std::size_t value, std::size_t) { return io::study_scene(value); }
+
+io::scene of_triangles(std::size_t value, std::size_t largest) {
+  io::scene s = io::study_scene(at_most(1 << 20, largest), value);
+  s.radius = 3 * std::sqrt(static_cast<double>(io::study_triangles) / static_cast<double>(value));
+  return s;
+}
+
+io::scene of_hits(std::size_t value, std::size_t largest) {
+  io::scene s = io::study_scene(0, at_most(io::study_triangles, largest));
+  s.radius = static_cast<double>(value) / 100;
+  io::random_numbers random(1);
+  for (std::size_t n = at_most(1 << 15, largest); n > 0; --n) {
+    std::size_t const corner = s.corners[static_cast<std::size_t>(random.between(0, double(s.corners.size())))];
+    io::point const at{s.vertices[3 * corner], s.vertices[3 * corner + 1], s.vertices[3 * corner + 2]};
+    io::detail::add_point(s.centres, random.in_cube(5, at));
+  }
+  return s;
+}
+
+io::scene of_radii(std::size_t value, std::size_t largest) {
+  io::scene s = io::study_scene(at_most(1 << 17, largest), at_most(io::study_triangles, largest));
+  io::random_numbers random(2);
+  s.radii.resize(s.sphere_count());
+  for (auto& r : s.radii) r = 30 * std::pow(static_cast<double>(value), -random.unit());
+  return s;
+}
+
+io::scene of_cluster(std::size_t value, std::size_t largest) {
+  io::scene s = io::study_scene(0, at_most(io::study_triangles, largest));
+  io::random_numbers random(3);
+  io::detail::add_spheres(s, at_most(1 << 18, largest), random, static_cast<double>(value),
+                          {s.vertices[0], s.vertices[1], s.vertices[2]});
+  return s;
+}
+
+template <class Space>
+void run(benchmark::State& state, Space space, make_scene make, std::size_t value, std::size_t largest) {
+  io::scene const from = make(value, largest);
+  std::vector<float> const vertices(from.vertices.begin(), from.vertices.end());
+  std::vector<float> const centres(from.centres.begin(), from.centres.end());
+  std::vector<float> const radii(from.radii.begin(), from.radii.end());
+  std::size_t const n = from.sphere_count();
+  auto const mesh = collide::upload(
+      space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, from.corners.data(), from.triangle_count()));
+  auto const spheres =
+      collide::upload(space, radii.empty() ? collide::spheres_xyz(centres.data(), n, static_cast<float>(from.radius))
+                                           : collide::spheres_xyz(centres.data(), n, radii.data()));
+  collide::detector<collide::bucket, collide::karabassi<>, Space> detector(space);
+  collide::pairs pairs;
+  auto const detect = [&] {
+    if (radii.empty()) {
+      detector.build(mesh.view(), static_cast<float>(from.radius));
+    } else {
+      detector.build(mesh.view());
+    }
+    detector.query(spheres.view(), pairs);
+  };
+  detect();
+  bench::stopwatch<Space> watch(space);
+  double seconds = 0;
+  for (auto _ : state) {
+    double const t = watch(detect);
+    state.SetIterationTime(t);
+    seconds += t;
+  }
+  auto const items =
+      static_cast<double>(n) + static_cast<double>(from.triangle_count()) + static_cast<double>(pairs.total());
+  state.counters["spheres"] = static_cast<double>(n);
+  state.counters["triangles"] = static_cast<double>(from.triangle_count());
+  state.counters["pairs"] = static_cast<double>(pairs.total());
+  state.counters["ns_per_item"] = 1e9 * seconds / static_cast<double>(state.iterations()) / items;
+  state.counters["cell_width"] = detector.cell_width();
+}
+
+template <class Space>
+void add(std::string const& composition, Space space, std::size_t largest) {
+  auto const axis = [&](char const* name, make_scene make, std::vector<std::size_t> const& values) {
+    for (std::size_t const value : values) {
+      std::string const full = std::string("growth/") + name + "/" + composition + "/" + std::to_string(value);
+      benchmark::RegisterBenchmark(full.c_str(),
+                                   [=](benchmark::State& state) { run(state, space, make, value, largest); })
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
+    }
+  };
+  std::vector<std::size_t> spheres, triangles;
+  for (std::size_t n = 1 << 10; n <= largest; n *= 4) spheres.push_back(n);
+  for (std::size_t n = 1000; n <= largest; n *= 10) triangles.push_back(n);
+  axis("spheres", of_spheres, spheres);
+  axis("triangles", of_triangles, triangles);
+  axis("hits", of_hits, {0, 100, 300, 1000, 3000, 8500});
+  axis("radii", of_radii, {1, 3, 10, 30, 100, 300, 1000});
+  axis("cluster", of_cluster, {592, 200, 60, 20, 6, 2});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  std::size_t const largest = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1 << 24;
+  if (largest < 1024 || argc > 2) {
+    std::fputs("usage: growth_bench [LARGEST, at least 1024] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
+    return 2;
+  }
+  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
+  benchmark::AddCustomContext("processor", io::processor_name());
+  add("bucket_x_host", collide::host(1), largest);
+#if defined(__CUDACC__)
+  if (collide::cuda_device_count() > 0) {
+    benchmark::AddCustomContext("device", bench::device_name<collide::cuda>());
+    add("bucket_x_cuda_shared", collide::cuda_shared(), largest);
+  } else {
+    benchmark::AddCustomContext("device", "no GPU");
+  }
+#endif
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
