@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <collide/detector.hpp>
 
 namespace bench {
@@ -70,8 +72,8 @@ struct stopwatch_of {
 template <class Space>
 using stopwatch = typename stopwatch_of<Space>::type;
 
-/// Kernel body of `for_each` over groups of four scalars: reads them all, and writes where they sum to a value that
-/// they never sum to.
+/// Kernel body of `for_each` over groups of four scalars, for CUDA: reads them all, and writes where they sum to a value
+/// that they never sum to.
 template <class S>
 struct read_all {
   struct alignas(4 * sizeof(S)) four {
@@ -85,14 +87,23 @@ struct read_all {
   }
 };
 
-/// Median seconds of reading every one of `n` packed centres once: what no query can go below.
+/// Median seconds of reading every one of `n` packed centres once: what no query can go below. On the host with one
+/// thread.
 template <class Space, class S>
 double floor_of(Space const& space, S const* xyz, std::size_t n) {
   collide::buffer<S> sink;
-  read_all<S> const body{reinterpret_cast<typename read_all<S>::four const*>(xyz), sink.reserve(space.resource(), 1)};
+  S* const to = sink.reserve(space.resource(), 1);
+  read_all<S> const body{reinterpret_cast<typename read_all<S>::four const*>(xyz), to};
+  auto const read = [&] {
+    if constexpr (Space::host_memory) {
+      *to = Eigen::Map<Eigen::Array<S, Eigen::Dynamic, 1> const>(xyz, static_cast<Eigen::Index>(3 * n)).sum();
+    } else {
+      space.for_each(3 * n / 4, body);
+    }
+  };
   stopwatch<Space> watch(space);
   std::vector<double> seconds;
-  for (int i = 0; i < 50; ++i) seconds.push_back(watch([&] { space.for_each(3 * n / 4, body); }));
+  for (int i = 0; i < 50; ++i) seconds.push_back(watch(read));
   std::nth_element(seconds.begin(), seconds.begin() + 25, seconds.end());
   return seconds[25];
 }
