@@ -72,8 +72,8 @@ struct stopwatch_of {
 template <class Space>
 using stopwatch = typename stopwatch_of<Space>::type;
 
-/// Kernel body of `for_each` over groups of four scalars, for CUDA: reads them all, and writes where they sum to a value
-/// that they never sum to.
+/// Kernel body of `for_each` over groups of four scalars, for CUDA: reads them all, and writes where they sum to a
+/// value that they never sum to.
 template <class S>
 struct read_all {
   struct alignas(4 * sizeof(S)) four {
