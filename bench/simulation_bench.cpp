@@ -1,12 +1,22 @@
 /// \file
-/// What a step of a simulation costs: on the study's scene, for each effect, beside kernels written by hand.
+/// What a step of a simulation costs, for each effect, beside kernels written by hand.
 ///
-///     simulation_bench [SPHERES [REPETITIONS]]
-///     simulation_bench many SPHERES
+///     simulation_bench [SPHERES] [OPTION OF GOOGLE BENCHMARK...]
+///     simulation_bench many SPHERES [OPTION OF GOOGLE BENCHMARK...]
+///
+/// Names are simulation/SPACE/EFFECTS, on the study's scene or as many of its spheres as stated; *packed* are spheres
+/// that touch each other. Counters: over_floor (time over that of reading and writing position and velocity, measured
+/// in the same process); bytes (of columns, a particle). With `many`, frictionless spheres that fill space, for the
+/// memory that each takes.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
 
 #include <collide/absorb.hpp>
 #include <collide/bounce.hpp>
@@ -26,6 +36,7 @@
 #include <collide/upload.hpp>
 #include <collide/wind.hpp>
 
+#include "io/device.hpp"
 #include "io/scenes.hpp"
 #include "stopwatch.hpp"
 
@@ -63,130 +74,152 @@ struct move_all {
   }
 };
 
-/// Seconds of a call of f, of which some follow each other: the median of such series.
-template <class Space, class F>
-double median(Space const& space, std::size_t times, F const& f) {
-  constexpr int series = Space::host_memory ? 1 : 20;
-  bench::stopwatch<Space> watch(space);
-  std::vector<double> seconds;
-  for (std::size_t i = 0; i < times; ++i) {
-    seconds.push_back(watch([&] {
-      for (int k = 0; k < series; ++k) f();
-    }));
-  }
-  std::nth_element(seconds.begin(), seconds.begin() + static_cast<std::ptrdiff_t>(times / 2), seconds.end());
-  return seconds[times / 2] / series;
+/// How many steps are timed together, and how often.
+template <class Space>
+constexpr int series = Space::host_memory ? 1 : 20;
+constexpr int iterations = 21;
+
+/// Registers simulation/SPACE/NAME. `prepare()` returns what a step is.
+template <class Space, class Prepare>
+void add(std::string const& name, Space const& space, double floor, double bytes, Prepare const& prepare) {
+  benchmark::RegisterBenchmark((std::string("simulation/") + Space::name() + "/" + name).c_str(),
+                               [=](benchmark::State& state) {
+                                 auto const step = prepare();
+                                 bench::stopwatch<Space> watch(space);
+                                 double seconds = 0;
+                                 for (auto _ : state) {
+                                   double const t = watch([&] {
+                                     for (int k = 0; k < series<Space>; ++k) step();
+                                   });
+                                   state.SetIterationTime(t / series<Space>);
+                                   seconds += t / series<Space>;
+                                 }
+                                 state.counters["over_floor"] =
+                                     seconds / static_cast<double>(state.iterations()) / floor;
+                                 state.counters["bytes"] = bytes;
+                               })
+      ->UseManualTime()
+      ->Iterations(iterations)
+      ->Unit(benchmark::kMicrosecond);
 }
 
-/// The study's scene in memory of the space.
+/// The study's scene in memory of the space, and what is measured on it.
 template <class Space>
-struct placed {
-  Space space;
-  std::size_t n, times;
-  float radius;
-  collide::uploaded_mesh<float> mesh;
-  collide::uploaded_spheres<float> spheres;
-  double floor = 0;
-
-  static placed make(Space const& space, std::size_t n, std::size_t times) {
+class suite {
+ public:
+  suite(Space const& space, std::size_t n) : space_{space}, n_{n} {
     io::scene const s = io::study_scene(n);
     std::vector<float> const vertices(s.vertices.begin(), s.vertices.end());
     std::vector<float> const centres(s.centres.begin(), s.centres.end());
-    auto const radius = static_cast<float>(s.radius);
-    return {space,
-            n,
-            times,
-            radius,
-            collide::upload(space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(),
-                                                         s.triangle_count())),
-            collide::upload(space, collide::spheres_xyz(centres.data(), n, radius))};
+    radius_ = static_cast<float>(s.radius);
+    mesh_ = std::make_shared<collide::uploaded_mesh<float>>(collide::upload(
+        space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count())));
+    spheres_ = upload(centres);
+    auto const both = by_hand<touch_all>();
+    bench::stopwatch<Space> watch(space);
+    std::vector<double> seconds;
+    for (int i = 0; i < 101; ++i) {
+      seconds.push_back(watch([&] {
+        for (int k = 0; k < series<Space>; ++k) both();
+      }));
+    }
+    std::nth_element(seconds.begin(), seconds.begin() + 50, seconds.end());
+    floor_ = seconds[50] / series<Space>;
+    ::add("read and write both", space_, floor_, 24, [s = *this] { return s.template by_hand<touch_all>(); });
+    ::add("move, by hand", space_, floor_, 24, [s = *this] { return s.template by_hand<move_all>(); });
   }
 
-  template <class Simulation>
-  void run(char const* name, Simulation&& simulation, float dt = 0.01f) {
-    simulation.set(spheres.view());
-    simulation.set_mesh(mesh.view());
-    simulation.steps(10, dt);
-    report<Simulation>(name, median(space, times, [&] { simulation.step(dt); }));
+  float radius() const { return radius_; }
+
+  /// A step of a simulation with these effects.
+  template <class NarrowPhase = collide::karabassi<>, class... Effect>
+  void add(std::string const& name, Effect const&... effects) const {
+    add_with<NarrowPhase>(name, spheres_, 10, 0.01f, effects...);
   }
 
-  /// Balls that fill space, each in touch with six others.
-  template <class Simulation>
-  void run_packed(char const* name, Simulation&& simulation) {
+  /// The same among balls that fill space, each in touch with six others.
+  template <class... Effect>
+  void add_packed(std::string const& name, Effect const&... effects) const {
     std::vector<float> centres;
-    auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
-    for (std::size_t i = 0; i < n; ++i)
+    auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n_))) + 1;
+    for (std::size_t i = 0; i < n_; ++i)
       for (std::size_t at : {i % side, i / side % side, i / side / side})
-        centres.push_back(1.98f * radius * static_cast<float>(at));
-    auto const packed = collide::upload(space, collide::spheres_xyz(centres.data(), n, radius));
-    simulation.set(packed.view());
-    simulation.set_mesh(mesh.view());
-    simulation.steps(2, 1e-4f);
-    report<Simulation>(name, median(space, times, [&] { simulation.step(1e-4f); }));
+        centres.push_back(1.98f * radius_ * static_cast<float>(at));
+    add_with<collide::karabassi<>>("packed: " + name, upload(centres), 2, 1e-4f, effects...);
   }
 
-  template <class Simulation>
-  void report(char const* name, double seconds) const {
-    std::printf("%-12s %-42s %9.1f us  %5.2fx  %3zu bytes\n", Space::name(), name, seconds * 1e6, seconds / floor,
-                std::decay_t<Simulation>::bytes_per_particle);
-    std::fflush(stdout);
+ private:
+  using uploaded = std::shared_ptr<collide::uploaded_spheres<float>>;
+
+  uploaded upload(std::vector<float> const& centres) const {
+    return std::make_shared<collide::uploaded_spheres<float>>(
+        collide::upload(space_, collide::spheres_xyz(centres.data(), n_, radius_)));
   }
+
+  template <class NarrowPhase, class... Effect>
+  void add_with(std::string const& name, uploaded const& spheres, std::size_t steps, float dt,
+                Effect const&... effects) const {
+    using simulation = collide::simulation<collide::detector<collide::bucket, NarrowPhase, Space>, Effect...>;
+    ::add(name, space_, floor_, simulation::bytes_per_particle, [=, mesh = mesh_, space = space_] {
+      auto const made = std::make_shared<simulation>(space, effects...);
+      made->set(spheres->view());
+      made->set_mesh(mesh->view());
+      made->steps(steps, dt);
+      return [=] { made->step(dt); };
+    });
+  }
+
+  /// A kernel over the columns of a simulation that does nothing else.
+  template <class Kernel>
+  auto by_hand() const {
+    auto const columns =
+        std::make_shared<collide::simulation<collide::detector<collide::bucket, collide::karabassi<>, Space>>>(space_);
+    columns->set(spheres_->view());
+    auto* const x = reinterpret_cast<four<float>*>(columns->template data<position>());
+    auto* const v = reinterpret_cast<four<float>*>(columns->template data<velocity>());
+    return [=, space = space_, n = n_] { columns->space().for_each(3 * n / 4, Kernel{x, v, 1e-3f}); };
+  }
+
+  Space space_;
+  std::size_t n_;
+  float radius_;
+  std::shared_ptr<collide::uploaded_mesh<float>> mesh_;
+  uploaded spheres_;
+  double floor_;
 };
 
-/// What the effects cost. Of every scene a kernel or two has to be compiled, which takes minutes for a GPU.
+/// What all spaces are measured with.
 template <class Space>
-void measure_effects(placed<Space>& scene) {
+void add_few(suite<Space> const& scene) {
   using namespace collide;
-  using still = detector<bucket, karabassi<>, Space>;
-  Space const& space = scene.space;
-  scene.run("gravity, drag", simulation<still, gravity, drag>(space, gravity{}, drag{0.1, 0.01}));
-  scene.run("gravity, wind", simulation<still, gravity, wind<>>(space, gravity{}, wind<>{0.1, 0.01, {1, 0, 0}}));
-  scene.run("gravity, bounds", simulation<still, gravity, bounds>(space));
-  scene.run("gravity, periodic",
-            simulation<still, gravity, periodic>(space, gravity{}, periodic{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}}));
-  scene.run("gravity, bounce, polydisperse", simulation<still, gravity, bounce, polydisperse>(space));
-  scene.run("gravity, bounce, friction", simulation<still, gravity, bounce, friction>(space));
-  scene.run("gravity, bounce, friction, spin", simulation<still, gravity, bounce, friction, spin>(space));
-  scene.run("gravity, bounce, stick", simulation<still, gravity, bounce, stick>(space));
-  scene.run("sleep, gravity, bounce", simulation<still, collide::sleep, gravity, bounce>(space));
-  scene.run("sleep, gravity, bounce: all asleep",
-            simulation<still, collide::sleep, gravity, bounce>(space, collide::sleep{1e30, 5}, gravity{}, bounce{}));
-  scene.run("gravity, absorb", simulation<still, gravity, absorb>(space));
-  scene.run("emit, gravity, bounce",
-            simulation<still, emit, gravity, bounce>(space, emit{1e5, {}}, gravity{}, bounce{}));
-  auto const contact = sphere_contact::of_collision(0.5, 2e-3, double(scene.radius), 1);
-  scene.run("sphere_contact, gravity, bounce",
-            simulation<still, sphere_contact, gravity, bounce>(space, contact, gravity{}, bounce{}));
-  scene.run_packed("packed: sphere_contact, gravity",
-                   simulation<still, sphere_contact, gravity>(space, contact, gravity{}));
-  scene.run_packed("packed: sphere_contact, gravity, bounce",
-                   simulation<still, sphere_contact, gravity, bounce>(space, contact, gravity{}, bounce{}));
+  scene.add("no effects");
+  scene.add("gravity", gravity{});
+  scene.add("gravity, bounce", gravity{}, bounce{});
 }
 
-/// The headline; with `all` every effect too.
-template <class Space, bool All>
-void measure(Space const& space, std::size_t n, std::size_t times) {
-  auto scene = placed<Space>::make(space, n, times);
-  collide::simulation<collide::detector<collide::bucket, collide::karabassi<>, Space>> plain(space);
-  plain.set(scene.spheres.view());
-  auto* const x = reinterpret_cast<four<float>*>(plain.template data<position>());
-  auto* const v = reinterpret_cast<four<float>*>(plain.template data<velocity>());
-  scene.floor = median(space, 101, [&] { space.for_each(3 * n / 4, touch_all{x, v, 1e-3f}); });
-  double const move = median(space, 101, [&] { space.for_each(3 * n / 4, move_all{x, v, 1e-3f}); });
-  std::printf("%-12s %-42s %9.1f us\n", Space::name(), "read and write both", scene.floor * 1e6);
-  std::printf("%-12s %-42s %9.1f us  %5.2fx\n", Space::name(), "move, by hand", move * 1e6, move / scene.floor);
-
-  using still = collide::detector<collide::bucket, collide::karabassi<>, Space>;
-  using swept = collide::detector<collide::bucket, collide::karabassi_swept<>, Space>;
+/// Every effect. Of every scene a kernel or two has to be compiled, which takes minutes for a GPU.
+template <class Space>
+void add_all(suite<Space> const& scene) {
   using namespace collide;
-  scene.run("no effects", simulation<still>(space));
-  scene.run("gravity", simulation<still, gravity>(space));
-  scene.run("gravity, bounce", simulation<still, gravity, bounce>(space));
-  if constexpr (All) {
-    scene.run("velocity_verlet, gravity, bounce", simulation<still, velocity_verlet, gravity, bounce>(space));
-    scene.run("swept: gravity, bounce", simulation<swept, gravity, bounce>(space));
-  }
-  if constexpr (All) measure_effects(scene);
+  add_few(scene);
+  scene.add("velocity_verlet, gravity, bounce", velocity_verlet{}, gravity{}, bounce{});
+  scene.template add<karabassi_swept<>>("swept: gravity, bounce", gravity{}, bounce{});
+  scene.add("gravity, drag", gravity{}, drag{0.1, 0.01});
+  scene.add("gravity, wind", gravity{}, wind<>{0.1, 0.01, {1, 0, 0}});
+  scene.add("gravity, bounds", gravity{}, bounds{});
+  scene.add("gravity, periodic", gravity{}, periodic{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}});
+  scene.add("gravity, bounce, polydisperse", gravity{}, bounce{}, polydisperse{});
+  scene.add("gravity, bounce, friction", gravity{}, bounce{}, friction{});
+  scene.add("gravity, bounce, friction, spin", gravity{}, bounce{}, friction{}, spin{});
+  scene.add("gravity, bounce, stick", gravity{}, bounce{}, stick{});
+  scene.add("sleep, gravity, bounce", collide::sleep{}, gravity{}, bounce{});
+  scene.add("sleep, gravity, bounce: all asleep", collide::sleep{1e30, 5}, gravity{}, bounce{});
+  scene.add("gravity, absorb", gravity{}, absorb{});
+  scene.add("emit, gravity, bounce", emit{1e5, {}}, gravity{}, bounce{});
+  auto const contact = sphere_contact::of_collision(0.5, 2e-3, double(scene.radius()), 1);
+  scene.add("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
+  scene.add_packed("sphere_contact, gravity", contact, gravity{});
+  scene.add_packed("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
 }
 
 /// Kernel body of `for_each` over spheres that fill space.
@@ -220,50 +253,74 @@ class counting final : public std::pmr::memory_resource {
   std::pmr::memory_resource* from_;
 };
 
-/// Very many frictionless spheres that touch each other: memory and time.
+/// Very many frictionless spheres that touch each other. Counters: spheres; bytes, all that the simulation takes, a
+/// sphere.
 template <class Space, class MakeSpace>
-void measure_many(MakeSpace const& make, std::size_t n) {
-  using namespace collide;
-  Space const plain = make(nullptr);
-  counting counted(plain.resource());
-  Space const space = make(&counted);
-  auto const contact = sphere_contact::of_collision(0.5, 2e-3, 0.01, 1000);
-  simulation<detector<bucket, karabassi<>, Space>, sphere_contact, gravity, bounds> made(space, contact, gravity{},
-                                                                                         bounds{});
-  {
-    buffer<float> centres;
-    auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
-    plain.for_each(n, fill_space{centres.reserve(plain.resource(), 3 * n), side});
-    made.set(spheres_xyz(static_cast<float const*>(centres.data()), n, 0.01f));
-    plain.synchronize();
-  }
-  made.steps(2, 1e-4f);
-  double const seconds = median(space, 3, [&] { made.step(1e-4f); });
-  std::printf("%-12s %zu spheres that touch: %.2f ms a step, %.1f bytes a sphere\n", Space::name(), n, seconds * 1e3,
-              static_cast<double>(counted.bytes) / static_cast<double>(n));
+void add_many(MakeSpace const& make, std::size_t n) {
+  benchmark::RegisterBenchmark((std::string("simulation/") + Space::name() + "/many/" + std::to_string(n)).c_str(),
+                               [=](benchmark::State& state) {
+                                 using namespace collide;
+                                 Space const plain = make(nullptr);
+                                 counting counted(plain.resource());
+                                 Space const space = make(&counted);
+                                 auto const contact = sphere_contact::of_collision(0.5, 2e-3, 0.01, 1000);
+                                 simulation<detector<bucket, karabassi<>, Space>, sphere_contact, gravity, bounds> made(
+                                     space, contact, gravity{}, bounds{});
+                                 {
+                                   buffer<float> centres;
+                                   auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
+                                   plain.for_each(n, fill_space{centres.reserve(plain.resource(), 3 * n), side});
+                                   made.set(spheres_xyz(static_cast<float const*>(centres.data()), n, 0.01f));
+                                   plain.synchronize();
+                                 }
+                                 made.steps(2, 1e-4f);
+                                 bench::stopwatch<Space> watch(space);
+                                 for (auto _ : state) state.SetIterationTime(watch([&] { made.step(1e-4f); }));
+                                 state.counters["spheres"] = static_cast<double>(n);
+                                 state.counters["bytes"] = static_cast<double>(counted.bytes) / static_cast<double>(n);
+                               })
+      ->UseManualTime()
+      ->Iterations(3)
+      ->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  bool const many = argc > 2 && std::strcmp(argv[1], "many") == 0;
-  std::size_t const n = argc > 1 ? std::strtoull(argv[many ? 2 : 1], nullptr, 10) : io::study_spheres;
-  std::size_t const times = argc > 2 && !many ? std::strtoull(argv[2], nullptr, 10) : 21;
+  benchmark::Initialize(&argc, argv);
+  bool const many = argc > 1 && std::strcmp(argv[1], "many") == 0;
+  char const* const number = argc > 1 + many ? argv[1 + many] : nullptr;
+  std::size_t const n = number != nullptr ? std::strtoull(number, nullptr, 10) : many ? 0 : io::study_spheres;
+  if (n < 8 || argc > 2 + many) {
+    std::fputs("usage: simulation_bench [many] [SPHERES, at least 8] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
+    return 2;
+  }
+  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
+  benchmark::AddCustomContext("processor", io::processor_name());
+  bool on_gpu = false;
 #if defined(__CUDACC__)
-  if (collide::cuda_device_count() > 0) {
+  on_gpu = collide::cuda_device_count() > 0;
+  if (on_gpu) {
+    using collide::cuda, collide::cuda_shared;
+    benchmark::AddCustomContext("device", bench::device_name<cuda>());
     if (many) {
-      measure_many<collide::cuda_shared>(
-          [](std::pmr::memory_resource* from) { return collide::cuda_shared(nullptr, from); }, n);
+      add_many<cuda_shared>([](std::pmr::memory_resource* from) { return cuda_shared(nullptr, from); }, n);
     } else {
-      measure<collide::cuda_shared, true>(collide::cuda_shared(), n, times);
-      measure<collide::cuda, false>(collide::cuda(), n, times);
+      add_all(suite<cuda_shared>(cuda_shared(), n));
+      add_few(suite<cuda>(cuda(), n));
     }
-    return 0;
   }
 #endif
-  if (many) {
-    measure_many<collide::host>([](std::pmr::memory_resource* from) { return collide::host(0, from); }, n);
-  } else {
-    measure<collide::host, true>(collide::host(), n, times);
+  if (!on_gpu) {
+    benchmark::AddCustomContext("device", "no GPU");
+    benchmark::AddCustomContext("threads", std::to_string(collide::host().threads()));
+    if (many) {
+      add_many<collide::host>([](std::pmr::memory_resource* from) { return collide::host(0, from); }, n);
+    } else {
+      add_all(suite<collide::host>(collide::host(), n));
+    }
   }
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
 }
