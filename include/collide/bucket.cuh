@@ -279,12 +279,11 @@ struct bucket_query {
         },
         [&](auto const& c, std::uint32_t k) {
           id const triangle = all ? static_cast<id>(c.first + k) : entries[c.first + k];
-          if constexpr (!still) {
-            if (!all && !c.path.meets_first(c.here, tests.mesh[triangle])) return;
-          }
           auto const bound = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
           sphere<S> const around = enclosing(c.ball);
-          if (bound.reached(around.centre, around.radius)) {
+          bool near = bound.reached(around.centre, around.radius);
+          if constexpr (!still) near = near && (all || c.path.meets_first(c.here, tests.mesh[triangle]));
+          if (near) {
             tests.test(block, s.hits, {c.number, triangle}, c.ball);
           }
         },
