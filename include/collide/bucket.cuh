@@ -406,9 +406,25 @@ class bucket::index {
     if (!swapped_) make_lists(space, options);
   }
 
-  /// Spheres that move always look for triangles.
+  /// Spheres that move are sorted, too, if there are many, of one radius, and none moves far; else they look for
+  /// triangles along their ways.
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
+    swapped_ = false;
+    if constexpr (Space::sorts_spheres) {
+      if (swaps<Space>(options) && has_summary_ && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
+          spheres.size() <= detail::sorted_spheres<S>::most) {
+        S const reach = sorted_.reach_of(space, spheres);
+        if (reach <= 2 * spheres.common_radius()) {
+          S const wider = reach + reach / 16;  // so that a bit more next time fits too
+          bool const kept = wanted_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
+          if (!kept) make_grids(space, options, &wider, 1);
+          swapped_ = grid_count_ > 0;
+        }
+      }
+      if (swapped_) sorted_.sort(space, spheres);
+    }
+    if (swapped_) return;
     prepare_grids(space, options, spheres);
     make_lists(space, options);
   }
@@ -416,7 +432,7 @@ class bucket::index {
   /// Puts one pass over the spheres on the space's stream.
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
-    if constexpr (Space::sorts_spheres && detail::at_rest<NarrowPhase, S>) {
+    if constexpr (Space::sorts_spheres) {
       if (swapped_) {
         sorted_.query(space, detail::tester<S, NarrowPhase, Sink>{mesh_, spheres, sink});
         return;

@@ -75,6 +75,7 @@ struct candidate_batch {
 /// True if candidates are decided several at a time: with a narrow phase that has a quick test without branches, and
 /// coordinates of the type that it works in.
 template <class NarrowPhase, class S>
-inline constexpr bool in_batches = in_stages<NarrowPhase>::value&& std::is_same<S, float>::value;
+inline constexpr bool in_batches =
+    in_stages<NarrowPhase>::value&& at_rest<NarrowPhase, S>&& std::is_same<S, float>::value;
 
 }  // namespace collide::detail

@@ -7,6 +7,10 @@
 /// that no triangle touches, and are sorted out at the pace of the memory; the few others are copied in the order of
 /// the cells. Neighbouring triangles, which most meshes have one after the other, then read the same spheres from the
 /// nearest cache.
+///
+/// Spheres that move go the same way as the balls around their ways, which are spheres at rest; the narrow phase then
+/// judges the spheres themselves. That is for short ways: the ball around a long one touches much that the sphere does
+/// not.
 #pragma once
 
 #include <algorithm>
@@ -57,6 +61,37 @@ struct mark_cells {
   }
 };
 
+/// Kernel body of a block of one lane: the longest displacement, squared, and the farthest coordinate, as bits. What is
+/// NaN does not count.
+template <class S>
+struct measure_ways {
+  static constexpr int items = 4;
+  static constexpr std::size_t batches = 64;  ///< of `Block::items` spheres
+
+  moving_sphere_view<S> spheres;
+  bits_of<S>* squared_length;  ///< 0 at first
+  bits_of<S>* farthest;        ///< the same
+
+  struct nothing {};
+  template <class>
+  using scratch = nothing;
+
+  template <class Block>
+  void operator()(Block& block, nothing&) const {
+    std::size_t const share = batches * Block::items, begin = block.index() * share;
+    S length = 0, far = 0;
+    vectorised([&] {
+      for (std::size_t i = begin; i < smaller(begin + share, spheres.size()); ++i) {
+        vec3<S> const d = spheres.displacement(i);
+        length = larger(length, dot(d, d));
+        far = larger(far, magnitude(spheres.centre(i)));
+      }
+    });
+    fetch_max(squared_length, bits(length));
+    fetch_max(farthest, bits(far));
+  }
+};
+
 /// A sphere in a cell with triangles.
 template <class S>
 struct placed_sphere {
@@ -67,12 +102,13 @@ struct placed_sphere {
 
 /// Kernel body of a block of one lane: lists the spheres that are in cells with triangles. A sphere that no grid serves
 /// counts as in the cell behind the last, into which all triangles look.
-template <class S>
+template <class S, class Spheres>
 struct place_spheres {
   static constexpr int items = 4;
   static constexpr std::size_t batches = 16;  ///< of `Block::items` spheres
+  static constexpr bool rest = std::is_same<Spheres, sphere_view<S>>::value;
 
-  sphere_view<S> spheres;
+  Spheres spheres;
   grid<S> const* grids;
   int grid_count;
   std::uint32_t const* occupied;
@@ -100,7 +136,7 @@ struct place_spheres {
   void place(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
     std::size_t const begin = block.index() * batches * n;
-    bool const one_radius = spheres.one_radius();
+    bool const one_radius = rest && spheres.one_radius();
     s.count = 0;
     for (std::size_t first = begin; first < begin + batches * n && first < spheres.size(); first += n) {
       sphere_batch<S, n> batch;
@@ -313,12 +349,21 @@ struct look_for_spheres {
           if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
           s.batch.add(p, t, spheres[place]);
         } else {
-          tests.test(block, s.hits, p, spheres[place]);
+          tests.test(block, s.hits, p, sphere_of(p, place));
           tests.make_room(block, s.hits);
         }
       }
     }
     s.count = 0;
+  }
+
+  /// What the narrow phase judges.
+  auto sphere_of([[maybe_unused]] pair p, [[maybe_unused]] std::uint32_t place) const {
+    if constexpr (at_rest<NarrowPhase, S>) {
+      return spheres[place];
+    } else {
+      return tests.spheres[p.sphere];
+    }
   }
 };
 
@@ -345,16 +390,29 @@ class sorted_spheres {
     space.for_each(triangles, mark_cells<S>{boxes, grids, grid_count, occupied});
   }
 
-  /// Sorts the spheres into the cells. O(spheres + cells).
+  /// How far the grid must reach for spheres of one radius that move: the radius of a ball around the way of each.
   template <class Space>
-  void sort(Space& space, sphere_view<S> const& spheres) {
+  S reach_of(Space& space, moving_sphere_view<S> const& spheres) {
+    auto* const found = measures_.reserve(space.resource(), 2);
+    space.fill(found, 0, 2 * sizeof *found);
+    measure_ways<S> const body{spheres, found, found + 1};
+    constexpr std::size_t share = measure_ways<S>::batches * 64;
+    space.launch((spheres.size() + share - 1) / share, body);
+    S const length = root(from_bits<S>(space.read(found))), far = from_bits<S>(space.read(found + 1));
+    return enclosing(moving_sphere<S>{{{far, far, far}, spheres.common_radius()}, {length, S(0), S(0)}}).radius;
+  }
+
+  /// Sorts the spheres into the cells, of spheres that move the balls around their ways. O(spheres + cells).
+  template <class Space, class Spheres>
+  void sort(Space& space, Spheres const& spheres) {
+    using place = place_spheres<S, Spheres>;
     auto* const total = total_.reserve(space.resource(), 1);
     std::size_t room = larger(placed_.capacity(), spheres.size() / 16 + 1024);
     for (;; room = static_cast<std::size_t>(*total + *total / 4)) {
       auto* const placed = placed_.reserve(space.resource(), room);
       space.fill(total, 0, sizeof *total);
-      place_spheres<S> const body{spheres, grids_, grid_count_, occupied_.data(), everywhere(), placed, total, room};
-      constexpr std::size_t share = place_spheres<S>::batches * 64;
+      place const body{spheres, grids_, grid_count_, occupied_.data(), everywhere(), placed, total, room};
+      constexpr std::size_t share = place::batches * 64;
       space.launch((spheres.size() + share - 1) / share, body);
       if (*total <= room) break;
     }
@@ -404,6 +462,7 @@ class sorted_spheres {
   std::size_t cells_ = 0;
   buffer<std::uint32_t> occupied_, ends_, order_;
   buffer<std::uint64_t> total_;
+  buffer<bits_of<S>> measures_;
   buffer<placed_sphere<S>> placed_;
   buffer<S> numbers_;
   buffer<id> ids_;

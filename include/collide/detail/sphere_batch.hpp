@@ -21,7 +21,7 @@ struct sphere_batch {
   COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
     for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
-      bool const there = i < spheres.size();
+      bool const there = i < spheres.size() && finite(spheres.centre(i)) && finite(spheres.displacement(i));
       sphere<S> const s = there ? enclosing(spheres[i]) : sphere<S>{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()};
       x[k] = s.centre.x();
       y[k] = s.centre.y();
