@@ -420,11 +420,13 @@ class bucket::index {
           bool const kept = wanted_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
           if (!kept) make_grids(space, options, &wider, 1);
           swapped_ = grid_count_ > 0;
+          if (swapped_) {
+            sorted_.sort(space, detail::balls_around<S>{spheres, reach});
+            return;
+          }
         }
       }
-      if (swapped_) sorted_.sort(space, spheres);
     }
-    if (swapped_) return;
     prepare_grids(space, options, spheres);
     make_lists(space, options);
   }

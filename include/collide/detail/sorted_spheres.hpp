@@ -78,19 +78,63 @@ struct measure_ways {
 
   template <class Block>
   void operator()(Block& block, nothing&) const {
-    std::size_t const share = batches * Block::items, begin = block.index() * share;
-    S length = 0, far = 0;
+    constexpr std::size_t share = batches * Block::items;
+    std::size_t const begin = block.index() * share, end = smaller(begin + share, spheres.size());
+    S lengths[Block::items] = {}, fars[Block::items] = {};  // one would be compared one after the other
     vectorised([&] {
-      for (std::size_t i = begin; i < smaller(begin + share, spheres.size()); ++i) {
-        vec3<S> const d = spheres.displacement(i);
-        length = larger(length, dot(d, d));
-        far = larger(far, magnitude(spheres.centre(i)));
+      for (std::size_t first = begin; first < end; first += Block::items) {
+        moving_batch<S, Block::items> batch;
+        batch.load(spheres, first);
+        for (int k = 0; k < Block::items; ++k) {
+          S const dx = batch.dx[k], dy = batch.dy[k], dz = batch.dz[k];
+          S const xy = larger(abs_of(batch.x[k]), abs_of(batch.y[k]));
+          lengths[k] = larger(lengths[k], dx * dx + (dy * dy + dz * dz));
+          fars[k] = larger(fars[k], larger(xy, abs_of(batch.z[k])));
+        }
       }
     });
+    S length = 0, far = 0;
+    for (int k = 0; k < Block::items; ++k) {
+      length = larger(length, lengths[k]);
+      far = larger(far, fars[k]);
+    }
     fetch_max(squared_length, bits(length));
     fetch_max(farthest, bits(far));
   }
+
+ private:
+  static S abs_of(S x) { return x < 0 ? -x : x; }
 };
+
+/// Spheres that move as spheres at rest, all of one radius, that contain their ways: as far as placing them goes.
+template <class S>
+struct balls_around {
+  moving_sphere_view<S> spheres;
+  S reach;
+
+  std::size_t size() const { return spheres.size(); }
+  bool one_radius() const { return true; }
+  S common_radius() const { return reach; }
+};
+
+/// The centres and radii of consecutive spheres.
+template <class S, int Items>
+void load(sphere_batch<S, Items>& batch, sphere_view<S> const& spheres, std::size_t first) {
+  batch.load(spheres, first);
+}
+
+/// The same. A centre that is not finite is in no cell.
+template <class S, int Items>
+void load(sphere_batch<S, Items>& batch, balls_around<S> const& balls, std::size_t first) {
+  moving_batch<S, Items> ways;
+  ways.load(balls.spheres, first);
+  for (int k = 0; k < Items; ++k) {
+    batch.x[k] = ways.x[k] + S(0.5) * ways.dx[k];
+    batch.y[k] = ways.y[k] + S(0.5) * ways.dy[k];
+    batch.z[k] = ways.z[k] + S(0.5) * ways.dz[k];
+    batch.radius[k] = balls.reach;
+  }
+}
 
 /// A sphere in a cell with triangles.
 template <class S>
@@ -106,7 +150,6 @@ template <class S, class Spheres>
 struct place_spheres {
   static constexpr int items = 4;
   static constexpr std::size_t batches = 16;  ///< of `Block::items` spheres
-  static constexpr bool rest = std::is_same<Spheres, sphere_view<S>>::value;
 
   Spheres spheres;
   grid<S> const* grids;
@@ -136,11 +179,11 @@ struct place_spheres {
   void place(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
     std::size_t const begin = block.index() * batches * n;
-    bool const one_radius = rest && spheres.one_radius();
+    bool const one_radius = spheres.one_radius();
     s.count = 0;
     for (std::size_t first = begin; first < begin + batches * n && first < spheres.size(); first += n) {
       sphere_batch<S, n> batch;
-      batch.load(spheres, first);
+      load(batch, spheres, first);
       auto const list = [&](int k, std::uint32_t cell, bool wanted) {
         s.found[s.count] = {
             {{batch.x[k], batch.y[k], batch.z[k]}, batch.radius[k]}, static_cast<id>(first) + static_cast<id>(k), cell};
@@ -215,6 +258,7 @@ struct sphere_columns {
   S *x, *y, *z, *radius;
   S* reach;  ///< how far from a triangle's box the centre is at most, if the two touch; `slack` apart
   id* number;
+  moving_sphere<S>* moving;  ///< null if they rest; else the others are of the balls around their ways
 
   /// Room for the rounding of the coarsest narrow phase, as far as it goes with the triangle; the part that goes with
   /// the radius is in `reach`. See docs/numerics.md.
@@ -263,14 +307,21 @@ struct number_placed {
 };
 
 /// Kernel body of `for_each` over places: brings the spheres there. Threads write next to themselves only.
-template <class S>
+template <class S, class Spheres>
 struct sort_placed {
   placed_sphere<S> const* from;
   std::uint32_t const* order;
   sphere_columns<S> to;
+  Spheres spheres;
   void operator()(std::size_t i) const {
     placed_sphere<S> const& p = from[order[i]];
-    to.set(i, p.ball, p.number);
+    if constexpr (std::is_same<Spheres, balls_around<S>>::value) {
+      moving_sphere<S> const s = spheres.spheres[p.number];
+      to.moving[i] = s;
+      to.set(i, enclosing(s), p.number);
+    } else {
+      to.set(i, p.ball, p.number);
+    }
   }
 };
 
@@ -349,7 +400,7 @@ struct look_for_spheres {
           if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
           s.batch.add(p, t, spheres[place]);
         } else {
-          tests.test(block, s.hits, p, sphere_of(p, place));
+          tests.test(block, s.hits, p, sphere_of(place));
           tests.make_room(block, s.hits);
         }
       }
@@ -358,11 +409,11 @@ struct look_for_spheres {
   }
 
   /// What the narrow phase judges.
-  auto sphere_of([[maybe_unused]] pair p, [[maybe_unused]] std::uint32_t place) const {
+  auto sphere_of(std::uint32_t place) const {
     if constexpr (at_rest<NarrowPhase, S>) {
       return spheres[place];
     } else {
-      return tests.spheres[p.sphere];
+      return spheres.moving[place];
     }
   }
 };
@@ -399,10 +450,12 @@ class sorted_spheres {
     constexpr std::size_t share = measure_ways<S>::batches * 64;
     space.launch((spheres.size() + share - 1) / share, body);
     S const length = root(from_bits<S>(space.read(found))), far = from_bits<S>(space.read(found + 1));
-    return enclosing(moving_sphere<S>{{{far, far, far}, spheres.common_radius()}, {length, S(0), S(0)}}).radius;
+    // of none is it larger, but for some rounding
+    return enclosing(moving_sphere<S>{{{far, far, far}, spheres.common_radius()}, {length, S(0), S(0)}}).radius *
+           (1 + 32 * S(format<float>::unit));
   }
 
-  /// Sorts the spheres into the cells, of spheres that move the balls around their ways. O(spheres + cells).
+  /// Sorts the spheres into the cells: of type sphere_view, or balls_around. O(spheres + cells).
   template <class Space, class Spheres>
   void sort(Space& space, Spheres const& spheres) {
     using place = place_spheres<S, Spheres>;
@@ -418,6 +471,9 @@ class sorted_spheres {
     }
     auto const n = static_cast<std::size_t>(*total);
     columns_ = columns(space, placed_.capacity());
+    if constexpr (std::is_same<Spheres, balls_around<S>>::value) {
+      columns_.moving = moving_.reserve(space.resource(), placed_.capacity());
+    }
     // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
     std::size_t const table = cells_ + 2;
     auto* const counts = ends_.reserve(space.resource(), table);
@@ -432,7 +488,7 @@ class sorted_spheres {
     space.exclusive_scan(counts + 1, table - 1, scratch_);
     auto* const order = order_.reserve(space.resource(), placed_.capacity());
     each_placed(number_placed<S>{placed_.data(), order, counts + 1});
-    space.for_each(n, sort_placed<S>{placed_.data(), order, columns_});
+    space.for_each(n, sort_placed<S, Spheres>{placed_.data(), order, columns_, spheres});
   }
 
   /// One pass: the triangles look for the spheres.
@@ -451,7 +507,7 @@ class sorted_spheres {
     S* const to = numbers_.reserve(space.resource(), 5 * room);
     id* const ids = ids_.reserve(space.resource(), room);
     if (!same) space.fill(to, 0, 5 * room * sizeof *to);  // also what is behind the end is read
-    return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids};
+    return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids, nullptr};
   }
 
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
@@ -463,6 +519,7 @@ class sorted_spheres {
   buffer<std::uint32_t> occupied_, ends_, order_;
   buffer<std::uint64_t> total_;
   buffer<bits_of<S>> measures_;
+  buffer<moving_sphere<S>> moving_;
   buffer<placed_sphere<S>> placed_;
   buffer<S> numbers_;
   buffer<id> ids_;
