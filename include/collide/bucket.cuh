@@ -415,7 +415,7 @@ class bucket::index {
       if (swaps<Space>(options) && has_summary_ && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
           spheres.size() <= detail::sorted_spheres<S>::most) {
         S const reach = sorted_.reach_of(space, spheres);
-        if (reach <= 2 * spheres.common_radius()) {
+        if (detail::finite(reach) && reach <= 2 * spheres.common_radius()) {
           S const wider = reach + reach / 16;  // so that a bit more next time fits too
           bool const kept = wanted_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
           if (!kept) make_grids(space, options, &wider, 1);

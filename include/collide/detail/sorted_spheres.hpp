@@ -398,7 +398,7 @@ struct look_for_spheres {
         pair const p{spheres.number[place], r.triangle};
         if constexpr (in_batches<NarrowPhase, S>) {
           if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
-          s.batch.add(p, t, spheres[place]);
+          s.batch.add(p, t, sphere_of(place));
         } else {
           tests.test(block, s.hits, p, sphere_of(place));
           tests.make_room(block, s.hits);
@@ -409,11 +409,11 @@ struct look_for_spheres {
   }
 
   /// What the narrow phase judges.
-  auto sphere_of(std::uint32_t place) const {
+  decltype(auto) sphere_of(std::uint32_t place) const {
     if constexpr (at_rest<NarrowPhase, S>) {
       return spheres[place];
     } else {
-      return spheres.moving[place];
+      return static_cast<moving_sphere<S> const&>(spheres.moving[place]);
     }
   }
 };
