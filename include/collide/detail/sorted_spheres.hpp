@@ -258,7 +258,7 @@ struct sphere_columns {
   S *x, *y, *z, *radius;
   S* reach;  ///< how far from a triangle's box the centre is at most, if the two touch; `slack` apart
   id* number;
-  moving_sphere<S>* moving;  ///< null if they rest; else the others are of the balls around their ways
+  moving_sphere<S>* moving = nullptr;  ///< null if they rest; else the others are of the balls around their ways
 
   /// Room for the rounding of the coarsest narrow phase, as far as it goes with the triangle; the part that goes with
   /// the radius is in `reach`. See docs/numerics.md.
@@ -507,7 +507,7 @@ class sorted_spheres {
     S* const to = numbers_.reserve(space.resource(), 5 * room);
     id* const ids = ids_.reserve(space.resource(), room);
     if (!same) space.fill(to, 0, 5 * room * sizeof *to);  // also what is behind the end is read
-    return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids, nullptr};
+    return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids};
   }
 
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
