@@ -339,7 +339,7 @@ struct bucket_query {
 /// bytes in the CUDA spaces and 8 on the host, and up to 8 cells of 8 bytes; several grids only where radii differ by
 /// more than a factor of 4. The host sorts the spheres instead where there are many (detail/sorted_spheres.hpp): that
 /// takes O(triangles + spheres) for a query, 6 scalars per triangle, 4 bytes per cell, and about 12 scalars for each
-/// sphere in a cell with triangles; no entries.
+/// sphere in a cell with triangles, 19 if it moves; no entries.
 struct bucket {
   /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
   /// such cells go to levels of wider ones.

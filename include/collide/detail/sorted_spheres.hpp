@@ -81,18 +81,7 @@ struct measure_ways {
     constexpr std::size_t share = batches * Block::items;
     std::size_t const begin = block.index() * share, end = smaller(begin + share, spheres.size());
     S lengths[Block::items] = {}, fars[Block::items] = {};  // one would be compared one after the other
-    vectorised([&] {
-      for (std::size_t first = begin; first < end; first += Block::items) {
-        moving_batch<S, Block::items> batch;
-        batch.load(spheres, first);
-        for (int k = 0; k < Block::items; ++k) {
-          S const dx = batch.dx[k], dy = batch.dy[k], dz = batch.dz[k];
-          S const xy = larger(abs_of(batch.x[k]), abs_of(batch.y[k]));
-          lengths[k] = larger(lengths[k], dx * dx + (dy * dy + dz * dz));
-          fars[k] = larger(fars[k], larger(xy, abs_of(batch.z[k])));
-        }
-      }
-    });
+    vectorised([&] { measure(begin, end, lengths, fars); });
     S length = 0, far = 0;
     for (int k = 0; k < Block::items; ++k) {
       length = larger(length, lengths[k]);
@@ -103,6 +92,20 @@ struct measure_ways {
   }
 
  private:
+  template <std::size_t n>
+  void measure(std::size_t begin, std::size_t end, S (&lengths)[n], S (&fars)[n]) const {
+    for (std::size_t first = begin; first < end; first += n) {
+      moving_batch<S, n> batch;
+      batch.load(spheres, first);
+      for (std::size_t k = 0; k < n; ++k) {
+        S const dx = batch.dx[k], dy = batch.dy[k], dz = batch.dz[k];
+        S const xy = larger(abs_of(batch.x[k]), abs_of(batch.y[k]));
+        lengths[k] = larger(lengths[k], dx * dx + (dy * dy + dz * dz));
+        fars[k] = larger(fars[k], larger(xy, abs_of(batch.z[k])));
+      }
+    }
+  }
+
   static S abs_of(S x) { return x < 0 ? -x : x; }
 };
 
