@@ -279,12 +279,11 @@ struct bucket_query {
         },
         [&](auto const& c, std::uint32_t k) {
           id const triangle = all ? static_cast<id>(c.first + k) : entries[c.first + k];
-          if constexpr (!still) {
-            if (!all && !c.path.meets_first(c.here, tests.mesh[triangle])) return;
-          }
           auto const bound = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
           sphere<S> const around = enclosing(c.ball);
-          if (bound.reached(around.centre, around.radius)) {
+          bool near = bound.reached(around.centre, around.radius);
+          if constexpr (!still) near = near && (all || c.path.meets_first(c.here, tests.mesh[triangle]));
+          if (near) {
             tests.test(block, s.hits, {c.number, triangle}, c.ball);
           }
         },
@@ -340,7 +339,7 @@ struct bucket_query {
 /// bytes in the CUDA spaces and 8 on the host, and up to 8 cells of 8 bytes; several grids only where radii differ by
 /// more than a factor of 4. The host sorts the spheres instead where there are many (detail/sorted_spheres.hpp): that
 /// takes O(triangles + spheres) for a query, 6 scalars per triangle, 4 bytes per cell, and about 12 scalars for each
-/// sphere in a cell with triangles; no entries.
+/// sphere in a cell with triangles, 19 if it moves; no entries.
 struct bucket {
   /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
   /// such cells go to levels of wider ones.
@@ -407,9 +406,27 @@ class bucket::index {
     if (!swapped_) make_lists(space, options);
   }
 
-  /// Spheres that move always look for triangles.
+  /// Spheres that move are sorted, too, if there are many, of one radius, and none moves far; else they look for
+  /// triangles along their ways.
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
+    swapped_ = false;
+    if constexpr (Space::sorts_spheres) {
+      if (swaps<Space>(options) && has_summary_ && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
+          spheres.size() <= detail::sorted_spheres<S>::most) {
+        S const reach = sorted_.reach_of(space, spheres);
+        if (detail::finite(reach) && reach <= 2 * spheres.common_radius()) {
+          S const wider = reach + reach / 16;  // so that a bit more next time fits too
+          bool const kept = wanted_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
+          if (!kept) make_grids(space, options, &wider, 1);
+          swapped_ = grid_count_ > 0;
+          if (swapped_) {
+            sorted_.sort(space, detail::balls_around<S>{spheres, reach});
+            return;
+          }
+        }
+      }
+    }
     prepare_grids(space, options, spheres);
     make_lists(space, options);
   }
@@ -417,7 +434,7 @@ class bucket::index {
   /// Puts one pass over the spheres on the space's stream.
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
-    if constexpr (Space::sorts_spheres && detail::at_rest<NarrowPhase, S>) {
+    if constexpr (Space::sorts_spheres) {
       if (swapped_) {
         sorted_.query(space, detail::tester<S, NarrowPhase, Sink>{mesh_, spheres, sink});
         return;

@@ -68,6 +68,11 @@ struct in_stages<karabassi_swept<exact>> : std::true_type {
     return detail::attempt(t, s).verdict;
   }
   template <class S>
+  static COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& around,
+                                                    sphere<S> const& midway) {
+    return detail::attempt_straight(t, around, midway);
+  }
+  template <class S>
   static COLLIDE_HD_INLINE bool finish(triangle<S> const& t, moving_sphere<S> const& s) {
     return detail::finish(t, s).hit;
   }

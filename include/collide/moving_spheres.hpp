@@ -23,6 +23,10 @@ class moving_sphere_view : public sphere_view<S> {
     return {sphere_view<S>::operator[](i), displacement(i)};
   }
 
+  /// Where the displacement of sphere `i` is, and whether the others follow it as x1, y1, z1, x2, ...
+  COLLIDE_HD_INLINE S const* displacements(std::size_t i) const { return x_ + i * stride_; }
+  COLLIDE_HD bool packed_displacements() const { return stride_ == 3 && y_ == x_ + 1 && z_ == x_ + 2; }
+
  private:
   S const* x_ = nullptr;
   S const* y_ = nullptr;

@@ -24,9 +24,13 @@ namespace tests {
 template <class S>
 struct moving_scene {
   std::vector<S> corners, centres, radii, displacements;
+  bool one_radius = false;  ///< and the view says so
 
   collide::mesh_view<S> mesh() const { return collide::triangle_soup(corners.data(), corners.size() / 9); }
-  collide::sphere_view<S> spheres() const { return collide::spheres_xyz(centres.data(), radii.size(), radii.data()); }
+  collide::sphere_view<S> spheres() const {
+    return one_radius ? collide::spheres_xyz(centres.data(), radii.size(), radii[0])
+                      : collide::spheres_xyz(centres.data(), radii.size(), radii.data());
+  }
   collide::moving_sphere_view<S> moving() const { return collide::moving(spheres(), displacements.data()); }
 };
 
@@ -39,6 +43,7 @@ struct motion {
   double longest = 3;   ///< of a way on an axis; most are shorter
   double offset = 0;    ///< from the origin
   int triangles = 300, spheres = 300;
+  bool one_radius = false;  ///< in the view, too
 };
 
 template <class S>
@@ -48,6 +53,7 @@ moving_scene<S> random_motion(unsigned seed, motion const& m) {
     return std::uniform_real_distribution<double>(low, high)(engine);
   };
   moving_scene<S> made;
+  made.one_radius = m.one_radius;
   for (int i = 0; i < m.triangles; ++i) {
     double const at[] = {uniform(-m.size, m.size), uniform(-m.size, m.size), uniform(-m.size, m.size)};
     double const size = m.triangle * std::exp2(uniform(-4, 0));
@@ -79,8 +85,10 @@ class placed_scene {
     };
     put(corners_, s.corners), put(centres_, s.centres), put(radii_, s.radii), put(displacements_, s.displacements);
     mesh = collide::triangle_soup(static_cast<S const*>(corners_.data()), s.corners.size() / 9);
-    auto const spheres = collide::spheres_xyz(static_cast<S const*>(centres_.data()), s.radii.size(),
-                                              static_cast<S const*>(radii_.data()));
+    auto const* const centres = static_cast<S const*>(centres_.data());
+    auto const spheres = s.one_radius
+                             ? collide::spheres_xyz(centres, s.radii.size(), s.radii[0])
+                             : collide::spheres_xyz(centres, s.radii.size(), static_cast<S const*>(radii_.data()));
     moving = collide::moving(spheres, static_cast<S const*>(displacements_.data()));
   }
 
@@ -149,6 +157,16 @@ void check_motions(Space const& space) {
   };
   for (double const longest : {0.0, 0.1, 3.0, 30.0, 1000.0}) {
     motion m;
+    m.longest = longest;
+    check(m);
+    m.offset = 1e4;
+    check(m);
+  }
+  for (double const longest : {0.0, 0.1, 1.0, 10.0}) {  // of many spheres the host sorts those that do not move far
+    motion m;
+    m.one_radius = true;
+    m.triangles = 60;
+    m.spheres = 2500;
     m.longest = longest;
     check(m);
     m.offset = 1e4;

@@ -10,6 +10,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/karabassi_swept.hpp>
 
 #include "narrow_phase.hpp"
 
@@ -98,7 +99,7 @@ void check_several(std::vector<tests::near_case> const& cases) {
       for (std::size_t k = 0; k < lanes; ++k) near.set(k, made.ball, 0);
       lost += hit && near.reaching(detail::box_of(made.shape), 0) != 0xff;
     }
-    batch.attempt([](auto const& t, auto const& s) { return detail::attempt_straight(t, s); });
+    batch.attempt([&](int k) { return detail::attempt_straight(batch.triangle_of(k), batch.sphere_of(k)); });
     for (std::size_t i = 0; i < last - first; ++i) {
       auto const v = static_cast<detail::verdict>(batch.verdicts[i]);
       sure += v != detail::verdict::unsure;
@@ -108,6 +109,32 @@ void check_several(std::vector<tests::near_case> const& cases) {
   CHECK(wrong == 0);
   CHECK(lost == 0);
   CHECK(sure > cases.size() / 20);
+}
+
+/// The same of balls that move, near contact somewhere on their way.
+template <class S>
+void check_several_ways(std::vector<tests::near_sweep> const& cases) {
+  namespace detail = collide::detail;
+  constexpr std::size_t lanes = detail::sphere_columns<S>::lanes;
+  std::size_t wrong = 0, sure = 0, lost = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    tests::narrow_case<S> const made(cases[i]);
+    auto const& move = cases[i].move;
+    collide::moving_sphere<S> ball{made.ball, {static_cast<S>(move.x), static_cast<S>(move.y), static_cast<S>(move.z)}};
+    if (i % 3 != 0) ball.radius *= 1 + std::ldexp(i % 3 == 1 ? S(1) : S(-1), -4 - static_cast<int>(i % 20));
+    bool const hit = detail::decide(made.shape, ball).hit;
+    auto const v = detail::attempt_straight(made.shape, collide::detail::enclosing(ball), detail::midway(ball));
+    sure += v != detail::verdict::unsure;
+    wrong += v == (hit ? detail::verdict::miss : detail::verdict::hit);
+    S columns[5][lanes] = {};
+    collide::id ids[lanes];
+    detail::sphere_columns<S> const near{columns[0], columns[1], columns[2], columns[3], columns[4], ids};
+    for (std::size_t k = 0; k < lanes; ++k) near.set(k, detail::enclosing(ball), 0);
+    lost += hit && near.reaching(detail::box_of(made.shape), 0) != 0xff;
+  }
+  CHECK(wrong == 0);
+  CHECK(lost == 0);
+  CHECK(sure > cases.size() / 500);  // most of these are left to the swept test
 }
 
 }  // namespace
@@ -127,6 +154,12 @@ TEST_CASE_TEMPLATE("sorted spheres: a verdict that is given without branches is 
   check_several<S>(tests::near_contact<S>(61, 20000));
   check_several<S>(tests::ties<S>(62, 5000));
   check_several<S>(tests::mixed_exponents<S>(63, 5000));
+}
+
+TEST_CASE_TEMPLATE("sorted spheres: the same of spheres that move", S, float, double) {
+  check_several_ways<S>(tests::near_sweeps<S>(64, 20000));
+  check_several_ways<S>(tests::lattice_sweeps<S>(65, 5000));
+  check_several_ways<S>(tests::mixed_sweeps<S>(66, 5000));
 }
 
 TEST_CASE("sorted spheres: running sums, in parts or not") {

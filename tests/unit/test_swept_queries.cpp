@@ -95,6 +95,56 @@ TEST_CASE_TEMPLATE("swept queries: bad values harm nothing else", S, float, doub
   CHECK((detector.detect(made.mesh(), made.moving(), collide::pairs(collide::order::canonical)).to_host() == expected));
 }
 
+TEST_CASE_TEMPLATE("swept queries: bad values harm no spheres that are sorted", S, float, double) {
+  tests::motion m;
+  m.one_radius = true;
+  m.triangles = 60;
+  m.spheres = 2500;
+  m.longest = 1;
+  auto made = tests::random_motion<S>(10, m);
+  S const nan = std::numeric_limits<S>::quiet_NaN(), infinity = std::numeric_limits<S>::infinity();
+  auto const check = [&] {
+    using narrow_phase = collide::karabassi_swept<>;
+    auto const expected = tests::pairs_that_touch<narrow_phase>(made);
+    CHECK(expected.size() > 20);
+    collide::detector<collide::bucket, narrow_phase, collide::host, S> detector;
+    CHECK(
+        (detector.detect(made.mesh(), made.moving(), collide::pairs(collide::order::canonical)).to_host() == expected));
+  };
+  for (std::size_t i = 0; i < 200; ++i) (i % 2 == 0 ? made.centres : made.displacements)[3 * (5 * i) + i % 3] = nan;
+  check();
+  made.displacements[3] = infinity;
+  check();
+  made.displacements[3] = std::numeric_limits<S>::max();
+  check();
+  for (S const radius : {S(0), S(-1), infinity, nan}) {
+    made.radii.assign(made.radii.size(), radius);
+    using narrow_phase = collide::karabassi_swept<>;
+    collide::detector<collide::bucket, narrow_phase, collide::host, S> detector;
+    CHECK((detector.detect(made.mesh(), made.moving(), collide::pairs(collide::order::canonical)).to_host() ==
+           tests::pairs_that_touch<narrow_phase>(made)));
+  }
+}
+
+TEST_CASE_TEMPLATE("swept queries: a detector may be asked in turn for spheres that rest, that move, and that move far",
+                   S, float, double) {
+  tests::motion m;
+  m.one_radius = true;
+  m.triangles = 60;
+  m.spheres = 2500;
+  collide::detector<collide::bucket, collide::karabassi_swept<>, collide::host, S> detector;
+  bool built = false;
+  for (double const longest : {0.5, 20.0, 1.0, 0.0, 0.7}) {
+    m.longest = longest;
+    auto const made = tests::random_motion<S>(11, m);  // the mesh is always the same
+    static auto const mesh = made.corners;
+    if (!built) detector.build(collide::triangle_soup(mesh.data(), mesh.size() / 9), S(1));
+    built = true;
+    CHECK((detector.query(made.moving(), collide::pairs(collide::order::canonical)).to_host() ==
+           tests::pairs_that_touch<collide::karabassi_swept<>>(made)));
+  }
+}
+
 TEST_CASE("swept queries: of 1e7 fast spheres none tunnels through a closed, a thin or a finely divided mesh") {
   CHECK(count_tunnels<float>(octahedron<float>(1, 1), 1, 2000000, 1) == 0);
   CHECK(count_tunnels<float>(octahedron<float>(1e-4, 1), 1e-4, 2000000, 2) == 0);

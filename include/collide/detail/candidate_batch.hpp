@@ -3,12 +3,14 @@
 #pragma once
 
 #include <collide/detail/decide.hpp>
+#include <collide/detail/enclosing.hpp>
 #include <collide/detail/hits.hpp>
 #include <collide/detail/vectorised.hpp>
 
 namespace collide::detail {
 
-/// Pairs that wait for their verdict, number by number in arrays of their own.
+/// Pairs that wait for their verdict, number by number in arrays of their own. Of a sphere that moves there are two
+/// balls with one centre: one around its way, and one in the middle of it.
 template <class S>
 struct candidate_batch {
   static constexpr int room = 64;
@@ -18,6 +20,8 @@ struct candidate_batch {
   S corners[9][room];
   S centre[3][room];
   S radius[room];
+  S radius_midway[room];                 ///< of spheres that move
+  moving_sphere<S> const* moving[room];  ///< the same
   std::int32_t verdicts[room];
   std::uint8_t open[room];
 
@@ -33,6 +37,13 @@ struct candidate_batch {
     radius[k] = s.radius;
   }
 
+  /// The sphere must stay where it is until the pair is decided.
+  void add(pair p, triangle<S> const& t, moving_sphere<S> const& s) {
+    radius_midway[size] = midway(s).radius;
+    moving[size] = &s;
+    add(p, t, enclosing(s));
+  }
+
   triangle<S> triangle_of(int k) const {
     return {{corners[0][k], corners[1][k], corners[2][k]},
             {corners[3][k], corners[4][k], corners[5][k]},
@@ -41,19 +52,26 @@ struct candidate_batch {
 
   sphere<S> sphere_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius[k]}; }
 
+  sphere<S> midway_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius_midway[k]}; }
+
   /// Sets the verdicts to what a quick test without branches says.
   template <class Test>
   void attempt(Test const& test) {
     vectorised([&] {
-      for (int k = 0; k < size; ++k) verdicts[k] = static_cast<std::int32_t>(test(triangle_of(k), sphere_of(k)));
+      for (int k = 0; k < size; ++k) verdicts[k] = static_cast<std::int32_t>(test(k));
     });
   }
 
   /// Takes the hits to the tester and empties the batch.
   template <class Tester, class Block>
   void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
-    using narrow_phase = typename Tester::narrow_phase;
-    attempt([](triangle<S> const& t, sphere<S> const& b) { return in_stages<narrow_phase>::attempt_straight(t, b); });
+    using stages = in_stages<typename Tester::narrow_phase>;
+    constexpr bool rest = at_rest<typename Tester::narrow_phase, S>;
+    if constexpr (rest) {
+      attempt([&](int k) { return stages::attempt_straight(triangle_of(k), sphere_of(k)); });
+    } else {
+      attempt([&](int k) { return stages::attempt_straight(triangle_of(k), sphere_of(k), midway_of(k)); });
+    }
     int n = 0;  // no branch per pair: it would often be mispredicted
     for (int k = 0; k < size; ++k) {
       open[n] = static_cast<std::uint8_t>(k);
@@ -64,7 +82,11 @@ struct candidate_batch {
       if (verdicts[k] == static_cast<std::int32_t>(verdict::hit)) {
         tests.keep(block, hits, ids[k]);
       } else {
-        tests.test(block, hits, ids[k], sphere_of(k));
+        if constexpr (rest) {
+          tests.test(block, hits, ids[k], sphere_of(k));
+        } else {
+          tests.test(block, hits, ids[k], *moving[k]);
+        }
       }
       tests.make_room(block, hits);
     }

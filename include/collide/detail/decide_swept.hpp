@@ -34,6 +34,14 @@ COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, moving_sphere<S> const
   return {certify(rounded<float>(l), static_cast<float>(size)), stage::single_certificate};
 }
 
+/// An attempt without branches, from a ball that contains all of the way, and one that the sphere contains at some
+/// time.
+template <class S>
+COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& around, sphere<S> const& midway) {
+  bool const far = attempt_straight(t, around) == verdict::miss, met = attempt_straight(t, midway) == verdict::hit;
+  return static_cast<verdict>((2 - static_cast<int>(met)) & -static_cast<int>(!far));
+}
+
 /// The later stages, for any pair.
 template <class S>
 COLLIDE_HD_INLINE decision finish(triangle<S> const& t, moving_sphere<S> const& s) {

@@ -15,6 +15,13 @@ COLLIDE_HD_INLINE sphere<S> enclosing(moving_sphere<S> const& s) {
   return {s.centre + half, s.radius + (length + slack)};
 }
 
+/// A ball that the sphere contains in the middle of its way; of a negative radius if rounding leaves none.
+template <class S>
+COLLIDE_HD_INLINE sphere<S> midway(moving_sphere<S> const& s) {
+  S const slack = 8 * format<S>::unit * (magnitude(s.centre) + magnitude(s.displacement));
+  return {s.centre + scaled(s.displacement, S(0.5)), (s.radius - slack) * (1 - 4 * format<S>::unit)};
+}
+
 /// A sphere that rests is its own.
 template <class S>
 COLLIDE_HD_INLINE sphere<S> const& enclosing(sphere<S> const& s) {

@@ -7,6 +7,10 @@
 /// that no triangle touches, and are sorted out at the pace of the memory; the few others are copied in the order of
 /// the cells. Neighbouring triangles, which most meshes have one after the other, then read the same spheres from the
 /// nearest cache.
+///
+/// Spheres that move go the same way as the balls around their ways, which are spheres at rest; the narrow phase then
+/// judges the spheres themselves. That is for short ways: the ball around a long one touches much that the sphere does
+/// not.
 #pragma once
 
 #include <algorithm>
@@ -57,6 +61,84 @@ struct mark_cells {
   }
 };
 
+/// Kernel body of a block of one lane: the longest displacement, squared, and the farthest coordinate, as bits. What is
+/// NaN does not count.
+template <class S>
+struct measure_ways {
+  static constexpr int items = 4;
+  static constexpr std::size_t batches = 64;  ///< of `Block::items` spheres
+
+  moving_sphere_view<S> spheres;
+  bits_of<S>* squared_length;  ///< 0 at first
+  bits_of<S>* farthest;        ///< the same
+
+  struct nothing {};
+  template <class>
+  using scratch = nothing;
+
+  template <class Block>
+  void operator()(Block& block, nothing&) const {
+    constexpr std::size_t share = batches * Block::items;
+    std::size_t const begin = block.index() * share, end = smaller(begin + share, spheres.size());
+    S lengths[Block::items] = {}, fars[Block::items] = {};  // one would be compared one after the other
+    vectorised([&] { measure(begin, end, lengths, fars); });
+    S length = 0, far = 0;
+    for (int k = 0; k < Block::items; ++k) {
+      length = larger(length, lengths[k]);
+      far = larger(far, fars[k]);
+    }
+    fetch_max(squared_length, bits(length));
+    fetch_max(farthest, bits(far));
+  }
+
+ private:
+  template <std::size_t n>
+  void measure(std::size_t begin, std::size_t end, S (&lengths)[n], S (&fars)[n]) const {
+    for (std::size_t first = begin; first < end; first += n) {
+      moving_batch<S, n> batch;
+      batch.load(spheres, first);
+      for (std::size_t k = 0; k < n; ++k) {
+        S const dx = batch.dx[k], dy = batch.dy[k], dz = batch.dz[k];
+        S const xy = larger(abs_of(batch.x[k]), abs_of(batch.y[k]));
+        lengths[k] = larger(lengths[k], dx * dx + (dy * dy + dz * dz));
+        fars[k] = larger(fars[k], larger(xy, abs_of(batch.z[k])));
+      }
+    }
+  }
+
+  static S abs_of(S x) { return x < 0 ? -x : x; }
+};
+
+/// Spheres that move as spheres at rest, all of one radius, that contain their ways: as far as placing them goes.
+template <class S>
+struct balls_around {
+  moving_sphere_view<S> spheres;
+  S reach;
+
+  std::size_t size() const { return spheres.size(); }
+  bool one_radius() const { return true; }
+  S common_radius() const { return reach; }
+};
+
+/// The centres and radii of consecutive spheres.
+template <class S, int Items>
+void load(sphere_batch<S, Items>& batch, sphere_view<S> const& spheres, std::size_t first) {
+  batch.load(spheres, first);
+}
+
+/// The same. A centre that is not finite is in no cell.
+template <class S, int Items>
+void load(sphere_batch<S, Items>& batch, balls_around<S> const& balls, std::size_t first) {
+  moving_batch<S, Items> ways;
+  ways.load(balls.spheres, first);
+  for (int k = 0; k < Items; ++k) {
+    batch.x[k] = ways.x[k] + S(0.5) * ways.dx[k];
+    batch.y[k] = ways.y[k] + S(0.5) * ways.dy[k];
+    batch.z[k] = ways.z[k] + S(0.5) * ways.dz[k];
+    batch.radius[k] = balls.reach;
+  }
+}
+
 /// A sphere in a cell with triangles.
 template <class S>
 struct placed_sphere {
@@ -67,12 +149,12 @@ struct placed_sphere {
 
 /// Kernel body of a block of one lane: lists the spheres that are in cells with triangles. A sphere that no grid serves
 /// counts as in the cell behind the last, into which all triangles look.
-template <class S>
+template <class S, class Spheres>
 struct place_spheres {
   static constexpr int items = 4;
   static constexpr std::size_t batches = 16;  ///< of `Block::items` spheres
 
-  sphere_view<S> spheres;
+  Spheres spheres;
   grid<S> const* grids;
   int grid_count;
   std::uint32_t const* occupied;
@@ -104,7 +186,7 @@ struct place_spheres {
     s.count = 0;
     for (std::size_t first = begin; first < begin + batches * n && first < spheres.size(); first += n) {
       sphere_batch<S, n> batch;
-      batch.load(spheres, first);
+      load(batch, spheres, first);
       auto const list = [&](int k, std::uint32_t cell, bool wanted) {
         s.found[s.count] = {
             {{batch.x[k], batch.y[k], batch.z[k]}, batch.radius[k]}, static_cast<id>(first) + static_cast<id>(k), cell};
@@ -179,6 +261,7 @@ struct sphere_columns {
   S *x, *y, *z, *radius;
   S* reach;  ///< how far from a triangle's box the centre is at most, if the two touch; `slack` apart
   id* number;
+  moving_sphere<S>* moving = nullptr;  ///< null if they rest; else the others are of the balls around their ways
 
   /// Room for the rounding of the coarsest narrow phase, as far as it goes with the triangle; the part that goes with
   /// the radius is in `reach`. See docs/numerics.md.
@@ -227,14 +310,21 @@ struct number_placed {
 };
 
 /// Kernel body of `for_each` over places: brings the spheres there. Threads write next to themselves only.
-template <class S>
+template <class S, class Spheres>
 struct sort_placed {
   placed_sphere<S> const* from;
   std::uint32_t const* order;
   sphere_columns<S> to;
+  Spheres spheres;
   void operator()(std::size_t i) const {
     placed_sphere<S> const& p = from[order[i]];
-    to.set(i, p.ball, p.number);
+    if constexpr (std::is_same<Spheres, balls_around<S>>::value) {
+      moving_sphere<S> const s = spheres.spheres[p.number];
+      to.moving[i] = s;
+      to.set(i, enclosing(s), p.number);
+    } else {
+      to.set(i, p.ball, p.number);
+    }
   }
 };
 
@@ -311,14 +401,23 @@ struct look_for_spheres {
         pair const p{spheres.number[place], r.triangle};
         if constexpr (in_batches<NarrowPhase, S>) {
           if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
-          s.batch.add(p, t, spheres[place]);
+          s.batch.add(p, t, sphere_of(place));
         } else {
-          tests.test(block, s.hits, p, spheres[place]);
+          tests.test(block, s.hits, p, sphere_of(place));
           tests.make_room(block, s.hits);
         }
       }
     }
     s.count = 0;
+  }
+
+  /// What the narrow phase judges.
+  decltype(auto) sphere_of(std::uint32_t place) const {
+    if constexpr (at_rest<NarrowPhase, S>) {
+      return spheres[place];
+    } else {
+      return static_cast<moving_sphere<S> const&>(spheres.moving[place]);
+    }
   }
 };
 
@@ -345,21 +444,39 @@ class sorted_spheres {
     space.for_each(triangles, mark_cells<S>{boxes, grids, grid_count, occupied});
   }
 
-  /// Sorts the spheres into the cells. O(spheres + cells).
+  /// How far the grid must reach for spheres of one radius that move: the radius of a ball around the way of each.
   template <class Space>
-  void sort(Space& space, sphere_view<S> const& spheres) {
+  S reach_of(Space& space, moving_sphere_view<S> const& spheres) {
+    auto* const found = measures_.reserve(space.resource(), 2);
+    space.fill(found, 0, 2 * sizeof *found);
+    measure_ways<S> const body{spheres, found, found + 1};
+    constexpr std::size_t share = measure_ways<S>::batches * 64;
+    space.launch((spheres.size() + share - 1) / share, body);
+    S const length = root(from_bits<S>(space.read(found))), far = from_bits<S>(space.read(found + 1));
+    // of none is it larger, but for some rounding
+    return enclosing(moving_sphere<S>{{{far, far, far}, spheres.common_radius()}, {length, S(0), S(0)}}).radius *
+           (1 + 32 * S(format<float>::unit));
+  }
+
+  /// Sorts the spheres into the cells: of type sphere_view, or balls_around. O(spheres + cells).
+  template <class Space, class Spheres>
+  void sort(Space& space, Spheres const& spheres) {
+    using place = place_spheres<S, Spheres>;
     auto* const total = total_.reserve(space.resource(), 1);
     std::size_t room = larger(placed_.capacity(), spheres.size() / 16 + 1024);
     for (;; room = static_cast<std::size_t>(*total + *total / 4)) {
       auto* const placed = placed_.reserve(space.resource(), room);
       space.fill(total, 0, sizeof *total);
-      place_spheres<S> const body{spheres, grids_, grid_count_, occupied_.data(), everywhere(), placed, total, room};
-      constexpr std::size_t share = place_spheres<S>::batches * 64;
+      place const body{spheres, grids_, grid_count_, occupied_.data(), everywhere(), placed, total, room};
+      constexpr std::size_t share = place::batches * 64;
       space.launch((spheres.size() + share - 1) / share, body);
       if (*total <= room) break;
     }
     auto const n = static_cast<std::size_t>(*total);
     columns_ = columns(space, placed_.capacity());
+    if constexpr (std::is_same<Spheres, balls_around<S>>::value) {
+      columns_.moving = moving_.reserve(space.resource(), placed_.capacity());
+    }
     // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
     std::size_t const table = cells_ + 2;
     auto* const counts = ends_.reserve(space.resource(), table);
@@ -374,7 +491,7 @@ class sorted_spheres {
     space.exclusive_scan(counts + 1, table - 1, scratch_);
     auto* const order = order_.reserve(space.resource(), placed_.capacity());
     each_placed(number_placed<S>{placed_.data(), order, counts + 1});
-    space.for_each(n, sort_placed<S>{placed_.data(), order, columns_});
+    space.for_each(n, sort_placed<S, Spheres>{placed_.data(), order, columns_, spheres});
   }
 
   /// One pass: the triangles look for the spheres.
@@ -404,6 +521,8 @@ class sorted_spheres {
   std::size_t cells_ = 0;
   buffer<std::uint32_t> occupied_, ends_, order_;
   buffer<std::uint64_t> total_;
+  buffer<bits_of<S>> measures_;
+  buffer<moving_sphere<S>> moving_;
   buffer<placed_sphere<S>> placed_;
   buffer<S> numbers_;
   buffer<id> ids_;

@@ -93,6 +93,17 @@ struct moving_batch {
   S x[Items], y[Items], z[Items], dx[Items], dy[Items], dz[Items], radius[Items];
 
   COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
+#if !defined(__CUDA_ARCH__)
+    if (first + Items <= spheres.size() && spheres.packed() && spheres.packed_displacements() && spheres.one_radius()) {
+      S const *const from = spheres.x(first), *const along = spheres.displacements(first);
+      for (int k = 0; k < Items; ++k) {  // strides that the compiler knows
+        x[k] = from[3 * k], y[k] = from[3 * k + 1], z[k] = from[3 * k + 2];
+        dx[k] = along[3 * k], dy[k] = along[3 * k + 1], dz[k] = along[3 * k + 2];
+        radius[k] = spheres.common_radius();
+      }
+      return;
+    }
+#endif
     for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
       bool const there = i < spheres.size();

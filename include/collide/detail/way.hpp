@@ -48,7 +48,7 @@ class way {
            (mul(slack_of(from, along), inverse_width) < 1);
   }
 
-  /// Steps are numbered; in each there is one cell, or none.
+  /// Steps are numbered; in each there is one cell, or none. A cell of the piece before is not come to again.
   COLLIDE_HD_INLINE std::uint32_t steps() const { return pieces_ * per_piece(); }
 
   /// Where a step leads.
@@ -67,11 +67,13 @@ class way {
     p.is_first = piece == 0;
     if (!p.is_first) p.before = cells_of(piece - 1);
     std::uint32_t const offset[3] = {rest % span_[0], rest / span_[0] % span_[1], rest / (span_[0] * span_[1])};
-    p.is_cell = true;
+    bool inside = true, again = !p.is_first;
     for (int k = 0; k < 3; ++k) {
       p.cell[k] = p.piece.lower[k] + offset[k];
-      p.is_cell = p.is_cell && p.cell[k] <= p.piece.upper[k];
+      inside = inside && p.cell[k] <= p.piece.upper[k];
+      again = again && p.before.lower[k] <= p.cell[k] && p.cell[k] <= p.before.upper[k];
     }
+    p.is_cell = inside && !again;
     return p;
   }
 
