@@ -46,14 +46,14 @@ struct plumes {
   COLLIDE_HD void operator()(std::uint64_t number, vec3<S>& x, vec3<S>& v) const {
     io::spot const at(number);
     double const plume = static_cast<double>(number % 14) - 6.5;
-    x = {S(-3), S(0.25 * plume + 0.05 * at.anyhow[0]), S(0.15 + 0.14 * at.evenly[0])};
-    v = {S(speed), S(0.15 * at.anyhow[0]), S(0.4 + 0.4 * at.anyhow[1])};
+    x = {S(-3), S(0.28 * plume + 0.04 * at.anyhow[0]), S(0.16 + 0.14 * at.evenly[0])};
+    v = {S(speed), S(0.04 * at.anyhow[0]), S(0.15 + 0.15 * at.anyhow[1])};
   }
 };
 
 template <class Space>
-using dust = simulation<detector<bucket, karabassi<>, Space>, emit_from<plumes>, gravity, wind<breeze>, bounce,
-                        absorb_in>;
+using dust =
+    simulation<detector<bucket, karabassi<>, Space>, emit_from<plumes>, gravity, wind<breeze>, bounce, absorb_in>;
 
 constexpr double speed = 2.5;
 constexpr boulder rocks[boulders] = {{-0.8, -0.5, 0.7}, {0.5, 0.9, 0.5}, {1.4, -0.6, 0.35}};
@@ -67,7 +67,7 @@ constexpr auto make = [](auto space, io::film const& film) {
 /// The plain and the boulders.
 io::scene stage() {
   io::scene s;
-  s.radius = 0.006;
+  s.radius = 0.005;
   io::add_surface(s, 24, 16, false, [](double across, double along) {
     return io::point{6.4 * across - 3.2, 4.4 * along - 2.2, 0};
   });
@@ -84,5 +84,5 @@ io::scene stage() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return io::film_program(argc, argv, {"dust", "Dust is blown around boulders.", stage(), 0.002, 60'000, 4}, make);
+  return io::film_program(argc, argv, {"dust", "Dust is blown around boulders.", stage(), 0.002, 100'000, 4}, make);
 }

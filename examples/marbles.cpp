@@ -17,13 +17,12 @@ template <class Space>
 using marbles = simulation<detector<bucket, karabassi<>, Space>, emit, gravity, sphere_contact, bounce, friction, spin>;
 
 constexpr double size = 0.012, duration = 0.008, turn = 2 * 3.14159265358979;
-constexpr double turns = 2.25, helix = 0.3, top = 0.75, bottom = 0.3, gutter = 0.04;
+constexpr double turns = 2.25, helix = 0.3, top = 0.7, bottom = 0.38, gutter = 0.04;
 
 constexpr auto make = [](auto space, io::film const& film) {
-  double const rate = std::min(film.rate(0.7), 60.0);  // what the gutter takes
-  return marbles<decltype(space)>(space, emit{rate, {{helix, 0.02, top - gutter + size}, 0, {0, 1.5, -0.2}, 0.02}},
-                                  gravity{}, sphere_contact::of_collision(0.7, duration, size, 2500, 0.2), bounce{0.6},
-                                  friction{0.4, 0.3}, spin{0.004});
+  return marbles<decltype(space)>(
+      space, emit{film.rate(), {{helix, 0.02, top - gutter + size}, 0, {0, 1.2, -0.1}, 0.02}}, gravity{},
+      sphere_contact::of_collision(0.7, duration, size, 2500, 0.2), bounce{0.4}, friction{0.4, 0.3}, spin{0.03});
 };
 
 /// A gutter that winds down into a bowl.
@@ -36,8 +35,8 @@ io::scene stage() {
     return io::point{d * std::cos(u), d * std::sin(u), top + (bottom - top) * across + gutter * std::sin(v)};
   });
   io::add_surface(s, 96, 32, false, [](double across, double along) {
-    double const u = turn * across, d = 0.55 * along;
-    return io::point{d * std::cos(u), d * std::sin(u), 1.0 * d * d};
+    double const u = turn * across, d = 0.6 * along;
+    return io::point{d * std::cos(u), d * std::sin(u), d * d * (1.2 + 1.5 * d * d)};
   });
   return s;
 }
@@ -46,6 +45,6 @@ io::scene stage() {
 
 int main(int argc, char** argv) {
   return io::film_program(
-      argc, argv, {"marbles", "Marbles roll down a helter-skelter into a bowl.", stage(), duration / 20, 600, 14},
+      argc, argv, {"marbles", "Marbles roll down a helter-skelter into a bowl.", stage(), duration / 20, 500, 16, 0.8},
       make);
 }

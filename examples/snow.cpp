@@ -26,7 +26,7 @@ struct sky {
   COLLIDE_HD void operator()(std::uint64_t number, vec3<S>& x, vec3<S>& v) const {
     io::spot const at(number);
     x = {S(half * at.evenly[0]), S(half * at.evenly[1]), S(height)};
-    v = {S(at.anyhow[0]), S(at.anyhow[1]), S(-speed)};
+    v = {S(0.7 * at.anyhow[0]), S(0.7 * at.anyhow[1]), S(-speed)};
   }
 };
 
@@ -34,13 +34,13 @@ template <class Space>
 using snow = simulation<detector<bucket, karabassi<>, Space>, emit_from<sky>, sleep, gravity, drag, sphere_contact,
                         cohesion, bounce, stick, bounds>;
 
-constexpr double half = 0.8, size = 0.025, speed = 2, duration = 0.016;
+constexpr double half = 0.7, size = 0.025, speed = 1.4, duration = 0.016;
 
 constexpr auto make = [](auto space, io::film const& film) {
-  return snow<decltype(space)>(space, emit_from<sky>{film.rate(0.8), {half - size, 1.7, speed}}, sleep{0.05, 40},
+  return snow<decltype(space)>(space, emit_from<sky>{film.rate(), {half - size, 1.65, speed}}, sleep{0.05, 40},
                                gravity{}, drag{0, 9.81 / (speed * speed)},
-                               sphere_contact::of_collision(0.2, duration, size, 100, 0.9), cohesion{15}, bounce{0},
-                               stick{40}, bounds{{-half, -half, -bounds::none}, {half, half, bounds::none}, 0});
+                               sphere_contact::of_collision(0.2, duration, size, 100, 0.9), cohesion{60}, bounce{0},
+                               stick{200}, bounds{{-half, -half, -bounds::none}, {half, half, bounds::none}, 0});
 };
 
 /// Hills, and on them a bumpy ring on a pedestal.
@@ -68,8 +68,7 @@ io::scene stage() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return io::film_program(argc, argv,
-                          {"snow", "Snow falls on hills and a statue, sticks and piles up.", stage(), duration / 20,
-                           12'000, 6},
-                          make);
+  return io::film_program(
+      argc, argv,
+      {"snow", "Snow falls on hills and a statue, sticks and piles up.", stage(), duration / 20, 9'000, 6, 0.85}, make);
 }

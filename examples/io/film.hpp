@@ -31,12 +31,13 @@ struct film {
   double dt;              ///< a step
   std::size_t particles;  ///< how many there are at most
   double seconds;         ///< of the scene's time
+  double pouring = 1;     ///< for which part of them there are new particles
   std::size_t frames = 100;
   std::string space = "host", output = "", report = "";
   int threads = 0;
 
-  /// How many particles must come a second, for all to have come when this part of the film is over.
-  double rate(double part = 1) const { return static_cast<double>(particles) / (part * seconds); }
+  /// How many particles there must be a second, for all to have come in time.
+  double rate() const { return static_cast<double>(particles) / (pouring * seconds + dt); }
 };
 
 /// Where particle number 0, 1, 2, ... of a source begins, in coordinates between -1 and 1. Those of `evenly` are spread
@@ -118,6 +119,18 @@ inline void make_folder(std::string const& path) {
   output_file::check(path + "/film.pvd");
 }
 
+/// Stops a source; other effects are none.
+template <class Effect>
+void stop(Effect&) {}
+template <class Source>
+void stop(collide::emit_from<Source>& source) {
+  source.rate = 0;
+}
+template <class Detector, class... Effect>
+void stop_sources(collide::simulation<Detector, Effect...>& simulation) {
+  (stop(simulation.template effect<Effect>()), ...);
+}
+
 /// Runs the simulation and shows it.
 template <class Simulation>
 void shoot(film const& wish, Simulation simulation) {
@@ -126,8 +139,8 @@ void shoot(film const& wish, Simulation simulation) {
   auto const& space = simulation.space();
   auto const& stage = wish.stage;
   std::vector<float> const vertices(stage.vertices.begin(), stage.vertices.end());
-  auto const mesh = collide::upload(space, collide::indexed_mesh(vertices.data(), vertices.size() / 3,
-                                                                 stage.corners.data(), stage.triangle_count()));
+  auto const mesh = collide::upload(
+      space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, stage.corners.data(), stage.triangle_count()));
   auto const radius = static_cast<float>(stage.radius);
   simulation.set(collide::spheres_xyz<float>(nullptr, 0, radius), nullptr, wish.particles);
   simulation.set_mesh(mesh.view());
@@ -142,6 +155,7 @@ void shoot(film const& wish, Simulation simulation) {
     std::size_t const until = std::max(done + 1, steps * (frames.size() + 1) / wish.frames);
     auto const start = clock::now();
     for (; done < until; ++done) {
+      if (static_cast<double>(done) * wish.dt > wish.pouring * wish.seconds) stop_sources(simulation);
       simulation.step(step);
       if (Simulation::execution_space::host_memory) bar.update(static_cast<double>(done));
     }
@@ -163,8 +177,8 @@ void shoot(film const& wish, Simulation simulation) {
 
   double const each = spent / static_cast<double>(steps);
   int const threads = device::threads(space);
-  std::cout << wish.name << ": " << wish.particles << " particles, " << steps << " steps of " << wish.dt << " s, " << each
-            << " ms a step, " << Simulation::bytes_per_particle << " bytes a particle, " << wish.space << " ("
+  std::cout << wish.name << ": " << wish.particles << " particles, " << steps << " steps of " << wish.dt << " s, "
+            << each << " ms a step, " << Simulation::bytes_per_particle << " bytes a particle, " << wish.space << " ("
             << device::name() << (threads > 1 ? ", " + std::to_string(threads) + " threads" : "") << ")\n";
   if (wish.report.empty()) return;
   output_file report(wish.report);

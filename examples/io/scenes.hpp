@@ -78,7 +78,7 @@ void add_surface(scene& s, std::size_t columns, std::size_t rows, bool closed, S
   for (std::size_t i = 0; i < across; ++i) {
     for (std::size_t j = 0; j < along; ++j) {
       detail::add_point(s.vertices, surface(static_cast<double>(i) / static_cast<double>(columns),
-                                    static_cast<double>(j) / static_cast<double>(rows)));
+                                            static_cast<double>(j) / static_cast<double>(rows)));
     }
   }
   auto const number = [&](std::size_t i, std::size_t j) {

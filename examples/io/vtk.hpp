@@ -63,7 +63,8 @@ struct vtk_frame {
 /// Writes the list of a film's frames.
 inline void write_pvd(output_file& out, std::vector<vtk_frame> const& frames) {
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
-  for (auto const& frame : frames) out << "<DataSet timestep=\"" << frame.time << "\" file=\"" << frame.file << "\"/>\n";
+  for (auto const& frame : frames)
+    out << "<DataSet timestep=\"" << frame.time << "\" file=\"" << frame.file << "\"/>\n";
   out << "</Collection>\n</VTKFile>\n";
 }
 
