@@ -67,7 +67,7 @@ constexpr auto make = [](auto space, io::film const& film) {
 /// The plain and the boulders.
 io::scene stage() {
   io::scene s;
-  s.radius = 0.005;
+  s.radius = 0.006;
   io::add_surface(s, 24, 16, false, [](double across, double along) {
     return io::point{6.4 * across - 3.2, 4.4 * along - 2.2, 0};
   });

@@ -21,8 +21,8 @@ constexpr double turns = 2.25, helix = 0.3, top = 0.7, bottom = 0.38, gutter = 0
 
 constexpr auto make = [](auto space, io::film const& film) {
   return marbles<decltype(space)>(
-      space, emit{film.rate(), {{helix, 0.02, top - gutter + size}, 0, {0, 1.2, -0.1}, 0.02}}, gravity{},
-      sphere_contact::of_collision(0.7, duration, size, 2500, 0.2), bounce{0.4}, friction{0.4, 0.3}, spin{0.03});
+      space, emit{film.rate(), {{helix, 0.02, top - gutter + size}, 0, {0, 1.5, -0.1}, 0.02}}, gravity{},
+      sphere_contact::of_collision(0.7, duration, size, 2500, 0.2), bounce{0.4}, friction{0.4, 0.3}, spin{0.012});
 };
 
 /// A gutter that winds down into a bowl.
@@ -45,6 +45,6 @@ io::scene stage() {
 
 int main(int argc, char** argv) {
   return io::film_program(
-      argc, argv, {"marbles", "Marbles roll down a helter-skelter into a bowl.", stage(), duration / 20, 500, 16, 0.8},
+      argc, argv, {"marbles", "Marbles roll down a helter-skelter into a bowl.", stage(), duration / 20, 400, 14, 0.85},
       make);
 }

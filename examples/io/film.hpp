@@ -36,8 +36,14 @@ struct film {
   std::string space = "host", output = "", report = "";
   int threads = 0;
 
-  /// How many particles there must be a second, for all to have come in time.
-  double rate() const { return static_cast<double>(particles) / (pouring * seconds + dt); }
+  /// How many steps there are, and after how many of them nothing more comes.
+  std::size_t steps() const { return static_cast<std::size_t>(std::ceil(seconds / dt)); }
+  std::size_t pouring_steps() const { return static_cast<std::size_t>(std::ceil(pouring * seconds / dt)); }
+  /// How many particles must come a second, for all to have come then.
+  double rate() const {
+    double const simulated = static_cast<double>(static_cast<float>(dt)) * static_cast<double>(pouring_steps());
+    return (static_cast<double>(particles) + 0.5) / simulated;
+  }
 };
 
 /// Where particle number 0, 1, 2, ... of a source begins, in coordinates between -1 and 1. Those of `evenly` are spread
@@ -145,7 +151,7 @@ void shoot(film const& wish, Simulation simulation) {
   simulation.set(collide::spheres_xyz<float>(nullptr, 0, radius), nullptr, wish.particles);
   simulation.set_mesh(mesh.view());
 
-  auto const steps = static_cast<std::size_t>(std::ceil(wish.seconds / wish.dt));
+  std::size_t const steps = wish.steps();
   auto const step = static_cast<float>(wish.dt);
   if (!wish.output.empty()) write_mesh(wish.output + "/mesh.vtp", vertices, stage.corners);
   std::vector<vtk_frame> frames;
@@ -155,7 +161,7 @@ void shoot(film const& wish, Simulation simulation) {
     std::size_t const until = std::max(done + 1, steps * (frames.size() + 1) / wish.frames);
     auto const start = clock::now();
     for (; done < until; ++done) {
-      if (static_cast<double>(done) * wish.dt > wish.pouring * wish.seconds) stop_sources(simulation);
+      if (done == wish.pouring_steps()) stop_sources(simulation);
       simulation.step(step);
       if (Simulation::execution_space::host_memory) bar.update(static_cast<double>(done));
     }
