@@ -153,6 +153,14 @@ class All(SceneTest):
             self.assertGreater(report["ms_per_step"], 0)
         self.assertEqual(self.files(), ["report.json"])
 
+    def test_progress(self):
+        args = ("--particles", 200, "--seconds", 1)
+        self.shoot("snow", *args)
+        seen = self.on_a_terminal("snow", *args, "--threads", 1, "--output", "watched", patience=0.02)
+        self.assertRegex(seen, r"snow \[#*\.*\] +\d+ %, \d+:\d\d left")
+        self.assertTrue(seen.endswith("\r\x1b[K"), seen[-80:])
+        self.assertEqual(self.frames("watched"), self.frames())
+
     def test_more_frames_than_steps(self):
         self.shoot("dust", "--particles", 10, "--seconds", 0.01, "--frames", 100)
         self.assertEqual(len(self.frames()), 5)
