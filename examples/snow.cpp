@@ -70,5 +70,5 @@ io::scene stage() {
 int main(int argc, char** argv) {
   return io::film_program(
       argc, argv,
-      {"snow", "Snow falls on hills and a statue, sticks and piles up.", stage(), duration / 20, 9'000, 6, 0.85}, make);
+      {"snow", "Snow falls on hills and a statue, sticks and piles up.", stage(), duration / 20, 9'000, 6, 0.75}, make);
 }
