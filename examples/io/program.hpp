@@ -1,5 +1,5 @@
 /// \file
-/// What `detect`, `generate` and `verdict` have in common: the version, options, and how they end.
+/// What the larger programs have in common: the version, options, and how they end.
 #pragma once
 
 #include <algorithm>

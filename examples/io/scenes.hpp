@@ -59,6 +59,16 @@ inline void add_triangle(scene& s, point const& a, point const& b, point const& 
   s.corners.insert(s.corners.end(), {first, first + 1, first + 2});
 }
 
+/// How to lay about `triangles` triangles out as columns x rows x 2, with `ratio` columns to a row.
+inline std::pair<std::size_t, std::size_t> grid(std::size_t triangles, double ratio) {
+  double const cells = static_cast<double>(triangles) / 2;
+  auto const columns = static_cast<std::size_t>(std::max(3.0, std::round(std::sqrt(cells * ratio))));
+  auto const rows = static_cast<std::size_t>(std::max(3.0, std::round(cells / static_cast<double>(columns))));
+  return {columns, rows};
+}
+
+}  // namespace detail
+
 /// Adds the surface (i, j) -> point, with `columns` x `rows` quadrangles of two triangles each; closed in a direction
 /// if the last quadrangle meets the first.
 template <class Surface>
@@ -67,8 +77,8 @@ void add_surface(scene& s, std::size_t columns, std::size_t rows, bool closed, S
   auto const across = closed ? columns : columns + 1, along = closed ? rows : rows + 1;
   for (std::size_t i = 0; i < across; ++i) {
     for (std::size_t j = 0; j < along; ++j) {
-      add_point(s.vertices, surface(static_cast<double>(i) / static_cast<double>(columns),
-                                    static_cast<double>(j) / static_cast<double>(rows)));
+      detail::add_point(s.vertices, surface(static_cast<double>(i) / static_cast<double>(columns),
+                                            static_cast<double>(j) / static_cast<double>(rows)));
     }
   }
   auto const number = [&](std::size_t i, std::size_t j) {
@@ -82,13 +92,7 @@ void add_surface(scene& s, std::size_t columns, std::size_t rows, bool closed, S
   }
 }
 
-/// How to lay about `triangles` triangles out as columns x rows x 2, with `ratio` columns to a row.
-inline std::pair<std::size_t, std::size_t> grid(std::size_t triangles, double ratio) {
-  double const cells = static_cast<double>(triangles) / 2;
-  auto const columns = static_cast<std::size_t>(std::max(3.0, std::round(std::sqrt(cells * ratio))));
-  auto const rows = static_cast<std::size_t>(std::max(3.0, std::round(cells / static_cast<double>(columns))));
-  return {columns, rows};
-}
+namespace detail {
 
 inline void add_torus(scene& s, std::size_t triangles, point const& centre) {
   auto const [columns, rows] = grid(triangles, 192.0 / 164);
@@ -137,7 +141,7 @@ inline scene ball_scene(std::size_t spheres, std::size_t triangles, std::uint64_
   scene s;
   s.radius = 3;
   auto const [columns, rows] = detail::grid(triangles, 2);
-  detail::add_surface(s, columns, rows, false, [](double across, double along) {
+  add_surface(s, columns, rows, false, [](double across, double along) {
     double const u = 2 * detail::pi * across, v = detail::pi * along;
     return point{300 * std::sin(v) * std::cos(u), 300 * std::sin(v) * std::sin(u), 300 * std::cos(v)};
   });
@@ -154,7 +158,7 @@ inline scene terrain_scene(std::size_t spheres, std::size_t triangles, std::uint
   scene s;
   s.radius = 1;
   auto const [columns, rows] = detail::grid(triangles, 1);
-  detail::add_surface(s, columns, rows, false, [&](double across, double along) {
+  add_surface(s, columns, rows, false, [&](double across, double along) {
     double const x = 1000 * (across - 0.5), y = 1000 * (along - 0.5);
     return point{x, y, height(x, y)};
   });

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pty
 import shutil
 import struct
 import subprocess
@@ -53,6 +54,25 @@ class ProgramTest(unittest.TestCase):
             self.assertIn(word, message, args)
         self.assertEqual(self.files(), before, args)
         return message
+
+    def on_a_terminal(self, name, *args, patience):
+        """Runs a program with a terminal as standard error; returns what a person of such patience would see fly by.
+
+        What takes long depends on the machine, so the tests say for how many seconds of work a bar is not worth it.
+        """
+        terminal, slave = pty.openpty()
+        process = subprocess.Popen([PROGRAMS / name, *map(str, args)], cwd=self.folder,
+                                   env={**os.environ, "COLLIDE_PATIENCE": str(patience)}, stdout=subprocess.DEVNULL, stderr=slave)
+        os.close(slave)
+        seen = b""
+        try:
+            while part := os.read(terminal, 4096):
+                seen += part
+        except OSError:
+            pass  # how Linux says that the other side is closed
+        os.close(terminal)
+        self.assertEqual(process.wait(), 0)
+        return seen.decode()
 
     def detect(self, *args, **options):
         """The pairs that `detect` writes, as they stand in the file."""

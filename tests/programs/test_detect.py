@@ -2,7 +2,6 @@
 
 import math
 import os
-import pty
 import random
 import resource
 import signal
@@ -539,42 +538,23 @@ class Report(ProgramTest):
 
 
 class Progress(ProgramTest):
-    def on_a_terminal(self, *args, patience):
-        """Runs detect with a terminal as standard error; returns what a person of such patience would see fly by.
-
-        What takes long depends on the machine, so the tests say for how many seconds of work a bar is not worth it.
-        """
-        terminal, slave = pty.openpty()
-        process = subprocess.Popen([programs.PROGRAMS / "detect", *map(str, args)], cwd=self.folder,
-                                   env={**os.environ, "COLLIDE_PATIENCE": str(patience)}, stdout=subprocess.DEVNULL, stderr=slave)
-        os.close(slave)
-        seen = b""
-        try:
-            while part := os.read(terminal, 4096):
-                seen += part
-        except OSError:
-            pass  # how Linux says that the other side is closed
-        os.close(terminal)
-        self.assertEqual(process.wait(), 0)
-        return seen.decode()
-
     def test_long_work_shows_a_bar_and_finds_the_same(self):
         self.succeed("generate", "--spheres", 6000, "mesh.obj", "spheres.csv")
         call = ["mesh.obj", "spheres.csv", "--radius", 30, "--threads", 1, "--broad", "all_pairs"]
         expected = self.detect(*call)
-        seen = self.on_a_terminal(*call, "--output", "watched.csv", "--repeat", 15, patience=0.02)
+        seen = self.on_a_terminal("detect", *call, "--output", "watched.csv", "--repeat", 15, patience=0.02)
         self.assertRegex(seen, r"detecting \[#*\.*\] +\d+ %, \d+:\d\d left")
         self.assertTrue(seen.endswith("\r\x1b[K"), seen[-80:])  # it goes away
         self.assertEqual(self.pairs("watched.csv"), expected)
 
     def test_short_work_shows_none(self):
         self.scene(*CUBE, [(0, 0, 0)])
-        self.assertEqual(self.on_a_terminal("mesh.obj", "spheres.csv", 1, "out.csv", patience=1e3), "")
+        self.assertEqual(self.on_a_terminal("detect", "mesh.obj", "spheres.csv", 1, "out.csv", patience=1e3), "")
 
     def test_queries_in_parts(self):
         self.succeed("generate", "--scene", "radii", "--spheres", 60000, "mesh.obj", "spheres.csv")
         expected = self.detect("mesh.obj", "spheres.csv", "--broad", "bucket")
-        seen = self.on_a_terminal("mesh.obj", "spheres.csv", "--threads", 1, "--broad", "all_pairs", "--output", "parts.csv", patience=0.02)
+        seen = self.on_a_terminal("detect", "mesh.obj", "spheres.csv", "--threads", 1, "--broad", "all_pairs", "--output", "parts.csv", patience=0.02)
         self.assertRegex(seen, r"detecting .* left")
         self.assertEqual(self.pairs("parts.csv"), expected)
 

@@ -1,0 +1,240 @@
+/// \file
+/// What the programs that show scenes have in common: the command line, the steps, the frames, and what it all costs.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include <collide/bucket.cuh>
+#include <collide/emit.hpp>
+#include <collide/simulation.cuh>
+#include <collide/upload.hpp>
+
+#include "device.hpp"
+#include "output.hpp"
+#include "program.hpp"
+#include "progress.hpp"
+#include "scenes.hpp"
+#include "vtk.hpp"
+
+namespace io {
+
+/// A film: what it shows, and what the command line says of it.
+struct film {
+  char const* name;
+  char const* about;
+  scene stage;            ///< the mesh, and the radius of the particles
+  double dt;              ///< a step
+  std::size_t particles;  ///< how many there are at most
+  double seconds;         ///< of the scene's time
+  double pouring = 1;     ///< for which part of them there are new particles
+  std::size_t frames = 100;
+  std::string space = "host", output = "", report = "";
+  int threads = 0;
+
+  /// How many steps there are, and after how many of them nothing more comes.
+  std::size_t steps() const { return static_cast<std::size_t>(std::ceil(seconds / dt)); }
+  std::size_t pouring_steps() const { return static_cast<std::size_t>(std::ceil(pouring * seconds / dt)); }
+  /// How many particles must come a second, for all to have come then.
+  double rate() const {
+    double const simulated = static_cast<double>(static_cast<float>(dt)) * static_cast<double>(pouring_steps());
+    return (static_cast<double>(particles) + 0.5) / simulated;
+  }
+};
+
+/// Where particle number 0, 1, 2, ... of a source begins, in coordinates between -1 and 1. Those of `evenly` are spread
+/// over the square such that numbers that follow each other are far apart, so that particles do not overlap when they
+/// begin (M. Roberts' sequence R2); those of `anyhow` have no order.
+struct spot {
+  double evenly[2], anyhow[2];
+
+  COLLIDE_HD explicit spot(std::uint64_t number) {
+    double const i = static_cast<double>(number), slope[] = {0.7548776662466927, 0.5698402909980532};
+    for (int k = 0; k < 2; ++k) {
+      evenly[k] = 2 * fraction(slope[k] * i) - 1;
+      anyhow[k] = 2 * fraction(slope[k] * i * i) - 1;
+    }
+  }
+
+ private:
+  static COLLIDE_HD double fraction(double x) { return x - static_cast<double>(static_cast<std::uint64_t>(x)); }
+};
+
+namespace detail {
+
+inline char const* name_of(collide::velocity) { return "velocity"; }
+inline char const* name_of(collide::angular_velocity) { return "angular_velocity"; }
+inline char const* name_of(collide::stuck) { return "stuck"; }
+inline char const* name_of(collide::slow_steps) { return "slow_steps"; }
+
+/// A column's values of the particles that are there.
+template <class Column, class Simulation>
+auto of_present(Simulation const& simulation) {
+  auto const present = simulation.template to_host<collide::present>();
+  auto values = simulation.template to_host<Column>();
+  std::size_t const width = values.size() / present.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (present[i / width] != 0) values[kept++] = values[i];
+  }
+  values.resize(kept);
+  return values;
+}
+
+/// Writes the particles that are there, with all that is known of them.
+template <class Simulation, class... Column>
+void write_particles(std::string const& path, Simulation const& simulation, collide::columns<Column...>) {
+  auto const points = of_present<collide::position>(simulation);
+  std::size_t const n = points.size() / 3;
+  std::vector<vtk_array> known{{"radius", std::vector<float>(n, simulation.spheres().common_radius())}};
+  auto const add = [&](auto column) {
+    using type = decltype(column);
+    if constexpr (!std::is_same<type, collide::position>::value && !std::is_same<type, collide::present>::value) {
+      auto const values = of_present<type>(simulation);
+      known.emplace_back(name_of(column), values, n == 0 ? 1 : values.size() / n);
+    }
+  };
+  (add(Column{}), ...);
+  std::vector<std::uint32_t> all(n);
+  for (std::size_t i = 0; i < n; ++i) all[i] = static_cast<std::uint32_t>(i);
+  output_file out(path);
+  write_vtp(out, points, known, "Verts", all, {static_cast<std::uint32_t>(n)});
+  out.commit();
+}
+
+inline void write_mesh(std::string const& path, std::vector<float> const& vertices,
+                       std::vector<std::uint32_t> const& corners) {
+  std::vector<std::uint32_t> ends(corners.size() / 3);
+  for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = static_cast<std::uint32_t>(3 * i + 3);
+  output_file out(path);
+  write_vtp(out, vertices, {}, "Polys", corners, ends);
+  out.commit();
+}
+
+/// Makes the folder that the film is to be in, which may be there already, but empty: no film is lost.
+inline void make_folder(std::string const& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  bool const empty = !error && std::filesystem::is_empty(path, error);
+  if (error) throw data_error(path, error.message());
+  if (!empty) throw data_error(path, "the folder is not empty");
+  output_file::check(path + "/film.pvd");
+}
+
+/// Stops a source; other effects are none.
+template <class Effect>
+void stop(Effect&) {}
+template <class Source>
+void stop(collide::emit_from<Source>& source) {
+  source.rate = 0;
+}
+template <class Detector, class... Effect>
+void stop_sources(collide::simulation<Detector, Effect...>& simulation) {
+  (stop(simulation.template effect<Effect>()), ...);
+}
+
+/// Runs the simulation and shows it.
+template <class Simulation>
+void shoot(film const& wish, Simulation simulation) {
+  using device = device_of<typename Simulation::execution_space>;
+  using clock = std::chrono::steady_clock;
+  auto const& space = simulation.space();
+  auto const& stage = wish.stage;
+  std::vector<float> const vertices(stage.vertices.begin(), stage.vertices.end());
+  auto const mesh = collide::upload(
+      space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, stage.corners.data(), stage.triangle_count()));
+  auto const radius = static_cast<float>(stage.radius);
+  simulation.set(collide::spheres_xyz<float>(nullptr, 0, radius), nullptr, wish.particles);
+  simulation.set_mesh(mesh.view());
+
+  std::size_t const steps = wish.steps();
+  auto const step = static_cast<float>(wish.dt);
+  if (!wish.output.empty()) write_mesh(wish.output + "/mesh.vtp", vertices, stage.corners);
+  std::vector<vtk_frame> frames;
+  double spent = 0;
+  progress bar(wish.name, static_cast<double>(steps));
+  for (std::size_t done = 0; done < steps;) {
+    std::size_t const until = std::max(done + 1, steps * (frames.size() + 1) / wish.frames);
+    auto const start = clock::now();
+    for (; done < until; ++done) {
+      if (done == wish.pouring_steps()) stop_sources(simulation);
+      simulation.step(step);
+      if (Simulation::execution_space::host_memory) bar.update(static_cast<double>(done));
+    }
+    space.synchronize();
+    spent += std::chrono::duration<double, std::milli>(clock::now() - start).count();
+    bar.update(static_cast<double>(done));
+    char file[32];
+    std::snprintf(file, sizeof file, "particles-%05zu.vtp", frames.size());
+    frames.push_back({file, static_cast<double>(done) * wish.dt});
+    if (!wish.output.empty()) {
+      write_particles(wish.output + "/" + file, simulation, typename Simulation::columns());
+    }
+  }
+  if (!wish.output.empty()) {
+    output_file out(wish.output + "/film.pvd");
+    write_pvd(out, frames);
+    out.commit();
+  }
+
+  double const each = spent / static_cast<double>(steps);
+  int const threads = device::threads(space);
+  std::cout << wish.name << ": " << wish.particles << " particles, " << steps << " steps of " << wish.dt << " s, "
+            << each << " ms a step, " << Simulation::bytes_per_particle << " bytes a particle, " << wish.space << " ("
+            << device::name() << (threads > 1 ? ", " + std::to_string(threads) + " threads" : "") << ")\n";
+  if (wish.report.empty()) return;
+  output_file report(wish.report);
+  report << nlohmann::ordered_json{{"scene", wish.name},
+                                   {"particles", wish.particles},
+                                   {"triangles", stage.triangle_count()},
+                                   {"steps", steps},
+                                   {"dt", wish.dt},
+                                   {"ms_per_step", each},
+                                   {"bytes_per_particle", Simulation::bytes_per_particle},
+                                   {"space", wish.space},
+                                   {"threads", threads},
+                                   {"device", device::name()},
+                                   {"version", version()}}
+                .dump(2)
+         << "\n";
+  report.commit();
+}
+
+}  // namespace detail
+
+/// The program of a film: `make(space, film)` gives the simulation.
+template <class Make>
+int film_program(int argc, char** argv, film wish, Make const& make) {
+  CLI::App app(wish.about, wish.name);
+  app.option_defaults()->always_capture_default();
+  app.add_option("--particles", wish.particles, "how many particles")
+      ->check(CLI::Range(1, 1'000'000'000))
+      ->type_name("N");
+  app.add_option("--seconds", wish.seconds, "how long the scene lasts")->type_name("S");
+  app.add_option("--frames", wish.frames, "how many pictures of it")->check(CLI::Range(1, 99'999))->type_name("N");
+  app.add_option("--output", wish.output, "folder for film.pvd and mesh.vtp, which ParaView opens; none if not given")
+      ->type_name("FOLDER");
+  app.add_option("--report", wish.report, "measurements (JSON)")->type_name("FILE");
+  add_choice(app, "--space", wish.space, {"host", "cuda", "cuda_shared"}, "execution space");
+  app.add_option("--threads", wish.threads, "threads of the host; 0 for all")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  return run_program(app, {argv + 1, argv + argc}, [&] {
+    if (!(wish.seconds >= wish.dt && wish.seconds <= 1e6)) {
+      throw usage_error("--seconds: must be at least a step, " + std::to_string(wish.dt) + ", and at most a million");
+    }
+    choose_space(wish.space, [&](auto space) {
+      using device = device_of<typename decltype(space)::type>;
+      device::require();
+      check_outputs({}, {{"--report", wish.report}});
+      if (!wish.output.empty()) detail::make_folder(wish.output);
+      detail::shoot(wish, make(device::make(wish.threads, device::memory()), wish));
+    });
+  });
+}
+
+}  // namespace io

@@ -1,0 +1,200 @@
+"""The scenes snow, marbles, mud and dust as their users see them, run small: what they write, and whether it can be true."""
+
+import json
+import math
+import re
+import struct
+import unittest
+from xml.etree import ElementTree
+
+import programs
+from programs import ProgramTest
+
+SCENES = ("snow", "marbles", "mud", "dust")
+KINDS = {"Float32": "f", "UInt8": "B", "UInt32": "I"}
+
+
+def read_vtp(content):
+    """The arrays of a file: section -> name -> rows, each a tuple, or a number."""
+    header, data = content.split(b'<AppendedData encoding="raw">\n_', 1)
+    root = ElementTree.fromstring(header + b"<AppendedData/></VTKFile>")
+    assert root.attrib == {"type": "PolyData", "version": "1.0", "byte_order": "LittleEndian", "header_type": "UInt64"}
+    piece = root.find("PolyData/Piece")
+    found, end = {"counts": {k: int(v) for k, v in piece.attrib.items()}}, 0
+    for section in piece:
+        rows = found[section.tag] = {}
+        for array in section:
+            offset, width, kind = int(array.get("offset")), int(array.get("NumberOfComponents")), KINDS[array.get("type")]
+            assert offset == end
+            size, = struct.unpack_from("<Q", data, offset)
+            values = struct.unpack_from("<%d%s" % (size // struct.calcsize(kind), kind), data, offset + 8)
+            end = offset + 8 + size
+            rows[array.get("Name")] = list(values) if width == 1 else list(zip(*[iter(values)] * width))
+    assert data[end:] == b"\n</AppendedData>\n</VTKFile>\n"
+    return found
+
+
+class SceneTest(ProgramTest):
+    def shoot(self, scene, *args, output="film"):
+        """Runs a scene; returns what it prints."""
+        return self.succeed(scene, "--threads", 1, "--output", output, *args)
+
+    def frames(self, output="film"):
+        """(time, points, arrays) of each frame, each of which must be sound."""
+        listed = re.findall(r'<DataSet timestep="(.*?)" file="(.*?)"/>', self.read(f"{output}/film.pvd").decode())
+        names = [name for _, name in listed]
+        self.assertEqual(sorted(p.name for p in self.path(output).iterdir()), ["film.pvd", "mesh.vtp", *names])
+        times = [float(time) for time, _ in listed]
+        self.assertEqual(times, sorted(set(times)))
+        frames = []
+        for time, name in zip(times, names):
+            file = read_vtp(self.read(f"{output}/{name}"))
+            points, arrays = file["Points"]["position"], file["PointData"]
+            n = len(points)
+            self.assertEqual(file["counts"], {"NumberOfPoints": n, "NumberOfVerts": 1})
+            self.assertEqual(file["Verts"], {"connectivity": list(range(n)), "offsets": [n]})
+            self.assertEqual({name: len(values) for name, values in arrays.items()}, dict.fromkeys(arrays, n))
+            self.assertLessEqual({"radius", "velocity"}, set(arrays))
+            for rows in (points, arrays["velocity"]):
+                self.assertTrue(all(math.isfinite(x) for row in rows for x in row))
+            frames.append((time, points, arrays))
+        return frames
+
+    def mesh(self, output="film"):
+        file = read_vtp(self.read(f"{output}/mesh.vtp"))
+        points, corners, ends = file["Points"]["position"], file["Polys"]["connectivity"], file["Polys"]["offsets"]
+        self.assertEqual(file["counts"], {"NumberOfPoints": len(points), "NumberOfPolys": len(ends)})
+        self.assertEqual(ends, list(range(3, len(corners) + 1, 3)))
+        self.assertTrue(corners and max(corners) < len(points))
+        return points
+
+
+class Snow(SceneTest):
+    def test_it_falls_and_sticks(self):
+        self.shoot("snow", "--particles", 300, "--seconds", 2.5, "--frames", 5)
+        self.mesh()
+        frames = self.frames()
+        self.assertEqual(len(frames), 5)
+        self.assertEqual([len(points) for _, points, _ in frames][-1], 300)
+        for _, points, arrays in frames:
+            for (x, y, z) in points:
+                self.assertGreater(z, 0.1 * math.sin(4 * x + 1) * math.cos(3 * y) - 0.1)  # the ground
+                self.assertTrue(abs(x) <= 0.7 and abs(y) <= 0.7)
+        _, points, arrays = frames[-1]
+        stuck = [p for p, sticks in zip(points, arrays["stuck"]) if sticks]
+        self.assertGreater(len(stuck), 150)
+        self.assertTrue(any(z > 0.9 for _, _, z in stuck), "none on the statue")
+        self.assertTrue(all(v == (0, 0, 0) for v, sticks in zip(arrays["velocity"], arrays["stuck"]) if sticks))
+
+
+class Marbles(SceneTest):
+    def test_they_roll_into_the_bowl_and_stay(self):
+        self.shoot("marbles", "--particles", 40, "--seconds", 6, "--frames", 12)
+        bowl = lambda d2: d2 * (1.2 + 1.5 * d2)
+        turning = []
+        for _, points, arrays in self.frames():
+            for (x, y, z) in points:
+                self.assertTrue(x * x + y * y < 0.6 ** 2 and z > bowl(x * x + y * y), (x, y, z))
+            turning += [x * v - y * u for (x, y, z), (u, v, _) in zip(points, arrays["velocity"]) if z < 0.25]
+        self.assertEqual(len(points), 40)
+        self.assertGreater(len([1 for _, _, z in points if z < 0.25]), 15)  # in the bowl
+        self.assertGreater(sum(turning) / len(turning), 0.01)  # they circle, the way that the gutter winds
+        self.assertTrue(any(math.hypot(*w) > 1 for w in arrays["angular_velocity"]))
+
+
+class Mud(SceneTest):
+    def test_it_sticks_and_slides(self):
+        self.shoot("mud", "--particles", 600, "--seconds", 2.5, "--frames", 10)
+        frames = self.frames()
+        _, thrown, arrays = frames[4]
+        self.assertEqual(len(thrown), 600)
+        _, points, arrays = frames[-1]
+        self.assertTrue(all(abs(y) <= 0.7 and z > -0.014 for _, y, z in points))
+        high = [sticks for (_, _, z), sticks in zip(points, arrays["stuck"]) if z > 0.5]
+        self.assertTrue(20 < sum(high) < 600, sum(high))
+        slid = [before[2] - after[2] for before, after in zip(thrown, points)]
+        self.assertGreater(sum(drop > 0.1 for drop in slid), 60)
+
+
+class Dust(SceneTest):
+    def test_it_goes_with_the_wind_around_the_boulders(self):
+        self.shoot("dust", "--particles", 3000, "--seconds", 3, "--frames", 4)
+        rocks = [(-0.8, -0.5, 0.7), (0.5, 0.9, 0.5), (1.4, -0.6, 0.35)]
+        for time, points, arrays in self.frames():
+            for p in points:
+                self.assertTrue(p[2] > 0 and -3.1 < p[0] < 3, p)
+                for x, y, radius in rocks:
+                    self.assertGreater(math.dist(p, (x, y, 0)), 0.99 * radius)  # of flat triangles
+            mean = [sum(v[k] for v in arrays["velocity"]) / len(points) for k in range(3)]
+            self.assertTrue(1.8 < mean[0] < 2.8 and abs(mean[1]) < 0.3 and abs(mean[2]) < 0.3, mean)
+        self.assertTrue(1000 < len(points) < 3000)  # those that the wind has carried away are gone
+        self.assertGreater(max(p[2] for p in points), 0.5)
+
+
+class All(SceneTest):
+    small = ("--particles", 150, "--seconds", 0.5, "--frames", 3)
+
+    def test_the_same_bits(self):
+        for scene in SCENES:
+            self.shoot(scene, *self.small, output=scene)
+            self.succeed(scene, *self.small, "--threads", 2, "--output", scene + "-2")
+            for file in ("film.pvd", "mesh.vtp", "particles-00002.vtp"):
+                self.assertEqual(self.read(f"{scene}/{file}"), self.read(f"{scene}-2/{file}"), (scene, file))
+
+    def test_what_it_says(self):
+        for scene in SCENES:
+            said = self.succeed(scene, "--particles", 50, "--seconds", 0.1, "--threads", 1, "--report", "report.json")
+            report = json.loads(self.read("report.json"))
+            self.assertRegex(said, rf"\A{scene}: 50 particles, {report['steps']} steps of [^\n]* host [^\n]*\n\Z")
+            self.assertEqual(list(report), ["scene", "particles", "triangles", "steps", "dt", "ms_per_step", "bytes_per_particle",
+                                            "space", "threads", "device", "version"])
+            self.assertEqual((report["scene"], report["particles"], report["threads"]), (scene, 50, 1))
+            self.assertAlmostEqual(report["steps"] * report["dt"], 0.1, delta=report["dt"])
+            self.assertGreater(report["ms_per_step"], 0)
+        self.assertEqual(self.files(), ["report.json"])
+
+    def test_progress(self):
+        args = ("--particles", 200, "--seconds", 1)
+        self.shoot("snow", *args)
+        seen = self.on_a_terminal("snow", *args, "--threads", 1, "--output", "watched", patience=0.02)
+        self.assertRegex(seen, r"snow \[#*\.*\] +\d+ %, \d+:\d\d left")
+        self.assertTrue(seen.endswith("\r\x1b[K"), seen[-80:])
+        self.assertEqual(self.frames("watched"), self.frames())
+
+    def test_more_frames_than_steps(self):
+        self.shoot("dust", "--particles", 10, "--seconds", 0.01, "--frames", 100)
+        self.assertEqual(len(self.frames()), 5)
+
+    def test_cuda(self):
+        for scene in SCENES:
+            done = self.run_program(scene, *self.small, "--space", "cuda_shared")
+            if done.returncode != 0:  # no CUDA here: it says so
+                self.assertRegex(done.stderr.decode(), rf"\A{scene}: --space[^\n]*CUDA[^\n]*\n\Z")
+                self.assertEqual(done.returncode, 1)
+
+    def test_bad_usage(self):
+        for args in (["--nonsense"], ["--particles", 0], ["--particles", "many"], ["--particles", -5], ["--seconds", 0], ["--seconds", "nan"],
+                     ["--seconds", "inf"], ["--seconds", -1], ["--seconds", "1e9"], ["--frames", 0], ["--frames", 1.5], ["--space", "moon"],
+                     ["--threads", -1], ["--output"]):
+            with self.subTest(args=args):
+                self.fail_with(2, [args[0]], "snow", *args)
+        self.fail_with(2, ["extra"], "mud", "extra")
+
+    def test_bad_places(self):
+        self.write("file", "")
+        self.path("full").mkdir()
+        self.write("full/mine", "kept")
+        for args in (["--output", "full"], ["--output", "file"], ["--output", "file/film"], ["--output", "/proc/film"],
+                     ["--report", "no/report.json"], ["--report", "full"]):
+            with self.subTest(args=args):
+                self.fail_with(1, [args[1]], "dust", *self.small, *args)
+        self.assertEqual(self.read("full/mine"), b"kept")
+
+    def test_a_folder_that_is_there(self):
+        self.path("film").mkdir()
+        self.shoot("dust", *self.small)
+        self.assertEqual(len(self.frames()), 3)
+
+
+if __name__ == "__main__":
+    programs.main()
