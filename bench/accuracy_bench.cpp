@@ -28,7 +28,7 @@
 #include <collide/upload.hpp>
 
 #include "accuracy_scenes.hpp"
-#include "io/device.hpp"
+#include "program.hpp"
 #include "stopwatch.hpp"
 
 namespace {
@@ -238,23 +238,16 @@ int main(int argc, char** argv) {
     std::fputs("usage: accuracy_bench [SPHERES, at least 8] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;
   }
-  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
-  benchmark::AddCustomContext("processor", io::processor_name());
 
   collide::host const one(1);
   add_scenes(spheres, one);
   add_all_pairs(std::min(spheres, few_spheres), one);
 #if defined(__CUDACC__)
-  if (collide::cuda_device_count() > 0) {
-    benchmark::AddCustomContext("device", bench::device_name<collide::cuda>());
+  if (bench::has_gpu()) {
     add_scenes(spheres, collide::cuda());
     add_scenes(spheres, collide::cuda_shared());
     add_all_pairs(spheres, collide::cuda_shared());
-  } else {
-    benchmark::AddCustomContext("device", "no GPU");
   }
 #endif
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return bench::run();
 }

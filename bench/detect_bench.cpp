@@ -13,8 +13,8 @@
 #include <collide/bucket.cuh>
 #include <collide/upload.hpp>
 
-#include "io/device.hpp"
 #include "io/scenes.hpp"
+#include "program.hpp"
 #include "stopwatch.hpp"
 
 namespace {
@@ -132,9 +132,6 @@ void add_sinks(std::string const& method, Space space) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
-
-  benchmark::AddCustomContext("processor", io::processor_name());
   collide::host const one(1), all;
   add_series<collide::bucket>("bucket_seq/bucket_x_host", full, one);
   add_sinks<collide::bucket>("bucket_seq/bucket_x_host", one);
@@ -145,8 +142,7 @@ int main(int argc, char** argv) {
   add_series<collide::all_pairs>("brute_force_seq/all_pairs_x_host", 1 << 13, one);
 
 #if defined(__CUDACC__)
-  if (collide::cuda_device_count() > 0) {
-    benchmark::AddCustomContext("device", bench::device_name<collide::cuda>());
+  if (bench::has_gpu()) {
     collide::cuda const threads;
     collide::cuda_shared const blocks;
     add_series<collide::bucket>("bucket/bucket_x_cuda", full, threads);
@@ -154,11 +150,7 @@ int main(int argc, char** argv) {
     add_sinks<collide::bucket>("bucket_shamem/bucket_x_cuda_shared", blocks);
     add_series<collide::all_pairs>("brute_force/all_pairs_x_cuda", full, threads);
     add_series<collide::all_pairs>("brute_force_shamem/all_pairs_x_cuda_shared", full, blocks);
-  } else {
-    benchmark::AddCustomContext("device", "no GPU");
   }
 #endif
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return bench::run();
 }

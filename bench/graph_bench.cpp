@@ -15,6 +15,7 @@
 #include <collide/upload.hpp>
 
 #include "io/scenes.hpp"
+#include "program.hpp"
 #include "stopwatch.hpp"
 
 #if defined(__CUDACC__)
@@ -161,17 +162,13 @@ void add(std::string const& name) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
 #if defined(__CUDACC__)
-  if (collide::cuda_device_count() > 0) {
-    benchmark::AddCustomContext("device", bench::device_name<collide::cuda_shared>());
+  if (bench::has_gpu()) {
     add<collide::bucket, collide::single_precision>("bucket/single");
     add<collide::bucket, collide::exact>("bucket/exact");
     add<collide::all_pairs, collide::single_precision>("all_pairs/single");
     add<collide::all_pairs, collide::exact>("all_pairs/exact");
   }
 #endif
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return bench::run();
 }

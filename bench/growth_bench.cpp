@@ -20,8 +20,8 @@
 #include <collide/bucket.cuh>
 #include <collide/upload.hpp>
 
-#include "io/device.hpp"
 #include "io/scenes.hpp"
+#include "program.hpp"
 #include "stopwatch.hpp"
 
 namespace {
@@ -135,18 +135,11 @@ int main(int argc, char** argv) {
     std::fputs("usage: growth_bench [LARGEST, at least 1024] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;
   }
-  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
-  benchmark::AddCustomContext("processor", io::processor_name());
   add("bucket_x_host", collide::host(1), largest);
 #if defined(__CUDACC__)
-  if (collide::cuda_device_count() > 0) {
-    benchmark::AddCustomContext("device", bench::device_name<collide::cuda>());
+  if (bench::has_gpu()) {
     add("bucket_x_cuda_shared", collide::cuda_shared(), largest);
-  } else {
-    benchmark::AddCustomContext("device", "no GPU");
   }
 #endif
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return bench::run();
 }

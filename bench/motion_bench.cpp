@@ -31,8 +31,8 @@
 #include <collide/simulation.cuh>
 #include <collide/upload.hpp>
 
-#include "io/device.hpp"
 #include "motion_scenes.hpp"
+#include "program.hpp"
 #include "stopwatch.hpp"
 
 namespace {
@@ -224,19 +224,12 @@ int main(int argc, char** argv) {
     std::fputs("usage: motion_bench [PARTICLES [SPHERES]] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;
   }
-  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
-  benchmark::AddCustomContext("processor", io::processor_name());
 
   add_all(particles, spheres, collide::host(1));
 #if defined(__CUDACC__)
-  if (collide::cuda_device_count() > 0) {
-    benchmark::AddCustomContext("device", bench::device_name<collide::cuda>());
+  if (bench::has_gpu()) {
     add_all(particles, spheres, collide::cuda_shared());
-  } else {
-    benchmark::AddCustomContext("device", "no GPU");
   }
 #endif
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return bench::run();
 }

@@ -36,8 +36,8 @@
 #include <collide/upload.hpp>
 #include <collide/wind.hpp>
 
-#include "io/device.hpp"
 #include "io/scenes.hpp"
+#include "program.hpp"
 #include "stopwatch.hpp"
 
 namespace {
@@ -295,14 +295,9 @@ int main(int argc, char** argv) {
     std::fputs("usage: simulation_bench [many] [SPHERES, at least 8] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;
   }
-  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
-  benchmark::AddCustomContext("processor", io::processor_name());
-  bool on_gpu = false;
 #if defined(__CUDACC__)
-  on_gpu = collide::cuda_device_count() > 0;
-  if (on_gpu) {
+  if (bench::has_gpu()) {
     using collide::cuda, collide::cuda_shared;
-    benchmark::AddCustomContext("device", bench::device_name<cuda>());
     if (many) {
       add_many<cuda_shared>([](std::pmr::memory_resource* from) { return cuda_shared(nullptr, from); }, n);
     } else {
@@ -311,16 +306,12 @@ int main(int argc, char** argv) {
     }
   }
 #endif
-  if (!on_gpu) {
-    benchmark::AddCustomContext("device", "no GPU");
-    benchmark::AddCustomContext("threads", std::to_string(collide::host().threads()));
+  if (!bench::has_gpu()) {
     if (many) {
       add_many<collide::host>([](std::pmr::memory_resource* from) { return collide::host(0, from); }, n);
     } else {
       add_all(suite<collide::host>(collide::host(), n));
     }
   }
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return bench::run();
 }

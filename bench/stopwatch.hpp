@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -106,19 +105,6 @@ double floor_of(Space const& space, S const* xyz, std::size_t n) {
   for (int i = 0; i < 50; ++i) seconds.push_back(watch(read));
   std::nth_element(seconds.begin(), seconds.begin() + 25, seconds.end());
   return seconds[25];
-}
-
-/// The device that a space runs on.
-template <class Space>
-std::string device_name() {
-#if defined(__CUDACC__)
-  if constexpr (!Space::host_memory) {
-    cudaDeviceProp properties;
-    collide::cuda_check(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
-    return properties.name;
-  }
-#endif
-  return "CPU";
 }
 
 }  // namespace bench

@@ -2,9 +2,9 @@
 /// Other libraries at the study's job, on the host: every pair of a sphere and a triangle that touch, build included.
 ///
 /// With one thread and with all; OMP_NUM_THREADS says how many that are. CMake found out which libraries there are.
-#include "io/device.hpp"
 #include "peer.hpp"
 #include "peers.hpp"
+#include "program.hpp"
 
 namespace {
 
@@ -28,8 +28,6 @@ int main(int argc, char** argv) {
   std::vector<int> threads{1};
   if (int const all = collide::host().threads(); all > 1) threads.push_back(all);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::AddCustomContext("commit", COLLIDE_COMMIT);
-  benchmark::AddCustomContext("processor", io::processor_name());
   peers::add<ours>("collide, bucket x host", threads);
 #if defined(COLLIDE_HAVE_EMBREE)
   peers::add_embree(threads);
@@ -43,7 +41,5 @@ int main(int argc, char** argv) {
 #if defined(COLLIDE_HAVE_FCL)
   peers::add_fcl(threads);
 #endif
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return bench::run();
 }
