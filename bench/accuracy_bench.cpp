@@ -233,8 +233,8 @@ void add_all_pairs(std::size_t spheres, Space space) {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  std::size_t const spheres = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : io::study_spheres;
-  if (spheres < 8 || argc > 2) {
+  std::size_t const spheres = argc > 1 ? bench::count_of(argv[1], 8) : io::study_spheres;
+  if (spheres == 0 || argc > 2) {
     std::fputs("usage: accuracy_bench [SPHERES, at least 8] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;
   }

@@ -130,8 +130,8 @@ void add(std::string const& composition, Space space, std::size_t largest) {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  std::size_t const largest = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1 << 24;
-  if (largest < 1024 || argc > 2) {
+  std::size_t const largest = argc > 1 ? bench::count_of(argv[1], 1024) : 1 << 24;
+  if (largest == 0 || argc > 2) {
     std::fputs("usage: growth_bench [LARGEST, at least 1024] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;
   }

@@ -47,12 +47,12 @@ struct contestant {
   std::function<void()> begin, work;
 };
 
-/// Times all of them in every iteration, each time in another order.
+/// Times all of them in every iteration, each time, also of all repetitions, in another order.
 template <class Space>
 void race(benchmark::State& state, Space const& space, std::vector<contestant> const& contestants) {
   bench::stopwatch<Space> watch(space);
   std::vector<std::vector<double>> times(contestants.size());
-  std::size_t first = 0;
+  static std::size_t first = 0;
   for (auto _ : state) {
     double sum = 0;
     for (std::size_t k = 0; k < times.size(); ++k) {
@@ -90,11 +90,10 @@ struct stage {
   stage(Space const& on, bench::arena const& arena, std::size_t n)
       : space{on}, in{arena}, crowd(arena, n), mesh{upload(space, crowd.mesh())}, balls{upload(space, crowd.balls())} {
     space.copy_from_host(velocities.reserve(space.resource(), 3 * n), crowd.velocities.data(), 3 * n);
-    std::size_t const judged = std::min(n, most_judged);
     counters = {{"particles", static_cast<double>(n)},
-                {"judged", static_cast<double>(judged)},
+                {"judged", static_cast<double>(judged())},
                 {"seconds", bench::seconds},
-                {"doubt", truth_of(in, judged).doubt}};
+                {"doubt", truth_of(in, judged()).doubt}};
     add<collide::karabassi<>>("euler", {1, 2, 4, 8});
     add<collide::karabassi<>, collide::velocity_verlet>("verlet", {1, 2, 4, 8});
     add<collide::karabassi_swept<>>("euler_swept", {1});
@@ -102,6 +101,9 @@ struct stage {
   }
 
  private:
+  /// How many balls are compared with the truth.
+  std::size_t judged() const { return std::min(balls.view().size(), most_judged); }
+
   template <class NarrowPhase, class... Integrator>
   void add(std::string const& name, std::vector<int> const& all_steps) {
     using detector = collide::detector<collide::bucket, NarrowPhase, Space>;
@@ -120,7 +122,7 @@ struct stage {
       // The same steps give the same bits each time: they are judged once.
       c.begin();
       c.work();
-      bench::outcome const o(in, crowd, truth_of(in, most_judged), made->template to_host<collide::position>(),
+      bench::outcome const o(in, crowd, truth_of(in, judged()), made->template to_host<collide::position>(),
                              made->template to_host<collide::velocity>());
       counters[c.name + "_error"] = o.error;
       counters[c.name + "_drift"] = o.drift;
@@ -218,8 +220,8 @@ void add_all(std::size_t particles, std::size_t spheres, Space space) {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  std::size_t const particles = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : most_judged;
-  std::size_t const spheres = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : io::study_spheres;
+  std::size_t const particles = argc > 1 ? bench::count_of(argv[1], 1) : most_judged;
+  std::size_t const spheres = argc > 2 ? bench::count_of(argv[2], 1) : io::study_spheres;
   if (particles == 0 || spheres == 0 || argc > 3) {
     std::fputs("usage: motion_bench [PARTICLES [SPHERES]] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;

@@ -52,7 +52,7 @@ inline io::scene cube_mesh() {
   io::scene s;
   for (int axis = 0; axis < 3; ++axis) {
     for (double const side : {-half_width, half_width}) {
-      io::detail::add_surface(s, n, n, false, [&](double across, double along) {
+      io::add_surface(s, n, n, false, [&](double across, double along) {
         vec p;
         p[axis] = side;
         p[(axis + 1) % 3] = half_width * (2 * across - 1);

@@ -2,6 +2,7 @@
 /// What the benchmarks' programs have in common: their results say where they come from.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -9,6 +10,7 @@
 #include <collide/detector.hpp>
 
 #include "io/device.hpp"
+#include "io/number.hpp"
 
 namespace bench {
 
@@ -27,6 +29,12 @@ inline std::string device_name() {
   if (has_gpu()) return io::device_of<collide::cuda>::name();
 #endif
   return "no GPU";
+}
+
+/// How many spheres, or the like, an argument asks for: from `least` to what ids can count. 0 if it is no such number.
+inline std::size_t count_of(char const* argument, std::size_t least) {
+  std::size_t n = 0;
+  return io::parse_number<std::size_t>(argument, n) && n >= least && n < collide::id(-1) ? n : 0;
 }
 
 /// Runs what was registered. Returns what `main` is to return.

@@ -290,8 +290,8 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   bool const many = argc > 1 && std::strcmp(argv[1], "many") == 0;
   char const* const number = argc > 1 + many ? argv[1 + many] : nullptr;
-  std::size_t const n = number != nullptr ? std::strtoull(number, nullptr, 10) : many ? 0 : io::study_spheres;
-  if (n < 8 || argc > 2 + many) {
+  std::size_t const n = number != nullptr ? bench::count_of(number, 8) : many ? 0 : io::study_spheres;
+  if (n == 0 || argc > 2 + many) {
     std::fputs("usage: simulation_bench [many] [SPHERES, at least 8] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;
   }

@@ -29,7 +29,7 @@ struct breeze {
     vec3<S> v(S(speed), S(0), S(0));
     for (boulder const& rock : rocks) {
       vec3<S> const from(x.x() - S(rock.x), x.y() - S(rock.y), x.z());
-      S const a = S(rock.radius), square = collide::detail::dot(from, from), r2 = square > a * a ? square : a * a;
+      S const a = S(rock.radius), square = from.squaredNorm(), r2 = square > a * a ? square : a * a;
       S const strength = S(speed) * a * a * a / (2 * r2 * std::sqrt(r2));
       v -= from * (3 * strength * from.x() / r2);
       v.x() += strength;

@@ -2,7 +2,6 @@
 /// An effect of our own, for what is wet: spheres that touch hold on to each other.
 #pragma once
 
-#include <collide/detail/arithmetic.hpp>
 #include <collide/effect.hpp>
 
 namespace io {
@@ -18,7 +17,7 @@ struct cohesion {
   template <class Particle, class Seen, class S>
   COLLIDE_HD_INLINE void meet(Particle& p, Seen const& self, Seen const& other, S dt) const {
     collide::vec3<S> const towards = other[collide::position{}] - self[collide::position{}];
-    S const distance = collide::detail::root(collide::detail::dot(towards, towards));
+    S const distance = towards.norm();
     if (distance > 0) p[collide::velocity{}] += towards * (S(pull) * dt / distance);
   }
 };

@@ -56,7 +56,7 @@ struct spot {
     double const i = static_cast<double>(number), slope[] = {0.7548776662466927, 0.5698402909980532};
     for (int k = 0; k < 2; ++k) {
       evenly[k] = 2 * fraction(slope[k] * i) - 1;
-      anyhow[k] = 2 * fraction(slope[k] * i * i) - 1;
+      anyhow[k] = 2 * fraction(fraction(slope[k] * i) * i) - 1;  // of large numbers, too, some fraction is left
     }
   }
 
@@ -71,38 +71,39 @@ inline char const* name_of(collide::angular_velocity) { return "angular_velocity
 inline char const* name_of(collide::stuck) { return "stuck"; }
 inline char const* name_of(collide::slow_steps) { return "slow_steps"; }
 
-/// A column's values of the particles that are there.
+/// A column's values of the particles that are there, and how many each has.
 template <class Column, class Simulation>
 auto of_present(Simulation const& simulation) {
   auto const present = simulation.template to_host<collide::present>();
   auto values = simulation.template to_host<Column>();
-  std::size_t const width = values.size() / present.size();
+  std::size_t const width = values.size() / present.size();  // not of those that are there: there may be none
   std::size_t kept = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (present[i / width] != 0) values[kept++] = values[i];
   }
   values.resize(kept);
-  return values;
+  return std::pair(values, width);
 }
 
 /// Writes the particles that are there, with all that is known of them.
 template <class Simulation, class... Column>
 void write_particles(std::string const& path, Simulation const& simulation, collide::columns<Column...>) {
-  auto const points = of_present<collide::position>(simulation);
+  auto const points = of_present<collide::position>(simulation).first;
   std::size_t const n = points.size() / 3;
   std::vector<vtk_array> known{{"radius", std::vector<float>(n, simulation.spheres().common_radius())}};
   auto const add = [&](auto column) {
     using type = decltype(column);
     if constexpr (!std::is_same<type, collide::position>::value && !std::is_same<type, collide::present>::value) {
-      auto const values = of_present<type>(simulation);
-      known.emplace_back(name_of(column), values, n == 0 ? 1 : values.size() / n);
+      auto const [values, width] = of_present<type>(simulation);
+      known.emplace_back(name_of(column), values, width);
     }
   };
   (add(Column{}), ...);
-  std::vector<std::uint32_t> all(n);
+  std::vector<std::uint32_t> all(n), ends;
   for (std::size_t i = 0; i < n; ++i) all[i] = static_cast<std::uint32_t>(i);
+  if (n != 0) ends.push_back(static_cast<std::uint32_t>(n));
   output_file out(path);
-  write_vtp(out, points, known, "Verts", all, {static_cast<std::uint32_t>(n)});
+  write_vtp(out, points, known, "Verts", all, ends);
   out.commit();
 }
 
@@ -113,6 +114,13 @@ inline void write_mesh(std::string const& path, std::vector<float> const& vertic
   output_file out(path);
   write_vtp(out, vertices, {}, "Polys", corners, ends);
   out.commit();
+}
+
+/// True if a file is in a folder, or a folder of that; either may not be there yet.
+inline bool is_within(std::string const& file, std::string const& folder) {
+  using std::filesystem::weakly_canonical;
+  auto const way = weakly_canonical(file).lexically_relative(weakly_canonical(folder));
+  return !way.empty() && *way.begin() != "..";
 }
 
 /// Makes the folder that the film is to be in, which may be there already, but empty: no film is lost.
@@ -230,6 +238,9 @@ int film_program(int argc, char** argv, film wish, Make const& make) {
     choose_space(wish.space, [&](auto space) {
       using device = device_of<typename decltype(space)::type>;
       device::require();
+      if (!wish.report.empty() && !wish.output.empty() && detail::is_within(wish.report, wish.output)) {
+        throw usage_error("--report: " + wish.report + " is in the folder of --output");
+      }
       check_outputs({}, {{"--report", wish.report}});
       if (!wish.output.empty()) detail::make_folder(wish.output);
       detail::shoot(wish, make(device::make(wish.threads, device::memory()), wish));

@@ -33,6 +33,7 @@ struct vtk_array {
 inline void write_vtp(output_file& out, std::vector<float> const& points, std::vector<vtk_array> const& of_points,
                       std::string const& kind, std::vector<std::uint32_t> const& corners,
                       std::vector<std::uint32_t> const& ends) {
+  static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the header says so");
   std::string data;
   auto const section = [&](std::string const& name, std::vector<vtk_array> const& arrays) {
     out << "<" << name << ">\n";

@@ -384,7 +384,8 @@ class bucket::index {
     space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
   }
 
-  /// Makes a grid for spheres up to `radius`, which serves until the next build.
+  /// Makes a grid for spheres up to `radius`, which serves until the next build, or until many spheres that move want
+  /// another.
   template <class Space>
   void prepare(Space& space, bucket const& options, S radius) {
     radius_given_ = true;
@@ -418,7 +419,10 @@ class bucket::index {
         if (detail::finite(reach) && reach <= 2 * spheres.common_radius()) {
           S const wider = reach + reach / 16;  // so that a bit more next time fits too
           bool const kept = wanted_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
-          if (!kept) make_grids(space, options, &wider, 1);
+          if (!kept) {
+            make_grids(space, options, &wider, 1);
+            radius_given_ = false;  // the grid of that radius is no more
+          }
           swapped_ = grid_count_ > 0;
           if (swapped_) {
             sorted_.sort(space, detail::balls_around<S>{spheres, reach});

@@ -133,7 +133,8 @@ class detector {
     mesh_ = mesh;
   }
 
-  /// The same, and everything that spheres of radius up to `radius` need, so that a query has nothing left to prepare.
+  /// The same, and everything that spheres at rest of radius up to `radius` need, so that a query has nothing left to
+  /// prepare. Many spheres that move may still want a grid of their own on the host.
   /// Spheres with a larger radius are served all the same, more slowly.
   void build(mesh_view<Scalar> mesh, Scalar radius) {
     build(mesh);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -116,7 +117,7 @@ template <class S>
 void check_several_ways(std::vector<tests::near_sweep> const& cases) {
   namespace detail = collide::detail;
   constexpr std::size_t lanes = detail::sphere_columns<S>::lanes;
-  std::size_t wrong = 0, sure = 0, lost = 0;
+  std::size_t wrong = 0, lost = 0, sure[2] = {};
   for (std::size_t i = 0; i < cases.size(); ++i) {
     tests::narrow_case<S> const made(cases[i]);
     auto const& move = cases[i].move;
@@ -124,7 +125,7 @@ void check_several_ways(std::vector<tests::near_sweep> const& cases) {
     if (i % 3 != 0) ball.radius *= 1 + std::ldexp(i % 3 == 1 ? S(1) : S(-1), -4 - static_cast<int>(i % 20));
     bool const hit = detail::decide(made.shape, ball).hit;
     auto const v = detail::attempt_straight(made.shape, collide::detail::enclosing(ball), detail::midway(ball));
-    sure += v != detail::verdict::unsure;
+    if (v != detail::verdict::unsure) ++sure[v == detail::verdict::hit];
     wrong += v == (hit ? detail::verdict::miss : detail::verdict::hit);
     S columns[5][lanes] = {};
     collide::id ids[lanes];
@@ -134,7 +135,29 @@ void check_several_ways(std::vector<tests::near_sweep> const& cases) {
   }
   CHECK(wrong == 0);
   CHECK(lost == 0);
-  CHECK(sure > cases.size() / 500);  // most of these are left to the swept test
+  CHECK(sure[0] > cases.size() / 1000);  // most of these are left to the swept test
+}
+
+/// The same of balls that are near contact in the middle of their way, where most are sure to touch or not.
+template <class S>
+void check_midway(std::vector<tests::near_case> const& cases) {
+  namespace detail = collide::detail;
+  std::mt19937 engine(67);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::size_t wrong = 0, hits = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    tests::narrow_case<S> const made(cases[i]);
+    collide::moving_sphere<S> ball{made.ball, {S(0), S(0), S(0)}};
+    S const length = ball.radius * std::ldexp(S(1), -static_cast<int>(i % 30));
+    for (int k = 0; k < 3; ++k) ball.displacement[k] = static_cast<S>(uniform(engine)) * length;
+    ball.centre -= ball.displacement / 2;
+    ball.radius *= 1 + std::ldexp(S(i % 2 == 0 ? 1 : -1), -static_cast<int>(i / 30 % 30));
+    auto const v = detail::attempt_straight(made.shape, detail::enclosing(ball), detail::midway(ball));
+    hits += v == detail::verdict::hit;
+    wrong += v == (detail::decide(made.shape, ball).hit ? detail::verdict::miss : detail::verdict::hit);
+  }
+  CHECK(wrong == 0);
+  CHECK(hits > cases.size() / 20);
 }
 
 }  // namespace
@@ -160,6 +183,7 @@ TEST_CASE_TEMPLATE("sorted spheres: the same of spheres that move", S, float, do
   check_several_ways<S>(tests::near_sweeps<S>(64, 20000));
   check_several_ways<S>(tests::lattice_sweeps<S>(65, 5000));
   check_several_ways<S>(tests::mixed_sweeps<S>(66, 5000));
+  check_midway<S>(tests::near_contact<S>(67, 20000));
 }
 
 TEST_CASE("sorted spheres: running sums, in parts or not") {

@@ -26,6 +26,17 @@ std::vector<S> octahedron(double flat, int divisions) {
   return corners;
 }
 
+/// Counts how often it is asked.
+struct counting : collide::karabassi_swept<> {
+  inline static std::size_t calls = 0;
+
+  template <class S>
+  static bool intersects(collide::triangle<S> const& t, collide::moving_sphere<S> const& s) {
+    ++calls;
+    return collide::karabassi_swept<>::intersects(t, s);
+  }
+};
+
 /// Spheres from outside to outside, through the middle of the mesh; how many are not reported.
 template <class S>
 std::size_t count_tunnels(std::vector<S> const& corners, double flat, std::size_t n, unsigned seed) {
@@ -151,4 +162,55 @@ TEST_CASE("swept queries: of 1e7 fast spheres none tunnels through a closed, a t
   CHECK(count_tunnels<float>(octahedron<float>(1e-6, 16), 1e-6, 2000000, 3) == 0);
   CHECK(count_tunnels<float>(octahedron<float>(1e4, 4), 1e4, 2000000, 4) == 0);
   CHECK(count_tunnels<double>(octahedron<double>(1e-9, 8), 1e-9, 2000000, 5) == 0);
+}
+
+TEST_CASE_TEMPLATE("swept queries: many spheres with short ways are sorted, those with long ways are not", S, float,
+                   double) {
+  tests::motion m;
+  m.one_radius = true;
+  m.triangles = 60;
+  m.spheres = 2500;
+  for (double const longest : {0.5, 20.0}) {
+    m.longest = longest;
+    auto const made = tests::random_motion<S>(12, m);
+    collide::detector<collide::bucket, collide::karabassi_swept<>, collide::host, S> detector(collide::host(1));
+    auto const pairs = detector.detect(made.mesh(), made.moving(), collide::pairs()).to_host();
+    CHECK(pairs.size() > 20);
+    // one thread finds pairs in the order of whoever looks for the others
+    bool const triangles_look = std::is_sorted(pairs.begin(), pairs.end(),
+                                               [](auto const& a, auto const& b) { return a.triangle < b.triangle; });
+    CHECK(triangles_look == (longest < 1));
+  }
+}
+
+TEST_CASE("swept queries: a grid for small spheres does not stay for large ones") {
+  std::vector<float> corners;  // small triangles, one apart
+  for (int x = 0; x < 32; ++x)
+    for (int y = 0; y < 32; ++y)
+      for (float const d : {0.f, 0.5f, 0.25f}) {
+        corners.insert(corners.end(), {float(x) + d, float(y) + (d == 0.25f ? 0.5f : 0.f), 0.f});
+      }
+  auto const spheres = [](std::size_t n, float radius, float way) {
+    std::vector<float> centres, displacements;
+    for (std::size_t i = 0; i < n; ++i) {
+      centres.insert(centres.end(), {float(i % 61) / 2, float(i / 61 % 61) / 2, float(i % 7) / 10});
+      displacements.insert(displacements.end(), {way, 0, 0});
+    }
+    return std::tuple(centres, displacements, radius);
+  };
+  auto const small = spheres(5000, 0.1f, 0.05f), large = spheres(100, 1, 8);
+  auto const calls = [](auto& detector, auto const& of) {
+    auto const& [centres, displacements, radius] = of;
+    counting::calls = 0;
+    detector.query(
+        collide::moving(collide::spheres_xyz(centres.data(), centres.size() / 3, radius), displacements.data()),
+        collide::count());
+    return counting::calls;
+  };
+  collide::detector<collide::bucket, counting> detector(collide::host(1));
+  detector.build(collide::triangle_soup(corners.data(), corners.size() / 9), 1.f);
+  std::size_t const first = calls(detector, large);
+  CHECK(first < 100 * 1024 / 10);
+  CHECK(calls(detector, small) < 5000 * 1024 / 10);
+  CHECK(calls(detector, large) < 2 * first);
 }

@@ -15,7 +15,8 @@ COLLIDE_HD_INLINE sphere<S> enclosing(moving_sphere<S> const& s) {
   return {s.centre + half, s.radius + (length + slack)};
 }
 
-/// A ball that the sphere contains in the middle of its way; of a negative radius if rounding leaves none.
+/// A ball that the sphere contains in the middle of its way, if it is large enough for a certain hit; of a negative
+/// radius if rounding leaves none. See docs/numerics.md.
 template <class S>
 COLLIDE_HD_INLINE sphere<S> midway(moving_sphere<S> const& s) {
   S const slack = 8 * format<S>::unit * (magnitude(s.centre) + magnitude(s.displacement));

@@ -61,8 +61,9 @@ struct mark_cells {
   }
 };
 
-/// Kernel body of a block of one lane: the longest displacement, squared, and the farthest coordinate, as bits. What is
-/// NaN does not count.
+/// Kernel body of a block of one lane: the longest displacement, squared, and the farthest coordinate, as bits, of
+/// which the larger are those of the larger number. What is NaN does not count, also where the compiler takes it that
+/// there is none.
 template <class S>
 struct measure_ways {
   static constexpr int items = 4;
@@ -80,33 +81,36 @@ struct measure_ways {
   void operator()(Block& block, nothing&) const {
     constexpr std::size_t share = batches * Block::items;
     std::size_t const begin = block.index() * share, end = smaller(begin + share, spheres.size());
-    S lengths[Block::items] = {}, fars[Block::items] = {};  // one would be compared one after the other
+    bits_of<S> lengths[Block::items] = {}, fars[Block::items] = {};  // one would be compared one after the other
     vectorised([&] { measure(begin, end, lengths, fars); });
-    S length = 0, far = 0;
-    for (int k = 0; k < Block::items; ++k) {
-      length = larger(length, lengths[k]);
-      far = larger(far, fars[k]);
+    for (int k = 1; k < Block::items; ++k) {
+      lengths[0] = larger(lengths[0], lengths[k]);
+      fars[0] = larger(fars[0], fars[k]);
     }
-    fetch_max(squared_length, bits(length));
-    fetch_max(farthest, bits(far));
+    fetch_max(squared_length, lengths[0]);
+    fetch_max(farthest, fars[0]);
   }
 
  private:
   template <std::size_t n>
-  void measure(std::size_t begin, std::size_t end, S (&lengths)[n], S (&fars)[n]) const {
+  void measure(std::size_t begin, std::size_t end, bits_of<S> (&lengths)[n], bits_of<S> (&fars)[n]) const {
     for (std::size_t first = begin; first < end; first += n) {
       moving_batch<S, n> batch;
       batch.load(spheres, first);
       for (std::size_t k = 0; k < n; ++k) {
         S const dx = batch.dx[k], dy = batch.dy[k], dz = batch.dz[k];
-        S const xy = larger(abs_of(batch.x[k]), abs_of(batch.y[k]));
-        lengths[k] = larger(lengths[k], dx * dx + (dy * dy + dz * dz));
-        fars[k] = larger(fars[k], larger(xy, abs_of(batch.z[k])));
+        lengths[k] = larger(lengths[k], magnitude_bits(dx * dx + (dy * dy + dz * dz)));
+        bits_of<S> const xy = larger(magnitude_bits(batch.x[k]), magnitude_bits(batch.y[k]));
+        fars[k] = larger(fars[k], larger(xy, magnitude_bits(batch.z[k])));
       }
     }
   }
 
-  static S abs_of(S x) { return x < 0 ? -x : x; }
+  /// Bits of |x|; 0 if that is NaN.
+  static bits_of<S> magnitude_bits(S x) {
+    bits_of<S> const b = bits(x) & ~bits(-S(0));
+    return b > bits(std::numeric_limits<S>::infinity()) ? 0 : b;
+  }
 };
 
 /// Spheres that move as spheres at rest, all of one radius, that contain their ways: as far as placing them goes.
