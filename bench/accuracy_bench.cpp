@@ -69,9 +69,7 @@ void race(benchmark::State& state, Space const& space, std::vector<contestant> c
     state.SetIterationTime(sum);
   }
   for (std::size_t i = 0; i < times.size(); ++i) {
-    auto const middle = times[i].begin() + static_cast<std::ptrdiff_t>(times[i].size() / 2);
-    std::nth_element(times[i].begin(), middle, times[i].end());
-    state.counters[contestants[i].precision + "_ms"] = *middle * 1e3;
+    state.counters[contestants[i].precision + "_ms"] = bench::median(times[i]) * 1e3;
   }
 }
 

@@ -17,6 +17,7 @@
 #include <collide/simulation.cuh>
 
 #include "io/scenes.hpp"
+#include "stopwatch.hpp"
 
 namespace bench {
 
@@ -165,14 +166,6 @@ template <class S>
 vec at(std::vector<S> const& xyz, std::size_t i) {
   return collide::vec3<S>(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]).template cast<double>();
 }
-
-/// The middle of some numbers.
-inline double median(std::vector<double> of) {
-  auto const middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
-  std::nth_element(of.begin(), middle, of.end());
-  return *middle;
-}
-
 /// Where the balls of an arena are in the end: by closed form, or by steps so small, with double coordinates, that
 /// twice as large ones hardly matter.
 struct truth {

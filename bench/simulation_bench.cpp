@@ -123,8 +123,7 @@ class suite {
         for (int k = 0; k < series<Space>; ++k) both();
       }));
     }
-    std::nth_element(seconds.begin(), seconds.begin() + 50, seconds.end());
-    floor_ = seconds[50] / series<Space>;
+    floor_ = bench::median(seconds) / series<Space>;
     ::add("read and write both", space_, floor_, 24, [s = *this] { return s.template by_hand<touch_all>(); });
     ::add("move, by hand", space_, floor_, 24, [s = *this] { return s.template by_hand<move_all>(); });
   }

@@ -13,6 +13,13 @@
 
 namespace bench {
 
+/// The median of at least one number; of an even number of them the upper one.
+inline double median(std::vector<double> of) {
+  auto const middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
+  std::nth_element(of.begin(), middle, of.end());
+  return *middle;
+}
+
 /// Time of complete work on the host, in seconds.
 class host_stopwatch {
  public:
@@ -103,8 +110,7 @@ double floor_of(Space const& space, S const* xyz, std::size_t n) {
   stopwatch<Space> watch(space);
   std::vector<double> seconds;
   for (int i = 0; i < 50; ++i) seconds.push_back(watch(read));
-  std::nth_element(seconds.begin(), seconds.begin() + 25, seconds.end());
-  return seconds[25];
+  return median(seconds);
 }
 
 }  // namespace bench
