@@ -13,8 +13,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -29,48 +27,20 @@
 
 #include "accuracy_scenes.hpp"
 #include "program.hpp"
-#include "stopwatch.hpp"
+#include "race.hpp"
 
 namespace {
 
 /// As many spheres as `all_pairs` can be asked for on the host, and as many tests as time is taken of.
 constexpr std::size_t few_spheres = 2048, timed_tests = 1 << 20;
 
-/// What one precision has to do.
-struct contestant {
-  std::string precision;
-  std::function<void()> work;
-};
-
 /// make(Precision()) of each precision.
 template <class Make>
-std::vector<contestant> each_precision(Make const& make) {
+std::vector<bench::contestant> each_precision(Make const& make) {
   return {{"baseline", make(collide::baseline())},
           {"single", make(collide::single_precision())},
           {"double", make(collide::double_precision())},
           {"exact", make(collide::exact())}};
-}
-
-/// Times all of them in every iteration, each time in another order.
-template <class Space>
-void race(benchmark::State& state, Space const& space, std::vector<contestant> const& contestants) {
-  bench::stopwatch<Space> watch(space);
-  std::vector<std::vector<double>> times(contestants.size());
-  for (auto const& c : contestants) c.work();
-  std::size_t first = 0;
-  for (auto _ : state) {
-    double sum = 0;
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      std::size_t const i = (first + k) % times.size();
-      times[i].push_back(watch(contestants[i].work));
-      sum += times[i].back();
-    }
-    ++first;
-    state.SetIterationTime(sum);
-  }
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    state.counters[contestants[i].precision + "_ms"] = bench::median(times[i]) * 1e3;
-  }
 }
 
 /// A scene in memory of a space. Made once.
@@ -101,15 +71,15 @@ bench::test_list<S> const& tests_of(bench::scene_kind const& kind) {
 template <class Broad, class S, class Space>
 void detect(benchmark::State& state, bench::scene_kind const& kind, Space space) {
   auto const& scene = scene_in<Space, S>::get(kind, space);
-  race(state, space, each_precision([&](auto precision) {
-         using narrow_phase = collide::karabassi<decltype(precision)>;
-         auto const detector = std::make_shared<collide::detector<Broad, narrow_phase, Space, S>>(space);
-         auto const pairs = std::make_shared<collide::pairs>();
-         return [=, &scene] {
-           detector->build(scene.mesh.view(), scene.largest_radius);
-           detector->query(scene.spheres.view(), *pairs);
-         };
-       }));
+  bench::race(state, space, bench::warmed(each_precision([&](auto precision) {
+                using narrow_phase = collide::karabassi<decltype(precision)>;
+                auto const detector = std::make_shared<collide::detector<Broad, narrow_phase, Space, S>>(space);
+                auto const pairs = std::make_shared<collide::pairs>();
+                return [=, &scene] {
+                  detector->build(scene.mesh.view(), scene.largest_radius);
+                  detector->query(scene.spheres.view(), *pairs);
+                };
+              })));
   state.counters["triangles"] = static_cast<double>(scene.mesh.view().size());
   state.counters["spheres"] = static_cast<double>(kind.spheres);
 }
@@ -182,11 +152,12 @@ void test(benchmark::State& state, bench::scene_kind const& kind, Space space) {
         false_hits += hits[i] && !truth[i].hit;
         false_misses += !hits[i] && truth[i].hit;
       }
-      counts[c.precision + "_false_hits"] = false_hits;
-      counts[c.precision + "_false_misses"] = false_misses;
+      counts[c.name + "_false_hits"] = false_hits;
+      counts[c.name + "_false_misses"] = false_misses;
     }
   }
-  race(state, space, each_precision([&](auto precision) { return [=] { decide(precision, timed); }; }));
+  bench::race(state, space,
+              bench::warmed(each_precision([&](auto precision) { return [=] { decide(precision, timed); }; })));
   for (auto const& [name, count] : counts) state.counters[name] = count;
   if (counts["exact_false_hits"] + counts["exact_false_misses"] > 0) {
     state.SkipWithError("exact is not what it is on the host");

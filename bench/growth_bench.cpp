@@ -11,7 +11,6 @@
 /// time over their sum: linear growth is a line that does not rise. LARGEST bounds spheres and triangles.
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 

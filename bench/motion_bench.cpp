@@ -15,8 +15,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -33,41 +31,13 @@
 
 #include "motion_scenes.hpp"
 #include "program.hpp"
-#include "stopwatch.hpp"
+#include "race.hpp"
 
 namespace {
 
 /// Balls of which the end is known, and the steps per frame that it is known from, where there is no closed form.
 constexpr std::size_t most_judged = 1 << 13;
 constexpr int finest = 256;
-
-/// What one composition has to do, and how it begins.
-struct contestant {
-  std::string name;
-  std::function<void()> begin, work;
-};
-
-/// Times all of them in every iteration, each time, also of all repetitions, in another order.
-template <class Space>
-void race(benchmark::State& state, Space const& space, std::vector<contestant> const& contestants) {
-  bench::stopwatch<Space> watch(space);
-  std::vector<std::vector<double>> times(contestants.size());
-  static std::size_t first = 0;
-  for (auto _ : state) {
-    double sum = 0;
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      std::size_t const i = (first + k) % times.size();
-      contestants[i].begin();
-      times[i].push_back(watch(contestants[i].work));
-      sum += times[i].back();
-    }
-    ++first;
-    state.SetIterationTime(sum);
-  }
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    state.counters[contestants[i].name + "_ms"] = bench::median(times[i]) * 1e3;
-  }
-}
 
 bench::truth const& truth_of(bench::arena const& in, std::size_t balls) {
   static std::map<std::string, bench::truth> made;
@@ -85,7 +55,7 @@ struct stage {
   collide::uploaded_spheres<float> balls;
   collide::buffer<float> velocities;
   std::map<std::string, double> counters;
-  std::vector<contestant> contestants;
+  std::vector<bench::contestant> contestants;
 
   stage(Space const& on, bench::arena const& arena, std::size_t n)
       : space{on}, in{arena}, crowd(arena, n), mesh{upload(space, crowd.mesh())}, balls{upload(space, crowd.balls())} {
@@ -112,7 +82,7 @@ struct stage {
                                                    collide::bounce{1});
     made->set_mesh(mesh.view());
     for (int const steps : all_steps) {
-      contestant c;
+      bench::contestant c;
       c.name = all_steps.size() == 1 ? name : name + "_" + std::to_string(steps);
       c.begin = [=] { made->set(balls.view(), velocities.data()); };
       c.work = [=] {
@@ -138,7 +108,7 @@ void step(benchmark::State& state, bench::arena const& in, std::size_t n, Space 
   static std::map<std::string, std::unique_ptr<stage<Space>>> made;
   auto& here = made[in.name];
   if (here == nullptr) here = std::make_unique<stage<Space>>(space, in, n);
-  race(state, space, here->contestants);
+  bench::race(state, space, here->contestants);
   for (auto const& [name, count] : here->counters) state.counters[name] = count;
   if (here->counters["euler_swept_tunnelled"] + here->counters["verlet_swept_tunnelled"] > 0) {
     state.SkipWithError("a ball has passed through the mesh though its way was swept");
@@ -176,7 +146,7 @@ struct study {
 template <class Space>
 void query(benchmark::State& state, std::size_t n, Space space) {
   static auto const scene = study<Space>::make(space, n);
-  std::vector<contestant> contestants;
+  std::vector<bench::contestant> contestants;
   auto const add = [&](std::string const& name, auto narrow_phase, auto const& spheres, auto sink_type) {
     using detector_type = collide::detector<collide::bucket, decltype(narrow_phase), Space>;
     auto const detector = std::make_shared<detector_type>(space);
@@ -186,10 +156,9 @@ void query(benchmark::State& state, std::size_t n, Space space) {
     build();
     ask();
     state.counters[name + "_found"] = static_cast<double>(out->size());
-    contestants.push_back({name, [] {}, ask});
+    contestants.push_back({name, ask});
     auto const another = std::make_shared<detector_type>(space);
-    contestants.push_back({name + "_both", [] {},
-                           [=] {
+    contestants.push_back({name + "_both", [=] {
                              another->build(scene.mesh.view(), scene.spheres.view().common_radius());
                              another->query(spheres, *out);
                            }});
@@ -197,8 +166,7 @@ void query(benchmark::State& state, std::size_t n, Space space) {
   add("static", collide::karabassi<>(), scene.spheres.view(), std::common_type<collide::pairs>());
   add("swept", collide::karabassi_swept<>(), scene.moving(), std::common_type<collide::pairs>());
   add("swept_impacts", collide::karabassi_swept<>(), scene.moving(), std::common_type<collide::impacts<float>>());
-  for (auto const& c : contestants) c.work();
-  race(state, space, contestants);
+  bench::race(state, space, bench::warmed(contestants));
   state.counters["spheres"] = static_cast<double>(n);
 }
 

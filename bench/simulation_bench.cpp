@@ -10,7 +10,6 @@
 /// memory that each takes.
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string>
