@@ -28,7 +28,7 @@ template <class S, class NarrowPhase, class Sink>
 struct bucket_query {
   static constexpr int items = 4;
   template <class Block>
-  static constexpr int residency = Block::lanes > 1 ? 6 : 4;
+  static constexpr int residency = 4;
   static constexpr bool still = at_rest<NarrowPhase, S>;
   using ball_type = std::conditional_t<still, sphere<S>, moving_sphere<S>>;
 
@@ -55,15 +55,14 @@ struct bucket_query {
   };
 
   tester<S, NarrowPhase, Sink> tests;
-  bounding_sphere<S> const* bounds;  ///< null if there was no room for them
-  grid<S> const* grids;              ///< by falling reach
-  int grid_count;                    ///< 0: every sphere is tested with every triangle
-  std::uint8_t const* occupied;      ///< a bit per cell: most are empty, and all bits fit into a near cache
-  cell_list const* lists;            ///< the entries of each cell
-  std::uint32_t const* total;        ///< number of entries
-  id const* entries;
-  std::size_t capacity;  ///< of entries
-  std::size_t share;     ///< spheres of a block
+  bucket_lookup<S> triangles;
+  std::size_t blocks;  ///< batches of spheres go to them in turn
+
+  /// A sphere and its first entry.
+  struct alignas(8) numbered {
+    id sphere;
+    std::uint32_t first;
+  };
 
   /// How many spheres are listed, and how many of their lists of candidates are only begun.
   struct listing {
@@ -81,9 +80,8 @@ struct bucket_query {
     std::int8_t grid_of[room];  ///< and in which
     std::uint32_t placed_count;
     std::uint32_t unplaced;                         ///< how many spheres no grid serves; they are listed all the same
-    id spheres[Block::lanes];                       ///< spheres with candidates
-    plain_ball balls[Block::lanes];                 ///< the same
-    std::uint32_t first[Block::lanes];              ///< their first entry
+    plain_ball balls[Block::lanes];                 ///< spheres with candidates
+    numbered numbers[Block::lanes];                 ///< of the same
     std::uint32_t counts[Block::lanes];             ///< how many they have
     std::uint32_t steps[still ? 1 : Block::lanes];  ///< and, of a sphere that moves, the step of its way
     listing listed;
@@ -152,8 +150,8 @@ struct bucket_query {
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     constexpr std::size_t n = Block::items, batch = Block::lanes * n;
-    std::size_t next = block.index() * share;
-    std::size_t const end = smaller(next + share, tests.spheres.size());
+    std::size_t next = block.index() * batch;
+    std::size_t const size = tests.spheres.size();
 
     block.each([&](int lane) {
       tests.begin(s.hits, lane);
@@ -161,16 +159,34 @@ struct bucket_query {
       s.placed_count = s.unplaced = 0;
       s.listed = {0, 0};
     });
-    int const usable = grid_count > 0 && *total <= capacity ? grid_count : 0;
-    while (next < end) {
+    // while the first spheres are on their way, the grid is looked at
+    typename Block::template per_lane<sphere_batch<S, Block::items>> ahead;
+    S const* quads = nullptr;
+    if constexpr (still) {
+      quads = sphere_batch<S, Block::items>::quads_of(tests.spheres);
+      if (tests.spheres.one_radius()) {
+        block.each([&](int lane) { load_ahead(ahead[lane], quads, next + static_cast<std::size_t>(lane) * n); });
+      }
+    }
+    bucket_lookup<S> const near = triangles.opened();
+    bool simple = false;
+    if constexpr (still) simple = tests.spheres.one_radius() && near.is_simple(tests.spheres.common_radius());
+    while (next < size) {
       std::uint32_t placed;
-      do {
-        block.each([&](int lane) { place_own(block, s, usable, next + static_cast<std::size_t>(lane) * n, end); });
-        next += batch;
-        placed = block.shared(s.placed_count);
-      } while (next < end && placed + batch <= scratch<Block>::room);
+      if (simple) {
+        if constexpr (still) {
+          cell_marks<S> const marks = near.marks();
+          placed = place_many(block, s, next, [&](int lane, std::size_t first) {
+            sphere_batch<S, Block::items> const own = ahead[lane];
+            load_ahead(ahead[lane], quads, first + blocks * batch);
+            mark_own(block, s, marks, own, first);
+          });
+        }
+      } else {
+        placed = place_many(block, s, next, [&](int, std::size_t first) { place_own(block, s, near, first); });
+      }
       if (placed == 0) continue;
-      look_up(block, s, usable, placed);
+      look_up(block, s, near, placed);
       block.each([&](int lane) {
         if (lane == 0) s.placed_count = s.unplaced = 0;
       });
@@ -179,15 +195,56 @@ struct bucket_query {
   }
 
  private:
-  /// Lists those of a lane's next spheres, from `first` on, that are inside a grid or that no grid serves.
+  /// Places batches of spheres, from `next` on, as long as there is room; `place(lane, first)` lists those of a lane.
+  /// Returns how many are listed.
+  template <class Block, class Place>
+  COLLIDE_HD_INLINE std::uint32_t place_many(Block& block, scratch<Block>& s, std::size_t& next,
+                                             Place const& place) const {
+    constexpr std::size_t n = Block::items, batch = Block::lanes * n;
+    std::size_t const size = tests.spheres.size();
+    std::uint32_t placed;
+    do {
+      block.each([&](int lane) {
+        std::size_t const first = next + static_cast<std::size_t>(lane) * n;
+        if (first < size) place(lane, first);
+      });
+      next += blocks * batch;
+      placed = block.shared(s.placed_count);
+    } while (next < size && placed + batch <= scratch<Block>::room);
+    return placed;
+  }
+
+  template <int N>
+  COLLIDE_HD_INLINE void load_ahead(sphere_batch<S, N>& to, S const* quads, std::size_t first) const {
+    if (first < tests.spheres.size()) to.load_centres_of(tests.spheres, quads, first);
+  }
+
+  /// Lists those of a lane's spheres, from `first` on, whose cell is not empty.
   template <class Block>
-  COLLIDE_HD_INLINE void place_own(Block& block, scratch<Block>& s, int usable, std::size_t first,
-                                   std::size_t end) const {
+  COLLIDE_HD_INLINE void mark_own(Block& block, scratch<Block>& s, cell_marks<S> const& marks,
+                                  sphere_batch<S, Block::items> const& own, std::size_t first) const {
     constexpr int n = Block::items;
-    if (first >= end) return;
+    bool near[n];
+    marks.mark(own.x, own.y, own.z, near);
+    std::uint32_t placed = 0;
+    for (int k = 0; k < n; ++k) placed += near[k];
+    if (placed == 0) return;
+    std::uint32_t place = block.add(s.placed_count, placed);
+    for (int k = 0; k < n; ++k) {
+      if (!near[k]) continue;
+      s.placed[place] = static_cast<id>(first) + static_cast<id>(k);
+      s.grid_of[place++] = 0;
+    }
+  }
+
+  /// Lists those of a lane's spheres from `first` on that are inside a grid or that no grid serves.
+  template <class Block>
+  COLLIDE_HD_INLINE void place_own(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
+                                   std::size_t first) const {
+    constexpr int n = Block::items;
     lane_state<n, still> own;
     own.load(tests.spheres, first);
-    for (int g = 0; g < usable; ++g) own.place(grids[g], g);
+    for (int g = 0; g < near.grid_count; ++g) own.place(near.grids[g], g);
     std::uint32_t placed = 0, unplaced = 0;
     for (int k = 0; k < n; ++k) {
       placed += own.grid_number[k] != nowhere;
@@ -205,13 +262,15 @@ struct bucket_query {
 
   /// Tests the `placed` spheres that are listed.
   template <class Block>
-  COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, int usable, std::uint32_t placed) const {
+  COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
+                                 std::uint32_t placed) const {
+    int const usable = near.grid_count;
     // the spheres of one level of one grid after the other, in the end those that no grid serves
     for (int g = 0; g <= usable; ++g) {
       bool const all = g == usable;
       if (all && s.unplaced == 0) break;
-      for (int l = 0; l < (all ? 1 : grids[g].levels); ++l) {
-        cells const here{all ? nullptr : &grids[g], all ? nullptr : &grids[g].level[l]};
+      for (int l = 0; l < (all ? 1 : near.grids[g].levels); ++l) {
+        cells const here{all ? nullptr : &near.grids[g], all ? nullptr : &near.grids[g].level[l]};
         for (std::uint32_t base = 0; base < placed; base += Block::lanes) {
           typename Block::template per_lane<cursor> at;
           bool more = false;
@@ -248,9 +307,8 @@ struct bucket_query {
 
   /// A sphere and the triangles of a cell: a range of entries, or of all triangles.
   struct candidates {
-    id number;
+    numbered of;
     ball_type ball;
-    std::uint32_t first;
   };
 
   /// The same, and the place on the sphere's way that the cell is.
@@ -268,9 +326,9 @@ struct bucket_query {
         [&](std::uint32_t i) {
           ball_type const ball = s.balls[i].get();
           if constexpr (still) {
-            return candidates{s.spheres[i], ball, s.first[i]};
+            return candidates{s.numbers[i], ball};
           } else {
-            candidates_of_place c{{s.spheres[i], ball, s.first[i]}, {}, {}};
+            candidates_of_place c{{s.numbers[i], ball}, {}, {}};
             if (all) return c;
             c.path = way<S>(*here.of, *here.level, ball.centre, ball.displacement);
             c.here = c.path.at(s.steps[i]);
@@ -278,14 +336,13 @@ struct bucket_query {
           }
         },
         [&](auto const& c, std::uint32_t k) {
-          id const triangle = all ? static_cast<id>(c.first + k) : entries[c.first + k];
-          auto const bound = bounds != nullptr ? bounds[triangle] : bounds_of(tests.mesh[triangle]);
-          sphere<S> const around = enclosing(c.ball);
-          bool near = bound.reached(around.centre, around.radius);
+          id const triangle = all ? static_cast<id>(c.of.first + k) : triangles.entries[c.of.first + k];
+          bool near = triangles.near(enclosing(c.ball), triangle);
           if constexpr (!still) near = near && (all || c.path.meets_first(c.here, tests.mesh[triangle]));
-          if (near) {
-            tests.test(block, s.hits, {c.number, triangle}, c.ball);
-          }
+          return near ? triangle : no_id;
+        },
+        [&](auto const& c, id triangle) {
+          if (triangle != no_id) tests.test(block, s.hits, {c.of.sphere, triangle}, c.ball);
         },
         [&] { tests.make_room(block, s.hits); });
   }
@@ -299,7 +356,7 @@ struct bucket_query {
       list(block, s, number, ball, {all, all}, at);
     } else if constexpr (still) {
       std::uint32_t const cell = here.of->cell_of(*here.level, ball.centre);
-      if (!is_empty(cell)) list(block, s, number, ball, lists[cell], at);
+      if (triangles.is_occupied(cell)) list(block, s, number, ball, triangles.lists[cell], at);
     } else {
       way<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {
@@ -307,12 +364,10 @@ struct bucket_query {
         if (!place.is_cell) continue;
         std::uint32_t const cell =
             here.level->row(place.cell[1], place.cell[2]) + (place.cell[0] & here.level->mask[0]);
-        if (!is_empty(cell) && list(block, s, number, ball, lists[cell], at)) return;
+        if (triangles.is_occupied(cell) && list(block, s, number, ball, triangles.lists[cell], at)) return;
       }
     }
   }
-
-  COLLIDE_HD_INLINE bool is_empty(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) == 0; }
 
   /// Lists a sphere with the entries of a cell from at.skip on, if there are any.
   template <class Block>
@@ -321,9 +376,8 @@ struct bucket_query {
     std::uint32_t const left = cell.count - at.skip, listed = smaller(left, longest<Block>);
     if (left == 0) return false;
     std::uint32_t const place = block.add(s.listed.spheres, 1);
-    s.spheres[place] = number;
+    s.numbers[place] = {number, cell.end - left};
     s.balls[place].set(ball);
-    s.first[place] = cell.end - left;
     s.counts[place] = listed;
     if constexpr (!still) s.steps[place] = at.step;
     at.skip += listed;
@@ -335,10 +389,10 @@ struct bucket_query {
 }  // namespace detail
 
 /// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid.hpp explains how.
-/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 4 scalars, at most 27 entries of 4
+/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 8 scalars, at most 27 entries of 4
 /// bytes in the CUDA spaces and 8 on the host, and up to 8 cells of 8 bytes; several grids only where radii differ by
 /// more than a factor of 4. The host sorts the spheres instead where there are many (detail/sorted_spheres.hpp): that
-/// takes O(triangles + spheres) for a query, 6 scalars per triangle, 4 bytes per cell, and about 12 scalars for each
+/// takes O(triangles + spheres) for a query, 8 scalars per triangle, 4 bytes per cell, and about 12 scalars for each
 /// sphere in a cell with triangles, 19 if it moves; no entries.
 struct bucket {
   /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
@@ -357,30 +411,25 @@ struct bucket {
 template <class S>
 class bucket::index {
  public:
-  /// One pass over the mesh: bounding spheres, extent, sizes. The grids follow as soon as a radius is known.
+  /// One pass over the mesh: boxes, extent, sizes. The grids follow as soon as a radius is known.
   template <class Space>
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
     if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
     if (options.memory_budget != 0 && mesh.size() != mesh_.size()) {
-      bounds_.release();
+      boxes_.release();
       release_grids();
     }
     mesh_ = mesh;
     grid_count_ = wanted_ = 0;
     radius_given_ = false;
-    bounded_ = listed_ = swapped_ = queried_ = false;
-    bool const swaps_here = swaps<Space>(options);
-    if (swaps_here) boxes_.reserve(space.resource(), mesh.size());
-    has_bounds_ = options.memory_budget == 0 || fixed_bytes + bounds_bytes() <= options.memory_budget;
-    if (has_bounds_) bounds_.reserve(space.resource(), mesh.size());
+    listed_ = swapped_ = queried_ = false;
+    has_boxes_ = options.memory_budget == 0 || fixed_bytes + boxes_bytes() <= options.memory_budget;
+    if (has_boxes_) boxes_.reserve(space.resource(), mesh.size());
     has_summary_ = options.memory_budget == 0 || fixed_bytes <= options.memory_budget;
     if (!has_summary_) return;
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
-    // where spheres and triangles can swap, bounding spheres are only made with the lists
-    bounded_ = has_bounds_ && !swaps_here;
-    detail::summarise_mesh<S> const body{mesh, summary, bounded_ ? bounds_.data() : nullptr,
-                                         swaps_here ? boxes_.data() : nullptr};
+    detail::summarise_mesh<S> const body{mesh, summary, has_boxes_ ? boxes_.data() : nullptr};
     space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
   }
 
@@ -444,30 +493,15 @@ class bucket::index {
         return;
       }
     }
-    detail::bucket_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink},
-                                                    bounded_ ? bounds_.data() : nullptr,
-                                                    grids_.data(),
-                                                    grid_count_,
-                                                    occupied(),
-                                                    lists_.data(),
-                                                    lists_total(),
-                                                    entries_.data(),
-                                                    entries_.capacity(),
-                                                    0};
-    body.share = detail::share_of<Space>(space, spheres.size(), body);
-    space.launch((spheres.size() + body.share - 1) / body.share, body);
+    detail::bucket_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink}, lookup(), 0};
+    body.blocks = detail::blocks_at_a_time<Space>(space, spheres.size(), body);
+    space.launch(body.blocks, body);
   }
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
   detail::bucket_lookup<S> lookup() const {
-    return {{mesh_, bounded_ ? bounds_.data() : nullptr},
-            grids_.data(),
-            grid_count_,
-            occupied(),
-            lists_.data(),
-            lists_total(),
-            entries_.data(),
-            entries_.capacity()};
+    return {{mesh_, boxes()}, grids_.data(), grid_count_,     occupied(),
+            lists_.data(),    lists_total(), entries_.data(), entries_.capacity()};
   }
 
   /// Width of the finest cells in use; 0 if there is no grid.
@@ -556,12 +590,10 @@ class bucket::index {
   template <class Space>
   void make_lists(Space& space, bucket const& options) {
     std::size_t const n = mesh_.size();
-    if (has_bounds_ && !bounded_) space.for_each(n, detail::compute_bounds<S>{mesh_, bounds_.data()});
-    bounded_ = has_bounds_;
     if (listed_ || grid_count_ == 0) return;
     auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
     constexpr int parts = Space::insertion_parts;
-    detail::grid_insertion<S, parts> const insertion{mesh_, grids_.data(), grid_count_};
+    detail::grid_insertion<S, parts> const insertion{mesh_, boxes(), grids_.data(), grid_count_};
     space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
     space.for_each(insertion.size(), detail::count_entries<S, parts>{insertion, lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
@@ -602,7 +634,7 @@ class bucket::index {
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
         std::size_t const cells = grids << bits;
         std::size_t const base =
-            fixed_bytes + (has_bounds_ ? bounds_bytes() : 0) + table_size(cells) * sizeof(detail::cell_list);
+            fixed_bytes + (has_boxes_ ? boxes_bytes() : 0) + table_size(cells) * sizeof(detail::cell_list);
         std::size_t const least = base + cells_per_triangle<Space> * n * grids * sizeof(id);
         std::size_t most_entries = std::min(512 * n + (std::size_t{1} << 20), id_limit / grids);
         if (options.memory_budget != 0) {
@@ -621,7 +653,8 @@ class bucket::index {
   std::uint32_t const* lists_total() const { return &lists_.data()[cells_].count; }
   std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
 
-  std::size_t bounds_bytes() const { return mesh_.size() * sizeof(detail::bounding_sphere<S>); }
+  std::size_t boxes_bytes() const { return mesh_.size() * sizeof(detail::triangle_box<S>); }
+  detail::triangle_box<S> const* boxes() const { return has_boxes_ ? boxes_.data() : nullptr; }
 
   /// What is held for another layout would come on top of what the budget was planned for.
   void release_grids() {
@@ -630,7 +663,7 @@ class bucket::index {
   }
 
   mesh_view<S> mesh_;
-  buffer<detail::bounding_sphere<S>> bounds_;
+  buffer<detail::triangle_box<S>> boxes_;
   buffer<detail::mesh_summary<S>> summary_;
   buffer<detail::size_histogram> radii_;
   buffer<detail::grid<S>> grids_;
@@ -642,13 +675,11 @@ class bucket::index {
   int wanted_ = 0;  ///< how many grids the spheres asked for: the budget may have allowed fewer
   S reaches_[detail::max_grids] = {};
   bool radius_given_ = false;
-  bool has_bounds_ = false;  ///< there is room for bounding spheres
-  bool bounded_ = false;     ///< and they are there
+  bool has_boxes_ = false;  ///< there was room for them
   bool has_summary_ = false;
   bool listed_ = false;   ///< the triangles are in the lists of the cells
   bool swapped_ = false;  ///< the spheres are, for this query
   bool queried_ = false;  ///< this is not the first query since the build
-  buffer<detail::box<S>> boxes_;
   detail::sorted_spheres<S> sorted_;
 };
 

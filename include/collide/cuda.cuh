@@ -100,12 +100,15 @@ class cuda_async_memory final : public std::pmr::memory_resource {
 namespace detail {
 
 inline constexpr int cuda_lanes = 256;  ///< threads of a block, in every kernel
+inline constexpr int cuda_warp = 32;    ///< threads that run together
 
 /// A block of CUDA threads that share memory.
 template <int Items>
 class cuda_block {
  public:
-  static constexpr int lanes = cuda_lanes, items = Items, pending = 2 * cuda_lanes;
+  static constexpr int lanes = cuda_lanes, items = Items;
+  static constexpr int ahead = 4;  ///< loads that a lane waits for together
+  static constexpr int pending = 2 * cuda_lanes;
 
   template <class T>
   struct per_lane {
@@ -117,7 +120,7 @@ class cuda_block {
     T values[N];
   };
   using scan_scratch = typename cub::BlockScan<std::uint32_t, lanes>::TempStorage;
-  using balance_scratch = balancing<cuda_block>;
+  using balance_scratch = scan_scratch;
   template <class T>
   using reduce_scratch = typename cub::BlockReduce<T, lanes>::TempStorage;
 
@@ -127,7 +130,7 @@ class cuda_block {
 
   template <class F>
   __device__ __forceinline__ void each(F const& f) {
-    f(static_cast<int>(threadIdx.x));
+    f(lane());
     sync();
   }
 
@@ -144,24 +147,53 @@ class cuda_block {
 
   template <class T, int N>
   __device__ __forceinline__ T const* stage(staging<T, N>& to, T const* from, int n) {
-    for (int i = static_cast<int>(threadIdx.x); i < n; i += lanes) to.values[i] = from[i];
+    for (int i = lane(); i < n; i += lanes) to.values[i] = from[i];
     sync();
     return to.values;
   }
 
   /// Exclusive scan of at most as many values in shared memory as there are lanes; returns their sum.
   __device__ std::uint32_t scan(scan_scratch& s, std::uint32_t* values, std::uint32_t n) {
-    std::uint32_t own = threadIdx.x < n ? values[threadIdx.x] : 0, sum;
+    auto const i = static_cast<std::uint32_t>(lane());
+    std::uint32_t own = i < n ? values[i] : 0, sum;
     cub::BlockScan<std::uint32_t, lanes>(s).ExclusiveSum(own, own, sum);
-    if (threadIdx.x < n) values[threadIdx.x] = own;
+    if (i < n) values[i] = own;
     sync();
     return sum;
   }
 
-  template <class Item, class F, class Round>
-  __device__ __forceinline__ void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item,
-                                           F const& f, Round const& after_round) {
-    s.run(*this, counts, n, item, f, after_round);
+  /// Each warp takes a stretch of the work at a time. Whose work its first piece is, it searches for; from there on, a
+  /// word of bits tells all its lanes which of the next pieces are the first ones of others.
+  template <class Item, class Look, class Take, class Round>
+  __device__ __forceinline__ void balanced(scan_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item,
+                                           Look const& look, Take const& take, Round const& after_round) {
+    constexpr std::uint32_t stretch = ahead * cuda_warp;
+    std::uint32_t const total = scan(s, counts, n);  // `counts` are begins now
+    auto const own = static_cast<std::uint32_t>(threadIdx.x) % cuda_warp;
+    for (std::uint32_t base = 0; base < total; base += ahead * lanes) {
+      std::uint32_t const first = base + static_cast<std::uint32_t>(lane()) / cuda_warp * stretch;
+      if (first < total) {
+        std::uint32_t before = last_begun(counts, n, first), i[ahead], k[ahead];
+        for (int a = 0; a < ahead; ++a) {
+          std::uint32_t const piece = first + static_cast<std::uint32_t>(a) * cuda_warp, next = before + 1 + own;
+          std::uint32_t const to_begin = next < n ? counts[next] - piece : cuda_warp;
+          unsigned const begun = all_bits(to_begin < cuda_warp ? 1u << to_begin : 0u);
+          i[a] = before + static_cast<std::uint32_t>(__popc(begun & ((2u << own) - 1)));
+          k[a] = piece + own - counts[i[a]];
+          before += static_cast<std::uint32_t>(__popc(begun));
+        }
+        decltype(look(item(0), 0)) seen[ahead];
+        auto const is_work = [&](int a) { return first + static_cast<std::uint32_t>(a) * cuda_warp + own < total; };
+        for (int a = 0; a < ahead; ++a) {
+          if (is_work(a)) seen[a] = look(item(i[a]), k[a]);
+        }
+        for (int a = 0; a < ahead; ++a) {
+          if (is_work(a)) take(item(i[a]), seen[a]);
+        }
+      }
+      sync();
+      after_round();
+    }
   }
 
   /// The combination of all lanes' values; valid in lane 0.
@@ -173,6 +205,29 @@ class cuda_block {
   }
 
  private:
+  /// The last of `n` rising numbers that is not above `x`, as the first is not; asked by a whole warp.
+  static __device__ __forceinline__ std::uint32_t last_begun(std::uint32_t const* begins, std::uint32_t n,
+                                                             std::uint32_t x) {
+    static_assert(lanes <= cuda_warp * cuda_warp);
+    constexpr std::uint32_t apart = lanes / cuda_warp;
+    std::uint32_t const own = threadIdx.x % cuda_warp;
+    auto const not_above = [&](std::uint32_t i) { return __ballot_sync(~0u, i < n && begins[i] <= x); };
+    std::uint32_t const i = static_cast<std::uint32_t>(__popc(not_above(own * apart)) - 1) * apart;
+    return i + static_cast<std::uint32_t>(__popc(not_above(i + own) & ((1u << apart) - 1))) - 1;
+  }
+
+  /// The bits of all lanes of a warp.
+  static __device__ __forceinline__ unsigned all_bits(unsigned own) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+    return __reduce_or_sync(~0u, own);
+#else
+    for (int apart = 1; apart < cuda_warp; apart *= 2) own |= __shfl_xor_sync(~0u, own, apart);
+    return own;
+#endif
+  }
+
+  static __device__ __forceinline__ int lane() { return static_cast<int>(threadIdx.x); }
+
   /// Waits for all lanes. A warp comes together first: ptxas 13.0 keeps loop counters in registers of the warp, but
   /// lets its threads reach the barrier one after another where what was before it has called a function.
   __device__ __forceinline__ void sync() {

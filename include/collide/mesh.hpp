@@ -32,12 +32,14 @@ class mesh_view {
   /// Triangle `i`, read from memory.
   COLLIDE_HD_INLINE triangle<S> operator[](std::size_t i) const {
     if (corners_ == nullptr) return {vertex(3 * i), vertex(3 * i + 1), vertex(3 * i + 2)};
-    return {vertex(corners_[3 * i]), vertex(corners_[3 * i + 1]), vertex(corners_[3 * i + 2])};
+    id const* const corners = corners_ + 3 * i;
+    return {vertex(corners[0]), vertex(corners[1]), vertex(corners[2])};
   }
 
   /// Vertex `i`, read from memory.
   COLLIDE_HD_INLINE vec3<S> vertex(std::size_t i) const {
-    return {vertices_[3 * i], vertices_[3 * i + 1], vertices_[3 * i + 2]};
+    S const* const from = vertices_ + 3 * i;
+    return {from[0], from[1], from[2]};
   }
 
   COLLIDE_HD S const* vertices() const { return vertices_; }

@@ -7,7 +7,9 @@
 ///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
-///   - `block.balanced(...)` spreads work evenly over the lanes: f(item(i), k) for all k < counts[i];
+///   - `block.balanced(...)` spreads work evenly over the lanes: take(item(i), look(item(i), k)) for all k < counts[i],
+///     which are at least 1; `look` only reads, so that a lane can do it ahead, up to `Block::ahead` times, and after
+///     each round the whole block calls `after_round()`;
 ///   - `block.scan(...)` makes of at most as many values as lanes the sums of those before each;
 ///   - `block.reduce(...)` combines a value per lane.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
@@ -29,9 +31,9 @@ template <class Block>
 struct balancing {
   typename Block::scan_scratch scan;
 
-  template <class Item, class F, class Round>
-  COLLIDE_HD void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, F const& f,
-                      Round const& after_round) {
+  template <class Item, class Look, class Take, class Round>
+  COLLIDE_HD void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, Look const& look,
+                      Take const& take, Round const& after_round) {
     std::uint32_t const total = block.scan(scan, counts, n);
     for (std::uint32_t base = 0; base < total; base += Block::lanes) {
       block.each([&](int lane) {
@@ -46,7 +48,8 @@ struct balancing {
             end = middle;
           }
         }
-        f(item(i), work - counts[i]);
+        auto const one = item(i);
+        take(one, look(one, work - counts[i]));
       });
       after_round();
     }
@@ -57,7 +60,7 @@ struct balancing {
 template <int Items, int Pending>
 class serial_block {
  public:
-  static constexpr int lanes = 1, items = Items, pending = Pending;
+  static constexpr int lanes = 1, items = Items, ahead = 1, pending = Pending;
 
   template <class T>
   struct per_lane {
@@ -102,12 +105,12 @@ class serial_block {
     return sum;
   }
 
-  template <class Item, class F, class Round>
+  template <class Item, class Look, class Take, class Round>
   COLLIDE_HD_INLINE void balanced(balance_scratch&, std::uint32_t const* counts, std::uint32_t n, Item const& item,
-                                  F const& f, Round const& after_round) {
+                                  Look const& look, Take const& take, Round const& after_round) {
     for (std::uint32_t i = 0; i < n; ++i) {
       auto const one = item(i);
-      for (std::uint32_t k = 0; k < counts[i]; ++k) f(one, k);
+      for (std::uint32_t k = 0; k < counts[i]; ++k) take(one, look(one, k));
       after_round();
     }
   }
@@ -126,7 +129,7 @@ class serial_block {
 template <int Lanes, int Items, bool Reversed>
 class lockstep_block {
  public:
-  static constexpr int lanes = Lanes, items = Items, pending = 2 * Lanes;
+  static constexpr int lanes = Lanes, items = Items, ahead = 1, pending = 2 * Lanes;
 
   template <class T>
   struct per_lane {
@@ -178,10 +181,10 @@ class lockstep_block {
     return sum;
   }
 
-  template <class Item, class F, class Round>
-  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item, F const& f,
-                Round const& after_round) {
-    s.run(*this, counts, n, item, f, after_round);
+  template <class Item, class Look, class Take, class Round>
+  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Look const& look,
+                Take const& take, Round const& after_round) {
+    s.run(*this, counts, n, item, look, take, after_round);
   }
 
   template <class T, class Combine>
@@ -203,14 +206,11 @@ std::size_t blocks_for(std::size_t n, Body const&) {
   return (n + per_block - 1) / per_block;
 }
 
-/// How many of `n` items a block takes, so that all blocks fit on the processor at a time, if it has such a limit: a
-/// multiple of what a lane has.
+/// The same, but no more than are at work at a time, if the space has such a limit: then they take items in turn.
 template <class Space, class Body>
-std::size_t share_of(Space const& space, std::size_t n, Body const& body) {
-  using block = typename Space::template block<Body>;
+std::size_t blocks_at_a_time(Space const& space, std::size_t n, Body const& body) {
   std::size_t const most = blocks_for<Space>(n, body), wave = space.template wave<Body>();
-  std::size_t const blocks = most < wave ? most : wave, items = block::items;
-  return (n + blocks * items - 1) / (blocks * items) * items;
+  return most < wave ? most : wave;
 }
 
 }  // namespace collide::detail

@@ -146,7 +146,7 @@ struct fly_body {
       vec3<S> const& c = p[k][position{}];
       x[k] = c.x(), y[k] = c.y(), z[k] = c.z();
     }
-    near.mark(x, y, z, listed);
+    near.marks().mark(x, y, z, listed);
   }
 
   /// What the narrow phase judges.

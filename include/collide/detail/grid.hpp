@@ -42,6 +42,22 @@ struct grid_level {
   std::uint32_t stride[2];  ///< how far the cells of neighbours in y and in z are apart
   std::uint32_t first;      ///< number of the first cell
 
+  /// How many cells fit below an offset from the grid's lower end; from 0 to 2^30.
+  COLLIDE_HD_INLINE std::uint32_t coordinate(S offset) const {
+    S const cells = mul(offset, inverse_width);
+    // without branches, and by way of a signed integer, for which all processors have an instruction
+    S const limited = smaller(larger(S(0), cells), S(1 << 30));
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(limited));
+  }
+
+  /// The same of an offset that is inside the grid; of others, any number.
+  COLLIDE_HD_INLINE std::uint32_t coordinate_inside(S offset) const {
+#if defined(__CUDA_ARCH__)
+    if constexpr (sizeof(S) == 4) return __float2uint_rz(mul(offset, inverse_width));  // has no 2^30 cells
+#endif
+    return coordinate(offset);
+  }
+
   /// Number of the first cell of a row along x.
   COLLIDE_HD_INLINE std::uint32_t row(std::uint32_t y, std::uint32_t z) const {
     return first + (y & mask[1]) * stride[0] + (z & mask[2]) * stride[1];
@@ -62,10 +78,7 @@ struct grid {
 
   /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.
   COLLIDE_HD_INLINE std::uint32_t coordinate(grid_level<S> const& l, S x, int axis) const {
-    S const cells = mul(x - lower[axis], l.inverse_width);
-    // without branches, and by way of a signed integer, for which all processors have an instruction
-    S const limited = smaller(larger(S(0), cells), S(1 << 30));
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(limited));
+    return l.coordinate(x - lower[axis]);
   }
 
   /// The cell that holds a point inside the grid.
@@ -97,6 +110,20 @@ struct grid {
     cell_range r = range_of(l, b);
     for (int k = 0; k < 3; ++k) r.upper[k] = smaller(r.upper[k], r.lower[k] + l.mask[k]);
     return r;
+  }
+
+  /// Calls f(cell) for every `parts`-th of the cells that a triangle with this box is put into, from the `part`-th on.
+  template <class F>
+  COLLIDE_HD_INLINE void each_cell(box<S> const& b, std::uint32_t part, std::uint32_t parts, F const& f) const {
+    if (levels == 0 || b.is_empty()) return;
+    grid_level<S> const& l = level_of(b);
+    cell_range const r = cells_of(l, b);
+    std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1;
+    std::uint32_t const n = nx * ny * (r.upper[2] - r.lower[2] + 1);
+    for (std::uint32_t i = part; i < n; i += parts) {
+      std::uint32_t const rows = i / nx;
+      f(l.row(r.lower[1] + rows % ny, r.lower[2] + rows / ny) + ((r.lower[0] + i % nx) & l.mask[0]));
+    }
   }
 
   /// Calls f(first, n) for runs of cells, first .. first + n, which are all that a triangle with this box is put into.
@@ -271,29 +298,27 @@ struct plan_grid {
   }
 };
 
-/// Visits the cells of triangles in all grids: the common part of counting and filling. `Parts` threads share the rows
-/// of a triangle, because each cell's counter takes its time to answer.
+/// Visits the cells of triangles in all grids: the common part of counting and filling. `Parts` threads, next to each
+/// other, share the cells of a triangle, because each cell's counter takes its time to answer, and counters next to
+/// each other answer together.
 template <class S, int Parts>
 struct grid_insertion {
   mesh_view<S> mesh;
+  triangle_box<S> const* boxes;  ///< null if there was no room for them
   grid<S> const* grids;
   int grid_count;
 
   /// How many threads there are.
   std::size_t size() const { return mesh.size() * Parts; }
 
-  COLLIDE_HD_INLINE id triangle(std::size_t thread) const { return static_cast<id>(thread / Parts); }
-
-  /// Calls f(first, n) for the rows of cells first .. first + n that are this thread's.
+  /// Calls f(cell, triangle) for all cells that are this thread's.
   template <class F>
-  COLLIDE_HD_INLINE void each_row(std::size_t thread, F const& f) const {
-    box<S> const b = box_of(mesh[triangle(thread)]);
-    int turn = static_cast<int>(thread % Parts);
+  COLLIDE_HD_INLINE void each_cell(std::size_t thread, F const& f) const {
+    auto const number = static_cast<id>(thread / Parts);
+    auto const part = static_cast<std::uint32_t>(thread % Parts);
+    box<S> const b = boxes != nullptr ? static_cast<box<S> const&>(boxes[number]) : box_of(mesh[number]);
     for (int n = 0; n < grid_count; ++n) {
-      grids[n].each_row(b, [&](std::uint32_t first, std::uint32_t count) {
-        if (turn == 0) f(first, count);
-        turn = turn == 0 ? Parts - 1 : turn - 1;
-      });
+      grids[n].each_cell(b, part, Parts, [&](std::uint32_t cell) { f(cell, number); });
     }
   }
 };
@@ -310,9 +335,7 @@ struct count_entries {
   grid_insertion<S, Parts> insertion;
   cell_list* cells;
   COLLIDE_HD void operator()(std::size_t thread) const {
-    insertion.each_row(thread, [&](std::uint32_t first, std::uint32_t n) {
-      for (std::uint32_t k = 0; k < n; ++k) fetch_add(&cells[first + k].count, 1u);
-    });
+    insertion.each_cell(thread, [&](std::uint32_t cell, id) { fetch_add(&cells[cell].count, 1u); });
   }
 };
 
@@ -379,18 +402,9 @@ struct fill_entries {
   id* entries;
   std::size_t capacity;
   COLLIDE_HD void operator()(std::size_t thread) const {
-    id const triangle = insertion.triangle(thread);
-    insertion.each_row(thread, [&](std::uint32_t first, std::uint32_t n) {
-      constexpr std::uint32_t together = 4;  // so many counters are asked before one answers
-      for (std::uint32_t done = 0; done < n; done += together) {
-        std::uint32_t slots[together] = {};
-        for (std::uint32_t k = 0; k < together; ++k) {
-          if (done + k < n) slots[k] = fetch_add(&cells[first + done + k].end, 1u);
-        }
-        for (std::uint32_t k = 0; k < together; ++k) {
-          if (done + k < n && slots[k] < capacity) entries[slots[k]] = triangle;
-        }
-      }
+    insertion.each_cell(thread, [&](std::uint32_t cell, id triangle) {
+      std::uint32_t const slot = fetch_add(&cells[cell].end, 1u);
+      if (slot < capacity) entries[slot] = triangle;
     });
   }
 };

@@ -103,8 +103,9 @@ template <class Block>
 struct hit_buffer {
   static constexpr std::uint32_t capacity = Block::pending;
   static constexpr bool together = Block::lanes > 1;
+  static constexpr std::uint32_t candidate_capacity = together ? (Block::ahead + 1) * Block::lanes : 1;
 
-  pair candidates[together ? capacity : 1];
+  pair candidates[candidate_capacity];
   std::uint32_t candidate_count;
   pair hits[capacity > 0 ? capacity : 1];
   std::uint32_t hit_count;
@@ -125,7 +126,8 @@ struct tester {
     if (lane == 0) b.candidate_count = b.hit_count = 0;
   }
 
-  /// Takes a candidate. Called by any lane; where lanes work together, at most once between two calls of `make_room`.
+  /// Takes a candidate. Called by any lane; where lanes work together, at most Block::ahead times between two calls of
+  /// `make_room`.
   template <class Block, class Ball>
   COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block>& b, pair p, Ball const& s) const {
     if constexpr (hit_buffer<Block>::together) {
@@ -135,12 +137,12 @@ struct tester {
     }
   }
 
-  /// Makes room for one more candidate per lane. Called by the whole block.
+  /// Makes room for Block::ahead more candidates per lane. Called by the whole block.
   template <class Block>
   COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block>& b) const {
     if constexpr (hit_buffer<Block>::together) {
       std::uint32_t const n = block.shared(b.candidate_count);
-      if (n + Block::lanes > hit_buffer<Block>::capacity) decide_all(block, b, n);
+      if (n + Block::ahead * Block::lanes > hit_buffer<Block>::candidate_capacity) decide_all(block, b, n);
     } else {
       if (b.hit_count == hit_buffer<Block>::capacity) store_all(block, b, b.hit_count);
     }

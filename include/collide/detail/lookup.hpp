@@ -3,15 +3,13 @@
 ///
 /// An index gives a trivially copyable `lookup()`. In a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick; `is_simple(radius)` is true if for balls
-///   of
-///     this radius it is quicker still to ask for several at a time, `mark(x, y, z, near)`;
+///     of this radius it is quicker still to ask `marks()` for several at a time, `mark(x, y, z, near)`;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
 ///     candidates, until it returns false; a triangle may appear more than once if the ball moves;
 ///   - `range.at(k)` is a triangle's number, `near(around, number)` a quick test whether a ball could touch it
 ///     all of whose way is in the ball `around`.
 #pragma once
 
-#include <collide/detail/bounding_sphere.hpp>
 #include <collide/detail/enclosing.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/way.hpp>
@@ -37,11 +35,11 @@ struct candidate_cursor {
 template <class S>
 struct triangle_lookup {
   mesh_view<S> mesh;
-  bounding_sphere<S> const* bounds;  ///< may be null
+  triangle_box<S> const* boxes;  ///< may be null
 
   COLLIDE_HD_INLINE bool near(sphere<S> const& around, id number) const {
-    bounding_sphere<S> const bound = bounds != nullptr ? bounds[number] : bounds_of(mesh[number]);
-    return bound.reached(around.centre, around.radius);
+    triangle_box<S> const box = boxes != nullptr ? boxes[number] : triangle_box_of(mesh[number]);
+    return box.reached(around.centre, around.radius);
   }
 
   /// All triangles, one range after the other.
@@ -57,6 +55,34 @@ struct triangle_lookup {
 /// In place of a lookup, if nothing asks.
 struct no_lookup {};
 
+/// Which cells have triangles, of the one level of the one grid that serves balls of one radius: all that most balls
+/// are asked, small enough to be kept in registers.
+template <class S>
+struct cell_marks {
+  S lower[3], upper[3];
+  grid_level<S> level;
+  std::uint8_t const* occupied;
+
+  /// Whether there may be triangles near each of several centres. Without branches, for the CPU's vector unit.
+  template <int N>
+  COLLIDE_HD_INLINE void mark(S const (&x)[N], S const (&y)[N], S const (&z)[N], bool (&near)[N]) const {
+    std::uint32_t cells[N], inside[N];
+    for (int k = 0; k < N; ++k) {
+      inside[k] = x[k] >= lower[0] ? 1u : 0u;
+      inside[k] &= x[k] <= upper[0] ? 1u : 0u;
+      inside[k] &= y[k] >= lower[1] ? 1u : 0u;
+      inside[k] &= y[k] <= upper[1] ? 1u : 0u;
+      inside[k] &= z[k] >= lower[2] ? 1u : 0u;
+      inside[k] &= z[k] <= upper[2] ? 1u : 0u;
+      std::uint32_t const cell =
+          level.row(level.coordinate_inside(y[k] - lower[1]), level.coordinate_inside(z[k] - lower[2])) +
+          (level.coordinate_inside(x[k] - lower[0]) & level.mask[0]);
+      cells[k] = inside[k] != 0 ? cell : level.first;  // outside there are no cells
+    }
+    for (int k = 0; k < N; ++k) near[k] = (inside[k] & occupied[cells[k] / 8] >> cells[k] % 8 & 1) != 0;
+  }
+};
+
 /// The lookup of `all_pairs`.
 template <class S>
 struct all_pairs_lookup : triangle_lookup<S> {
@@ -67,8 +93,7 @@ struct all_pairs_lookup : triangle_lookup<S> {
     return this->mesh.size() == 0;
   }
   COLLIDE_HD bool is_simple(S) const { return false; }
-  template <int N>
-  COLLIDE_HD void mark(S const (&)[N], S const (&)[N], S const (&)[N], bool (&)[N]) const {}
+  COLLIDE_HD cell_marks<S> marks() const { return {}; }
   template <class Ball>
   COLLIDE_HD candidate_cursor begin(Ball const&) const {
     return {0, 0, 0, 0};
@@ -98,6 +123,8 @@ struct bucket_lookup : triangle_lookup<S> {
     return open;
   }
 
+  COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) != 0; }
+
   template <class Ball>
   COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
     if (this->mesh.size() == 0) return true;
@@ -115,23 +142,10 @@ struct bucket_lookup : triangle_lookup<S> {
     return grid_count == 1 && grids[0].levels == 1 && valid_radius(radius) && radius <= grids[0].reach;
   }
 
-  /// Then `empty` is not near[k], for several balls.
-  template <int N>
-  COLLIDE_HD_INLINE void mark(S const (&x)[N], S const (&y)[N], S const (&z)[N], bool (&near)[N]) const {
+  /// Then, what tells it.
+  COLLIDE_HD_INLINE cell_marks<S> marks() const {
     grid<S> const& g = grids[0];
-    grid_level<S> const& l = g.level[0];
-    std::uint32_t cells[N], inside[N];
-    for (int k = 0; k < N; ++k) {
-      inside[k] = x[k] >= g.lower[0] ? 1u : 0u;
-      inside[k] &= x[k] <= g.upper[0] ? 1u : 0u;
-      inside[k] &= y[k] >= g.lower[1] ? 1u : 0u;
-      inside[k] &= y[k] <= g.upper[1] ? 1u : 0u;
-      inside[k] &= z[k] >= g.lower[2] ? 1u : 0u;
-      inside[k] &= z[k] <= g.upper[2] ? 1u : 0u;
-      std::uint32_t const cell = g.cell_of(l, {x[k], y[k], z[k]});
-      cells[k] = inside[k] != 0 ? cell : l.first;  // outside there are no cells
-    }
-    for (int k = 0; k < N; ++k) near[k] = (inside[k] & occupied[cells[k] / 8] >> cells[k] % 8 & 1) != 0;
+    return {{g.lower[0], g.lower[1], g.lower[2]}, {g.upper[0], g.upper[1], g.upper[2]}, g.level[0], occupied};
   }
 
   template <class Ball>
@@ -151,8 +165,6 @@ struct bucket_lookup : triangle_lookup<S> {
   }
 
  private:
-  COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) != 0; }
-
   /// The tightest grid that serves a ball; grids come by falling reach.
   template <class Ball>
   COLLIDE_HD_INLINE int grid_of(Ball const& ball) const {

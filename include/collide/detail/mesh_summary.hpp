@@ -2,7 +2,7 @@
 /// One pass over a mesh or a sphere set: what the broad phases must know of it.
 #pragma once
 
-#include <collide/detail/bounding_sphere.hpp>
+#include <collide/detail/arithmetic.hpp>
 #include <collide/detail/histogram.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
@@ -55,6 +55,35 @@ COLLIDE_HD_INLINE box<S> box_of(triangle<S> const& t) {
   return {{lower.x(), lower.y(), lower.z()}, {upper.x(), upper.y(), upper.z()}};
 }
 
+/// The box of a triangle, and the cheap test before the narrow phase: whether a ball comes near it.
+template <class S>
+struct alignas(4 * sizeof(S)) triangle_box : box<S> {
+  S slack;  ///< room for the rounding of the coarsest narrow phase, as far as it goes with the triangle
+
+  /// How far from the box the centre of a ball that touches the triangle is at most, `slack` apart; the root of the
+  /// smallest normal number covers squares that underflow. See docs/numerics.md.
+  static COLLIDE_HD_INLINE S reach(S radius) {
+    return radius * (1 + 16 * S(format<float>::unit)) + 2 * root(std::numeric_limits<S>::min());
+  }
+
+  COLLIDE_HD_INLINE bool reached(vec3<S> const& c, S radius) const {
+    S const x = gap(0, c.x()), y = gap(1, c.y()), z = gap(2, c.z()), most = reach(radius) + slack;
+    return x * x + (y * y + z * z) <= most * most;
+  }
+
+  /// How far a coordinate is outside the box along an axis.
+  COLLIDE_HD_INLINE S gap(int axis, S x) const {
+    S const outside = larger(this->lower[axis] - x, x - this->upper[axis]);
+    return select(outside > 0, outside, S(0));
+  }
+};
+
+template <class S>
+COLLIDE_HD_INLINE triangle_box<S> triangle_box_of(triangle<S> const& t) {
+  box<S> const b = box_of(t);
+  return {b, 16 * S(format<float>::unit) * b.extent()};
+}
+
 /// What a mesh looks like, over its finite triangles. Memory of zeros is a summary of none: `lower` and `upper` are
 /// both updated by a maximum.
 template <class S>
@@ -73,15 +102,14 @@ struct mesh_summary {
   COLLIDE_HD S upper_of(int k) const { return from_ordered<S>(upper[k]); }
 };
 
-/// Kernel body: fills the summary, and the bounding spheres if there is room for them.
+/// Kernel body: fills the summary, and the boxes of triangles if there is room for them.
 template <class S>
 struct summarise_mesh {
   static constexpr int items = 2;
 
   mesh_view<S> mesh;
   mesh_summary<S>* summary;
-  bounding_sphere<S>* bounds;  ///< null if they are not wanted
-  box<S>* boxes;               ///< the same
+  triangle_box<S>* boxes;  ///< null if they are not wanted
 
   template <class Block>
   struct scratch {
@@ -99,9 +127,7 @@ struct summarise_mesh {
       for (int k = 0; k < Block::items; ++k) {
         std::size_t const i = first + static_cast<std::size_t>(k) * Block::lanes + static_cast<std::size_t>(lane);
         if (i >= mesh.size()) break;
-        triangle<S> const t = mesh[i];
-        if (bounds != nullptr) bounds[i] = bounds_of(t);
-        box<S> const around = box_of(t);
+        triangle_box<S> const around = triangle_box_of(mesh[i]);
         if (boxes != nullptr) boxes[i] = around;
         if (around.is_empty()) continue;
         all[lane] = typename box<S>::unite{}(all[lane], around);

@@ -209,7 +209,14 @@ struct respond_body {
             sphere<S> const around = enclosing(until_next<Block>(one, ball));
             return candidates{one, ball, around, {s.from[i], s.first[i], 0}};
           },
-          [&](candidates const& c, std::uint32_t k) { offer<Block>(c, near, c.range.at(k)); }, [] {});
+          [&](candidates const& c, std::uint32_t k) {
+            id const number = c.range.at(k);
+            return near.near(c.around, number) ? number : no_id;
+          },
+          [&](candidates const& c, id number) {
+            if (number != no_id) offer<Block>(c, near, number);
+          },
+          [] {});
     }
   }
 
@@ -236,7 +243,6 @@ struct respond_body {
   /// Offers a triangle as the next contact of a particle, if they touch and it counts.
   template <class Block>
   COLLIDE_HD_INLINE void offer(candidates const& c, Lookup const& near, id number) const {
-    if (!near.near(c.around, number)) return;
     if constexpr (moves && Block::lanes == 1) {
       if (c.one.best != no_contact && static_cast<id>(c.one.best) == number) return;  // it was in another cell, too
     }

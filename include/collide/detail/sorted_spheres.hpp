@@ -42,7 +42,7 @@ inline std::uint64_t bits_of_flags(unsigned char const* flags) {
 /// Kernel body of `for_each` over triangles: sets a bit for every cell that a triangle looks into.
 template <class S>
 struct mark_cells {
-  box<S> const* boxes;
+  triangle_box<S> const* boxes;
   grid<S> const* grids;
   int grid_count;
   std::uint32_t* occupied;
@@ -263,13 +263,9 @@ struct sphere_columns {
   static constexpr std::size_t lanes = 8;  ///< how many are compared with a box at a time, also beyond the end
 
   S *x, *y, *z, *radius;
-  S* reach;  ///< how far from a triangle's box the centre is at most, if the two touch; `slack` apart
+  S* reach;  ///< as `triangle_box` has it
   id* number;
   moving_sphere<S>* moving = nullptr;  ///< null if they rest; else the others are of the balls around their ways
-
-  /// Room for the rounding of the coarsest narrow phase, as far as it goes with the triangle; the part that goes with
-  /// the radius is in `reach`. See docs/numerics.md.
-  static S slack(box<S> const& b) { return 16 * S(format<float>::unit) * b.extent(); }
 
   sphere<S> operator[](std::uint32_t i) const { return {{x[i], y[i], z[i]}, radius[i]}; }
 
@@ -278,26 +274,18 @@ struct sphere_columns {
     y[i] = s.centre.y();
     z[i] = s.centre.z();
     radius[i] = s.radius;
-    // the root of the smallest normal number covers squares that underflow
-    reach[i] = s.radius * (1 + 16 * S(format<float>::unit)) + 2 * root(std::numeric_limits<S>::min());
+    reach[i] = triangle_box<S>::reach(s.radius);
     number[i] = n;
   }
 
   /// Bit k is whether sphere first + k can reach what is in the box, for k < lanes. Without branches, for the
   /// processor's vector unit.
-  std::uint32_t reaching(box<S> const& b, std::uint32_t first) const {
+  std::uint32_t reaching(triangle_box<S> const& b, std::uint32_t first) const {
     bits_of<S> constexpr bit[lanes] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
-    S const more = slack(b);
     bits_of<S> mask = 0;
     for (std::size_t k = 0; k < lanes; ++k) {
       S const px = x[first + k], py = y[first + k], pz = z[first + k];
-      auto const gap = [](S below, S above) {
-        S const outside = larger(below, above);
-        return select(outside > 0, outside, S(0));
-      };
-      S const gx = gap(b.lower[0] - px, px - b.upper[0]), gy = gap(b.lower[1] - py, py - b.upper[1]),
-              gz = gap(b.lower[2] - pz, pz - b.upper[2]);
-      S const most = reach[first + k] + more;
+      S const gx = b.gap(0, px), gy = b.gap(1, py), gz = b.gap(2, pz), most = reach[first + k] + b.slack;
       mask |= gx * gx + (gy * gy + gz * gz) <= most * most ? bit[k] : bits_of<S>(0);
     }
     return static_cast<std::uint32_t>(mask);
@@ -338,7 +326,7 @@ struct look_for_spheres {
   static constexpr int items = 4;
 
   tester<S, NarrowPhase, Sink> tests;
-  box<S> const* boxes;
+  triangle_box<S> const* boxes;
   grid<S> const* grids;
   int grid_count;
   sphere_columns<S> spheres;
@@ -378,7 +366,7 @@ struct look_for_spheres {
   void look(Block& block, scratch<Block>& s) const {
     std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, tests.mesh.size());
     for (std::size_t t = begin; t < end; ++t) {
-      box<S> const around = boxes[t];
+      triangle_box<S> const around = boxes[t];
       if (around.is_empty()) continue;  // not finite
       auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
         std::uint32_t const last = ends[cell + n];
@@ -435,7 +423,7 @@ class sorted_spheres {
   /// Marks the cells that triangles touch. To be called for new grids, the cells of each of which begin at a multiple
   /// of 2^table_bits.
   template <class Space>
-  void mark(Space& space, box<S> const* boxes, std::size_t triangles, grid<S> const* grids, int grid_count,
+  void mark(Space& space, triangle_box<S> const* boxes, std::size_t triangles, grid<S> const* grids, int grid_count,
             std::uint32_t table_bits) {
     boxes_ = boxes;
     grids_ = grids;
@@ -519,7 +507,7 @@ class sorted_spheres {
 
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
 
-  box<S> const* boxes_ = nullptr;
+  triangle_box<S> const* boxes_ = nullptr;
   grid<S> const* grids_ = nullptr;
   int grid_count_ = 0;
   std::size_t cells_ = 0;

@@ -10,19 +10,24 @@
 namespace collide::detail {
 
 /// `Items` consecutive spheres: in registers on CUDA, eight or sixteen to a vector register on a CPU. Spheres beyond
-/// the end of the set have a NaN radius.
+/// the end of the set are far from everything, and have a NaN radius.
 template <class S, int Items>
 struct sphere_batch {
   static_assert(Items % 4 == 0, "packed centres are loaded four at a time");
 
   S x[Items], y[Items], z[Items], radius[Items];
 
+  static COLLIDE_HD sphere<S> none() {
+    constexpr S far = std::numeric_limits<S>::max();
+    return {{far, far, far}, std::numeric_limits<S>::quiet_NaN()};
+  }
+
   /// A ball around the way of each.
   COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
     for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
       bool const there = i < spheres.size();
-      sphere<S> const s = there ? enclosing(spheres[i]) : sphere<S>{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()};
+      sphere<S> const s = there ? enclosing(spheres[i]) : none();
       x[k] = s.centre.x();
       y[k] = s.centre.y();
       z[k] = s.centre.z();
@@ -32,7 +37,7 @@ struct sphere_batch {
 
   COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
     if (first + Items <= spheres.size()) {
-      load_centres(spheres, first);
+      load_centres(spheres, quads_of(spheres), first);
       if (spheres.one_radius()) {
         for (int k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
       } else {
@@ -42,7 +47,7 @@ struct sphere_batch {
       for (int k = 0; k < Items; ++k) {
         std::size_t const i = first + static_cast<std::size_t>(k);
         bool const there = i < spheres.size();
-        sphere<S> const s = there ? spheres[i] : sphere<S>{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()};
+        sphere<S> const s = there ? spheres[i] : none();
         x[k] = s.centre.x();
         y[k] = s.centre.y();
         z[k] = s.centre.z();
@@ -51,13 +56,33 @@ struct sphere_batch {
     }
   }
 
+  /// Where the centres are, if on the device groups of four can be loaded at a time; else null.
+  static COLLIDE_HD_INLINE S const* quads_of(sphere_view<S> const& spheres) {
+#if defined(__CUDA_ARCH__)
+    bool const aligned = sizeof(S) == 4 && spheres.packed() && reinterpret_cast<std::uintptr_t>(spheres.x(0)) % 16 == 0;
+    return aligned ? spheres.x(0) : nullptr;
+#else
+    static_cast<void>(spheres);
+    return nullptr;
+#endif
+  }
+
+  /// Centres only; `first` is a multiple of four, and `quads` is quads_of(spheres).
+  COLLIDE_HD_INLINE void load_centres_of(sphere_view<S> const& spheres, S const* quads, std::size_t first) {
+    if (first + Items <= spheres.size()) {
+      load_centres(spheres, quads, first);
+    } else {
+      load(spheres, first);
+    }
+  }
+
  private:
-  COLLIDE_HD_INLINE void load_centres(sphere_view<S> const& spheres, std::size_t first) {
+  COLLIDE_HD_INLINE void load_centres(sphere_view<S> const& spheres, [[maybe_unused]] S const* quads,
+                                      std::size_t first) {
 #if defined(__CUDA_ARCH__)
     if constexpr (sizeof(S) == 4) {  // four packed centres are three 16-byte loads
-      S const* const packed = spheres.packed() ? spheres.x(first) : nullptr;
-      if (packed != nullptr && reinterpret_cast<std::uintptr_t>(packed) % 16 == 0) {
-        auto const* const from = reinterpret_cast<float4 const*>(packed);
+      if (quads != nullptr) {
+        auto const* const from = reinterpret_cast<float4 const*>(quads + 3 * first);
         for (int k = 0; k < Items; k += 4) {
           float4 const read[3] = {from[3 * k / 4], from[3 * k / 4 + 1], from[3 * k / 4 + 2]};
           x[k] = read[0].x, y[k] = read[0].y, z[k] = read[0].z;

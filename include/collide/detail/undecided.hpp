@@ -18,7 +18,7 @@ namespace collide::detail {
 struct undecided {
   struct counters {
     std::uint64_t total;  ///< counts also pairs that found no room
-    std::uint64_t ready;  ///< blocks of the second step that are done
+    std::uint64_t ready;  ///< blocks of the second step that are done with it
   };
 
   counters* count;
@@ -101,30 +101,31 @@ struct finish_undecided {
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     std::uint64_t const total = open.count->total;
     bool const listed = total <= open.capacity;
-    if (total != 0) {
-      tester<S, NarrowPhase, finishing<Handle>> const tests{mesh, spheres, {{handle}, listed}};
-      std::uint64_t const work = listed ? total : std::uint64_t{spheres.size()} * mesh.size();
-      block.each([&](int lane) { tests.begin(s.hits, lane); });
-      for (std::uint64_t base = block.index() * Block::lanes; base < work; base += blocks * Block::lanes) {
-        block.each([&](int lane) {
-          std::uint64_t const i = base + static_cast<std::uint64_t>(lane);
-          if (i >= work) return;
-          if (listed) {
-            tests.test(block, s.hits, open.pairs[i], spheres[open.pairs[i].sphere]);
-            return;
-          }
-          pair const p{static_cast<id>(i / mesh.size()), static_cast<id>(i % mesh.size())};
-          auto const ball = spheres[p.sphere];
-          sphere<S> const around = enclosing(ball);
-          if (bounds_of(mesh[p.triangle]).reached(around.centre, around.radius)) tests.test(block, s.hits, p, ball);
-        });
-        tests.make_room(block, s.hits);
-      }
-      tests.flush(block, s.hits);
+    std::uint64_t const work = listed ? total : std::uint64_t{spheres.size()} * mesh.size();
+    std::uint64_t const busy = smaller<std::uint64_t>(blocks, (work + Block::lanes - 1) / Block::lanes);
+    if (block.index() >= busy) return;
+
+    tester<S, NarrowPhase, finishing<Handle>> const tests{mesh, spheres, {{handle}, listed}};
+    block.each([&](int lane) { tests.begin(s.hits, lane); });
+    for (std::uint64_t base = block.index() * Block::lanes; base < work; base += blocks * Block::lanes) {
+      block.each([&](int lane) {
+        std::uint64_t const i = base + static_cast<std::uint64_t>(lane);
+        if (i >= work) return;
+        if (listed) {
+          tests.test(block, s.hits, open.pairs[i], spheres[open.pairs[i].sphere]);
+          return;
+        }
+        pair const p{static_cast<id>(i / mesh.size()), static_cast<id>(i % mesh.size())};
+        auto const ball = spheres[p.sphere];
+        sphere<S> const around = enclosing(ball);
+        if (bounds_of(mesh[p.triangle]).reached(around.centre, around.radius)) tests.test(block, s.hits, p, ball);
+      });
+      tests.make_room(block, s.hits);
     }
-    // the last block to come here empties the list
+    tests.flush(block, s.hits);
+    // the last block that had something to do empties the list; those that come later find it so
     block.each([&](int lane) {
-      if (lane != 0 || fetch_add(&open.count->ready, std::uint64_t{1}) + 1 != blocks) return;
+      if (lane != 0 || fetch_add(&open.count->ready, std::uint64_t{1}) + 1 != busy) return;
       open.count->total = open.count->ready = 0;
     });
   }
