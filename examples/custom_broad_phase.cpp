@@ -59,7 +59,7 @@ struct one_box {
       mesh_ = mesh;
       auto* const summary = summary_.reserve(space.resource(), 1);
       collide::detail::mesh_summary<S>::clear(space, summary);
-      collide::detail::summarise_mesh<S> const body{mesh, summary, nullptr, nullptr};
+      collide::detail::summarise_mesh<S> const body{mesh, summary, nullptr};
       space.launch(collide::detail::blocks_for<Space>(mesh.size(), body), body);
     }
 
