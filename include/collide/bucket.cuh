@@ -86,7 +86,7 @@ struct bucket_query {
     std::uint32_t steps[still ? 1 : Block::lanes];  ///< and, of a sphere that moves, the step of its way
     listing listed;
     typename Block::balance_scratch balance;
-    hit_buffer<Block> hits;
+    hit_buffer<Block, Block::ahead> hits;
   };
 
   static constexpr int nowhere = -1;     ///< number of the grid of a sphere that touches nothing

@@ -19,6 +19,7 @@
 
 #include <collide/contact.hpp>
 #include <collide/detail/block.hpp>
+#include <collide/detail/costs.hpp>
 #include <collide/error.hpp>
 #include <collide/memory.hpp>
 
@@ -392,6 +393,7 @@ class cuda : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda"; }
+  static constexpr detail::broad_phase_costs costs{0.00123, 0.08, 0.2, 40000, 2000};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::serial_block<Body::items, 0>;
@@ -417,6 +419,7 @@ class cuda_shared : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda_shared"; }
+  static constexpr detail::broad_phase_costs costs{0.00026, 0.012, 0.1, 30000, 2000};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::cuda_block<Body::items>;

@@ -12,6 +12,7 @@
 #include <collide/contact.hpp>
 #include <collide/detail/atomic.hpp>
 #include <collide/detail/block.hpp>
+#include <collide/detail/costs.hpp>
 #include <collide/error.hpp>
 #include <collide/memory.hpp>
 
@@ -53,6 +54,9 @@ class host {
 
   /// Tuning of `bucket`: how many cells wide most triangles are. Narrow cells have fewer candidates and more entries.
   static constexpr int bucket_span = 1;
+
+  /// Tuning of `automatic`.
+  static constexpr detail::broad_phase_costs costs{0.12, 4, 30, 1000, 1000};
 
   /// Tuning of `bucket`: how many threads put a triangle into its cells.
   static constexpr int insertion_parts = 1;

@@ -98,12 +98,12 @@ struct deciding {
 /// The way of candidates to the sink, in the scratch memory of a block. Where lanes work together, each step is made
 /// for many pairs at once, so that no lane waits for another that has more to do: candidates are listed, then decided;
 /// hits are listed, then stored, so that the sink's atomic counter is touched once per batch. A single lane decides
-/// each candidate at once.
-template <class Block>
+/// each candidate at once. `Ahead` is how many candidates a lane lists before there is room for as many again.
+template <class Block, int Ahead = 1>
 struct hit_buffer {
   static constexpr std::uint32_t capacity = Block::pending;
   static constexpr bool together = Block::lanes > 1;
-  static constexpr std::uint32_t candidate_capacity = together ? (Block::ahead + 1) * Block::lanes : 1;
+  static constexpr std::uint32_t candidate_capacity = together ? (Ahead + 1) * Block::lanes : 1;
 
   pair candidates[candidate_capacity];
   std::uint32_t candidate_count;
@@ -121,37 +121,37 @@ struct tester {
   Sink sink;
 
   /// To be called first, by every lane; what follows may be done when the block has waited.
-  template <class Block>
-  COLLIDE_HD_INLINE void begin(hit_buffer<Block>& b, int lane) const {
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void begin(hit_buffer<Block, Ahead>& b, int lane) const {
     if (lane == 0) b.candidate_count = b.hit_count = 0;
   }
 
-  /// Takes a candidate. Called by any lane; where lanes work together, at most Block::ahead times between two calls of
+  /// Takes a candidate. Called by any lane; where lanes work together, at most `Ahead` times between two calls of
   /// `make_room`.
-  template <class Block, class Ball>
-  COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block>& b, pair p, Ball const& s) const {
-    if constexpr (hit_buffer<Block>::together) {
+  template <class Block, int Ahead, class Ball>
+  COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block, Ahead>& b, pair p, Ball const& s) const {
+    if constexpr (hit_buffer<Block, Ahead>::together) {
       b.candidates[block.add(b.candidate_count, 1)] = p;
     } else {
       decide(block, b, p, s);
     }
   }
 
-  /// Makes room for Block::ahead more candidates per lane. Called by the whole block.
-  template <class Block>
-  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block>& b) const {
-    if constexpr (hit_buffer<Block>::together) {
+  /// Makes room for `Ahead` more candidates per lane. Called by the whole block.
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block, Ahead>& b) const {
+    if constexpr (hit_buffer<Block, Ahead>::together) {
       std::uint32_t const n = block.shared(b.candidate_count);
-      if (n + Block::ahead * Block::lanes > hit_buffer<Block>::candidate_capacity) decide_all(block, b, n);
+      if (n + Ahead * Block::lanes > hit_buffer<Block, Ahead>::candidate_capacity) decide_all(block, b, n);
     } else {
-      if (b.hit_count == hit_buffer<Block>::capacity) store_all(block, b, b.hit_count);
+      if (b.hit_count == hit_buffer<Block, Ahead>::capacity) store_all(block, b, b.hit_count);
     }
   }
 
   /// Finishes everything. Called by the whole block, last.
-  template <class Block>
-  COLLIDE_HD_INLINE void flush(Block& block, hit_buffer<Block>& b) const {
-    if constexpr (hit_buffer<Block>::together) {
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void flush(Block& block, hit_buffer<Block, Ahead>& b) const {
+    if constexpr (hit_buffer<Block, Ahead>::together) {
       std::uint32_t const n = block.shared(b.candidate_count);
       if (n != 0) decide_all(block, b, n);
     }
@@ -159,11 +159,11 @@ struct tester {
   }
 
   /// Takes a hit. Called by any lane; where lanes work together, once for each candidate at most.
-  template <class Block>
-  COLLIDE_HD_INLINE void keep(Block& block, hit_buffer<Block>& b, pair p) const {
-    if constexpr (hit_buffer<Block>::together) {
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void keep(Block& block, hit_buffer<Block, Ahead>& b, pair p) const {
+    if constexpr (hit_buffer<Block, Ahead>::together) {
       b.hits[block.add(b.hit_count, 1)] = p;
-    } else if (b.hit_count != hit_buffer<Block>::capacity) {
+    } else if (b.hit_count != hit_buffer<Block, Ahead>::capacity) {
       b.hits[b.hit_count++] = p;
     } else {
       store(sink.reserve(1), p);
@@ -171,14 +171,14 @@ struct tester {
   }
 
  private:
-  template <class Block, class Ball>
-  COLLIDE_HD_INLINE void decide(Block& block, hit_buffer<Block>& b, pair p, Ball const& s) const {
+  template <class Block, int Ahead, class Ball>
+  COLLIDE_HD_INLINE void decide(Block& block, hit_buffer<Block, Ahead>& b, pair p, Ball const& s) const {
     if (sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) keep(block, b, p);
   }
 
   /// Decides the `n` candidates that are listed.
-  template <class Block>
-  COLLIDE_HD_INLINE void decide_all(Block& block, hit_buffer<Block>& b, std::uint32_t n) const {
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void decide_all(Block& block, hit_buffer<Block, Ahead>& b, std::uint32_t n) const {
     for (std::uint32_t base = 0; base < n; base += Block::lanes) {
       block.each([&](int lane) {
         std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
@@ -186,14 +186,14 @@ struct tester {
         if (i < n) decide(block, b, b.candidates[i], spheres[b.candidates[i].sphere]);
       });
       std::uint32_t const hits = block.shared(b.hit_count);
-      if (hits + Block::lanes > hit_buffer<Block>::capacity) store_all(block, b, hits);
+      if (hits + Block::lanes > hit_buffer<Block, Ahead>::capacity) store_all(block, b, hits);
     }
   }
 
   /// Stores the `n` hits that are listed.
-  template <class Block>
-  COLLIDE_HD_INLINE void store_all(Block& block, hit_buffer<Block>& b, std::uint32_t n) const {
-    if constexpr (hit_buffer<Block>::capacity > 0) {
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void store_all(Block& block, hit_buffer<Block, Ahead>& b, std::uint32_t n) const {
+    if constexpr (hit_buffer<Block, Ahead>::capacity > 0) {
       if (n == 0) return;
       block.each([&](int lane) {
         if (lane != 0) return;

@@ -1,0 +1,90 @@
+/// Which broad phase `automatic` takes, and that the pairs are those of both.
+#pragma once
+
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <collide/automatic.cuh>
+#include <collide/karabassi_swept.hpp>
+#include <collide/pairs.hpp>
+#include <collide/upload.hpp>
+
+#include "io/scenes.hpp"
+
+namespace tests {
+
+/// Meshes from a tetrahedron's size to what no one would test pair by pair, with few spheres and with many.
+template <class Space>
+void check_automatic(Space space) {
+  bool seen[2] = {};  // without and with a grid
+  for (std::size_t const triangles : {8, 600, 20000}) {
+    for (std::size_t const spheres : {3, 500, 60000}) {
+      CAPTURE(triangles);
+      CAPTURE(spheres);
+      io::scene const s = io::study_scene(spheres, triangles);
+      std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()),
+          centres(s.centres.begin(), s.centres.end());
+      auto const mesh = collide::upload(
+          space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count()));
+      auto const balls = collide::upload(space, collide::spheres_xyz(centres.data(), spheres, 12));
+      auto const found = [&](auto& detector) {
+        collide::pairs pairs(collide::order::canonical);
+        return detector.query(balls.view(), pairs).to_host();
+      };
+      collide::detector<collide::all_pairs, collide::karabassi<>, Space> plain(space);
+      plain.build(mesh.view());
+      auto const expected = found(plain);
+      collide::detector<collide::automatic, collide::karabassi<>, Space> chooses(space);
+      chooses.build(mesh.view());
+      CHECK(chooses.cell_width() == 0);  // nothing is made that nobody asked for
+      for (int again = 0; again < 2; ++again) CHECK(found(chooses) == expected);
+      seen[chooses.cell_width() > 0] = true;
+      if (triangles == 20000 && spheres == 60000) CHECK(chooses.cell_width() > 0);
+      if (triangles == 8 || spheres == 3) CHECK(chooses.cell_width() == 0);
+      chooses.build(mesh.view(), 12);  // the next mesh: the grid is made at once, or never
+      bool const has_grid = chooses.cell_width() > 0;
+      CHECK(has_grid == (triangles > 8));
+      CHECK(found(chooses) == expected);
+    }
+  }
+  CHECK(seen[0]);
+  CHECK(seen[1]);
+}
+
+/// Many small queries make a grid in the end.
+template <class Space>
+void check_many_queries(Space space) {
+  io::scene const s = io::study_scene(100, 2000);
+  std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()), centres(s.centres.begin(), s.centres.end());
+  auto const mesh = collide::upload(
+      space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count()));
+  auto const balls = collide::upload(space, collide::spheres_xyz(centres.data(), 100, 12));
+  collide::detector<collide::automatic, collide::karabassi<>, Space> detector(space);
+  detector.build(mesh.view());
+  collide::pairs pairs;
+  int queries = 0;
+  for (; queries < 100000 && detector.cell_width() == 0; ++queries) detector.query(balls.view(), pairs);
+  CHECK(queries > 1);
+  CHECK(queries < 1000);
+}
+
+/// With spheres that move, too.
+template <class Space>
+void check_automatic_swept(Space space) {
+  io::scene const s = io::study_scene(20000, 2000);
+  std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()), centres(s.centres.begin(), s.centres.end());
+  std::vector<float> const moves(centres.size(), 5.0f);
+  auto const mesh = collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count());
+  auto const balls = collide::moving(collide::spheres_xyz(centres.data(), 20000, 12), moves.data());
+  auto const found = [&](auto broad) {
+    collide::detector<decltype(broad), collide::karabassi_swept<>, Space> detector(space);
+    collide::pairs pairs(collide::order::canonical);
+    return detector.detect(mesh, balls, pairs).to_host();
+  };
+  auto const expected = found(collide::all_pairs());
+  CHECK(expected.size() > 0);
+  CHECK(found(collide::automatic()) == expected);
+}
+
+}  // namespace tests
