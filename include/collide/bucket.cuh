@@ -27,6 +27,7 @@ namespace detail {
 template <class S, class NarrowPhase, class Sink>
 struct bucket_query {
   static constexpr int items = 4;
+  static constexpr int ahead = 4;  ///< candidates that a lane looks at together
   template <class Block>
   static constexpr int residency = 4;
   static constexpr bool still = at_rest<NarrowPhase, S>;
@@ -86,7 +87,7 @@ struct bucket_query {
     std::uint32_t steps[still ? 1 : Block::lanes];  ///< and, of a sphere that moves, the step of its way
     listing listed;
     typename Block::balance_scratch balance;
-    hit_buffer<Block, Block::ahead> hits;
+    hit_buffer<Block, ahead> hits;
   };
 
   static constexpr int nowhere = -1;     ///< number of the grid of a sphere that touches nothing
@@ -160,12 +161,12 @@ struct bucket_query {
       s.listed = {0, 0};
     });
     // while the first spheres are on their way, the grid is looked at
-    typename Block::template per_lane<sphere_batch<S, Block::items>> ahead;
+    typename Block::template per_lane<sphere_batch<S, Block::items>> coming;
     S const* quads = nullptr;
     if constexpr (still) {
       quads = sphere_batch<S, Block::items>::quads_of(tests.spheres);
       if (tests.spheres.one_radius()) {
-        block.each([&](int lane) { load_ahead(ahead[lane], quads, next + static_cast<std::size_t>(lane) * n); });
+        block.each([&](int lane) { load_ahead(coming[lane], quads, next + static_cast<std::size_t>(lane) * n); });
       }
     }
     bucket_lookup<S> const near = triangles.opened();
@@ -177,8 +178,8 @@ struct bucket_query {
         if constexpr (still) {
           cell_marks<S> const marks = near.marks();
           placed = place_many(block, s, next, [&](int lane, std::size_t first) {
-            sphere_batch<S, Block::items> const own = ahead[lane];
-            load_ahead(ahead[lane], quads, first + blocks * batch);
+            sphere_batch<S, Block::items> const own = coming[lane];
+            load_ahead(coming[lane], quads, first + blocks * batch);
             mark_own(block, s, marks, own, first);
           });
         }
@@ -321,7 +322,7 @@ struct bucket_query {
   template <class Block>
   COLLIDE_HD_INLINE void test_listed(Block& block, scratch<Block>& s, cells const& here, std::uint32_t n) const {
     bool const all = here.of == nullptr;
-    block.balanced(
+    block.template balanced<ahead>(
         s.balance, s.counts, n,
         [&](std::uint32_t i) {
           ball_type const ball = s.balls[i].get();

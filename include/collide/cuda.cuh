@@ -108,7 +108,6 @@ template <int Items>
 class cuda_block {
  public:
   static constexpr int lanes = cuda_lanes, items = Items;
-  static constexpr int ahead = 4;  ///< loads that a lane waits for together
   static constexpr int pending = 2 * cuda_lanes;
 
   template <class T>
@@ -165,17 +164,17 @@ class cuda_block {
 
   /// Each warp takes a stretch of the work at a time. Whose work its first piece is, it searches for; from there on, a
   /// word of bits tells all its lanes which of the next pieces are the first ones of others.
-  template <class Item, class Look, class Take, class Round>
+  template <int Ahead, class Item, class Look, class Take, class Round>
   __device__ __forceinline__ void balanced(scan_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item,
                                            Look const& look, Take const& take, Round const& after_round) {
-    constexpr std::uint32_t stretch = ahead * cuda_warp;
+    constexpr std::uint32_t stretch = Ahead * cuda_warp;
     std::uint32_t const total = scan(s, counts, n);  // `counts` are begins now
     auto const own = static_cast<std::uint32_t>(threadIdx.x) % cuda_warp;
-    for (std::uint32_t base = 0; base < total; base += ahead * lanes) {
+    for (std::uint32_t base = 0; base < total; base += Ahead * lanes) {
       std::uint32_t const first = base + static_cast<std::uint32_t>(lane()) / cuda_warp * stretch;
       if (first < total) {
-        std::uint32_t before = last_begun(counts, n, first), i[ahead], k[ahead];
-        for (int a = 0; a < ahead; ++a) {
+        std::uint32_t before = last_begun(counts, n, first), i[Ahead], k[Ahead];
+        for (int a = 0; a < Ahead; ++a) {
           std::uint32_t const piece = first + static_cast<std::uint32_t>(a) * cuda_warp, next = before + 1 + own;
           std::uint32_t const to_begin = next < n ? counts[next] - piece : cuda_warp;
           unsigned const begun = all_bits(to_begin < cuda_warp ? 1u << to_begin : 0u);
@@ -183,12 +182,12 @@ class cuda_block {
           k[a] = piece + own - counts[i[a]];
           before += static_cast<std::uint32_t>(__popc(begun));
         }
-        decltype(look(item(0), 0)) seen[ahead];
+        decltype(look(item(0), 0)) seen[Ahead];
         auto const is_work = [&](int a) { return first + static_cast<std::uint32_t>(a) * cuda_warp + own < total; };
-        for (int a = 0; a < ahead; ++a) {
+        for (int a = 0; a < Ahead; ++a) {
           if (is_work(a)) seen[a] = look(item(i[a]), k[a]);
         }
-        for (int a = 0; a < ahead; ++a) {
+        for (int a = 0; a < Ahead; ++a) {
           if (is_work(a)) take(item(i[a]), seen[a]);
         }
       }
@@ -393,7 +392,7 @@ class cuda : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda"; }
-  static constexpr detail::broad_phase_costs costs{0.00123, 0.08, 0.2, 40000, 2000};  ///< tuning of `automatic`
+  static constexpr detail::broad_phase_costs costs{30, 0.08, 0.2, 30000, 0};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::serial_block<Body::items, 0>;
@@ -419,7 +418,7 @@ class cuda_shared : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda_shared"; }
-  static constexpr detail::broad_phase_costs costs{0.00026, 0.012, 0.1, 30000, 2000};  ///< tuning of `automatic`
+  static constexpr detail::broad_phase_costs costs{1.9, 0.012, 0.1, 30000, 0};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::cuda_block<Body::items>;

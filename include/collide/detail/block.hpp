@@ -7,9 +7,9 @@
 ///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
-///   - `block.balanced(...)` spreads work evenly over the lanes: take(item(i), look(item(i), k)) for all k < counts[i],
-///     which are at least 1; `look` only reads, so that a lane can do it ahead, up to `Block::ahead` times, and after
-///     each round the whole block calls `after_round()`;
+///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: take(item(i), look(item(i), k)) for all
+///     k < counts[i], which are at least 1; `look` only reads, so that a lane can do it up to `Ahead` times before it
+///     takes, and waits for all of them at once; after each round the whole block calls `after_round()`;
 ///   - `block.scan(...)` makes of at most as many values as lanes the sums of those before each;
 ///   - `block.reduce(...)` combines a value per lane.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
@@ -60,7 +60,7 @@ struct balancing {
 template <int Items, int Pending>
 class serial_block {
  public:
-  static constexpr int lanes = 1, items = Items, ahead = 1, pending = Pending;
+  static constexpr int lanes = 1, items = Items, pending = Pending;
 
   template <class T>
   struct per_lane {
@@ -105,7 +105,7 @@ class serial_block {
     return sum;
   }
 
-  template <class Item, class Look, class Take, class Round>
+  template <int Ahead, class Item, class Look, class Take, class Round>
   COLLIDE_HD_INLINE void balanced(balance_scratch&, std::uint32_t const* counts, std::uint32_t n, Item const& item,
                                   Look const& look, Take const& take, Round const& after_round) {
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -129,7 +129,7 @@ class serial_block {
 template <int Lanes, int Items, bool Reversed>
 class lockstep_block {
  public:
-  static constexpr int lanes = Lanes, items = Items, ahead = 1, pending = 2 * Lanes;
+  static constexpr int lanes = Lanes, items = Items, pending = 2 * Lanes;
 
   template <class T>
   struct per_lane {
@@ -181,7 +181,7 @@ class lockstep_block {
     return sum;
   }
 
-  template <class Item, class Look, class Take, class Round>
+  template <int Ahead, class Item, class Look, class Take, class Round>
   void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Look const& look,
                 Take const& take, Round const& after_round) {
     s.run(*this, counts, n, item, look, take, after_round);

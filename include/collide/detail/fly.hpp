@@ -57,13 +57,14 @@ struct fly_body {
         if (lane == 0) s.count = 0;
       });
       Lookup const near = lookup.opened();
-      bool const simple = has_one_radius && near.is_simple(state.common_radius);
+      bool const simple = !moves && has_one_radius && near.is_simple(state.common_radius);
+      auto const marks = simple ? near.marks() : decltype(near.marks()){};
       constexpr int n = at_a_time<Block>;
       fly(block, [&](auto const& p, auto const& skipped, auto& listed) {
-        if (moves || !simple) {
-          for (int k = 0; k < n; ++k) listed[k] = !near.empty(ball_of(p[k]));
+        if (simple) {
+          mark_near(marks, p, listed);
         } else {
-          mark_near(near, p, listed);
+          for (int k = 0; k < n; ++k) listed[k] = !near.empty(ball_of(p[k]));
         }
         for (int k = 0; k < n; ++k) {
           listed[k] = listed[k] && !skipped[k] && p[k].number < state.size;
@@ -139,14 +140,14 @@ struct fly_body {
 
   /// Of one radius and in one grid of one level: without branches, for the CPU's vector unit, as which particles are
   /// near the mesh is not to be foreseen.
-  template <int N>
-  COLLIDE_HD_INLINE void mark_near(Lookup const& near, flying const (&p)[N], bool (&listed)[N]) const {
+  template <int N, class Marks>
+  static COLLIDE_HD_INLINE void mark_near(Marks const& marks, flying const (&p)[N], bool (&listed)[N]) {
     S x[N], y[N], z[N];
     for (int k = 0; k < N; ++k) {
       vec3<S> const& c = p[k][position{}];
       x[k] = c.x(), y[k] = c.y(), z[k] = c.z();
     }
-    near.marks().mark(x, y, z, listed);
+    marks.mark(x, y, z, listed);
   }
 
   /// What the narrow phase judges.

@@ -201,7 +201,7 @@ struct respond_body {
       });
       std::uint32_t const ranges = block.shared(s.ranges);
       if (ranges == 0) return;
-      block.balanced(
+      block.template balanced<1>(
           s.balance, s.counts, ranges,
           [&](std::uint32_t i) {
             auto& one = s.those[s.owner[i]];
