@@ -65,6 +65,11 @@ struct bucket_query {
     std::uint32_t first;
   };
 
+  /// How many spheres are placed, and how many of them in no grid, because none serves them.
+  struct placement {
+    std::uint32_t placed, unplaced;
+  };
+
   /// How many spheres are listed, and how many of their lists of candidates are only begun.
   struct listing {
     std::uint32_t spheres, longer;
@@ -79,8 +84,7 @@ struct bucket_query {
     static constexpr std::uint32_t room = 2 * Block::lanes * Block::items;
     id placed[room];            ///< spheres inside a grid
     std::int8_t grid_of[room];  ///< and in which
-    std::uint32_t placed_count;
-    std::uint32_t unplaced;                         ///< how many spheres no grid serves; they are listed all the same
+    placement found;
     plain_ball balls[Block::lanes];                 ///< spheres with candidates
     numbered numbers[Block::lanes];                 ///< of the same
     std::uint32_t counts[Block::lanes];             ///< how many they have
@@ -157,7 +161,7 @@ struct bucket_query {
     block.each([&](int lane) {
       tests.begin(s.hits, lane);
       if (lane != 0) return;
-      s.placed_count = s.unplaced = 0;
+      s.found = {0, 0};
       s.listed = {0, 0};
     });
     // while the first spheres are on their way, the grid is looked at
@@ -173,23 +177,23 @@ struct bucket_query {
     bool simple = false;
     if constexpr (still) simple = tests.spheres.one_radius() && near.is_simple(tests.spheres.common_radius());
     while (next < size) {
-      std::uint32_t placed;
+      placement found{0, 0};
       if (simple) {
         if constexpr (still) {
           cell_marks<S> const marks = near.marks();
-          placed = place_many(block, s, next, [&](int lane, std::size_t first) {
+          found = place_many(block, s, next, [&](int lane, std::size_t first) {
             sphere_batch<S, Block::items> const own = coming[lane];
             load_ahead(coming[lane], quads, first + blocks * batch);
             mark_own(block, s, marks, own, first);
           });
         }
       } else {
-        placed = place_many(block, s, next, [&](int, std::size_t first) { place_own(block, s, near, first); });
+        found = place_many(block, s, next, [&](int, std::size_t first) { place_own(block, s, near, first); });
       }
-      if (placed == 0) continue;
-      look_up(block, s, near, placed);
+      if (found.placed == 0) continue;
+      look_up(block, s, near, found);
       block.each([&](int lane) {
-        if (lane == 0) s.placed_count = s.unplaced = 0;
+        if (lane == 0) s.found = {0, 0};
       });
     }
     tests.flush(block, s.hits);
@@ -199,20 +203,19 @@ struct bucket_query {
   /// Places batches of spheres, from `next` on, as long as there is room; `place(lane, first)` lists those of a lane.
   /// Returns how many are listed.
   template <class Block, class Place>
-  COLLIDE_HD_INLINE std::uint32_t place_many(Block& block, scratch<Block>& s, std::size_t& next,
-                                             Place const& place) const {
+  COLLIDE_HD_INLINE placement place_many(Block& block, scratch<Block>& s, std::size_t& next, Place const& place) const {
     constexpr std::size_t n = Block::items, batch = Block::lanes * n;
     std::size_t const size = tests.spheres.size();
-    std::uint32_t placed;
+    placement found;
     do {
       block.each([&](int lane) {
         std::size_t const first = next + static_cast<std::size_t>(lane) * n;
         if (first < size) place(lane, first);
       });
       next += blocks * batch;
-      placed = block.shared(s.placed_count);
-    } while (next < size && placed + batch <= scratch<Block>::room);
-    return placed;
+      found = block.shared(s.found);
+    } while (next < size && found.placed + batch <= scratch<Block>::room);
+    return found;
   }
 
   template <int N>
@@ -230,7 +233,7 @@ struct bucket_query {
     std::uint32_t placed = 0;
     for (int k = 0; k < n; ++k) placed += near[k];
     if (placed == 0) return;
-    std::uint32_t place = block.add(s.placed_count, placed);
+    std::uint32_t place = block.add(s.found.placed, placed);
     for (int k = 0; k < n; ++k) {
       if (!near[k]) continue;
       s.placed[place] = static_cast<id>(first) + static_cast<id>(k);
@@ -252,8 +255,8 @@ struct bucket_query {
       unplaced += own.grid_number[k] == everywhere;
     }
     if (placed == 0) return;
-    if (unplaced != 0) block.add(s.unplaced, unplaced);
-    std::uint32_t place = block.add(s.placed_count, placed);
+    if (unplaced != 0) block.add(s.found.unplaced, unplaced);
+    std::uint32_t place = block.add(s.found.placed, placed);
     for (int k = 0; k < n; ++k) {
       if (own.grid_number[k] == nowhere) continue;
       s.placed[place] = static_cast<id>(first) + static_cast<id>(k);
@@ -261,25 +264,25 @@ struct bucket_query {
     }
   }
 
-  /// Tests the `placed` spheres that are listed.
+  /// Tests the spheres that are listed.
   template <class Block>
   COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
-                                 std::uint32_t placed) const {
+                                 placement const& found) const {
     int const usable = near.grid_count;
     // the spheres of one level of one grid after the other, in the end those that no grid serves
     for (int g = 0; g <= usable; ++g) {
       bool const all = g == usable;
-      if (all && s.unplaced == 0) break;
+      if (all && found.unplaced == 0) break;
       for (int l = 0; l < (all ? 1 : near.grids[g].levels); ++l) {
         cells const here{all ? nullptr : &near.grids[g], all ? nullptr : &near.grids[g].level[l]};
-        for (std::uint32_t base = 0; base < placed; base += Block::lanes) {
+        for (std::uint32_t base = 0; base < found.placed; base += Block::lanes) {
           typename Block::template per_lane<cursor> at;
           bool more = false;
           do {  // once, unless a list is very long or a sphere moves through several cells
             block.each([&](int lane) {
               if (!more) at[lane] = {0, 0};
               std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
-              if (i >= placed || s.grid_of[i] != (all ? everywhere : g)) return;
+              if (i >= found.placed || s.grid_of[i] != (all ? everywhere : g)) return;
               list_next(block, s, here, s.placed[i], at[lane]);
             });
             listing const listed = block.shared(s.listed);
