@@ -18,8 +18,8 @@ namespace tests {
 template <class Space>
 void check_automatic(Space space) {
   bool seen[2] = {};  // without and with a grid
-  for (std::size_t const triangles : {8, 600, 20000}) {
-    for (std::size_t const spheres : {3, 500, 60000}) {
+  for (std::size_t const triangles : {8u, 600u, 20000u}) {
+    for (std::size_t const spheres : {3u, 500u, 60000u}) {
       CAPTURE(triangles);
       CAPTURE(spheres);
       io::scene const s = io::study_scene(spheres, triangles);
