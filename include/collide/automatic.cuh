@@ -2,20 +2,17 @@
 /// Broad phase: `all_pairs` or `bucket`, whichever the sizes of the scene make the faster one.
 #pragma once
 
-#include <optional>
-
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
 
 namespace collide {
 
-/// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for small meshes, and
-/// for few spheres as long as no grid has been made; `bucket` wins for all else. Which it is follows from the numbers
-/// of triangles and spheres alone, by the measured costs of the space (docs/performance.md): the same calls always go
-/// the same way, and the pairs are the same either way. Nothing is built that is not used: the grid is made by `build`
-/// with a radius where queries of many spheres would want it, and else by the first query for which it pays, counting
-/// what the queries before it have spent on pairs. Complexity and memory are those of the chosen one. A simulation
-/// names `bucket` or `all_pairs` itself.
+/// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
+/// long as no grid has been made; `bucket` wins for all else. Which it is follows from the numbers of triangles and
+/// spheres alone, by the measured costs of the space (docs/performance.md): the same calls always go the same way, and
+/// the pairs are the same either way. The grid is made by `build` with a radius, and else by the first query for which
+/// it pays, counting what the queries before it would have saved. Complexity and memory are those of the chosen one. A
+/// simulation names `bucket` or `all_pairs` itself.
 struct automatic {
   bucket grid;  ///< options of `bucket`, for where that is chosen
 
@@ -26,16 +23,14 @@ struct automatic {
     void build(Space&, automatic const&, mesh_view<S> mesh) {
       mesh_ = mesh;
       has_grid_ = has_bounds_ = false;
-      radius_.reset();
       spent_ = 0;
     }
 
-    /// The radius is kept for the grid; it is made now if the queries of many spheres would want one.
+    /// Makes the grid.
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
-      radius_ = radius;
-      if (Space::costs.per_sphere < Space::costs.per_pair * static_cast<double>(mesh_.size()))
-        make_grid(space, options);
+      make_grid(space, options);
+      grid_.prepare(space, options.grid, radius);
     }
 
     template <class Space, class Spheres>
@@ -70,10 +65,10 @@ struct automatic {
     bool wants_grid(std::size_t spheres) {
       constexpr detail::broad_phase_costs c = Space::costs;
       auto const n = static_cast<double>(spheres), triangles = static_cast<double>(mesh_.size());
-      double const pairs = c.per_pair * n * triangles, query = c.query + c.per_sphere * n;
+      double const saved = n * (c.near + c.per_pair * triangles - c.per_sphere);
       // as long as a query does not pay for the grid alone, nobody knows whether there will be another
-      if (query < pairs && c.build + c.per_triangle * triangles < pairs - query + spent_) return true;
-      if (query < pairs) spent_ += pairs - query;
+      if (c.build + c.per_triangle * triangles < saved + spent_) return true;
+      spent_ += saved > 0 ? saved : 0;
       return false;
     }
 
@@ -81,12 +76,10 @@ struct automatic {
     void make_grid(Space& space, automatic const& options) {
       if (has_grid_) return;
       grid_.build(space, options.grid, mesh_);
-      if (radius_) grid_.prepare(space, options.grid, *radius_);
       has_grid_ = true;
     }
 
     mesh_view<S> mesh_;
-    std::optional<S> radius_;
     bucket::index<S> grid_;
     all_pairs::index<S> bounds_;
     bool has_grid_ = false, has_bounds_ = false;

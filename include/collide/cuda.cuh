@@ -392,7 +392,7 @@ class cuda : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda"; }
-  static constexpr detail::broad_phase_costs costs{30, 0.08, 0.2, 30000, 0};  ///< tuning of `automatic`
+  static constexpr detail::broad_phase_costs costs{0, 30, 0.08, 0.2, 30000};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::serial_block<Body::items, 0>;
@@ -418,7 +418,7 @@ class cuda_shared : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda_shared"; }
-  static constexpr detail::broad_phase_costs costs{1.9, 0.012, 0.1, 30000, 0};  ///< tuning of `automatic`
+  static constexpr detail::broad_phase_costs costs{0, 1.9, 0.012, 0.1, 30000};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::cuda_block<Body::items>;

@@ -56,7 +56,7 @@ class host {
   static constexpr int bucket_span = 1;
 
   /// Tuning of `automatic`.
-  static constexpr detail::broad_phase_costs costs{0.12, 4, 30, 1000, 1000};
+  static constexpr detail::broad_phase_costs costs{350, 0.137, 4, 40, 1000};
 
   /// Tuning of `bucket`: how many threads put a triangle into its cells.
   static constexpr int insertion_parts = 1;
