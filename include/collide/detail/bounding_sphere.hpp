@@ -51,12 +51,4 @@ COLLIDE_HD_INLINE bounding_sphere<S> bounds_of(triangle<S> const& t) {
   return {m.x(), m.y(), m.z(), radius};
 }
 
-/// Kernel body of `for_each` over triangles.
-template <class S>
-struct compute_bounds {
-  mesh_view<S> mesh;
-  bounding_sphere<S>* bounds;
-  COLLIDE_HD void operator()(std::size_t i) const { bounds[i] = bounds_of(mesh[i]); }
-};
-
 }  // namespace collide::detail
