@@ -2,10 +2,21 @@
 /// Broad phase: `all_pairs` or `bucket`, whichever the sizes of the scene make the faster one.
 #pragma once
 
+#include <type_traits>
+
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
 
 namespace collide {
+
+namespace detail {
+
+template <class Space, class = void>
+struct has_costs : std::false_type {};
+template <class Space>
+struct has_costs<Space, std::void_t<decltype(Space::costs.build)>> : std::true_type {};
+
+}  // namespace detail
 
 /// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
 /// long as no grid has been made; `bucket` wins for all else. Which it is follows from the numbers of triangles and
@@ -63,6 +74,8 @@ struct automatic {
    private:
     template <class Space>
     bool wants_grid(std::size_t spheres) {
+      static_assert(detail::has_costs<Space>::value,
+                    "collide: automatic needs an execution space with a static member costs, see detail/costs.hpp");
       constexpr detail::broad_phase_costs c = Space::costs;
       auto const n = static_cast<double>(spheres), triangles = static_cast<double>(mesh_.size());
       double const saved = n * (c.near + c.per_pair * triangles - c.per_sphere);
