@@ -108,7 +108,7 @@ template <int Items>
 class cuda_block {
  public:
   static constexpr int lanes = cuda_lanes, items = Items;
-  static constexpr int pending = 2 * cuda_lanes;
+  static constexpr int pending = 2 * cuda_lanes, row_lanes = cuda_warp;
 
   template <class T>
   struct per_lane {
@@ -118,6 +118,10 @@ class cuda_block {
   template <class T, int N>
   struct staging {
     T values[N];
+  };
+  template <class T, int N>
+  struct row_scratch {
+    T values[lanes * N];
   };
   using scan_scratch = typename cub::BlockScan<std::uint32_t, lanes>::TempStorage;
   using balance_scratch = scan_scratch;
@@ -150,6 +154,33 @@ class cuda_block {
     for (int i = lane(); i < n; i += lanes) to.values[i] = from[i];
     sync();
     return to.values;
+  }
+
+  /// A warp reads what lies side by side, and its lanes exchange it.
+  template <class Scratch, class T, int N>
+  __device__ __forceinline__ void load_row(Scratch& s, T const* from, std::uint32_t row, std::uint32_t rows,
+                                           T (&to)[N]) {
+    if constexpr (N == 1) {
+      if (row < rows) to[0] = from[row];
+    } else {
+      T* const line = line_of_warp<N>(s.values);
+      each_beside<N>(row, rows, [&](std::uint32_t i, std::uint32_t k) { line[k] = from[i]; });
+      for (int k = 0; k < N; ++k) to[k] = line[threadIdx.x % cuda_warp * N + k];
+      __syncwarp();
+    }
+  }
+
+  template <class Scratch, class T, int N>
+  __device__ __forceinline__ void store_row(Scratch& s, T* to, std::uint32_t row, std::uint32_t rows,
+                                            T const (&from)[N]) {
+    if constexpr (N == 1) {
+      if (row < rows) to[row] = from[0];
+    } else {
+      T* const line = line_of_warp<N>(s.values);
+      for (int k = 0; k < N; ++k) line[threadIdx.x % cuda_warp * N + k] = from[k];
+      __syncwarp();
+      each_beside<N>(row, rows, [&](std::uint32_t i, std::uint32_t k) { to[i] = line[k]; });
+    }
   }
 
   /// Exclusive scan of at most as many values in shared memory as there are lanes; returns their sum.
@@ -224,6 +255,22 @@ class cuda_block {
     for (int apart = 1; apart < cuda_warp; apart *= 2) own |= __shfl_xor_sync(~0u, own, apart);
     return own;
 #endif
+  }
+
+  /// What a warp's rows of `N` values pass through.
+  template <int N, class T>
+  static __device__ __forceinline__ T* line_of_warp(T* values) {
+    return values + threadIdx.x / cuda_warp * (cuda_warp * N);
+  }
+
+  /// f(i, k) for the k-th value of a warp's rows that exist, i in memory, side by side in neighbouring lanes.
+  template <int N, class F>
+  static __device__ __forceinline__ void each_beside(std::uint32_t row, std::uint32_t rows, F const& f) {
+    std::uint32_t const own = threadIdx.x % cuda_warp, first = (row - own) * N + own;
+    for (std::uint32_t k = 0; k < N * cuda_warp; k += cuda_warp) {
+      if (first + k < rows * N) f(first + k, own + k);
+    }
+    __syncwarp();
   }
 
   static __device__ __forceinline__ int lane() { return static_cast<int>(threadIdx.x); }

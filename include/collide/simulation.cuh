@@ -206,7 +206,9 @@ class simulation {
       std::size_t most = state_.size;
       if constexpr (execution_space::host_memory) most = *list_.count;
       body.blocks = (most + body.template together<block> - 1) / body.template together<block>;
-      if constexpr (!execution_space::host_memory) body.blocks = detail::smaller(body.blocks, space_.concurrency());
+      if constexpr (!execution_space::host_memory)
+        body.blocks =
+            detail::smaller(body.blocks, detail::smaller(space_.concurrency(), space_.template wave<decltype(body)>()));
       space_.launch(body.blocks, body);
     }
   }

@@ -10,13 +10,31 @@ struct quadruple {
   float4 a, b, c;
 };
 
-__device__ __forceinline__ quadruple load(float const* from, std::size_t i) {
-  auto const* const p = reinterpret_cast<float4 const*>(from) + 3 * i;
-  return {p[0], p[1], p[2]};
+/// Four particles a lane; a warp reads and writes what lies side by side, and its lanes exchange it.
+__device__ __forceinline__ quadruple load(float const* from, unsigned i, unsigned n) {
+  __shared__ float4 lines[256 / 32][96];
+  float4* const line = lines[threadIdx.x / 32];
+  unsigned const own = threadIdx.x % 32, first = 3 * (i - own) + own;
+  auto const* const p = reinterpret_cast<float4 const*>(from);
+  for (unsigned k = 0; k < 96; k += 32) {
+    if (first + k < 3 * n) line[own + k] = p[first + k];
+  }
+  __syncwarp();
+  quadruple const q{line[3 * own], line[3 * own + 1], line[3 * own + 2]};
+  __syncwarp();
+  return q;
 }
-__device__ __forceinline__ void store(float* to, std::size_t i, quadruple const& q) {
-  auto* const p = reinterpret_cast<float4*>(to) + 3 * i;
-  p[0] = q.a, p[1] = q.b, p[2] = q.c;
+__device__ __forceinline__ void store(float* to, unsigned i, unsigned n, quadruple const& q) {
+  __shared__ float4 lines[256 / 32][96];
+  float4* const line = lines[threadIdx.x / 32];
+  unsigned const own = threadIdx.x % 32, first = 3 * (i - own) + own;
+  auto* const p = reinterpret_cast<float4*>(to);
+  line[3 * own] = q.a, line[3 * own + 1] = q.b, line[3 * own + 2] = q.c;
+  __syncwarp();
+  for (unsigned k = 0; k < 96; k += 32) {
+    if (first + k < 3 * n) p[first + k] = line[own + k];
+  }
+  __syncwarp();
 }
 __device__ __forceinline__ float4 moved(float4 x, float4 v, float dt) {
   return {x.x + v.x * dt, x.y + v.y * dt, x.z + v.z * dt, x.w + v.w * dt};
@@ -35,35 +53,35 @@ __device__ __forceinline__ void slowed(float& x, float& y, float& z, float linea
   x *= factor, y *= factor, z *= factor;
 }
 
-/// Particles that move in straight lines.
-__global__ void __launch_bounds__(256) by_hand_none(float* x, float const* v, std::size_t n, float dt) {
-  std::size_t const i = std::size_t{blockIdx.x} * 256 + threadIdx.x;
-  if (4 * i >= n) return;
-  store(x, i, moved(load(x, i), load(v, i), dt));
+/// Particles that move in straight lines. `n` are groups of four.
+__global__ void __launch_bounds__(256) by_hand_none(float* x, float const* v, unsigned n, float dt) {
+  unsigned const i = blockIdx.x * 256 + threadIdx.x;
+  if (i - threadIdx.x % 32 >= n) return;
+  store(x, i, n, moved(load(x, i, n), load(v, i, n), dt));
 }
 
-__global__ void __launch_bounds__(256) by_hand_gravity(float* x, float* v, std::size_t n, float dt, double3 g) {
-  std::size_t const i = std::size_t{blockIdx.x} * 256 + threadIdx.x;
-  if (4 * i >= n) return;
-  quadruple speed = load(v, i);
+__global__ void __launch_bounds__(256) by_hand_gravity(float* x, float* v, unsigned n, float dt, double3 g) {
+  unsigned const i = blockIdx.x * 256 + threadIdx.x;
+  if (i - threadIdx.x % 32 >= n) return;
+  quadruple speed = load(v, i, n);
   accelerated(speed, {float(g.x), float(g.y), float(g.z)}, dt);
-  store(x, i, moved(load(x, i), speed, dt));
-  store(v, i, speed);
+  store(x, i, n, moved(load(x, i, n), speed, dt));
+  store(v, i, n, speed);
 }
 
 __global__ void __launch_bounds__(256)
-    by_hand_gravity_drag(float* x, float* v, std::size_t n, float dt, double3 g, double linear, double quadratic) {
-  std::size_t const i = std::size_t{blockIdx.x} * 256 + threadIdx.x;
-  if (4 * i >= n) return;
-  quadruple u = load(v, i);
+    by_hand_gravity_drag(float* x, float* v, unsigned n, float dt, double3 g, double linear, double quadratic) {
+  unsigned const i = blockIdx.x * 256 + threadIdx.x;
+  if (i - threadIdx.x % 32 >= n) return;
+  quadruple u = load(v, i, n);
   accelerated(u, {float(g.x), float(g.y), float(g.z)}, dt);
   float const a = float(linear), b = float(quadratic);
   slowed(u.a.x, u.a.y, u.a.z, a, b, dt);
   slowed(u.a.w, u.b.x, u.b.y, a, b, dt);
   slowed(u.b.z, u.b.w, u.c.x, a, b, dt);
   slowed(u.c.y, u.c.z, u.c.w, a, b, dt);
-  store(x, i, moved(load(x, i), u, dt));
-  store(v, i, u);
+  store(x, i, n, moved(load(x, i, n), u, dt));
+  store(v, i, n, u);
 }
 
 using detector = collide::detector<collide::bucket, collide::karabassi<>, collide::cuda_shared>;

@@ -7,6 +7,9 @@
 ///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
+///   - `block.load_row(s, from, row, rows, to)` and `store_row` are for lanes whose rows of a few values follow each
+///     other: `row_lanes` lanes call them at a time, and read and write what lies side by side together; rows from
+///     `rows` on do not exist;
 ///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: take(item(i), look(item(i), k)) for all
 ///     k < counts[i], which are at least 1; `look` only reads, so that a lane can do it up to `Ahead` times before it
 ///     takes, and waits for all of them at once; after each round the whole block calls `after_round()`;
@@ -60,7 +63,7 @@ struct balancing {
 template <int Items, int Pending>
 class serial_block {
  public:
-  static constexpr int lanes = 1, items = Items, pending = Pending;
+  static constexpr int lanes = 1, items = Items, pending = Pending, row_lanes = 1;
 
   template <class T>
   struct per_lane {
@@ -69,6 +72,8 @@ class serial_block {
   };
   template <class T, int N>
   struct staging {};
+  template <class T, int N>
+  struct row_scratch {};
   struct scan_scratch {};
   struct balance_scratch {};
   template <class T>
@@ -97,6 +102,16 @@ class serial_block {
   template <class T, int N>
   COLLIDE_HD_INLINE T const* stage(staging<T, N>&, T const* from, int) {
     return from;
+  }
+
+  template <class Scratch, class T, int N>
+  COLLIDE_HD_INLINE void load_row(Scratch&, T const* from, std::uint32_t row, std::uint32_t, T (&to)[N]) {
+    for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
+  }
+
+  template <class Scratch, class T, int N>
+  COLLIDE_HD_INLINE void store_row(Scratch&, T* to, std::uint32_t row, std::uint32_t, T const (&from)[N]) {
+    for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
   }
 
   COLLIDE_HD_INLINE std::uint32_t scan(scan_scratch&, std::uint32_t* values, std::uint32_t) {
@@ -129,7 +144,7 @@ class serial_block {
 template <int Lanes, int Items, bool Reversed>
 class lockstep_block {
  public:
-  static constexpr int lanes = Lanes, items = Items, pending = 2 * Lanes;
+  static constexpr int lanes = Lanes, items = Items, pending = 2 * Lanes, row_lanes = 1;
 
   template <class T>
   struct per_lane {
@@ -140,6 +155,8 @@ class lockstep_block {
   struct staging {
     T values[N];
   };
+  template <class T, int N>
+  struct row_scratch {};
   struct scan_scratch {};
   using balance_scratch = balancing<lockstep_block>;
   template <class T>
@@ -169,6 +186,16 @@ class lockstep_block {
   T const* stage(staging<T, N>& to, T const* from, int n) {
     for (int i = 0; i < n; ++i) to.values[i] = from[i];
     return to.values;
+  }
+
+  template <class Scratch, class T, int N>
+  void load_row(Scratch&, T const* from, std::uint32_t row, std::uint32_t, T (&to)[N]) {
+    for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
+  }
+
+  template <class Scratch, class T, int N>
+  void store_row(Scratch&, T* to, std::uint32_t row, std::uint32_t, T const (&from)[N]) {
+    for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
   }
 
   std::uint32_t scan(scan_scratch&, std::uint32_t* values, std::uint32_t n) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <collide/detail/atomic.hpp>
+#include <collide/detail/block.hpp>
 #include <collide/detail/lookup.hpp>
 #include <collide/detail/scene.hpp>
 #include <collide/detail/spheres_of.hpp>
@@ -34,16 +35,20 @@ struct fly_body {
   static constexpr int at_a_time = Block::items % 16 == 0 ? 16 : particles_per_group;
   static_assert(particle_padding % 16 == 0, "the last ones are read and written with those that are not there");
 
-  particle_state<S, typename Scene::all> state;
+  using state_type = particle_state<S, typename Scene::all>;
+
+  state_type state;
   Scene scene;
   Lookup lookup;
   listed_particles list;
   S dt;
 
   template <class Block, bool Touches>
-  struct scratch_of {};
+  struct scratch_of {
+    typename state_type::template group_scratch<Block> groups;
+  };
   template <class Block>
-  struct scratch_of<Block, true> {
+  struct scratch_of<Block, true> : scratch_of<Block, false> {
     std::uint32_t count, first;
     id listed[Block::lanes * Block::items];
   };
@@ -60,7 +65,7 @@ struct fly_body {
       bool const simple = !moves && has_one_radius && near.is_simple(state.common_radius);
       auto const marks = simple ? near.marks() : decltype(near.marks()){};
       constexpr int n = at_a_time<Block>;
-      fly(block, [&](auto const& p, auto const& skipped, auto& listed) {
+      fly(block, s.groups, [&](auto const& p, auto const& skipped, auto& listed) {
         if (simple) {
           mark_near(marks, p, listed);
         } else {
@@ -82,7 +87,7 @@ struct fly_body {
         }
       });
     } else {
-      fly(block, [](auto const&, auto const&, auto const&) {});
+      fly(block, s.groups, [](auto const&, auto const&, auto const&) {});
     }
   }
 
@@ -94,24 +99,34 @@ struct fly_body {
 
   /// Moves the particles of a block. `list(particles, skipped, listed)` sets listed[k] for those that may touch the
   /// mesh.
-  template <class Block, class List>
-  COLLIDE_HD_INLINE void fly(Block& block, List const& list) const {
+  template <class Block, class Groups, class List>
+  COLLIDE_HD_INLINE void fly(Block& block, Groups& groups, List const& list) const {
     std::size_t const first = block.index() * Block::lanes * Block::items;
     block.each([&](int lane) {
       constexpr int n = at_a_time<Block>;
       for (int k = 0; k < Block::items; k += n) {
         std::size_t const i = first + static_cast<std::size_t>(lane * Block::items + k);
-        if (i < state.size) fly_some<n>(i, list);
+        if constexpr (Scene::skips) {  // nothing is read of those that are left out
+          serial_block<Block::items, 0> alone(block.index());
+          typename state_type::template group_scratch<decltype(alone)> none;
+          if (i < state.size) fly_some<n>(alone, none, i, list);
+        } else {
+          static_assert(n == Block::items || Block::row_lanes == 1, "rows follow each other from lane to lane");
+          if (Block::row_lanes > 1 || i < state.size) fly_some<n>(block, groups, i, list);
+        }
       }
     });
   }
 
-  template <int N, class List>
-  COLLIDE_HD_INLINE void fly_some(std::size_t first, List const& list) const {
+  template <int N, class Block, class Groups, class List>
+  COLLIDE_HD_INLINE void fly_some(Block& block, Groups& groups, std::size_t first, List const& list) const {
+    auto const load = [&](auto* p) {
+      for (int k = 0; k < N; k += group) state.load_group(block, groups, p + k, first + static_cast<std::size_t>(k));
+    };
     bool skipped[N] = {}, listed[N] = {};
     if constexpr (Scene::skips) {
       particle<S, typename Scene::skipping> p[N];
-      for (int k = 0; k < N; k += group) state.load_group(p + k, first + static_cast<std::size_t>(k));
+      load(p);
       bool all = true;
       for (int k = 0; k < N; ++k) {
         skipped[k] = first + static_cast<std::size_t>(k) >= state.size || scene.is_skipped(p[k]);
@@ -120,7 +135,7 @@ struct fly_body {
       if (all) return;
     }
     flying p[N];
-    for (int k = 0; k < N; k += group) state.load_group(p + k, first + static_cast<std::size_t>(k));
+    load(p);
     for (int k = 0; k < N; ++k) {
       if (skipped[k]) continue;
       if constexpr (part_before != 0) scene.accelerate(p[k], part_before * dt);
@@ -134,7 +149,7 @@ struct fly_body {
       scene.finish(p[k], dt);
     }
     for (int k = 0; k < N; k += group) {
-      state.store_group(p + k, first + static_cast<std::size_t>(k), typename Scene::flight_writes{});
+      state.store_group(block, groups, p + k, first + static_cast<std::size_t>(k), typename Scene::flight_writes{});
     }
   }
 

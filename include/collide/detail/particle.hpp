@@ -48,6 +48,12 @@ struct pointer_of {
 /// How many particles are read or written together: four coordinates are 16 bytes.
 inline constexpr int particles_per_group = 4;
 
+/// What is read or written at once.
+template <class T>
+struct alignas(4 * sizeof(T)) four {
+  T v[4];
+};
+
 /// All columns of a simulation in memory. Each has room for a multiple of this many particles.
 inline constexpr std::size_t particle_padding = 16;
 
@@ -86,27 +92,35 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
     (store_value(E{}, p[E{}], i), ...);
   }
 
-  /// A group of particles from `first` on, which is a multiple of their number.
-  template <class... D>
-  COLLIDE_HD_INLINE void load_group(particle<S, columns<D...>>* p, std::size_t first) const {
-    (load_values(D{}, p, first), ...);
+  /// Scratch memory of a block that reads and writes groups. Of all columns, vectors take the most.
+  template <class Block>
+  using group_scratch = typename Block::template row_scratch<four<S>, 3>;
+
+  /// A group of particles from `first` on, which is a multiple of their number; see `load_row` in block.hpp.
+  template <class Block, class... D>
+  COLLIDE_HD_INLINE void load_group(Block& block, group_scratch<Block>& s, particle<S, columns<D...>>* p,
+                                    std::size_t first) const {
+    (load_values(block, s, D{}, p, first), ...);
     for (int k = 0; k < particles_per_group; ++k) {
       p[k].number = static_cast<id>(first) + static_cast<id>(k);
       p[k].the_radius = radius_of(p[k]);
     }
   }
 
-  template <class P, class... E>
-  COLLIDE_HD_INLINE void store_group(P const* p, std::size_t first, columns<E...>) const {
-    (store_values(E{}, p, first), ...);
+  template <class Block, class P, class... E>
+  COLLIDE_HD_INLINE void store_group(Block& block, group_scratch<Block>& s, P const* p, std::size_t first,
+                                     columns<E...>) const {
+    (store_values(block, s, E{}, p, first), ...);
   }
 
  private:
-  /// What is read or written at once.
-  template <class T>
-  struct alignas(4 * sizeof(T)) four {
-    T v[4];
-  };
+  COLLIDE_HD_INLINE static std::uint32_t groups(std::size_t particles) {
+    return static_cast<std::uint32_t>(particles / particles_per_group);
+  }
+  COLLIDE_HD_INLINE std::uint32_t groups() const {
+    return groups(size + particle_padding - 1) / (particle_padding / particles_per_group) *
+           (particle_padding / particles_per_group);
+  }
 
   template <class P>
   COLLIDE_HD_INLINE S radius_of(P const& p) const {
@@ -133,28 +147,28 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
     }
   }
 
-  template <class D, class P>
-  COLLIDE_HD_INLINE void load_values(D, P* p, std::size_t first) const {
+  template <class Block, class D, class P>
+  COLLIDE_HD_INLINE void load_values(Block& block, group_scratch<Block>& s, D, P* p, std::size_t first) const {
     using layout = column_layout<D, S>;
+    using quad = four<column_element<D, S>>;
     constexpr int width = layout::width;
-    auto const* const from = reinterpret_cast<four<column_element<D, S>> const*>(at(D{}) + first * std::size_t(width));
-    four<column_element<D, S>> read[width];
-    for (int k = 0; k < width; ++k) read[k] = from[k];
+    quad read[width];
+    block.load_row(s, reinterpret_cast<quad const*>(at(D{})), groups(first), groups(), read);
     for (int k = 0; k < particles_per_group; ++k) {
       for (int c = 0; c < width; ++c) layout::at(p[k][D{}], c) = read[(k * width + c) / 4].v[(k * width + c) % 4];
     }
   }
 
-  template <class D, class P>
-  COLLIDE_HD_INLINE void store_values(D, P const* p, std::size_t first) const {
+  template <class Block, class D, class P>
+  COLLIDE_HD_INLINE void store_values(Block& block, group_scratch<Block>& s, D, P const* p, std::size_t first) const {
     using layout = column_layout<D, S>;
+    using quad = four<column_element<D, S>>;
     constexpr int width = layout::width;
-    auto* const to = reinterpret_cast<four<column_element<D, S>>*>(at(D{}) + first * std::size_t(width));
-    four<column_element<D, S>> write[width];
+    quad write[width];
     for (int k = 0; k < particles_per_group; ++k) {
       for (int c = 0; c < width; ++c) write[(k * width + c) / 4].v[(k * width + c) % 4] = layout::at(p[k][D{}], c);
     }
-    for (int k = 0; k < width; ++k) to[k] = write[k];
+    block.store_row(s, reinterpret_cast<quad*>(at(D{})), groups(first), groups(), write);
   }
 };
 

@@ -2,15 +2,18 @@
 /// The second kernel of a simulation's step: finds the contacts of the particles that may touch the mesh, and lets the
 /// effects respond.
 ///
-/// The candidates of some particles are spread evenly over the lanes of the block. Each candidate that the narrow phase
-/// accepts offers itself as the next contact of its particle: the deepest, or of particles that move the earliest,
-/// wins, by a minimum over 64-bit keys, which does not depend on the order. One lane then lets the effects respond.
-/// This is repeated until no contact counts:
+/// The candidates of some particles are spread evenly over the lanes of the block; those that the quick test lets
+/// through are listed, and judged as many at a time as there are lanes. Each that the narrow phase accepts offers
+/// itself as the next contact of its particle: the deepest, or of particles that move the earliest, wins, by a minimum
+/// over 64-bit keys, which does not depend on the order. One lane then lets the effects respond. This is repeated until
+/// no contact counts; what a particle at rest touches is kept for that:
 ///   - a contact counts only if its foot lies above the tangent planes of those before. In a corner both walls count;
 ///   on
 ///     a plane that is divided into triangles one does, and no inner edge is felt;
 ///   - particles that move spend what is left of the step after each impact, from where they then are.
 #pragma once
+
+#include <cstring>
 
 #include <collide/detail/fly.hpp>
 #include <collide/detail/touching_mesh.hpp>
@@ -27,6 +30,7 @@ struct survivor {
   S normals[planes][3], feet[planes][3];  ///< of the contacts that came before
   S rest;                                 ///< of the step, after the impacts so far
   std::uint64_t best;                     ///< key of the next contact
+  std::uint32_t best_kept;                ///< where it is kept
   std::uint32_t offered;                  ///< how many candidates offered themselves
   int before;                             ///< how many contacts came before
   id number;
@@ -109,9 +113,46 @@ struct respond_body {
   S dt;
   std::size_t blocks;
 
+  static constexpr int ahead = 4;  ///< candidates that a lane looks at together
+
   /// How many particles a block resolves at a time.
   template <class Block>
-  static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes / 4 : Block::items;
+  static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes * 3 / 2 / sizeof(S) : Block::items;
+
+  /// A particle of those that are resolved together, and a triangle.
+  struct candidate {
+    std::uint32_t particle;
+    id triangle;
+  };
+
+  /// A contact that a particle may have, in scratch memory.
+  struct kept_contact {
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
+
+    std::uint32_t particle;
+    id triangle;
+    S time;
+    alignas(S) unsigned char bytes[sizeof(contact<S>)];
+
+    COLLIDE_HD_INLINE void set(contact<S> const& c) { std::memcpy(bytes, static_cast<void const*>(&c), sizeof c); }
+    COLLIDE_HD_INLINE contact<S> get() const {
+      contact<S> c;
+      std::memcpy(static_cast<void*>(&c), bytes, sizeof c);
+      return c;
+    }
+  };
+
+  /// The way of candidates to the next contact. A single lane judges each at once, and keeps the best of each particle.
+  template <class Block>
+  struct candidate_lists {
+    static constexpr bool used = Block::lanes > 1;
+    static constexpr std::uint32_t near_room = used ? (ahead + 1) * Block::lanes : 1;
+    static constexpr std::uint32_t kept_room = used ? Block::lanes * 4 / sizeof(S) : together<Block>;
+
+    candidate near[near_room];     ///< let through by the quick test
+    kept_contact kept[kept_room];  ///< of those that the narrow phase accepts, as far as there is room
+    std::uint32_t near_count, kept_count;
+  };
 
   template <class Block>
   struct scratch {
@@ -122,6 +163,7 @@ struct respond_body {
     std::uint32_t owner[size], counts[size];
     id const* from[size];
     id first[size];
+    candidate_lists<Block> lists;
     typename Block::balance_scratch balance;
   };
 
@@ -129,12 +171,14 @@ struct respond_body {
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     std::uint32_t const n = *list.count;
     Lookup const near = lookup.opened();
-    constexpr std::uint32_t size = together<Block>;
-    for (std::size_t base = block.index() * size; base < n; base += blocks * size) {
-      collide(block, s, near, list.numbers + base, smaller(n - static_cast<std::uint32_t>(base), size));
+    // as many as come to each block, but no more than it has room for
+    auto const share = smaller(together<Block>, static_cast<std::uint32_t>((n + blocks - 1) / blocks));
+    for (std::size_t base = block.index() * share; base < n; base += blocks * share) {
+      collide(block, s, near, list.numbers + base, smaller(n - static_cast<std::uint32_t>(base), share));
     }
     // the last block that had something to do empties the list for the next step; those that come later find it so
-    std::size_t const busy = smaller(blocks, (n + std::size_t{size} - 1) / size);
+    if (n == 0) return;
+    std::size_t const busy = smaller(blocks, (n + std::size_t{share} - 1) / share);
     if (block.index() >= busy) return;
     block.each([&](int lane) {
       if (lane != 0 || fetch_add(list.done, 1u) + 1 != busy) return;
@@ -165,27 +209,33 @@ struct respond_body {
       one.before = 0;
       one.is_active = true;
     });
-    for (bool more = true; more;) {
+    bool is_first = true;
+    for (bool more = true; more; is_first = false) {
       each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
         one.best = no_contact;
+        one.best_kept = kept_contact::none;
         one.offered = 0;
         if (one.is_active) one.cursor = near.begin(one.ball());
         if (j == 0) s.active = 0;
       });
-      offer_all(block, s, near, each_of_lane);
+      if (is_first || !offer_kept(block, s)) offer_all(block, s, near, each_of_lane);
+      find_best(block, s);
       each_of_lane([&](survivor<S, moves>& one, std::uint32_t) {
         if (!one.is_active) return;
-        respond(one, near);
+        respond(one, near, s.lists.kept);
         if (one.is_active) block.add(s.active, 1);
       });
       more = block.shared(s.active) != 0;
     }
   }
 
-  /// Offers all candidates of the active ones.
+  /// Offers all candidates of the active ones, and keeps their contacts.
   template <class Block, class Each>
   COLLIDE_HD void offer_all(Block& block, scratch<Block>& s, Lookup const& near, Each const& each_of_lane) const {
     constexpr std::uint32_t most = (1u << 31) / together<Block>;
+    block.each([&](int lane) {
+      if (lane == 0) s.lists.near_count = s.lists.kept_count = 0;
+    });
     for (;;) {
       block.each([&](int lane) {
         if (lane == 0) s.ranges = 0;
@@ -200,28 +250,116 @@ struct respond_body {
         s.first[place] = range.first;
       });
       std::uint32_t const ranges = block.shared(s.ranges);
-      if (ranges == 0) return;
-      block.template balanced<1>(
+      if (ranges == 0) break;
+      block.template balanced<ahead>(
           s.balance, s.counts, ranges,
           [&](std::uint32_t i) {
             auto& one = s.those[s.owner[i]];
             auto const ball = one.ball();
             sphere<S> const around = enclosing(until_next<Block>(one, ball));
-            return candidates{one, ball, around, {s.from[i], s.first[i], 0}};
+            return candidates{s.owner[i], one, ball, around, {s.from[i], s.first[i], 0}};
           },
           [&](candidates const& c, std::uint32_t k) {
             id const number = c.range.at(k);
             return near.near(c.around, number) ? number : no_id;
           },
           [&](candidates const& c, id number) {
-            if (number != no_id) offer<Block>(c, near, number);
+            if (number == no_id) return;
+            if constexpr (candidate_lists<Block>::used) {
+              s.lists.near[block.add(s.lists.near_count, 1)] = {c.particle, number};
+            } else {
+              offer_next(s, c, near, number);
+            }
           },
-          [] {});
+          [&] {
+            if constexpr (candidate_lists<Block>::used) {
+              std::uint32_t const n = block.shared(s.lists.near_count);
+              if (n + ahead * Block::lanes > candidate_lists<Block>::near_room) judge_listed(block, s, near, n);
+            }
+          });
     }
+    if constexpr (candidate_lists<Block>::used) {
+      judge_listed(block, s, near, block.shared(s.lists.near_count));
+      offer_found(block, s, near);
+    }
+  }
+
+  /// Judges the `n` candidates that are listed, and lists those that touch. What there is no room for is offered.
+  template <class Block>
+  COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t n) const {
+    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
+      block.each([&](int lane) {
+        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
+        if (lane == 0) s.lists.near_count = 0;
+        if (i >= n) return;
+        candidate const c = s.lists.near[i];
+        auto& one = s.those[c.particle];
+        auto const ball = one.ball();
+        triangle<S> const t = near.mesh[c.triangle];
+        if (!NarrowPhase::intersects(t, ball)) return;
+        std::uint32_t const place = block.add(s.lists.kept_count, 1);
+        if (place < candidate_lists<Block>::kept_room) {
+          s.lists.kept[place].particle = c.particle;
+          s.lists.kept[place].triangle = c.triangle;
+        } else {
+          S const time = time_of(t, ball);
+          offer<Block>(one, time, contact_of(t, ball, time, c.triangle));
+        }
+      });
+    }
+  }
+
+  /// Finds the contacts that are to be kept, many at a time, and offers them.
+  template <class Block>
+  COLLIDE_HD_INLINE void offer_found(Block& block, scratch<Block>& s, Lookup const& near) const {
+    each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
+      auto const ball = one.ball();
+      triangle<S> const t = near.mesh[k.triangle];
+      k.time = time_of(t, ball);
+      contact<S> const found = contact_of(t, ball, k.time, k.triangle);
+      k.set(found);
+      offer<Block>(one, k.time, found);
+    });
+  }
+
+  /// Offers the contacts of particles at rest again. False if not all of them were kept.
+  template <class Block>
+  COLLIDE_HD_INLINE bool offer_kept(Block& block, scratch<Block>& s) const {
+    if constexpr (moves || !candidate_lists<Block>::used) {
+      return false;
+    } else {
+      if (block.shared(s.lists.kept_count) > candidate_lists<Block>::kept_room) return false;
+      each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
+        if (one.is_active) offer<Block>(one, k.time, k.get());
+      });
+      return true;
+    }
+  }
+
+  /// Finds where the best contacts are kept. A lane alone knows.
+  template <class Block>
+  COLLIDE_HD_INLINE void find_best(Block& block, scratch<Block>& s) const {
+    if constexpr (candidate_lists<Block>::used) {
+      each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t place) {
+        contact<S> const c = k.get();
+        if (one.best == contact_key(k.time, c.depth, c.triangle)) fetch_min(&one.best_kept, place);
+      });
+    }
+  }
+
+  template <class Block, class F>
+  COLLIDE_HD_INLINE void each_kept(Block& block, scratch<Block>& s, F const& f) const {
+    std::uint32_t const n = smaller(block.shared(s.lists.kept_count), candidate_lists<Block>::kept_room);
+    block.each([&](int lane) {
+      for (auto i = static_cast<std::uint32_t>(lane); i < n; i += Block::lanes) {
+        f(s.those[s.lists.kept[i].particle], s.lists.kept[i], i);
+      }
+    });
   }
 
   /// A particle and some of its candidates.
   struct candidates {
+    std::uint32_t particle;
     survivor<S, moves>& one;
     std::conditional_t<moves, moving_sphere<S>, sphere<S>> ball;
     sphere<S> around;
@@ -240,25 +378,32 @@ struct respond_body {
     return ball;
   }
 
-  /// Offers a triangle as the next contact of a particle, if they touch and it counts.
-  template <class Block>
-  COLLIDE_HD_INLINE void offer(candidates const& c, Lookup const& near, id number) const {
-    if constexpr (moves && Block::lanes == 1) {
+  /// A lane alone: offers a triangle as the next contact of a particle, if they touch.
+  template <class Scratch>
+  COLLIDE_HD_INLINE void offer_next(Scratch& s, candidates const& c, Lookup const& near, id number) const {
+    if constexpr (moves) {
       if (c.one.best != no_contact && static_cast<id>(c.one.best) == number) return;  // it was in another cell, too
     }
-    offer_near<Block>(c.one, c.ball, near.mesh[number], number);
+    triangle<S> const t = near.mesh[number];
+    if (!NarrowPhase::intersects(t, c.ball)) return;
+    S const time = time_of(t, c.ball);
+    contact<S> const found = contact_of(t, c.ball, time, number);
+    std::uint64_t const before = c.one.best;
+    offer<serial_block<1, 0>>(c.one, time, found);
+    if (c.one.best == before) return;
+    c.one.best_kept = c.particle;
+    s.lists.kept[c.particle].time = time;
+    s.lists.kept[c.particle].set(found);
   }
 
-  template <class Block, class Ball>
-  COLLIDE_HD_INLINE void offer_near(survivor<S, moves>& one, Ball const& ball, triangle<S> const& t, id number) const {
-    if (!NarrowPhase::intersects(t, ball)) return;
-    S const time = time_of(t, ball);
-    contact<S> const c = contact_here(t, place_at(ball, time));
-    if (one.knows(c.point)) return;
+  /// Offers a contact as the next one of a particle. False if it does not count.
+  template <class Block>
+  COLLIDE_HD_INLINE bool offer(survivor<S, moves>& one, S time, contact<S> const& c) const {
+    if (one.knows(c.point)) return false;
     if constexpr (moves) {
-      if (!one.approaches(c.normal)) return;
+      if (!one.approaches(c.normal)) return false;
     }
-    std::uint64_t const key = contact_key(time, c.depth, number);
+    std::uint64_t const key = contact_key(time, c.depth, c.triangle);
     if constexpr (Block::lanes > 1) {
       fetch_add(&one.offered, 1u);
       fetch_min(&one.best, key);
@@ -266,6 +411,15 @@ struct respond_body {
       ++one.offered;
       one.best = smaller(one.best, key);
     }
+    return true;
+  }
+
+  /// The contact of a ball and a triangle that it touches at a time within the step.
+  template <class Ball>
+  static COLLIDE_HD_INLINE contact<S> contact_of(triangle<S> const& t, Ball const& ball, S time, id number) {
+    contact<S> c = contact_here(t, place_at(ball, time));
+    c.triangle = number;
+    return c;
   }
 
   static COLLIDE_HD_INLINE S time_of(std::uint64_t key) {
@@ -281,7 +435,13 @@ struct respond_body {
 
   /// Lets the effects respond to the contact that was found, and says whether to look for another. If there was none,
   /// the particle's step ends.
-  COLLIDE_HD void respond(survivor<S, moves>& one, Lookup const& near) const {
+  COLLIDE_HD void respond(survivor<S, moves>& one, Lookup const& near, kept_contact const* kept) const {
+    if constexpr (!moves && !Scene::finishes && part_after == 0) {
+      if (one.best == no_contact) {  // nothing is left to do
+        one.is_active = false;
+        return;
+      }
+    }
     colliding p;
     state.load(p, one.number);
     if (one.best == no_contact) {
@@ -290,12 +450,12 @@ struct respond_body {
     } else {
       auto const number = static_cast<id>(one.best);
       auto const ball = one.ball();
-      triangle<S> const t = near.mesh[number];
-      S const time = time_of(t, ball);
+      bool const is_kept = one.best_kept != kept_contact::none;
+      S const time = is_kept ? kept[one.best_kept].time : time_of(near.mesh[number], ball);
       sphere<S> const here = place_at(ball, time);
-      touching<S> c{contact_here(t, here), vec3<S>(S(0), S(0), S(0)), moves ? S(0) : dt, S(0), false};
+      contact<S> const found = is_kept ? kept[one.best_kept].get() : contact_of(near.mesh[number], ball, time, number);
+      touching<S> c{found, vec3<S>(S(0), S(0), S(0)), moves ? S(0) : dt, S(0), false};
       c.sphere = one.number;
-      c.triangle = number;
       if constexpr (moves) {
         p[position{}] = here.centre;
         one.rest -= one.rest * time;
