@@ -135,7 +135,9 @@ struct copy_in_order {
   }
 };
 
-/// Kernel body of `for_each` over places in the order: the overlaps of one particle.
+/// Kernel body of `for_each` over places in the order: the overlaps of one particle. Those that overlap it are listed
+/// first, and then met: threads that run together meet one each at the same time, which takes longer than to look for
+/// them.
 template <class S, class Scene>
 struct meet_neighbours {
   particle_state<S, typename Scene::all> state;
@@ -154,18 +156,24 @@ struct meet_neighbours {
     bool const sleeps = is_skipped(self);
     bool met = false;
     cell const here = cells.of(self[position{}]);
-    std::uint32_t const* const ends = particles.order.ends;
-    auto const look = [&](std::uint32_t first, std::uint32_t count, cell from) {
-      std::uint32_t const end = ends[first + count];
-      for (std::uint32_t k = ends[first]; k < end; ++k) {
-        near_sphere<S> const close = particles.spheres[k];
-        vec3<S> const at(close.x, close.y, close.z), between = self[position{}] - at;
-        S const reach = self.the_radius + close.radius;
-        if (!(dot(between, between) < mul(reach, reach)) || k == i) continue;
-        cell const there = cells.of(at);  // others may be at the same place of the table
-        std::int32_t const along = there.x - from.x;
-        if (there.y != from.y || there.z != from.z || along < 0 || along >= static_cast<std::int32_t>(count)) continue;
-        meeting other = particles[k];
+    std::uint32_t found = 0, done = 0;
+    do {  // once, unless very many overlap it
+      std::uint32_t places[room];
+      std::uint8_t rows[room];
+      found = 0;
+      each_near(self, here, static_cast<std::uint32_t>(i), [&](std::uint32_t k, int row) {
+        std::uint32_t const n = found++ - done;
+        if (n >= room) return;
+        places[n] = k;
+        rows[n] = static_cast<std::uint8_t>(row);
+      });
+      std::uint32_t const listed = smaller(found - done, room);
+      COLLIDE_ROLLED
+      for (std::uint32_t n = 0; n < listed; ++n) {
+        meeting other = particles[places[n]];
+        cell const from = first_of(here, rows[n]), there = cells.of(other[position{}]);
+        // others may be at the same place of the table
+        if (there.y != from.y || there.z != from.z || there.x < from.x || there.x > from.x + 2) continue;
         if (!sleeps) {
           scene.meet(changed, self, other, dt);
         } else if (!is_skipped(other)) {
@@ -175,23 +183,44 @@ struct meet_neighbours {
         }
         met = true;
       }
-    };
-    for (int row = 0; row < 9; ++row) {
-      cell const from{here.x - 1, here.y + row % 3 - 1, here.z + row / 3 - 1};
-      std::uint32_t const first = cells.number(from);
-      if ((from.x & 15) < 14) {  // the next two follow it
-        look(first, 3, from);
-      } else {
-        for (std::int32_t k = 0; k < 3; ++k) {
-          cell const one{from.x + k, from.y, from.z};
-          look(cells.number(one), 1, one);
-        }
-      }
-    }
+      done += listed;
+    } while (done < found);
     if (met) state.store(changed, self.number, typename Scene::meeting_writes{});
   }
 
  private:
+  static constexpr std::uint32_t room = 16;
+
+  /// The first of three cells along x next to a cell.
+  static COLLIDE_HD_INLINE cell first_of(cell here, int row) {
+    return {here.x - 1, here.y + row % 3 - 1, here.z + row / 3 - 1};
+  }
+
+  /// f(place, row) for those that overlap a particle and lie in a cell next to its own, or in one at the same place of
+  /// the table.
+  template <class F>
+  COLLIDE_HD_INLINE void each_near(meeting const& self, cell here, std::uint32_t i, F const& f) const {
+    std::uint32_t const* const ends = particles.order.ends;
+    COLLIDE_ROLLED
+    for (int row = 0; row < 9; ++row) {
+      cell const from = first_of(here, row);
+      std::int32_t together;
+      COLLIDE_ROLLED
+      for (std::int32_t x = 0; x < 3; x += together) {
+        together = smaller(3 - x, 16 - ((from.x + x) & 15));  // those in the same block follow each other
+        std::uint32_t const first = cells.number({from.x + x, from.y, from.z});
+        std::uint32_t const end = ends[first + static_cast<std::uint32_t>(together)];
+        COLLIDE_ROLLED
+        for (std::uint32_t k = ends[first]; k < end; ++k) {
+          near_sphere<S> const close = particles.spheres[k];
+          vec3<S> const between = self[position{}] - vec3<S>(close.x, close.y, close.z);
+          S const reach = self.the_radius + close.radius;
+          if (dot(between, between) < mul(reach, reach) && k != i) f(k, row);
+        }
+      }
+    }
+  }
+
   COLLIDE_HD_INLINE bool is_skipped(meeting& p) const {
     if constexpr (Scene::skips) {
       return scene.is_skipped(p);
@@ -209,7 +238,7 @@ class neighbours {
   template <class Space>
   void reserve(Space& space, std::size_t n, S radius) {
     std::uint32_t bits = 6;
-    while (bits < 28 && (std::size_t{1} << bits) < n) ++bits;
+    while (bits < 28 && (std::size_t{1} << bits) < 2 * n) ++bits;
     count_ = std::size_t{1} << bits;
     // a bit wider than the largest particle, so that rounding separates no pair by more than a cell
     S const width = larger(2 * radius * (1 + 64 * format<S>::unit), std::numeric_limits<S>::min());
