@@ -126,7 +126,7 @@ void check_streamed(Space const& space, std::pmr::memory_resource* memory) {
     auto const contacts = detector.query(placed.view(), collide::contacts<S>(canonical)).to_host();
     auto const closest = detector.query(placed.view(), collide::closest<S>()).to_host();
     CHECK(pairs.size() > 100);
-    for (std::size_t const chunk : {7, 80, 240, 1 << 30}) {  // 7 leaves a rest, 80 none
+    for (std::size_t const chunk : {64, 80, 240, 1 << 30}) {  // 64 leaves a rest, 80 none
       CAPTURE(chunk);
       collide::streamed streamed(detector, chunk);
       CHECK((records_of<collide::pair>(streamed, spheres, collide::pairs(canonical)) == pairs));
@@ -170,7 +170,7 @@ void check_streamed_swept(Space const& space, std::pmr::memory_resource* memory)
     auto const pairs = detector.query(moving, collide::pairs(canonical)).to_host();
     auto const impacts = detector.query(moving, collide::impacts<S>(canonical)).to_host();
     CHECK(pairs.size() > 100);
-    for (std::size_t const chunk : {7, 80, 1000}) {
+    for (std::size_t const chunk : {64, 80, 1000}) {
       CAPTURE(chunk);
       collide::streamed streamed(detector, chunk);
       auto const here = collide::moving(spheres, from.ways());
