@@ -8,7 +8,8 @@
 ///   radii      the largest radius, 30, over the smallest; as many spheres of each order of magnitude;
 ///   cluster    the spheres are in a cube of this half-width around a point of the surface, in the end in one cell.
 /// The time is that of build and query, into the sink `pairs`. Counters: spheres, triangles, pairs; ns_per_item, the
-/// time over their sum: linear growth is a line that does not rise. LARGEST bounds spheres and triangles.
+/// time over their sum: linear growth is a line that does not rise. LARGEST bounds spheres and triangles; 100000000
+/// triangles take 10 s to make, 10 GB of host memory and 20 GB of the device's.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -65,9 +66,24 @@ io::scene of_cluster(std::size_t value, std::size_t largest) {
   return s;
 }
 
+/// The scene of the last measurement is kept: Google Benchmark comes back for it to iterate more often, and large ones
+/// take longer to make than to measure.
+io::scene const& scene_of(make_scene make, std::size_t value, std::size_t largest) {
+  static make_scene made = nullptr;
+  static std::size_t value_made = 0;
+  static io::scene scene;
+  if (made != make || value_made != value) {
+    scene = {};
+    scene = make(value, largest);
+    made = make;
+    value_made = value;
+  }
+  return scene;
+}
+
 template <class Space>
 void run(benchmark::State& state, Space space, make_scene make, std::size_t value, std::size_t largest) {
-  io::scene const from = make(value, largest);
+  io::scene const& from = scene_of(make, value, largest);
   std::vector<float> const vertices(from.vertices.begin(), from.vertices.end());
   std::vector<float> const centres(from.centres.begin(), from.centres.end());
   std::vector<float> const radii(from.radii.begin(), from.radii.end());

@@ -98,6 +98,28 @@ class cuda_async_memory final : public std::pmr::memory_resource {
   cudaStream_t stream_;
 };
 
+/// Pinned host memory by cudaMallocHost and cudaFreeHost: what `streamed` copies from it takes the full bandwidth, and
+/// nothing waits meanwhile. Slow to allocate; no other program can have it.
+class cuda_pinned_memory final : public std::pmr::memory_resource {
+ public:
+  /// The one instance.
+  static cuda_pinned_memory* get() {
+    static cuda_pinned_memory instance;
+    return &instance;
+  }
+
+ private:
+  void* do_allocate(std::size_t n, std::size_t) override {
+    void* p = nullptr;
+    cuda_check(cudaMallocHost(&p, n), "cudaMallocHost");
+    return p;
+  }
+  void do_deallocate(void* p, std::size_t, std::size_t) override {
+    if (cudaFreeHost(p) != cudaSuccess) cudaGetLastError();
+  }
+  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
+};
+
 namespace detail {
 
 inline constexpr int cuda_lanes = 256;  ///< threads of a block, in every kernel

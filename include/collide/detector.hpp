@@ -44,6 +44,13 @@ struct is_execution_space<
     E, std::void_t<decltype(std::declval<E const&>().resource()), decltype(std::declval<E const&>().concurrency()),
                    decltype(E::host_memory), decltype(E::defers), decltype(E::sorts_spheres)>> : std::true_type {};
 
+template <class D, class = void>
+struct is_detector : std::false_type {};
+template <class D>
+struct is_detector<
+    D, std::void_t<typename D::broad_phase, typename D::narrow_phase, typename D::execution_space, typename D::scalar>>
+    : std::true_type {};
+
 template <class H, class = void>
 struct is_handle : std::false_type {};
 template <class H>

@@ -27,6 +27,21 @@ class moving_sphere_view : public sphere_view<S> {
   COLLIDE_HD_INLINE S const* displacements(std::size_t i) const { return x_ + i * stride_; }
   COLLIDE_HD bool packed_displacements() const { return stride_ == 3 && y_ == x_ + 1 && z_ == x_ + 2; }
 
+  /// `n` of the spheres, from number `first` on.
+  moving_sphere_view part(std::size_t first, std::size_t n) const {
+    std::size_t const skip = first * stride_;
+    return {sphere_view<S>::part(first, n), x_ + skip, y_ + skip, z_ + skip, stride_};
+  }
+
+  /// See `sphere_view`.
+  template <class F>
+  void each_array(F const& f) {
+    sphere_view<S>::each_array(f);
+    f(x_, stride_);
+    f(y_, stride_);
+    f(z_, stride_);
+  }
+
  private:
   S const* x_ = nullptr;
   S const* y_ = nullptr;

@@ -62,13 +62,6 @@ struct looking_up : Space {
   static constexpr int bucket_span = 2;
 };
 
-template <class D, class = void>
-struct is_detector : std::false_type {};
-template <class D>
-struct is_detector<
-    D, std::void_t<typename D::broad_phase, typename D::narrow_phase, typename D::execution_space, typename D::scalar>>
-    : std::true_type {};
-
 template <class Index, class = void>
 struct looks_up : std::false_type {};
 template <class Index>

@@ -61,6 +61,21 @@ class sphere_view {
   /// True if the centres lie as x0, y0, z0, x1, y1, z1, ...
   COLLIDE_HD bool packed() const { return stride_ == 3 && y_ == x_ + 1 && z_ == x_ + 2; }
 
+  /// `n` of the spheres, from number `first` on.
+  sphere_view part(std::size_t first, std::size_t n) const {
+    S const* const radii = radii_ == nullptr ? nullptr : radii_ + first * radius_stride_;
+    return {x(first), y(first), z(first), stride_, radii, radius_stride_, radius_, n};
+  }
+
+  /// Calls f(array, stride) for each array that the view reads; where f changes the pointer, the view reads there.
+  template <class F>
+  void each_array(F const& f) {
+    f(x_, std::size_t{stride_});
+    f(y_, std::size_t{stride_});
+    f(z_, std::size_t{stride_});
+    if (radii_ != nullptr) f(radii_, std::size_t{radius_stride_});
+  }
+
  private:
   S const* x_ = nullptr;
   S const* y_ = nullptr;

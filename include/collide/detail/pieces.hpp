@@ -1,0 +1,81 @@
+/// \file
+/// What has to be copied so that spheres can be read elsewhere.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+
+namespace collide::detail {
+
+/// The memory that a view of spheres reads, as few contiguous pieces: one if the centres are packed or the spheres are
+/// quadruples, and one more for radii in an array of their own, three if the coordinates are. Arrays of one stride that
+/// lie between each other's elements are one piece. It is copied as it lies, with whatever lies between them: the copy
+/// has the same strides.
+template <class Spheres>
+class pieces {
+  using S = typename Spheres::scalar;
+
+ public:
+  explicit pieces(Spheres const& spheres) : spheres_{spheres} {
+    spheres_.each_array([this](S const* array, std::size_t stride) { add(array, stride); });
+    for (std::size_t k = 0; k < count_; ++k) {
+      piece_[k].begin = size_;
+      size_ += (length(piece_[k]) + aligned - 1) / aligned * aligned;
+    }
+  }
+
+  /// How many elements the copies take, each piece at a multiple of 64 elements.
+  std::size_t size() const { return size_; }
+
+  /// Calls copy(to, from, n) for each piece; returns the view of the copies.
+  template <class Copy>
+  Spheres copy(S* to, Copy const& copy) const {
+    for (std::size_t k = 0; k < count_; ++k) copy(to + piece_[k].begin, piece_[k].from, length(piece_[k]));
+    Spheres copied = spheres_;
+    copied.each_array([&](S const*& array, std::size_t stride) {
+      auto const holds = [&](piece const& p) {
+        return p.stride == stride && !std::less<>{}(array, p.from) && std::less<>{}(array, p.from + p.width);
+      };
+      piece const& p = *std::find_if(piece_, piece_ + count_, holds);
+      array = to + p.begin + (array - p.from);
+    });
+    return copied;
+  }
+
+ private:
+  static constexpr std::size_t most = 7;  ///< three coordinates, a radius and a displacement
+  static constexpr std::size_t aligned = 64;
+
+  /// `width` elements from `from` on, and again after every `stride`.
+  struct piece {
+    S const* from;
+    std::size_t width, stride;
+    std::size_t begin;  ///< of the copy
+  };
+
+  void add(S const* array, std::size_t stride) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      piece& p = piece_[k];
+      S const* const from = std::min(p.from, array, std::less<>{});
+      S const* const end = std::max(p.from + p.width, array + 1, std::less<>{});
+      auto const width = static_cast<std::size_t>(end - from);
+      if (p.stride != stride || width > stride) continue;
+      p.from = from;
+      p.width = width;
+      return;
+    }
+    piece_[count_++] = {array, 1, stride, 0};
+  }
+
+  std::size_t length(piece const& p) const {
+    return spheres_.size() == 0 ? 0 : (spheres_.size() - 1) * p.stride + p.width;
+  }
+
+  Spheres spheres_;
+  piece piece_[most] = {};
+  std::size_t count_ = 0;
+  std::size_t size_ = 0;
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,8 @@
+// expect: collide: what spheres are streamed to is a detector, such as detector<bucket>
+#include <collide/bucket.cuh>
+#include <collide/streamed.cuh>
+
+int main() {
+  collide::bucket bucket;
+  collide::streamed streamed(bucket);
+}
