@@ -114,12 +114,10 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   }
 
  private:
-  COLLIDE_HD_INLINE static std::uint32_t groups(std::size_t particles) {
-    return static_cast<std::uint32_t>(particles / particles_per_group);
-  }
-  COLLIDE_HD_INLINE std::uint32_t groups() const {
-    return groups(size + particle_padding - 1) / (particle_padding / particles_per_group) *
-           (particle_padding / particles_per_group);
+  /// How many groups as many particles are, with those that columns have room for.
+  static COLLIDE_HD_INLINE std::uint32_t groups_of(std::size_t particles) {
+    std::size_t const padded = (particles + particle_padding - 1) / particle_padding * particle_padding;
+    return static_cast<std::uint32_t>(padded / particles_per_group);
   }
 
   template <class P>
@@ -153,7 +151,8 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
     using quad = four<column_element<D, S>>;
     constexpr int width = layout::width;
     quad read[width];
-    block.load_row(s, reinterpret_cast<quad const*>(at(D{})), groups(first), groups(), read);
+    block.load_row(s, reinterpret_cast<quad const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
+                   groups_of(size), read);
     for (int k = 0; k < particles_per_group; ++k) {
       for (int c = 0; c < width; ++c) layout::at(p[k][D{}], c) = read[(k * width + c) / 4].v[(k * width + c) % 4];
     }
@@ -168,7 +167,8 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
     for (int k = 0; k < particles_per_group; ++k) {
       for (int c = 0; c < width; ++c) write[(k * width + c) / 4].v[(k * width + c) % 4] = layout::at(p[k][D{}], c);
     }
-    block.store_row(s, reinterpret_cast<quad*>(at(D{})), groups(first), groups(), write);
+    block.store_row(s, reinterpret_cast<quad*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
+                    groups_of(size), write);
   }
 };
 
