@@ -28,6 +28,7 @@ struct survivor {
 
   S centre[3], radius, way[Moves ? 3 : 1];
   S normals[planes][3], feet[planes][3];  ///< of the contacts that came before
+  id triangles[Moves ? planes : 1];       ///< of the same, if it moves
   S rest;                                 ///< of the step, after the impacts so far
   std::uint64_t best;                     ///< key of the next contact
   std::uint32_t best_kept;                ///< where it is kept
@@ -58,7 +59,20 @@ struct survivor {
       normals[slot][k] = c.normal[k];
       feet[slot][k] = c.point[k];
     }
+    if constexpr (Moves) triangles[slot] = c.triangle;
     ++before;
+  }
+
+  /// True of a triangle that it has touched before and leaves: no part of that is above the tangent plane. To judge it
+  /// once more would take exact arithmetic, as the distance is the radius.
+  COLLIDE_HD_INLINE bool leaves(id triangle) const {
+    bool left = false;
+    if constexpr (Moves) {
+      for (int i = 0; i < planes && i < before; ++i) {
+        left = left || (triangles[i] == triangle && !approaches({normals[i][0], normals[i][1], normals[i][2]}));
+      }
+    }
+    return left;
   }
 
   /// True if a foot is part of the same surface as a contact before: not above its tangent plane.
@@ -261,7 +275,7 @@ struct respond_body {
           },
           [&](candidates const& c, std::uint32_t k) {
             id const number = c.range.at(k);
-            return near.near(c.around, number) ? number : no_id;
+            return near.near(c.around, number) && !c.one.leaves(number) ? number : no_id;
           },
           [&](candidates const& c, id number) {
             if (number == no_id) return;
