@@ -178,7 +178,7 @@ void add(std::string const& name, std::size_t largest, F const& f) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   std::size_t const largest = argc > 1 ? bench::count_of(argv[1], 1) : std::size_t{1} << 26;
-  std::size_t const chunk = argc > 2 ? bench::count_of(argv[2], 1) : std::size_t{1} << 22;
+  std::size_t const chunk = argc > 2 ? bench::count_of(argv[2], 1) : std::size_t{1} << 20;
   if (largest == 0 || chunk == 0 || argc > 3) {
     std::fputs("usage: stream_bench [LARGEST [CHUNK]] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;

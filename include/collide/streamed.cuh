@@ -18,7 +18,7 @@ namespace collide {
 /// from pinned memory (`cuda_pinned_memory`). A copy from pageable memory holds the host up: it takes longer, and the
 /// queries come on top. On the host nothing is copied.
 ///
-/// Memory of the space: three chunks in the layout of the spheres, where there are so many; 150 MB for packed floats
+/// Memory of the space: three chunks in the layout of the spheres, where there are so many; 38 MB for packed floats
 /// and chunks of the usual size. It is kept between queries. One object is for one thread at a time.
 template <class Detector>
 class streamed {
@@ -30,7 +30,7 @@ class streamed {
 
   /// `detector` must outlive this. `chunk`: how many spheres go at a time, so many that a copy takes longer than what
   /// a query costs whatever its size, some 0.1 ms. Throws `error` if that is 0.
-  explicit streamed(Detector& detector, std::size_t chunk = std::size_t{1} << 22)
+  explicit streamed(Detector& detector, std::size_t chunk = std::size_t{1} << 20)
       : detector_{&detector}, chunk_{chunk} {
     if (chunk == 0) throw error("collide: streamed: chunk is 0");
   }

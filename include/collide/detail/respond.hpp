@@ -115,7 +115,7 @@ template <class S, class NarrowPhase, class Lookup, class Scene>
 struct respond_body {
   static constexpr int items = 1;
   template <class Block>
-  static constexpr int residency = Block::lanes > 1 ? 4 : 2;  ///< waits for memory, mostly
+  static constexpr int residency = Block::lanes > 1 ? 3 : 2;  ///< waits for memory, mostly
   static constexpr bool moves = !at_rest<NarrowPhase, S>;
   static constexpr int most_contacts = moves ? 8 : 4;  ///< of a particle in a step
   static constexpr S part_after = S(Scene::integrator::after);
