@@ -281,6 +281,26 @@ void check_corner(Space const& space) {
   }
 }
 
+/// The same of balls that touch some hundred triangles each, more than a block keeps contacts of.
+template <class NarrowPhase, class S, class Space>
+void check_many_contacts(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, collide::bounce>;
+  world<S> w;
+  add_cube(w, 1, 24);
+  w.radius = S(0.6);
+  for (int i = 0; i < 24; ++i) {
+    double const x = i % 2 == 0 ? 1 : -1, y = i / 2 % 2 == 0 ? 1 : -1, z = i / 4 % 2 == 0 ? 1 : -1, apart = 1e-3 * i;
+    w.particle(0.37 * x, (0.36 - apart) * y, 0.35 * z, x, 2 * y, 3 * z);
+  }
+  running<simulation> made(space, w, collide::bounce{0.5});
+  made.simulation.step(S(0.1));
+  auto const x = made.positions(), v = made.velocities();
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    CHECK(double(v[k]) == doctest::Approx(-0.5 * double(w.velocities[k])).epsilon(1e-5));
+    CHECK(std::abs(double(x[k])) <= 0.4 + 1e-6);
+  }
+}
+
 /// However coarse the step, elastic bounces neither gain nor lose height on average.
 template <class Simulation>
 void check_coarse_bounces(typename Simulation::execution_space const& space) {

@@ -50,6 +50,13 @@ TEST_CASE_TEMPLATE("simulation: all walls of a corner count", S, float, double) 
   tests::check_corner<karabassi_swept<>, S>(host(1));
 }
 
+TEST_CASE_TEMPLATE("simulation: balls that touch hundreds of triangles", S, float, double) {
+  tests::check_many_contacts<karabassi<>, S>(host(1));
+  tests::check_many_contacts<karabassi<>, S>(tests::lockstep<64, true>());
+  tests::check_many_contacts<karabassi_swept<>, S>(host(2));
+  tests::check_many_contacts<karabassi_swept<>, S>(tests::lockstep<64, true>());
+}
+
 TEST_CASE("simulation: elastic bounces keep their height on average, however coarse the step") {
   tests::check_coarse_bounces<simulation<plain, gravity, bounce>>(host(2));
   tests::check_coarse_bounces<simulation<plain, velocity_verlet, gravity, bounce>>(host(2));

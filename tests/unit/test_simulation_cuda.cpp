@@ -31,6 +31,12 @@ TEST_CASE("simulation: on the GPU, a ball feels no bump at the inner edges of a 
   tests::check_coarse_bounces<falls_in<karabassi<>>>(cuda_shared());
 }
 
+TEST_CASE("simulation: on the GPU, balls that touch hundreds of triangles") {
+  tests::check_many_contacts<karabassi<>, float>(cuda_shared());
+  tests::check_many_contacts<karabassi<>, double>(cuda_shared());
+  tests::check_many_contacts<karabassi_swept<>, float>(cuda_shared());
+}
+
 TEST_CASE("simulation: on the GPU, particles stay in a closed mesh for 1e5 steps") {
   tests::check_closed_mesh<karabassi<>, float>(cuda_shared(), 100000, 3, 1000);
 }
