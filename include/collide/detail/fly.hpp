@@ -30,9 +30,10 @@ struct fly_body {
   static constexpr bool moves = !at_rest<NarrowPhase, S>;
   static constexpr S part_before = S(Scene::integrator::before), part_after = S(Scene::integrator::after);
 
-  /// How many particles a lane moves at a time.
+  /// How many particles a lane moves at a time: a group, which compilers put into vector registers, or as many as are
+  /// asked together whether they are near the mesh.
   template <class Block>
-  static constexpr int at_a_time = Block::items % 16 == 0 ? 16 : particles_per_group;
+  static constexpr int at_a_time = Block::items % 16 == 0 && Scene::touches ? 16 : particles_per_group;
   static_assert(particle_padding % 16 == 0, "the last ones are read and written with those that are not there");
 
   using state_type = particle_state<S, typename Scene::all>;
