@@ -98,10 +98,10 @@ struct fly_body {
 
   static constexpr bool has_one_radius = !contains<typename Scene::all, radius>;
 
-  /// Moves the particles of a block. `list(particles, skipped, listed)` sets listed[k] for those that may touch the
-  /// mesh.
+  /// Moves the particles of a block. `list_some(particles, skipped, listed)` sets listed[k] for those that may touch
+  /// the mesh.
   template <class Block, class Groups, class List>
-  COLLIDE_HD_INLINE void fly(Block& block, Groups& groups, List const& list) const {
+  COLLIDE_HD_INLINE void fly(Block& block, Groups& groups, List const& list_some) const {
     std::size_t const first = block.index() * Block::lanes * Block::items;
     block.each([&](int lane) {
       constexpr int n = at_a_time<Block>;
@@ -110,17 +110,17 @@ struct fly_body {
         if constexpr (Scene::skips) {  // nothing is read of those that are left out
           serial_block<Block::items, 0> alone(block.index());
           typename state_type::template group_scratch<decltype(alone)> none;
-          if (i < state.size) fly_some<n>(alone, none, i, list);
+          if (i < state.size) fly_some<n>(alone, none, i, list_some);
         } else {
           static_assert(n == Block::items || Block::row_lanes == 1, "rows follow each other from lane to lane");
-          if (Block::row_lanes > 1 || i < state.size) fly_some<n>(block, groups, i, list);
+          if (Block::row_lanes > 1 || i < state.size) fly_some<n>(block, groups, i, list_some);
         }
       }
     });
   }
 
   template <int N, class Block, class Groups, class List>
-  COLLIDE_HD_INLINE void fly_some(Block& block, Groups& groups, std::size_t first, List const& list) const {
+  COLLIDE_HD_INLINE void fly_some(Block& block, Groups& groups, std::size_t first, List const& list_some) const {
     auto const load = [&](auto* p) {
       for (int k = 0; k < N; k += group) state.load_group(block, groups, p + k, first + static_cast<std::size_t>(k));
     };
@@ -142,7 +142,7 @@ struct fly_body {
       if constexpr (part_before != 0) scene.accelerate(p[k], part_before * dt);
       if constexpr (!moves) p[k][position{}] += p[k][velocity{}] * dt;
     }
-    list(p, skipped, listed);
+    list_some(p, skipped, listed);
     for (int k = 0; k < N; ++k) {
       if (skipped[k] || listed[k]) continue;
       if constexpr (moves) p[k][position{}] += p[k][velocity{}] * dt;

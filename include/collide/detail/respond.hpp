@@ -129,7 +129,8 @@ struct respond_body {
 
   static constexpr int ahead = 4;  ///< candidates that a lane looks at together
 
-  /// How many particles a block resolves at a time.
+  /// How many particles a block resolves at a time. With the contacts that it keeps, this makes up most of its scratch
+  /// memory, of which CUDA has 48 KB: fewer of doubles.
   template <class Block>
   static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes * 3 / 2 / sizeof(S) : Block::items;
 
