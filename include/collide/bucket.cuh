@@ -57,7 +57,7 @@ struct bucket_query {
 
   tester<S, NarrowPhase, Sink> tests;
   bucket_lookup<S> triangles;
-  std::size_t blocks;  ///< batches of spheres go to them in turn
+  std::size_t blocks;  ///< that share the spheres
 
   /// A sphere and its first entry.
   struct alignas(8) numbered {
@@ -154,43 +154,28 @@ struct bucket_query {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    constexpr std::size_t n = Block::items, batch = Block::lanes * n;
-    std::size_t next = block.index() * batch;
-    std::size_t const size = tests.spheres.size();
-
     block.each([&](int lane) {
       tests.begin(s.hits, lane);
       if (lane != 0) return;
       s.found = {0, 0};
       s.listed = {0, 0};
     });
-    // while the first spheres are on their way, the grid is looked at
-    typename Block::template per_lane<sphere_batch<S, Block::items>> coming;
-    S const* quads = nullptr;
-    if constexpr (still) {
-      quads = sphere_batch<S, Block::items>::quads_of(tests.spheres);
-      if (tests.spheres.one_radius()) {
-        block.each([&](int lane) { load_ahead(coming[lane], quads, next + static_cast<std::size_t>(lane) * n); });
-      }
-    }
+    typename Block::template per_lane<std::size_t> next;
+    block.each([&](int lane) { next[lane] = first_of(block, lane); });
+    cell_marks<S> const marks = triangles.grid_count == 1 ? triangles.marks() : cell_marks<S>{};
     bucket_lookup<S> const near = triangles.opened();
-    bool simple = false;
-    if constexpr (still) simple = tests.spheres.one_radius() && near.is_simple(tests.spheres.common_radius());
-    while (next < size) {
-      placement found{0, 0};
-      if (simple) {
+    for (;;) {
+      block.each([&](int lane) {
         if constexpr (still) {
-          cell_marks<S> const marks = near.marks();
-          found = place_many(block, s, next, [&](int lane, std::size_t first) {
-            sphere_batch<S, Block::items> const own = coming[lane];
-            load_ahead(coming[lane], quads, first + blocks * batch);
-            mark_own(block, s, marks, own, first);
-          });
+          if (tests.spheres.one_radius() && near.is_simple(tests.spheres.common_radius())) {
+            mark_many(block, s, marks, next[lane]);
+            return;
+          }
         }
-      } else {
-        found = place_many(block, s, next, [&](int, std::size_t first) { place_own(block, s, near, first); });
-      }
-      if (found.placed == 0) continue;
+        place_many<Block>(next[lane], [&](std::size_t first) { return place_own(block, s, near, first); });
+      });
+      placement const found = block.shared(s.found);
+      if (found.placed == 0) break;
       look_up(block, s, near, found);
       block.each([&](int lane) {
         if (lane == 0) s.found = {0, 0};
@@ -200,51 +185,84 @@ struct bucket_query {
   }
 
  private:
-  /// Places batches of spheres, from `next` on, as long as there is room; `place(lane, first)` lists those of a lane.
-  /// Returns how many are listed.
-  template <class Block, class Place>
-  COLLIDE_HD_INLINE placement place_many(Block& block, scratch<Block>& s, std::size_t& next, Place const& place) const {
-    constexpr std::size_t n = Block::items, batch = Block::lanes * n;
-    std::size_t const size = tests.spheres.size();
-    placement found;
-    do {
-      block.each([&](int lane) {
-        std::size_t const first = next + static_cast<std::size_t>(lane) * n;
-        if (first < size) place(lane, first);
-      });
-      next += blocks * batch;
-      found = block.shared(s.found);
-    } while (next < size && found.placed + batch <= scratch<Block>::room);
-    return found;
-  }
-
-  template <int N>
-  COLLIDE_HD_INLINE void load_ahead(sphere_batch<S, N>& to, S const* quads, std::size_t first) const {
-    if (first < tests.spheres.size()) to.load_centres_of(tests.spheres, quads, first);
-  }
-
-  /// Lists those of a lane's spheres, from `first` on, whose cell is not empty.
+  /// Lanes take spheres in turn, some in a row at a time, of which those of neighbours are next to each other. Here a
+  /// lane begins, and so far it goes on from there.
   template <class Block>
-  COLLIDE_HD_INLINE void mark_own(Block& block, scratch<Block>& s, cell_marks<S> const& marks,
-                                  sphere_batch<S, Block::items> const& own, std::size_t first) const {
+  COLLIDE_HD_INLINE std::size_t first_of(Block const& block, int lane) const {
+    constexpr auto beside = static_cast<std::size_t>(Block::row_lanes);
+    auto const own = static_cast<std::size_t>(lane);
+    return ((own / beside * blocks + block.index()) * beside + own % beside) * Block::items;
+  }
+  template <class Block>
+  COLLIDE_HD_INLINE std::size_t turn() const {
+    return blocks * Block::lanes * Block::items;
+  }
+
+  /// Places a lane's spheres, from `next` on, as long as there is room; `place(first)` lists some and says how many.
+  template <class Block, class Place>
+  COLLIDE_HD_INLINE void place_many(std::size_t& next, Place const& place) const {
+    constexpr std::uint32_t n = Block::items, room = scratch<Block>::room / Block::lanes;
+    for (std::uint32_t placed = 0; next < tests.spheres.size() && placed + n <= room; next += turn<Block>()) {
+      placed += place(next);
+    }
+  }
+
+  /// The same where most spheres are asked one bit. Where whole groups can be loaded at once, the next one is on its
+  /// way while a group is marked.
+  template <class Block>
+  COLLIDE_HD_INLINE void mark_many(Block& block, scratch<Block>& s, cell_marks<S> const& marks, std::size_t& next) const {
+    using batch = sphere_batch<S, Block::items>;
+    S const* const quads = batch::quads_of(tests.spheres);
+    if (quads == nullptr || tests.spheres.size() < Block::items) {
+      place_many<Block>(next, [&](std::size_t first) {
+        batch own;
+        own.load(tests.spheres, first);
+        return mark_own(block, s, marks, marks.places_of(own.x, own.y, own.z), first);
+      });
+      return;
+    }
+    batch own;
+    auto const load = [&](std::size_t first) {
+      // some others where there are none: ptxas 13.0 keeps in memory what it loads under a condition
+      own.load_quads(quads, first + Block::items <= tests.spheres.size() ? first : 0);
+    };
+    load(next);
+    place_many<Block>(next, [&](std::size_t first) {
+      if (first + Block::items > tests.spheres.size()) {
+        batch last;
+        last.load(tests.spheres, first);
+        return mark_own(block, s, marks, marks.places_of(last.x, last.y, last.z), first);
+      }
+      auto const places = marks.places_of(own.x, own.y, own.z);
+      load(first + turn<Block>());
+      return mark_own(block, s, marks, places, first);
+    });
+  }
+
+  /// Lists those of a lane's spheres, from `first` on, whose cell is not empty; returns how many.
+  template <class Block>
+  COLLIDE_HD_INLINE std::uint32_t mark_own(Block& block, scratch<Block>& s, cell_marks<S> const& marks,
+                                           typename cell_marks<S>::template places<Block::items> const& places,
+                                           std::size_t first) const {
     constexpr int n = Block::items;
     bool near[n];
-    marks.mark(own.x, own.y, own.z, near);
+    marks.mark(places, near);
     std::uint32_t placed = 0;
     for (int k = 0; k < n; ++k) placed += near[k];
-    if (placed == 0) return;
+    if (placed == 0) return 0;
     std::uint32_t place = block.add(s.found.placed, placed);
     for (int k = 0; k < n; ++k) {
       if (!near[k]) continue;
       s.placed[place] = static_cast<id>(first) + static_cast<id>(k);
       s.grid_of[place++] = 0;
     }
+    return placed;
   }
 
-  /// Lists those of a lane's spheres from `first` on that are inside a grid or that no grid serves.
+  /// Lists those of a lane's spheres from `first` on that are inside a grid or that no grid serves; returns how many.
   template <class Block>
-  COLLIDE_HD_INLINE void place_own(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
-                                   std::size_t first) const {
+  COLLIDE_HD_INLINE std::uint32_t place_own(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
+                                            std::size_t first) const {
     constexpr int n = Block::items;
     lane_state<n, still> own;
     own.load(tests.spheres, first);
@@ -254,7 +272,7 @@ struct bucket_query {
       placed += own.grid_number[k] != nowhere;
       unplaced += own.grid_number[k] == everywhere;
     }
-    if (placed == 0) return;
+    if (placed == 0) return 0;
     if (unplaced != 0) block.add(s.found.unplaced, unplaced);
     std::uint32_t place = block.add(s.found.placed, placed);
     for (int k = 0; k < n; ++k) {
@@ -262,6 +280,7 @@ struct bucket_query {
       s.placed[place] = static_cast<id>(first) + static_cast<id>(k);
       s.grid_of[place++] = static_cast<std::int8_t>(own.grid_number[k]);
     }
+    return placed;
   }
 
   /// Tests the spheres that are listed.
@@ -340,13 +359,14 @@ struct bucket_query {
           }
         },
         [&](auto const& c, std::uint32_t k) {
-          id const triangle = all ? static_cast<id>(c.of.first + k) : triangles.entries[c.of.first + k];
-          bool near = triangles.near(enclosing(c.ball), triangle);
-          if constexpr (!still) near = near && (all || c.path.meets_first(c.here, tests.mesh[triangle]));
-          return near ? triangle : no_id;
+          return all ? static_cast<id>(c.of.first + k) : triangles.entries[c.of.first + k];
         },
+        [&](auto const& c, id triangle) { return triangles.near(enclosing(c.ball), triangle); },
         [&](auto const& c, id triangle) {
-          if (triangle != no_id) tests.test(block, s.hits, {c.of.sphere, triangle}, c.ball);
+          if constexpr (!still) {
+            if (!all && !c.path.meets_first(c.here, tests.mesh[triangle])) return;
+          }
+          tests.test(block, s.hits, {c.of.sphere, triangle}, c.ball);
         },
         [&] { tests.make_room(block, s.hits); });
   }
@@ -375,7 +395,7 @@ struct bucket_query {
 
   /// Lists a sphere with the entries of a cell from at.skip on, if there are any.
   template <class Block>
-  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, ball_type const& ball, cell_list const& cell,
+  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, ball_type const& ball, cell_list cell,
                               cursor& at) const {
     std::uint32_t const left = cell.count - at.skip, listed = smaller(left, longest<Block>);
     if (left == 0) return false;
@@ -575,19 +595,29 @@ class bucket::index {
     cells_ = count << l.table_bits;
     table_bits_ = l.table_bits;
 
+    bool const swapping = swaps<Space>(options);
     auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
-    detail::plan_grid<S> plan{summary_.data(),    grids,         {},          static_cast<S>(options.cell_width),
-                              Space::bucket_span, l.entry_limit, l.table_bits};
+    detail::plan_grid<S> plan{summary_.data(),
+                              grids,
+                              {},
+                              static_cast<S>(options.cell_width),
+                              Space::bucket_span,
+                              l.entry_limit,
+                              l.table_bits,
+                              l.grids,
+                              swapping ? nullptr : lists_.reserve(space.resource(), table_size(cells_)),
+                              swapping ? 0 : cells_ + 1};
     std::copy(reaches, reaches + count, plan.reaches);
-    space.launch(count, plan);
+    space.launch(plan.template blocks<typename Space::template block<detail::plan_grid<S>>>(), plan);
 
     if constexpr (Space::sorts_spheres) {
-      if (swaps<Space>(options)) sorted_.mark(space, boxes_.data(), n, grids, l.grids, l.table_bits);
+      if (swapping) sorted_.mark(space, boxes_.data(), n, grids, l.grids, l.table_bits);
     }
     grid_count_ = l.grids;
     wanted_ = wanted;
     listed_ = false;
-    if (!swaps<Space>(options)) make_lists(space, options);
+    emptied_ = !swapping;
+    if (!swapping) make_lists(space, options);
   }
 
   /// Makes bounding spheres and enters the triangles into the cells, unless they are there.
@@ -598,7 +628,8 @@ class bucket::index {
     auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
     constexpr int parts = Space::insertion_parts;
     detail::grid_insertion<S, parts> const insertion{mesh_, boxes(), grids_.data(), grid_count_};
-    space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
+    if (!emptied_) space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
+    emptied_ = false;
     space.for_each(insertion.size(), detail::count_entries<S, parts>{insertion, lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
                                                  lists,         occupied(),  &lists[cells_].count};
@@ -681,7 +712,8 @@ class bucket::index {
   bool radius_given_ = false;
   bool has_boxes_ = false;  ///< there was room for them
   bool has_summary_ = false;
-  bool listed_ = false;   ///< the triangles are in the lists of the cells
+  bool emptied_ = false;  ///< nothing is in the lists of the cells
+  bool listed_ = false;   ///< the triangles are
   bool swapped_ = false;  ///< the spheres are, for this query
   bool queried_ = false;  ///< this is not the first query since the build
   detail::sorted_spheres<S> sorted_;

@@ -178,16 +178,25 @@ class cuda_block {
     return to.values;
   }
 
-  /// A warp reads what lies side by side, and its lanes exchange it.
-  template <class Scratch, class T, int N>
-  __device__ __forceinline__ void load_row(Scratch& s, T const* from, std::uint32_t row, std::uint32_t rows,
-                                           T (&to)[N]) {
+  /// A warp reads what lies side by side,
+  template <class T, int N>
+  __device__ __forceinline__ void load_row(T const* from, std::uint32_t row, std::uint32_t rows, T (&side)[N]) {
     if constexpr (N == 1) {
-      if (row < rows) to[0] = from[row];
+      if (row < rows) side[0] = from[row];
     } else {
+      each_beside<N>(row, rows, [&](std::uint32_t i, std::uint32_t, std::uint32_t k) { side[k] = from[i]; });
+    }
+  }
+
+  /// and its lanes exchange it.
+  template <class Scratch, class T, int N>
+  __device__ __forceinline__ void exchange_row(Scratch& s, T (&values)[N]) {
+    if constexpr (N > 1) {
       T* const line = line_of_warp<N>(s.values);
-      each_beside<N>(row, rows, [&](std::uint32_t i, std::uint32_t k) { line[k] = from[i]; });
-      for (int k = 0; k < N; ++k) to[k] = line[threadIdx.x % cuda_warp * N + k];
+      std::uint32_t const own = threadIdx.x % cuda_warp;
+      for (std::uint32_t k = 0; k < N; ++k) line[k * cuda_warp + own] = values[k];
+      __syncwarp();
+      for (std::uint32_t k = 0; k < N; ++k) values[k] = line[own * N + k];
       __syncwarp();
     }
   }
@@ -201,7 +210,8 @@ class cuda_block {
       T* const line = line_of_warp<N>(s.values);
       for (int k = 0; k < N; ++k) line[threadIdx.x % cuda_warp * N + k] = from[k];
       __syncwarp();
-      each_beside<N>(row, rows, [&](std::uint32_t i, std::uint32_t k) { to[i] = line[k]; });
+      each_beside<N>(row, rows, [&](std::uint32_t i, std::uint32_t at, std::uint32_t) { to[i] = line[at]; });
+      __syncwarp();
     }
   }
 
@@ -216,10 +226,13 @@ class cuda_block {
   }
 
   /// Each warp takes a stretch of the work at a time. Whose work its first piece is, it searches for; from there on, a
-  /// word of bits tells all its lanes which of the next pieces are the first ones of others.
-  template <int Ahead, class Item, class Look, class Take, class Round>
+  /// word of bits tells all its lanes which of the next pieces are the first ones of others. A lane finds and looks at
+  /// all its pieces without a branch between them, so that what it reads for them comes together; where there is no more
+  /// work, at the last piece again.
+  template <int Ahead, class Item, class Find, class Look, class Take, class Round>
   __device__ __forceinline__ void balanced(scan_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item,
-                                           Look const& look, Take const& take, Round const& after_round) {
+                                           Find const& find, Look const& look, Take const& take,
+                                           Round const& after_round) {
     constexpr std::uint32_t stretch = Ahead * cuda_warp;
     std::uint32_t const total = scan(s, counts, n);  // `counts` are begins now
     auto const own = static_cast<std::uint32_t>(threadIdx.x) % cuda_warp;
@@ -227,21 +240,20 @@ class cuda_block {
       std::uint32_t const first = base + static_cast<std::uint32_t>(lane()) / cuda_warp * stretch;
       if (first < total) {
         std::uint32_t before = last_begun(counts, n, first), i[Ahead], k[Ahead];
-        for (int a = 0; a < Ahead; ++a) {
-          std::uint32_t const piece = first + static_cast<std::uint32_t>(a) * cuda_warp, next = before + 1 + own;
+        for (std::uint32_t a = 0; a < Ahead; ++a) {
+          std::uint32_t const piece = first + a * cuda_warp, next = before + 1 + own;
           std::uint32_t const to_begin = next < n ? counts[next] - piece : cuda_warp;
           unsigned const begun = all_bits(to_begin < cuda_warp ? 1u << to_begin : 0u);
           i[a] = before + static_cast<std::uint32_t>(__popc(begun & ((2u << own) - 1)));
-          k[a] = piece + own - counts[i[a]];
+          k[a] = (piece + own < total ? piece + own : total - 1) - counts[i[a]];
           before += static_cast<std::uint32_t>(__popc(begun));
         }
-        decltype(look(item(0), 0)) seen[Ahead];
-        auto const is_work = [&](int a) { return first + static_cast<std::uint32_t>(a) * cuda_warp + own < total; };
-        for (int a = 0; a < Ahead; ++a) {
-          if (is_work(a)) seen[a] = look(item(i[a]), k[a]);
-        }
-        for (int a = 0; a < Ahead; ++a) {
-          if (is_work(a)) take(item(i[a]), seen[a]);
+        decltype(find(item(0), 0)) found[Ahead];
+        bool taken[Ahead];
+        for (int a = 0; a < Ahead; ++a) found[a] = find(item(i[a]), k[a]);
+        for (int a = 0; a < Ahead; ++a) taken[a] = look(item(i[a]), found[a]);
+        for (std::uint32_t a = 0; a < Ahead; ++a) {
+          if (taken[a] && first + a * cuda_warp + own < total) take(item(i[a]), found[a]);
         }
       }
       sync();
@@ -285,14 +297,14 @@ class cuda_block {
     return values + threadIdx.x / cuda_warp * (cuda_warp * N);
   }
 
-  /// f(i, k) for the k-th value of a warp's rows that exist, i in memory, side by side in neighbouring lanes.
+  /// f(i, at, k) for a lane's k-th value of its warp's rows that exist, `i` in memory and `at` among those of the warp:
+  /// side by side in neighbouring lanes.
   template <int N, class F>
   static __device__ __forceinline__ void each_beside(std::uint32_t row, std::uint32_t rows, F const& f) {
     std::uint32_t const own = threadIdx.x % cuda_warp, first = (row - own) * N + own;
-    for (std::uint32_t k = 0; k < N * cuda_warp; k += cuda_warp) {
-      if (first + k < rows * N) f(first + k, own + k);
+    for (std::uint32_t k = 0; k < N; ++k) {
+      if (first + k * cuda_warp < rows * N) f(first + k * cuda_warp, own + k * cuda_warp, k);
     }
-    __syncwarp();
   }
 
   static __device__ __forceinline__ int lane() { return static_cast<int>(threadIdx.x); }

@@ -12,13 +12,19 @@ struct quadruple {
 
 /// Four particles a lane; a warp reads and writes what lies side by side, and its lanes exchange it.
 __device__ __forceinline__ quadruple load(float const* from, unsigned i, unsigned n) {
-  __shared__ float4 lines[256 / 32][96];
-  float4* const line = lines[threadIdx.x / 32];
   unsigned const own = threadIdx.x % 32, first = 3 * (i - own) + own;
   auto const* const p = reinterpret_cast<float4 const*>(from);
-  for (unsigned k = 0; k < 96; k += 32) {
-    if (first + k < 3 * n) line[own + k] = p[first + k];
-  }
+  quadruple side;
+  if (first < 3 * n) side.a = p[first];
+  if (first + 32 < 3 * n) side.b = p[first + 32];
+  if (first + 64 < 3 * n) side.c = p[first + 64];
+  return side;
+}
+__device__ __forceinline__ quadruple exchanged(quadruple const& side) {
+  __shared__ float4 lines[256 / 32][96];
+  float4* const line = lines[threadIdx.x / 32];
+  unsigned const own = threadIdx.x % 32;
+  line[own] = side.a, line[own + 32] = side.b, line[own + 64] = side.c;
   __syncwarp();
   quadruple const q{line[3 * own], line[3 * own + 1], line[3 * own + 2]};
   __syncwarp();
@@ -57,15 +63,17 @@ __device__ __forceinline__ void slowed(float& x, float& y, float& z, float linea
 __global__ void __launch_bounds__(256) by_hand_none(float* x, float const* v, unsigned n, float dt) {
   unsigned const i = blockIdx.x * 256 + threadIdx.x;
   if (i - threadIdx.x % 32 >= n) return;
-  store(x, i, n, moved(load(x, i, n), load(v, i, n), dt));
+  quadruple const place = load(x, i, n), speed = load(v, i, n);
+  store(x, i, n, moved(exchanged(place), exchanged(speed), dt));
 }
 
 __global__ void __launch_bounds__(256) by_hand_gravity(float* x, float* v, unsigned n, float dt, double3 g) {
   unsigned const i = blockIdx.x * 256 + threadIdx.x;
   if (i - threadIdx.x % 32 >= n) return;
-  quadruple speed = load(v, i, n);
+  quadruple place = load(x, i, n), speed = load(v, i, n);
+  place = exchanged(place), speed = exchanged(speed);
   accelerated(speed, {float(g.x), float(g.y), float(g.z)}, dt);
-  store(x, i, n, moved(load(x, i, n), speed, dt));
+  store(x, i, n, moved(place, speed, dt));
   store(v, i, n, speed);
 }
 
@@ -73,14 +81,15 @@ __global__ void __launch_bounds__(256)
     by_hand_gravity_drag(float* x, float* v, unsigned n, float dt, double3 g, double linear, double quadratic) {
   unsigned const i = blockIdx.x * 256 + threadIdx.x;
   if (i - threadIdx.x % 32 >= n) return;
-  quadruple u = load(v, i, n);
+  quadruple place = load(x, i, n), u = load(v, i, n);
+  place = exchanged(place), u = exchanged(u);
   accelerated(u, {float(g.x), float(g.y), float(g.z)}, dt);
   float const a = float(linear), b = float(quadratic);
   slowed(u.a.x, u.a.y, u.a.z, a, b, dt);
   slowed(u.a.w, u.b.x, u.b.y, a, b, dt);
   slowed(u.b.z, u.b.w, u.c.x, a, b, dt);
   slowed(u.c.y, u.c.z, u.c.w, a, b, dt);
-  store(x, i, n, moved(load(x, i, n), u, dt));
+  store(x, i, n, moved(place, u, dt));
   store(v, i, n, u);
 }
 

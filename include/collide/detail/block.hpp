@@ -7,12 +7,14 @@
 ///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
-///   - `block.load_row(s, from, row, rows, to)` and `store_row` are for lanes whose rows of a few values follow each
-///     other: `row_lanes` lanes call them at a time, and read and write what lies side by side together; rows from
-///     `rows` on do not exist;
-///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: take(item(i), look(item(i), k)) for all
-///     k < counts[i], which are at least 1; `look` only reads, so that a lane can do it up to `Ahead` times before it
-///     takes, and waits for all of them at once; after each round the whole block calls `after_round()`;
+///   - `block.load_row(from, row, rows, to)`, `exchange_row(s, to)` and `store_row(s, to, row, rows, from)` are for lanes
+///     whose rows of a few values follow each other: `row_lanes` lanes call them at a time, and read and write what lies
+///     side by side together; what was read are a lane's own values after the exchange; rows from `rows` on do not
+///     exist;
+///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at least 1, it
+///     finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f); `find` and `look` only read, and a
+///     lane does them up to `Ahead` times before it takes, so that it waits for all of them at once if they do not
+///     branch; after each round the whole block calls `after_round()`;
 ///   - `block.scan(...)` makes of at most as many values as lanes the sums of those before each;
 ///   - `block.reduce(...)` combines a value per lane.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
@@ -34,9 +36,9 @@ template <class Block>
 struct balancing {
   typename Block::scan_scratch scan;
 
-  template <class Item, class Look, class Take, class Round>
-  COLLIDE_HD void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, Look const& look,
-                      Take const& take, Round const& after_round) {
+  template <class Item, class Find, class Look, class Take, class Round>
+  COLLIDE_HD void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find,
+                      Look const& look, Take const& take, Round const& after_round) {
     std::uint32_t const total = block.scan(scan, counts, n);
     for (std::uint32_t base = 0; base < total; base += Block::lanes) {
       block.each([&](int lane) {
@@ -52,7 +54,8 @@ struct balancing {
           }
         }
         auto const one = item(i);
-        take(one, look(one, work - counts[i]));
+        auto const found = find(one, work - counts[i]);
+        if (look(one, found)) take(one, found);
       });
       after_round();
     }
@@ -104,10 +107,13 @@ class serial_block {
     return from;
   }
 
-  template <class Scratch, class T, int N>
-  COLLIDE_HD_INLINE void load_row(Scratch&, T const* from, std::uint32_t row, std::uint32_t, T (&to)[N]) {
+  template <class T, int N>
+  COLLIDE_HD_INLINE void load_row(T const* from, std::uint32_t row, std::uint32_t, T (&to)[N]) {
     for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
   }
+
+  template <class Scratch, class T, int N>
+  COLLIDE_HD_INLINE void exchange_row(Scratch&, T (&)[N]) {}
 
   template <class Scratch, class T, int N>
   COLLIDE_HD_INLINE void store_row(Scratch&, T* to, std::uint32_t row, std::uint32_t, T const (&from)[N]) {
@@ -120,12 +126,15 @@ class serial_block {
     return sum;
   }
 
-  template <int Ahead, class Item, class Look, class Take, class Round>
+  template <int Ahead, class Item, class Find, class Look, class Take, class Round>
   COLLIDE_HD_INLINE void balanced(balance_scratch&, std::uint32_t const* counts, std::uint32_t n, Item const& item,
-                                  Look const& look, Take const& take, Round const& after_round) {
+                                  Find const& find, Look const& look, Take const& take, Round const& after_round) {
     for (std::uint32_t i = 0; i < n; ++i) {
       auto const one = item(i);
-      for (std::uint32_t k = 0; k < counts[i]; ++k) take(one, look(one, k));
+      for (std::uint32_t k = 0; k < counts[i]; ++k) {
+        auto const found = find(one, k);
+        if (look(one, found)) take(one, found);
+      }
       after_round();
     }
   }
@@ -188,10 +197,13 @@ class lockstep_block {
     return to.values;
   }
 
-  template <class Scratch, class T, int N>
-  void load_row(Scratch&, T const* from, std::uint32_t row, std::uint32_t, T (&to)[N]) {
+  template <class T, int N>
+  void load_row(T const* from, std::uint32_t row, std::uint32_t, T (&to)[N]) {
     for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
   }
+
+  template <class Scratch, class T, int N>
+  void exchange_row(Scratch&, T (&)[N]) {}
 
   template <class Scratch, class T, int N>
   void store_row(Scratch&, T* to, std::uint32_t row, std::uint32_t, T const (&from)[N]) {
@@ -208,10 +220,10 @@ class lockstep_block {
     return sum;
   }
 
-  template <int Ahead, class Item, class Look, class Take, class Round>
-  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Look const& look,
-                Take const& take, Round const& after_round) {
-    s.run(*this, counts, n, item, look, take, after_round);
+  template <int Ahead, class Item, class Find, class Look, class Take, class Round>
+  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find,
+                Look const& look, Take const& take, Round const& after_round) {
+    s.run(*this, counts, n, item, find, look, take, after_round);
   }
 
   template <class T, class Combine>

@@ -77,7 +77,7 @@ struct fly_body {
           if (listed[k]) s.listed[block.add(s.count, 1)] = p[k].number;
         }
       });
-      std::uint32_t const found = block.shared(s.count);
+      std::uint32_t const found = s.count;
       if (found == 0) return;
       block.each([&](int lane) {
         if (lane == 0) s.first = fetch_add(list.count, found);
@@ -163,7 +163,7 @@ struct fly_body {
       vec3<S> const& c = p[k][position{}];
       x[k] = c.x(), y[k] = c.y(), z[k] = c.z();
     }
-    marks.mark(x, y, z, listed);
+    marks.mark(marks.places_of(x, y, z), listed);
   }
 
   /// What the narrow phase judges.

@@ -112,17 +112,23 @@ struct grid {
     return r;
   }
 
-  /// Calls f(cell) for every `parts`-th of the cells that a triangle with this box is put into, from the `part`-th on.
-  template <class F>
-  COLLIDE_HD_INLINE void each_cell(box<S> const& b, std::uint32_t part, std::uint32_t parts, F const& f) const {
-    if (levels == 0 || b.is_empty()) return;
-    grid_level<S> const& l = level_of(b);
+  /// Calls f(cells, m) with m of at most N cells at a time, for every `parts`-th of the cells that a triangle with this
+  /// box is put into, from the `part`-th on. What it needs of the grid is read at once, before anything is written.
+  template <int N, class F>
+  COLLIDE_HD_INLINE void each_cells(box<S> const& b, std::uint32_t part, std::uint32_t parts, F const& f) const {
+    grid_level<S> l = level[0];
+    if (levels > 1) l = level_of(b);
     cell_range const r = cells_of(l, b);
     std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1;
-    std::uint32_t const n = nx * ny * (r.upper[2] - r.lower[2] + 1);
-    for (std::uint32_t i = part; i < n; i += parts) {
-      std::uint32_t const rows = i / nx;
-      f(l.row(r.lower[1] + rows % ny, r.lower[2] + rows / ny) + ((r.lower[0] + i % nx) & l.mask[0]));
+    std::uint32_t const n = levels == 0 || b.is_empty() ? 0 : nx * ny * (r.upper[2] - r.lower[2] + 1);
+    for (std::uint32_t i = part; i < n; i += N * parts) {
+      std::uint32_t cells[N], m = 0;
+      for (std::uint32_t k = 0; k < N; ++k) {
+        std::uint32_t const number = i + k * parts, rows = number / nx;
+        cells[k] = l.row(r.lower[1] + rows % ny, r.lower[2] + rows / ny) + ((r.lower[0] + number % nx) & l.mask[0]);
+        m += number < n ? 1u : 0u;
+      }
+      f(cells, m);
     }
   }
 
@@ -144,8 +150,15 @@ struct grid {
   }
 };
 
+/// The triangles of a cell.
+struct alignas(8) cell_list {
+  std::uint32_t count;
+  std::uint32_t end;  ///< of its entries; while they are written, of those that are
+};
+
 /// Kernel body of a block per grid: chooses widths, levels and table sizes from the summary of the mesh. A single
-/// lane's work of some microseconds, so that a build on the device need not wait for the host.
+/// lane's work of some microseconds, so that a build on the device need not wait for the host. Other blocks empty the
+/// lists of the cells meanwhile.
 template <class S>
 struct plan_grid {
   static constexpr int items = 1;
@@ -157,6 +170,17 @@ struct plan_grid {
   int usual_span;            ///< how many cells wide most triangles are, if the width is not asked for
   float entry_limit;         ///< how many entries a grid may have, if the width is asked for
   std::uint32_t table_bits;  ///< log2 of the number of cells per grid
+  int grid_count;
+  cell_list* lists;
+  std::size_t list_count;  ///< to be emptied
+
+  static constexpr std::size_t lists_of_lane = 16;
+
+  template <class Block>
+  std::size_t blocks() const {
+    constexpr std::size_t per_block = Block::lanes * lists_of_lane;
+    return static_cast<std::size_t>(grid_count) + (list_count + per_block - 1) / per_block;
+  }
 
   template <class Block>
   struct scratch {
@@ -165,6 +189,15 @@ struct plan_grid {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    if (block.index() >= static_cast<std::size_t>(grid_count)) {
+      constexpr std::size_t per_block = Block::lanes * lists_of_lane;
+      std::size_t const first = (block.index() - static_cast<std::size_t>(grid_count)) * per_block;
+      std::size_t const end = smaller(first + per_block, list_count);
+      block.each([&](int lane) {
+        for (std::size_t i = first + static_cast<std::size_t>(lane); i < end; i += Block::lanes) lists[i] = {0, 0};
+      });
+      return;
+    }
     if constexpr (Block::lanes > 1) {  // a lane alone would wait for every bin
       block.each([&](int lane) { s.sizes.copy(summary->extents, lane, Block::lanes); });
       block.each([&](int lane) {
@@ -311,22 +344,19 @@ struct grid_insertion {
   /// How many threads there are.
   std::size_t size() const { return mesh.size() * Parts; }
 
-  /// Calls f(cell, triangle) for all cells that are this thread's.
+  static constexpr int together = Parts > 1 ? 4 : 1;  ///< cells that a thread asks at a time
+
+  /// Calls f(cells, n, triangle) for all cells that are this thread's, n of at most `together` at a time.
   template <class F>
-  COLLIDE_HD_INLINE void each_cell(std::size_t thread, F const& f) const {
+  COLLIDE_HD_INLINE void each_cells(std::size_t thread, F const& f) const {
     auto const number = static_cast<id>(thread / Parts);
     auto const part = static_cast<std::uint32_t>(thread % Parts);
-    box<S> const b = boxes != nullptr ? static_cast<box<S> const&>(boxes[number]) : box_of(mesh[number]);
-    for (int n = 0; n < grid_count; ++n) {
-      grids[n].each_cell(b, part, Parts, [&](std::uint32_t cell) { f(cell, number); });
+    triangle_box<S> const b = boxes != nullptr ? boxes[number] : triangle_box_of(mesh[number]);
+    for (int g = 0; g < grid_count; ++g) {
+      grids[g].template each_cells<together>(
+          b, part, Parts, [&](std::uint32_t const(&cells)[together], std::uint32_t n) { f(cells, n, number); });
     }
   }
-};
-
-/// The triangles of a cell.
-struct alignas(8) cell_list {
-  std::uint32_t count;
-  std::uint32_t end;  ///< of its entries; while they are written, of those that are
 };
 
 /// Kernel body of `for_each` over an insertion's threads: counts the entries of each cell.
@@ -335,7 +365,11 @@ struct count_entries {
   grid_insertion<S, Parts> insertion;
   cell_list* cells;
   COLLIDE_HD void operator()(std::size_t thread) const {
-    insertion.each_cell(thread, [&](std::uint32_t cell, id) { fetch_add(&cells[cell].count, 1u); });
+    insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id) {
+      for (std::uint32_t k = 0; k < insertion.together; ++k) {
+        if (k < n) fetch_add(&cells[some[k]].count, 1u);
+      }
+    });
   }
 };
 
@@ -367,10 +401,15 @@ struct allocate_entries {
     std::size_t const table = std::size_t{1} << table_bits;
     // a part of the table that the grid does not need
     if (table >= Block::lanes * n && first % table >= grids[first / table].cells) return;
+    // lists of cells that exist: there are a multiple of 64
+    typename Block::template per_lane<counts_of<Block>> own;
+    auto const first_of = [&](int lane) { return first + static_cast<std::size_t>(lane) * n; };
     block.each([&](int lane) {
       std::uint32_t sum = 0;
-      std::size_t const first_own = first + static_cast<std::size_t>(lane) * n;
-      for (std::size_t c = first_own; c < first_own + n && c < cell_count; ++c) sum += cells[c].count;
+      for (std::size_t k = 0; k < n; ++k) {
+        own[lane].counts[k] = first_of(lane) + k / items * items < cell_count ? cells[first_of(lane) + k].count : 0;
+        sum += own[lane].counts[k];
+      }
       s.sums[lane] = sum;
     });
     std::uint32_t const sum = block.scan(s.scan, s.sums, Block::lanes);
@@ -378,20 +417,27 @@ struct allocate_entries {
       if (lane == 0) s.begin = fetch_add(total, sum);
     });
     block.each([&](int lane) {
-      std::size_t const first_own = first + static_cast<std::size_t>(lane) * n;
       std::uint32_t begin = s.begin + s.sums[lane];
-      for (std::size_t c = first_own; c < first_own + n && c < cell_count; c += items) {
+      for (std::size_t k = 0; k < n; k += items) {
+        std::size_t const c = first_of(lane) + k;
+        if (c >= cell_count) break;
         std::uint32_t bits = 0;
-        for (std::uint32_t k = 0; k < items; ++k) {
-          cell_list& list = cells[c + k];
-          list.end = begin;
-          begin += list.count;
-          bits |= (list.count != 0 ? 1u : 0u) << k;
+        for (std::uint32_t i = 0; i < items; ++i) {
+          std::uint32_t const count = own[lane].counts[k + i];
+          cells[c + i] = {count, begin};
+          begin += count;
+          bits |= (count != 0 ? 1u : 0u) << i;
         }
         occupied[c / items] = static_cast<std::uint8_t>(bits);
       }
     });
   }
+
+ private:
+  template <class Block>
+  struct counts_of {
+    std::uint32_t counts[Block::items];
+  };
 };
 
 /// Kernel body of `for_each` over an insertion's threads: writes the entries.
@@ -402,9 +448,14 @@ struct fill_entries {
   id* entries;
   std::size_t capacity;
   COLLIDE_HD void operator()(std::size_t thread) const {
-    insertion.each_cell(thread, [&](std::uint32_t cell, id triangle) {
-      std::uint32_t const slot = fetch_add(&cells[cell].end, 1u);
-      if (slot < capacity) entries[slot] = triangle;
+    insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id triangle) {
+      std::uint32_t slots[insertion.together];
+      for (std::uint32_t k = 0; k < insertion.together; ++k) {
+        if (k < n) slots[k] = fetch_add(&cells[some[k]].end, 1u);
+      }
+      for (std::uint32_t k = 0; k < insertion.together; ++k) {
+        if (k < n && slots[k] < capacity) entries[slots[k]] = triangle;
+      }
     });
   }
 };

@@ -3,7 +3,7 @@
 ///
 /// An index gives a trivially copyable `lookup()`. In a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick; `is_simple(radius)` is true if for balls
-///     of this radius it is quicker still to ask `marks()` for several at a time, `mark(x, y, z, near)`;
+///     of this radius it is quicker still to ask `marks()` for several at a time, `mark(places_of(x, y, z), near)`;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
 ///     candidates, until it returns false; a triangle may appear more than once if the ball moves;
 ///   - `range.at(k)` is a triangle's number, `near(around, number)` a quick test whether a ball could touch it
@@ -38,7 +38,7 @@ struct triangle_lookup {
   triangle_box<S> const* boxes;  ///< may be null
 
   COLLIDE_HD_INLINE bool near(sphere<S> const& around, id number) const {
-    triangle_box<S> const box = boxes != nullptr ? boxes[number] : triangle_box_of(mesh[number]);
+    triangle_box<S> const box = boxes != nullptr ? boxes[number] : triangle_box<S>::everywhere();
     return box.reached(around.centre, around.radius);
   }
 
@@ -63,23 +63,35 @@ struct cell_marks {
   grid_level<S> level;
   std::uint8_t const* occupied;
 
-  /// Whether there may be triangles near each of several centres. Without branches, for the CPU's vector unit.
+  /// The cells of several centres, and whether each is inside the grid at all.
   template <int N>
-  COLLIDE_HD_INLINE void mark(S const (&x)[N], S const (&y)[N], S const (&z)[N], bool (&near)[N]) const {
+  struct places {
     std::uint32_t cells[N], inside[N];
+  };
+
+  /// Without branches, for the CPU's vector unit.
+  template <int N>
+  COLLIDE_HD_INLINE places<N> places_of(S const (&x)[N], S const (&y)[N], S const (&z)[N]) const {
+    places<N> p;
     for (int k = 0; k < N; ++k) {
-      inside[k] = x[k] >= lower[0] ? 1u : 0u;
-      inside[k] &= x[k] <= upper[0] ? 1u : 0u;
-      inside[k] &= y[k] >= lower[1] ? 1u : 0u;
-      inside[k] &= y[k] <= upper[1] ? 1u : 0u;
-      inside[k] &= z[k] >= lower[2] ? 1u : 0u;
-      inside[k] &= z[k] <= upper[2] ? 1u : 0u;
+      p.inside[k] = x[k] >= lower[0] ? 1u : 0u;
+      p.inside[k] &= x[k] <= upper[0] ? 1u : 0u;
+      p.inside[k] &= y[k] >= lower[1] ? 1u : 0u;
+      p.inside[k] &= y[k] <= upper[1] ? 1u : 0u;
+      p.inside[k] &= z[k] >= lower[2] ? 1u : 0u;
+      p.inside[k] &= z[k] <= upper[2] ? 1u : 0u;
       std::uint32_t const cell =
           level.row(level.coordinate_inside(y[k] - lower[1]), level.coordinate_inside(z[k] - lower[2])) +
           (level.coordinate_inside(x[k] - lower[0]) & level.mask[0]);
-      cells[k] = inside[k] != 0 ? cell : level.first;  // outside there are no cells
+      p.cells[k] = p.inside[k] != 0 ? cell : level.first;  // outside there are no cells
     }
-    for (int k = 0; k < N; ++k) near[k] = (inside[k] & occupied[cells[k] / 8] >> cells[k] % 8 & 1) != 0;
+    return p;
+  }
+
+  /// Whether there may be triangles near each of the centres.
+  template <int N>
+  COLLIDE_HD_INLINE void mark(places<N> const& p, bool (&near)[N]) const {
+    for (int k = 0; k < N; ++k) near[k] = (p.inside[k] & occupied[p.cells[k] / 8] >> p.cells[k] % 8 & 1) != 0;
   }
 };
 

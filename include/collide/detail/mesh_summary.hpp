@@ -60,6 +60,12 @@ template <class S>
 struct alignas(4 * sizeof(S)) triangle_box : box<S> {
   S slack;  ///< room for the rounding of the coarsest narrow phase, as far as it goes with the triangle
 
+  /// The box that every ball comes near.
+  static COLLIDE_HD_INLINE triangle_box everywhere() {
+    constexpr S far = std::numeric_limits<S>::infinity();
+    return {{{-far, -far, -far}, {far, far, far}}, S(0)};
+  }
+
   /// How far from the box the centre of a ball that touches the triangle is at most, `slack` apart; the root of the
   /// smallest normal number covers squares that underflow. See docs/numerics.md.
   static COLLIDE_HD_INLINE S reach(S radius) {
@@ -105,7 +111,7 @@ struct mesh_summary {
 /// Kernel body: fills the summary, and the boxes of triangles if there is room for them.
 template <class S>
 struct summarise_mesh {
-  static constexpr int items = 2;
+  static constexpr int items = 1;
 
   mesh_view<S> mesh;
   mesh_summary<S>* summary;

@@ -100,7 +100,10 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   template <class Block, class... D>
   COLLIDE_HD_INLINE void load_group(Block& block, group_scratch<Block>& s, particle<S, columns<D...>>* p,
                                     std::size_t first) const {
-    (load_values(block, s, D{}, p, first), ...);
+    struct : quads<D>... {
+    } read;  // all is on its way before something is waited for
+    (load_values(block, D{}, static_cast<quads<D>&>(read).of, first), ...);
+    (take_values(block, s, D{}, static_cast<quads<D>&>(read).of, p), ...);
     for (int k = 0; k < particles_per_group; ++k) {
       p[k].number = static_cast<id>(first) + static_cast<id>(k);
       p[k].the_radius = radius_of(p[k]);
@@ -145,16 +148,23 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
     }
   }
 
-  template <class Block, class D, class P>
-  COLLIDE_HD_INLINE void load_values(Block& block, group_scratch<Block>& s, D, P* p, std::size_t first) const {
-    using layout = column_layout<D, S>;
-    using quad = four<column_element<D, S>>;
-    constexpr int width = layout::width;
-    quad read[width];
-    block.load_row(s, reinterpret_cast<quad const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
+  /// A group's values of a column.
+  template <class D>
+  struct quads {
+    four<column_element<D, S>> of[column_layout<D, S>::width];
+  };
+
+  template <class Block, class D, class Q, int N>
+  COLLIDE_HD_INLINE void load_values(Block& block, D, Q (&read)[N], std::size_t first) const {
+    block.load_row(reinterpret_cast<Q const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
                    groups_of(size), read);
+  }
+
+  template <class Block, class D, class Q, int N, class P>
+  COLLIDE_HD_INLINE void take_values(Block& block, group_scratch<Block>& s, D, Q (&read)[N], P* p) const {
+    block.exchange_row(s, read);
     for (int k = 0; k < particles_per_group; ++k) {
-      for (int c = 0; c < width; ++c) layout::at(p[k][D{}], c) = read[(k * width + c) / 4].v[(k * width + c) % 4];
+      for (int c = 0; c < N; ++c) column_layout<D, S>::at(p[k][D{}], c) = read[(k * N + c) / 4].v[(k * N + c) % 4];
     }
   }
 

@@ -132,7 +132,8 @@ struct respond_body {
   /// How many particles a block resolves at a time. With the contacts that it keeps, this makes up most of its scratch
   /// memory, of which CUDA has 48 KB: fewer of doubles.
   template <class Block>
-  static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes * 3 / 2 / sizeof(S) : Block::items;
+  static constexpr std::uint32_t together =
+      Block::lanes > 1 ? Block::lanes * (moves ? 3 : 4) / 2 / sizeof(S) : Block::items;
 
   /// A particle of those that are resolved together, and a triangle.
   struct candidate {
@@ -186,8 +187,9 @@ struct respond_body {
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     std::uint32_t const n = *list.count;
     Lookup const near = lookup.opened();
-    // as many as come to each block, but no more than it has room for
-    auto const share = smaller(together<Block>, static_cast<std::uint32_t>((n + blocks - 1) / blocks));
+    // as many as come to each block, or the same each time if it has no room for so many
+    auto const most = static_cast<std::uint32_t>(blocks) * together<Block>, parts = static_cast<std::uint32_t>(blocks) * ((n + most - 1) / most);
+    std::uint32_t const share = n == 0 ? 0 : (n + parts - 1) / parts;
     for (std::size_t base = block.index() * share; base < n; base += blocks * share) {
       collide(block, s, near, list.numbers + base, smaller(n - static_cast<std::uint32_t>(base), share));
     }
@@ -274,12 +276,9 @@ struct respond_body {
             sphere<S> const around = enclosing(until_next<Block>(one, ball));
             return candidates{s.owner[i], one, ball, around, {s.from[i], s.first[i], 0}};
           },
-          [&](candidates const& c, std::uint32_t k) {
-            id const number = c.range.at(k);
-            return near.near(c.around, number) && !c.one.leaves(number) ? number : no_id;
-          },
+          [](candidates const& c, std::uint32_t k) { return c.range.at(k); },
+          [&](candidates const& c, id number) { return near.near(c.around, number) && !c.one.leaves(number); },
           [&](candidates const& c, id number) {
-            if (number == no_id) return;
             if constexpr (candidate_lists<Block>::used) {
               s.lists.near[block.add(s.lists.near_count, 1)] = {c.particle, number};
             } else {

@@ -37,22 +37,14 @@ struct sphere_batch {
 
   COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
     if (first + Items <= spheres.size()) {
-      load_centres(spheres, quads_of(spheres), first);
+      load_centres(spheres, first);
       if (spheres.one_radius()) {
         for (int k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
       } else {
         for (int k = 0; k < Items; ++k) radius[k] = spheres.radius(first + static_cast<std::size_t>(k));
       }
     } else {
-      for (int k = 0; k < Items; ++k) {
-        std::size_t const i = first + static_cast<std::size_t>(k);
-        bool const there = i < spheres.size();
-        sphere<S> const s = there ? spheres[i] : none();
-        x[k] = s.centre.x();
-        y[k] = s.centre.y();
-        z[k] = s.centre.z();
-        radius[k] = s.radius;
-      }
+      load_last(spheres, first);
     }
   }
 
@@ -67,47 +59,53 @@ struct sphere_batch {
 #endif
   }
 
-  /// Centres only; `first` is a multiple of four, and `quads` is quads_of(spheres).
-  COLLIDE_HD_INLINE void load_centres_of(sphere_view<S> const& spheres, S const* quads, std::size_t first) {
-    if (first + Items <= spheres.size()) {
-      load_centres(spheres, quads, first);
-    } else {
-      load(spheres, first);
-    }
-  }
-
- private:
-  COLLIDE_HD_INLINE void load_centres(sphere_view<S> const& spheres, [[maybe_unused]] S const* quads,
-                                      std::size_t first) {
+  /// Centres only, which are all there; `first` is a multiple of four, and `quads` is quads_of(spheres), not null.
+  COLLIDE_HD_INLINE void load_quads([[maybe_unused]] S const* quads, [[maybe_unused]] std::size_t first) {
 #if defined(__CUDA_ARCH__)
     if constexpr (sizeof(S) == 4) {  // four packed centres are three 16-byte loads
-      if (quads != nullptr) {
-        auto const* const from = reinterpret_cast<float4 const*>(quads + 3 * first);
-        for (int k = 0; k < Items; k += 4) {
-          float4 const read[3] = {from[3 * k / 4], from[3 * k / 4 + 1], from[3 * k / 4 + 2]};
-          x[k] = read[0].x, y[k] = read[0].y, z[k] = read[0].z;
-          x[k + 1] = read[0].w, y[k + 1] = read[1].x, z[k + 1] = read[1].y;
-          x[k + 2] = read[1].z, y[k + 2] = read[1].w, z[k + 2] = read[2].x;
-          x[k + 3] = read[2].y, y[k + 3] = read[2].z, z[k + 3] = read[2].w;
-        }
-        return;
+      auto const* const from = reinterpret_cast<float4 const*>(quads + 3 * first);
+      for (int k = 0; k < Items; k += 4) {
+        float4 const read[3] = {from[3 * k / 4], from[3 * k / 4 + 1], from[3 * k / 4 + 2]};
+        x[k] = read[0].x, y[k] = read[0].y, z[k] = read[0].z;
+        x[k + 1] = read[0].w, y[k + 1] = read[1].x, z[k + 1] = read[1].y;
+        x[k + 2] = read[1].z, y[k + 2] = read[1].w, z[k + 2] = read[2].x;
+        x[k + 3] = read[2].y, y[k + 3] = read[2].z, z[k + 3] = read[2].w;
       }
     }
 #endif
-    if (spheres.packed()) {  // a stride that the compiler knows
+  }
+
+ private:
+  /// What there is of them.
+  COLLIDE_HD_INLINE void load_last(sphere_view<S> const& spheres, std::size_t first) {
+    for (int k = 0; k < Items; ++k) {
+      std::size_t const i = first + static_cast<std::size_t>(k);
+      bool const there = i < spheres.size();
+      sphere<S> const s = there ? spheres[i] : none();
+      x[k] = s.centre.x();
+      y[k] = s.centre.y();
+      z[k] = s.centre.z();
+      radius[k] = s.radius;
+    }
+  }
+
+  COLLIDE_HD_INLINE void load_centres(sphere_view<S> const& spheres, std::size_t first) {
+    if (S const* const quads = quads_of(spheres)) {
+      load_quads(quads, first);
+    } else if (spheres.packed()) {  // a stride that the compiler knows
       S const* const from = spheres.x(first);
       for (int k = 0; k < Items; ++k) {
         x[k] = from[3 * k];
         y[k] = from[3 * k + 1];
         z[k] = from[3 * k + 2];
       }
-      return;
-    }
-    for (int k = 0; k < Items; ++k) {
-      std::size_t const i = first + static_cast<std::size_t>(k);
-      x[k] = *spheres.x(i);
-      y[k] = *spheres.y(i);
-      z[k] = *spheres.z(i);
+    } else {
+      for (int k = 0; k < Items; ++k) {
+        std::size_t const i = first + static_cast<std::size_t>(k);
+        x[k] = *spheres.x(i);
+        y[k] = *spheres.y(i);
+        z[k] = *spheres.z(i);
+      }
     }
   }
 };
