@@ -75,9 +75,9 @@ struct bucket_query {
     std::uint32_t spheres, longer;
   };
 
-  /// The most candidates of a sphere at a time: the block numbers those of all its spheres in 32 bits.
+  /// The most entries of a sphere at a time: the block numbers the candidates of all its spheres in 32 bits.
   template <class Block>
-  static constexpr std::uint32_t longest = (1u << 31) / Block::lanes;
+  static constexpr std::uint32_t longest = (1u << 30) / Block::lanes;
 
   template <class Block>
   struct scratch {
@@ -210,7 +210,8 @@ struct bucket_query {
   /// The same where most spheres are asked one bit. Where whole groups can be loaded at once, the next one is on its
   /// way while a group is marked.
   template <class Block>
-  COLLIDE_HD_INLINE void mark_many(Block& block, scratch<Block>& s, cell_marks<S> const& marks, std::size_t& next) const {
+  COLLIDE_HD_INLINE void mark_many(Block& block, scratch<Block>& s, cell_marks<S> const& marks,
+                                   std::size_t& next) const {
     using batch = sphere_batch<S, Block::items>;
     S const* const quads = batch::quads_of(tests.spheres);
     if (quads == nullptr || tests.spheres.size() < Block::items) {
@@ -344,6 +345,7 @@ struct bucket_query {
   template <class Block>
   COLLIDE_HD_INLINE void test_listed(Block& block, scratch<Block>& s, cells const& here, std::uint32_t n) const {
     bool const all = here.of == nullptr;
+    std::uint32_t const bits = all ? 0 : here.of->bits;
     block.template balanced<ahead>(
         s.balance, s.counts, n,
         [&](std::uint32_t i) {
@@ -359,7 +361,8 @@ struct bucket_query {
           }
         },
         [&](auto const& c, std::uint32_t k) {
-          return all ? static_cast<id>(c.of.first + k) : triangles.entries[c.of.first + k];
+          return all ? static_cast<id>(c.of.first + k)
+                     : candidate_range::triangle_of(triangles.entries + c.of.first, bits, k);
         },
         [&](auto const& c, id triangle) { return triangles.near(enclosing(c.ball), triangle); },
         [&](auto const& c, id triangle) {
@@ -377,10 +380,10 @@ struct bucket_query {
     auto const ball = tests.spheres[number];
     if (here.of == nullptr) {
       auto const all = static_cast<std::uint32_t>(tests.mesh.size());
-      list(block, s, number, ball, {all, all}, at);
+      list(block, s, number, ball, {all, all}, 0, at);
     } else if constexpr (still) {
       std::uint32_t const cell = here.of->cell_of(*here.level, ball.centre);
-      if (triangles.is_occupied(cell)) list(block, s, number, ball, triangles.lists[cell], at);
+      if (triangles.is_occupied(cell)) list(block, s, number, ball, triangles.lists[cell], here.of->bits, at);
     } else {
       way<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {
@@ -388,7 +391,8 @@ struct bucket_query {
         if (!place.is_cell) continue;
         std::uint32_t const cell =
             here.level->row(place.cell[1], place.cell[2]) + (place.cell[0] & here.level->mask[0]);
-        if (triangles.is_occupied(cell) && list(block, s, number, ball, triangles.lists[cell], at)) return;
+        if (triangles.is_occupied(cell) && list(block, s, number, ball, triangles.lists[cell], here.of->bits, at))
+          return;
       }
     }
   }
@@ -396,13 +400,13 @@ struct bucket_query {
   /// Lists a sphere with the entries of a cell from at.skip on, if there are any.
   template <class Block>
   COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, ball_type const& ball, cell_list cell,
-                              cursor& at) const {
+                              std::uint32_t bits, cursor& at) const {
     std::uint32_t const left = cell.count - at.skip, listed = smaller(left, longest<Block>);
     if (left == 0) return false;
     std::uint32_t const place = block.add(s.listed.spheres, 1);
     s.numbers[place] = {number, cell.end - left};
     s.balls[place].set(ball);
-    s.counts[place] = listed;
+    s.counts[place] = listed << bits;
     if constexpr (!still) s.steps[place] = at.step;
     at.skip += listed;
     if (left > listed) block.add(s.listed.longer, 1);
@@ -448,12 +452,13 @@ class bucket::index {
     radius_given_ = false;
     listed_ = swapped_ = queried_ = false;
     has_boxes_ = options.memory_budget == 0 || fixed_bytes + boxes_bytes() <= options.memory_budget;
-    if (has_boxes_) boxes_.reserve(space.resource(), mesh.size());
+    if (has_boxes_) boxes_.reserve(space.resource(), mesh.size() + 1);
     has_summary_ = options.memory_budget == 0 || fixed_bytes <= options.memory_budget;
     if (!has_summary_) return;
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
-    detail::summarise_mesh<S> const body{mesh, summary, has_boxes_ ? boxes_.data() : nullptr};
+    detail::summarise_mesh<S> const body{mesh, summary, has_boxes_ ? boxes_.data() : nullptr,
+                                         has_boxes_ && Space::pairs_triangles};
     space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
   }
 
@@ -540,8 +545,10 @@ class bucket::index {
 
   /// How many cells a triangle may touch at most, unless a width is asked for.
   template <class Space>
-  static constexpr std::size_t cells_per_triangle = std::size_t(Space::bucket_span + 1) * (Space::bucket_span + 1) *
-                                                    (Space::bucket_span + 1);
+  static constexpr std::size_t cells_per_axis = std::size_t(Space::bucket_span) +
+                                                (Space::bucket_span > int(Space::bucket_span) ? 2 : 1);
+  template <class Space>
+  static constexpr std::size_t cells_per_triangle = cells_per_axis<Space>* cells_per_axis<Space>* cells_per_axis<Space>;
 
   template <class Space>
   void prepare_grids(Space& space, bucket const& options, sphere_view<S> const& spheres) {
@@ -601,9 +608,10 @@ class bucket::index {
                               grids,
                               {},
                               static_cast<S>(options.cell_width),
-                              Space::bucket_span,
+                              static_cast<S>(Space::bucket_span),
                               l.entry_limit,
                               l.table_bits,
+                              has_boxes_ && Space::pairs_triangles,
                               l.grids,
                               swapping ? nullptr : lists_.reserve(space.resource(), table_size(cells_)),
                               swapping ? 0 : cells_ + 1};
@@ -616,11 +624,11 @@ class bucket::index {
     grid_count_ = l.grids;
     wanted_ = wanted;
     listed_ = false;
-    emptied_ = !swapping;
+    lists_empty_ = !swapping;
     if (!swapping) make_lists(space, options);
   }
 
-  /// Makes bounding spheres and enters the triangles into the cells, unless they are there.
+  /// Enters the triangles into the cells, unless they are there.
   template <class Space>
   void make_lists(Space& space, bucket const& options) {
     std::size_t const n = mesh_.size();
@@ -628,8 +636,8 @@ class bucket::index {
     auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
     constexpr int parts = Space::insertion_parts;
     detail::grid_insertion<S, parts> const insertion{mesh_, boxes(), grids_.data(), grid_count_};
-    if (!emptied_) space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
-    emptied_ = false;
+    if (!lists_empty_) space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
+    lists_empty_ = false;
     space.for_each(insertion.size(), detail::count_entries<S, parts>{insertion, lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
                                                  lists,         occupied(),  &lists[cells_].count};
@@ -688,7 +696,7 @@ class bucket::index {
   std::uint32_t const* lists_total() const { return &lists_.data()[cells_].count; }
   std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
 
-  std::size_t boxes_bytes() const { return mesh_.size() * sizeof(detail::triangle_box<S>); }
+  std::size_t boxes_bytes() const { return (mesh_.size() + 1) * sizeof(detail::triangle_box<S>); }
   detail::triangle_box<S> const* boxes() const { return has_boxes_ ? boxes_.data() : nullptr; }
 
   /// What is held for another layout would come on top of what the budget was planned for.
@@ -712,10 +720,10 @@ class bucket::index {
   bool radius_given_ = false;
   bool has_boxes_ = false;  ///< there was room for them
   bool has_summary_ = false;
-  bool emptied_ = false;  ///< nothing is in the lists of the cells
-  bool listed_ = false;   ///< the triangles are
-  bool swapped_ = false;  ///< the spheres are, for this query
-  bool queried_ = false;  ///< this is not the first query since the build
+  bool lists_empty_ = false;  ///< of the cells
+  bool swapped_ = false;      ///< the spheres are, for this query
+  bool listed_ = false;       ///< the triangles are in the lists of the cells
+  bool queried_ = false;      ///< this is not the first query since the build
   detail::sorted_spheres<S> sorted_;
 };
 

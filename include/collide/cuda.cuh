@@ -227,8 +227,8 @@ class cuda_block {
 
   /// Each warp takes a stretch of the work at a time. Whose work its first piece is, it searches for; from there on, a
   /// word of bits tells all its lanes which of the next pieces are the first ones of others. A lane finds and looks at
-  /// all its pieces without a branch between them, so that what it reads for them comes together; where there is no more
-  /// work, at the last piece again.
+  /// all its pieces without a branch between them, so that what it reads for them comes together; where there is no
+  /// more work, at the last piece again.
   template <int Ahead, class Item, class Find, class Look, class Take, class Round>
   __device__ __forceinline__ void balanced(scan_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item,
                                            Find const& find, Look const& look, Take const& take,
@@ -351,6 +351,13 @@ __global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
   if (i < n) f(i);
 }
 
+/// Kernel body of `for_each` over bytes.
+struct fill_bytes {
+  unsigned char* to;
+  unsigned char byte;
+  __device__ void operator()(std::size_t i) const { to[i] = byte; }
+};
+
 /// What both CUDA spaces have in common: a stream and memory.
 class cuda_space {
  public:
@@ -375,7 +382,9 @@ class cuda_space {
   static constexpr bool sorts_spheres = false;
 
   /// Tuning of `bucket`; see `host`.
-  static constexpr int bucket_span = 2, insertion_parts = 4;
+  static constexpr int insertion_parts = 4;
+  static constexpr double bucket_span = 1.75;
+  static constexpr bool pairs_triangles = true;
 
   template <class F>
   void for_each(std::size_t n, F const& f) const {
@@ -384,8 +393,14 @@ class cuda_space {
     cuda_check(cudaGetLastError(), "launch of run_for_each");
   }
 
+  /// A little is filled by a kernel: in a graph, between kernels, that takes half as long as a memory set.
   void fill(void* to, unsigned char byte, std::size_t bytes) const {
-    if (bytes != 0) cuda_check(cudaMemsetAsync(to, byte, bytes, stream_), "cudaMemsetAsync");
+    constexpr std::size_t little = 16384;
+    if (bytes <= little) {
+      for_each(bytes, fill_bytes{static_cast<unsigned char*>(to), byte});
+    } else {
+      cuda_check(cudaMemsetAsync(to, byte, bytes, stream_), "cudaMemsetAsync");
+    }
   }
 
   template <class T>

@@ -53,13 +53,14 @@ class host {
   using block = detail::serial_block<64, 256>;
 
   /// Tuning of `bucket`: how many cells wide most triangles are. Narrow cells have fewer candidates and more entries.
-  static constexpr int bucket_span = 1;
+  static constexpr double bucket_span = 1;
 
   /// Tuning of `automatic`.
   static constexpr detail::broad_phase_costs costs{350, 0.137, 4, 40, 1000};
 
   /// Tuning of `bucket`: how many threads put a triangle into its cells.
   static constexpr int insertion_parts = 1;
+  static constexpr bool pairs_triangles = false;
 
   /// True if the host reads this memory without waiting for anything.
   static constexpr bool host_memory = true;

@@ -59,7 +59,7 @@ template <class Space>
 struct looking_up : Space {
   explicit looking_up(Space const& space) : Space(space) {}
   static constexpr bool sorts_spheres = false;
-  static constexpr int bucket_span = 2;
+  static constexpr double bucket_span = 2;
 };
 
 template <class Index, class = void>

@@ -44,7 +44,7 @@ template <int Lanes, bool Reversed>
 class lockstep : public collide::host {
  public:
   using host::host;
-  static constexpr bool defers = true, sorts_spheres = false;  // as the CUDA spaces
+  static constexpr bool defers = true, sorts_spheres = false, pairs_triangles = true;  // as the CUDA spaces
   static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
 
   template <class Body>

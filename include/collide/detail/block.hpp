@@ -7,9 +7,10 @@
 ///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
-///   - `block.load_row(from, row, rows, to)`, `exchange_row(s, to)` and `store_row(s, to, row, rows, from)` are for lanes
-///     whose rows of a few values follow each other: `row_lanes` lanes call them at a time, and read and write what lies
-///     side by side together; what was read are a lane's own values after the exchange; rows from `rows` on do not
+///   - `block.load_row(from, row, rows, to)`, `exchange_row(s, to)` and `store_row(s, to, row, rows, from)` are for
+///   lanes
+///     whose rows of a few values follow each other: `row_lanes` lanes call them at a time, and read and write what
+///     lies side by side together; what was read are a lane's own values after the exchange; rows from `rows` on do not
 ///     exist;
 ///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at least 1, it
 ///     finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f); `find` and `look` only read, and a

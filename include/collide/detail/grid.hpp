@@ -14,6 +14,9 @@
 ///     of two). Triangles from far away then share a cell: more candidates, no wrong answer.
 ///   - Several grids, where radii differ much: each serves the spheres of one range of radii.
 ///
+/// Where a box around two triangles that follow each other is hardly larger than that of one, as in most meshes, they
+/// are put into the cells together (CUDA): half of the entries. An entry is the number of such a pair then.
+///
 /// The rounding: cell coordinates are floor((x - lower) * inverse_width), a monotone function, so rounding alone cannot
 /// separate a centre from a box that contains it. The slack of 64 units in the last place of the largest coordinate
 /// covers the rounding of the box itself and a compiler that reassociates. The reach is
@@ -73,6 +76,7 @@ struct grid {
   S lower[3];  ///< of the dilated mesh
   S upper[3];
   int levels;           ///< 0 if no triangle is in the grid
+  std::uint32_t bits;   ///< log2 of how many triangles an entry is: 2^bits, from number entry * 2^bits on
   std::uint32_t cells;  ///< how many there are, of all levels
   grid_level<S> level[max_levels];
 
@@ -157,8 +161,8 @@ struct alignas(8) cell_list {
 };
 
 /// Kernel body of a block per grid: chooses widths, levels and table sizes from the summary of the mesh. A single
-/// lane's work of some microseconds, so that a build on the device need not wait for the host. Other blocks empty the
-/// lists of the cells meanwhile.
+/// lane's work of some microseconds, so that a build on the device need not wait for the host; much of that is fetching
+/// instructions, so the fewer the better. Other blocks empty the lists of the cells meanwhile.
 template <class S>
 struct plan_grid {
   static constexpr int items = 1;
@@ -167,9 +171,10 @@ struct plan_grid {
   grid<S>* grids;
   S reaches[max_grids];
   S cell_width;              ///< asked for; 0 = choose
-  int usual_span;            ///< how many cells wide most triangles are, if the width is not asked for
+  S usual_span;              ///< how many cells wide most triangles are at most, if the width is not asked for
   float entry_limit;         ///< how many entries a grid may have, if the width is asked for
   std::uint32_t table_bits;  ///< log2 of the number of cells per grid
+  bool pairs;                ///< triangles may be put into the cells two at a time
   int grid_count;
   cell_list* lists;
   std::size_t list_count;  ///< to be emptied
@@ -184,7 +189,8 @@ struct plan_grid {
 
   template <class Block>
   struct scratch {
-    size_histogram sizes;
+    size_histogram extents, pairs;
+    int medians[2];  ///< of both
   };
 
   template <class Block>
@@ -194,28 +200,43 @@ struct plan_grid {
       std::size_t const first = (block.index() - static_cast<std::size_t>(grid_count)) * per_block;
       std::size_t const end = smaller(first + per_block, list_count);
       block.each([&](int lane) {
+        COLLIDE_ROLLED
         for (std::size_t i = first + static_cast<std::size_t>(lane); i < end; i += Block::lanes) lists[i] = {0, 0};
       });
       return;
     }
     if constexpr (Block::lanes > 1) {  // a lane alone would wait for every bin
-      block.each([&](int lane) { s.sizes.copy(summary->extents, lane, Block::lanes); });
       block.each([&](int lane) {
-        if (lane == 0) plan(block.index(), s.sizes);
+        s.extents.copy(summary->extents, lane, Block::lanes);
+        if (pairs) s.pairs.copy(summary->pairs, lane, Block::lanes);
+      });
+      block.each([&](int lane) {
+        if (lane == 0 || (lane == 1 && pairs)) s.medians[lane] = median(lane == 0 ? s.extents : s.pairs);
+      });
+      block.each([&](int lane) {
+        if (lane == 0) plan(block.index(), {s.extents, s.medians[0]}, {s.pairs, s.medians[1]});
       });
     } else {
-      plan(block.index(), summary->extents);
+      plan(block.index(), {summary->extents, median(summary->extents)}, {summary->pairs, median(summary->pairs)});
     }
   }
 
  private:
-  COLLIDE_HD void plan(std::size_t i, size_histogram const& sizes) const {
+  /// A histogram, and the bin that half of the sizes do not exceed.
+  struct seen_sizes {
+    size_histogram const& all;
+    int median;
+  };
+
+  COLLIDE_HD void plan(std::size_t i, seen_sizes const& extents, seen_sizes const& of_pairs) const {
     grid<S>& g = grids[i];
+    box<S> const bounds = summary->bounds();
     g.reach = reaches[i];
     g.levels = 0;
+    g.bits = 0;
     g.cells = 0;
     g.width = 0;
-    if (sizes.empty()) {  // no finite triangle: a box that contains nothing
+    if (extents.all.empty()) {  // no finite triangle: a box that contains nothing
       for (int k = 0; k < 3; ++k) {
         g.lower[k] = 1;
         g.upper[k] = -1;
@@ -223,14 +244,17 @@ struct plan_grid {
       return;
     }
     S far = g.reach;
-    for (int k = 0; k < 3; ++k) far = larger(far, larger(abs_of(summary->lower_of(k)), abs_of(summary->upper_of(k))));
+    for (int k = 0; k < 3; ++k) far = larger(far, larger(abs_of(bounds.lower[k]), abs_of(bounds.upper[k])));
     g.dilation =
         g.reach * (1 + 4 * S(format<float>::unit)) + 64 * format<S>::unit * far + 64 * std::numeric_limits<S>::min();
     for (int k = 0; k < 3; ++k) {
-      g.lower[k] = summary->lower_of(k) - g.dilation;
-      g.upper[k] = summary->upper_of(k) + g.dilation;
+      g.lower[k] = bounds.lower[k] - g.dilation;
+      g.upper[k] = bounds.upper[k] + g.dilation;
     }
 
+    g.bits = pairs && alike(g, extents, of_pairs) ? 1 : 0;
+    size_histogram const& sizes = g.bits != 0 ? of_pairs.all : extents.all;
+    int const middle = g.bits != 0 ? of_pairs.median : extents.median;
     S extent = 0;
     for (int k = 0; k < 3; ++k) extent = larger(extent, g.upper[k] - g.lower[k]);
     constexpr S end = std::numeric_limits<S>::max() / 16;
@@ -243,9 +267,9 @@ struct plan_grid {
     }
     // from this width on, cell coordinates are exact enough for `margin`
     S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
-    S width = larger(
-        narrowest, cell_width > 0 ? cell_width : smaller(tallest, 2 * margin * size(g, median(sizes))) / S(usual_span));
-    S const span = cell_width > 0 ? span_for(g, width, sizes) : S(usual_span);
+    S width =
+        larger(narrowest, cell_width > 0 ? cell_width : smaller(tallest, 2 * margin * size(g, middle)) / usual_span);
+    S const span = cell_width > 0 ? span_for(g, width, sizes) : usual_span;
     // half of the cells for the finest level, the rest for the others together; all if there are no others
     std::uint32_t const first_cell = static_cast<std::uint32_t>(i) << table_bits;
     int bin = sizes.first();
@@ -284,11 +308,20 @@ struct plan_grid {
     return S(bin_end(static_cast<std::uint32_t>(bin))) + 2 * g.dilation;
   }
 
-  /// The bin that half of the triangles do not exceed.
+  /// True if pairs are hardly larger than triangles, also the largest.
+  static COLLIDE_HD bool alike(grid<S> const& g, seen_sizes const& extents, seen_sizes const& of_pairs) {
+    constexpr S hardly = S(1.25);
+    return size(g, of_pairs.all.last()) <= hardly * size(g, extents.all.last()) &&
+           size(g, of_pairs.median) <= hardly * size(g, extents.median);
+  }
+
   static COLLIDE_HD int median(size_histogram const& sizes) {
+    if (sizes.empty()) return 0;
     std::uint64_t total = 0;
+    COLLIDE_ROLLED
     for (int b = sizes.first(); b <= sizes.last(); ++b) total += sizes.counts[b];
     int b = sizes.first();
+    COLLIDE_ROLLED
     for (std::uint64_t below = sizes.counts[b]; 2 * below < total; below += sizes.counts[++b]) {
     }
     return b;
@@ -346,16 +379,26 @@ struct grid_insertion {
 
   static constexpr int together = Parts > 1 ? 4 : 1;  ///< cells that a thread asks at a time
 
-  /// Calls f(cells, n, triangle) for all cells that are this thread's, n of at most `together` at a time.
+  /// Calls f(cells, n, entry) for all cells that are this thread's, n of at most `together` at a time.
   template <class F>
   COLLIDE_HD_INLINE void each_cells(std::size_t thread, F const& f) const {
-    auto const number = static_cast<id>(thread / Parts);
-    auto const part = static_cast<std::uint32_t>(thread % Parts);
-    triangle_box<S> const b = boxes != nullptr ? boxes[number] : triangle_box_of(mesh[number]);
     for (int g = 0; g < grid_count; ++g) {
+      // the threads of the triangles of an entry share its cells
+      std::uint32_t const bits = grids[g].bits, parts = Parts << bits;
+      auto const number = static_cast<id>(thread / Parts), entry = number >> bits;
+      std::uint32_t const part = static_cast<std::uint32_t>(thread % Parts) + Parts * (number - (entry << bits));
+      std::size_t const first = std::size_t{entry} << bits;
+      box<S> b = box_at(first);
+      if (bits != 0 && first + 1 < mesh.size()) b = typename box<S>::unite{}(b, box_at(first + 1));
       grids[g].template each_cells<together>(
-          b, part, Parts, [&](std::uint32_t const(&cells)[together], std::uint32_t n) { f(cells, n, number); });
+          b, part, parts, [&](std::uint32_t const(&cells)[together], std::uint32_t n) { f(cells, n, entry); });
     }
+  }
+
+ private:
+  COLLIDE_HD_INLINE box<S> box_at(std::size_t i) const {
+    triangle_box<S> const b = boxes != nullptr ? boxes[i] : triangle_box_of(mesh[i]);
+    return b;
   }
 };
 
@@ -399,9 +442,8 @@ struct allocate_entries {
     constexpr auto n = static_cast<std::size_t>(Block::items);
     std::size_t const first = block.index() * Block::lanes * n;
     std::size_t const table = std::size_t{1} << table_bits;
-    // a part of the table that the grid does not need
-    if (table >= Block::lanes * n && first % table >= grids[first / table].cells) return;
-    // lists of cells that exist: there are a multiple of 64
+    // a part of the table that the grid does not need; its lists are read all the same, to wait for both at once
+    bool const needless = table >= Block::lanes * n && (first & (table - 1)) >= grids[first >> table_bits].cells;
     typename Block::template per_lane<counts_of<Block>> own;
     auto const first_of = [&](int lane) { return first + static_cast<std::size_t>(lane) * n; };
     block.each([&](int lane) {
@@ -412,6 +454,7 @@ struct allocate_entries {
       }
       s.sums[lane] = sum;
     });
+    if (needless) return;
     std::uint32_t const sum = block.scan(s.scan, s.sums, Block::lanes);
     block.each([&](int lane) {
       if (lane == 0) s.begin = fetch_add(total, sum);
@@ -448,13 +491,13 @@ struct fill_entries {
   id* entries;
   std::size_t capacity;
   COLLIDE_HD void operator()(std::size_t thread) const {
-    insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id triangle) {
+    insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id entry) {
       std::uint32_t slots[insertion.together];
       for (std::uint32_t k = 0; k < insertion.together; ++k) {
         if (k < n) slots[k] = fetch_add(&cells[some[k]].end, 1u);
       }
       for (std::uint32_t k = 0; k < insertion.together; ++k) {
-        if (k < n && slots[k] < capacity) entries[slots[k]] = triangle;
+        if (k < n && slots[k] < capacity) entries[slots[k]] = entry;
       }
     });
   }

@@ -18,11 +18,19 @@ namespace collide::detail {
 
 /// Candidates that follow each other in memory, or in number.
 struct candidate_range {
-  id const* listed;  ///< null: the triangles themselves are numbered from `first`
+  id const* listed;  ///< entries of a grid; null: the triangles themselves are numbered from `first`
   id first;
   std::uint32_t count;
+  std::uint32_t bits;  ///< of the grid
 
-  COLLIDE_HD_INLINE id at(std::uint32_t k) const { return listed != nullptr ? listed[k] : first + k; }
+  /// May be the number of a triangle that does not exist, which `near` knows.
+  COLLIDE_HD_INLINE id at(std::uint32_t k) const {
+    return listed != nullptr ? triangle_of(listed, bits, k) : first + k;
+  }
+
+  static COLLIDE_HD_INLINE id triangle_of(id const* entries, std::uint32_t bits, std::uint32_t k) {
+    return (entries[k >> bits] << bits) + (k & ((1u << bits) - 1));
+  }
 };
 
 /// How far the candidates of a ball have been gone through.
@@ -35,18 +43,19 @@ struct candidate_cursor {
 template <class S>
 struct triangle_lookup {
   mesh_view<S> mesh;
-  triangle_box<S> const* boxes;  ///< may be null
+  triangle_box<S> const* boxes;  ///< and one more, which may be anything; may be null
 
   COLLIDE_HD_INLINE bool near(sphere<S> const& around, id number) const {
     triangle_box<S> const box = boxes != nullptr ? boxes[number] : triangle_box<S>::everywhere();
-    return box.reached(around.centre, around.radius);
+    bool const reached = box.reached(around.centre, around.radius);
+    return reached & (number < mesh.size());
   }
 
   /// All triangles, one range after the other.
   COLLIDE_HD bool next_of_all(candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
     auto const n = static_cast<std::uint32_t>(mesh.size());
     if (c.skip >= n) return false;
-    range = {nullptr, c.skip, smaller(n - c.skip, most)};
+    range = {nullptr, c.skip, smaller(n - c.skip, most), 0};
     c.skip += range.count;
     return true;
   }
@@ -235,13 +244,14 @@ struct bucket_lookup : triangle_lookup<S> {
   }
 
   /// The entries of a cell that have not been gone through; then the cursor is at the next step.
-  COLLIDE_HD bool next_of_cell(std::uint32_t cell, candidate_cursor& c, std::uint32_t most,
+  COLLIDE_HD bool next_of_cell(std::uint32_t cell, std::uint32_t bits, candidate_cursor& c, std::uint32_t most,
                                candidate_range& range) const {
     if (is_occupied(cell)) {
-      std::uint32_t const left = lists[cell].count - c.skip;
+      cell_list const list = lists[cell];
+      std::uint32_t const left = list.count - c.skip, some = smaller(left, most >> bits);
       if (left != 0) {
-        range = {entries + (lists[cell].end - left), 0, smaller(left, most)};
-        c.skip += range.count;
+        range = {entries + (list.end - left), 0, some << bits, bits};
+        c.skip += some;
         return true;
       }
     }
@@ -252,7 +262,7 @@ struct bucket_lookup : triangle_lookup<S> {
 
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball, candidate_cursor& c,
                                 std::uint32_t most, candidate_range& range) const {
-    return c.step == 0 && next_of_cell(g.cell_of(l, ball.centre), c, most, range);
+    return c.step == 0 && next_of_cell(g.cell_of(l, ball.centre), g.bits, c, most, range);
   }
 
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball,
@@ -265,7 +275,8 @@ struct bucket_lookup : triangle_lookup<S> {
         c.skip = 0;
         continue;
       }
-      if (next_of_cell(l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]), c, most, range)) return true;
+      std::uint32_t const cell = l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]);
+      if (next_of_cell(cell, g.bits, c, most, range)) return true;
     }
     return false;
   }

@@ -97,6 +97,7 @@ struct mesh_summary {
   bits_of<S> lower[3];     ///< ~ordered(coordinate)
   bits_of<S> upper[3];     ///< ordered(coordinate)
   size_histogram extents;  ///< of the triangles' boxes
+  size_histogram pairs;    ///< of the boxes around triangles 0 and 1, 2 and 3, ..., if that is asked for
 
   /// Makes a summary in memory of the space that of no triangles.
   template <class Space>
@@ -104,43 +105,58 @@ struct mesh_summary {
     space.fill(s, 0, sizeof *s);
   }
 
-  COLLIDE_HD S lower_of(int k) const { return from_ordered<S>(static_cast<bits_of<S>>(~lower[k])); }
-  COLLIDE_HD S upper_of(int k) const { return from_ordered<S>(upper[k]); }
+  COLLIDE_HD_INLINE box<S> bounds() const {
+    box<S> b;
+    for (int k = 0; k < 3; ++k) {
+      b.lower[k] = from_ordered<S>(static_cast<bits_of<S>>(~lower[k]));
+      b.upper[k] = from_ordered<S>(upper[k]);
+    }
+    return b;
+  }
 };
 
 /// Kernel body: fills the summary, and the boxes of triangles if there is room for them.
 template <class S>
 struct summarise_mesh {
-  static constexpr int items = 1;
+  static constexpr int items = 2;
 
   mesh_view<S> mesh;
   mesh_summary<S>* summary;
   triangle_box<S>* boxes;  ///< null if they are not wanted
+  bool pairs;              ///< whether they are asked for
 
   template <class Block>
   struct scratch {
-    block_histogram<Block> histogram;
+    block_histogram<Block> extents, pairs;
     typename Block::template reduce_scratch<box<S>> reduction;
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    static_assert(Block::items % 2 == 0, "collide: a lane looks at both triangles of a pair");
     typename Block::template per_lane<box<S>> all;
-    s.histogram.clear(block);
-    std::size_t const first = block.index() * Block::lanes * Block::items;
+    s.extents.clear(block);
+    s.pairs.clear(block);
     block.each([&](int lane) {
+      constexpr auto n = static_cast<std::size_t>(Block::items);
+      std::size_t const first = (block.index() * Block::lanes + static_cast<std::size_t>(lane)) * n;
       all[lane] = box<S>::empty();
-      for (int k = 0; k < Block::items; ++k) {
-        std::size_t const i = first + static_cast<std::size_t>(k) * Block::lanes + static_cast<std::size_t>(lane);
-        if (i >= mesh.size()) break;
-        triangle_box<S> const around = triangle_box_of(mesh[i]);
-        if (boxes != nullptr) boxes[i] = around;
+      for (std::size_t i = first; i < first + n && i < mesh.size(); i += 2) {
+        bool const two = i + 1 < mesh.size();
+        triangle<S> const a = mesh[i], b = mesh[two ? i + 1 : i];  // both before anything is written
+        triangle_box<S> const of_a = triangle_box_of(a), of_b = triangle_box_of(b);
+        if (boxes != nullptr) boxes[i] = of_a;
+        if (boxes != nullptr && two) boxes[i + 1] = of_b;
+        box<S> const around = typename box<S>::unite{}(of_a, of_b);
         if (around.is_empty()) continue;
         all[lane] = typename box<S>::unite{}(all[lane], around);
-        s.histogram.add(block, &summary->extents, size_bin(around.extent()));
+        if (!of_a.is_empty()) s.extents.add(block, &summary->extents, size_bin(of_a.extent()));
+        if (!of_b.is_empty() && two) s.extents.add(block, &summary->extents, size_bin(of_b.extent()));
+        if (pairs) s.pairs.add(block, &summary->pairs, size_bin(around.extent()));
       }
     });
-    s.histogram.flush(block, &summary->extents);
+    s.extents.flush(block, &summary->extents);
+    s.pairs.flush(block, &summary->pairs);
     box<S> const extent = block.reduce(s.reduction, all, typename box<S>::unite{});
     block.each([&](int lane) {
       if (lane != 0) return;

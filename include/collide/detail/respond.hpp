@@ -132,8 +132,8 @@ struct respond_body {
   /// How many particles a block resolves at a time. With the contacts that it keeps, this makes up most of its scratch
   /// memory, of which CUDA has 48 KB: fewer of doubles.
   template <class Block>
-  static constexpr std::uint32_t together =
-      Block::lanes > 1 ? Block::lanes * (moves ? 3 : 4) / 2 / sizeof(S) : Block::items;
+  static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes*(moves ? 3 : 4) / 2 / sizeof(S)
+                                                             : Block::items;
 
   /// A particle of those that are resolved together, and a triangle.
   struct candidate {
@@ -179,6 +179,7 @@ struct respond_body {
     std::uint32_t owner[size], counts[size];
     id const* from[size];
     id first[size];
+    std::uint8_t bits[size];
     candidate_lists<Block> lists;
     typename Block::balance_scratch balance;
   };
@@ -188,8 +189,8 @@ struct respond_body {
     std::uint32_t const n = *list.count;
     Lookup const near = lookup.opened();
     // as many as come to each block, or the same each time if it has no room for so many
-    auto const most = static_cast<std::uint32_t>(blocks) * together<Block>, parts = static_cast<std::uint32_t>(blocks) * ((n + most - 1) / most);
-    std::uint32_t const share = n == 0 ? 0 : (n + parts - 1) / parts;
+    auto const shares = static_cast<std::uint32_t>(blocks), most = shares * together<Block>;
+    std::uint32_t const share = n == 0 ? 0 : (n - 1) / (shares * ((n - 1) / most + 1)) + 1;
     for (std::size_t base = block.index() * share; base < n; base += blocks * share) {
       collide(block, s, near, list.numbers + base, smaller(n - static_cast<std::uint32_t>(base), share));
     }
@@ -265,6 +266,7 @@ struct respond_body {
         s.counts[place] = range.count;
         s.from[place] = range.listed;
         s.first[place] = range.first;
+        s.bits[place] = static_cast<std::uint8_t>(range.bits);
       });
       std::uint32_t const ranges = block.shared(s.ranges);
       if (ranges == 0) break;
@@ -274,7 +276,7 @@ struct respond_body {
             auto& one = s.those[s.owner[i]];
             auto const ball = one.ball();
             sphere<S> const around = enclosing(until_next<Block>(one, ball));
-            return candidates{s.owner[i], one, ball, around, {s.from[i], s.first[i], 0}};
+            return candidates{s.owner[i], one, ball, around, {s.from[i], s.first[i], 0, s.bits[i]}};
           },
           [](candidates const& c, std::uint32_t k) { return c.range.at(k); },
           [&](candidates const& c, id number) { return near.near(c.around, number) && !c.one.leaves(number); },
