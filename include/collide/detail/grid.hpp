@@ -230,7 +230,6 @@ struct plan_grid {
 
   COLLIDE_HD void plan(std::size_t i, seen_sizes const& extents, seen_sizes const& of_pairs) const {
     grid<S>& g = grids[i];
-    box<S> const bounds = summary->bounds();
     g.reach = reaches[i];
     g.levels = 0;
     g.bits = 0;
@@ -244,12 +243,12 @@ struct plan_grid {
       return;
     }
     S far = g.reach;
-    for (int k = 0; k < 3; ++k) far = larger(far, larger(abs_of(bounds.lower[k]), abs_of(bounds.upper[k])));
+    for (int k = 0; k < 3; ++k) far = larger(far, larger(abs_of(summary->lower_of(k)), abs_of(summary->upper_of(k))));
     g.dilation =
         g.reach * (1 + 4 * S(format<float>::unit)) + 64 * format<S>::unit * far + 64 * std::numeric_limits<S>::min();
     for (int k = 0; k < 3; ++k) {
-      g.lower[k] = bounds.lower[k] - g.dilation;
-      g.upper[k] = bounds.upper[k] + g.dilation;
+      g.lower[k] = summary->lower_of(k) - g.dilation;
+      g.upper[k] = summary->upper_of(k) + g.dilation;
     }
 
     g.bits = pairs && alike(g, extents, of_pairs) ? 1 : 0;

@@ -105,14 +105,8 @@ struct mesh_summary {
     space.fill(s, 0, sizeof *s);
   }
 
-  COLLIDE_HD_INLINE box<S> bounds() const {
-    box<S> b;
-    for (int k = 0; k < 3; ++k) {
-      b.lower[k] = from_ordered<S>(static_cast<bits_of<S>>(~lower[k]));
-      b.upper[k] = from_ordered<S>(upper[k]);
-    }
-    return b;
-  }
+  COLLIDE_HD S lower_of(int k) const { return from_ordered<S>(static_cast<bits_of<S>>(~lower[k])); }
+  COLLIDE_HD S upper_of(int k) const { return from_ordered<S>(upper[k]); }
 };
 
 /// Kernel body: fills the summary, and the boxes of triangles if there is room for them.
@@ -123,7 +117,7 @@ struct summarise_mesh {
   mesh_view<S> mesh;
   mesh_summary<S>* summary;
   triangle_box<S>* boxes;  ///< null if they are not wanted
-  bool pairs;              ///< whether they are asked for
+  bool pairs = false;      ///< whether they are asked for
 
   template <class Block>
   struct scratch {
