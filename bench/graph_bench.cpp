@@ -161,6 +161,7 @@ void add(std::string const& name) {
         (name + "/" + phase).c_str(),
         [=](benchmark::State& state) { run<Broad, Precision>(state, builds, queries, frames); })
         ->UseManualTime()
+        ->Iterations(1001)
         ->Unit(benchmark::kMicrosecond);
   };
   with("build", true, false);
