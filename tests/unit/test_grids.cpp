@@ -82,6 +82,29 @@ TEST_CASE_TEMPLATE("grids: spheres and vertices exactly on the boundaries of cel
   }
 }
 
+TEST_CASE_TEMPLATE("grids: triangles that follow each other, and one at the end that is alone", S, float, double) {
+  for (int n : {1, 2, 3, 7, 50, 51}) {
+    CAPTURE(n);
+    tests::scene<S> made;
+    for (int i = 0; i < n; ++i) {  // a row of squares, each of two triangles
+      double const x = i / 2;
+      if (i % 2 == 0) {
+        made.mesh.add({{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}});
+      } else {
+        made.mesh.add({{x, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}});
+      }
+    }
+    tests::dice dice(static_cast<unsigned>(40 + n));
+    double const last = (n - 1) / 2;
+    for (int i = 0; i < 300; ++i) {
+      made.spheres.add({last + dice.uniform(-1, 2), dice.uniform(-1, 2), dice.uniform(-1, 1)}, 0.5);
+    }
+    auto const expected = made.expect(1e-4);
+    CHECK(expected.certain.size() > 30);
+    for (double width : {0., 0.1, 0.3, 1.}) check_with(made, expected, {width, 0, 2});
+  }
+}
+
 TEST_CASE_TEMPLATE("grids: the width that is asked for is the width in use", S, float, double) {
   auto const made = tests::lattice_scene<S>(24, 100, 100, 5);
   for (auto const& c : tests::compositions<S>()) {

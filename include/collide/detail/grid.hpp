@@ -382,13 +382,15 @@ struct grid_insertion {
   template <class F>
   COLLIDE_HD_INLINE void each_cells(std::size_t thread, F const& f) const {
     for (int g = 0; g < grid_count; ++g) {
-      // the threads of the triangles of an entry share its cells
-      std::uint32_t const bits = grids[g].bits, parts = Parts << bits;
+      // the threads of the triangles of an entry share its cells; the last triangle may be alone
+      std::uint32_t const bits = grids[g].bits;
       auto const number = static_cast<id>(thread / Parts), entry = number >> bits;
-      std::uint32_t const part = static_cast<std::uint32_t>(thread % Parts) + Parts * (number - (entry << bits));
       std::size_t const first = std::size_t{entry} << bits;
+      bool const two = bits != 0 && first + 1 < mesh.size();
+      std::uint32_t const parts = two ? 2 * Parts : Parts;
+      std::uint32_t const part = static_cast<std::uint32_t>(thread % Parts) + Parts * (number - (entry << bits));
       box<S> b = box_at(first);
-      if (bits != 0 && first + 1 < mesh.size()) b = typename box<S>::unite{}(b, box_at(first + 1));
+      if (two) b = typename box<S>::unite{}(b, box_at(first + 1));
       grids[g].template each_cells<together>(
           b, part, parts, [&](std::uint32_t const(&cells)[together], std::uint32_t n) { f(cells, n, entry); });
     }
