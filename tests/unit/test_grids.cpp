@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/bucket.cuh>
+
 #include "checks.hpp"
 
 using tests::mesh_form;
@@ -103,6 +105,33 @@ TEST_CASE_TEMPLATE("grids: triangles that follow each other, and one at the end 
     CHECK(expected.certain.size() > 30);
     for (double width : {0., 0.1, 0.3, 1.}) check_with(made, expected, {width, 0, 2});
   }
+}
+
+TEST_CASE_TEMPLATE("grids: a way that leaves the grid comes through none but its cells", S, float, double) {
+  collide::detail::grid<S> grid{};
+  grid.levels = 1;
+  for (int k = 0; k < 3; ++k) grid.upper[k] = 1;
+  auto& level = grid.level[0];
+  level.inverse_width = 10;
+  for (auto& mask : level.mask) mask = (1u << 31) - 1;
+  tests::dice dice(26);
+  int cells = 0;
+  for (int i = 0; i < 2000; ++i) {
+    double const length = i % 2 == 0 ? 0.1 : 4;  // short ways are looked at as a whole
+    auto const from = dice.in_cube(0.6), along = dice.in_cube(length);
+    collide::vec3<S> const begin(S(from.x + 0.5), S(from.y + 0.5), S(from.z + 0.5)),
+        step(S(along.x), S(along.y), S(along.z));
+    collide::detail::way<S> const way(grid, level, begin, step);
+    for (std::uint32_t k = 0; k < way.steps(); ++k) {
+      auto const place = way.at(k);
+      if (!place.is_cell) continue;
+      ++cells;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (place.cell[axis] > grid.coordinate(level, grid.upper[axis], axis)) FAIL("beyond the grid");
+      }
+    }
+  }
+  CHECK(cells > 2000);
 }
 
 TEST_CASE_TEMPLATE("grids: the width that is asked for is the width in use", S, float, double) {

@@ -26,8 +26,9 @@ class way {
     bool few = true;
     for (int k = 0; k < 3; ++k) {
       S const to = from[k] + along[k], slack = slack_of(from[k], along[k]);
-      whole_.lower[k] = g.coordinate(l, smaller(from[k], to) - slack, k);
-      whole_.upper[k] = g.coordinate(l, larger(from[k], to) + slack, k);
+      last_[k] = g.coordinate(l, g.upper[k], k);
+      whole_.lower[k] = coordinate(smaller(from[k], to) - slack, k);
+      whole_.upper[k] = coordinate(larger(from[k], to) + slack, k);
       span_[k] = whole_.upper[k] - whole_.lower[k] + 1;
       few = few && span_[k] <= 2;
     }
@@ -98,6 +99,9 @@ class way {
   /// A bit farther in a direction than `t`, which may be inaccurate.
   static COLLIDE_HD S stretched(S t, S direction) { return t + mul(direction * 8 * format<S>::unit, abs_of(t)); }
 
+  /// What is beyond the grid, where there are no cells, counts as its first or last cell.
+  COLLIDE_HD std::uint32_t coordinate(S x, int k) const { return smaller(grid_->coordinate(*level_, x, k), last_[k]); }
+
   COLLIDE_HD std::uint32_t per_piece() const { return span_[0] * span_[1] * span_[2]; }
 
   COLLIDE_HD S position(std::uint32_t cut, int k) const {
@@ -132,8 +136,8 @@ class way {
     cell_range r;
     for (int k = 0; k < 3; ++k) {
       S const a = position(piece, k), b = position(piece + 1, k), slack = slack_of(from_[k], along_[k]);
-      r.lower[k] = grid_->coordinate(*level_, smaller(a, b) - slack, k);
-      r.upper[k] = grid_->coordinate(*level_, larger(a, b) + slack, k);
+      r.lower[k] = coordinate(smaller(a, b) - slack, k);
+      r.upper[k] = coordinate(larger(a, b) + slack, k);
     }
     return r;
   }
@@ -141,6 +145,7 @@ class way {
   grid<S> const* grid_ = nullptr;
   grid_level<S> const* level_ = nullptr;
   vec3<S> from_ = vec3<S>::Zero(), along_ = vec3<S>::Zero();
+  std::uint32_t last_[3];  ///< the grid's last cell on each axis
   cell_range whole_;       ///< the cells of the way's box
   std::uint32_t span_[3];  ///< how many cells a piece has on an axis, at most
   std::uint32_t pieces_ = 1;
