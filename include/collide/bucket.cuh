@@ -185,8 +185,8 @@ struct bucket_query {
   }
 
  private:
-  /// Lanes take spheres in turn, some in a row at a time, of which those of neighbours are next to each other. Here a
-  /// lane begins, and so far it goes on from there.
+  /// Lanes take spheres in turn, some in a row at a time, of which those of neighbours are next to each other: where a
+  /// lane begins, and how far it goes on in each turn.
   template <class Block>
   COLLIDE_HD_INLINE std::size_t first_of(Block const& block, int lane) const {
     constexpr auto beside = static_cast<std::size_t>(Block::row_lanes);
@@ -214,12 +214,13 @@ struct bucket_query {
                                    std::size_t& next) const {
     using batch = sphere_batch<S, Block::items>;
     S const* const quads = batch::quads_of(tests.spheres);
+    auto const load_and_mark = [&](std::size_t first) {
+      batch own;
+      own.load(tests.spheres, first);
+      return mark_own(block, s, marks, marks.places_of(own.x, own.y, own.z), first);
+    };
     if (quads == nullptr || tests.spheres.size() < Block::items) {
-      place_many<Block>(next, [&](std::size_t first) {
-        batch own;
-        own.load(tests.spheres, first);
-        return mark_own(block, s, marks, marks.places_of(own.x, own.y, own.z), first);
-      });
+      place_many<Block>(next, load_and_mark);
       return;
     }
     batch own;
@@ -229,11 +230,7 @@ struct bucket_query {
     };
     load(next);
     place_many<Block>(next, [&](std::size_t first) {
-      if (first + Block::items > tests.spheres.size()) {
-        batch last;
-        last.load(tests.spheres, first);
-        return mark_own(block, s, marks, marks.places_of(last.x, last.y, last.z), first);
-      }
+      if (first + Block::items > tests.spheres.size()) return load_and_mark(first);
       auto const places = marks.places_of(own.x, own.y, own.z);
       load(first + turn<Block>());
       return mark_own(block, s, marks, places, first);
@@ -543,7 +540,7 @@ class bucket::index {
   static constexpr std::size_t fixed_bytes =
       sizeof(detail::mesh_summary<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
 
-  /// How many cells a triangle may touch at most, unless a width is asked for.
+  /// How many cells a triangle may touch at most, on an axis and in all, unless a width is asked for.
   template <class Space>
   static constexpr std::size_t cells_per_axis = std::size_t(Space::bucket_span) +
                                                 (Space::bucket_span > int(Space::bucket_span) ? 2 : 1);

@@ -8,10 +8,9 @@
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
 ///   - `block.load_row(from, row, rows, to)`, `exchange_row(s, to)` and `store_row(s, to, row, rows, from)` are for
-///   lanes
-///     whose rows of a few values follow each other: `row_lanes` lanes call them at a time, and read and write what
-///     lies side by side together; what was read are a lane's own values after the exchange; rows from `rows` on do not
-///     exist;
+///     rows of a few values, one for each lane, that follow each other: `row_lanes` lanes call them at a time, and read
+///     and write what lies side by side together; what a lane has read is its own row after the exchange, and not
+///     before; rows from `rows` on do not exist;
 ///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at least 1, it
 ///     finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f); `find` and `look` only read, and a
 ///     lane does them up to `Ahead` times before it takes, so that it waits for all of them at once if they do not
