@@ -492,12 +492,13 @@ struct fill_entries {
   id* entries;
   std::size_t capacity;
   COLLIDE_HD void operator()(std::size_t thread) const {
+    constexpr std::uint32_t together = grid_insertion<S, Parts>::together;
     insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id entry) {
-      std::uint32_t slots[insertion.together];
-      for (std::uint32_t k = 0; k < insertion.together; ++k) {
+      std::uint32_t slots[together];
+      for (std::uint32_t k = 0; k < together; ++k) {
         if (k < n) slots[k] = fetch_add(&cells[some[k]].end, 1u);
       }
-      for (std::uint32_t k = 0; k < insertion.together; ++k) {
+      for (std::uint32_t k = 0; k < together; ++k) {
         if (k < n && slots[k] < capacity) entries[slots[k]] = entry;
       }
     });
