@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/bucket.cuh>
+#include <collide/detail/way.hpp>
 
 #include "checks.hpp"
 
