@@ -327,9 +327,20 @@ template <class Body, class Block>
 inline constexpr int residency<Body, Block, std::enable_if_t<(Body::template residency<Block> > 0)>> =
     Body::template residency<Block>;
 
+/// A kernel's first step. It lets the next kernel of the stream start, which then waits here, and waits for the one
+/// before: so a launch takes its time while the kernel before is at work. From compute capability 9.0 on, with
+/// `cuda_space::launch_kernel`.
+__device__ __forceinline__ void take_turn() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+
 /// Runs a body in one thread per block.
 template <class Block, class Body>
 __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_threads(std::size_t blocks, Body body) {
+  take_turn();
   std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
   if (i >= blocks) return;
   typename Body::template scratch<Block> scratch;
@@ -340,6 +351,7 @@ __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_thre
 /// Runs a body in one CUDA block per block.
 template <class Block, class Body>
 __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_blocks(Body body) {
+  take_turn();
   __shared__ typename Body::template scratch<Block> scratch;
   Block here(blockIdx.x);
   body(here, scratch);
@@ -347,6 +359,7 @@ __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_bloc
 
 template <class F>
 __global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
+  take_turn();
   std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
   if (i < n) f(i);
 }
@@ -369,6 +382,10 @@ class cuda_space {
     int device = 0;
     cuda_check(cudaGetDevice(&device), "cudaGetDevice");
     cuda_check(cudaDeviceGetAttribute(&processors_, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
+    int capability = 0;
+    cuda_check(cudaDeviceGetAttribute(&capability, cudaDevAttrComputeCapabilityMajor, device),
+               "cudaDeviceGetAttribute");
+    takes_turns_ = capability >= 9;
   }
 
   cudaStream_t stream() const { return stream_; }
@@ -389,8 +406,7 @@ class cuda_space {
   template <class F>
   void for_each(std::size_t n, F const& f) const {
     if (n == 0) return;
-    run_for_each<<<grid_of(n), cuda_lanes, 0, stream_>>>(n, f);
-    cuda_check(cudaGetLastError(), "launch of run_for_each");
+    launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n), n, f);
   }
 
   /// A little is filled by a kernel: in a graph, between kernels, that takes half as long as a memory set.
@@ -461,6 +477,22 @@ class cuda_space {
   }
 
  protected:
+  /// Launches a kernel that begins with `take_turn`.
+  template <class... Parameters>
+  void launch_kernel(char const* call, void (*kernel)(Parameters...), unsigned blocks,
+                     Parameters const&... arguments) const {
+    cudaLaunchAttribute early{};
+    early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    early.val.programmaticStreamSerializationAllowed = 1;
+    cudaLaunchConfig_t config{};
+    config.gridDim = dim3(blocks);
+    config.blockDim = dim3(cuda_lanes);
+    config.stream = stream_;
+    config.attrs = &early;
+    config.numAttrs = takes_turns_ ? 1 : 0;
+    cuda_check(cudaLaunchKernelEx(&config, kernel, arguments...), call);
+  }
+
   static unsigned grid_of(std::size_t n) {
     std::size_t const blocks = (n + cuda_lanes - 1) / cuda_lanes;
     if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
@@ -479,6 +511,7 @@ class cuda_space {
   cudaStream_t stream_;
   std::pmr::memory_resource* resource_;
   int processors_ = 1;
+  bool takes_turns_ = false;  ///< see `take_turn`
 };
 
 }  // namespace detail
@@ -496,8 +529,7 @@ class cuda : public detail::cuda_space {
   template <class Body>
   void launch(std::size_t blocks, Body const& body) const {
     if (blocks == 0) return;
-    detail::run_threads<block<Body>><<<grid_of(blocks), detail::cuda_lanes, 0, stream_>>>(blocks, body);
-    cuda_check(cudaGetLastError(), "launch of run_threads");
+    launch_kernel("launch of run_threads", detail::run_threads<block<Body>, Body>, grid_of(blocks), blocks, body);
   }
 
   std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 2048; }
@@ -525,8 +557,7 @@ class cuda_shared : public detail::cuda_space {
     if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
       throw error("collide: too much work for one CUDA launch");
     }
-    detail::run_blocks<block<Body>><<<static_cast<unsigned>(blocks), detail::cuda_lanes, 0, stream_>>>(body);
-    cuda_check(cudaGetLastError(), "launch of run_blocks");
+    launch_kernel("launch of run_blocks", detail::run_blocks<block<Body>, Body>, static_cast<unsigned>(blocks), body);
   }
 
   std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 8; }
