@@ -162,12 +162,14 @@ struct bucket_query {
     });
     typename Block::template per_lane<std::size_t> next;
     block.each([&](int lane) { next[lane] = first_of(block, lane); });
-    cell_marks<S> const marks = triangles.grid_count == 1 ? triangles.marks() : cell_marks<S>{};
+    cell_marks<S> const marks = triangles.marks();
+    bool simple = false;
+    if constexpr (still) simple = tests.spheres.one_radius() && triangles.is_simple(tests.spheres.common_radius());
     bucket_lookup<S> const near = triangles.opened();
     for (;;) {
       block.each([&](int lane) {
         if constexpr (still) {
-          if (tests.spheres.one_radius() && near.is_simple(tests.spheres.common_radius())) {
+          if (simple) {
             mark_many(block, s, marks, next[lane]);
             return;
           }

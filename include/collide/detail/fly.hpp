@@ -63,8 +63,8 @@ struct fly_body {
         if (lane == 0) s.count = 0;
       });
       Lookup const near = lookup.opened();
-      bool const simple = !moves && has_one_radius && near.is_simple(state.common_radius);
-      auto const marks = simple ? near.marks() : decltype(near.marks()){};
+      bool const simple = !moves && has_one_radius && lookup.is_simple(state.common_radius);
+      auto const marks = lookup.marks();
       constexpr int n = at_a_time<Block>;
       fly(block, s.groups, [&](auto const& p, auto const& skipped, auto& listed) {
         if (simple) {

@@ -1,9 +1,10 @@
 /// \file
 /// Which triangles a single sphere could touch, asked from inside a kernel: what a broad phase gives a simulation.
 ///
-/// An index gives a trivially copyable `lookup()`. In a kernel, `opened()` is that lookup for use, and then
-///   - `empty(ball)` is true if the ball can touch no triangle: it is quick; `is_simple(radius)` is true if for balls
-///     of this radius it is quicker still to ask `marks()` for several at a time, `mark(places_of(x, y, z), near)`;
+/// An index gives a trivially copyable `lookup()`. Of that, `is_simple(radius)` is true if balls of this radius are
+/// best asked several at a time whether they can touch a triangle, `marks().mark(marks().places_of(x, y, z), near)`. In
+/// a kernel, `opened()` is that lookup for use, and then
+///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
 ///     candidates, until it returns false; a triangle may appear more than once if the ball moves;
 ///   - `range.at(k)` is a triangle's number, `near(around, number)` a quick test whether a ball could touch it
@@ -158,13 +159,16 @@ struct bucket_lookup : triangle_lookup<S> {
     return true;
   }
 
-  /// True if a ball of this radius looks into one cell, wherever it is.
+  /// True if a ball of this radius looks into one cell, wherever it is. All that this depends on is read at once.
   COLLIDE_HD_INLINE bool is_simple(S radius) const {
-    return grid_count == 1 && grids[0].levels == 1 && valid_radius(radius) && radius <= grids[0].reach;
+    if (grid_count != 1) return false;
+    bool const complete = *total <= capacity, one_level = grids[0].levels == 1, served = radius <= grids[0].reach;
+    return complete & one_level & served & valid_radius(radius);
   }
 
-  /// Then, what tells it.
+  /// Then, what tells it; may be asked before that is known.
   COLLIDE_HD_INLINE cell_marks<S> marks() const {
+    if (grid_count != 1) return {};
     grid<S> const& g = grids[0];
     return {{g.lower[0], g.lower[1], g.lower[2]}, {g.upper[0], g.upper[1], g.upper[2]}, g.level[0], occupied};
   }
