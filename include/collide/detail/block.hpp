@@ -7,6 +7,7 @@
 ///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
+///   - `block.near(s, from)` gives fast access to one large value in the same way;
 ///   - `block.load_row(from, row, rows, to)`, `exchange_row(s, to)` and `store_row(s, to, row, rows, from)` are for
 ///     rows of a few values, one for each lane, that follow each other: `row_lanes` lanes call them at a time, and read
 ///     and write what lies side by side together; what a lane has read is its own row after the exchange, and not
@@ -75,6 +76,8 @@ class serial_block {
   };
   template <class T, int N>
   struct staging {};
+  template <class T>
+  struct single {};
   template <class T, int N>
   struct row_scratch {};
   struct scan_scratch {};
@@ -104,6 +107,11 @@ class serial_block {
 
   template <class T, int N>
   COLLIDE_HD_INLINE T const* stage(staging<T, N>&, T const* from, int) {
+    return from;
+  }
+
+  template <class T>
+  COLLIDE_HD_INLINE T const& near(single<T>&, T const& from) {
     return from;
   }
 
@@ -164,6 +172,10 @@ class lockstep_block {
   struct staging {
     T values[N];
   };
+  template <class T>
+  struct single {
+    T value;
+  };
   template <class T, int N>
   struct row_scratch {};
   struct scan_scratch {};
@@ -195,6 +207,12 @@ class lockstep_block {
   T const* stage(staging<T, N>& to, T const* from, int n) {
     for (int i = 0; i < n; ++i) to.values[i] = from[i];
     return to.values;
+  }
+
+  template <class T>
+  T const& near(single<T>& to, T const& from) {
+    to.value = from;
+    return to.value;
   }
 
   template <class T, int N>

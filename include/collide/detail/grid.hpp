@@ -67,9 +67,9 @@ struct grid_level {
   }
 };
 
-/// The grid for spheres up to one radius.
+/// What a grid is, but for its levels.
 template <class S>
-struct grid {
+struct grid_frame {
   S reach;     ///< serves spheres of radius up to this
   S dilation;  ///< reach and slack: how far a triangle's box is dilated
   S width;     ///< of the cells of the finest level
@@ -78,12 +78,19 @@ struct grid {
   int levels;           ///< 0 if no triangle is in the grid
   std::uint32_t bits;   ///< log2 of how many triangles an entry is: 2^bits, from number entry * 2^bits on
   std::uint32_t cells;  ///< how many there are, of all levels
-  grid_level<S> level[max_levels];
 
   /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.
   COLLIDE_HD_INLINE std::uint32_t coordinate(grid_level<S> const& l, S x, int axis) const {
     return l.coordinate(x - lower[axis]);
   }
+};
+
+/// The grid for spheres up to one radius.
+template <class S>
+struct grid : grid_frame<S> {
+  using grid_frame<S>::levels, grid_frame<S>::dilation, grid_frame<S>::coordinate;
+
+  grid_level<S> level[max_levels];
 
   /// The cell that holds a point inside the grid.
   COLLIDE_HD_INLINE std::uint32_t cell_of(grid_level<S> const& l, vec3<S> const& p) const {
@@ -189,8 +196,8 @@ struct plan_grid {
 
   template <class Block>
   struct scratch {
-    size_histogram extents, pairs;
-    int medians[2];  ///< of both
+    typename Block::template single<mesh_summary<S>> seen;
+    int medians[2];
   };
 
   template <class Block>
@@ -205,55 +212,51 @@ struct plan_grid {
       });
       return;
     }
-    if constexpr (Block::lanes > 1) {  // a lane alone would wait for every bin
-      block.each([&](int lane) {
-        s.extents.copy(summary->extents, lane, Block::lanes);
-        if (pairs) s.pairs.copy(summary->pairs, lane, Block::lanes);
-      });
-      block.each([&](int lane) {
-        if (lane == 0 || (lane == 1 && pairs)) s.medians[lane] = median(lane == 0 ? s.extents : s.pairs);
-      });
-      block.each([&](int lane) {
-        if (lane == 0) plan(block.index(), {s.extents, s.medians[0]}, {s.pairs, s.medians[1]});
-      });
-    } else {
-      plan(block.index(), {summary->extents, median(summary->extents)}, {summary->pairs, median(summary->pairs)});
-    }
+    mesh_summary<S> const& seen = block.near(s.seen, *summary);
+    block.each([&](int lane) {
+      for (int b = lane; b <= (pairs ? 1 : 0); b += Block::lanes) s.medians[b] = median(seen.extents[b]);
+    });
+    block.each([&](int lane) {
+      if (lane != 0) return;
+      auto& g = grids[block.index()];
+      grid_frame<S> const frame = plan(block.index(), seen, s.medians, g.level);
+      static_cast<grid_frame<S>&>(g) = frame;
+    });
   }
 
  private:
-  /// A histogram, and the bin that half of the sizes do not exceed.
-  struct seen_sizes {
-    size_histogram const& all;
-    int median;
-  };
-
-  COLLIDE_HD void plan(std::size_t i, seen_sizes const& extents, seen_sizes const& of_pairs) const {
-    grid<S>& g = grids[i];
+  /// Sets the levels and returns the rest; `medians` are the bins that half of the sizes do not exceed.
+  COLLIDE_HD grid_frame<S> plan(std::size_t i, mesh_summary<S> const& seen, int const* medians,
+                                grid_level<S>* levels) const {
+    auto const* const extents = seen.extents;
+    grid_frame<S> g{};
     g.reach = reaches[i];
-    g.levels = 0;
-    g.bits = 0;
-    g.cells = 0;
-    g.width = 0;
-    if (extents.all.empty()) {  // no finite triangle: a box that contains nothing
+    if (extents->empty()) {  // no finite triangle: a box that contains nothing
       for (int k = 0; k < 3; ++k) {
         g.lower[k] = 1;
         g.upper[k] = -1;
       }
-      return;
+      return g;
     }
     S far = g.reach;
-    for (int k = 0; k < 3; ++k) far = larger(far, larger(abs_of(summary->lower_of(k)), abs_of(summary->upper_of(k))));
+    for (int k = 0; k < 3; ++k) {
+      g.lower[k] = seen.lower_of(k);
+      g.upper[k] = seen.upper_of(k);
+      far = larger(far, larger(abs_of(g.lower[k]), abs_of(g.upper[k])));
+    }
     g.dilation =
         g.reach * (1 + 4 * S(format<float>::unit)) + 64 * format<S>::unit * far + 64 * std::numeric_limits<S>::min();
     for (int k = 0; k < 3; ++k) {
-      g.lower[k] = summary->lower_of(k) - g.dilation;
-      g.upper[k] = summary->upper_of(k) + g.dilation;
+      g.lower[k] -= g.dilation;
+      g.upper[k] += g.dilation;
     }
 
-    g.bits = pairs && alike(g, extents, of_pairs) ? 1 : 0;
-    size_histogram const& sizes = g.bits != 0 ? of_pairs.all : extents.all;
-    int const middle = g.bits != 0 ? of_pairs.median : extents.median;
+    // pairs, if they are hardly larger than triangles, also the largest
+    auto const hardly_larger = [&](int bin, int than) { return size(g, bin) <= S(1.25) * size(g, than); };
+    bool const alike = pairs && hardly_larger(extents[1].last(), extents[0].last());
+    g.bits = alike && hardly_larger(medians[1], medians[0]) ? 1 : 0;
+    size_histogram const& sizes = extents[g.bits];
+    int const middle = medians[g.bits];
     S extent = 0;
     for (int k = 0; k < 3; ++k) extent = larger(extent, g.upper[k] - g.lower[k]);
     constexpr S end = std::numeric_limits<S>::max() / 16;
@@ -262,7 +265,7 @@ struct plan_grid {
     if (!(extent < end && far < end &&
           tallest < end)) {  // the range of S does not suffice: a grid that serves no sphere
       g.reach = -1;
-      return;
+      return g;
     }
     // from this width on, cell coordinates are exact enough for `margin`
     S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
@@ -278,7 +281,7 @@ struct plan_grid {
       int next = bin + 1;
       while (next <= top && (sizes.counts[next] == 0 || margin * size(g, next) <= width * span)) ++next;
       bool const last = next > top;
-      grid_level<S>& l = g.level[g.levels++];
+      grid_level<S>& l = levels[g.levels++];
       if (g.levels == 1) g.width = width;
       l.inverse_width = div(S(1), width);
       l.largest = last ? std::numeric_limits<S>::infinity() : size(g, next - 1);
@@ -293,6 +296,7 @@ struct plan_grid {
       width *= 2;
       bin = next;
     }
+    return g;
   }
 
  private:
@@ -303,15 +307,8 @@ struct plan_grid {
   static COLLIDE_HD S abs_of(S x) { return x < 0 ? -x : x; }
 
   /// The largest dilated extent in a bin of the histogram.
-  static COLLIDE_HD S size(grid<S> const& g, int bin) {
+  static COLLIDE_HD S size(grid_frame<S> const& g, int bin) {
     return S(bin_end(static_cast<std::uint32_t>(bin))) + 2 * g.dilation;
-  }
-
-  /// True if pairs are hardly larger than triangles, also the largest.
-  static COLLIDE_HD bool alike(grid<S> const& g, seen_sizes const& extents, seen_sizes const& of_pairs) {
-    constexpr S hardly = S(1.25);
-    return size(g, of_pairs.all.last()) <= hardly * size(g, extents.all.last()) &&
-           size(g, of_pairs.median) <= hardly * size(g, extents.median);
   }
 
   static COLLIDE_HD int median(size_histogram const& sizes) {
@@ -328,7 +325,7 @@ struct plan_grid {
 
   /// How many cells of the width asked for a triangle may span before it goes to a wider level: as many as the limit on
   /// entries allows, at most 64.
-  COLLIDE_HD S span_for(grid<S> const& g, S width, size_histogram const& sizes) const {
+  COLLIDE_HD S span_for(grid_frame<S> const& g, S width, size_histogram const& sizes) const {
     for (S span = 64; span > 1; span /= 2) {
       float entries = 0;
       for (int b = sizes.first(); b <= sizes.last(); ++b) {
@@ -342,7 +339,7 @@ struct plan_grid {
 
   /// Gives each axis of the level as many cells as the grid has, and if that is more than `most` in all, cuts the
   /// longest axes down to powers of two, where coordinates wrap. Returns the number of cells.
-  static COLLIDE_HD std::uint32_t dimension(grid<S> const& g, grid_level<S>& l, std::uint64_t most) {
+  static COLLIDE_HD std::uint32_t dimension(grid_frame<S> const& g, grid_level<S>& l, std::uint64_t most) {
     std::uint64_t cells[3];
     for (int k = 0; k < 3; ++k) {
       cells[k] = std::uint64_t{g.coordinate(l, g.upper[k], k)} + 1;

@@ -42,15 +42,6 @@ struct size_histogram {
     fetch_max(&highest, bin + 1);
   }
 
-  /// Copies the part of one of several lanes.
-  COLLIDE_HD_INLINE void copy(size_histogram const& from, int lane, int lanes) {
-    if (lane == 0) {
-      lowest = from.lowest;
-      highest = from.highest;
-    }
-    for (int b = lane; b < size_bins; b += lanes) counts[b] = from.counts[b];
-  }
-
   COLLIDE_HD int first() const { return static_cast<int>(~lowest); }
   COLLIDE_HD int last() const { return static_cast<int>(highest) - 1; }
   COLLIDE_HD bool empty() const { return highest == 0; }

@@ -93,11 +93,10 @@ COLLIDE_HD_INLINE triangle_box<S> triangle_box_of(triangle<S> const& t) {
 /// What a mesh looks like, over its finite triangles. Memory of zeros is a summary of none: `lower` and `upper` are
 /// both updated by a maximum.
 template <class S>
-struct mesh_summary {
-  bits_of<S> lower[3];     ///< ~ordered(coordinate)
-  bits_of<S> upper[3];     ///< ordered(coordinate)
-  size_histogram extents;  ///< of the triangles' boxes
-  size_histogram pairs;    ///< of the boxes around triangles 0 and 1, 2 and 3, ..., if that is asked for
+struct alignas(16) mesh_summary {
+  bits_of<S> lower[3];        ///< ~ordered(coordinate)
+  bits_of<S> upper[3];        ///< ordered(coordinate)
+  size_histogram extents[2];  ///< of the boxes of triangles; of those around 0 and 1, 2 and 3, ..., if that is asked for
 
   /// Makes a summary in memory of the space that of no triangles.
   template <class Space>
@@ -144,13 +143,13 @@ struct summarise_mesh {
         box<S> const around = typename box<S>::unite{}(of_a, of_b);
         if (around.is_empty()) continue;
         all[lane] = typename box<S>::unite{}(all[lane], around);
-        if (!of_a.is_empty()) s.extents.add(block, &summary->extents, size_bin(of_a.extent()));
-        if (!of_b.is_empty() && two) s.extents.add(block, &summary->extents, size_bin(of_b.extent()));
-        if (pairs) s.pairs.add(block, &summary->pairs, size_bin(around.extent()));
+        if (!of_a.is_empty()) s.extents.add(block, &summary->extents[0], size_bin(of_a.extent()));
+        if (!of_b.is_empty() && two) s.extents.add(block, &summary->extents[0], size_bin(of_b.extent()));
+        if (pairs) s.pairs.add(block, &summary->extents[1], size_bin(around.extent()));
       }
     });
-    s.extents.flush(block, &summary->extents);
-    s.pairs.flush(block, &summary->pairs);
+    s.extents.flush(block, &summary->extents[0]);
+    s.pairs.flush(block, &summary->extents[1]);
     box<S> const extent = block.reduce(s.reduction, all, typename box<S>::unite{});
     block.each([&](int lane) {
       if (lane != 0) return;
