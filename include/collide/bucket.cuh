@@ -382,7 +382,7 @@ struct bucket_query {
       list(block, s, number, ball, {all, all}, 0, at);
     } else if constexpr (still) {
       std::uint32_t const cell = here.of->cell_of(*here.level, ball.centre);
-      if (triangles.is_occupied(cell)) list(block, s, number, ball, triangles.lists[cell], here.of->bits, at);
+      list(block, s, number, ball, triangles.lists[cell], here.of->bits, at);
     } else {
       way<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {

@@ -250,14 +250,12 @@ struct bucket_lookup : triangle_lookup<S> {
   /// The entries of a cell that have not been gone through; then the cursor is at the next step.
   COLLIDE_HD bool next_of_cell(std::uint32_t cell, std::uint32_t bits, candidate_cursor& c, std::uint32_t most,
                                candidate_range& range) const {
-    if (is_occupied(cell)) {
-      cell_list const list = lists[cell];
-      std::uint32_t const left = list.count - c.skip, some = smaller(left, most >> bits);
-      if (left != 0) {
-        range = {entries + (list.end - left), 0, some << bits, bits};
-        c.skip += some;
-        return true;
-      }
+    cell_list const list = lists[cell];
+    std::uint32_t const left = list.count - c.skip, some = smaller(left, most >> bits);
+    if (left != 0) {
+      range = {entries + (list.end - left), 0, some << bits, bits};
+      c.skip += some;
+      return true;
     }
     ++c.step;
     c.skip = 0;
@@ -274,12 +272,12 @@ struct bucket_lookup : triangle_lookup<S> {
     way<S> const path(g, l, ball.centre, ball.displacement);
     while (c.step < path.steps()) {
       auto const here = path.at(c.step);
-      if (!here.is_cell) {
+      std::uint32_t const cell = l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]);
+      if (!here.is_cell || !is_occupied(cell)) {
         ++c.step;
         c.skip = 0;
         continue;
       }
-      std::uint32_t const cell = l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]);
       if (next_of_cell(cell, g.bits, c, most, range)) return true;
     }
     return false;
