@@ -212,7 +212,7 @@ struct bucket_lookup : triangle_lookup<S> {
   static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& ball) { return ball.radius <= g.reach; }
   static COLLIDE_HD_INLINE bool meets(grid<S> const& g, sphere<S> const& ball) {
     bool inside = true;
-    for (int k = 0; k < 3; ++k) inside = inside && ball.centre[k] >= g.lower[k] && ball.centre[k] <= g.upper[k];
+    for (int k = 0; k < 3; ++k) inside = inside & (ball.centre[k] >= g.lower[k]) & (ball.centre[k] <= g.upper[k]);
     return inside;
   }
 
