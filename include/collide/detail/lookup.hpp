@@ -69,7 +69,8 @@ struct no_lookup {};
 /// are asked, small enough to be kept in registers.
 template <class S>
 struct cell_marks {
-  S lower[3], upper[3];
+  S lower[3];
+  bits_of<S> extent[3];  ///< as bits, which are in the order of the numbers from 0 on; all others are larger
   grid_level<S> level;
   std::uint8_t const* occupied;
 
@@ -84,15 +85,12 @@ struct cell_marks {
   COLLIDE_HD_INLINE places<N> places_of(S const (&x)[N], S const (&y)[N], S const (&z)[N]) const {
     places<N> p;
     for (int k = 0; k < N; ++k) {
-      p.inside[k] = x[k] >= lower[0] ? 1u : 0u;
-      p.inside[k] &= x[k] <= upper[0] ? 1u : 0u;
-      p.inside[k] &= y[k] >= lower[1] ? 1u : 0u;
-      p.inside[k] &= y[k] <= upper[1] ? 1u : 0u;
-      p.inside[k] &= z[k] >= lower[2] ? 1u : 0u;
-      p.inside[k] &= z[k] <= upper[2] ? 1u : 0u;
-      std::uint32_t const cell =
-          level.row(level.coordinate_inside(y[k] - lower[1]), level.coordinate_inside(z[k] - lower[2])) +
-          (level.coordinate_inside(x[k] - lower[0]) & level.mask[0]);
+      S const dx = x[k] - lower[0], dy = y[k] - lower[1], dz = z[k] - lower[2];
+      p.inside[k] = bits(dx) <= extent[0] ? 1u : 0u;
+      p.inside[k] &= bits(dy) <= extent[1] ? 1u : 0u;
+      p.inside[k] &= bits(dz) <= extent[2] ? 1u : 0u;
+      std::uint32_t const cell = level.row(level.coordinate_inside(dy), level.coordinate_inside(dz)) +
+                                 (level.coordinate_inside(dx) & level.mask[0]);
       p.cells[k] = p.inside[k] != 0 ? cell : level.first;  // outside there are no cells
     }
     return p;
@@ -170,7 +168,10 @@ struct bucket_lookup : triangle_lookup<S> {
   COLLIDE_HD_INLINE cell_marks<S> marks() const {
     if (grid_count != 1) return {};
     grid<S> const& g = grids[0];
-    return {{g.lower[0], g.lower[1], g.lower[2]}, {g.upper[0], g.upper[1], g.upper[2]}, g.level[0], occupied};
+    return {{g.lower[0], g.lower[1], g.lower[2]},
+            {bits(g.upper[0] - g.lower[0]), bits(g.upper[1] - g.lower[1]), bits(g.upper[2] - g.lower[2])},
+            g.level[0],
+            occupied};
   }
 
   template <class Ball>
