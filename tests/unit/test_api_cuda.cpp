@@ -1,7 +1,76 @@
 /// The interface of the CUDA spaces.
+#include <collide/memory.hpp>
+
 #include "api.hpp"
 
 int cuda_devices() { return collide::cuda_device_count(); }
+
+namespace {
+
+/// Takes its time, and then sets the heights of a triangle and of spheres.
+__global__ void set_heights_late(float* vertices, float* centres, std::size_t n, float triangle, float spheres) {
+  for (int k = 0; k < 20; ++k) __nanosleep(1000);
+  std::size_t const i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  if (i < 3) vertices[3 * i + 2] = triangle;
+  if (i < n) centres[3 * i + 2] = spheres;
+}
+
+/// Counts in memory of the device, and waits for nothing.
+struct count_there {
+  std::uint64_t* total;
+
+  template <class Space, class Query>
+  void run(Space& space, Query const& query) {
+    space.fill(total, 0, sizeof *total);
+    query(collide::detail::append{total, nullptr, 0});
+  }
+};
+
+/// Between kernels of the caller that write what it reads: those come first that were put on the stream first.
+template <class BroadPhase, class Space>
+void check_turns(cudaStream_t stream) {
+  constexpr std::size_t n = 100000;
+  constexpr int rounds = 12;
+  Space space(stream);
+  std::vector<float> corners{-10, -10, 0, 10, -10, 0, 0, 10, 0}, centres;
+  for (std::size_t i = 0; i < n; ++i) {
+    float const x = static_cast<float>(i % 100) / 100, y = static_cast<float>(i / 100 % 100) / 100;
+    centres.insert(centres.end(), {x, y, 5});
+  }
+  auto const copy_of = [&](collide::buffer<float>& to, std::vector<float> const& from) {
+    float* const there = to.reserve(space.resource(), from.size());
+    space.copy_from_host(there, from.data(), from.size());
+    return there;
+  };
+  collide::buffer<float> vertex_memory, centre_memory;
+  collide::buffer<std::uint64_t> totals;
+  float* const vertices = copy_of(vertex_memory, corners);
+  float* const places = copy_of(centre_memory, centres);
+  std::uint64_t* const counts = totals.reserve(space.resource(), rounds);
+  auto const mesh = collide::triangle_soup(static_cast<float const*>(vertices), 1);
+  auto const spheres = collide::spheres_xyz(static_cast<float const*>(places), n, 0.5f);
+  collide::detector<BroadPhase, collide::karabassi<>, Space> detector(space);
+  auto const set = [&](float triangle, float height) {
+    set_heights_late<<<(n + 255) / 256, 256, 0, stream>>>(vertices, places, n, triangle, height);
+    collide::cuda_check(cudaGetLastError(), "set_heights_late");
+  };
+  for (int round = 0; round < rounds; ++round) {
+    float const height = static_cast<float>(round);
+    set(height, round % 3 == 0 ? height + 50 : height);
+    detector.build(mesh, 0.5f);
+    count_there sink{counts + round};
+    detector.query(spheres, sink);
+    set(-100, 100);
+  }
+  std::vector<std::uint64_t> found(rounds);
+  space.copy_to_host(found.data(), counts, rounds);
+  for (int round = 0; round < rounds; ++round) {
+    CAPTURE(round);
+    CHECK(found[static_cast<std::size_t>(round)] == (round % 3 == 0 ? 0 : n));
+  }
+}
+
+}  // namespace
 
 TEST_CASE("api: sinks on the device") {
   tests::check_sink_interface<collide::all_pairs>(collide::cuda());
@@ -30,6 +99,16 @@ TEST_CASE("api: work is put on the caller's stream, memory is taken in its order
     tests::check_sink_interface<collide::bucket>(collide::cuda(stream, &memory));
     tests::check_sink_interface<collide::all_pairs>(collide::cuda_shared(stream, &memory));
   }
+  CHECK(cudaStreamSynchronize(stream) == cudaSuccess);
+  cudaStreamDestroy(stream);
+}
+
+TEST_CASE("api: kernels of the caller, before and after, have their turn") {
+  cudaStream_t stream;
+  collide::cuda_check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+  check_turns<collide::bucket, collide::cuda_shared>(stream);
+  check_turns<collide::bucket, collide::cuda>(stream);
+  check_turns<collide::all_pairs, collide::cuda_shared>(stream);
   CHECK(cudaStreamSynchronize(stream) == cudaSuccess);
   cudaStreamDestroy(stream);
 }
