@@ -27,32 +27,23 @@ namespace detail {
 template <class S, class NarrowPhase, class Sink>
 struct bucket_query {
   static constexpr int items = 4;
-  static constexpr int ahead = 4;  ///< candidates that a lane looks at together
-  template <class Block>
-  static constexpr int residency = 4;
   static constexpr bool still = at_rest<NarrowPhase, S>;
+  /// Candidates that a lane looks at together. With them, 48 KB of scratch memory must suffice.
+  static constexpr int ahead = still || sizeof(S) == sizeof(float) ? 4 : 2;
+  template <class Block>
+  static constexpr int residency = still ? 4 : 3;
   using ball_type = std::conditional_t<still, sphere<S>, moving_sphere<S>>;
 
-  /// A sphere in scratch memory, which holds plain values only.
-  struct alignas(still ? 4 * sizeof(S) : sizeof(S)) plain_ball {
-    S numbers[still ? 4 : 7];
+  /// A sphere, or what contains all of the way of one that moves, in scratch memory, which holds plain values only.
+  struct alignas(4 * sizeof(S)) plain_ball {
+    S numbers[4];
 
-    COLLIDE_HD_INLINE void set(ball_type const& b) {
+    COLLIDE_HD_INLINE void set(sphere<S> const& b) {
       for (int k = 0; k < 3; ++k) numbers[k] = b.centre[k];
       numbers[3] = b.radius;
-      if constexpr (!still) {
-        for (int k = 0; k < 3; ++k) numbers[4 + k] = b.displacement[k];
-      }
     }
 
-    COLLIDE_HD_INLINE ball_type get() const {
-      sphere<S> const b{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
-      if constexpr (still) {
-        return b;
-      } else {
-        return {b, {numbers[4], numbers[5], numbers[6]}};
-      }
-    }
+    COLLIDE_HD_INLINE sphere<S> get() const { return {{numbers[0], numbers[1], numbers[2]}, numbers[3]}; }
   };
 
   tester<S, NarrowPhase, Sink> tests;
@@ -70,9 +61,9 @@ struct bucket_query {
     std::uint32_t placed, unplaced;
   };
 
-  /// How many spheres are listed, and how many of their lists of candidates are only begun.
+  /// How many lists of candidates there are, and how many spheres have more of them than there is room for.
   struct listing {
-    std::uint32_t spheres, longer;
+    std::uint32_t lists, unfinished;
   };
 
   /// The most entries of a sphere at a time: the block numbers the candidates of all its spheres in 32 bits.
@@ -85,10 +76,10 @@ struct bucket_query {
     id placed[room];            ///< spheres inside a grid
     std::int8_t grid_of[room];  ///< and in which
     placement found;
-    plain_ball balls[Block::lanes];                 ///< spheres with candidates
-    numbered numbers[Block::lanes];                 ///< of the same
-    std::uint32_t counts[Block::lanes];             ///< how many they have
-    std::uint32_t steps[still ? 1 : Block::lanes];  ///< and, of a sphere that moves, the step of its way
+    plain_ball balls[Block::lanes];                           ///< spheres with candidates
+    numbered numbers[Block::lanes];                           ///< of the same
+    std::uint32_t counts[Block::lanes];                       ///< how many they have
+    typename way<S>::place places[still ? 1 : Block::lanes];  ///< and, of a sphere that moves, where on its way
     listing listed;
     typename Block::balance_scratch balance;
     hit_buffer<Block, ahead> hits;
@@ -131,7 +122,7 @@ struct bucket_query {
     COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
       batch.load(spheres, first);
       for (int k = 0; k < Items; ++k) {
-        bool const sound = valid_radius(batch.radius[k]) & finite(batch.centre(k)) & finite(batch.displacement(k));
+        bool const sound = valid_radius(batch.radius[k]) && finite(batch.centre(k)) && finite(batch.displacement(k));
         grid_number[k] = sound ? everywhere : nowhere;
       }
     }
@@ -139,13 +130,13 @@ struct bucket_query {
     COLLIDE_HD_INLINE void place(grid<S> const& box, int g) {
       S const inverse_width = box.levels > 0 ? box.level[0].inverse_width : S(0);
       for (int k = 0; k < Items; ++k) {
-        bool const inside = way<S>::enters(box.lower[0], box.upper[0], batch.x[k], batch.dx[k]) &
-                            way<S>::enters(box.lower[1], box.upper[1], batch.y[k], batch.dy[k]) &
+        bool const inside = way<S>::enters(box.lower[0], box.upper[0], batch.x[k], batch.dx[k]) &&
+                            way<S>::enters(box.lower[1], box.upper[1], batch.y[k], batch.dy[k]) &&
                             way<S>::enters(box.lower[2], box.upper[2], batch.z[k], batch.dz[k]);
-        bool const walks = way<S>::can_walk(box.lower[0], box.upper[0], inverse_width, batch.x[k], batch.dx[k]) &
-                           way<S>::can_walk(box.lower[1], box.upper[1], inverse_width, batch.y[k], batch.dy[k]) &
+        bool const walks = way<S>::can_walk(box.lower[0], box.upper[0], inverse_width, batch.x[k], batch.dx[k]) &&
+                           way<S>::can_walk(box.lower[1], box.upper[1], inverse_width, batch.y[k], batch.dy[k]) &&
                            way<S>::can_walk(box.lower[2], box.upper[2], inverse_width, batch.z[k], batch.dz[k]);
-        bool const served = (grid_number[k] != nowhere) & (batch.radius[k] <= box.reach) & walks;
+        bool const served = grid_number[k] != nowhere && batch.radius[k] <= box.reach && walks;
         int const there = inside ? g : nowhere;
         grid_number[k] = served ? there : grid_number[k];
       }
@@ -163,18 +154,15 @@ struct bucket_query {
     typename Block::template per_lane<std::size_t> next;
     block.each([&](int lane) { next[lane] = first_of(block, lane); });
     cell_marks<S> const marks = triangles.marks();
-    bool simple = false;
-    if constexpr (still) simple = tests.spheres.one_radius() && triangles.is_simple(tests.spheres.common_radius());
+    bool const simple = tests.spheres.one_radius() && triangles.is_simple(tests.spheres.common_radius());
     bucket_lookup<S> const near = triangles.opened();
     for (;;) {
       block.each([&](int lane) {
-        if constexpr (still) {
-          if (simple) {
-            mark_many(block, s, marks, next[lane]);
-            return;
-          }
+        if (simple) {
+          mark_many(block, s, marks, near, next[lane]);
+        } else {
+          place_many<Block>(next[lane], [&](std::size_t first) { return place_own(block, s, near, first); });
         }
-        place_many<Block>(next[lane], [&](std::size_t first) { return place_own(block, s, near, first); });
       });
       placement const found = block.shared(s.found);
       if (found.placed == 0) break;
@@ -213,46 +201,58 @@ struct bucket_query {
   /// way while a group is marked.
   template <class Block>
   COLLIDE_HD_INLINE void mark_many(Block& block, scratch<Block>& s, cell_marks<S> const& marks,
-                                   std::size_t& next) const {
-    using batch = sphere_batch<S, Block::items>;
-    S const* const quads = batch::quads_of(tests.spheres);
-    auto const load_and_mark = [&](std::size_t first) {
+                                   bucket_lookup<S> const& near, std::size_t& next) const {
+    if constexpr (still) {
+      using batch = sphere_batch<S, Block::items>;
+      auto const mark = [&](typename cell_marks<S>::template places<Block::items> const& places, std::size_t first) {
+        bool marked[Block::items];
+        marks.mark(places, marked);
+        return list_marked(block, s, marked, first);
+      };
+      auto const load_and_mark = [&](std::size_t first) {
+        batch own;
+        own.load(tests.spheres, first);
+        return mark(marks.places_of(own.x, own.y, own.z), first);
+      };
+      S const* const quads = batch::quads_of(tests.spheres);
+      if (quads == nullptr || tests.spheres.size() < Block::items) {
+        place_many<Block>(next, load_and_mark);
+        return;
+      }
       batch own;
-      own.load(tests.spheres, first);
-      return mark_own(block, s, marks, marks.places_of(own.x, own.y, own.z), first);
-    };
-    if (quads == nullptr || tests.spheres.size() < Block::items) {
-      place_many<Block>(next, load_and_mark);
-      return;
+      auto const load = [&](std::size_t first) {
+        // some others where there are none: ptxas 13.0 keeps in memory what it loads under a condition
+        own.load_quads(quads, first + Block::items <= tests.spheres.size() ? first : 0);
+      };
+      load(next);
+      place_many<Block>(next, [&](std::size_t first) {
+        if (first + Block::items > tests.spheres.size()) return load_and_mark(first);
+        auto const places = marks.places_of(own.x, own.y, own.z);
+        load(first + turn<Block>());
+        return mark(places, first);
+      });
+    } else {
+      place_many<Block>(next, [&](std::size_t first) {
+        moving_batch<S, Block::items> own;
+        own.load(tests.spheres, first);
+        bool marked[Block::items];
+        bool const known = marks.mark_ways(own, marked);
+        return known ? list_marked(block, s, marked, first) : place_own(block, s, near, first);
+      });
     }
-    batch own;
-    auto const load = [&](std::size_t first) {
-      // some others where there are none: ptxas 13.0 keeps in memory what it loads under a condition
-      own.load_quads(quads, first + Block::items <= tests.spheres.size() ? first : 0);
-    };
-    load(next);
-    place_many<Block>(next, [&](std::size_t first) {
-      if (first + Block::items > tests.spheres.size()) return load_and_mark(first);
-      auto const places = marks.places_of(own.x, own.y, own.z);
-      load(first + turn<Block>());
-      return mark_own(block, s, marks, places, first);
-    });
   }
 
-  /// Lists those of a lane's spheres, from `first` on, whose cell is not empty; returns how many.
+  /// Lists those of a lane's spheres, from `first` on, that are marked; returns how many.
   template <class Block>
-  COLLIDE_HD_INLINE std::uint32_t mark_own(Block& block, scratch<Block>& s, cell_marks<S> const& marks,
-                                           typename cell_marks<S>::template places<Block::items> const& places,
-                                           std::size_t first) const {
+  COLLIDE_HD_INLINE std::uint32_t list_marked(Block& block, scratch<Block>& s, bool const (&marked)[Block::items],
+                                              std::size_t first) const {
     constexpr int n = Block::items;
-    bool near[n];
-    marks.mark(places, near);
     std::uint32_t placed = 0;
-    for (int k = 0; k < n; ++k) placed += near[k];
+    for (int k = 0; k < n; ++k) placed += marked[k];
     if (placed == 0) return 0;
     std::uint32_t place = block.add(s.found.placed, placed);
     for (int k = 0; k < n; ++k) {
-      if (!near[k]) continue;
+      if (!marked[k]) continue;
       s.placed[place] = static_cast<id>(first) + static_cast<id>(k);
       s.grid_of[place++] = 0;
     }
@@ -269,6 +269,10 @@ struct bucket_query {
     for (int g = 0; g < near.grid_count; ++g) own.place(near.grids[g], g);
     std::uint32_t placed = 0, unplaced = 0;
     for (int k = 0; k < n; ++k) {
+      if constexpr (!still) {
+        int const g = own.grid_number[k];
+        if (g >= 0 && near.empty_in(near.grids[g], own.batch.ball(k))) own.grid_number[k] = nowhere;
+      }
       placed += own.grid_number[k] != nowhere;
       unplaced += own.grid_number[k] == everywhere;
     }
@@ -297,17 +301,17 @@ struct bucket_query {
         for (std::uint32_t base = 0; base < found.placed; base += Block::lanes) {
           typename Block::template per_lane<cursor> at;
           bool more = false;
-          do {  // once, unless a list is very long or a sphere moves through several cells
+          do {  // once, unless a list is very long or spheres move through many cells
             block.each([&](int lane) {
               if (!more) at[lane] = {0, 0};
               std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
               if (i >= found.placed || s.grid_of[i] != (all ? everywhere : g)) return;
-              list_next(block, s, here, s.placed[i], at[lane]);
+              if (!list_all(block, s, here, s.placed[i], at[lane])) block.add(s.listed.unfinished, 1);
             });
             listing const listed = block.shared(s.listed);
-            more = still ? listed.longer != 0 : listed.spheres != 0;
-            if (listed.spheres == 0) continue;
-            test_listed(block, s, here, listed.spheres);
+            more = listed.unfinished != 0;
+            if (listed.lists == 0) continue;
+            test_listed(block, s, here, smaller<std::uint32_t>(listed.lists, Block::lanes));
             block.each([&](int lane) {
               if (lane == 0) s.listed = {0, 0};
             });
@@ -328,88 +332,80 @@ struct bucket_query {
     std::uint32_t step, skip;
   };
 
-  /// A sphere and the triangles of a cell: a range of entries, or of all triangles.
-  struct candidates {
-    numbered of;
-    ball_type ball;
-  };
-
-  /// The same, and the place on the sphere's way that the cell is.
-  struct candidates_of_place : candidates {
-    way<S> path;
-    typename way<S>::place here;
-  };
-
-  /// Makes the candidates of the `n` spheres that are listed: their triangles, spread evenly over the lanes.
+  /// Makes the candidates of the `n` lists: their triangles, spread evenly over the lanes.
   template <class Block>
   COLLIDE_HD_INLINE void test_listed(Block& block, scratch<Block>& s, cells const& here, std::uint32_t n) const {
+    struct candidates {
+      numbered of;
+      sphere<S> around;
+      std::uint32_t list;
+    };
     bool const all = here.of == nullptr;
     std::uint32_t const bits = all ? 0 : here.of->bits;
     block.template balanced<ahead>(
         s.balance, s.counts, n,
         [&](std::uint32_t i) {
-          ball_type const ball = s.balls[i].get();
-          if constexpr (still) {
-            return candidates{s.numbers[i], ball};
-          } else {
-            candidates_of_place c{{s.numbers[i], ball}, {}, {}};
-            if (all) return c;
-            c.path = way<S>(*here.of, *here.level, ball.centre, ball.displacement);
-            c.here = c.path.at(s.steps[i]);
-            return c;
-          }
+          return candidates{s.numbers[i], s.balls[i].get(), i};
         },
-        [&](auto const& c, std::uint32_t k) {
+        [&](candidates const& c, std::uint32_t k) {
           return all ? static_cast<id>(c.of.first + k)
                      : candidate_range::triangle_of(triangles.entries + c.of.first, bits, k);
         },
-        [&](auto const& c, id triangle) { return triangles.near(enclosing(c.ball), triangle); },
-        [&](auto const& c, id triangle) {
+        [&](candidates const& c, id triangle) { return triangles.near(c.around, triangle); },
+        [&](candidates const& c, id triangle) {
           if constexpr (!still) {
-            if (!all && !c.path.meets_first(c.here, tests.mesh[triangle])) return;
+            auto const& place = s.places[c.list];
+            if (!all && !place.is_only) {
+              triangle_box<S> const around =
+                  triangles.boxes != nullptr ? triangles.boxes[triangle] : triangle_box_of(tests.mesh[triangle]);
+              if (!place.is_first_of(here.of->range_of(*here.level, around))) return;
+            }
           }
-          tests.test(block, s.hits, {c.of.sphere, triangle}, c.ball);
+          tests.test(block, s.hits, {c.of.sphere, triangle});
         },
         [&] { tests.make_room(block, s.hits); });
   }
 
-  /// Lists a sphere with the entries of its next cell that is not empty, or as many of them as go at a time.
+  /// Lists a sphere with the entries of its cells that are not empty, as far as there is room. True if that was all.
   template <class Block>
-  COLLIDE_HD_INLINE void list_next(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
+  COLLIDE_HD_INLINE bool list_all(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
     auto const ball = tests.spheres[number];
+    auto const around = enclosing(ball);
     if (here.of == nullptr) {
       auto const all = static_cast<std::uint32_t>(tests.mesh.size());
-      list(block, s, number, ball, {all, all}, 0, at);
+      return list(block, s, number, around, {all, all}, 0, at);
     } else if constexpr (still) {
       std::uint32_t const cell = here.of->cell_of(*here.level, ball.centre);
-      list(block, s, number, ball, triangles.lists[cell], here.of->bits, at);
+      return list(block, s, number, around, triangles.lists[cell], here.of->bits, at);
     } else {
       way<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {
         auto const place = path.at(at.step);
-        if (!place.is_cell) continue;
         std::uint32_t const cell =
             here.level->row(place.cell[1], place.cell[2]) + (place.cell[0] & here.level->mask[0]);
-        if (triangles.is_occupied(cell) && list(block, s, number, ball, triangles.lists[cell], here.of->bits, at))
-          return;
+        if (!place.is_cell || !triangles.is_occupied(cell)) continue;
+        if (!list(block, s, number, around, triangles.lists[cell], here.of->bits, at, &place)) return false;
       }
+      return true;
     }
   }
 
-  /// Lists a sphere with the entries of a cell from at.skip on, if there are any.
+  /// Lists a sphere with the entries of a cell from at.skip on. False if there was no room for all of them.
   template <class Block>
-  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, ball_type const& ball, cell_list cell,
-                              std::uint32_t bits, cursor& at) const {
+  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, sphere<S> const& around, cell_list cell,
+                              std::uint32_t bits, cursor& at, typename way<S>::place const* place = nullptr) const {
     std::uint32_t const left = cell.count - at.skip, listed = smaller(left, longest<Block>);
-    if (left == 0) return false;
-    std::uint32_t const place = block.add(s.listed.spheres, 1);
-    s.numbers[place] = {number, cell.end - left};
-    s.balls[place].set(ball);
-    s.counts[place] = listed << bits;
-    if constexpr (!still) s.steps[place] = at.step;
+    if (left == 0) return true;
+    std::uint32_t const slot = block.add(s.listed.lists, 1);
+    if (slot >= Block::lanes) return false;
+    s.numbers[slot] = {number, cell.end - left};
+    s.balls[slot].set(around);
+    s.counts[slot] = listed << bits;
+    if constexpr (!still) {
+      if (place != nullptr) s.places[slot] = *place;
+    }
     at.skip += listed;
-    if (left > listed) block.add(s.listed.longer, 1);
-    return true;
+    return left == listed;
   }
 };
 

@@ -53,10 +53,10 @@ struct grid_level {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(limited));
   }
 
-  /// The same of an offset that is inside the grid; of others, any number.
+  /// The same of an offset that is not above the grid's upper end; of others, any number.
   COLLIDE_HD_INLINE std::uint32_t coordinate_inside(S offset) const {
 #if defined(__CUDA_ARCH__)
-    if constexpr (sizeof(S) == 4) return __float2uint_rz(mul(offset, inverse_width));  // has no 2^30 cells
+    if constexpr (sizeof(S) == 4) return __float2uint_rz(mul(offset, inverse_width));  // 0 of what is less
 #endif
     return coordinate(offset);
   }

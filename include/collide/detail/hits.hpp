@@ -131,9 +131,19 @@ struct tester {
   template <class Block, int Ahead, class Ball>
   COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block, Ahead>& b, pair p, Ball const& s) const {
     if constexpr (hit_buffer<Block, Ahead>::together) {
-      b.candidates[block.add(b.candidate_count, 1)] = p;
+      test(block, b, p);
     } else {
       decide(block, b, p, s);
+    }
+  }
+
+  /// The same where the sphere is not at hand.
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block, Ahead>& b, pair p) const {
+    if constexpr (hit_buffer<Block, Ahead>::together) {
+      b.candidates[block.add(b.candidate_count, 1)] = p;
+    } else {
+      decide(block, b, p, spheres[p.sphere]);
     }
   }
 

@@ -13,6 +13,7 @@
 
 #include <collide/detail/enclosing.hpp>
 #include <collide/detail/grid.hpp>
+#include <collide/detail/sphere_batch.hpp>
 #include <collide/detail/way.hpp>
 
 namespace collide::detail {
@@ -101,6 +102,60 @@ struct cell_marks {
   COLLIDE_HD_INLINE void mark(places<N> const& p, bool (&near)[N]) const {
     for (int k = 0; k < N; ++k) near[k] = (p.inside[k] & occupied[p.cells[k] / 8] >> p.cells[k] % 8 & 1) != 0;
   }
+
+  /// The same of spheres that move. False if the way of one of them is not short: then it is not known.
+  template <int N>
+  COLLIDE_HD_INLINE bool mark_ways(moving_batch<S, N> const& b, bool (&near)[N]) const {
+    bool known = true;
+    std::uint32_t first[N], apart[N][3];  // the first cell, and how far from it the second on each axis is
+    for (int k = 0; k < N; ++k) {
+      cells_on_axis const on[3] = {cells_on(0, b.x[k], b.dx[k]), cells_on(1, b.y[k], b.dy[k]),
+                                   cells_on(2, b.z[k], b.dz[k])};
+      bool const inside = (on[0].inside & on[1].inside & on[2].inside) != 0;
+      bool const is_short = on[0].more <= 1 && on[1].more <= 1 && on[2].more <= 1;
+      // not so where one of them is not a number
+      bool const finite = on[0].extent + (on[1].extent + on[2].extent) < std::numeric_limits<S>::infinity();
+      known = known && finite && (is_short || !inside);
+      near[k] = inside;
+      first[k] = level.first + (inside ? on[0].begin + (on[1].begin + on[2].begin) : 0);
+      for (int axis = 0; axis < 3; ++axis) apart[k][axis] = inside ? on[axis].end - on[axis].begin : 0;
+    }
+    if (!known) return false;
+    for (int k = 0; k < N; ++k) {
+      std::uint32_t const several =
+          (apart[k][0] != 0 ? 1u : 0u) | (apart[k][1] != 0 ? 2u : 0u) | (apart[k][2] != 0 ? 4u : 0u);
+      std::uint32_t found = bit_of(first[k]);
+      for (std::uint32_t some = several; some != 0; some = (some - 1) & several) {  // the second on some of the axes
+        found |= bit_of(first[k] + ((some & 1) != 0 ? apart[k][0] : 0) + ((some & 2) != 0 ? apart[k][1] : 0) +
+                        ((some & 4) != 0 ? apart[k][2] : 0));
+      }
+      near[k] = near[k] && (found & 1) != 0;
+    }
+    return true;
+  }
+
+ private:
+  /// The cells of a way on an axis, as `way` has them.
+  struct cells_on_axis {
+    std::uint32_t inside, begin, end;  ///< cells: what they add to the number of a cell
+    std::uint32_t more;                ///< cells than one
+    S extent;
+  };
+
+  COLLIDE_HD_INLINE cells_on_axis cells_on(int axis, S from, S along) const {
+    S const to = from + along, slack = way<S>::slack_of(from, along), most = from_bits<S>(extent[axis]);
+    S const least = smaller(from, to) - slack - lower[axis], last = larger(from, to) + slack - lower[axis];
+    std::uint32_t const begin = level.coordinate_inside(smaller(least, most)),
+                        end = level.coordinate_inside(smaller(last, most));
+    std::uint32_t const stride = axis == 0 ? 1 : level.stride[axis - 1];
+    return {(least <= most ? 1u : 0u) & (last >= 0 ? 1u : 0u), (begin & level.mask[axis]) * stride,
+            (end & level.mask[axis]) * stride, end - begin, last - least};
+  }
+
+  /// In the lowest bit, whether the cell has triangles.
+  COLLIDE_HD_INLINE std::uint32_t bit_of(std::uint32_t cell) const {
+    return static_cast<std::uint32_t>(occupied[cell / 8]) >> cell % 8;
+  }
 };
 
 /// The lookup of `all_pairs`.
@@ -149,10 +204,15 @@ struct bucket_lookup : triangle_lookup<S> {
   COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
     if (this->mesh.size() == 0) return true;
     int const g = grid_of(ball);
-    if (g < 0) return g == nowhere;
+    return g < 0 ? g == nowhere : empty_in(grids[g], ball);
+  }
+
+  /// The same, of a ball that this grid serves.
+  template <class Ball>
+  COLLIDE_HD_INLINE bool empty_in(grid<S> const& g, Ball const& ball) const {
     COLLIDE_ROLLED
-    for (int l = 0; l < grids[g].levels; ++l) {
-      if (!empty_level(grids[g], grids[g].level[l], ball)) return false;
+    for (int l = 0; l < g.levels; ++l) {
+      if (!empty_level(g, g.level[l], ball)) return false;
     }
     return true;
   }
@@ -212,9 +272,12 @@ struct bucket_lookup : triangle_lookup<S> {
 
   static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& ball) { return ball.radius <= g.reach; }
   static COLLIDE_HD_INLINE bool meets(grid<S> const& g, sphere<S> const& ball) {
-    bool inside = true;
-    for (int k = 0; k < 3; ++k) inside = inside & (ball.centre[k] >= g.lower[k]) & (ball.centre[k] <= g.upper[k]);
-    return inside;
+    std::uint32_t inside = 1;  // without branches
+    for (int k = 0; k < 3; ++k) {
+      inside &= ball.centre[k] >= g.lower[k] ? 1u : 0u;
+      inside &= ball.centre[k] <= g.upper[k] ? 1u : 0u;
+    }
+    return inside != 0;
   }
 
   static COLLIDE_HD_INLINE bool serves(grid<S> const& g, moving_sphere<S> const& ball) {
@@ -237,15 +300,18 @@ struct bucket_lookup : triangle_lookup<S> {
     return !is_occupied(g.cell_of(l, ball.centre));
   }
   COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball) const {
-    way<S> const path(g, l, ball.centre, ball.displacement);
-    constexpr std::uint32_t few = 8;  // a longer way is looked at more closely when it is walked
-    std::uint32_t const n = path.steps();
-    if (n > few) return false;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      auto const here = path.at(i);
-      if (here.is_cell && is_occupied(l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]))) return false;
+    cell_range const r = way<S>::cells_around(g, l, ball.centre, ball.displacement);
+    if (!way<S>::is_short(r)) return false;  // is looked at more closely when it is walked
+    bool occupied = false;
+    for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
+      for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) {
+        std::uint32_t const row = l.row(y, z);
+        for (std::uint32_t x = r.lower[0]; x <= r.upper[0]; ++x) {
+          occupied = occupied || is_occupied(row + (x & l.mask[0]));
+        }
+      }
     }
-    return true;
+    return !occupied;
   }
 
   /// The entries of a cell that have not been gone through; then the cursor is at the next step.

@@ -96,7 +96,7 @@ template <class S>
 struct alignas(16) mesh_summary {
   bits_of<S> lower[3];        ///< ~ordered(coordinate)
   bits_of<S> upper[3];        ///< ordered(coordinate)
-  size_histogram extents[2];  ///< of the boxes of triangles; of those around 0 and 1, 2 and 3, ..., if that is asked for
+  size_histogram extents[2];  ///< of the triangles' boxes; of those around 0 and 1, 2 and 3, ..., if asked for
 
   /// Makes a summary in memory of the space that of no triangles.
   template <class Space>

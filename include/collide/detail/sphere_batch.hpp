@@ -51,8 +51,7 @@ struct sphere_batch {
   /// Where the centres are, if on the device groups of four can be loaded at a time; else null.
   static COLLIDE_HD_INLINE S const* quads_of(sphere_view<S> const& spheres) {
 #if defined(__CUDA_ARCH__)
-    bool const aligned = sizeof(S) == 4 && spheres.packed() && reinterpret_cast<std::uintptr_t>(spheres.x(0)) % 16 == 0;
-    return aligned ? spheres.x(0) : nullptr;
+    return spheres.packed() ? quads_at(spheres.x(0)) : nullptr;
 #else
     static_cast<void>(spheres);
     return nullptr;
@@ -60,9 +59,14 @@ struct sphere_batch {
   }
 
   /// Centres only, which are all there; `first` is a multiple of four, and `quads` is quads_of(spheres), not null.
-  COLLIDE_HD_INLINE void load_quads([[maybe_unused]] S const* quads, [[maybe_unused]] std::size_t first) {
+  COLLIDE_HD_INLINE void load_quads(S const* quads, std::size_t first) { load_quads(quads, first, x, y, z); }
+
+  /// The same of any packed vectors.
+  static COLLIDE_HD_INLINE void load_quads([[maybe_unused]] S const* quads, [[maybe_unused]] std::size_t first,
+                                           [[maybe_unused]] S (&x)[Items], [[maybe_unused]] S (&y)[Items],
+                                           [[maybe_unused]] S (&z)[Items]) {
 #if defined(__CUDA_ARCH__)
-    if constexpr (sizeof(S) == 4) {  // four packed centres are three 16-byte loads
+    if constexpr (sizeof(S) == 4) {  // four packed vectors are three 16-byte loads
       auto const* const from = reinterpret_cast<float4 const*>(quads + 3 * first);
       for (int k = 0; k < Items; k += 4) {
         float4 const read[3] = {from[3 * k / 4], from[3 * k / 4 + 1], from[3 * k / 4 + 2]};
@@ -73,6 +77,11 @@ struct sphere_batch {
       }
     }
 #endif
+  }
+
+  /// `packed`, if groups of four can be loaded from there at a time; else null.
+  static COLLIDE_HD_INLINE S const* quads_at(S const* packed) {
+    return sizeof(S) == 4 && reinterpret_cast<std::uintptr_t>(packed) % 16 == 0 ? packed : nullptr;
   }
 
  private:
@@ -116,17 +125,11 @@ struct moving_batch {
   S x[Items], y[Items], z[Items], dx[Items], dy[Items], dz[Items], radius[Items];
 
   COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
-#if !defined(__CUDA_ARCH__)
     if (first + Items <= spheres.size() && spheres.packed() && spheres.packed_displacements() && spheres.one_radius()) {
-      S const *const from = spheres.x(first), *const along = spheres.displacements(first);
-      for (int k = 0; k < Items; ++k) {  // strides that the compiler knows
-        x[k] = from[3 * k], y[k] = from[3 * k + 1], z[k] = from[3 * k + 2];
-        dx[k] = along[3 * k], dy[k] = along[3 * k + 1], dz[k] = along[3 * k + 2];
-        radius[k] = spheres.common_radius();
-      }
+      load_packed(spheres, first);
+      for (int k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
       return;
     }
-#endif
     for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
       bool const there = i < spheres.size();
@@ -140,6 +143,25 @@ struct moving_batch {
 
   COLLIDE_HD_INLINE vec3<S> centre(int k) const { return {x[k], y[k], z[k]}; }
   COLLIDE_HD_INLINE vec3<S> displacement(int k) const { return {dx[k], dy[k], dz[k]}; }
+  COLLIDE_HD_INLINE moving_sphere<S> ball(int k) const { return {{centre(k), radius[k]}, displacement(k)}; }
+
+ private:
+  COLLIDE_HD_INLINE void load_packed(moving_sphere_view<S> const& spheres, std::size_t first) {
+#if defined(__CUDA_ARCH__)
+    using still = sphere_batch<S, Items>;
+    S const *const centres = still::quads_at(spheres.x(0)), *const ways = still::quads_at(spheres.displacements(0));
+    if (centres != nullptr && ways != nullptr) {
+      still::load_quads(centres, first, x, y, z);
+      still::load_quads(ways, first, dx, dy, dz);
+      return;
+    }
+#endif
+    S const *const from = spheres.x(first), *const along = spheres.displacements(first);
+    for (int k = 0; k < Items; ++k) {  // strides that the compiler knows
+      x[k] = from[3 * k], y[k] = from[3 * k + 1], z[k] = from[3 * k + 2];
+      dx[k] = along[3 * k], dy[k] = along[3 * k + 1], dz[k] = along[3 * k + 2];
+    }
+  }
 };
 
 }  // namespace collide::detail

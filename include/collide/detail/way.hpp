@@ -23,84 +23,102 @@ class way {
   /// For a sphere that `can_walk` in the grid.
   COLLIDE_HD way(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from, vec3<S> const& along)
       : grid_{&g}, level_{&l}, from_{from}, along_{along} {
-    bool few = true;
+    whole_ = cells_around(g, l, from, along);
+    for (int k = 0; k < 3; ++k) span_[k] = whole_.upper[k] - whole_.lower[k] + 1;
+    if (!is_short(whole_)) cut();
+  }
+
+  /// The cells of the box around all of the way.
+  static COLLIDE_HD_INLINE cell_range cells_around(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from,
+                                                   vec3<S> const& along) {
+    cell_range r;
     for (int k = 0; k < 3; ++k) {
       S const to = from[k] + along[k], slack = slack_of(from[k], along[k]);
-      last_[k] = g.coordinate(l, g.upper[k], k);
-      whole_.lower[k] = coordinate(smaller(from[k], to) - slack, k);
-      whole_.upper[k] = coordinate(larger(from[k], to) + slack, k);
-      span_[k] = whole_.upper[k] - whole_.lower[k] + 1;
-      few = few && span_[k] <= 2;
+      r.lower[k] = coordinate(g, l, smaller(from[k], to) - slack, k);
+      r.upper[k] = coordinate(g, l, larger(from[k], to) + slack, k);
     }
-    if (!few) cut();
+    return r;
+  }
+
+  /// True of a way in so few cells that it is one piece.
+  static COLLIDE_HD_INLINE bool is_short(cell_range const& r) {
+    return r.upper[0] - r.lower[0] <= 1 && r.upper[1] - r.lower[1] <= 1 && r.upper[2] - r.lower[2] <= 1;
   }
 
   /// True if the way comes through the grid's box, which a sphere must to touch a triangle.
   static COLLIDE_HD_INLINE bool enters(S lower, S upper, S from, S along) {
     S const to = from + along, slack = slack_of(from, along);
-    return (smaller(from, to) - slack <= upper) & (larger(from, to) + slack >= lower);
+    return smaller(from, to) - slack <= upper && larger(from, to) + slack >= lower;
   }
 
   /// True if its cells can be counted.
   static COLLIDE_HD_INLINE bool can_walk(S lower, S upper, S inverse_width, S from, S along) {
     constexpr S end = std::numeric_limits<S>::max() / 16;
     S const length = smaller(abs_of(along), upper - lower);
-    return (abs_of(from) < end) & (abs_of(along) < end) & (mul(length, inverse_width) < S(1 << 20)) &
-           (mul(slack_of(from, along), inverse_width) < 1);
+    return abs_of(from) < end && abs_of(along) < end && mul(length, inverse_width) < S(1 << 20) &&
+           mul(slack_of(from, along), inverse_width) < 1;
   }
 
   /// Steps are numbered; in each there is one cell, or none. A cell of the piece before is not come to again.
   COLLIDE_HD_INLINE std::uint32_t steps() const { return pieces_ * per_piece(); }
 
-  /// Where a step leads.
+  /// Where a step leads. Plain numbers: scratch memory is not constructed.
   struct place {
     std::uint32_t cell[3];
-    cell_range piece, before;  ///< the cells of the piece that it belongs to, and of the piece before
-    bool is_first;             ///< there is no piece before
+    std::uint32_t lower[3];  ///< where the piece that it belongs to begins
+    cell_range before;       ///< the cells of the piece before; if there is none, none
     bool is_cell;
+    bool is_only;  ///< there are no other cells on the way
+
+    /// True if this is the first place on the way that shares a cell with a triangle in these cells.
+    COLLIDE_HD_INLINE bool is_first_of(cell_range const& r) const {
+      bool here = true, earlier = true;
+      for (int k = 0; k < 3; ++k) {
+        here = here && cell[k] == larger(r.lower[k], lower[k]) && cell[k] <= r.upper[k];
+        earlier = earlier && before.lower[k] <= r.upper[k] && r.lower[k] <= before.upper[k];
+      }
+      return here && !earlier;
+    }
   };
 
   COLLIDE_HD place at(std::uint32_t step) const {
-    std::uint32_t const piece = step / per_piece();
+    std::uint32_t const number = step / per_piece();
     std::uint32_t const rest = step % per_piece();
+    cell_range const piece = cells_of(number);
     place p;
-    p.piece = cells_of(piece);
-    p.is_first = piece == 0;
-    if (!p.is_first) p.before = cells_of(piece - 1);
+    if (number != 0) {
+      p.before = cells_of(number - 1);
+    } else {
+      for (int k = 0; k < 3; ++k) p.before.lower[k] = ~std::uint32_t{0}, p.before.upper[k] = 0;
+    }
     std::uint32_t const offset[3] = {rest % span_[0], rest / span_[0] % span_[1], rest / (span_[0] * span_[1])};
-    bool inside = true, again = !p.is_first;
+    bool inside = true, again = true;
     for (int k = 0; k < 3; ++k) {
-      p.cell[k] = p.piece.lower[k] + offset[k];
-      inside = inside && p.cell[k] <= p.piece.upper[k];
+      p.lower[k] = piece.lower[k];
+      p.cell[k] = piece.lower[k] + offset[k];
+      inside = inside && p.cell[k] <= piece.upper[k];
       again = again && p.before.lower[k] <= p.cell[k] && p.cell[k] <= p.before.upper[k];
     }
     p.is_cell = inside && !again;
+    p.is_only = steps() == 1;
     return p;
   }
 
-  /// True if this is the first place on the way that shares a cell with the triangle.
-  COLLIDE_HD bool meets_first(place const& p, triangle<S> const& t) const {
-    cell_range const r = grid_->range_of(*level_, box_of(t));
-    bool here = true, before = !p.is_first;
-    for (int k = 0; k < 3; ++k) {
-      here = here && p.cell[k] == larger(r.lower[k], p.piece.lower[k]) && p.cell[k] <= r.upper[k];
-      before = before && p.before.lower[k] <= r.upper[k] && r.lower[k] <= p.before.upper[k];
-    }
-    return here && !before;
+  /// How far a coordinate on the way may be off by rounding.
+  static COLLIDE_HD_INLINE S slack_of(S from, S along) {
+    return 8 * format<S>::unit * (abs_of(from) + abs_of(along)) + 8 * std::numeric_limits<S>::min();
   }
 
  private:
-  static COLLIDE_HD S abs_of(S x) { return x < 0 ? -x : x; }
-
-  static COLLIDE_HD S slack_of(S from, S along) {
-    return 8 * format<S>::unit * (abs_of(from) + abs_of(along)) + 8 * std::numeric_limits<S>::min();
-  }
+  static COLLIDE_HD_INLINE S abs_of(S x) { return x < 0 ? -x : x; }
 
   /// A bit farther in a direction than `t`, which may be inaccurate.
   static COLLIDE_HD S stretched(S t, S direction) { return t + mul(direction * 8 * format<S>::unit, abs_of(t)); }
 
   /// What is beyond the grid, where there are no cells, counts as its first or last cell.
-  COLLIDE_HD std::uint32_t coordinate(S x, int k) const { return smaller(grid_->coordinate(*level_, x, k), last_[k]); }
+  static COLLIDE_HD_INLINE std::uint32_t coordinate(grid<S> const& g, grid_level<S> const& l, S x, int k) {
+    return l.coordinate(smaller(x, g.upper[k]) - g.lower[k]);
+  }
 
   COLLIDE_HD std::uint32_t per_piece() const { return span_[0] * span_[1] * span_[2]; }
 
@@ -136,8 +154,8 @@ class way {
     cell_range r;
     for (int k = 0; k < 3; ++k) {
       S const a = position(piece, k), b = position(piece + 1, k), slack = slack_of(from_[k], along_[k]);
-      r.lower[k] = coordinate(smaller(a, b) - slack, k);
-      r.upper[k] = coordinate(larger(a, b) + slack, k);
+      r.lower[k] = coordinate(*grid_, *level_, smaller(a, b) - slack, k);
+      r.upper[k] = coordinate(*grid_, *level_, larger(a, b) + slack, k);
     }
     return r;
   }
@@ -145,8 +163,7 @@ class way {
   grid<S> const* grid_ = nullptr;
   grid_level<S> const* level_ = nullptr;
   vec3<S> from_ = vec3<S>::Zero(), along_ = vec3<S>::Zero();
-  std::uint32_t last_[3];  ///< the grid's last cell on each axis
-  cell_range whole_;       ///< the cells of the way's box
+  cell_range whole_;       ///< the cells of the box around it
   std::uint32_t span_[3];  ///< how many cells a piece has on an axis, at most
   std::uint32_t pieces_ = 1;
   bool is_cut_ = false;             ///< else the only piece is the whole way
