@@ -13,6 +13,7 @@
 
 #include <cub/block/block_reduce.cuh>
 #include <cub/block/block_scan.cuh>
+#include <cub/device/device_merge_sort.cuh>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <cuda_runtime.h>
@@ -393,6 +394,13 @@ struct fill_bytes {
   __device__ void operator()(std::size_t i) const { to[i] = byte; }
 };
 
+/// The canonical order of pairs that are one number each, with the sphere in its lower half.
+struct canonical_before {
+  __device__ __forceinline__ bool operator()(std::uint64_t a, std::uint64_t b) const {
+    return (a << 32 | a >> 32) < (b << 32 | b >> 32);
+  }
+};
+
 /// What both CUDA spaces have in common: a stream and memory.
 class cuda_space {
  public:
@@ -480,15 +488,25 @@ class cuda_space {
                "cub::DeviceScan::ExclusiveSum");
   }
 
-  /// Sorts pairs into canonical order by radix: by triangle, then (stably) by sphere, only the bits that ids below
-  /// `spheres` and `triangles` have. Takes temporary memory for `room` pairs, at least `n`.
+  /// Sorts pairs into canonical order: not very many by merging; more by radix, by triangle, then (stably) by sphere,
+  /// only the bits that ids below `spheres` and `triangles` have. Takes temporary memory for `room` pairs, at least
+  /// `n`.
   void sort(buffer<pair>& other, pair* pairs, std::size_t n, std::size_t room, std::size_t spheres,
             std::size_t triangles, buffer<unsigned char>& scratch) const {
     static_assert(sizeof(pair) == sizeof(std::uint64_t), "a pair is one 64-bit key");
     if (n < 2) return;
     auto* const keys = reinterpret_cast<std::uint64_t*>(pairs);
-    auto* const sorted = reinterpret_cast<std::uint64_t*>(other.reserve(resource_, room));
     std::size_t bytes = 0;
+    if (n <= most_merged) {
+      std::size_t const most = room < most_merged ? room : most_merged;
+      cuda_check(cub::DeviceMergeSort::SortKeys(nullptr, bytes, keys, most, canonical_before{}, stream_),
+                 "cub::DeviceMergeSort::SortKeys");
+      void* const temporary = scratch.reserve(resource_, bytes);
+      cuda_check(cub::DeviceMergeSort::SortKeys(temporary, bytes, keys, n, canonical_before{}, stream_),
+                 "cub::DeviceMergeSort::SortKeys");
+      return;
+    }
+    auto* const sorted = reinterpret_cast<std::uint64_t*>(other.reserve(resource_, room));
     cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, bytes, keys, sorted, room, 0, 64, stream_),
                "cub::DeviceRadixSort::SortKeys");
     void* const temporary = scratch.reserve(resource_, bytes);
@@ -497,6 +515,9 @@ class cuda_space {
     cuda_check(cub::DeviceRadixSort::SortKeys(temporary, bytes, sorted, keys, n, 0, bits_for(spheres), stream_),
                "cub::DeviceRadixSort::SortKeys");
   }
+
+  /// Up to so many pairs it is faster to merge (docs/performance.md).
+  static constexpr std::size_t most_merged = std::size_t{1} << 18;
 
  protected:
   /// Launches a kernel that begins with `take_turn`.

@@ -56,7 +56,7 @@ TEST_CASE_TEMPLATE("sizes: everything touches everything, and no hit is lost in 
   for (auto const& c : tests::compositions<S>()) {
     CAPTURE(c.name());
     auto const detector = c.make({});
-    for (int n : {1, 31, 33, 64, 129, 257, 513}) {
+    for (int n : {1, 31, 33, 64, 129, 257, 513, 2017}) {  // the last: more pairs than are merged
       tests::scene<S> made;
       for (int i = 0; i < n; ++i) made.mesh.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
       for (int i = 0; i < 131; ++i) made.spheres.add({0, 0, 0}, 1);
