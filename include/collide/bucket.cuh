@@ -233,6 +233,7 @@ struct bucket_query {
       });
     } else {
       place_many<Block>(next, [&](std::size_t first) {
+        if (first + Block::items > tests.spheres.size()) return place_own(block, s, near, first);
         moving_batch<S, Block::items> own;
         own.load(tests.spheres, first);
         bool marked[Block::items];
