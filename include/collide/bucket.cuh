@@ -28,11 +28,11 @@ template <class S, class NarrowPhase, class Sink>
 struct bucket_query {
   static constexpr int items = 4;
   static constexpr bool still = at_rest<NarrowPhase, S>;
-  /// Candidates that a lane looks at together. With them, 48 KB of scratch memory must suffice.
-  static constexpr int ahead = still || sizeof(S) == sizeof(float) ? 4 : 2;
+  /// Candidates that a lane looks at together. With room for those of spheres that move, and of where these are on
+  /// their ways, 48 KB of scratch memory must suffice.
+  static constexpr int ahead = still ? 4 : 2;
   template <class Block>
   static constexpr int residency = still ? 4 : 3;
-  using ball_type = std::conditional_t<still, sphere<S>, moving_sphere<S>>;
 
   /// A sphere, or what contains all of the way of one that moves, in scratch memory, which holds plain values only.
   struct alignas(4 * sizeof(S)) plain_ball {

@@ -406,8 +406,9 @@ struct count_entries {
   grid_insertion<S, Parts> insertion;
   cell_list* cells;
   COLLIDE_HD void operator()(std::size_t thread) const {
+    constexpr std::uint32_t together = grid_insertion<S, Parts>::together;
     insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id) {
-      for (std::uint32_t k = 0; k < insertion.together; ++k) {
+      for (std::uint32_t k = 0; k < together; ++k) {
         if (k < n) fetch_add(&cells[some[k]].count, 1u);
       }
     });
