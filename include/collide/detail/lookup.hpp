@@ -113,9 +113,8 @@ struct cell_marks {
                                    cells_on(2, b.z[k], b.dz[k])};
       bool const inside = (on[0].inside & on[1].inside & on[2].inside) != 0;
       bool const is_short = on[0].more <= 1 && on[1].more <= 1 && on[2].more <= 1;
-      // not so where one of them is not a number
-      bool const finite = on[0].extent + (on[1].extent + on[2].extent) < std::numeric_limits<S>::infinity();
-      known = known && finite && (is_short || !inside);
+      // what is not finite is not in the cells that it seems to be in
+      known = known && finite(on[0].extent + (on[1].extent + on[2].extent)) && (is_short || !inside);
       near[k] = inside;
       first[k] = level.first + (inside ? on[0].begin + (on[1].begin + on[2].begin) : 0);
       for (int axis = 0; axis < 3; ++axis) apart[k][axis] = inside ? on[axis].end - on[axis].begin : 0;
