@@ -61,7 +61,7 @@ struct bucket_query {
     std::uint32_t placed, unplaced;
   };
 
-  /// How many lists of candidates there are, and how many spheres have more of them than there is room for.
+  /// How many lists of candidates there are, or would be with room for more, and how many spheres have more.
   struct listing {
     std::uint32_t lists, unfinished;
   };
@@ -302,7 +302,7 @@ struct bucket_query {
         for (std::uint32_t base = 0; base < found.placed; base += Block::lanes) {
           typename Block::template per_lane<cursor> at;
           bool more = false;
-          do {  // once, unless a list is very long or spheres move through many cells
+          do {  // once, unless a list is very long, or spheres that move have more lists than there are lanes
             block.each([&](int lane) {
               if (!more) at[lane] = {0, 0};
               std::uint32_t const i = base + static_cast<std::uint32_t>(lane);

@@ -351,8 +351,8 @@ inline constexpr int residency<Body, Block, std::enable_if_t<(Body::template res
     Body::template residency<Block>;
 
 /// A kernel's first step. It lets the next kernel of the stream start, which then waits here, and waits for the one
-/// before: so a launch takes its time while the kernel before is at work. From compute capability 9.0 on, with
-/// `cuda_space::launch_kernel`.
+/// before: so a launch takes its time while the kernel before is at work. Where it was compiled for compute capability
+/// 9.0 or more, and with `cuda_space::launch_kernel`.
 __device__ __forceinline__ void take_turn() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
   cudaGridDependencySynchronize();
@@ -412,10 +412,9 @@ class cuda_space {
     int device = 0;
     cuda_check(cudaGetDevice(&device), "cudaGetDevice");
     cuda_check(cudaDeviceGetAttribute(&processors_, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
-    int capability = 0;
-    cuda_check(cudaDeviceGetAttribute(&capability, cudaDevAttrComputeCapabilityMajor, device),
-               "cudaDeviceGetAttribute");
-    takes_turns_ = capability >= 9;
+    cudaFuncAttributes compiled{};
+    cuda_check(cudaFuncGetAttributes(&compiled, run_for_each<fill_bytes>), "cudaFuncGetAttributes");
+    takes_turns_ = compiled.ptxVersion >= 90;
   }
 
   cudaStream_t stream() const { return stream_; }
@@ -496,23 +495,29 @@ class cuda_space {
     static_assert(sizeof(pair) == sizeof(std::uint64_t), "a pair is one 64-bit key");
     if (n < 2) return;
     auto* const keys = reinterpret_cast<std::uint64_t*>(pairs);
-    std::size_t bytes = 0;
-    if (n <= most_merged) {
+    // where there is room for many, the memory for both ways is taken the first time
+    bool const many = n > most_merged, first = room > most_merged && other.capacity() < room;
+    std::size_t merging = 0, by_radix = 0;
+    if (!many || first) {
       std::size_t const most = room < most_merged ? room : most_merged;
-      cuda_check(cub::DeviceMergeSort::SortKeys(nullptr, bytes, keys, most, canonical_before{}, stream_),
+      cuda_check(cub::DeviceMergeSort::SortKeys(nullptr, merging, keys, most, canonical_before{}, stream_),
                  "cub::DeviceMergeSort::SortKeys");
-      void* const temporary = scratch.reserve(resource_, bytes);
-      cuda_check(cub::DeviceMergeSort::SortKeys(temporary, bytes, keys, n, canonical_before{}, stream_),
+    }
+    if (many || first) {
+      cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, by_radix, keys, keys, room, 0, 64, stream_),
+                 "cub::DeviceRadixSort::SortKeys");
+    }
+    void* const temporary = scratch.reserve(resource_, merging > by_radix ? merging : by_radix);
+    auto* const sorted = reinterpret_cast<std::uint64_t*>(first ? other.reserve(resource_, room) : other.data());
+    if (!many) {
+      cuda_check(cub::DeviceMergeSort::SortKeys(temporary, merging, keys, n, canonical_before{}, stream_),
                  "cub::DeviceMergeSort::SortKeys");
       return;
     }
-    auto* const sorted = reinterpret_cast<std::uint64_t*>(other.reserve(resource_, room));
-    cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, bytes, keys, sorted, room, 0, 64, stream_),
-               "cub::DeviceRadixSort::SortKeys");
-    void* const temporary = scratch.reserve(resource_, bytes);
-    cuda_check(cub::DeviceRadixSort::SortKeys(temporary, bytes, keys, sorted, n, 32, 32 + bits_for(triangles), stream_),
-               "cub::DeviceRadixSort::SortKeys");
-    cuda_check(cub::DeviceRadixSort::SortKeys(temporary, bytes, sorted, keys, n, 0, bits_for(spheres), stream_),
+    cuda_check(
+        cub::DeviceRadixSort::SortKeys(temporary, by_radix, keys, sorted, n, 32, 32 + bits_for(triangles), stream_),
+        "cub::DeviceRadixSort::SortKeys");
+    cuda_check(cub::DeviceRadixSort::SortKeys(temporary, by_radix, sorted, keys, n, 0, bits_for(spheres), stream_),
                "cub::DeviceRadixSort::SortKeys");
   }
 

@@ -1,4 +1,6 @@
 /// Detectors that live longer than one query: rebuilt, asked again, asked for other radii, by any number of threads.
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "checks.hpp"
@@ -76,6 +78,34 @@ TEST_CASE_TEMPLATE("lifecycle: a mesh that moves and deforms is rebuilt without 
       CHECK(detector->memory().allocations == before);
       if (frame % 5 == 0) tests::check_pairs(*detector, moved.expect(1e-4));
     }
+  }
+}
+
+TEST_CASE_TEMPLATE("lifecycle: pairs in order, more or fewer than are merged, without a new allocation", S, float,
+                   double) {
+  constexpr std::size_t triangles = 2017, all = 131, few = 124;  // 264,227 and 250,108 pairs
+  tests::scene<S> made;
+  for (std::size_t i = 0; i < triangles; ++i) made.mesh.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  for (std::size_t i = 0; i < all; ++i) made.spheres.add({0, 0, 0}, 1);
+  auto fewer = made.spheres;
+  for (std::size_t i = 3 * few; i < 3 * all; ++i) fewer.centres[i] = 100;
+  for (auto const& c : tests::compositions<S>()) {
+    CAPTURE(c.name());
+    auto const detector = c.make({});
+    detector->build(made.mesh, mesh_form::soup);
+    auto const query = [&](tests::spheres<S> const& some, std::size_t n) {
+      detector->place(some, sphere_form::xyz_one);
+      auto const pairs = detector->pairs(order::canonical);
+      CHECK(pairs.size() == n * triangles);
+      CHECK(std::is_sorted(pairs.begin(), pairs.end()));
+    };
+    query(fewer, few);
+    query(fewer, few);
+    auto const before = detector->memory().allocations;
+    query(made.spheres, all);
+    query(fewer, few);
+    query(made.spheres, all);
+    CHECK(detector->memory().allocations == before);
   }
 }
 

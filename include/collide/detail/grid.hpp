@@ -231,6 +231,7 @@ struct plan_grid {
     auto const* const extents = seen.extents;
     grid_frame<S> g{};
     g.reach = reaches[i];
+    levels[0] = {};          // is read before it is known whether there is one
     if (extents->empty()) {  // no finite triangle: a box that contains nothing
       for (int k = 0; k < 3; ++k) {
         g.lower[k] = 1;

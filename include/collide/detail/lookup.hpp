@@ -103,7 +103,8 @@ struct cell_marks {
     for (int k = 0; k < N; ++k) near[k] = (p.inside[k] & occupied[p.cells[k] / 8] >> p.cells[k] % 8 & 1) != 0;
   }
 
-  /// The same of spheres that move. False if the way of one of them is not short: then it is not known.
+  /// The same of spheres that move. False if it is not known: one of them is not finite, or goes a long way in the
+  /// grid.
   template <int N>
   COLLIDE_HD_INLINE bool mark_ways(moving_batch<S, N> const& b, bool (&near)[N]) const {
     bool known = true;
@@ -216,7 +217,8 @@ struct bucket_lookup : triangle_lookup<S> {
     return true;
   }
 
-  /// True if a ball of this radius looks into one cell, wherever it is. All that this depends on is read at once.
+  /// True if a ball of this radius looks into one cell of one level, wherever it is, and into the few of its way if
+  /// that is short. All that this depends on is read at once.
   COLLIDE_HD_INLINE bool is_simple(S radius) const {
     if (grid_count != 1) return false;
     bool const complete = *total <= capacity, one_level = grids[0].levels == 1, served = radius <= grids[0].reach;

@@ -20,7 +20,7 @@ class way {
   /// No way at all.
   way() = default;
 
-  /// For a sphere that `can_walk` in the grid.
+  /// For a sphere that `can_walk` in the grid, or whose way is short.
   COLLIDE_HD way(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from, vec3<S> const& along)
       : grid_{&g}, level_{&l}, from_{from}, along_{along} {
     whole_ = cells_around(g, l, from, along);
