@@ -115,7 +115,7 @@ struct summarise_mesh {
 
   mesh_view<S> mesh;
   mesh_summary<S>* summary;
-  triangle_box<S>* boxes;  ///< null if they are not wanted
+  triangle_box<S>* boxes;  ///< and room for one more; null if they are not wanted
   bool pairs = false;      ///< whether they are asked for
 
   template <class Block>
@@ -139,7 +139,7 @@ struct summarise_mesh {
         triangle<S> const a = mesh[i], b = mesh[two ? i + 1 : i];  // both before anything is written
         triangle_box<S> const of_a = triangle_box_of(a), of_b = triangle_box_of(b);
         if (boxes != nullptr) boxes[i] = of_a;
-        if (boxes != nullptr && two) boxes[i + 1] = of_b;
+        if (boxes != nullptr) boxes[i + 1] = of_b;  // there is room for one more
         box<S> const around = typename box<S>::unite{}(of_a, of_b);
         if (around.is_empty()) continue;
         all[lane] = typename box<S>::unite{}(all[lane], around);
