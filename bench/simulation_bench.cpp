@@ -6,13 +6,14 @@
 ///
 /// Names are simulation/SPACE/EFFECTS, on the study's scene or as many of its spheres as stated; *packed* are spheres
 /// that touch each other. What is timed are always the same steps of a scene, soon after it begins; *lying*: once many
-/// spheres lie on the mesh. Counters: over_floor (time over that of reading and writing position and velocity, measured
-/// in the same process); bytes (of columns, a particle). With `many`, frictionless spheres that fill space, for the
-/// memory that each takes.
+/// spheres lie on the mesh; *mixing*, *fast*: the mean of many successive steps of packed spheres. Counters: over_floor
+/// (time over that of reading and writing position and velocity, measured in the same process); bytes (of columns, a
+/// particle). With `many`, frictionless spheres that fill space, for the memory that each takes.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -152,19 +153,50 @@ class suite {
     if (!Space::host_memory) add_with<collide::karabassi<>>("lying: " + name, spheres_, 600, 0.01f, effects...);
   }
 
-  /// The same among balls that fill space, each in touch with six others.
+  /// The same among balls that fill space, each in touch with six others. Their lists of neighbours are kept.
   template <class... Effect>
   void add_packed(std::string const& name, Effect const&... effects) const {
-    std::vector<float> centres;
-    auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n_))) + 1;
-    for (std::size_t i = 0; i < n_; ++i)
-      for (std::size_t at : {i % side, i / side % side, i / side / side})
-        centres.push_back(1.98f * radius_ * static_cast<float>(at));
-    add_with<collide::karabassi<>>("packed: " + name, upload(centres), 2, 1e-4f, effects...);
+    add_with<collide::karabassi<>>("packed: " + name, upload(packed()), 2, 1e-4f, effects...);
+  }
+
+  /// The mean of successive steps, from that lattice on, with the steps in which the lists are made anew. Coordinates
+  /// of velocities are random, up to `speed`; walls keep the balls together.
+  template <class... Effect>
+  void add_mixing(std::string const& name, float speed, Effect const&... effects) const {
+    using simulation = collide::simulation<collide::detector<collide::bucket, collide::karabassi<>, Space>, Effect...>;
+    std::vector<float> const centres = packed();
+    std::vector<float> velocities(centres.size());
+    std::mt19937 engine(1);
+    std::uniform_real_distribution<float> coordinate(-speed, speed);
+    for (float& v : velocities) v = coordinate(engine);
+    uploaded const spheres = upload(centres);
+    auto const moving = std::make_shared<collide::buffer<float>>();
+    space_.copy_from_host(moving->reserve(space_.resource(), velocities.size()), velocities.data(), velocities.size());
+    ::add(name, space_, floor_, simulation::bytes_per_particle, [=, space = space_] {
+      auto const made = std::make_shared<simulation>(space, effects...);
+      made->set(spheres->view(), moving->data());
+      return measured{[] {}, [=] { made->step(1e-4f); }};
+    });
+  }
+
+  /// A box around that lattice.
+  collide::bounds around_packed() const {
+    double const near = -radius_, far = 1.98 * radius_ * static_cast<double>(side());
+    return {{near, near, near}, {far, far, far}, 0.5};
   }
 
  private:
   using uploaded = std::shared_ptr<collide::uploaded_spheres<float>>;
+
+  std::size_t side() const { return static_cast<std::size_t>(std::cbrt(static_cast<double>(n_))) + 1; }
+
+  std::vector<float> packed() const {
+    std::vector<float> centres;
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t at : {i % side(), i / side() % side(), i / side() / side()})
+        centres.push_back(1.98f * radius_ * static_cast<float>(at));
+    return centres;
+  }
 
   uploaded upload(std::vector<float> const& centres) const {
     return std::make_shared<collide::uploaded_spheres<float>>(
@@ -239,6 +271,8 @@ void add_all(suite<Space> const& scene) {
   scene.add("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
   scene.add_packed("sphere_contact, gravity", contact, gravity{});
   scene.add_packed("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
+  scene.add_mixing("packed, mixing: sphere_contact, gravity, bounds", 10, contact, gravity{}, scene.around_packed());
+  scene.add_mixing("packed, fast: sphere_contact, gravity, bounds", 2000, contact, gravity{}, scene.around_packed());
 }
 
 /// Kernel body of `for_each` over spheres that fill space.

@@ -387,6 +387,15 @@ __global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
   if (i < n) f(i);
 }
 
+/// The same with fewer threads, each of which has several items, and only if something is not 0.
+template <class F>
+__global__ void __launch_bounds__(cuda_lanes) run_for_each_if(std::uint32_t const* condition, std::size_t n, F f) {
+  take_turn();
+  if (*condition == 0) return;
+  std::size_t const stride = std::size_t{gridDim.x} * cuda_lanes;
+  for (std::size_t i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x; i < n; i += stride) f(i);
+}
+
 /// Kernel body of `for_each` over bytes.
 struct fill_bytes {
   unsigned char* to;
@@ -436,6 +445,14 @@ class cuda_space {
   void for_each(std::size_t n, F const& f) const {
     if (n == 0) return;
     launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n), n, f);
+  }
+
+  /// `for_each` if *condition, in memory of the space, is not 0 then; meant for what is seldom done.
+  template <class F>
+  void for_each_if(std::uint32_t const* condition, std::size_t n, F const& f) const {
+    if (n == 0) return;
+    unsigned const wave = static_cast<unsigned>(processors_) * (2048 / cuda_lanes), blocks = grid_of(n);
+    launch_kernel("launch of run_for_each_if", run_for_each_if<F>, blocks < wave ? blocks : wave, condition, n, f);
   }
 
   /// A little is filled by a kernel: in a graph, between kernels, that takes half as long as a memory set.

@@ -93,6 +93,12 @@ class host {
     });
   }
 
+  /// The same if *condition is not 0.
+  template <class F>
+  void for_each_if(std::uint32_t const* condition, std::size_t n, F const& f) const {
+    if (*condition != 0) for_each(n, f);
+  }
+
   /// How many blocks keep all threads busy.
   std::size_t concurrency() const { return 4 * static_cast<std::size_t>(threads()); }
 

@@ -1,6 +1,7 @@
 /// Effects on the host.
 #include "compositions.hpp"
 #include "effects.hpp"
+#include "neighbours.hpp"
 
 using collide::host;
 using collide::karabassi;
@@ -48,6 +49,15 @@ TEST_CASE("effects: spheres that meet do so in the same bits on every run") {
   tests::check_meeting_determinism(host(1), host(2));
   tests::check_meeting_determinism(host(1), lockstep<256, true>());
   tests::check_meeting_determinism(host(1), reversed());
+}
+
+TEST_CASE_TEMPLATE("effects: particles meet those that they overlap, in the order of their numbers", S, float, double) {
+  tests::check_neighbours<S>(host(1));
+}
+
+TEST_CASE("effects: particles meet those that they overlap, whoever is first") {
+  tests::check_neighbours<float>(host(2));
+  tests::check_neighbours<float>(reversed());
 }
 
 TEST_CASE("effects: what rests sleeps until it is hit") { tests::check_sleep(host(1)); }

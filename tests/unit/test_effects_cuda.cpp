@@ -1,5 +1,6 @@
 /// Effects on the GPU.
 #include "effects.hpp"
+#include "neighbours.hpp"
 
 using collide::cuda_shared;
 using collide::karabassi;
@@ -20,6 +21,11 @@ TEST_CASE("effects: on the GPU, rolling") {
 TEST_CASE("effects: on the GPU, spheres that meet") {
   tests::check_collisions<float>(cuda_shared());
   tests::check_meeting_determinism(cuda_shared(), cuda_shared());
+}
+
+TEST_CASE("effects: on the GPU, particles meet those that they overlap, in the order of their numbers") {
+  tests::check_neighbours<float>(cuda_shared());
+  tests::check_neighbours<double>(collide::cuda());
 }
 
 TEST_CASE("effects: on the GPU, a pile of spheres stays in a closed mesh for 1e5 steps") {

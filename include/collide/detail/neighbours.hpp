@@ -1,11 +1,19 @@
 /// \file
-/// Which particles overlap each other: a grid of the particles, made anew in each step.
+/// Which particles overlap each other: lists of neighbours, which are kept while nothing has moved far.
 ///
-/// Cells are as wide as the largest particle. They lie in a table of fixed size: blocks of 4 x 4 x 4 cells are spread
-/// over it by a hash function, so that any scene fits, and near cells are near in memory. Particles are counted into
-/// the cells, the counts are scanned, and the particles' columns are copied in the order of the cells, and within a
-/// cell of their numbers: so sums over neighbours have an order, and do not depend on which thread was first. Each
-/// particle looks into the 27 cells around it.
+/// A list has what is within reach of a particle or a little farther away: by the skin, of which each of two particles
+/// may cross a half before something can be missing (L. Verlet, "Computer experiments on classical fluids I", Physical
+/// Review 159(1), 1967). Until then a step only copies the particles' columns in the order of the last grid, and tries
+/// what is listed. It is found out on the device whether that is so: kernels that renew the lists end at once if not.
+///
+/// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. They lie in a
+/// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
+/// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
+/// particles, and each particle looks into the 27 cells around it. What has too many neighbours for its list does so in
+/// each step.
+///
+/// Neighbours meet in the order of their numbers: so sums over them do not depend on which thread was first, nor on
+/// when the lists were made.
 #pragma once
 
 #include <collide/detail/arithmetic.hpp>
@@ -19,22 +27,23 @@ namespace collide::detail {
 template <class S>
 struct particle_cells {
   S inverse_width;
-  std::uint32_t mask;  ///< number of cells - 1
+  std::uint32_t mask;  ///< number of blocks - 1
+
+  static constexpr std::uint32_t per_block = 64;
+  static constexpr std::uint32_t stride = per_block + 1;  ///< of blocks in the table: see `particle_order`
 
   struct cell {
     std::int32_t x, y, z;
   };
 
-  COLLIDE_HD_INLINE cell of(vec3<S> const& p) const {
-    return {coordinate(p.x()), coordinate(p.y()), coordinate(p.z())};
-  }
+  COLLIDE_HD_INLINE cell of(S x, S y, S z) const { return {coordinate(x), coordinate(y), coordinate(z)}; }
 
   /// Place of a cell in the table.
   COLLIDE_HD_INLINE std::uint32_t number(cell c) const {
     auto const u = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
     std::uint32_t const block = u(c.x >> 4) * 73856093u ^ u(c.y >> 1) * 19349663u ^ u(c.z >> 1) * 83492791u;
     std::uint32_t const mixed = (block ^ block >> 15) * 0x2c1b3c6du;
-    return ((mixed ^ mixed >> 13) << 6 | (u(c.z) & 1) << 5 | (u(c.y) & 1) << 4 | (u(c.x) & 15)) & mask;
+    return ((mixed ^ mixed >> 13) & mask) * stride + ((u(c.z) & 1) << 5 | (u(c.y) & 1) << 4 | (u(c.x) & 15));
   }
 
  private:
@@ -47,160 +56,81 @@ struct particle_cells {
   }
 };
 
-/// The order of the particles in the grid.
-struct particle_order {
-  std::uint32_t* ends;  ///< of cell c: ends[c] .. ends[c + 1]
-  id* numbers;
-};
-
-/// Kernel body of `for_each` over particles: counts them into cells, or, once the counts have been scanned, fills in
-/// their numbers.
-template <class S, class Scene, bool Fill>
-struct sort_into_cells {
-  particle_state<S, typename Scene::all> state;
-  particle_cells<S> cells;
-  particle_order order;
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    particle<S, placing> p;
-    state.load(p, i);
-    if constexpr (contains<placing, present>) {
-      if (p[present{}] == 0) return;
-    }
-    std::uint32_t const slot = fetch_add(order.ends + 1 + cells.number(cells.of(p[position{}])), 1u);
-    if constexpr (Fill) order.numbers[slot] = static_cast<id>(i);
-  }
-
- private:
-  using placing = joined_t<columns<position>, common_t<columns<present>, typename Scene::all>>;
-};
-
-/// Kernel body of `for_each` over cells: sorts each by numbers. Few particles fit into a cell.
-struct sort_cells {
-  particle_order order;
-
-  COLLIDE_HD void operator()(std::size_t c) const {
-    id* const first = order.numbers + order.ends[c];
-    std::uint32_t const n = order.ends[c + 1] - order.ends[c];
-    for (std::uint32_t i = 1; i < n; ++i) {
-      id const moved = first[i];
-      std::uint32_t k = i;
-      for (; k > 0 && first[k - 1] > moved; --k) first[k] = first[k - 1];
-      first[k] = moved;
-    }
-  }
-};
-
 /// What decides whether two particles overlap, to be read at once.
 template <class S>
 struct alignas(4 * sizeof(S)) near_sphere {
   S x, y, z, radius;
 };
 
+/// Where a particle was when the lists were made, and how large, if that may change.
+template <class S, bool HasRadius>
+struct reference {
+  S x, y, z;
+  COLLIDE_HD_INLINE void set(near_sphere<S> const& s) { x = s.x, y = s.y, z = s.z; }
+  COLLIDE_HD_INLINE S growth(near_sphere<S> const&) const { return S(0); }
+};
+template <class S>
+struct reference<S, true> : near_sphere<S> {
+  COLLIDE_HD_INLINE void set(near_sphere<S> const& s) { static_cast<near_sphere<S>&>(*this) = s; }
+  COLLIDE_HD_INLINE S growth(near_sphere<S> const& s) const { return larger(s.radius - this->radius, S(0)); }
+};
+
 /// The particles in the order of the grid, with all that they must know of each other.
 template <class S, class Scene>
-struct ordered_particles {
-  particle_order order;
-  std::uint32_t const* total;
-  near_sphere<S>* spheres;
-  particle_state<S, typename Scene::meeting_copies> copies;
-
+struct particle_order {
+  using all = typename Scene::all;
+  using copied = typename Scene::meeting_copies;
   using meeting = particle<S, typename Scene::meeting>;
+  using cell = typename particle_cells<S>::cell;
+  static constexpr bool comes_and_goes = contains<all, present>;
 
-  COLLIDE_HD_INLINE meeting operator[](std::size_t i) const {
+  particle_cells<S> cells;
+  std::uint32_t* ends;   ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
+  std::uint32_t* total;  ///< number of particles in the order
+  std::uint32_t* renew;  ///< not 0: the lists are to be made anew
+  id* numbers;
+  near_sphere<S>* spheres;                          ///< as they are in this step
+  reference<S, contains<all, radius>>* references;  ///< as they were when the lists were made
+  column_element<present, S>* known;                ///< the same of who is there, by numbers
+  particle_state<S, copied> copies;
+
+  static constexpr std::uint32_t listed = 12;  ///< the most neighbours that a list has
+  static constexpr std::uint32_t too_many = 0xffffffffu;
+  std::uint32_t* lists;  ///< places, in the order of numbers; ends with the particle itself, or begins with too_many
+  std::size_t capacity;  ///< of each of `listed` arrays
+
+  COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
+
+  COLLIDE_HD_INLINE near_sphere<S> store(std::size_t i, meeting const& p) const {
+    vec3<S> const& c = p[position{}];
+    copies.store(p, i, copied{});
+    return spheres[i] = {c.x(), c.y(), c.z(), p.the_radius};
+  }
+
+  COLLIDE_HD_INLINE meeting load(std::size_t i) const {
     meeting p;
-    p.number = order.numbers[i];
+    p.number = numbers[i];
     near_sphere<S> const s = spheres[i];
     p[position{}] = vec3<S>(s.x, s.y, s.z);
     p.the_radius = s.radius;
     if constexpr (contains<typename Scene::meeting, radius>) p[radius{}] = s.radius;
-    copies.load(p, i, typename Scene::meeting_copies{});
+    copies.load(p, i, copied{});
     return p;
   }
-};
 
-/// Kernel body of `for_each` over places in the order.
-template <class S, class Scene>
-struct copy_in_order {
-  particle_state<S, typename Scene::all> state;
-  ordered_particles<S, Scene> to;
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    if (i >= *to.total) return;
-    typename ordered_particles<S, Scene>::meeting p;
-    state.load(p, to.order.numbers[i]);
-    vec3<S> const& c = p[position{}];
-    to.spheres[i] = {c.x(), c.y(), c.z(), p.the_radius};
-    to.copies.store(p, i, typename Scene::meeting_copies{});
-  }
-};
-
-/// Kernel body of `for_each` over places in the order: the overlaps of one particle. Those that overlap it are listed
-/// first, and then met: threads that run together meet one each at the same time, which takes longer than to look for
-/// them.
-template <class S, class Scene>
-struct meet_neighbours {
-  particle_state<S, typename Scene::all> state;
-  ordered_particles<S, Scene> particles;
-  particle_cells<S> cells;
-  Scene scene;
-  S dt;
-
-  using meeting = typename ordered_particles<S, Scene>::meeting;
-  using cell = typename particle_cells<S>::cell;
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    if (i >= *particles.total) return;
-    meeting self = particles[i];
-    meeting changed = self;
-    bool const sleeps = is_skipped(self);
-    bool met = false;
-    cell const here = cells.of(self[position{}]);
-    std::uint32_t found = 0, done = 0;
-    do {  // once, unless very many overlap it
-      std::uint32_t places[room];
-      std::uint8_t rows[room];
-      found = 0;
-      each_near(self, here, static_cast<std::uint32_t>(i), [&](std::uint32_t k, int row) {
-        std::uint32_t const n = found++ - done;
-        if (n >= room) return;
-        places[n] = k;
-        rows[n] = static_cast<std::uint8_t>(row);
-      });
-      std::uint32_t const listed = smaller(found - done, room);
-      COLLIDE_ROLLED
-      for (std::uint32_t n = 0; n < listed; ++n) {
-        meeting other = particles[places[n]];
-        cell const from = first_of(here, rows[n]), there = cells.of(other[position{}]);
-        // others may be at the same place of the table
-        if (there.y != from.y || there.z != from.z || there.x < from.x || there.x > from.x + 2) continue;
-        if (!sleeps) {
-          scene.meet(changed, self, other, dt);
-        } else if (!is_skipped(other)) {
-          scene.disturb(changed, other);
-        } else {
-          continue;
-        }
-        met = true;
-      }
-      done += listed;
-    } while (done < found);
-    if (met) state.store(changed, self.number, typename Scene::meeting_writes{});
+  /// True if the surfaces of two particles are less than `skin` apart.
+  static COLLIDE_HD_INLINE bool are_near(near_sphere<S> const& a, near_sphere<S> const& b, S skin) {
+    vec3<S> const between(a.x - b.x, a.y - b.y, a.z - b.z);
+    S const reach = a.radius + b.radius + skin;
+    return dot(between, between) < mul(reach, reach);
   }
 
- private:
-  static constexpr std::uint32_t room = 16;
-
-  /// The first of three cells along x next to a cell.
-  static COLLIDE_HD_INLINE cell first_of(cell here, int row) {
-    return {here.x - 1, here.y + row % 3 - 1, here.z + row / 3 - 1};
-  }
-
-  /// f(place, row) for those that overlap a particle and lie in a cell next to its own, or in one at the same place of
-  /// the table.
+  /// f(place, row) for those less than `skin` away from particle i, of which `is_in_row` must still be asked. That
+  /// takes a while, in which threads that run together would wait for the one that has found something.
   template <class F>
-  COLLIDE_HD_INLINE void each_near(meeting const& self, cell here, std::uint32_t i, F const& f) const {
-    std::uint32_t const* const ends = particles.order.ends;
+  COLLIDE_HD_INLINE void each_near(std::uint32_t i, S skin, F const& f) const {
+    near_sphere<S> const self = spheres[i];
+    cell const here = cell_of(i);
     COLLIDE_ROLLED
     for (int row = 0; row < 9; ++row) {
       cell const from = first_of(here, row);
@@ -212,12 +142,260 @@ struct meet_neighbours {
         std::uint32_t const end = ends[first + static_cast<std::uint32_t>(together)];
         COLLIDE_ROLLED
         for (std::uint32_t k = ends[first]; k < end; ++k) {
-          near_sphere<S> const close = particles.spheres[k];
-          vec3<S> const between = self[position{}] - vec3<S>(close.x, close.y, close.z);
-          S const reach = self.the_radius + close.radius;
-          if (dot(between, between) < mul(reach, reach) && k != i) f(k, row);
+          if (are_near(self, spheres[k], skin) && k != i) f(k, row);
         }
       }
+    }
+  }
+
+  /// True if particle k is in a row of cells around particle i, and not in others at the same place of the table.
+  COLLIDE_HD_INLINE bool is_in_row(std::uint32_t k, std::uint32_t i, int row) const {
+    cell const from = first_of(cell_of(i), row), there = cell_of(k);
+    return there.y == from.y && there.z == from.z && there.x >= from.x && there.x <= from.x + 2;
+  }
+
+ private:
+  /// The first of three cells along x next to a cell.
+  static COLLIDE_HD_INLINE cell first_of(cell here, int row) {
+    return {here.x - 1, here.y + row % 3 - 1, here.z + row / 3 - 1};
+  }
+
+  COLLIDE_HD_INLINE cell cell_of(std::uint32_t i) const {
+    auto const& from = references[i];
+    return cells.of(from.x, from.y, from.z);
+  }
+};
+
+/// The first of neighbours in the order of their numbers.
+template <std::uint32_t Room>
+struct first_neighbours {
+  id numbers[Room];
+  std::uint32_t places[Room];
+  std::uint32_t size = 0;
+  bool complete = true;
+
+  COLLIDE_HD_INLINE void add(id number, std::uint32_t place) {
+    if (size == Room) {
+      complete = false;
+      if (number > numbers[Room - 1]) return;
+      --size;
+    }
+    std::uint32_t at = size++;
+    COLLIDE_ROLLED
+    for (; at > 0 && numbers[at - 1] > number; --at) {
+      numbers[at] = numbers[at - 1];
+      places[at] = places[at - 1];
+    }
+    numbers[at] = number;
+    places[at] = place;
+  }
+};
+
+/// Kernel body of `for_each` over particles, and places in the order: copies what particles must know of each other,
+/// and finds out whether the lists still have all of them.
+template <class S, class Scene>
+struct refresh_order {
+  particle_state<S, typename Scene::all> state;
+  particle_order<S, Scene> order;
+  S most;  ///< that a particle may have moved
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if constexpr (particle_order<S, Scene>::comes_and_goes) {
+      if (state.at(present{})[i] != order.known[i]) store_relaxed(order.renew, 1u);
+    }
+    if (i >= *order.total) return;
+    typename particle_order<S, Scene>::meeting p;
+    state.load(p, order.numbers[i]);
+    near_sphere<S> const now = order.store(i, p);
+    auto const before = order.references[i];
+    vec3<S> const way(now.x - before.x, now.y - before.y, now.z - before.z);
+    S const left = most - before.growth(now);
+    bool const stayed = dot(way, way) <= mul(left, left) && left >= 0;
+    if (!stayed && finite(p[position{}])) store_relaxed(order.renew, 1u);
+  }
+};
+
+/// Kernel body of `for_each_if` over the table: empties it.
+template <class S, class Scene>
+struct empty_cells {
+  particle_order<S, Scene> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    order.ends[i] = 0;
+    if (i == 0) *order.total = 0;
+  }
+};
+
+/// Kernel body of `for_each_if` over particles: counts them into cells, or, once blocks have their share of the order,
+/// fills in their numbers.
+template <class S, class Scene, bool Fill>
+struct sort_into_cells {
+  particle_state<S, typename Scene::all> state;
+  particle_order<S, Scene> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    using placing = joined_t<columns<position>, common_t<columns<present>, typename Scene::all>>;
+    particle<S, placing> p;
+    state.load(p, i);
+    if constexpr (contains<placing, present>) {
+      order.known[i] = p[present{}];
+      if (p[present{}] == 0) return;
+    }
+    vec3<S> const& c = p[position{}];
+    std::uint32_t const slot = fetch_add(order.ends + order.cells.number(order.cells.of(c.x(), c.y(), c.z())) + 1, 1u);
+    if constexpr (Fill) order.numbers[slot] = static_cast<id>(i);
+  }
+};
+
+/// Kernel body of `for_each_if` over blocks: counts become where cells begin.
+template <class S, class Scene>
+struct allocate_cells {
+  particle_order<S, Scene> order;
+
+  COLLIDE_HD void operator()(std::size_t b) const {
+    std::uint32_t* const ends = order.ends + b * order.cells.stride;
+    std::uint32_t sum = 0;
+    for (std::uint32_t c = 1; c <= order.cells.per_block; ++c) sum += ends[c];
+    if (sum == 0) return;
+    std::uint32_t next = fetch_add(order.total, sum);
+    ends[0] = next;
+    for (std::uint32_t c = 1; c <= order.cells.per_block; ++c) {
+      std::uint32_t const count = ends[c];
+      ends[c] = next;
+      next += count;
+    }
+  }
+};
+
+/// Kernel body of `for_each_if` over places in the order: copies particles there.
+template <class S, class Scene>
+struct copy_in_order {
+  particle_state<S, typename Scene::all> state;
+  particle_order<S, Scene> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (i >= *order.total) return;
+    typename particle_order<S, Scene>::meeting p;
+    state.load(p, order.numbers[i]);
+    order.references[i].set(order.store(i, p));
+  }
+};
+
+/// Kernel body of `for_each_if` over places in the order: lists what is near.
+template <class S, class Scene>
+struct list_neighbours {
+  particle_order<S, Scene> order;
+  S skin;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (i >= *order.total) return;
+    constexpr std::uint32_t room = particle_order<S, Scene>::listed;
+    auto const self = static_cast<std::uint32_t>(i);
+    std::uint32_t places[room], found = 0;
+    std::uint8_t rows[room];
+    order.each_near(self, skin, [&](std::uint32_t k, int row) {
+      if (found < room) {
+        places[found] = k;
+        rows[found] = static_cast<std::uint8_t>(row);
+      }
+      ++found;
+    });
+    if (found > room) {
+      order.list(0, i) = order.too_many;
+      return;
+    }
+    id numbers[room];
+    std::uint32_t size = 0;
+    COLLIDE_ROLLED
+    for (std::uint32_t n = 0; n < found; ++n) {
+      std::uint32_t const place = places[n];
+      if (!order.is_in_row(place, self, rows[n])) continue;
+      id const number = order.numbers[place];
+      std::uint32_t at = size++;
+      COLLIDE_ROLLED
+      for (; at > 0 && numbers[at - 1] > number; --at) {
+        numbers[at] = numbers[at - 1];
+        places[at] = places[at - 1];
+      }
+      numbers[at] = number;
+      places[at] = place;
+    }
+    COLLIDE_ROLLED
+    for (std::uint32_t n = 0; n < size; ++n) order.list(n, i) = places[n];
+    if (size < room) order.list(size, i) = self;
+  }
+};
+
+/// Kernel body of `for_each` over places in the order: a particle meets those that overlap it.
+template <class S, class Scene>
+struct meet_neighbours {
+  particle_state<S, typename Scene::all> state;
+  particle_order<S, Scene> order;
+  Scene scene;
+  S dt;
+
+  using meeting = typename particle_order<S, Scene>::meeting;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (i == 0) *order.renew = 0;
+    if (i >= *order.total) return;
+    encounter e{order.load(i)};
+    auto const self = static_cast<std::uint32_t>(i);
+    near_sphere<S> const own = order.spheres[i];
+    std::uint32_t ahead = order.list(0, i);
+    if (ahead == order.too_many) {
+      meet_many(e, self);
+    } else {
+      // while one is met, the next and the entry behind it are on their way
+      auto const entry = [&](std::uint32_t n) {
+        return ahead != self && n < particle_order<S, Scene>::listed ? order.list(n, i) : self;
+      };
+      near_sphere<S> close = order.spheres[ahead];
+      std::uint32_t behind = entry(1);
+      COLLIDE_ROLLED
+      for (std::uint32_t n = 2; ahead != self; ++n) {
+        std::uint32_t const place = ahead;
+        near_sphere<S> const other = close;
+        ahead = behind;
+        close = order.spheres[ahead];
+        behind = entry(n);
+        if (order.are_near(own, other, S(0))) meet(e, place);
+      }
+    }
+    if (e.met) state.store(e.changed, e.self.number, typename Scene::meeting_writes{});
+  }
+
+ private:
+  struct encounter {
+    meeting self, changed;
+    bool met = false;
+    COLLIDE_HD_INLINE explicit encounter(meeting const& p) : self(p), changed(p) {}
+  };
+
+  COLLIDE_HD_INLINE void meet(encounter& e, std::uint32_t k) const {
+    meeting other = order.load(k);
+    if (!is_skipped(e.self)) {
+      scene.meet(e.changed, e.self, other, dt);
+    } else if (!is_skipped(other)) {
+      scene.disturb(e.changed, other);
+    } else {
+      return;
+    }
+    e.met = true;
+  }
+
+  /// Of neighbours that no list has room for. As many as can be held at a time are found, by rising numbers.
+  COLLIDE_HD_INLINE void meet_many(encounter& e, std::uint32_t i) const {
+    id last = 0;
+    for (bool first = true, complete = false; !complete; first = false) {
+      first_neighbours<16> near;
+      order.each_near(i, S(0), [&](std::uint32_t k, int row) {
+        id const number = order.numbers[k];
+        if ((first || number > last) && order.is_in_row(k, i, row)) near.add(number, k);
+      });
+      for (std::uint32_t k = 0; k < near.size; ++k) meet(e, near.places[k]);
+      complete = near.complete;
+      if (!complete) last = near.numbers[near.size - 1];
     }
   }
 
@@ -230,50 +408,75 @@ struct meet_neighbours {
   }
 };
 
-/// The grid and its memory.
+/// The lists, the grid and their memory.
 template <class S, class Scene>
 class neighbours {
  public:
   /// Takes all memory that steps need, for `n` particles of radius up to `radius`.
   template <class Space>
   void reserve(Space& space, std::size_t n, S radius) {
-    std::uint32_t bits = 6;
-    while (bits < 28 && (std::size_t{1} << bits) < 2 * n) ++bits;
-    count_ = std::size_t{1} << bits;
-    // a bit wider than the largest particle, so that rounding separates no pair by more than a cell
-    S const width = larger(2 * radius * (1 + 64 * format<S>::unit), std::numeric_limits<S>::min());
-    cells_ = {1 / width, static_cast<std::uint32_t>(count_ - 1)};
+    std::uint32_t bits = 0;
+    while (bits < 22 && (std::size_t{cells::per_block} << bits) < 2 * n) ++bits;
+    blocks_ = std::size_t{1} << bits;
+    skin_ = skin_of_diameter * 2 * radius;
+    // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
+    // away from the origin
+    S const width = larger((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
+    cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
     auto* const resource = space.resource();
-    ends_.reserve(resource, count_ + 2);
+    std::uint32_t* const header = header_.reserve(resource, 2);
+    space.fill(header, 0, 2 * sizeof *header);
+    space.fill(header, 1, sizeof *header);  // there are no lists yet
+    ends_.reserve(resource, blocks_ * cells::stride);
     numbers_.reserve(resource, n);
     memory_.reserve(resource, n);
     spheres_.reserve(resource, n);
-    scratch_.reserve(resource, larger<std::size_t>(space.scan_bytes(count_ + 1), 1));
+    references_.reserve(resource, n);
+    if constexpr (order::comes_and_goes) space.fill(known_.reserve(resource, n), 0, n * sizeof(*known_.data()));
+    lists_.reserve(resource, order::listed * n);
   }
 
   /// One pass of `meet` over all pairs.
   template <class Space>
   void meet(Space& space, particle_state<S, typename Scene::all> const& state, Scene const& scene, S dt) {
-    particle_order const order{ends_.data(), numbers_.data()};
-    ordered_particles<S, Scene> const ordered{order, order.ends + count_, spheres_.data(),
-                                              memory_.state(state.size, state.placed, state.common_radius)};
-    space.fill(order.ends, 0, (count_ + 2) * sizeof *order.ends);
-    space.for_each(state.size, sort_into_cells<S, Scene, false>{state, cells_, order});
-    space.exclusive_scan(order.ends + 1, count_ + 1, scratch_);
-    space.for_each(state.size, sort_into_cells<S, Scene, true>{state, cells_, order});
-    space.for_each(count_, sort_cells{order});
-    space.for_each(state.size, copy_in_order<S, Scene>{state, ordered});
-    space.for_each(state.size, meet_neighbours<S, Scene>{state, ordered, cells_, scene, dt});
+    order const o{cells_,
+                  ends_.data(),
+                  header_.data() + 1,
+                  header_.data(),
+                  numbers_.data(),
+                  spheres_.data(),
+                  references_.data(),
+                  known_.data(),
+                  memory_.state(state.size, state.placed, state.common_radius),
+                  lists_.data(),
+                  state.size};
+    std::size_t const n = state.size;
+    // half of the skin, but for rounding
+    space.for_each(n, refresh_order<S, Scene>{state, o, S(0.495) * skin_});
+    space.for_each_if(o.renew, blocks_ * cells::stride, empty_cells<S, Scene>{o});
+    space.for_each_if(o.renew, n, sort_into_cells<S, Scene, false>{state, o});
+    space.for_each_if(o.renew, blocks_, allocate_cells<S, Scene>{o});
+    space.for_each_if(o.renew, n, sort_into_cells<S, Scene, true>{state, o});
+    space.for_each_if(o.renew, n, copy_in_order<S, Scene>{state, o});
+    space.for_each_if(o.renew, n, list_neighbours<S, Scene>{o, skin_});
+    space.for_each(n, meet_neighbours<S, Scene>{state, o, scene, dt});
   }
 
  private:
-  particle_cells<S> cells_{};
-  std::size_t count_ = 0;
-  buffer<std::uint32_t> ends_;
+  using order = particle_order<S, Scene>;
+  using cells = particle_cells<S>;
+
+  static constexpr S skin_of_diameter = S(0.1);
+
+  cells cells_{};
+  S skin_{};
+  std::size_t blocks_ = 0;
+  buffer<std::uint32_t> header_, ends_, lists_;
   buffer<id> numbers_;
   buffer<near_sphere<S>> spheres_;
+  buffer<reference<S, contains<typename Scene::all, radius>>> references_;
+  buffer<column_element<present, S>> known_;
   column_buffers<S, typename Scene::meeting_copies> memory_;
-  buffer<unsigned char> scratch_;
 };
 
 }  // namespace collide::detail

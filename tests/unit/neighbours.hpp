@@ -1,0 +1,186 @@
+/// Particles that meet each other, against looking at all pairs; instantiated by test_effects.cpp and
+/// test_effects_cuda.cpp.
+#pragma once
+
+#include <collide/bounds.hpp>
+
+#include "simulation.hpp"
+
+namespace tests {
+
+/// What a particle has met, as a number that depends on whom and in which order.
+struct greeted {
+  template <class S>
+  using value = std::uint32_t;
+};
+
+inline COLLIDE_HD std::uint32_t after_meeting(std::uint32_t before, collide::id other) {
+  return before * 31 + other + 1;
+}
+
+struct greets {
+  using reads = collide::columns<position>;
+  using writes = collide::columns<greeted>;
+
+  template <class Particle, class Seen, class S>
+  COLLIDE_HD void meet(Particle& p, Seen const&, Seen const& other, S) const {
+    p[greeted{}] = after_meeting(p[greeted{}], other.number());
+  }
+};
+
+/// Particles that come and go as the test has it.
+struct ghosts {
+  using writes = collide::columns<collide::present>;
+
+  template <class Particle>
+  COLLIDE_HD bool skips(Particle const& p) const {
+    return p[collide::present{}] == 0;
+  }
+};
+
+/// Particles that grow, up to the size of the largest.
+struct grows {
+  using writes = collide::columns<collide::radius>;
+  double rate = 0, most = 0;
+
+  template <class Particle, class S>
+  COLLIDE_HD void finish(Particle& p, S dt) const {
+    S const larger = p[collide::radius{}] * (1 + S(rate) * dt);
+    p[collide::radius{}] = larger < S(most) ? larger : S(most);
+  }
+};
+
+/// A step at a time: what each has met is what it overlaps when a step begins, by rising numbers. `change(simulation,
+/// step)` is called before each step.
+template <class S, class Simulation, class Change>
+void check_meetings(Simulation& simulation, S common_radius, int steps, S dt, Change const& change,
+                    std::size_t least_met) {
+  using collide::present;
+  using collide::radius;
+  std::size_t const n = simulation.size();
+  std::vector<std::uint32_t> expected(n);
+  std::size_t met = 0, wrong = 0;
+  for (int step = 0; step < steps; ++step) {
+    change(simulation, step);
+    auto const x = simulation.template to_host<position>();
+    std::vector<S> radii(n, common_radius);
+    if constexpr (collide::detail::contains<typename Simulation::columns, radius>) {
+      radii = simulation.template to_host<radius>();
+    }
+    std::vector<std::uint8_t> there(n, 1);
+    if constexpr (collide::detail::contains<typename Simulation::columns, present>) {
+      there = simulation.template to_host<present>();
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = 0; k < n; ++k) {
+        if (k == i || there[i] == 0 || there[k] == 0) continue;
+        collide::vec3<S> const between(x[3 * i] - x[3 * k], x[3 * i + 1] - x[3 * k + 1], x[3 * i + 2] - x[3 * k + 2]);
+        S const reach = radii[i] + radii[k];
+        if (!(collide::detail::dot(between, between) < reach * reach)) continue;
+        expected[i] = after_meeting(expected[i], static_cast<collide::id>(k));
+        ++met;
+      }
+    }
+    simulation.step(dt);
+    auto const found = simulation.template to_host<greeted>();
+    for (std::size_t i = 0; i < n; ++i) wrong += found[i] != expected[i];
+  }
+  CHECK(wrong == 0);
+  CHECK(met >= least_met);
+}
+
+inline constexpr auto no_change = [](auto&, int) {};
+
+/// Writes one particle's values of a column.
+template <class Column, class Simulation, class T>
+void write_particle(Simulation& s, std::size_t i, std::initializer_list<T> values) {
+  s.space().copy_from_host(s.template data<Column>() + i * values.size(), values.begin(), values.size());
+}
+
+/// A cube full of particles, at `where` from the origin.
+template <class S>
+world<S> packed_cube(std::size_t n, double radius, double speed, double where = 0) {
+  auto w = crowd<S>(n, 1, radius, speed, 5);
+  w.corners.clear();
+  for (S& c : w.centres) c += static_cast<S>(where);
+  return w;
+}
+
+template <class S, class Space>
+void check_neighbours(Space const& space) {
+  using collide::bounds;
+  using collide::radius;
+  auto const in_cube = [](double at) { return bounds{{at - 1, at - 1, at - 1}, {at + 1, at + 1, at + 1}, 1}; };
+  std::size_t const n = 700;
+
+  SUBCASE("that stay near, move away now and then, or in each step, or leave several cells behind") {
+    for (double const way : {0.0003, 0.004, 0.05, 1.5}) {
+      CAPTURE(way);
+      running<collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, bounds>> made(
+          space, packed_cube<S>(n, 0.1, way), greets{}, in_cube(0));
+      check_meetings<S>(made.simulation, S(0.1), 60, S(1), no_change, 50000);
+    }
+  }
+  SUBCASE("far away from the origin") {
+    running<collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, bounds>> made(
+        space, packed_cube<S>(n, 0.1, 0.004, -5000), greets{}, in_cube(-5000));
+    check_meetings<S>(made.simulation, S(0.1), 60, S(1), no_change, 50000);
+  }
+  SUBCASE("of many sizes, more than lists have room for, and growing") {
+    using simulation =
+        collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, grows, bounds>;
+    auto w = packed_cube<S>(n, 0.05, 0.002);
+    for (std::size_t i = 0; i < n; ++i) w.radii.push_back(i % 50 == 0 ? S(0.4) : i % 5 == 0 ? S(0.1) : S(0.02));
+    running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{0.02, 0.4}, in_cube(0));
+    check_meetings<S>(made.simulation, S(0), 60, S(1), no_change, 100000);
+  }
+  SUBCASE("that grow where they are") {
+    using simulation =
+        collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, grows>;
+    world<S> w;
+    for (int i = 0; i < 200; ++i) w.particle(0.3 * (i % 6), 0.3 * (i / 6 % 6), 0.3 * (i / 36));
+    w.radii.assign(w.size(), S(0.1));
+    w.radii[7] = S(0.2);
+    running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{0.03, 0.2});
+    check_meetings<S>(made.simulation, S(0), 40, S(1), no_change, 5000);
+  }
+  SUBCASE("that come as close as the skin allows, from two cells apart or one") {
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets>;
+    world<S> w;
+    w.radius = S(0.1);
+    for (int i = 0; i < 300; ++i) {
+      double first[3] = {1.037 * (i % 10), 1.037 * (i / 10 % 10), 1.037 * (i / 100)}, way[3] = {};
+      way[i % 3] = 1.0 / 4096;
+      w.particle(first[0], first[1], first[2], way[0], way[1], way[2]);
+      w.particle(first[0] + 892 * way[0], first[1] + 892 * way[1], first[2] + 892 * way[2], -way[0], -way[1], -way[2]);
+    }
+    running<simulation> made(space, w, greets{});
+    check_meetings<S>(made.simulation, w.radius, 45, S(1), no_change, 600);
+  }
+  SUBCASE("that come and go") {
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
+    running<simulation> made(space, packed_cube<S>(n, 0.1, 0.001), ghosts{}, greets{}, in_cube(0));
+    auto const change = [&](auto& s, int step) {
+      if (step % 3 != 1) return;
+      auto const i = static_cast<std::size_t>(step * 11 % 700);
+      write_particle<collide::present>(s, i, {std::uint8_t(0)});
+      if (step > 20)
+        write_particle<collide::present>(s, static_cast<std::size_t>((step - 18) * 11 % 700), {std::uint8_t(1)});
+    };
+    check_meetings<S>(made.simulation, S(0.1), 60, S(1), change, 50000);
+  }
+  SUBCASE("that are put elsewhere, also from nowhere") {
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets>;
+    running<simulation> made(space, packed_cube<S>(n, 0.1, 0.0005), greets{});
+    S const nan = std::numeric_limits<S>::quiet_NaN();
+    auto const change = [&](auto& s, int step) {
+      if (step == 10) write_particle<position>(s, 3, {S(0), S(0.1), S(0)});
+      if (step == 20) write_particle<position>(s, 5, {nan, S(0), S(0)});
+      if (step == 30) write_particle<position>(s, 5, {S(0), S(-0.1), S(0)});
+      if (step == 40) write_particle<position>(s, 8, {S(3), S(3), S(3)});
+    };
+    check_meetings<S>(made.simulation, S(0.1), 50, S(1), change, 50000);
+  }
+}
+
+}  // namespace tests
