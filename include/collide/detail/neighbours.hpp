@@ -88,6 +88,7 @@ struct particle_order {
   std::uint32_t* ends;   ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
   std::uint32_t* total;  ///< number of particles in the order
   std::uint32_t* renew;  ///< not 0: the lists are to be made anew
+  std::uint32_t* crowded;  ///< not 0: some particles have more neighbours than lists have room for
   id* numbers;
   near_sphere<S>* spheres;                          ///< as they are in this step
   reference<S, contains<all, radius>>* references;  ///< as they were when the lists were made
@@ -134,16 +135,20 @@ struct particle_order {
     COLLIDE_ROLLED
     for (int row = 0; row < 9; ++row) {
       cell const from = first_of(here, row);
-      std::int32_t together;
+      std::int32_t const together = smaller(3, 16 - (from.x & 15));  // those in the same block follow each other
+      std::uint32_t const first = cells.number(from);
+      std::uint32_t const begin = ends[first], size = ends[first + static_cast<std::uint32_t>(together)] - begin;
+      std::uint32_t jump = 0, both = size;
+      if (together < 3) {
+        std::uint32_t const rest = cells.number({from.x + together, from.y, from.z});
+        jump = ends[rest];
+        both += ends[rest + static_cast<std::uint32_t>(3 - together)] - jump;
+        jump -= size;
+      }
       COLLIDE_ROLLED
-      for (std::int32_t x = 0; x < 3; x += together) {
-        together = smaller(3 - x, 16 - ((from.x + x) & 15));  // those in the same block follow each other
-        std::uint32_t const first = cells.number({from.x + x, from.y, from.z});
-        std::uint32_t const end = ends[first + static_cast<std::uint32_t>(together)];
-        COLLIDE_ROLLED
-        for (std::uint32_t k = ends[first]; k < end; ++k) {
-          if (are_near(self, spheres[k], skin) && k != i) f(k, row);
-        }
+      for (std::uint32_t n = 0; n < both; ++n) {
+        std::uint32_t const k = n + (n < size ? begin : jump);
+        if (are_near(self, spheres[k], skin) && k != i) f(k, row);
       }
     }
   }
@@ -222,7 +227,7 @@ struct empty_cells {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     order.ends[i] = 0;
-    if (i == 0) *order.total = 0;
+    if (i == 0) *order.total = *order.crowded = 0;
   }
 };
 
@@ -302,6 +307,7 @@ struct list_neighbours {
     });
     if (found > room) {
       order.list(0, i) = order.too_many;
+      store_relaxed(order.crowded, 1u);
       return;
     }
     id numbers[room];
@@ -326,85 +332,103 @@ struct list_neighbours {
   }
 };
 
-/// Kernel body of `for_each` over places in the order: a particle meets those that overlap it.
+/// What happens where particles meet.
 template <class S, class Scene>
-struct meet_neighbours {
+struct meetings {
   particle_state<S, typename Scene::all> state;
   particle_order<S, Scene> order;
   Scene scene;
   S dt;
 
+ protected:
   using meeting = typename particle_order<S, Scene>::meeting;
 
-  COLLIDE_HD void operator()(std::size_t i) const {
-    if (i == 0) *order.renew = 0;
-    if (i >= *order.total) return;
-    encounter e{order.load(i)};
-    auto const self = static_cast<std::uint32_t>(i);
-    near_sphere<S> const own = order.spheres[i];
-    std::uint32_t ahead = order.list(0, i);
-    if (ahead == order.too_many) {
-      meet_many(e, self);
-    } else {
-      // while one is met, the next and the entry behind it are on their way
-      auto const entry = [&](std::uint32_t n) {
-        return ahead != self && n < particle_order<S, Scene>::listed ? order.list(n, i) : self;
-      };
-      near_sphere<S> close = order.spheres[ahead];
-      std::uint32_t behind = entry(1);
-      COLLIDE_ROLLED
-      for (std::uint32_t n = 2; ahead != self; ++n) {
-        std::uint32_t const place = ahead;
-        near_sphere<S> const other = close;
-        ahead = behind;
-        close = order.spheres[ahead];
-        behind = entry(n);
-        if (order.are_near(own, other, S(0))) meet(e, place);
-      }
-    }
-    if (e.met) state.store(e.changed, e.self.number, typename Scene::meeting_writes{});
-  }
-
- private:
-  struct encounter {
+  /// A particle before and after.
+  struct participant {
     meeting self, changed;
     bool met = false;
-    COLLIDE_HD_INLINE explicit encounter(meeting const& p) : self(p), changed(p) {}
+    COLLIDE_HD_INLINE explicit participant(meeting const& p) : self(p), changed(p) {}
   };
 
-  COLLIDE_HD_INLINE void meet(encounter& e, std::uint32_t k) const {
-    meeting other = order.load(k);
-    if (!is_skipped(e.self)) {
-      scene.meet(e.changed, e.self, other, dt);
+  COLLIDE_HD_INLINE void meet(participant& p, std::uint32_t place) const {
+    meeting other = order.load(place);
+    if (!is_skipped(p.self)) {
+      scene.meet(p.changed, p.self, other, dt);
     } else if (!is_skipped(other)) {
-      scene.disturb(e.changed, other);
+      scene.disturb(p.changed, other);
     } else {
       return;
     }
-    e.met = true;
+    p.met = true;
   }
 
-  /// Of neighbours that no list has room for. As many as can be held at a time are found, by rising numbers.
-  COLLIDE_HD_INLINE void meet_many(encounter& e, std::uint32_t i) const {
-    id last = 0;
-    for (bool first = true, complete = false; !complete; first = false) {
-      first_neighbours<16> near;
-      order.each_near(i, S(0), [&](std::uint32_t k, int row) {
-        id const number = order.numbers[k];
-        if ((first || number > last) && order.is_in_row(k, i, row)) near.add(number, k);
-      });
-      for (std::uint32_t k = 0; k < near.size; ++k) meet(e, near.places[k]);
-      complete = near.complete;
-      if (!complete) last = near.numbers[near.size - 1];
-    }
+  COLLIDE_HD_INLINE void store(participant const& p) const {
+    if (p.met) state.store(p.changed, p.self.number, typename Scene::meeting_writes{});
   }
 
+ private:
   COLLIDE_HD_INLINE bool is_skipped(meeting& p) const {
     if constexpr (Scene::skips) {
       return scene.is_skipped(p);
     } else {
       return false;
     }
+  }
+};
+
+/// Kernel body of `for_each` over places in the order: a particle meets those on its list that overlap it.
+template <class S, class Scene>
+struct meet_neighbours : meetings<S, Scene> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& order = this->order;
+    if (i == 0) *order.renew = 0;
+    if (i >= *order.total) return;
+    auto const self = static_cast<std::uint32_t>(i);
+    std::uint32_t ahead = order.list(0, i);
+    if (ahead == order.too_many) return;
+    typename meetings<S, Scene>::participant p(order.load(i));
+    near_sphere<S> const own = order.spheres[i];
+    // while one is met, the next and the entry behind it are on their way
+    auto const entry = [&](std::uint32_t n) {
+      return ahead != self && n < particle_order<S, Scene>::listed ? order.list(n, i) : self;
+    };
+    near_sphere<S> close = order.spheres[ahead];
+    std::uint32_t behind = entry(1);
+    COLLIDE_ROLLED
+    for (std::uint32_t n = 2; ahead != self; ++n) {
+      std::uint32_t const place = ahead;
+      near_sphere<S> const other = close;
+      ahead = behind;
+      close = order.spheres[ahead];
+      behind = entry(n);
+      if (order.are_near(own, other, S(0))) this->meet(p, place);
+    }
+    this->store(p);
+  }
+};
+
+/// Kernel body of `for_each_if` over places in the order: the same for particles with more neighbours than lists have
+/// room for. As many as can be held at a time are found, by rising numbers.
+template <class S, class Scene>
+struct meet_crowds : meetings<S, Scene> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& order = this->order;
+    if (i >= *order.total || order.list(0, i) != order.too_many) return;
+    auto const self = static_cast<std::uint32_t>(i);
+    typename meetings<S, Scene>::participant p(order.load(i));
+    id last = 0;
+    for (bool first = true, complete = false; !complete; first = false) {
+      first_neighbours<16> near;
+      order.each_near(self, S(0), [&](std::uint32_t k, int row) {
+        id const number = order.numbers[k];
+        if ((first || number > last) && order.is_in_row(k, self, row)) near.add(number, k);
+      });
+      COLLIDE_ROLLED
+      for (std::uint32_t k = 0; k < near.size; ++k) this->meet(p, near.places[k]);
+      complete = near.complete;
+      if (!complete) last = near.numbers[near.size - 1];
+    }
+    this->store(p);
   }
 };
 
@@ -424,8 +448,8 @@ class neighbours {
     S const width = larger((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
     cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
     auto* const resource = space.resource();
-    std::uint32_t* const header = header_.reserve(resource, 2);
-    space.fill(header, 0, 2 * sizeof *header);
+    std::uint32_t* const header = header_.reserve(resource, 3);
+    space.fill(header, 0, 3 * sizeof *header);
     space.fill(header, 1, sizeof *header);  // there are no lists yet
     ends_.reserve(resource, blocks_ * cells::stride);
     numbers_.reserve(resource, n);
@@ -443,6 +467,7 @@ class neighbours {
                   ends_.data(),
                   header_.data() + 1,
                   header_.data(),
+                  header_.data() + 2,
                   numbers_.data(),
                   spheres_.data(),
                   references_.data(),
@@ -459,7 +484,8 @@ class neighbours {
     space.for_each_if(o.renew, n, sort_into_cells<S, Scene, true>{state, o});
     space.for_each_if(o.renew, n, copy_in_order<S, Scene>{state, o});
     space.for_each_if(o.renew, n, list_neighbours<S, Scene>{o, skin_});
-    space.for_each(n, meet_neighbours<S, Scene>{state, o, scene, dt});
+    space.for_each(n, meet_neighbours<S, Scene>{{state, o, scene, dt}});
+    space.for_each_if(o.crowded, n, meet_crowds<S, Scene>{{state, o, scene, dt}});
   }
 
  private:
