@@ -15,7 +15,6 @@
 #include <cub/block/block_scan.cuh>
 #include <cub/device/device_merge_sort.cuh>
 #include <cub/device/device_radix_sort.cuh>
-#include <cub/device/device_scan.cuh>
 #include <cuda_runtime.h>
 
 #include <collide/contact.hpp>
@@ -488,20 +487,6 @@ class cuda_space {
     cuda_check(cudaMemcpyAsync(static_cast<void*>(to), from, n * sizeof(T), cudaMemcpyHostToDevice, stream_),
                "cudaMemcpyAsync");
     synchronize();
-  }
-
-  std::size_t scan_bytes(std::size_t n) const {
-    std::size_t bytes = 0;
-    std::uint32_t* const none = nullptr;
-    cuda_check(cub::DeviceScan::ExclusiveSum(nullptr, bytes, none, none, n, stream_), "cub::DeviceScan::ExclusiveSum");
-    return bytes;
-  }
-
-  void exclusive_scan(std::uint32_t* values, std::size_t n, buffer<unsigned char>& scratch) const {
-    std::size_t bytes = scan_bytes(n);
-    void* const temporary = scratch.reserve(resource_, bytes);
-    cuda_check(cub::DeviceScan::ExclusiveSum(temporary, bytes, values, values, n, stream_),
-               "cub::DeviceScan::ExclusiveSum");
   }
 
   /// Sorts pairs into canonical order: not very many by merging; more by radix, by triangle, then (stably) by sphere,

@@ -127,9 +127,7 @@ class host {
     if (n != 0) std::memcpy(static_cast<void*>(to), from, n * sizeof(T));
   }
 
-  /// Bytes of temporary memory that `exclusive_scan` takes.
-  std::size_t scan_bytes(std::size_t) const { return 0; }
-
+  /// Running sums of the values before each.
   void exclusive_scan(std::uint32_t* values, std::size_t n, buffer<unsigned char>&) const {
     constexpr std::size_t most = 64, least = 1 << 14;  // parts, and values in a part
     std::size_t const parts = std::min(threads() > 1 ? n / least + 1 : 1, most), share = (n + parts - 1) / parts;
