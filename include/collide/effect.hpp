@@ -15,7 +15,7 @@
 /// | `skips(particle)`                 | first: true if nothing happens to the particle in this step | |
 /// `accelerate(particle&, dt)`       | before positions move: change the velocity                                    |
 /// | `touch(particle&, touching&, dt)` | for each contact with the mesh, the deepest (swept: the earliest) first | |
-/// `meet(particle&, self, other, dt)`| for each other particle that overlaps it; only then are particles sorted      |
+/// `meet(particle&, self, other, dt)`| for each other particle that overlaps it; only then are neighbours listed     |
 /// | `disturb(particle&, other)`       | instead, if the particle is skipped and the other is not | |
 /// `finish(particle&, dt)`           | at the end of the step                                                        |
 ///

@@ -83,9 +83,9 @@ struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup(
 /// moves particles in straight lines, and nothing else.
 ///
 /// `step` allocates nothing and never waits: in the CUDA spaces it puts one kernel on the stream of the space, two if
-/// an effect touches the mesh (more with `meet` or `begin_step`), and can be captured in a CUDA graph. The same steps
-/// give the same bits on every run in the same space. O(particles + candidates) per step. A simulation is for one
-/// thread at a time.
+/// an effect touches the mesh (more with `meet` or `begin_step`), and can be captured in a CUDA graph, which is good
+/// until the next `set` or `set_mesh`. The same steps give the same bits on every run in the same space.
+/// O(particles + candidates) per step. A simulation is for one thread at a time.
 template <class Detector, class... Effect>
 class simulation {
   static_assert(detail::is_detector<Detector>::value,

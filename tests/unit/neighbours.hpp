@@ -169,6 +169,25 @@ void check_neighbours(Space const& space) {
     };
     check_meetings<S>(made.simulation, S(0.1), 60, S(1), change, 50000);
   }
+  SUBCASE("that come one after the other, while some are fast, and more at a time than lists take") {
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
+    auto w = packed_cube<S>(n, 0.1, 0.0005);
+    for (std::size_t i = 0; i < 9; ++i) w.velocities[3 * 11 * i] = S(0.05 * (double(i) - 4));
+    running<simulation> made(space, w, ghosts{}, greets{}, in_cube(0));
+    auto const change = [&](auto& s, int step) {
+      auto const several = [&](std::size_t from, std::size_t count, int there) {
+        for (std::size_t i = from; i < from + count; ++i)
+          write_particle<collide::present>(s, i % 700, {std::uint8_t(there)});
+      };
+      auto const at = static_cast<std::size_t>(step);
+      if (step == 0) several(300, 400, 0);
+      if (step > 0) several(300 + 3 * at, 3, 1);
+      if (step % 4 == 0) several(100 + at, 1, 0);
+      if (step == 30) several(500, 150, 1);
+      if (step == 50) several(0, 300, 1);
+    };
+    check_meetings<S>(made.simulation, S(0.1), 60, S(1), change, 50000);
+  }
   SUBCASE("that are put elsewhere, also from nowhere") {
     using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets>;
     running<simulation> made(space, packed_cube<S>(n, 0.1, 0.0005), greets{});

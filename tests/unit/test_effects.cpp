@@ -19,6 +19,23 @@ class reversed : public host {
   void for_each(std::size_t n, F const& f) const {
     for (std::size_t i = n; i-- > 0;) f(i);
   }
+  template <class F>
+  void for_each_if(std::uint32_t const* condition, std::size_t n, F const& f) const {
+    if (*condition != 0) for_each(n, f);
+  }
+};
+
+/// Counts what is seldom done.
+class counting_space : public host {
+ public:
+  using host::host;
+  static inline int done = 0;
+
+  template <class F>
+  void for_each_if(std::uint32_t const* condition, std::size_t n, F const& f) const {
+    done += *condition != 0;
+    host::for_each_if(condition, n, f);
+  }
 };
 
 }  // namespace
@@ -58,6 +75,25 @@ TEST_CASE_TEMPLATE("effects: particles meet those that they overlap, in the orde
 TEST_CASE("effects: particles meet those that they overlap, whoever is first") {
   tests::check_neighbours<float>(host(2));
   tests::check_neighbours<float>(reversed());
+}
+
+TEST_CASE("effects: lists of neighbours are kept while little has moved, whatever few do") {
+  using namespace tests;
+  using simulation = collide::simulation<meets_mesh<counting_space>, ghosts, greets, collide::bounds>;
+  auto w = packed_cube<float>(700, 0.1, 0.00001);
+  for (std::size_t k = 0; k < 3; ++k) w.velocities[k] = 0.3f;
+  running<simulation> made(counting_space(1), w, ghosts{}, greets{}, collide::bounds{{-1, -1, -1}, {1, 1, 1}, 1});
+  for (std::size_t i = 600; i < 700; ++i) write_particle<present>(made.simulation, i, {std::uint8_t(0)});
+  auto const after = [&](std::size_t steps) {
+    counting_space::done = 0;
+    made.simulation.steps(steps, 1);
+    return counting_space::done;
+  };
+  CHECK(after(1) == 6);    // the lists are made, and no particle is crowded out
+  CHECK(after(50) == 50);  // the fast one strays in each step
+  write_particle<present>(made.simulation, 650, {std::uint8_t(1)});
+  CHECK(after(1) == 1);          // with it one that came
+  CHECK(after(100) == 100 + 5);  // in one of these, strays have become too many
 }
 
 TEST_CASE("effects: what rests sleeps until it is hit") { tests::check_sleep(host(1)); }

@@ -5,12 +5,16 @@
 /// may cross a half before something can be missing (L. Verlet, "Computer experiments on classical fluids I", Physical
 /// Review 159(1), 1967). Until then a step only copies the particles' columns in the order of the last grid, and tries
 /// what is listed. It is found out on the device whether that is so: kernels that renew the lists end at once if not.
+/// The few that come, or move far, are strays: they make a list of their own, and those near them add them to theirs.
+/// Where strays have become too many, all lists are made anew. What is no longer there is left out.
 ///
 /// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. They lie in a
 /// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
 /// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
-/// particles, and each particle looks into the 27 cells around it. What has too many neighbours for its list does so in
-/// each step.
+/// particles, and each particle looks into the 27 cells around it, and through the strays. What has too many neighbours
+/// for its list does so in each step.
+///
+/// Distances must be such that their squares neither overflow nor vanish: with floats, radii from 1e-17 to 1e18.
 ///
 /// Neighbours meet in the order of their numbers: so sums over them do not depend on which thread was first, nor on
 /// when the lists were made.
@@ -75,6 +79,18 @@ struct reference<S, true> : near_sphere<S> {
   COLLIDE_HD_INLINE S growth(near_sphere<S> const& s) const { return larger(s.radius - this->radius, S(0)); }
 };
 
+/// What all particles in the order have in common.
+struct order_header {
+  static constexpr std::uint32_t room = 128;
+
+  std::uint32_t renew;         ///< not 0: the lists are to be made anew
+  std::uint32_t crowded;       ///< not 0: some particles have more neighbours than lists have room for
+  std::uint32_t before, now;   ///< how many particles were in the order after the last step, and are now
+  std::uint32_t arrivals;      ///< not 0: there are strays of this step
+  std::uint32_t seen, count;   ///< strays of earlier steps, and with those of this one
+  std::uint32_t strays[room];  ///< places of what came or moved far since the grid was made, once for each time
+};
+
 /// The particles in the order of the grid, with all that they must know of each other.
 template <class S, class Scene>
 struct particle_order {
@@ -85,19 +101,17 @@ struct particle_order {
   static constexpr bool comes_and_goes = contains<all, present>;
 
   particle_cells<S> cells;
-  std::uint32_t* ends;   ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
-  std::uint32_t* total;  ///< number of particles in the order
-  std::uint32_t* renew;  ///< not 0: the lists are to be made anew
-  std::uint32_t* crowded;  ///< not 0: some particles have more neighbours than lists have room for
+  std::uint32_t* ends;  ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
+  order_header* header;
   id* numbers;
   near_sphere<S>* spheres;                          ///< as they are in this step
-  reference<S, contains<all, radius>>* references;  ///< as they were when the lists were made
-  column_element<present, S>* known;                ///< the same of who is there, by numbers
+  reference<S, contains<all, radius>>* references;  ///< as they were when they came to the order, or strayed
+  column_element<present, S>* known;                ///< whether particles are in the order, by numbers
   particle_state<S, copied> copies;
 
   static constexpr std::uint32_t listed = 12;  ///< the most neighbours that a list has
   static constexpr std::uint32_t too_many = 0xffffffffu;
-  std::uint32_t* lists;  ///< places, in the order of numbers; ends with the particle itself, or begins with too_many
+  std::uint32_t* lists;  ///< places, in the order of numbers; the particle's own behind the last; or too_many
   std::size_t capacity;  ///< of each of `listed` arrays
 
   COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
@@ -126,8 +140,27 @@ struct particle_order {
     return dot(between, between) < mul(reach, reach);
   }
 
+  /// Puts a particle that is not there so far away, and makes it so small, that it is near nothing, not even its like.
+  COLLIDE_HD_INLINE void leave_out(std::size_t i) const {
+    constexpr S far = std::numeric_limits<S>::max();  // squares of distances overflow
+    spheres[i] = {far, far, far, S(0)};
+  }
+
+  /// Lists a particle as one that the grid does not have where it is.
+  COLLIDE_HD_INLINE void stray(std::uint32_t i, near_sphere<S> const& now) const {
+    references[i].set(now);
+    std::uint32_t const n = fetch_add(&header->count, 1u);
+    if (n < header->room) {
+      header->strays[n] = i;
+      store_relaxed(&header->arrivals, 1u);
+    } else {
+      store_relaxed(&header->renew, 1u);
+    }
+  }
+
   /// f(place, row) for those less than `skin` away from particle i, of which `is_in_row` must still be asked. That
-  /// takes a while, in which threads that run together would wait for the one that has found something.
+  /// takes a while, in which threads that run together would wait for the one that has found something. Strays may come
+  /// more than once.
   template <class F>
   COLLIDE_HD_INLINE void each_near(std::uint32_t i, S skin, F const& f) const {
     near_sphere<S> const self = spheres[i];
@@ -151,15 +184,24 @@ struct particle_order {
         if (are_near(self, spheres[k], skin) && k != i) f(k, row);
       }
     }
+    std::uint32_t const strays = header->count;
+    COLLIDE_ROLLED
+    for (std::uint32_t n = 0; n < strays; ++n) {
+      std::uint32_t const k = header->strays[n];
+      if (are_near(self, spheres[k], skin) && k != i) f(k, no_row);
+    }
   }
 
   /// True if particle k is in a row of cells around particle i, and not in others at the same place of the table.
   COLLIDE_HD_INLINE bool is_in_row(std::uint32_t k, std::uint32_t i, int row) const {
+    if (row == no_row) return true;
     cell const from = first_of(cell_of(i), row), there = cell_of(k);
     return there.y == from.y && there.z == from.z && there.x >= from.x && there.x <= from.x + 2;
   }
 
  private:
+  static constexpr int no_row = 9;
+
   /// The first of three cells along x next to a cell.
   static COLLIDE_HD_INLINE cell first_of(cell here, int row) {
     return {here.x - 1, here.y + row % 3 - 1, here.z + row / 3 - 1};
@@ -179,17 +221,24 @@ struct first_neighbours {
   std::uint32_t size = 0;
   bool complete = true;
 
+  /// Once each, also if it is added again.
   COLLIDE_HD_INLINE void add(id number, std::uint32_t place) {
+    if (size == Room && number > numbers[Room - 1]) {
+      complete = false;
+      return;
+    }
+    std::uint32_t at = size;
+    COLLIDE_ROLLED
+    while (at > 0 && numbers[at - 1] > number) --at;
+    if (at > 0 && numbers[at - 1] == number) return;
     if (size == Room) {
       complete = false;
-      if (number > numbers[Room - 1]) return;
       --size;
     }
-    std::uint32_t at = size++;
     COLLIDE_ROLLED
-    for (; at > 0 && numbers[at - 1] > number; --at) {
-      numbers[at] = numbers[at - 1];
-      places[at] = places[at - 1];
+    for (std::uint32_t k = size++; k > at; --k) {
+      numbers[k] = numbers[k - 1];
+      places[k] = places[k - 1];
     }
     numbers[at] = number;
     places[at] = place;
@@ -204,19 +253,37 @@ struct refresh_order {
   particle_order<S, Scene> order;
   S most;  ///< that a particle may have moved
 
+  using ordered = particle_order<S, Scene>;
+
   COLLIDE_HD void operator()(std::size_t i) const {
-    if constexpr (particle_order<S, Scene>::comes_and_goes) {
-      if (state.at(present{})[i] != order.known[i]) store_relaxed(order.renew, 1u);
+    if constexpr (ordered::comes_and_goes) {
+      if (is_there(i) && order.known[i] == 0) come(i);
     }
-    if (i >= *order.total) return;
-    typename particle_order<S, Scene>::meeting p;
-    state.load(p, order.numbers[i]);
+    if (i >= order.header->before) return;
+    id const number = order.numbers[i];
+    if constexpr (ordered::comes_and_goes) {
+      if (!is_there(number)) return order.leave_out(i);
+    }
+    typename ordered::meeting p;
+    state.load(p, number);
     near_sphere<S> const now = order.store(i, p);
     auto const before = order.references[i];
     vec3<S> const way(now.x - before.x, now.y - before.y, now.z - before.z);
     S const left = most - before.growth(now);
-    bool const stayed = dot(way, way) <= mul(left, left) && left >= 0;
-    if (!stayed && finite(p[position{}])) store_relaxed(order.renew, 1u);
+    bool const stayed = dot(way, way) < mul(left, left) && left > 0;
+    if (!stayed && finite(p[position{}])) order.stray(static_cast<std::uint32_t>(i), now);
+  }
+
+ private:
+  COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(present{})[number] != 0; }
+
+  COLLIDE_HD_INLINE void come(std::size_t number) const {
+    typename ordered::meeting p;
+    state.load(p, number);
+    std::uint32_t const place = fetch_add(&order.header->now, 1u);
+    order.known[number] = 1;
+    order.numbers[place] = p.number;
+    order.stray(place, order.store(place, p));
   }
 };
 
@@ -227,7 +294,9 @@ struct empty_cells {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     order.ends[i] = 0;
-    if (i == 0) *order.total = *order.crowded = 0;
+    if (i != 0) return;
+    auto& h = *order.header;
+    h.crowded = h.now = h.arrivals = h.seen = h.count = 0;
   }
 };
 
@@ -262,7 +331,7 @@ struct allocate_cells {
     std::uint32_t sum = 0;
     for (std::uint32_t c = 1; c <= order.cells.per_block; ++c) sum += ends[c];
     if (sum == 0) return;
-    std::uint32_t next = fetch_add(order.total, sum);
+    std::uint32_t next = fetch_add(&order.header->now, sum);
     ends[0] = next;
     for (std::uint32_t c = 1; c <= order.cells.per_block; ++c) {
       std::uint32_t const count = ends[c];
@@ -279,7 +348,7 @@ struct copy_in_order {
   particle_order<S, Scene> order;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (i >= *order.total) return;
+    if (i >= order.header->now) return;
     typename particle_order<S, Scene>::meeting p;
     state.load(p, order.numbers[i]);
     order.references[i].set(order.store(i, p));
@@ -293,42 +362,71 @@ struct list_neighbours {
   S skin;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (i >= *order.total) return;
-    constexpr std::uint32_t room = particle_order<S, Scene>::listed;
-    auto const self = static_cast<std::uint32_t>(i);
+    if (i < order.header->now) list(static_cast<std::uint32_t>(i));
+  }
+
+ protected:
+  static constexpr std::uint32_t room = particle_order<S, Scene>::listed;
+
+  COLLIDE_HD_INLINE void list(std::uint32_t i) const {
     std::uint32_t places[room], found = 0;
     std::uint8_t rows[room];
-    order.each_near(self, skin, [&](std::uint32_t k, int row) {
+    order.each_near(i, skin, [&](std::uint32_t k, int row) {
       if (found < room) {
         places[found] = k;
         rows[found] = static_cast<std::uint8_t>(row);
       }
       ++found;
     });
-    if (found > room) {
-      order.list(0, i) = order.too_many;
-      store_relaxed(order.crowded, 1u);
-      return;
-    }
-    id numbers[room];
-    std::uint32_t size = 0;
+    if (found > room) return crowd(i);
+    first_neighbours<room> near;
     COLLIDE_ROLLED
     for (std::uint32_t n = 0; n < found; ++n) {
-      std::uint32_t const place = places[n];
-      if (!order.is_in_row(place, self, rows[n])) continue;
-      id const number = order.numbers[place];
-      std::uint32_t at = size++;
-      COLLIDE_ROLLED
-      for (; at > 0 && numbers[at - 1] > number; --at) {
-        numbers[at] = numbers[at - 1];
-        places[at] = places[at - 1];
-      }
-      numbers[at] = number;
-      places[at] = place;
+      if (order.is_in_row(places[n], i, rows[n])) near.add(order.numbers[places[n]], places[n]);
     }
     COLLIDE_ROLLED
-    for (std::uint32_t n = 0; n < size; ++n) order.list(n, i) = places[n];
-    if (size < room) order.list(size, i) = self;
+    for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];
+    if (near.size < room) order.list(near.size, i) = i;
+  }
+
+  COLLIDE_HD_INLINE void crowd(std::uint32_t i) const {
+    order.list(0, i) = order.too_many;
+    store_relaxed(&order.header->crowded, 1u);
+  }
+};
+
+/// Kernel body of `for_each_if` over places in the order, where a few have come or moved far: these make a list, and
+/// the others near them put them into theirs. `skin` is larger by half of the skin, which others may have moved
+/// already.
+template <class S, class Scene>
+struct admit_strays : list_neighbours<S, Scene> {
+  COLLIDE_HD void operator()(std::size_t place) const {
+    auto const& order = this->order;
+    order_header const& h = *order.header;
+    if (place >= h.now) return;
+    auto const i = static_cast<std::uint32_t>(place);
+    for (std::uint32_t n = h.seen; n < h.count; ++n) {
+      if (h.strays[n] == i) return this->list(i);
+    }
+    near_sphere<S> const own = order.spheres[i];
+    for (std::uint32_t n = h.seen; n < h.count; ++n) {
+      if (order.are_near(own, order.spheres[h.strays[n]], this->skin)) insert(i, h.strays[n]);
+    }
+  }
+
+ private:
+  COLLIDE_HD_INLINE void insert(std::uint32_t i, std::uint32_t stray) const {
+    auto const& order = this->order;
+    std::uint32_t at = 0, size = 0;
+    for (; size < this->room && order.list(size, i) != i; ++size) {
+      std::uint32_t const other = order.list(size, i);
+      if (other == stray || other == order.too_many) return;
+      if (order.numbers[other] < order.numbers[stray]) at = size + 1;
+    }
+    if (size == this->room) return this->crowd(i);
+    if (size + 1 < this->room) order.list(size + 1, i) = i;
+    for (std::uint32_t n = size; n > at; --n) order.list(n, i) = order.list(n - 1, i);
+    order.list(at, i) = stray;
   }
 };
 
@@ -381,8 +479,8 @@ template <class S, class Scene>
 struct meet_neighbours : meetings<S, Scene> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& order = this->order;
-    if (i == 0) *order.renew = 0;
-    if (i >= *order.total) return;
+    if (i == 0) settle(*order.header);
+    if (i >= order.header->now) return;
     auto const self = static_cast<std::uint32_t>(i);
     std::uint32_t ahead = order.list(0, i);
     if (ahead == order.too_many) return;
@@ -405,6 +503,14 @@ struct meet_neighbours : meetings<S, Scene> {
     }
     this->store(p);
   }
+
+ private:
+  /// The header for the next step; what is written here is not read until then.
+  static COLLIDE_HD_INLINE void settle(order_header& h) {
+    h.renew = h.arrivals = 0;
+    h.before = h.now;
+    h.seen = h.count;
+  }
 };
 
 /// Kernel body of `for_each_if` over places in the order: the same for particles with more neighbours than lists have
@@ -413,7 +519,7 @@ template <class S, class Scene>
 struct meet_crowds : meetings<S, Scene> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& order = this->order;
-    if (i >= *order.total || order.list(0, i) != order.too_many) return;
+    if (i >= order.header->now || order.list(0, i) != order.too_many) return;
     auto const self = static_cast<std::uint32_t>(i);
     typename meetings<S, Scene>::participant p(order.load(i));
     id last = 0;
@@ -448,9 +554,9 @@ class neighbours {
     S const width = larger((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
     cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
     auto* const resource = space.resource();
-    std::uint32_t* const header = header_.reserve(resource, 3);
-    space.fill(header, 0, 3 * sizeof *header);
-    space.fill(header, 1, sizeof *header);  // there are no lists yet
+    order_header* const header = header_.reserve(resource, 1);
+    space.fill(header, 0, sizeof *header);
+    space.fill(&header->renew, 1, sizeof header->renew);  // there are no lists yet
     ends_.reserve(resource, blocks_ * cells::stride);
     numbers_.reserve(resource, n);
     memory_.reserve(resource, n);
@@ -463,29 +569,25 @@ class neighbours {
   /// One pass of `meet` over all pairs.
   template <class Space>
   void meet(Space& space, particle_state<S, typename Scene::all> const& state, Scene const& scene, S dt) {
-    order const o{cells_,
-                  ends_.data(),
-                  header_.data() + 1,
-                  header_.data(),
-                  header_.data() + 2,
-                  numbers_.data(),
-                  spheres_.data(),
-                  references_.data(),
-                  known_.data(),
-                  memory_.state(state.size, state.placed, state.common_radius),
-                  lists_.data(),
-                  state.size};
+    order const o{cells_,          ends_.data(),
+                  header_.data(),  numbers_.data(),
+                  spheres_.data(), references_.data(),
+                  known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
+                  lists_.data(),   state.size};
     std::size_t const n = state.size;
+    std::uint32_t const *const renew = &o.header->renew, *const arrivals = &o.header->arrivals,
+                               *const crowded = &o.header->crowded;
     // half of the skin, but for rounding
     space.for_each(n, refresh_order<S, Scene>{state, o, S(0.495) * skin_});
-    space.for_each_if(o.renew, blocks_ * cells::stride, empty_cells<S, Scene>{o});
-    space.for_each_if(o.renew, n, sort_into_cells<S, Scene, false>{state, o});
-    space.for_each_if(o.renew, blocks_, allocate_cells<S, Scene>{o});
-    space.for_each_if(o.renew, n, sort_into_cells<S, Scene, true>{state, o});
-    space.for_each_if(o.renew, n, copy_in_order<S, Scene>{state, o});
-    space.for_each_if(o.renew, n, list_neighbours<S, Scene>{o, skin_});
+    space.for_each_if(renew, blocks_ * cells::stride, empty_cells<S, Scene>{o});
+    space.for_each_if(renew, n, sort_into_cells<S, Scene, false>{state, o});
+    space.for_each_if(renew, blocks_, allocate_cells<S, Scene>{o});
+    space.for_each_if(renew, n, sort_into_cells<S, Scene, true>{state, o});
+    space.for_each_if(renew, n, copy_in_order<S, Scene>{state, o});
+    space.for_each_if(renew, n, list_neighbours<S, Scene>{o, skin_});
+    space.for_each_if(arrivals, n, admit_strays<S, Scene>{{o, S(1.5) * skin_}});
     space.for_each(n, meet_neighbours<S, Scene>{{state, o, scene, dt}});
-    space.for_each_if(o.crowded, n, meet_crowds<S, Scene>{{state, o, scene, dt}});
+    space.for_each_if(crowded, n, meet_crowds<S, Scene>{{state, o, scene, dt}});
   }
 
  private:
@@ -497,7 +599,8 @@ class neighbours {
   cells cells_{};
   S skin_{};
   std::size_t blocks_ = 0;
-  buffer<std::uint32_t> header_, ends_, lists_;
+  buffer<order_header> header_;
+  buffer<std::uint32_t> ends_, lists_;
   buffer<id> numbers_;
   buffer<near_sphere<S>> spheres_;
   buffer<reference<S, contains<typename Scene::all, radius>>> references_;
