@@ -169,9 +169,11 @@ void check_neighbours(Space const& space) {
     };
     check_meetings<S>(made.simulation, S(0.1), 60, S(1), change, 50000);
   }
-  SUBCASE("that come one after the other, while some are fast, and more at a time than lists take") {
+  SUBCASE(
+      "that come one after the other, also where lists are full, while some are fast, and more at a time than can "
+      "stray") {
     using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
-    auto w = packed_cube<S>(n, 0.1, 0.0005);
+    auto w = packed_cube<S>(n, 0.12, 0.0005);
     for (std::size_t i = 0; i < 9; ++i) w.velocities[3 * 11 * i] = S(0.05 * (double(i) - 4));
     running<simulation> made(space, w, ghosts{}, greets{}, in_cube(0));
     auto const change = [&](auto& s, int step) {
@@ -186,7 +188,7 @@ void check_neighbours(Space const& space) {
       if (step == 30) several(500, 150, 1);
       if (step == 50) several(0, 300, 1);
     };
-    check_meetings<S>(made.simulation, S(0.1), 60, S(1), change, 50000);
+    check_meetings<S>(made.simulation, S(0.12), 60, S(1), change, 50000);
   }
   SUBCASE("that are put elsewhere, also from nowhere") {
     using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets>;
