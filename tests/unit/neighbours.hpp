@@ -190,6 +190,21 @@ void check_neighbours(Space const& space) {
     };
     check_meetings<S>(made.simulation, S(0.12), 60, S(1), change, 50000);
   }
+  SUBCASE("that come, go and come back at random") {
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
+    for (unsigned seed = 0; seed < 8; ++seed) {
+      running<simulation> made(space, packed_cube<S>(120, 0.2, 0.003), ghosts{}, greets{}, in_cube(0));
+      std::mt19937 engine(seed);
+      auto const change = [&](auto& s, int step) {
+        for (int k = 0; k < (step == 0 ? 40 : 2); ++k) {
+          std::size_t const i = engine() % 120;
+          std::uint8_t const there = s.template to_host<collide::present>()[i];
+          write_particle<collide::present>(s, i, {std::uint8_t(1 - there)});
+        }
+      };
+      check_meetings<S>(made.simulation, S(0.2), 40, S(1), change, 5000);
+    }
+  }
   SUBCASE("that are put elsewhere, also from nowhere") {
     using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets>;
     running<simulation> made(space, packed_cube<S>(n, 0.1, 0.0005), greets{});
@@ -199,6 +214,11 @@ void check_neighbours(Space const& space) {
       if (step == 20) write_particle<position>(s, 5, {nan, S(0), S(0)});
       if (step == 30) write_particle<position>(s, 5, {S(0), S(-0.1), S(0)});
       if (step == 40) write_particle<position>(s, 8, {S(3), S(3), S(3)});
+      // one that is nowhere while another comes, and then is where it was
+      if (step == 42) write_particle<position>(s, 20, {S(5), S(5), S(5)});
+      if (step == 43) write_particle<position>(s, 20, {S(5), nan, S(5)});
+      if (step == 44) write_particle<position>(s, 21, {S(5), S(5.1), S(5)});
+      if (step == 45) write_particle<position>(s, 20, {S(5), S(5), S(5)});
     };
     check_meetings<S>(made.simulation, S(0.1), 50, S(1), change, 50000);
   }

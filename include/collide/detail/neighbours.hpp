@@ -140,10 +140,11 @@ struct particle_order {
     return dot(between, between) < mul(reach, reach);
   }
 
-  /// Puts a particle that is not there so far away, and makes it so small, that it is near nothing, not even its like.
+  /// Puts a particle that is not there, or nowhere, so far away, and makes it so small, that it is near nothing, not
+  /// even its like. When it is back it has moved far: lists of what came meanwhile do not have it.
   COLLIDE_HD_INLINE void leave_out(std::size_t i) const {
     constexpr S far = std::numeric_limits<S>::max();  // squares of distances overflow
-    spheres[i] = {far, far, far, S(0)};
+    references[i].set(spheres[i] = {far, far, far, S(0)});
   }
 
   /// Lists a particle as one that the grid does not have where it is.
@@ -266,12 +267,13 @@ struct refresh_order {
     }
     typename ordered::meeting p;
     state.load(p, number);
+    if (!finite(p[position{}])) return order.leave_out(i);
     near_sphere<S> const now = order.store(i, p);
     auto const before = order.references[i];
     vec3<S> const way(now.x - before.x, now.y - before.y, now.z - before.z);
     S const left = most - before.growth(now);
     bool const stayed = dot(way, way) < mul(left, left) && left > 0;
-    if (!stayed && finite(p[position{}])) order.stray(static_cast<std::uint32_t>(i), now);
+    if (!stayed) order.stray(static_cast<std::uint32_t>(i), now);
   }
 
  private:
