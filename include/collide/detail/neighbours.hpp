@@ -150,6 +150,7 @@ struct particle_order {
   /// Lists a particle as one that the grid does not have where it is.
   COLLIDE_HD_INLINE void stray(std::uint32_t i, near_sphere<S> const& now) const {
     references[i].set(now);
+    if (load_relaxed(&header->renew) != 0) return;  // where all have moved, they need not all ask for their turn
     std::uint32_t const n = fetch_add(&header->count, 1u);
     if (n < header->room) {
       header->strays[n] = i;
@@ -314,7 +315,7 @@ struct sort_into_cells {
     particle<S, placing> p;
     state.load(p, i);
     if constexpr (contains<placing, present>) {
-      order.known[i] = p[present{}];
+      if constexpr (Fill) order.known[i] = p[present{}];
       if (p[present{}] == 0) return;
     }
     vec3<S> const& c = p[position{}];
