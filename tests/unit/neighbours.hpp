@@ -3,6 +3,7 @@
 #pragma once
 
 #include <collide/bounds.hpp>
+#include <collide/emit.hpp>
 
 #include "simulation.hpp"
 
@@ -173,7 +174,7 @@ void check_neighbours(Space const& space) {
       "that come one after the other, also where lists are full, while some are fast, and more at a time than can "
       "stray") {
     using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
-    auto w = packed_cube<S>(n, 0.12, 0.0005);
+    auto w = packed_cube<S>(n, 0.15, 0.0005);
     for (std::size_t i = 0; i < 9; ++i) w.velocities[3 * 11 * i] = S(0.05 * (double(i) - 4));
     running<simulation> made(space, w, ghosts{}, greets{}, in_cube(0));
     auto const change = [&](auto& s, int step) {
@@ -188,12 +189,44 @@ void check_neighbours(Space const& space) {
       if (step == 30) several(500, 150, 1);
       if (step == 50) several(0, 300, 1);
     };
-    check_meetings<S>(made.simulation, S(0.12), 60, S(1), change, 50000);
+    check_meetings<S>(made.simulation, S(0.15), 60, S(1), change, 100000);
+  }
+  SUBCASE("that are placed anew, fewer of them, more, or larger") {
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, bounds>;
+    running<simulation> made(space, packed_cube<S>(n, 0.1, 0.004), greets{}, in_cube(0));
+    check_meetings<S>(made.simulation, S(0.1), 10, S(1), no_change, 5000);
+    made.place(packed_cube<S>(50, 0.4, 0.004));
+    check_meetings<S>(made.simulation, S(0.4), 10, S(1), no_change, 500);
+    made.place(packed_cube<S>(2 * n, 0.08, 0.004));
+    check_meetings<S>(made.simulation, S(0.08), 10, S(1), no_change, 5000);
+  }
+  SUBCASE("from a source, whether lists are kept or others make them anew in each step") {
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::emit, greets>;
+    auto w = packed_cube<S>(300, 0.1, 0.0005);
+    std::size_t const others = 100, resting = w.size();
+    for (std::size_t i = 0; i < others; ++i) w.particle(1000.0 + 10.0 * double(i), 0, 0);
+    collide::emit const source{3, {{0, 0, 0}, 0.9, {0, 0, 0}, 0.0005}};
+    running<simulation> kept(space, w, source, greets{}), anew(space, w, source, greets{});
+    for (auto* one : {&kept, &anew}) one->place(w, w.size() + 100);
+    std::size_t wrong = 0, met = 0;
+    for (int step = 0; step < 60; ++step) {
+      for (std::size_t i = 0; i < others; ++i) {
+        write_particle<position>(anew.simulation, resting + i, {S(1000 + 10 * int(i)), S(step % 2), S(0)});
+      }
+      for (auto* one : {&kept, &anew}) one->simulation.step(S(1));
+      auto const found = kept.simulation.template to_host<greeted>(),
+                 expected = anew.simulation.template to_host<greeted>();
+      for (std::size_t i = 0; i < found.size(); ++i) wrong += found[i] != expected[i];
+      met = 0;
+      for (std::size_t i = w.size(); i < found.size(); ++i) met += found[i] != 0;
+    }
+    CHECK(wrong == 0);
+    CHECK(met > 50);
   }
   SUBCASE("that come, go and come back at random") {
     using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
     for (unsigned seed = 0; seed < 8; ++seed) {
-      running<simulation> made(space, packed_cube<S>(120, 0.2, 0.003), ghosts{}, greets{}, in_cube(0));
+      running<simulation> made(space, packed_cube<S>(120, 0.3, 0.003), ghosts{}, greets{}, in_cube(0));
       std::mt19937 engine(seed);
       auto const change = [&](auto& s, int step) {
         for (int k = 0; k < (step == 0 ? 40 : 2); ++k) {
@@ -202,7 +235,7 @@ void check_neighbours(Space const& space) {
           write_particle<collide::present>(s, i, {std::uint8_t(1 - there)});
         }
       };
-      check_meetings<S>(made.simulation, S(0.2), 40, S(1), change, 5000);
+      check_meetings<S>(made.simulation, S(0.3), 40, S(1), change, 10000);
     }
   }
   SUBCASE("that are put elsewhere, also from nowhere") {

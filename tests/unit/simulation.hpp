@@ -89,12 +89,19 @@ class running {
   template <class... Effect>
   running(typename Simulation::execution_space space, world<S> const& w, Effect... effects)
       : simulation(space, effects...), corners_(space, w.corners) {
+    place(w);
+    simulation.set_mesh(collide::triangle_soup(corners_.data(), corners_.size() / 9));
+    simulation.space().synchronize();
+  }
+
+  /// Other particles, with room for more.
+  void place(world<S> const& w, std::size_t capacity = 0) {
+    auto const& space = simulation.space();
     placed<S> const centres(space, w.centres), velocities(space, w.velocities), radii(space, w.radii);
     simulation.set(w.radii.empty() ? collide::spheres_xyz(centres.data(), w.size(), w.radius)
                                    : collide::spheres_xyz(centres.data(), w.size(), radii.data()),
-                   velocities.data());
-    simulation.set_mesh(collide::triangle_soup(corners_.data(), corners_.size() / 9));
-    simulation.space().synchronize();
+                   velocities.data(), capacity);
+    space.synchronize();
   }
 
   std::vector<S> positions() const { return simulation.template to_host<position>(); }
@@ -415,7 +422,7 @@ void check_memory_of_steps(MakeSpace make, std::pmr::memory_resource* upstream) 
   CHECK(bytes_of(bounces{}, n) == 24 * n + 4 * n + 8);
   // for what meets: number, copies, reference, list; cells of at most four and at least two to a particle, by 65 in 64
   using meets = std::common_type<collide::simulation<detector, collide::sphere_contact>>;
-  CHECK(bytes_of(meets{}, n) == 24 * n + (4 + 28 + 12 + 48) * n + 2 * n * 4 * 65 / 64 + 540);
+  CHECK(bytes_of(meets{}, n) == 24 * n + (4 + 28 + 12 + 64) * n + 2 * n * 4 * 65 / 64 + 540);
 }
 
 /// A column and an effect of a user: what touches the mesh becomes warm, and cools down.

@@ -1,4 +1,6 @@
 /// Simulations on the GPU.
+#include <collide/sphere_contact.hpp>
+
 #include "simulation.hpp"
 
 namespace {
@@ -12,6 +14,34 @@ using collide::simulation;
 
 template <class NarrowPhase>
 using falls_in = simulation<tests::meets_mesh<cuda_shared, NarrowPhase>, gravity, bounce>;
+
+/// Steps that are captured in a graph of `together`, of `nodes` kernels, do what steps do that are not.
+template <class Simulation, class... Effect>
+void check_captured(tests::world<float> const& w, float dt, int together, int times, std::size_t nodes,
+                    Effect... effects) {
+  cudaStream_t stream;
+  collide::cuda_check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+  {
+    tests::running<Simulation> direct{cuda_shared(stream), w, effects...}, replayed{cuda_shared(stream), w, effects...};
+    direct.simulation.steps(static_cast<std::size_t>(together * times), dt);
+
+    cudaGraph_t graph;
+    cudaGraphExec_t executable;
+    collide::cuda_check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeGlobal), "cudaStreamBeginCapture");
+    replayed.simulation.steps(static_cast<std::size_t>(together), dt);
+    collide::cuda_check(cudaStreamEndCapture(stream, &graph), "cudaStreamEndCapture");
+    std::size_t found = 0;
+    collide::cuda_check(cudaGraphGetNodes(graph, nullptr, &found), "cudaGraphGetNodes");
+    CHECK(found == nodes);
+    collide::cuda_check(cudaGraphInstantiate(&executable, graph, 0), "cudaGraphInstantiate");
+    for (int i = 0; i < times; ++i) collide::cuda_check(cudaGraphLaunch(executable, stream), "cudaGraphLaunch");
+    CHECK((replayed.positions() == direct.positions()));
+    CHECK((replayed.velocities() == direct.velocities()));
+    cudaGraphExecDestroy(executable);
+    cudaGraphDestroy(graph);
+  }
+  cudaStreamDestroy(stream);
+}
 
 }  // namespace
 
@@ -63,27 +93,9 @@ TEST_CASE("simulation: on the GPU, an effect of a user, with a column of its own
 TEST_CASE("simulation: on the GPU, radii that differ") { tests::check_radii(cuda_shared()); }
 
 TEST_CASE("simulation: on the GPU, steps can be captured in a graph, with the same result") {
-  auto const w = tests::crowd<float>(5000, 1, 0.05, 3, 11);
-  cudaStream_t stream;
-  collide::cuda_check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
-  {
-    tests::running<falls_in<karabassi<>>> direct{cuda_shared(stream), w}, replayed{cuda_shared(stream), w};
-    direct.simulation.steps(80, 2e-3f);
-
-    cudaGraph_t graph;
-    cudaGraphExec_t executable;
-    collide::cuda_check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeGlobal), "cudaStreamBeginCapture");
-    replayed.simulation.steps(4, 2e-3f);
-    collide::cuda_check(cudaStreamEndCapture(stream, &graph), "cudaStreamEndCapture");
-    std::size_t nodes = 0;
-    collide::cuda_check(cudaGraphGetNodes(graph, nullptr, &nodes), "cudaGraphGetNodes");
-    CHECK(nodes == 8);  // two kernels a step
-    collide::cuda_check(cudaGraphInstantiate(&executable, graph, 0), "cudaGraphInstantiate");
-    for (int i = 0; i < 20; ++i) collide::cuda_check(cudaGraphLaunch(executable, stream), "cudaGraphLaunch");
-    CHECK((replayed.positions() == direct.positions()));
-    CHECK((replayed.velocities() == direct.velocities()));
-    cudaGraphExecDestroy(executable);
-    cudaGraphDestroy(graph);
-  }
-  cudaStreamDestroy(stream);
+  check_captured<falls_in<karabassi<>>>(tests::crowd<float>(5000, 1, 0.05, 3, 11), 2e-3f, 4, 20, 8);
+  // spheres that meet: a graph that is replayed while lists of neighbours are kept, and when they are made anew
+  using meets = simulation<tests::meets_mesh<cuda_shared>, gravity, collide::sphere_contact, bounce>;
+  auto const contact = collide::sphere_contact::of_collision(0.5, 4e-3, 0.06, 1000, 0.5);
+  check_captured<meets>(tests::crowd<float>(2000, 1, 0.06, 3, 12), 2e-4f, 2, 300, 24, gravity{}, contact, bounce{});
 }

@@ -81,14 +81,14 @@ struct reference<S, true> : near_sphere<S> {
 
 /// What all particles in the order have in common.
 struct order_header {
-  static constexpr std::uint32_t room = 128;
+  static constexpr std::uint32_t most_strays = 128;
 
-  std::uint32_t renew;         ///< not 0: the lists are to be made anew
-  std::uint32_t crowded;       ///< not 0: some particles have more neighbours than lists have room for
-  std::uint32_t before, now;   ///< how many particles were in the order after the last step, and are now
-  std::uint32_t arrivals;      ///< not 0: there are strays of this step
-  std::uint32_t seen, count;   ///< strays of earlier steps, and with those of this one
-  std::uint32_t strays[room];  ///< places of what came or moved far since the grid was made, once for each time
+  std::uint32_t renew;                ///< not 0: the lists are to be made anew
+  std::uint32_t crowded;              ///< not 0: some particles have more neighbours than lists have room for
+  std::uint32_t before, now;          ///< how many particles were in the order after the last step, and are now
+  std::uint32_t arrivals;             ///< not 0: there are strays of this step
+  std::uint32_t seen, count;          ///< strays of earlier steps, and with those of this one
+  std::uint32_t strays[most_strays];  ///< places of what came or moved far since the grid was made, once for each time
 };
 
 /// The particles in the order of the grid, with all that they must know of each other.
@@ -109,10 +109,15 @@ struct particle_order {
   column_element<present, S>* known;                ///< whether particles are in the order, by numbers
   particle_state<S, copied> copies;
 
-  static constexpr std::uint32_t listed = 12;  ///< the most neighbours that a list has
+  static constexpr std::uint32_t listed = 16;  ///< the most neighbours that a list has
   static constexpr std::uint32_t too_many = 0xffffffffu;
   std::uint32_t* lists;  ///< places, in the order of numbers; the particle's own behind the last; or too_many
   std::size_t capacity;  ///< of each of `listed` arrays
+
+  /// How many strays are listed alone: where there are few particles, as many more make no difference.
+  COLLIDE_HD_INLINE std::uint32_t stray_room() const {
+    return static_cast<std::uint32_t>(smaller(capacity / 16 + 8, std::size_t{order_header::most_strays}));
+  }
 
   COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
 
@@ -152,7 +157,7 @@ struct particle_order {
     references[i].set(now);
     if (load_relaxed(&header->renew) != 0) return;  // where all have moved, they need not all ask for their turn
     std::uint32_t const n = fetch_add(&header->count, 1u);
-    if (n < header->room) {
+    if (n < stray_room()) {
       header->strays[n] = i;
       store_relaxed(&header->arrivals, 1u);
     } else {
@@ -186,12 +191,33 @@ struct particle_order {
         if (are_near(self, spheres[k], skin) && k != i) f(k, row);
       }
     }
-    std::uint32_t const strays = header->count;
+    each_stray_near(i, 0, skin, [&](std::uint32_t k) { f(k, no_row); });
+  }
+
+  /// f(place) for the strays from number `first` on that are less than `skin` away from particle i.
+  template <class F>
+  COLLIDE_HD_INLINE void each_stray_near(std::uint32_t i, std::uint32_t first, S skin, F const& f) const {
+    constexpr std::uint32_t together = 4;  // are on their way at the same time
+    near_sphere<S> const self = spheres[i];
+    std::uint32_t const end = header->count;
     COLLIDE_ROLLED
-    for (std::uint32_t n = 0; n < strays; ++n) {
-      std::uint32_t const k = header->strays[n];
-      if (are_near(self, spheres[k], skin) && k != i) f(k, no_row);
+    for (std::uint32_t n = first; n < end; n += together) {
+      std::uint32_t places[together];
+      near_sphere<S> others[together];
+      for (std::uint32_t k = 0; k < together; ++k) places[k] = header->strays[smaller(n + k, end - 1)];
+      for (std::uint32_t k = 0; k < together; ++k) others[k] = spheres[places[k]];
+      for (std::uint32_t k = 0; k < together; ++k) {
+        if (n + k < end && are_near(self, others[k], skin) && places[k] != i) f(places[k]);
+      }
     }
+  }
+
+  /// True if particle i is one of the strays from number `first` on.
+  COLLIDE_HD_INLINE bool has_strayed(std::uint32_t i, std::uint32_t first) const {
+    std::uint32_t const end = header->count;
+    std::uint32_t found = 0;
+    for (std::uint32_t n = first; n < end; ++n) found |= header->strays[n] == i ? 1u : 0u;
+    return found != 0;
   }
 
   /// True if particle k is in a row of cells around particle i, and not in others at the same place of the table.
@@ -330,16 +356,17 @@ struct allocate_cells {
   particle_order<S, Scene> order;
 
   COLLIDE_HD void operator()(std::size_t b) const {
+    constexpr std::uint32_t n = particle_cells<S>::per_block;
     std::uint32_t* const ends = order.ends + b * order.cells.stride;
-    std::uint32_t sum = 0;
-    for (std::uint32_t c = 1; c <= order.cells.per_block; ++c) sum += ends[c];
+    std::uint32_t counts[n], sum = 0;  // all are on their way at once
+    for (std::uint32_t c = 0; c < n; ++c) counts[c] = ends[c + 1];
+    for (std::uint32_t c = 0; c < n; ++c) sum += counts[c];
     if (sum == 0) return;
     std::uint32_t next = fetch_add(&order.header->now, sum);
     ends[0] = next;
-    for (std::uint32_t c = 1; c <= order.cells.per_block; ++c) {
-      std::uint32_t const count = ends[c];
-      ends[c] = next;
-      next += count;
+    for (std::uint32_t c = 0; c < n; ++c) {
+      ends[c + 1] = next;
+      next += counts[c];
     }
   }
 };
@@ -405,16 +432,11 @@ template <class S, class Scene>
 struct admit_strays : list_neighbours<S, Scene> {
   COLLIDE_HD void operator()(std::size_t place) const {
     auto const& order = this->order;
-    order_header const& h = *order.header;
-    if (place >= h.now) return;
+    std::uint32_t const first = order.header->seen;
+    if (place >= order.header->now) return;
     auto const i = static_cast<std::uint32_t>(place);
-    for (std::uint32_t n = h.seen; n < h.count; ++n) {
-      if (h.strays[n] == i) return this->list(i);
-    }
-    near_sphere<S> const own = order.spheres[i];
-    for (std::uint32_t n = h.seen; n < h.count; ++n) {
-      if (order.are_near(own, order.spheres[h.strays[n]], this->skin)) insert(i, h.strays[n]);
-    }
+    if (order.has_strayed(i, first)) return this->list(i);
+    order.each_stray_near(i, first, this->skin, [&](std::uint32_t stray) { insert(i, stray); });
   }
 
  private:
