@@ -1,8 +1,12 @@
 /// Grids that must not collapse, whatever the scene, the cell width and the memory.
+#include <algorithm>
 #include <limits>
+#include <random>
+#include <vector>
 
 #include <doctest/doctest.h>
 
+#include <collide/bucket.cuh>
 #include <collide/detail/lookup.hpp>
 #include <collide/detail/way.hpp>
 
@@ -206,6 +210,38 @@ TEST_CASE_TEMPLATE("grids: the width that is asked for is the width in use", S, 
         CHECK(detector->cell_width() > 0);
     }
   }
+}
+
+/// The host, with cells as wide as those of a GPU.
+struct wide_cells : collide::host {
+  static constexpr bool sorts_spheres = false;
+  static constexpr double bucket_span = 1.75;
+};
+
+TEST_CASE_TEMPLATE("grids: triangles of two sizes are of one level, and cells no wider than they must be", S, float,
+                   double) {
+  std::mt19937 engine(4);
+  std::uniform_real_distribution<double> uniform(0.5, 2);
+  int of_one_level = 0;
+  double widest = 0;
+  for (int k = 0; k < 1000; ++k) {
+    double const size = uniform(engine);
+    std::vector<S> corners;
+    for (int i = 0; i < 8; ++i) {
+      auto const x = static_cast<S>(3 * size * i), y = static_cast<S>(i % 4 == 0 ? 1.3 * size : size);
+      corners.insert(corners.end(), {x, S(0), S(0), x + y, S(0), S(0), x, y, S(0)});
+    }
+    wide_cells space;
+    collide::bucket::index<S> index;
+    index.build(space, collide::bucket{}, collide::triangle_soup(corners.data(), corners.size() / 9));
+    index.prepare(space, collide::bucket{}, static_cast<S>(0.1 * uniform(engine)));
+    auto const& grid = index.lookup().grids[0];
+    double const largest = 1.3 * size + 2 * static_cast<double>(grid.dilation);
+    of_one_level += grid.levels == 1;
+    widest = std::max(widest, static_cast<double>(grid.width) / largest);
+  }
+  CHECK(of_one_level == 1000);
+  CHECK(widest < 1);
 }
 
 TEST_CASE_TEMPLATE("grids: triangles with bad values do not count", S, float, double) {
