@@ -145,6 +145,25 @@ void check_neighbours(Space const& space) {
     running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{0.03, 0.2});
     check_meetings<S>(made.simulation, S(0), 40, S(1), no_change, 5000);
   }
+  SUBCASE("that shrink and grow again, while others are put elsewhere") {
+    using simulation =
+        collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, bounds>;
+    std::size_t const many = 300;
+    auto w = packed_cube<S>(many, 0.2, 0.0005);
+    w.radii.assign(many, S(0.2));
+    running<simulation> made(space, w, collide::polydisperse{}, greets{}, in_cube(0));
+    std::mt19937 engine(9);
+    std::uniform_real_distribution<double> uniform(-0.8, 0.8);
+    auto const change = [&](auto& s, int step) {
+      for (std::size_t i = 0; i < many / 2; ++i) {
+        if (step % 10 == 3) write_particle<radius>(s, i, {S(0.1)});
+        if (step % 10 == 6) write_particle<radius>(s, i, {S(0.2)});
+      }
+      write_particle<position>(s, many / 2 + engine() % (many / 2),
+                               {static_cast<S>(uniform(engine)), static_cast<S>(uniform(engine)), S(0)});
+    };
+    check_meetings<S>(made.simulation, S(0.2), 60, S(1), change, 50000);
+  }
   SUBCASE("that come as close as the skin allows, from two cells apart or one") {
     using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets>;
     world<S> w;

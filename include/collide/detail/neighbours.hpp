@@ -71,12 +71,15 @@ template <class S, bool HasRadius>
 struct reference {
   S x, y, z;
   COLLIDE_HD_INLINE void set(near_sphere<S> const& s) { x = s.x, y = s.y, z = s.z; }
-  COLLIDE_HD_INLINE S growth(near_sphere<S> const&) const { return S(0); }
+  COLLIDE_HD_INLINE S resized(near_sphere<S> const&) const { return S(0); }
 };
 template <class S>
 struct reference<S, true> : near_sphere<S> {
   COLLIDE_HD_INLINE void set(near_sphere<S> const& s) { static_cast<near_sphere<S>&>(*this) = s; }
-  COLLIDE_HD_INLINE S growth(near_sphere<S> const& s) const { return larger(s.radius - this->radius, S(0)); }
+  /// By how much it has grown, or shrunk: what strayed meanwhile is near it only as far as it reached then.
+  COLLIDE_HD_INLINE S resized(near_sphere<S> const& s) const {
+    return larger(s.radius - this->radius, this->radius - s.radius);
+  }
 };
 
 /// What all particles in the order have in common.
@@ -298,7 +301,7 @@ struct refresh_order {
     near_sphere<S> const now = order.store(i, p);
     auto const before = order.references[i];
     vec3<S> const way(now.x - before.x, now.y - before.y, now.z - before.z);
-    S const left = most - before.growth(now);
+    S const left = most - before.resized(now);
     bool const stayed = dot(way, way) < mul(left, left) && left > 0;
     if (!stayed) order.stray(static_cast<std::uint32_t>(i), now);
   }
