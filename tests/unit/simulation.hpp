@@ -94,7 +94,7 @@ class running {
     simulation.space().synchronize();
   }
 
-  /// Other particles, with room for more.
+  /// Puts these particles in place of all that were, with room for `capacity`.
   void place(world<S> const& w, std::size_t capacity = 0) {
     auto const& space = simulation.space();
     placed<S> const centres(space, w.centres), velocities(space, w.velocities), radii(space, w.radii);

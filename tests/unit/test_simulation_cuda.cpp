@@ -1,6 +1,4 @@
 /// Simulations on the GPU.
-#include <collide/sphere_contact.hpp>
-
 #include "simulation.hpp"
 
 namespace {

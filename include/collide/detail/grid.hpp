@@ -271,7 +271,7 @@ struct plan_grid {
     // from this width on, cell coordinates are exact enough for `margin`
     S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
     // the largest must fit also when the quotient is rounded down
-    S const usual = smaller(tallest, 2 * margin * size(g, middle)) / usual_span * (1 + 4 * format<S>::unit);
+    S const usual = div(smaller(tallest, 2 * margin * size(g, middle)), usual_span) * (1 + 4 * format<S>::unit);
     S width = larger(narrowest, cell_width > 0 ? cell_width : usual);
     S const span = cell_width > 0 ? span_for(g, width, sizes) : usual_span;
     // half of the cells for the finest level, the rest for the others together; all if there are no others

@@ -117,7 +117,7 @@ struct particle_order {
   std::uint32_t* lists;  ///< places, in the order of numbers; the particle's own behind the last; or too_many
   std::size_t capacity;  ///< of each of `listed` arrays
 
-  /// How many strays are listed alone: where there are few particles, as many more make no difference.
+  /// How many strays are listed alone. Of few particles fewer: it takes longer to look at many than to make few lists.
   COLLIDE_HD_INLINE std::uint32_t stray_room() const {
     return static_cast<std::uint32_t>(smaller(capacity / 16 + 8, std::size_t{order_header::most_strays}));
   }
@@ -215,7 +215,7 @@ struct particle_order {
     }
   }
 
-  /// True if particle i is one of the strays from number `first` on.
+  /// True if particle i is one of the strays from number `first` on; all are looked at, without a branch.
   COLLIDE_HD_INLINE bool has_strayed(std::uint32_t i, std::uint32_t first) const {
     std::uint32_t const end = header->count;
     std::uint32_t found = 0;
