@@ -469,6 +469,61 @@ void check_own_effect(Space const& space) {
   CHECK((made.simulation.template to_host<temperature>() == cold));
 }
 
+/// Balls that are within a few roundings of touching: effects hear of those that touch in exact arithmetic. Many more
+/// verdicts are open at first than a block has room for.
+template <class S, class Space>
+void check_tangent_balls(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, warmth>;
+  using point = collide::vec3<double>;
+  world<S> w;
+  w.radius = S(0.3);
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  auto const ball = [&](point const& foot, point const& normal) {
+    S const ulp = std::numeric_limits<S>::epsilon();
+    for (int off = -4; off <= 4; ++off) {
+      point const at = foot + normal * (double(w.radius) * (1 + off * double(ulp)));
+      w.particle(at.x(), at.y(), at.z());
+    }
+  };
+  for (int i = 0; i < 60; ++i) {
+    auto const corner = [&] { return point(9 * uniform(engine), 9 * uniform(engine), 9 * uniform(engine)); };
+    point const a = corner(), b = a + corner() / 9, c = a + corner() / 9;
+    w.triangle({a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), c.x(), c.y(), c.z()});
+    point const normal = collide::detail::cross<double>(b - a, c - a).normalized();
+    ball((a + b + c) / 3, normal);
+    ball((a + b + c) / 3, -normal);
+    ball((a + b) / 2, ((a + b) / 2 - c).normalized());
+  }
+  constexpr int blades = 300;  // that share an apex
+  for (int i = 0; i < blades; ++i) {
+    double const from = 2 * 3.14159265358979 * i / blades, to = 2 * 3.14159265358979 * (i + 1) / blades;
+    w.triangle(
+        {12.1, 0.7, 0.3, 12.1 + std::cos(from), 0.7 + std::sin(from), -1, 12.1 + std::cos(to), 0.7 + std::sin(to), -1});
+  }
+  ball({12.1, 0.7, 0.3}, {0, 0, 1});
+  ball({12.1, 0.7, 0.3}, point(0.1, 0, 1).normalized());
+
+  running<simulation> made(space, w, warmth{80, 0});
+  made.simulation.step(S(0.1));
+  auto const t = made.simulation.template to_host<temperature>();
+  auto const mesh = collide::triangle_soup(w.corners.data(), w.corners.size() / 9);
+  std::size_t touching = 0, open = 0;
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    collide::sphere<S> const s{{w.centres[3 * i], w.centres[3 * i + 1], w.centres[3 * i + 2]}, w.radius};
+    bool touches = false;
+    for (std::size_t k = 0; k < mesh.size(); ++k) {
+      touches = touches || collide::karabassi<>::intersects(mesh[k], s);
+      open += collide::detail::attempt(mesh[k], s).verdict == collide::detail::verdict::unsure;
+    }
+    touching += touches;
+    CHECK(t[i] == S(touches ? 80 : 20));
+  }
+  CHECK(open > 4000);
+  CHECK(touching > w.size() / 4);
+  CHECK(touching < w.size() * 3 / 4);
+}
+
 /// Balls of different sizes rest at different heights.
 template <class Space>
 void check_radii(Space const& space) {

@@ -57,6 +57,12 @@ TEST_CASE_TEMPLATE("simulation: balls that touch hundreds of triangles", S, floa
   tests::check_many_contacts<karabassi_swept<>, S>(tests::lockstep<64, true>());
 }
 
+TEST_CASE_TEMPLATE("simulation: balls that just touch, or just do not", S, float, double) {
+  tests::check_tangent_balls<S>(host(2));
+  tests::check_tangent_balls<S>(tests::lockstep<256, false>());
+  tests::check_tangent_balls<S>(tests::lockstep<64, true>());
+}
+
 TEST_CASE("simulation: elastic bounces keep their height on average, however coarse the step") {
   tests::check_coarse_bounces<simulation<plain, gravity, bounce>>(host(2));
   tests::check_coarse_bounces<simulation<plain, velocity_verlet, gravity, bounce>>(host(2));

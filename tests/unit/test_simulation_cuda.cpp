@@ -65,6 +65,11 @@ TEST_CASE("simulation: on the GPU, balls that touch hundreds of triangles") {
   tests::check_many_contacts<karabassi_swept<>, float>(cuda_shared());
 }
 
+TEST_CASE("simulation: on the GPU, balls that just touch, or just do not") {
+  tests::check_tangent_balls<float>(cuda_shared());
+  tests::check_tangent_balls<double>(cuda_shared());
+}
+
 TEST_CASE("simulation: on the GPU, particles stay in a closed mesh for 1e5 steps") {
   tests::check_closed_mesh<karabassi<>, float>(cuda_shared(), 100000, 3, 1000);
 }
