@@ -15,7 +15,7 @@ COLLIDE_HD contact<S> contact_at(triangle<S> const& t, moving_sphere<S> const& s
   local_sweep<double> const l = normalised(relative<double>(t, s), t, s);
   auto const at = static_cast<double>(time);
   auto const clear = [](double distance, double) { return sizeof(S) == sizeof(float) && distance >= clear_length; };
-  auto const exactly = [&] {
+  auto const exactly = [t, s, time] {
     return exact_triangle<path_parts<S>>(t, s, exact_path<S>(s.displacement, decoded(time)).to);
   };
   vec3<double> const centre =

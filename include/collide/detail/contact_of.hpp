@@ -22,15 +22,24 @@ COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
   return m.z() >= larger(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
 }
 
+/// What exact arithmetic tells of a contact.
+struct exact_measure {
+  gap measured;
+  vec3<double> normal;
+  feature kind;
+  int index;
+};
+
 /// What doubles cannot tell of a contact: distance and depth of the closest foot to nearly all digits, however small
-/// they are, and its direction. `around` is the point of the triangle that doubles take for the closest.
-template <int Moved>
-COLLIDE_HD_NOINLINE void measure_exactly(exact_triangle<Moved> const& e, local_triangle<double> const& l,
-                                         closest_point<double>& around, vec3<double>& normal, gap& measured) {
-  auto const f = e.nearest(l, around.distance_squared, measured);
-  around.kind = f.kind;
-  around.index = f.index;
-  normal = f.towards_centre();
+/// they are, and its direction. `exactly()` makes an `exact_triangle`; doubles take `distance_squared` for the square
+/// of the distance.
+template <class Exactly>
+COLLIDE_HD_NOINLINE exact_measure measure_exactly(Exactly const& exactly, local_triangle<double> const& l,
+                                                  double distance_squared) {
+  auto const e = exactly();
+  gap measured;
+  auto const f = e.nearest(l, distance_squared, measured);
+  vec3<double> normal = f.towards_centre();
   if (magnitude(normal) == 0) normal = e.normal();
   if (magnitude(normal) == 0) {  // a segment or a point, and the centre lies on it
     vec3<double> const ab = l.b - l.a, bc = l.c - l.b, ca = l.a - l.c;
@@ -39,14 +48,15 @@ COLLIDE_HD_NOINLINE void measure_exactly(exact_triangle<Moved> const& e, local_t
   } else {
     normal = unit(normal);
   }
+  return {measured, normal, f.kind, f.index};
 }
 
 /// Doubles are sure of a length from here on, in a problem of at most size 4: to within 2^-45; see docs/numerics.md.
 inline constexpr double clear_length = 0x1p-20;
 
 /// The contact of a finite triangle, as seen from `centre`, computed in double, rounded once, and computed exactly
-/// before that where the digits of a double do not suffice: `exactly()` makes an `exact_triangle`. `clear(distance,
-/// depth)`, both local, tells whether they do. The ids are left to the caller.
+/// before that where the digits of a double do not suffice: `exactly()` makes an `exact_triangle`, of what it holds by
+/// value. `clear(distance, depth)`, both local, tells whether they do. The ids are left to the caller.
 template <class S, class Clear, class Exactly>
 COLLIDE_HD contact<S> contact_from(local_triangle<double> const& l, vec3<double> const& centre, S radius,
                                    Clear const& clear, Exactly const& exactly) {
@@ -56,7 +66,13 @@ COLLIDE_HD contact<S> contact_from(local_triangle<double> const& l, vec3<double>
   gap measured{div(local_distance, l.scale), 0};
   measured.depth = static_cast<double>(radius) - measured.distance;
   if (!clear(local_distance, mul(measured.depth, l.scale))) {
-    measure_exactly(exactly(), l, q, normal, measured);
+    Exactly const how = exactly;  // copies, so that the call does not force the originals into memory
+    local_triangle<double> const far = l;
+    exact_measure const m = measure_exactly(how, far, q.distance_squared);
+    measured = m.measured;
+    normal = m.normal;
+    q.kind = m.kind;
+    q.index = m.index;
     if (infinite(radius)) measured.depth = static_cast<double>(radius);
   } else if (q.kind == feature::face) {
     normal = unit(normal);
@@ -88,7 +104,7 @@ COLLIDE_HD contact<S> contact_between(triangle<S> const& t, sphere<S> const& s) 
   auto const clear = [](double distance, double depth) {
     return sizeof(S) == sizeof(float) && distance >= clear_length && (depth >= clear_length || depth <= -clear_length);
   };
-  auto const exactly = [&] { return exact_triangle<>(t, infinite(s.radius) ? centre : s); };
+  auto const exactly = [t, s = infinite(s.radius) ? centre : s] { return exact_triangle<>(t, s); };
   return contact_from(l, s.centre.template cast<double>(), s.radius, clear, exactly);
 }
 

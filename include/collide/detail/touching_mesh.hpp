@@ -14,7 +14,7 @@ COLLIDE_HD contact<S> contact_here(triangle<S> const& t, sphere<S> const& s) {
   sphere<S> const centre{s.centre, S(0)};
   local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
   auto const clear = [](double distance, double) { return distance >= clear_length; };
-  auto const exactly = [&] { return exact_triangle<>(t, centre); };
+  auto const exactly = [t, centre] { return exact_triangle<>(t, centre); };
   return contact_from(l, s.centre.template cast<double>(), s.radius, clear, exactly);
 }
 
