@@ -56,9 +56,9 @@ struct bucket_query {
     std::uint32_t first;
   };
 
-  /// How many spheres are placed, and how many of them in no grid, because none serves them.
+  /// How many spheres are placed, how many of them in no grid, because none serves them, and how many lanes have more.
   struct placement {
-    std::uint32_t placed, unplaced;
+    std::uint32_t placed, unplaced, unfinished;
   };
 
   /// How many lists of candidates there are, or would be with room for more, and how many spheres have more.
@@ -148,7 +148,7 @@ struct bucket_query {
     block.each([&](int lane) {
       tests.begin(s.hits, lane);
       if (lane != 0) return;
-      s.found = {0, 0};
+      s.found = {0, 0, 0};
       s.listed = {0, 0};
     });
     typename Block::template per_lane<std::size_t> next;
@@ -163,12 +163,13 @@ struct bucket_query {
         } else {
           place_many<Block>(next[lane], [&](std::size_t first) { return place_own(block, s, near, first); });
         }
+        if (next[lane] < tests.spheres.size()) block.add(s.found.unfinished, 1);
       });
       placement const found = block.shared(s.found);
-      if (found.placed == 0) break;
-      look_up(block, s, near, found);
+      if (found.placed != 0) look_up(block, s, near, found);
+      if (found.unfinished == 0) break;
       block.each([&](int lane) {
-        if (lane == 0) s.found = {0, 0};
+        if (lane == 0) s.found = {0, 0, 0};
       });
     }
     tests.flush(block, s.hits);

@@ -37,8 +37,13 @@ struct candidate_range {
 
 /// How far the candidates of a ball have been gone through.
 struct candidate_cursor {
+  static constexpr int ended = -1;  ///< in place of a grid's number
+
   int grid, level;
   std::uint32_t step, skip;
+
+  /// True if there are no more. False where that is not known yet.
+  COLLIDE_HD_INLINE bool at_end() const { return grid == ended; }
 };
 
 /// What both lookups share: the triangles, and a cheap test for each.
@@ -59,6 +64,7 @@ struct triangle_lookup {
     if (c.skip >= n) return false;
     range = {nullptr, c.skip, smaller(n - c.skip, most), 0};
     c.skip += range.count;
+    if (c.skip == n) c.grid = candidate_cursor::ended;
     return true;
   }
 };
@@ -190,7 +196,7 @@ struct bucket_lookup : triangle_lookup<S> {
   id const* entries;
   std::size_t capacity;
 
-  static constexpr int nowhere = -1, everywhere = -2;  ///< in place of a grid's number
+  static constexpr int nowhere = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
 
   COLLIDE_HD bucket_lookup opened() const {
     bucket_lookup open = *this;
@@ -246,8 +252,11 @@ struct bucket_lookup : triangle_lookup<S> {
     if (c.grid == everywhere) return this->next_of_all(c, most, range);
     grid<S> const& g = grids[c.grid];
     for (; c.level < g.levels; ++c.level, c.step = 0) {
-      if (next_of_level(g, g.level[c.level], ball, c, most, range)) return true;
+      if (!next_of_level(g, g.level[c.level], ball, c, most, range)) continue;
+      if (c.level + 1 == g.levels && was_last(ball, c)) c.grid = nowhere;
+      return true;
     }
+    c.grid = nowhere;
     return false;
   }
 
@@ -320,15 +329,18 @@ struct bucket_lookup : triangle_lookup<S> {
                                candidate_range& range) const {
     cell_list const list = lists[cell];
     std::uint32_t const left = list.count - c.skip, some = smaller(left, most >> bits);
-    if (left != 0) {
-      range = {entries + (list.end - left), 0, some << bits, bits};
-      c.skip += some;
-      return true;
+    if (left != 0) range = {entries + (list.end - left), 0, some << bits, bits};
+    c.skip += some;
+    if (some == left) {
+      ++c.step;
+      c.skip = 0;
     }
-    ++c.step;
-    c.skip = 0;
-    return false;
+    return left != 0;
   }
+
+  /// Whether the cell that was gone through last is known to be the last one of a level: a ball at rest is in one.
+  static COLLIDE_HD_INLINE bool was_last(sphere<S> const&, candidate_cursor const& c) { return c.step != 0; }
+  static COLLIDE_HD_INLINE bool was_last(moving_sphere<S> const&, candidate_cursor const&) { return false; }
 
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball, candidate_cursor& c,
                                 std::uint32_t most, candidate_range& range) const {

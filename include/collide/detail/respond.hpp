@@ -146,8 +146,8 @@ struct respond_body {
     static constexpr std::uint32_t none = ~std::uint32_t{0};
 
     std::uint32_t particle;
-    id triangle;
-    S time;
+    id triangle;  ///< `no_id` if they do not touch after all
+    S time;       ///< below 0 while it is not known whether they touch
     alignas(S) unsigned char bytes[sizeof(contact<S>)];
 
     COLLIDE_HD_INLINE void set(contact<S> const& c) { std::memcpy(bytes, static_cast<void const*>(&c), sizeof c); }
@@ -166,15 +166,22 @@ struct respond_body {
     static constexpr std::uint32_t kept_room = used ? Block::lanes * 4 / sizeof(S) : together<Block>;
 
     candidate near[near_room];     ///< let through by the quick test
-    kept_contact kept[kept_room];  ///< of those that the narrow phase accepts, as far as there is room
+    kept_contact kept[kept_room];  ///< of those that the narrow phase may accept, as far as there is room
     std::uint32_t near_count, kept_count;
+  };
+
+  /// How many ranges of candidates there are, and how often a particle may have had more. These only rise, so that
+  /// nothing waits until they are 0 again.
+  struct listing {
+    std::uint32_t ranges, unfinished;
   };
 
   template <class Block>
   struct scratch {
     static constexpr std::uint32_t size = together<Block>;
 
-    std::uint32_t ranges, active;
+    listing listed;
+    std::uint32_t active;  ///< how often a particle has been to be looked at again
     survivor<S, moves> those[size];
     std::uint32_t owner[size], counts[size];
     id const* from[size];
@@ -217,6 +224,12 @@ struct respond_body {
         for (auto j = static_cast<std::uint32_t>(lane); j < n; j += Block::lanes) f(s.those[j], j);
       });
     };
+    auto const look_around = [&](survivor<S, moves>& one) {
+      one.best = no_contact;
+      one.best_kept = kept_contact::none;
+      one.offered = 0;
+      one.cursor = near.begin(one.ball());
+    };
     each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
       one.number = numbers[j];
       colliding p;
@@ -226,49 +239,52 @@ struct respond_body {
       one.rest = dt;
       one.before = 0;
       one.is_active = true;
+      look_around(one);
+      if (j != 0) return;
+      s.listed = {0, 0};
+      s.active = 0;
     });
-    bool is_first = true;
-    for (bool more = true; more; is_first = false) {
-      each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
-        one.best = no_contact;
-        one.best_kept = kept_contact::none;
-        one.offered = 0;
-        if (one.is_active) one.cursor = near.begin(one.ball());
-        if (j == 0) s.active = 0;
-      });
-      if (is_first || !offer_kept(block, s)) offer_all(block, s, near, each_of_lane);
+    listing listed{0, 0};
+    std::uint32_t active = 0;
+    for (bool is_first = true;; is_first = false) {
+      if (is_first || !offer_kept(block, s)) offer_all(block, s, near, each_of_lane, listed);
       find_best(block, s);
       each_of_lane([&](survivor<S, moves>& one, std::uint32_t) {
         if (!one.is_active) return;
         respond(one, near, s.lists.kept);
-        if (one.is_active) block.add(s.active, 1);
+        if (!one.is_active) return;
+        look_around(one);
+        block.add(s.active, 1);
       });
-      more = block.shared(s.active) != 0;
+      std::uint32_t const before = active;
+      active = block.shared(s.active);
+      if (active == before) break;
     }
   }
 
-  /// Offers all candidates of the active ones, and keeps their contacts.
+  /// Offers all candidates of the active ones, and keeps their contacts. `listed` is what `s.listed` was before, and is
+  /// then.
   template <class Block, class Each>
-  COLLIDE_HD void offer_all(Block& block, scratch<Block>& s, Lookup const& near, Each const& each_of_lane) const {
+  COLLIDE_HD void offer_all(Block& block, scratch<Block>& s, Lookup const& near, Each const& each_of_lane,
+                            listing& listed) const {
     constexpr std::uint32_t most = (1u << 31) / together<Block>;
-    block.each([&](int lane) {
-      if (lane == 0) s.lists.near_count = s.lists.kept_count = 0;
-    });
-    for (;;) {
-      block.each([&](int lane) {
-        if (lane == 0) s.ranges = 0;
-      });
+    for (bool is_first = true, more = true; more; is_first = false) {
       each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
+        if (j == 0 && is_first) s.lists.near_count = s.lists.kept_count = 0;
         candidate_range range;
         if (!one.is_active || !near.next(one.ball(), one.cursor, most, range)) return;
-        std::uint32_t const place = block.add(s.ranges, 1);
+        if (!one.cursor.at_end()) block.add(s.listed.unfinished, 1);
+        std::uint32_t const place = block.add(s.listed.ranges, 1) - listed.ranges;
         s.owner[place] = j;
         s.counts[place] = range.count;
         s.from[place] = range.listed;
         s.first[place] = range.first;
         s.bits[place] = static_cast<std::uint8_t>(range.bits);
       });
-      std::uint32_t const ranges = block.shared(s.ranges);
+      listing const before = listed;
+      listed = block.shared(s.listed);
+      more = listed.unfinished != before.unfinished;
+      std::uint32_t const ranges = listed.ranges - before.ranges;
       if (ranges == 0) break;
       block.template balanced<ahead>(
           s.balance, s.counts, ranges,
@@ -300,7 +316,7 @@ struct respond_body {
     }
   }
 
-  /// Judges the `n` candidates that are listed, and lists those that touch. What there is no room for is offered.
+  /// Judges the `n` candidates that are listed, and lists those that may touch. What there is no room for is offered.
   template <class Block>
   COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t n) const {
     for (std::uint32_t base = 0; base < n; base += Block::lanes) {
@@ -312,16 +328,37 @@ struct respond_body {
         auto& one = s.those[c.particle];
         auto const ball = one.ball();
         triangle<S> const t = near.mesh[c.triangle];
-        if (!NarrowPhase::intersects(t, ball)) return;
+        verdict const quick = attempt(t, ball);
+        if (quick == verdict::miss) return;
         std::uint32_t const place = block.add(s.lists.kept_count, 1);
         if (place < candidate_lists<Block>::kept_room) {
           s.lists.kept[place].particle = c.particle;
           s.lists.kept[place].triangle = c.triangle;
-        } else {
+          s.lists.kept[place].time = quick == verdict::hit ? S(0) : S(-1);
+        } else if (quick == verdict::hit || finish(t, ball)) {
           S const time = time_of(t, ball);
           offer<Block>(one, time, contact_of(t, ball, time, c.triangle));
         }
       });
+    }
+  }
+
+  /// Whether a ball touches a triangle, where that is quick to tell. What is left open, many balls that rest on the
+  /// mesh, is finished with the contacts: there as few warps as possible go through long code in double.
+  template <class Ball>
+  static COLLIDE_HD_INLINE verdict attempt(triangle<S> const& t, Ball const& ball) {
+    if constexpr (in_stages<NarrowPhase>::value) {
+      return in_stages<NarrowPhase>::attempt(t, ball);
+    } else {
+      return NarrowPhase::intersects(t, ball) ? verdict::hit : verdict::miss;
+    }
+  }
+  template <class Ball>
+  static COLLIDE_HD_INLINE bool finish(triangle<S> const& t, Ball const& ball) {
+    if constexpr (in_stages<NarrowPhase>::value) {
+      return in_stages<NarrowPhase>::finish(t, ball);
+    } else {
+      return false;  // nothing is left open
     }
   }
 
@@ -331,6 +368,10 @@ struct respond_body {
     each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
       auto const ball = one.ball();
       triangle<S> const t = near.mesh[k.triangle];
+      if (k.time < 0 && !finish(t, ball)) {
+        k.triangle = no_id;
+        return;
+      }
       k.time = time_of(t, ball);
       contact<S> const found = contact_of(t, ball, k.time, k.triangle);
       k.set(found);
@@ -368,7 +409,8 @@ struct respond_body {
     std::uint32_t const n = smaller(block.shared(s.lists.kept_count), candidate_lists<Block>::kept_room);
     block.each([&](int lane) {
       for (auto i = static_cast<std::uint32_t>(lane); i < n; i += Block::lanes) {
-        f(s.those[s.lists.kept[i].particle], s.lists.kept[i], i);
+        kept_contact& k = s.lists.kept[i];
+        if (k.triangle != no_id) f(s.those[k.particle], k, i);
       }
     });
   }
