@@ -37,7 +37,7 @@ template <class Exactly>
 COLLIDE_HD_NOINLINE exact_measure measure_exactly(Exactly const& exactly, local_triangle<double> const& l,
                                                   double distance_squared) {
   auto const e = exactly();
-  gap measured;
+  gap measured{0, 0};
   auto const f = e.nearest(l, distance_squared, measured);
   vec3<double> normal = f.towards_centre();
   if (magnitude(normal) == 0) normal = e.normal();

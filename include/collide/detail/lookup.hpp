@@ -6,7 +6,8 @@
 /// a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
-///     candidates, until it returns false; a triangle may appear more than once if the ball moves;
+///     candidates, until it returns false; a triangle may appear more than once if the ball moves; `cursor.at_end()` is
+///     true if it is known to return false the next time;
 ///   - `range.at(k)` is a triangle's number, `near(around, number)` a quick test whether a ball could touch it
 ///     all of whose way is in the ball `around`.
 #pragma once
