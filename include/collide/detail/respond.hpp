@@ -15,6 +15,7 @@
 
 #include <cstring>
 
+#include <collide/detail/decide.hpp>
 #include <collide/detail/fly.hpp>
 #include <collide/detail/touching_mesh.hpp>
 
