@@ -24,6 +24,16 @@ static_assert(simulation<plain, velocity_verlet, gravity>::bytes_per_particle ==
 static_assert(simulation<detector<collide::bucket, karabassi<>, host, double>>::bytes_per_particle == 48,
               "six doubles");
 
+/// A narrow phase of a user's: counts how often it is asked.
+struct asked : karabassi_swept<> {
+  static inline int times = 0;
+  template <class S>
+  static S time_of_impact(collide::triangle<S> const& t, collide::moving_sphere<S> const& s) {
+    ++times;
+    return karabassi_swept<>::time_of_impact(t, s);
+  }
+};
+
 }  // namespace
 
 TEST_CASE_TEMPLATE("simulation: free flight follows the closed form", S, float, double) {
@@ -102,6 +112,12 @@ TEST_CASE("simulation: radii that differ") {
   simulation<plain> one_size;
   CHECK_THROWS_AS(one_size.set(collide::spheres_xyz(centres, 1, radii)), collide::error);
   CHECK_THROWS_AS(one_size.set(collide::spheres_xyz(centres, 1, 1.0f), nullptr, 2), collide::error);
+}
+
+TEST_CASE("simulation: a narrow phase of one's own says when its balls stop") {
+  asked::times = 0;
+  tests::check_corner<asked, double>(host(1));
+  CHECK(asked::times > 0);
 }
 
 TEST_CASE("simulation: nothing to do") {

@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/detail/touching_mesh.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
 
@@ -89,6 +90,23 @@ void check_impact(oracle::triangle const& t, oracle::sphere const& s, point cons
   REQUIRE(distance <= s.radius + most_early<S> * travel + rounding);
   REQUIRE(oracle::closest(t, {c.point.x(), c.point.y(), c.point.z()}).distance <= 8 * unit * (size + travel) + least);
   REQUIRE(std::abs(-c.normal.template cast<double>().dot(vector<double>(closest.offset)) - distance) <= 4 * rounding);
+}
+
+/// Checks the time at which a ball of a simulation stops: not late, and no earlier than one that is larger by
+/// `most_close` times the size of the problem would have to.
+template <class S>
+void check_time_here(oracle::triangle const& t, oracle::sphere const& s, point const& move) {
+  constexpr double most_close = 0x1p-26;
+  sweep<S> const made(t, s, move);
+  auto const time = static_cast<double>(collide::detail::stop_of<karabassi_swept<>>::time(made.shape, made.ball));
+  CAPTURE(time);
+  REQUIRE(time >= 0);
+  REQUIRE(time <= 1);
+  if (oracle::hit(t, s)) REQUIRE(time == 0);
+  REQUIRE_FALSE(oracle::hit_before(t, s, move, time));
+  double const size = collide::detail::size_of(collide::detail::relative<double>(made.shape, made.ball));
+  oracle::sphere const larger{s.centre, s.radius + most_close * size};
+  REQUIRE(oracle::hit_by(t, larger, move, std::min(1.0, time + most_early<S>)));
 }
 
 template <class S>
@@ -195,12 +213,16 @@ TEST_CASE_TEMPLATE("swept: what does not move collides if and only if it does at
 TEST_CASE_TEMPLATE("swept: the time of impact is never late, and early by little", S, float, double) {
   for (auto const& row : hard_cases()) {
     CAPTURE(row.id);
-    if (row.hit && !std::isinf(row.ball.radius)) check_impact<S>(row.shape, row.ball, row.move);
+    if (!row.hit || std::isinf(row.ball.radius)) continue;
+    check_impact<S>(row.shape, row.ball, row.move);
+    check_time_here<S>(row.shape, row.ball, row.move);
   }
   for (auto const& cases : {tests::near_sweeps<S>(500, 1500), tests::lattice_sweeps<S>(4, 20000)})
     for (auto const& c : cases) {
       CAPTURE(tests::describe(c));
-      if (c.hit) check_impact<S>(c.shape, c.ball, c.move);
+      if (!c.hit) continue;
+      check_impact<S>(c.shape, c.ball, c.move);
+      check_time_here<S>(c.shape, c.ball, c.move);
     }
 }
 

@@ -8,9 +8,11 @@
 
 namespace collide::detail {
 
-/// The later stages of `decide`, for the first part of a step, until `time`.
+/// The later stages of `decide`, for the first part of a step, until `time`. Unless `finely`, what doubles leave open
+/// is a hit.
 template <class S>
-COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, moving_sphere<S> const& s, dyadic time) {
+COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, moving_sphere<S> const& s, dyadic time,
+                                            bool finely = true) {
   if (!valid_radius(s.radius) || !finite(s.centre) || !finite(s.displacement) || !finite(t)) {
     return {false, stage::integers};
   }
@@ -20,7 +22,7 @@ COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, moving_sphere<
   double size;
   if (brought_to_size<S>(l, size)) {
     verdict const v = certify(l, size);
-    if (v != verdict::unsure) return {v == verdict::hit, stage::double_certificate};
+    if (v != verdict::unsure || !finely) return {v != verdict::miss, stage::double_certificate};
   }
   return {exact_sweep<S>(t, s, time).in_reach(), stage::integers};
 }

@@ -430,7 +430,8 @@ struct respond_body {
   template <class Block, class Ball>
   static COLLIDE_HD_INLINE Ball until_next(survivor<S, moves> const& one, Ball ball) {
     if constexpr (moves && Block::lanes == 1) {
-      constexpr S late = S(0x1p-21);  // times of impact are early by less, and rounded in keys
+      // times are early by less, or by what the slack of bounding spheres covers; in keys they are rounded
+      constexpr S late = S(0x1p-21);
       if (one.best != no_contact)
         ball.displacement = scaled(ball.displacement, smaller(S(1), time_of(one.best) + late));
     }
@@ -486,7 +487,7 @@ struct respond_body {
     return (first & 0x80000000u) != 0 ? S(from_bits<float>(first & 0x7fffffffu)) : S(0);
   }
   static COLLIDE_HD_INLINE S time_of(triangle<S> const& t, moving_sphere<S> const& ball) {
-    return NarrowPhase::time_of_impact(t, ball);
+    return stop_of<NarrowPhase>::time(t, ball);
   }
   static COLLIDE_HD_INLINE S time_of(triangle<S> const&, sphere<S> const&) { return 0; }
   static COLLIDE_HD_INLINE sphere<S> place_at(moving_sphere<S> const& ball, S time) { return ball_at(ball, time); }

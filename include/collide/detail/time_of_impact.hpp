@@ -46,6 +46,26 @@ COLLIDE_HD S rounded_down(double x) {
   return static_cast<double>(nearest) > x ? from_bits<S>(bits(nearest) - 1) : nearest;
 }
 
+/// Never later than the first contact, and what `time_of_impact` says if `finely`. Else contact is also what doubles
+/// leave open, next to tangency.
+template <class S>
+COLLIDE_HD_INLINE S first_contact(triangle<S> const& t, moving_sphere<S> const& s, bool finely) {
+  double const time = earliest_time(t, s);
+  constexpr std::uint32_t steps = std::uint32_t{1} << time_bits<S>;
+  // no contact until `missed` steps, or just then; contact until `hit` steps
+  auto missed = smaller(static_cast<std::uint32_t>(time * steps), steps - 1), hit = steps;
+  for (std::uint32_t ahead = 1; hit - missed > 1;) {
+    std::uint32_t const middle = missed + smaller(ahead, (hit - missed) / 2);
+    if (decide_closely(t, s, reduced(middle, -time_bits<S>), finely).hit) {
+      hit = middle;
+    } else {
+      missed = middle;
+      if (ahead < steps) ahead *= 2;
+    }
+  }
+  return rounded_down<S>(larger(time, missed * (1.0 / steps)));
+}
+
 /// Never later than the first contact, and earlier by at most 2^-23 for floats and 2^-30 for doubles. 0 if the two
 /// overlap at the beginning. Of a sphere that does not touch the triangle at all: about when it is closest.
 template <class S>
@@ -54,20 +74,7 @@ COLLIDE_HD_NOINLINE S time_of_impact(triangle<S> const& t, moving_sphere<S> cons
   if (!decide(t, s).hit) {
     return rounded_down<S>(approach(normalised(relative<double>(t, s), t, s)).time);
   }
-  double const time = earliest_time(t, s);
-  constexpr std::uint32_t steps = std::uint32_t{1} << time_bits<S>;
-  // no contact until `missed` steps, or just then; contact until `hit` steps
-  auto missed = smaller(static_cast<std::uint32_t>(time * steps), steps - 1), hit = steps;
-  for (std::uint32_t ahead = 1; hit - missed > 1;) {
-    std::uint32_t const middle = missed + smaller(ahead, (hit - missed) / 2);
-    if (decide_closely(t, s, reduced(middle, -time_bits<S>)).hit) {
-      hit = middle;
-    } else {
-      missed = middle;
-      if (ahead < steps) ahead *= 2;
-    }
-  }
-  return rounded_down<S>(larger(time, missed * (1.0 / steps)));
+  return first_contact(t, s, true);
 }
 
 }  // namespace collide::detail

@@ -1,11 +1,18 @@
 /// \file
-/// Contacts as a simulation needs them: where a ball that touches a triangle does so, without digits that nobody sees.
+/// Contacts as a simulation needs them: where a ball that touches a triangle does so, and when one that moves does,
+/// without digits that nobody sees.
 #pragma once
 
 #include <collide/detail/contact_of.hpp>
 #include <collide/detail/local_sweep.hpp>
+#include <collide/detail/time_of_impact.hpp>
 
-namespace collide::detail {
+namespace collide {
+
+template <class Precision>
+struct karabassi_swept;
+
+namespace detail {
 
 /// The contact of a ball and a finite triangle. Unlike that of `contact_of`, the depth of a ball that just touches is
 /// known to within the rounding of doubles only: resting balls do just that, all the time.
@@ -24,4 +31,30 @@ COLLIDE_HD_INLINE sphere<S> ball_at(moving_sphere<S> const& s, S time) {
   return {s.centre + scaled(s.displacement, time), s.radius};
 }
 
-}  // namespace collide::detail
+/// When a moving ball stops that touches a finite triangle on its way. Like `time_of_impact` never late, but early also
+/// where doubles leave open whether the two touch: those that rest on the mesh have so short a way to go in a step that
+/// their times could not be told apart without exact arithmetic.
+template <class S>
+COLLIDE_HD_NOINLINE S time_here(triangle<S> const& t, moving_sphere<S> const& s) {
+  return first_contact(t, s, false);
+}
+
+/// When a ball of a narrow phase stops: if that is not `karabassi_swept` itself, when it says.
+template <class NarrowPhase>
+struct stop_of {
+  template <class S>
+  static COLLIDE_HD_INLINE S time(triangle<S> const& t, moving_sphere<S> const& s) {
+    return NarrowPhase::time_of_impact(t, s);
+  }
+};
+template <class Precision>
+struct stop_of<karabassi_swept<Precision>> {
+  template <class S>
+  static COLLIDE_HD_INLINE S time(triangle<S> const& t, moving_sphere<S> const& s) {
+    return time_here(t, s);
+  }
+};
+
+}  // namespace detail
+
+}  // namespace collide
