@@ -162,7 +162,7 @@ struct all_pairs {
     }
 
     /// What a kernel asks for the triangles near a single sphere; valid until the next build.
-    detail::all_pairs_lookup<S> lookup() const { return {{mesh_, nullptr}}; }
+    detail::all_pairs_lookup<S> lookup() const { return {{mesh_, nullptr, 0}}; }
 
     template <class Space>
     double cell_width(Space&) const {

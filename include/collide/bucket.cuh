@@ -28,23 +28,11 @@ template <class S, class NarrowPhase, class Sink>
 struct bucket_query {
   static constexpr int items = 4;
   static constexpr bool still = at_rest<NarrowPhase, S>;
-  /// Candidates that a lane looks at together. With room for those of spheres that move, and of where these are on
-  /// their ways, 48 KB of scratch memory must suffice.
-  static constexpr int ahead = still ? 4 : 2;
+  /// Entries that a lane looks at together. With room for those of spheres that move, and for where these are on their
+  /// ways, 48 KB of scratch memory must suffice; and less leaves more of it to the cache.
+  static constexpr int ahead = still ? 3 : 2;
   template <class Block>
   static constexpr int residency = still ? 4 : 3;
-
-  /// A sphere, or what contains all of the way of one that moves, in scratch memory, which holds plain values only.
-  struct alignas(4 * sizeof(S)) plain_ball {
-    S numbers[4];
-
-    COLLIDE_HD_INLINE void set(sphere<S> const& b) {
-      for (int k = 0; k < 3; ++k) numbers[k] = b.centre[k];
-      numbers[3] = b.radius;
-    }
-
-    COLLIDE_HD_INLINE sphere<S> get() const { return {{numbers[0], numbers[1], numbers[2]}, numbers[3]}; }
-  };
 
   tester<S, NarrowPhase, Sink> tests;
   bucket_lookup<S> triangles;
@@ -76,10 +64,10 @@ struct bucket_query {
     id placed[room];            ///< spheres inside a grid
     std::int8_t grid_of[room];  ///< and in which
     placement found;
-    plain_ball balls[Block::lanes];                           ///< spheres with candidates
-    numbered numbers[Block::lanes];                           ///< of the same
+    numbered numbers[Block::lanes];                           ///< spheres with candidates
     std::uint32_t counts[Block::lanes];                       ///< how many they have
-    typename way<S>::place places[still ? 1 : Block::lanes];  ///< and, of a sphere that moves, where on its way
+    std::uint32_t at[Block::lanes];                           ///< where in their cells they are
+    typename way<S>::place places[still ? 1 : Block::lanes];  ///< and, of those that move, where on their ways
     listing listed;
     typename Block::balance_scratch balance;
     hit_buffer<Block, ahead> hits;
@@ -172,10 +160,21 @@ struct bucket_query {
         if (lane == 0) s.found = {0, 0, 0};
       });
     }
-    tests.flush(block, s.hits);
+    tests.flush(block, s.hits, entries{near});
   }
 
  private:
+  /// What the candidates are: entries.
+  struct entries {
+    bucket_lookup<S> const& of;
+    std::uint32_t bits = of.bits;
+
+    template <class Ball>
+    COLLIDE_HD_INLINE bool allow(id triangle, Ball const& s) const {
+      return of.template may_touch<NarrowPhase>(s, triangle);
+    }
+  };
+
   /// Lanes take spheres in turn, some in a row at a time, of which those of neighbours are next to each other: where a
   /// lane begins, and how far it goes on in each turn.
   template <class Block>
@@ -308,12 +307,12 @@ struct bucket_query {
               if (!more) at[lane] = {0, 0};
               std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
               if (i >= found.placed || s.grid_of[i] != (all ? everywhere : g)) return;
-              if (!list_all(block, s, here, s.placed[i], at[lane])) block.add(s.listed.unfinished, 1);
+              if (!list_all(block, s, near, here, s.placed[i], at[lane])) block.add(s.listed.unfinished, 1);
             });
             listing const listed = block.shared(s.listed);
             more = listed.unfinished != 0;
             if (listed.lists == 0) continue;
-            test_listed(block, s, here, smaller<std::uint32_t>(listed.lists, Block::lanes));
+            test_listed(block, s, near, here, smaller<std::uint32_t>(listed.lists, Block::lanes));
             block.each([&](int lane) {
               if (lane == 0) s.listed = {0, 0};
             });
@@ -334,59 +333,65 @@ struct bucket_query {
     std::uint32_t step, skip;
   };
 
-  /// Makes the candidates of the `n` lists: their triangles, spread evenly over the lanes.
+  /// Makes the candidates of the `n` lists: their entries, spread evenly over the lanes.
   template <class Block>
-  COLLIDE_HD_INLINE void test_listed(Block& block, scratch<Block>& s, cells const& here, std::uint32_t n) const {
+  COLLIDE_HD_INLINE void test_listed(Block& block, scratch<Block>& s, bucket_lookup<S> const& near, cells const& here,
+                                     std::uint32_t n) const {
     struct candidates {
       numbered of;
-      sphere<S> around;
       std::uint32_t list;
     };
     bool const all = here.of == nullptr;
-    std::uint32_t const bits = all ? 0 : here.of->bits;
     block.template balanced<ahead>(
         s.balance, s.counts, n,
         [&](std::uint32_t i) {
-          return candidates{s.numbers[i], s.balls[i].get(), i};
+          return candidates{s.numbers[i], i};
         },
         [&](candidates const& c, std::uint32_t k) {
-          return all ? static_cast<id>(c.of.first + k)
-                     : candidate_range::triangle_of(triangles.entries + c.of.first, bits, k);
+          return all ? cell_entry{c.of.first + k, cell_part::whole} : near.entries[c.of.first + k];
         },
-        [&](candidates const& c, id triangle) { return triangles.near(c.around, triangle); },
-        [&](candidates const& c, id triangle) {
+        [&](candidates const& c, cell_entry const& e) { return cell_part::meets(e.part, s.at[c.list]); },
+        [&](candidates const& c, cell_entry const& e) {
           if constexpr (!still) {
-            auto const& place = s.places[c.list];
-            if (!all && !place.is_only) {
-              triangle_box<S> const around =
-                  triangles.boxes != nullptr ? triangles.boxes[triangle] : triangle_box_of(tests.mesh[triangle]);
-              if (!place.is_first_of(here.of->range_of(*here.level, around))) return;
-            }
+            if (!all && !counts_in(near, here, s.places[c.list], e)) return;
           }
-          tests.test(block, s.hits, {c.of.sphere, triangle});
+          if constexpr (Block::lanes > 1) {
+            tests.test(block, s.hits, {c.of.sphere, e.number});
+          } else {
+            auto const ball = tests.spheres[c.of.sphere];
+            near.each_near(enclosing(ball), e, [&](id triangle) {
+              tests.test(block, s.hits, {c.of.sphere, triangle}, ball);
+            });
+          }
         },
-        [&] { tests.make_room(block, s.hits); });
+        [&] { tests.make_room(block, s.hits, entries{near}); });
+  }
+
+  /// True if an entry counts in this cell of a way, and not in another.
+  COLLIDE_HD_INLINE bool counts_in(bucket_lookup<S> const& near, cells const& here, typename way<S>::place const& place,
+                                   cell_entry const& e) const {
+    if (place.later != way<S>::place::unknown) return !cell_part::begins_before(e.part, place.later);
+    return place.is_only || place.is_first_of(here.of->range_of(*here.level, near.box_of(e)));
   }
 
   /// Lists a sphere with the entries of its cells that are not empty, as far as there is room. True if that was all.
   template <class Block>
-  COLLIDE_HD_INLINE bool list_all(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
+  COLLIDE_HD_INLINE bool list_all(Block& block, scratch<Block>& s, bucket_lookup<S> const& near, cells const& here,
+                                  id number, cursor& at) const {
     auto const ball = tests.spheres[number];
-    auto const around = enclosing(ball);
     if (here.of == nullptr) {
-      auto const all = static_cast<std::uint32_t>(tests.mesh.size());
-      return list(block, s, number, around, {all, all}, 0, at);
+      return list(block, s, number, {near.entry_count(), near.entry_count()}, cell_part::anywhere, at);
     } else if constexpr (still) {
-      std::uint32_t const cell = here.of->cell_of(*here.level, ball.centre);
-      return list(block, s, number, around, triangles.lists[cell], here.of->bits, at);
+      covered_cell const cell = here.of->place_of(*here.level, ball.centre);
+      return list(block, s, number, near.lists[cell.number], cell.part, at);
     } else {
       way<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {
         auto const place = path.at(at.step);
         std::uint32_t const cell =
             here.level->row(place.cell[1], place.cell[2]) + (place.cell[0] & here.level->mask[0]);
-        if (!place.is_cell || !triangles.is_occupied(cell)) continue;
-        if (!list(block, s, number, around, triangles.lists[cell], here.of->bits, at, &place)) return false;
+        if (!place.is_cell || !near.is_occupied(cell)) continue;
+        if (!list(block, s, number, near.lists[cell], place.part, at, &place)) return false;
       }
       return true;
     }
@@ -394,15 +399,15 @@ struct bucket_query {
 
   /// Lists a sphere with the entries of a cell from at.skip on. False if there was no room for all of them.
   template <class Block>
-  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, sphere<S> const& around, cell_list cell,
-                              std::uint32_t bits, cursor& at, typename way<S>::place const* place = nullptr) const {
+  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, cell_list cell, std::uint32_t inside,
+                              cursor& at, typename way<S>::place const* place = nullptr) const {
     std::uint32_t const left = cell.count - at.skip, listed = smaller(left, longest<Block>);
     if (left == 0) return true;
     std::uint32_t const slot = block.add(s.listed.lists, 1);
     if (slot >= Block::lanes) return false;
     s.numbers[slot] = {number, cell.end - left};
-    s.balls[slot].set(around);
-    s.counts[slot] = listed << bits;
+    s.counts[slot] = listed;
+    s.at[slot] = inside;
     if constexpr (!still) {
       if (place != nullptr) s.places[slot] = *place;
     }
@@ -414,7 +419,7 @@ struct bucket_query {
 }  // namespace detail
 
 /// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid.hpp explains how.
-/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 8 scalars, at most 27 entries of 4
+/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 8 scalars, at most 27 entries of 8
 /// bytes in the CUDA spaces and 8 on the host, and up to 8 cells of 8 bytes; several grids only where radii differ by
 /// more than a factor of 4. The host sorts the spheres instead where there are many (detail/sorted_spheres.hpp): that
 /// takes O(triangles + spheres) for a query, 8 scalars per triangle, 4 bytes per cell, and about 12 scalars for each
@@ -526,8 +531,8 @@ class bucket::index {
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
   detail::bucket_lookup<S> lookup() const {
-    return {{mesh_, boxes()}, grids_.data(), grid_count_,     occupied(),
-            lists_.data(),    lists_total(), entries_.data(), entries_.capacity()};
+    return {{mesh_, boxes(), 0}, grids_.data(), grid_count_,     occupied(),
+            lists_.data(),       lists_total(), entries_.data(), entries_.capacity()};
   }
 
   /// Width of the finest cells in use; 0 if there is no grid.
@@ -675,11 +680,11 @@ class bucket::index {
         std::size_t const cells = grids << bits;
         std::size_t const base =
             fixed_bytes + (has_boxes_ ? boxes_bytes() : 0) + table_size(cells) * sizeof(detail::cell_list);
-        std::size_t const least = base + cells_per_triangle<Space> * n * grids * sizeof(id);
+        std::size_t const least = base + cells_per_triangle<Space> * n * grids * sizeof(detail::cell_entry);
         std::size_t most_entries = std::min(512 * n + (std::size_t{1} << 20), id_limit / grids);
         if (options.memory_budget != 0) {
           if (least > options.memory_budget) continue;
-          most_entries = std::min(most_entries, (options.memory_budget - base) / (grids * sizeof(id)));
+          most_entries = std::min(most_entries, (options.memory_budget - base) / (grids * sizeof(detail::cell_entry)));
         }
         return {g, bits, 0.99f * static_cast<float>(most_entries)};
       }
@@ -708,7 +713,7 @@ class bucket::index {
   buffer<detail::size_histogram> radii_;
   buffer<detail::grid<S>> grids_;
   buffer<detail::cell_list> lists_;
-  buffer<id> entries_;
+  buffer<detail::cell_entry> entries_;
   std::size_t cells_ = 0;
   std::uint32_t table_bits_ = 0;
   int grid_count_ = 0;

@@ -1,6 +1,7 @@
 /// Grids that must not collapse, whatever the scene, the cell width and the memory.
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -242,6 +243,100 @@ TEST_CASE_TEMPLATE("grids: triangles of two sizes are of one level, and cells no
   }
   CHECK(of_one_level == 1000);
   CHECK(widest < 1);
+}
+
+TEST_CASE("grids: a part of a cell and what may be in it meet on all axes or not at all") {
+  using collide::detail::cell_part;
+  constexpr std::uint32_t first = cell_part::first, last = cell_part::last, before = cell_part::before;
+  auto const everywhere = [&](int axis) {
+    return cell_part::at(first, last, (axis + 1) % 3) | cell_part::at(first, last, (axis + 2) % 3);
+  };
+  auto const whole = [&](int axis) {
+    return cell_part::covered(before, last, (axis + 1) % 3) | cell_part::covered(before, last, (axis + 2) % 3);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    CHECK((whole(axis) | cell_part::covered(before, last, axis)) == cell_part::whole);
+    CHECK((everywhere(axis) | cell_part::at(first, last, axis)) == cell_part::anywhere);
+    for (std::uint32_t from = before; from <= last; ++from) {
+      for (std::uint32_t to = std::max(from, first); to <= last; ++to) {
+        std::uint32_t const part = whole(axis) | cell_part::covered(from, to, axis);
+        CHECK(cell_part::meets(part, cell_part::anywhere));
+        CHECK(cell_part::begins_before(part, cell_part::axis(axis)) == (from == before));
+        CHECK_FALSE(cell_part::begins_before(part, 0));
+        for (std::uint32_t a = first; a <= last; ++a) {
+          for (std::uint32_t b = a; b <= last; ++b) {
+            std::uint32_t const place = everywhere(axis) | cell_part::at(a, b, axis);
+            CHECK(cell_part::meets(part, place) == (a <= to && b >= from));
+            CHECK(cell_part::meets(cell_part::whole, place));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("grids: entries contain what is in a triangle's dilated box, and little else", S, float, double) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  // the last two have fewer cells than their scenes, so that coordinates wrap
+  for (double width : {0., 0.3, 2., 20., 0.02, 0.004}) {
+    std::vector<S> corners;
+    std::size_t const n = 200;
+    for (std::size_t i = 0; i < n; ++i) {
+      double const at[3] = {10 * uniform(engine) - 5, 10 * uniform(engine) + 100, 10 * uniform(engine) - 1000};
+      for (int k = 0; k < 9; ++k) corners.push_back(static_cast<S>(at[k % 3] + uniform(engine)));
+    }
+    wide_cells space;
+    collide::bucket options;
+    options.cell_width = width;
+    collide::bucket::index<S> index;
+    auto const mesh = collide::triangle_soup(corners.data(), n);
+    index.build(space, options, mesh);
+    index.prepare(space, options, S(0.25));
+    auto const& grid = index.lookup().grids[0];
+    REQUIRE(grid.levels > 0);
+    std::size_t inside = 0, listed = 0, passed = 0, wrong = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      collide::detail::box<S> const b = collide::detail::triangle_box_of(mesh[i]);
+      auto const& level = grid.level_of(b);
+      std::map<std::uint32_t, std::uint32_t> parts;
+      grid.template each_cells<1>(b, 0, 1, [&](collide::detail::covered_cell const(&c)[1], std::uint32_t m) {
+        if (m == 1) parts[c[0].number] = c[0].part;
+      });
+      for (int j = 0; j < 2000; ++j) {
+        collide::vec3<S> p;
+        bool in_box = true, in_grid = true;
+        double beyond = 0;
+        for (int k = 0; k < 3; ++k) {
+          S const lower = b.lower[k] - grid.dilation, upper = b.upper[k] + grid.dilation;
+          double const out = j % 2 == 0 ? 0 : 0.3;
+          p[k] = static_cast<S>(lower + (static_cast<double>(upper) - lower) * ((1 + 2 * out) * uniform(engine) - out));
+          if (j % 10 == 0) p[k] = j % 20 == 0 ? lower : upper;  // on its corners
+          in_box = in_box && lower <= p[k] && p[k] <= upper;
+          in_grid = in_grid && grid.lower[k] <= p[k] && p[k] <= grid.upper[k];
+          beyond = std::max({beyond, static_cast<double>(lower) - p[k], static_cast<double>(p[k]) - upper});
+        }
+        if (!in_grid) continue;
+        auto const place = grid.place_of(level, p);
+        CHECK(place.number == grid.cell_of(level, p));
+        auto const found = parts.find(place.number);
+        bool const meets = found != parts.end() && collide::detail::cell_part::meets(found->second, place.part);
+        if (in_box) {
+          ++inside;
+          wrong += !meets;
+        } else if (found != parts.end()) {
+          ++listed;
+          passed += meets;
+          double const step = 2.01 / 16 / static_cast<double>(level.inverse_width);
+          if (level.is_spread()) wrong += meets && beyond > step;
+        }
+      }
+    }
+    CAPTURE(width);
+    CHECK(wrong == 0);
+    CHECK(inside > 50 * n);
+    if (width == 0) CHECK((listed > 10 * n && 4 * passed < listed));
+  }
 }
 
 TEST_CASE_TEMPLATE("grids: triangles with bad values do not count", S, float, double) {

@@ -15,13 +15,15 @@
 ///   - Several grids, where radii differ much: each serves the spheres of one range of radii.
 ///
 /// Where a box around two triangles that follow each other is hardly larger than that of one, as in most meshes, they
-/// are put into the cells together (CUDA): half of the entries. An entry is the number of such a pair then.
+/// are put into the cells together (CUDA): half of the entries. An entry is the number of such a pair then. Beside it
+/// is which part of the cell the box covers, to a fifteenth of the cell's width, so that most triangles of a cell
+/// that are not near a sphere in it are left out before anything else of them is read.
 ///
 /// The rounding: cell coordinates are floor((x - lower) * inverse_width), a monotone function, so rounding alone cannot
-/// separate a centre from a box that contains it. The slack of 64 units in the last place of the largest coordinate
-/// covers the rounding of the box itself and a compiler that reassociates. The reach is
-/// dilated by 4 units of float too, the coarsest arithmetic of a narrow phase, so that none of its hits is lost here,
-/// right or wrong. See docs/numerics.md.
+/// separate a centre from a box that contains it; nor from the part of a cell that it covers. The slack of 64 units in
+/// the last place of the largest coordinate covers the rounding of the box itself and a compiler that reassociates. The
+/// reach is dilated by 4 units of float too, the coarsest arithmetic of a narrow phase, so that none of its hits is
+/// lost here, right or wrong. See docs/numerics.md.
 #pragma once
 
 #include <collide/detail/mesh_summary.hpp>
@@ -36,6 +38,57 @@ struct cell_range {
   std::uint32_t lower[3], upper[3];
 };
 
+/// The part of a cell that a box covers, and what may be in it. A cell is 15 steps wide on each axis: 14 sixteenths of
+/// its width, and the rest. Both are six numbers of 5 bits, two for each axis, such that a sum tells whether they meet:
+/// those of a side of the box, at most 17 and 14, add up to 16 or more unless all that may be there is beyond it.
+struct cell_part {
+  static constexpr std::uint32_t first = 1, last = 15;   ///< steps
+  static constexpr std::uint32_t before = 0;             ///< in place of a first step: begins in a cell before
+  static constexpr std::uint32_t sides = 0x21084210;     ///< 16 in all numbers
+  static constexpr std::uint32_t whole = 0x1ef7c631;     ///< a box that covers the cell, and begins before it
+  static constexpr std::uint32_t anywhere = 0x1ef7b9ce;  ///< what is everywhere in the cell
+
+  /// The step at a fraction of a cell.
+  template <class S>
+  static COLLIDE_HD_INLINE std::uint32_t step_at(S fraction) {
+    auto const sixteenths = static_cast<std::uint32_t>(static_cast<std::int32_t>(fraction * S(16)));
+    return smaller(sixteenths, last - first) + first;
+  }
+
+  /// A box from the step `from` to the step `to` of an axis; to be united by `|` with the other axes.
+  static COLLIDE_HD_INLINE std::uint32_t covered(std::uint32_t from, std::uint32_t to, int axis) {
+    return (17 - from) << 5 * axis | to << (5 * axis + 15);
+  }
+
+  /// What is from the step `from` to the step `to` of an axis; to be united with the other axes.
+  static COLLIDE_HD_INLINE std::uint32_t at(std::uint32_t from, std::uint32_t to, int axis) {
+    return (to - 1) << 5 * axis | (16 - from) << (5 * axis + 15);
+  }
+
+  static COLLIDE_HD_INLINE bool meets(std::uint32_t part, std::uint32_t place) {
+    return ((part + place) & sides) == sides;
+  }
+
+  /// An axis, to be united with others.
+  static COLLIDE_HD_INLINE std::uint32_t axis(int k) { return 1u << 5 * k; }
+
+  /// Whether the box begins in a cell before on one of these axes.
+  static COLLIDE_HD_INLINE bool begins_before(std::uint32_t part, std::uint32_t axes) {
+    return (part >> 4 & part & axes) != 0;  // 17, the only odd number from 16 on
+  }
+};
+
+/// A cell, and a part of it or a place in it.
+struct covered_cell {
+  std::uint32_t number, part;
+};
+
+/// What is in a cell: a triangle, or a pair of them, and the part of the cell that its dilated box covers.
+struct alignas(8) cell_entry {
+  id number;
+  std::uint32_t part;
+};
+
 /// Cells of one width.
 template <class S>
 struct grid_level {
@@ -46,11 +99,14 @@ struct grid_level {
   std::uint32_t first;      ///< number of the first cell
 
   /// How many cells fit below an offset from the grid's lower end; from 0 to 2^30.
-  COLLIDE_HD_INLINE std::uint32_t coordinate(S offset) const {
-    S const cells = mul(offset, inverse_width);
-    // without branches, and by way of a signed integer, for which all processors have an instruction
-    S const limited = smaller(larger(S(0), cells), S(1 << 30));
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(limited));
+  COLLIDE_HD_INLINE std::uint32_t coordinate(S offset) const { return whole(cells_below(offset)); }
+
+  /// The same, and the step of the next cell that it ends in.
+  COLLIDE_HD_INLINE std::uint32_t coordinate(S offset, std::uint32_t& step) const {
+    S const cells = cells_below(offset);
+    std::uint32_t const full = whole(cells);
+    step = cell_part::step_at(cells - static_cast<S>(full));
+    return full;
   }
 
   /// The same of an offset that is not above the grid's upper end; of others, any number.
@@ -61,10 +117,22 @@ struct grid_level {
     return coordinate(offset);
   }
 
+  /// True if no cell has the number of another.
+  COLLIDE_HD_INLINE bool is_spread() const { return (mask[0] & mask[1] & mask[2]) == (1u << 31) - 1; }
+
   /// Number of the first cell of a row along x.
   COLLIDE_HD_INLINE std::uint32_t row(std::uint32_t y, std::uint32_t z) const {
     return first + (y & mask[1]) * stride[0] + (z & mask[2]) * stride[1];
   }
+
+ private:
+  /// Without branches.
+  COLLIDE_HD_INLINE S cells_below(S offset) const {
+    return smaller(larger(S(0), mul(offset, inverse_width)), S(1 << 30));
+  }
+
+  /// By way of a signed integer, for which all processors have an instruction.
+  static COLLIDE_HD_INLINE std::uint32_t whole(S x) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(x)); }
 };
 
 /// What a grid is, but for its levels.
@@ -76,7 +144,7 @@ struct grid_frame {
   S lower[3];  ///< of the dilated mesh
   S upper[3];
   int levels;           ///< 0 if no triangle is in the grid
-  std::uint32_t bits;   ///< log2 of how many triangles an entry is: 2^bits, from number entry * 2^bits on
+  std::uint32_t bits;   ///< log2 of how many triangles an entry is: 2^bits, from number entry * 2^bits on; at most 1
   std::uint32_t cells;  ///< how many there are, of all levels
 
   /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.
@@ -116,6 +184,17 @@ struct grid : grid_frame<S> {
     return r;
   }
 
+  /// The same, and the place of the point in it.
+  COLLIDE_HD_INLINE covered_cell place_of(grid_level<S> const& l, vec3<S> const& p) const {
+    std::uint32_t cell[3], place = 0;
+    for (int k = 0; k < 3; ++k) {
+      std::uint32_t step;
+      cell[k] = l.coordinate(p[k] - this->lower[k], step);
+      place |= cell_part::at(step, step, k);
+    }
+    return {l.row(cell[1], cell[2]) + (cell[0] & l.mask[0]), place};
+  }
+
   /// The cells that a triangle is put into: at most one whole turn of the level on each axis.
   COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b) const {
     cell_range r = range_of(l, b);
@@ -123,20 +202,45 @@ struct grid : grid_frame<S> {
     return r;
   }
 
-  /// Calls f(cells, m) with m of at most N cells at a time, for every `parts`-th of the cells that a triangle with this
-  /// box is put into, from the `part`-th on. What it needs of the grid is read at once, before anything is written.
+  /// The same, and the steps in the first and the last cell of each axis from and up to which the box reaches.
+  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b, std::uint32_t (&from)[3],
+                                        std::uint32_t (&to)[3]) const {
+    cell_range r;
+    for (int k = 0; k < 3; ++k) {
+      r.lower[k] = l.coordinate(b.lower[k] - dilation - this->lower[k], from[k]);
+      r.upper[k] = l.coordinate(b.upper[k] + dilation - this->lower[k], to[k]);
+      bool const turns = r.upper[k] - r.lower[k] > l.mask[k];  // then a cell may be the first and a later one, too
+      from[k] = turns ? cell_part::before : from[k];
+      to[k] = turns ? cell_part::last : to[k];
+      r.upper[k] = turns ? r.lower[k] + l.mask[k] : r.upper[k];
+    }
+    return r;
+  }
+
+  /// Calls f(cells, m) with m of at most N cells at a time and what the box covers of them, for every `parts`-th of the
+  /// cells that a triangle with this box is put into, from the `part`-th on. What it needs of the grid is read at once,
+  /// before anything is written.
   template <int N, class F>
   COLLIDE_HD_INLINE void each_cells(box<S> const& b, std::uint32_t part, std::uint32_t parts, F const& f) const {
     grid_level<S> l = level[0];
     if (levels > 1) l = level_of(b);
-    cell_range const r = cells_of(l, b);
-    std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1;
-    std::uint32_t const n = levels == 0 || b.is_empty() ? 0 : nx * ny * (r.upper[2] - r.lower[2] + 1);
+    std::uint32_t from[3], to[3];
+    cell_range const r = cells_of(l, b, from, to);
+    std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
+                        nz = r.upper[2] - r.lower[2] + 1;
+    auto const covered = [&](std::uint32_t i, std::uint32_t cells, int axis) {
+      return cell_part::covered(i == 0 ? from[axis] : cell_part::before, i + 1 == cells ? to[axis] : cell_part::last,
+                                axis);
+    };
+    std::uint32_t const n = levels == 0 || b.is_empty() ? 0 : nx * ny * nz;
     for (std::uint32_t i = part; i < n; i += N * parts) {
-      std::uint32_t cells[N], m = 0;
+      covered_cell cells[N];
+      std::uint32_t m = 0;
       for (std::uint32_t k = 0; k < N; ++k) {
         std::uint32_t const number = i + k * parts, rows = number / nx;
-        cells[k] = l.row(r.lower[1] + rows % ny, r.lower[2] + rows / ny) + ((r.lower[0] + number % nx) & l.mask[0]);
+        std::uint32_t const x = number % nx, y = rows % ny, z = rows / ny;
+        cells[k].number = l.row(r.lower[1] + y, r.lower[2] + z) + ((r.lower[0] + x) & l.mask[0]);
+        cells[k].part = covered(x, nx, 0) | covered(y, ny, 1) | covered(z, nz, 2);
         m += number < n ? 1u : 0u;
       }
       f(cells, m);
@@ -252,8 +356,9 @@ struct plan_grid {
       g.upper[k] += g.dilation;
     }
 
-    // pairs, if they are hardly larger than triangles, also the largest
-    auto const hardly_larger = [&](int bin, int than) { return size(g, bin) <= S(1.25) * size(g, than); };
+    // pairs, if they are hardly larger than triangles, also the largest: in all grids or in none, whatever their reach
+    S const least = 2 * reaches[grid_count - 1];
+    auto const hardly_larger = [&](int bin, int than) { return size(bin) + least <= S(1.25) * (size(than) + least); };
     bool const alike = pairs && hardly_larger(extents[1].last(), extents[0].last());
     g.bits = alike && hardly_larger(medians[1], medians[0]) ? 1 : 0;
     size_histogram const& sizes = extents[g.bits];
@@ -308,10 +413,9 @@ struct plan_grid {
 
   static COLLIDE_HD S abs_of(S x) { return x < 0 ? -x : x; }
 
-  /// The largest dilated extent in a bin of the histogram.
-  static COLLIDE_HD S size(grid_frame<S> const& g, int bin) {
-    return S(bin_end(static_cast<std::uint32_t>(bin))) + 2 * g.dilation;
-  }
+  /// The largest extent in a bin of the histogram, and the largest dilated one.
+  static COLLIDE_HD S size(int bin) { return S(bin_end(static_cast<std::uint32_t>(bin))); }
+  static COLLIDE_HD S size(grid_frame<S> const& g, int bin) { return size(bin) + 2 * g.dilation; }
 
   static COLLIDE_HD int median(size_histogram const& sizes) {
     if (sizes.empty()) return 0;
@@ -391,7 +495,7 @@ struct grid_insertion {
       box<S> b = box_at(first);
       if (two) b = typename box<S>::unite{}(b, box_at(first + 1));
       grids[g].template each_cells<together>(
-          b, part, parts, [&](std::uint32_t const(&cells)[together], std::uint32_t n) { f(cells, n, entry); });
+          b, part, parts, [&](covered_cell const(&cells)[together], std::uint32_t n) { f(cells, n, entry); });
     }
   }
 
@@ -411,7 +515,7 @@ struct count_entries {
     constexpr std::uint32_t together = grid_insertion<S, Parts>::together;
     insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id) {
       for (std::uint32_t k = 0; k < together; ++k) {
-        if (k < n) fetch_add(&cells[some[k]].count, 1u);
+        if (k < n) fetch_add(&cells[some[k].number].count, 1u);
       }
     });
   }
@@ -489,17 +593,17 @@ template <class S, int Parts>
 struct fill_entries {
   grid_insertion<S, Parts> insertion;
   cell_list* cells;
-  id* entries;
+  cell_entry* entries;
   std::size_t capacity;
   COLLIDE_HD void operator()(std::size_t thread) const {
     constexpr std::uint32_t together = grid_insertion<S, Parts>::together;
     insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id entry) {
       std::uint32_t slots[together];
       for (std::uint32_t k = 0; k < together; ++k) {
-        if (k < n) slots[k] = fetch_add(&cells[some[k]].end, 1u);
+        if (k < n) slots[k] = fetch_add(&cells[some[k].number].end, 1u);
       }
       for (std::uint32_t k = 0; k < together; ++k) {
-        if (k < n && slots[k] < capacity) entries[slots[k]] = entry;
+        if (k < n && slots[k] < capacity) entries[slots[k]] = {entry, some[k].part};
       }
     });
   }

@@ -95,6 +95,17 @@ struct deciding {
   }
 };
 
+/// What candidates are: a sphere and a triangle each. Others are a sphere and the triangles from number * 2^bits on,
+/// 2^bits of them, of which those count that `allow` says.
+struct single_triangles {
+  static constexpr std::uint32_t bits = 0;
+
+  template <class Ball>
+  COLLIDE_HD_INLINE bool allow(id, Ball const&) const {
+    return true;
+  }
+};
+
 /// The way of candidates to the sink, in the scratch memory of a block. Where lanes work together, each step is made
 /// for many pairs at once, so that no lane waits for another that has more to do: candidates are listed, then decided;
 /// hits are listed, then stored, so that the sink's atomic counter is touched once per batch. A single lane decides
@@ -148,22 +159,22 @@ struct tester {
   }
 
   /// Makes room for `Ahead` more candidates per lane. Called by the whole block.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block, Ahead>& b) const {
+  template <class Block, int Ahead, class Candidates = single_triangles>
+  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block, Ahead>& b, Candidates const& kind = {}) const {
     if constexpr (hit_buffer<Block, Ahead>::together) {
       std::uint32_t const n = block.shared(b.candidate_count);
-      if (n + Ahead * Block::lanes > hit_buffer<Block, Ahead>::candidate_capacity) decide_all(block, b, n);
+      if (n + Ahead * Block::lanes > hit_buffer<Block, Ahead>::candidate_capacity) decide_all(block, b, n, kind);
     } else {
       if (b.hit_count == hit_buffer<Block, Ahead>::capacity) store_all(block, b, b.hit_count);
     }
   }
 
   /// Finishes everything. Called by the whole block, last.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void flush(Block& block, hit_buffer<Block, Ahead>& b) const {
+  template <class Block, int Ahead, class Candidates = single_triangles>
+  COLLIDE_HD_INLINE void flush(Block& block, hit_buffer<Block, Ahead>& b, Candidates const& kind = {}) const {
     if constexpr (hit_buffer<Block, Ahead>::together) {
       std::uint32_t const n = block.shared(b.candidate_count);
-      if (n != 0) decide_all(block, b, n);
+      if (n != 0) decide_all(block, b, n, kind);
     }
     store_all(block, b, block.shared(b.hit_count));
   }
@@ -187,13 +198,17 @@ struct tester {
   }
 
   /// Decides the `n` candidates that are listed.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void decide_all(Block& block, hit_buffer<Block, Ahead>& b, std::uint32_t n) const {
-    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
+  template <class Block, int Ahead, class Candidates>
+  COLLIDE_HD_INLINE void decide_all(Block& block, hit_buffer<Block, Ahead>& b, std::uint32_t n,
+                                    Candidates const& kind) const {
+    for (std::uint32_t base = 0; base < n << kind.bits; base += Block::lanes) {
       block.each([&](int lane) {
-        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
+        std::uint32_t const i = base + static_cast<std::uint32_t>(lane), k = i >> kind.bits;
         if (lane == 0) b.candidate_count = 0;
-        if (i < n) decide(block, b, b.candidates[i], spheres[b.candidates[i].sphere]);
+        if (k >= n) return;
+        pair const p{b.candidates[k].sphere, (b.candidates[k].triangle << kind.bits) + (i - (k << kind.bits))};
+        auto const s = spheres[p.sphere];
+        if (kind.allow(p.triangle, s)) decide(block, b, p, s);
       });
       std::uint32_t const hits = block.shared(b.hit_count);
       if (hits + Block::lanes > hit_buffer<Block, Ahead>::capacity) store_all(block, b, hits);

@@ -6,34 +6,33 @@
 /// a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
-///     candidates, until it returns false; a triangle may appear more than once if the ball moves; `cursor.at_end()` is
-///     true if it is known to return false the next time;
-///   - `range.at(k)` is a triangle's number, `near(around, number)` a quick test whether a ball could touch it
-///     all of whose way is in the ball `around`.
+///     entries, until it returns false; one may appear more than once if the ball moves; `cursor.at_end()` is true if
+///     it is known to return false the next time;
+///   - `range.at(k)` is an entry, of 2^`bits` triangles, `range.may_touch(entry)` a quick test whether the ball could
+///     touch them, and `near(around, number)` one whether a ball could touch a triangle all of whose way is in the
+///     ball `around`; `each_near(around, entry, f)` calls f(number) for those of an entry that are near.
 #pragma once
 
+#include <collide/detail/decide.hpp>
 #include <collide/detail/enclosing.hpp>
 #include <collide/detail/grid.hpp>
 #include <collide/detail/sphere_batch.hpp>
+#include <collide/detail/spheres_of.hpp>
 #include <collide/detail/way.hpp>
 
 namespace collide::detail {
 
-/// Candidates that follow each other in memory, or in number.
+/// Entries that follow each other in memory, or in number.
 struct candidate_range {
-  id const* listed;  ///< entries of a grid; null: the triangles themselves are numbered from `first`
+  cell_entry const* listed;  ///< those of a cell; null: there are all, numbered from `first`
   id first;
   std::uint32_t count;
-  std::uint32_t bits;  ///< of the grid
+  std::uint32_t place;  ///< of the ball, or of its way, in the cell
 
-  /// May be the number of a triangle that does not exist, which `near` knows.
-  COLLIDE_HD_INLINE id at(std::uint32_t k) const {
-    return listed != nullptr ? triangle_of(listed, bits, k) : first + k;
+  COLLIDE_HD_INLINE cell_entry at(std::uint32_t k) const {
+    return listed != nullptr ? listed[k] : cell_entry{first + k, cell_part::whole};
   }
-
-  static COLLIDE_HD_INLINE id triangle_of(id const* entries, std::uint32_t bits, std::uint32_t k) {
-    return (entries[k >> bits] << bits) + (k & ((1u << bits) - 1));
-  }
+  COLLIDE_HD_INLINE bool may_touch(cell_entry const& e) const { return cell_part::meets(e.part, place); }
 };
 
 /// How far the candidates of a ball have been gone through.
@@ -52,6 +51,7 @@ template <class S>
 struct triangle_lookup {
   mesh_view<S> mesh;
   triangle_box<S> const* boxes;  ///< and one more, which may be anything; may be null
+  std::uint32_t bits;            ///< log2 of how many triangles an entry is; the last ones need not exist
 
   COLLIDE_HD_INLINE bool near(sphere<S> const& around, id number) const {
     triangle_box<S> const box = boxes != nullptr ? boxes[number] : triangle_box<S>::everywhere();
@@ -59,14 +59,50 @@ struct triangle_lookup {
     return reached & (number < mesh.size());
   }
 
+  /// Whether a triangle of an entry that has passed the quick tests exists, and is near unless the narrow phase asks
+  /// that itself before anything else.
+  template <class NarrowPhase, class Ball>
+  COLLIDE_HD_INLINE bool may_touch(Ball const& ball, id number) const {
+    if constexpr (in_stages<NarrowPhase>::value) {
+      return number < mesh.size();
+    } else {
+      return near(enclosing(ball), number);
+    }
+  }
+
+  /// The box around an entry.
+  COLLIDE_HD_INLINE box<S> box_of(cell_entry const& e) const {
+    box<S> const first = own_box(e.number << bits);
+    if (bits == 0 || (e.number << bits) + 1 == mesh.size()) return first;
+    return typename box<S>::unite{}(first, own_box((e.number << bits) + 1));
+  }
+
+  template <class F>
+  COLLIDE_HD_INLINE void each_near(sphere<S> const& around, cell_entry const& e, F const& f) const {
+    for (std::uint32_t k = 0; k >> bits == 0; ++k) {
+      id const number = (e.number << bits) + k;
+      if (near(around, number)) f(number);
+    }
+  }
+
+  /// How many entries all triangles are.
+  COLLIDE_HD_INLINE std::uint32_t entry_count() const {
+    return static_cast<std::uint32_t>((mesh.size() + ((std::size_t{1} << bits) - 1)) >> bits);
+  }
+
   /// All triangles, one range after the other.
   COLLIDE_HD bool next_of_all(candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
-    auto const n = static_cast<std::uint32_t>(mesh.size());
+    std::uint32_t const n = entry_count();
     if (c.skip >= n) return false;
-    range = {nullptr, c.skip, smaller(n - c.skip, most), 0};
+    range = {nullptr, c.skip, smaller(n - c.skip, most), cell_part::anywhere};
     c.skip += range.count;
     if (c.skip == n) c.grid = candidate_cursor::ended;
     return true;
+  }
+
+ private:
+  COLLIDE_HD_INLINE box<S> own_box(id number) const {
+    return boxes != nullptr ? boxes[number] : triangle_box_of(mesh[number]);
   }
 };
 
@@ -194,13 +230,14 @@ struct bucket_lookup : triangle_lookup<S> {
   std::uint8_t const* occupied;
   cell_list const* lists;
   std::uint32_t const* total;
-  id const* entries;
+  cell_entry const* entries;
   std::size_t capacity;
 
   static constexpr int nowhere = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
 
   COLLIDE_HD bucket_lookup opened() const {
     bucket_lookup open = *this;
+    if (grid_count > 0) open.bits = grids[0].bits;
     if (grid_count > 0 && *total > capacity) open.grid_count = 0;
     return open;
   }
@@ -326,11 +363,11 @@ struct bucket_lookup : triangle_lookup<S> {
   }
 
   /// The entries of a cell that have not been gone through; then the cursor is at the next step.
-  COLLIDE_HD bool next_of_cell(std::uint32_t cell, std::uint32_t bits, candidate_cursor& c, std::uint32_t most,
+  COLLIDE_HD bool next_of_cell(std::uint32_t cell, std::uint32_t place, candidate_cursor& c, std::uint32_t most,
                                candidate_range& range) const {
     cell_list const list = lists[cell];
-    std::uint32_t const left = list.count - c.skip, some = smaller(left, most >> bits);
-    if (left != 0) range = {entries + (list.end - left), 0, some << bits, bits};
+    std::uint32_t const left = list.count - c.skip, some = smaller(left, most);
+    if (left != 0) range = {entries + (list.end - left), 0, some, place};
     c.skip += some;
     if (some == left) {
       ++c.step;
@@ -345,7 +382,9 @@ struct bucket_lookup : triangle_lookup<S> {
 
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball, candidate_cursor& c,
                                 std::uint32_t most, candidate_range& range) const {
-    return c.step == 0 && next_of_cell(g.cell_of(l, ball.centre), g.bits, c, most, range);
+    if (c.step != 0) return false;
+    covered_cell const at = g.place_of(l, ball.centre);
+    return next_of_cell(at.number, at.part, c, most, range);
   }
 
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball,
@@ -359,7 +398,7 @@ struct bucket_lookup : triangle_lookup<S> {
         c.skip = 0;
         continue;
       }
-      if (next_of_cell(cell, g.bits, c, most, range)) return true;
+      if (next_of_cell(cell, here.part, c, most, range)) return true;
     }
     return false;
   }

@@ -128,7 +128,7 @@ struct respond_body {
   S dt;
   std::size_t blocks;
 
-  static constexpr int ahead = 4;  ///< candidates that a lane looks at together
+  static constexpr int ahead = 3;  ///< entries that a lane looks at together
 
   /// How many particles a block resolves at a time. With the contacts that it keeps, this makes up most of its scratch
   /// memory, of which CUDA has 48 KB: fewer of doubles.
@@ -136,10 +136,10 @@ struct respond_body {
   static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes*(moves ? 3 : 4) / 2 / sizeof(S)
                                                              : Block::items;
 
-  /// A particle of those that are resolved together, and a triangle.
+  /// A particle of those that are resolved together, and an entry.
   struct candidate {
     std::uint32_t particle;
-    id triangle;
+    id entry;
   };
 
   /// A contact that a particle may have, in scratch memory.
@@ -185,9 +185,9 @@ struct respond_body {
     std::uint32_t active;  ///< how often a particle has been to be looked at again
     survivor<S, moves> those[size];
     std::uint32_t owner[size], counts[size];
-    id const* from[size];
+    cell_entry const* from[size];
     id first[size];
-    std::uint8_t bits[size];
+    std::uint32_t at[size];
     candidate_lists<Block> lists;
     typename Block::balance_scratch balance;
   };
@@ -280,7 +280,7 @@ struct respond_body {
         s.counts[place] = range.count;
         s.from[place] = range.listed;
         s.first[place] = range.first;
-        s.bits[place] = static_cast<std::uint8_t>(range.bits);
+        s.at[place] = range.place;
       });
       listing const before = listed;
       listed = block.shared(s.listed);
@@ -293,15 +293,17 @@ struct respond_body {
             auto& one = s.those[s.owner[i]];
             auto const ball = one.ball();
             sphere<S> const around = enclosing(until_next<Block>(one, ball));
-            return candidates{s.owner[i], one, ball, around, {s.from[i], s.first[i], 0, s.bits[i]}};
+            return candidates{s.owner[i], one, ball, around, {s.from[i], s.first[i], 0, s.at[i]}};
           },
           [](candidates const& c, std::uint32_t k) { return c.range.at(k); },
-          [&](candidates const& c, id number) { return near.near(c.around, number) && !c.one.leaves(number); },
-          [&](candidates const& c, id number) {
+          [&](candidates const& c, cell_entry const& e) { return c.range.may_touch(e); },
+          [&](candidates const& c, cell_entry const& e) {
             if constexpr (candidate_lists<Block>::used) {
-              s.lists.near[block.add(s.lists.near_count, 1)] = {c.particle, number};
+              s.lists.near[block.add(s.lists.near_count, 1)] = {c.particle, e.number};
             } else {
-              offer_next(s, c, near, number);
+              near.each_near(c.around, e, [&](id number) {
+                if (!c.one.leaves(number)) offer_next(s, c, near, number);
+              });
             }
           },
           [&] {
@@ -320,25 +322,27 @@ struct respond_body {
   /// Judges the `n` candidates that are listed, and lists those that may touch. What there is no room for is offered.
   template <class Block>
   COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t n) const {
-    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
+    for (std::uint32_t base = 0; base < n << near.bits; base += Block::lanes) {
       block.each([&](int lane) {
-        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
+        std::uint32_t const i = base + static_cast<std::uint32_t>(lane), k = i >> near.bits;
         if (lane == 0) s.lists.near_count = 0;
-        if (i >= n) return;
-        candidate const c = s.lists.near[i];
+        if (k >= n) return;
+        candidate const c = s.lists.near[k];
+        id const number = (c.entry << near.bits) + (i - (k << near.bits));
         auto& one = s.those[c.particle];
         auto const ball = one.ball();
-        triangle<S> const t = near.mesh[c.triangle];
+        if (!near.template may_touch<NarrowPhase>(ball, number) || one.leaves(number)) return;
+        triangle<S> const t = near.mesh[number];
         verdict const quick = attempt(t, ball);
         if (quick == verdict::miss) return;
         std::uint32_t const place = block.add(s.lists.kept_count, 1);
         if (place < candidate_lists<Block>::kept_room) {
           s.lists.kept[place].particle = c.particle;
-          s.lists.kept[place].triangle = c.triangle;
+          s.lists.kept[place].triangle = number;
           s.lists.kept[place].time = quick == verdict::hit ? S(0) : S(-1);
         } else if (quick == verdict::hit || finish(t, ball)) {
           S const time = time_of(t, ball);
-          offer<Block>(one, time, contact_of(t, ball, time, c.triangle));
+          offer<Block>(one, time, contact_of(t, ball, time, number));
         }
       });
     }

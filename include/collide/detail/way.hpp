@@ -5,7 +5,8 @@
 /// of the way are looked into: the way is cut into pieces half as long as a cell is wide, and the box of a piece, with
 /// some slack for rounding, touches a few cells. (Most ways are short, and are one piece.) A triangle may be listed in
 /// several of these; it counts in the first of them only, which is found without memory: the boxes of pieces move one
-/// way on each axis, so the pieces whose cells a triangle shares follow each other.
+/// way on each axis, so the pieces whose cells a triangle shares follow each other. Of a way that is one piece it is
+/// known which part of each cell its box covers; if that meets a triangle's part of any cell, it does so in the first.
 #pragma once
 
 #include <collide/detail/closest_point.hpp>
@@ -23,8 +24,12 @@ class way {
   /// For a sphere that `can_walk` in the grid, or whose way is short.
   COLLIDE_HD way(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from, vec3<S> const& along)
       : grid_{&g}, level_{&l}, from_{from}, along_{along} {
-    whole_ = cells_around(g, l, from, along);
-    for (int k = 0; k < 3; ++k) span_[k] = whole_.upper[k] - whole_.lower[k] + 1;
+    for (int k = 0; k < 3; ++k) {
+      S const to = from[k] + along[k], slack = slack_of(from[k], along[k]);
+      whole_.lower[k] = l.coordinate(offset(g, smaller(from[k], to) - slack, k), steps_.lower[k]);
+      whole_.upper[k] = l.coordinate(offset(g, larger(from[k], to) + slack, k), steps_.upper[k]);
+      span_[k] = whole_.upper[k] - whole_.lower[k] + 1;
+    }
     if (!is_short(whole_)) cut();
   }
 
@@ -68,7 +73,11 @@ class way {
     std::uint32_t lower[3];  ///< where the piece that it belongs to begins
     cell_range before;       ///< the cells of the piece before; if there is none, none
     bool is_cell;
-    bool is_only;  ///< there are no other cells on the way
+    bool is_only;         ///< there are no other cells on the way
+    std::uint32_t part;   ///< of the cell: where in it the way is, or anywhere
+    std::uint32_t later;  ///< axes on which there is a cell before: what begins in that has been come to; or `unknown`
+
+    static constexpr std::uint32_t unknown = ~std::uint32_t{0};
 
     /// True if this is the first place on the way that shares a cell with a triangle in these cells.
     COLLIDE_HD_INLINE bool is_first_of(cell_range const& r) const {
@@ -101,6 +110,18 @@ class way {
     }
     p.is_cell = inside && !again;
     p.is_only = steps() == 1;
+    p.part = cell_part::anywhere;
+    p.later = place::unknown;
+    if (is_cut_) return p;
+    std::uint32_t part = 0, later = 0;
+    for (int k = 0; k < 3; ++k) {
+      bool const is_first = p.cell[k] == whole_.lower[k], is_last = p.cell[k] == whole_.upper[k];
+      part |=
+          cell_part::at(is_first ? steps_.lower[k] : cell_part::first, is_last ? steps_.upper[k] : cell_part::last, k);
+      later |= is_first ? 0 : cell_part::axis(k);
+    }
+    p.part = part;
+    if (level_->is_spread()) p.later = later;  // else what begins in another cell of this number seems to begin here
     return p;
   }
 
@@ -117,8 +138,9 @@ class way {
 
   /// What is beyond the grid, where there are no cells, counts as its first or last cell.
   static COLLIDE_HD_INLINE std::uint32_t coordinate(grid<S> const& g, grid_level<S> const& l, S x, int k) {
-    return l.coordinate(smaller(x, g.upper[k]) - g.lower[k]);
+    return l.coordinate(offset(g, x, k));
   }
+  static COLLIDE_HD_INLINE S offset(grid<S> const& g, S x, int k) { return smaller(x, g.upper[k]) - g.lower[k]; }
 
   COLLIDE_HD std::uint32_t per_piece() const { return span_[0] * span_[1] * span_[2]; }
 
@@ -164,6 +186,7 @@ class way {
   grid_level<S> const* level_ = nullptr;
   vec3<S> from_ = vec3<S>::Zero(), along_ = vec3<S>::Zero();
   cell_range whole_;       ///< the cells of the box around it
+  cell_range steps_;       ///< and where in the first and the last of them on each axis it begins and ends
   std::uint32_t span_[3];  ///< how many cells a piece has on an axis, at most
   std::uint32_t pieces_ = 1;
   bool is_cut_ = false;             ///< else the only piece is the whole way
