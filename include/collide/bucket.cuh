@@ -154,7 +154,7 @@ struct bucket_query {
         if (next[lane] < tests.spheres.size()) block.add(s.found.unfinished, 1);
       });
       placement const found = block.shared(s.found);
-      if (found.placed != 0) look_up(block, s, near, found);
+      if (found.placed != 0) look_up(block, s, near, found, simple);
       if (found.unfinished == 0) break;
       block.each([&](int lane) {
         if (lane == 0) s.found = {0, 0, 0};
@@ -288,16 +288,16 @@ struct bucket_query {
     return placed;
   }
 
-  /// Tests the spheres that are listed.
+  /// Tests the spheres that are listed; `one_level` says that this is all that the grids have.
   template <class Block>
   COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
-                                 placement const& found) const {
+                                 placement const& found, bool one_level) const {
     int const usable = near.grid_count;
     // the spheres of one level of one grid after the other, in the end those that no grid serves
     for (int g = 0; g <= usable; ++g) {
       bool const all = g == usable;
       if (all && found.unplaced == 0) break;
-      for (int l = 0; l < (all ? 1 : near.grids[g].levels); ++l) {
+      for (int l = 0; l < (all || one_level ? 1 : near.grids[g].levels); ++l) {
         cells const here{all ? nullptr : &near.grids[g], all ? nullptr : &near.grids[g].level[l]};
         for (std::uint32_t base = 0; base < found.placed; base += Block::lanes) {
           typename Block::template per_lane<cursor> at;

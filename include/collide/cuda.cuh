@@ -349,20 +349,25 @@ template <class Body, class Block>
 inline constexpr int residency<Body, Block, std::enable_if_t<(Body::template residency<Block> > 0)>> =
     Body::template residency<Block>;
 
-/// A kernel's first step. It lets the next kernel of the stream start, which then waits here, and waits for the one
-/// before: so a launch takes its time while the kernel before is at work. Where it was compiled for compute capability
-/// 9.0 or more, and with `cuda_space::launch_kernel`.
-__device__ __forceinline__ void take_turn() {
+/// A kernel begins with these two. It lets the next kernel of the stream start, which then waits for its turn: so a
+/// launch takes its time while the kernel before is at work. Where it was compiled for compute capability 9.0 or more,
+/// and with `cuda_space::launch_kernel`.
+__device__ __forceinline__ void let_next_start() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+__device__ __forceinline__ void wait_for_turn() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
   cudaGridDependencySynchronize();
-  cudaTriggerProgrammaticLaunchCompletion();
 #endif
 }
 
 /// Runs a body in one thread per block.
 template <class Block, class Body>
 __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_threads(std::size_t blocks, Body body) {
-  take_turn();
+  let_next_start();
+  wait_for_turn();
   std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
   if (i >= blocks) return;
   typename Body::template scratch<Block> scratch;
@@ -373,7 +378,8 @@ __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_thre
 /// Runs a body in one CUDA block per block.
 template <class Block, class Body>
 __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_blocks(Body body) {
-  take_turn();
+  let_next_start();
+  wait_for_turn();
   __shared__ typename Body::template scratch<Block> scratch;
   Block here(blockIdx.x);
   body(here, scratch);
@@ -381,7 +387,8 @@ __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_bloc
 
 template <class F>
 __global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
-  take_turn();
+  wait_for_turn();  // first: blocks of the next kernel would take the room of those that it waits for
+  let_next_start();
   std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
   if (i < n) f(i);
 }
@@ -389,7 +396,8 @@ __global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
 /// The same with fewer threads, each of which has several items, and only if something is not 0.
 template <class F>
 __global__ void __launch_bounds__(cuda_lanes) run_for_each_if(std::uint32_t const* condition, std::size_t n, F f) {
-  take_turn();
+  wait_for_turn();
+  let_next_start();
   if (*condition == 0) return;
   std::size_t const stride = std::size_t{gridDim.x} * cuda_lanes;
   for (std::size_t i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x; i < n; i += stride) f(i);
@@ -527,7 +535,7 @@ class cuda_space {
   static constexpr std::size_t most_merged = std::size_t{1} << 18;
 
  protected:
-  /// Launches a kernel that begins with `take_turn`.
+  /// Launches a kernel that begins with `wait_for_turn`.
   template <class... Parameters>
   void launch_kernel(char const* call, void (*kernel)(Parameters...), unsigned blocks,
                      Parameters const&... arguments) const {
@@ -561,7 +569,7 @@ class cuda_space {
   cudaStream_t stream_;
   std::pmr::memory_resource* resource_;
   int processors_ = 1;
-  bool takes_turns_ = false;  ///< see `take_turn`
+  bool takes_turns_ = false;  ///< see `wait_for_turn`
 };
 
 }  // namespace detail

@@ -191,7 +191,8 @@ class simulation {
       }
     }();
     using lookup_type = std::decay_t<decltype(lookup)>;
-    detail::fly_body<S, narrow_phase, lookup_type, scene_type> const fly{state_, scene_, lookup, list_, dt};
+    detail::fly_body<S, narrow_phase, lookup_type, scene_type> const fly{state_, scene_, lookup, list_, dt, backwards_};
+    backwards_ = !backwards_;
     space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
     if constexpr (scene_type::touches) {
       detail::respond_body<S, narrow_phase, lookup_type, scene_type> body{state_, scene_, lookup, list_, dt, 0};
@@ -304,6 +305,7 @@ class simulation {
   index index_;
   detail::column_buffers<S, columns> memory_;
   state_type state_{};
+  bool backwards_ = false;  ///< the next step goes
   buffer<double> time_;
   neighbours neighbours_;
   buffer<std::uint32_t> counters_;

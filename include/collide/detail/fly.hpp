@@ -43,6 +43,7 @@ struct fly_body {
   Lookup lookup;
   listed_particles list;
   S dt;
+  bool backwards;  ///< the last particles first: what the step before has moved last is still in the caches
 
   template <class Block, bool Touches>
   struct scratch_of {
@@ -102,7 +103,8 @@ struct fly_body {
   /// the mesh.
   template <class Block, class Groups, class List>
   COLLIDE_HD_INLINE void fly(Block& block, Groups& groups, List const& list_some) const {
-    std::size_t const first = block.index() * Block::lanes * Block::items;
+    constexpr auto share = static_cast<std::size_t>(Block::lanes) * Block::items;
+    std::size_t const first = (backwards ? (state.size - 1) / share - block.index() : block.index()) * share;
     block.each([&](int lane) {
       constexpr int n = at_a_time<Block>;
       for (int k = 0; k < Block::items; k += n) {

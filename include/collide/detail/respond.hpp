@@ -164,7 +164,7 @@ struct respond_body {
   struct candidate_lists {
     static constexpr bool used = Block::lanes > 1;
     static constexpr std::uint32_t near_room = used ? (ahead + 1) * Block::lanes : 1;
-    static constexpr std::uint32_t kept_room = used ? Block::lanes * 4 / sizeof(S) : together<Block>;
+    static constexpr std::uint32_t kept_room = used ? Block::lanes * 3 / sizeof(S) : together<Block>;
 
     candidate near[near_room];     ///< let through by the quick test
     kept_contact kept[kept_room];  ///< of those that the narrow phase may accept, as far as there is room
