@@ -444,7 +444,7 @@ class cuda_space {
   static constexpr bool sorts_spheres = false;
 
   /// Tuning of `bucket`; see `host`.
-  static constexpr int insertion_parts = 4;
+  static constexpr int insertion_parts = 2;
   static constexpr double bucket_span = 1.75;
   static constexpr bool pairs_triangles = true;
 

@@ -530,7 +530,7 @@ struct allocate_entries {
   grid<S> const* grids;
   std::uint32_t table_bits;
   std::size_t cell_count;  ///< of all grids
-  cell_list* cells;
+  cell_list* cells;        ///< aligned to 16 bytes
   std::uint8_t* occupied;
   std::uint32_t* total;  ///< 0 at first
 
@@ -553,9 +553,12 @@ struct allocate_entries {
     auto const first_of = [&](int lane) { return first + static_cast<std::size_t>(lane) * n; };
     block.each([&](int lane) {
       std::uint32_t sum = 0;
-      for (std::size_t k = 0; k < n; ++k) {
-        own[lane].counts[k] = first_of(lane) + k / items * items < cell_count ? cells[first_of(lane) + k].count : 0;
-        sum += own[lane].counts[k];
+      for (std::size_t k = 0; k < n; k += 2) {
+        std::size_t const c = first_of(lane) + k;
+        auto const [a, b] = c < cell_count ? two_at(c) : two_lists{};
+        own[lane].counts[k] = a.count;
+        own[lane].counts[k + 1] = b.count;
+        sum += a.count + b.count;
       }
       s.sums[lane] = sum;
     });
@@ -570,11 +573,11 @@ struct allocate_entries {
         std::size_t const c = first_of(lane) + k;
         if (c >= cell_count) break;
         std::uint32_t bits = 0;
-        for (std::uint32_t i = 0; i < items; ++i) {
-          std::uint32_t const count = own[lane].counts[k + i];
-          cells[c + i] = {count, begin};
-          begin += count;
-          bits |= (count != 0 ? 1u : 0u) << i;
+        for (std::uint32_t i = 0; i < items; i += 2) {
+          std::uint32_t const a = own[lane].counts[k + i], b = own[lane].counts[k + i + 1];
+          two_at(c + i) = {{a, begin}, {b, begin + a}};
+          begin += a + b;
+          bits |= ((a != 0 ? 1u : 0u) | (b != 0 ? 2u : 0u)) << i;
         }
         occupied[c / items] = static_cast<std::uint8_t>(bits);
       }
@@ -582,6 +585,12 @@ struct allocate_entries {
   }
 
  private:
+  /// What a lane reads and writes at once.
+  struct alignas(16) two_lists {
+    cell_list a, b;
+  };
+  COLLIDE_HD_INLINE two_lists& two_at(std::size_t cell) const { return reinterpret_cast<two_lists*>(cells)[cell / 2]; }
+
   template <class Block>
   struct counts_of {
     std::uint32_t counts[Block::items];
