@@ -290,8 +290,8 @@ struct bucket_query {
 
   /// Tests the spheres that are listed; `one_level` says that this is all that the grids have.
   template <class Block>
-  COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
-                                 placement const& found, bool one_level) const {
+  COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, bucket_lookup<S> const& near, placement const& found,
+                                 bool one_level) const {
     int const usable = near.grid_count;
     // the spheres of one level of one grid after the other, in the end those that no grid serves
     for (int g = 0; g <= usable; ++g) {

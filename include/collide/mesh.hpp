@@ -31,9 +31,12 @@ class mesh_view {
 
   /// Triangle `i`, read from memory.
   COLLIDE_HD_INLINE triangle<S> operator[](std::size_t i) const {
-    if (corners_ == nullptr) return {vertex(3 * i), vertex(3 * i + 1), vertex(3 * i + 2)};
-    id const* const corners = corners_ + 3 * i;
-    return {vertex(corners[0]), vertex(corners[1]), vertex(corners[2])};
+    std::size_t a = 3 * i, b = a + 1, c = a + 2;
+    if (corners_ != nullptr) {
+      id const* const corners = corners_ + 3 * i;
+      a = corners[0], b = corners[1], c = corners[2];
+    }
+    return {vertex(a), vertex(b), vertex(c)};
   }
 
   /// Vertex `i`, read from memory.

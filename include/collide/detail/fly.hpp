@@ -12,6 +12,7 @@
 #include <collide/detail/lookup.hpp>
 #include <collide/detail/scene.hpp>
 #include <collide/detail/spheres_of.hpp>
+#include <collide/detail/vectorised.hpp>
 
 namespace collide::detail {
 
@@ -57,6 +58,11 @@ struct fly_body {
   template <class Block>
   using scratch = scratch_of<Block, Scene::touches>;
 
+  /// True if all particles are asked in the same way whether they can touch a triangle: by `cell_marks`.
+  static COLLIDE_HD_INLINE bool marks_all(Lookup const& lookup, state_type const& state) {
+    return !moves && has_one_radius && lookup.is_simple(state.common_radius);
+  }
+
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     if constexpr (Scene::touches) {
@@ -64,10 +70,10 @@ struct fly_body {
         if (lane == 0) s.count = 0;
       });
       Lookup const near = lookup.opened();
-      bool const simple = !moves && has_one_radius && lookup.is_simple(state.common_radius);
+      bool const simple = marks_all(lookup, state);
       auto const marks = lookup.marks();
       constexpr int n = at_a_time<Block>;
-      fly(block, s.groups, [&](auto const& p, auto const& skipped, auto& listed) {
+      auto const list_near = [&](auto const& p, auto const& skipped, auto& listed) {
         if (simple) {
           mark_near(marks, p, listed);
         } else {
@@ -77,7 +83,17 @@ struct fly_body {
           listed[k] = listed[k] && !skipped[k] && p[k].number < state.size;
           if (listed[k]) s.listed[block.add(s.count, 1)] = p[k].number;
         }
-      });
+      };
+      if constexpr (lists_afterwards<Block>) {
+        if (simple) {
+          fly<group>(block, s.groups, list_none{});
+          vectorised([&] { list_marked(block, s, marks); });
+        } else {
+          fly<n>(block, s.groups, list_near);
+        }
+      } else {
+        fly<n>(block, s.groups, list_near);
+      }
       std::uint32_t const found = s.count;
       if (found == 0) return;
       block.each([&](int lane) {
@@ -89,7 +105,7 @@ struct fly_body {
         }
       });
     } else {
-      fly(block, s.groups, [](auto const&, auto const&, auto const&) {});
+      fly<at_a_time<Block>>(block, s.groups, list_none{});
     }
   }
 
@@ -99,14 +115,46 @@ struct fly_body {
 
   static constexpr bool has_one_radius = !contains<typename Scene::all, radius>;
 
-  /// Moves the particles of a block. `list_some(particles, skipped, listed)` sets listed[k] for those that may touch
-  /// the mesh.
-  template <class Block, class Groups, class List>
-  COLLIDE_HD_INLINE void fly(Block& block, Groups& groups, List const& list_some) const {
+  /// On a CPU, where nothing happens to particles after they have moved, they are asked afterwards whether they may
+  /// touch the mesh, as many as fill its vector registers at a time.
+  template <class Block>
+  static constexpr bool lists_afterwards = Block::lanes == 1 && Block::items % 16 == 0 && !moves && has_one_radius &&
+                                           !Scene::skips && !Scene::finishes && part_after == 0;
+
+  struct list_none {
+    template <class Particles, class Flags>
+    COLLIDE_HD_INLINE void operator()(Particles const&, Flags const&, Flags const&) const {}
+  };
+
+  /// Lists those of a block's particles that may touch the mesh, from where they are now.
+  template <class Block>
+  void list_marked(Block& block, scratch<Block>& s, cell_marks<S> const& marks) const {
+    constexpr int n = Block::items;
+    std::size_t const first = first_of<Block>(block.index());
+    sphere_batch<S, n> batch;
+    batch.load(
+        sphere_view<S>{spheres_xyz(static_cast<S const*>(state.at(position{})), state.size, state.common_radius)},
+        first);
+    auto const places = marks.places_of(batch.x, batch.y, batch.z);
+    for (int k = 0; k < n; ++k) {
+      if (places.inside[k] == 0 || !marks.is_marked(places.cells[k])) continue;
+      s.listed[s.count++] = static_cast<id>(first) + static_cast<id>(k);
+    }
+  }
+
+  /// The first particle of a block.
+  template <class Block>
+  COLLIDE_HD_INLINE std::size_t first_of(std::size_t block) const {
     constexpr auto share = static_cast<std::size_t>(Block::lanes) * Block::items;
-    std::size_t const first = (backwards ? (state.size - 1) / share - block.index() : block.index()) * share;
+    return (backwards ? (state.size - 1) / share - block : block) * share;
+  }
+
+  /// Moves the particles of a block, a lane `n` at a time. `list_some(particles, skipped, listed)` sets listed[k] for
+  /// those that may touch the mesh.
+  template <int n, class Block, class Groups, class List>
+  COLLIDE_HD_INLINE void fly(Block& block, Groups& groups, List const& list_some) const {
+    std::size_t const first = first_of<Block>(block.index());
     block.each([&](int lane) {
-      constexpr int n = at_a_time<Block>;
       for (int k = 0; k < Block::items; k += n) {
         std::size_t const i = first + static_cast<std::size_t>(lane * Block::items + k);
         if constexpr (Scene::skips) {  // nothing is read of those that are left out

@@ -117,6 +117,17 @@ struct grid_level {
     return coordinate(offset);
   }
 
+  /// The cell that holds a point inside the grid, whose lower end this is, and the place of the point in it.
+  COLLIDE_HD_INLINE covered_cell place_of(vec3<S> const& p, S const (&lower)[3]) const {
+    std::uint32_t cell[3], place = 0;
+    for (int k = 0; k < 3; ++k) {
+      std::uint32_t step;
+      cell[k] = coordinate(p[k] - lower[k], step);
+      place |= cell_part::at(step, step, k);
+    }
+    return {row(cell[1], cell[2]) + (cell[0] & mask[0]), place};
+  }
+
   /// True if no cell has the number of another.
   COLLIDE_HD_INLINE bool is_spread() const { return (mask[0] & mask[1] & mask[2]) == (1u << 31) - 1; }
 
@@ -186,13 +197,7 @@ struct grid : grid_frame<S> {
 
   /// The same, and the place of the point in it.
   COLLIDE_HD_INLINE covered_cell place_of(grid_level<S> const& l, vec3<S> const& p) const {
-    std::uint32_t cell[3], place = 0;
-    for (int k = 0; k < 3; ++k) {
-      std::uint32_t step;
-      cell[k] = l.coordinate(p[k] - this->lower[k], step);
-      place |= cell_part::at(step, step, k);
-    }
-    return {l.row(cell[1], cell[2]) + (cell[0] & l.mask[0]), place};
+    return l.place_of(p, this->lower);
   }
 
   /// The cells that a triangle is put into: at most one whole turn of the level on each axis.

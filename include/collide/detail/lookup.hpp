@@ -2,8 +2,8 @@
 /// Which triangles a single sphere could touch, asked from inside a kernel: what a broad phase gives a simulation.
 ///
 /// An index gives a trivially copyable `lookup()`. Of that, `is_simple(radius)` is true if balls of this radius are
-/// best asked several at a time whether they can touch a triangle, `marks().mark(marks().places_of(x, y, z), near)`. In
-/// a kernel, `opened()` is that lookup for use, and then
+/// best asked several at a time whether they can touch a triangle, `marks().mark(marks().places_of(x, y, z), near)`;
+/// `next_marked` then is `next` of those that were marked. In a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
 ///     entries, until it returns false; one may appear more than once if the ball moves; `cursor.at_end()` is true if
@@ -41,6 +41,9 @@ struct candidate_cursor {
 
   int grid, level;
   std::uint32_t step, skip;
+
+  /// That of a ball which was marked.
+  static COLLIDE_HD_INLINE candidate_cursor first_marked() { return {0, 0, 0, 0}; }
 
   /// True if there are no more. False where that is not known yet.
   COLLIDE_HD_INLINE bool at_end() const { return grid == ended; }
@@ -145,6 +148,7 @@ struct cell_marks {
   COLLIDE_HD_INLINE void mark(places<N> const& p, bool (&near)[N]) const {
     for (int k = 0; k < N; ++k) near[k] = (p.inside[k] & occupied[p.cells[k] / 8] >> p.cells[k] % 8 & 1) != 0;
   }
+  COLLIDE_HD_INLINE bool is_marked(std::uint32_t cell) const { return (bit_of(cell) & 1) != 0; }
 
   /// The same of spheres that move. False if it is not known: one of them is not finite, or goes a long way in the
   /// grid.
@@ -219,6 +223,10 @@ struct all_pairs_lookup : triangle_lookup<S> {
   template <class Ball>
   COLLIDE_HD bool next(Ball const&, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
     return this->next_of_all(c, most, range);
+  }
+  COLLIDE_HD bool next_marked(cell_marks<S> const&, vec3<S> const&, candidate_cursor&, std::uint32_t,
+                              candidate_range&) const {
+    return false;
   }
 };
 
@@ -296,6 +304,17 @@ struct bucket_lookup : triangle_lookup<S> {
     }
     c.grid = nowhere;
     return false;
+  }
+
+  /// The same of a ball that was marked: from what is known of its cell, without asking the grid. Its cursor begins
+  /// with `candidate_cursor::first_marked()`.
+  COLLIDE_HD_INLINE bool next_marked(cell_marks<S> const& marks, vec3<S> const& centre, candidate_cursor& c,
+                                     std::uint32_t most, candidate_range& range) const {
+    if (c.grid == nowhere) return false;
+    covered_cell const at = marks.level.place_of(centre, marks.lower);
+    bool const some = next_of_cell(at.number, at.part, c, most, range);
+    if (c.step != 0) c.grid = nowhere;
+    return some;
   }
 
  private:

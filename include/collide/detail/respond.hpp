@@ -188,6 +188,7 @@ struct respond_body {
     cell_entry const* from[size];
     id first[size];
     std::uint32_t at[size];
+    cell_marks<S> marks;
     candidate_lists<Block> lists;
     typename Block::balance_scratch balance;
   };
@@ -195,7 +196,8 @@ struct respond_body {
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     std::uint32_t const n = *list.count;
-    Lookup const near = lookup.opened();
+    surroundings const near{lookup.opened(), s.marks,
+                            fly_body<S, NarrowPhase, Lookup, Scene>::marks_all(lookup, state)};
     // as many as come to each block, or the same each time if it has no room for so many
     auto const shares = static_cast<std::uint32_t>(blocks), most = shares * together<Block>;
     std::uint32_t const share = n == 0 ? 0 : (n - 1) / (shares * ((n - 1) / most + 1)) + 1;
@@ -216,9 +218,29 @@ struct respond_body {
  private:
   using colliding = particle<S, typename Scene::contact>;
 
+  /// What is asked for the triangles near a particle. If all were marked when they were listed, what that depends on is
+  /// in scratch memory, so that nothing is waited for before their cells.
+  struct surroundings : Lookup {
+    cell_marks<S> const& known;
+    bool all_marked;
+
+    template <class Ball>
+    COLLIDE_HD_INLINE candidate_cursor begin(Ball const& ball) const {
+      return all_marked ? candidate_cursor::first_marked() : Lookup::begin(ball);
+    }
+    template <class Ball>
+    COLLIDE_HD_INLINE bool next(Ball const& ball, candidate_cursor& c, std::uint32_t most,
+                                candidate_range& range) const {
+      if constexpr (!moves) {
+        if (all_marked) return Lookup::next_marked(known, ball.centre, c, most, range);
+      }
+      return Lookup::next(ball, c, most, range);
+    }
+  };
+
   /// Resolves the contacts of some listed particles.
   template <class Block>
-  COLLIDE_HD void collide(Block& block, scratch<Block>& s, Lookup const& near, id const* numbers,
+  COLLIDE_HD void collide(Block& block, scratch<Block>& s, surroundings const& near, id const* numbers,
                           std::uint32_t n) const {
     auto const each_of_lane = [&](auto const& f) {
       block.each([&](int lane) {
@@ -244,6 +266,7 @@ struct respond_body {
       if (j != 0) return;
       s.listed = {0, 0};
       s.active = 0;
+      if (near.all_marked) s.marks = near.marks();
     });
     listing listed{0, 0};
     std::uint32_t active = 0;
@@ -266,7 +289,7 @@ struct respond_body {
   /// Offers all candidates of the active ones, and keeps their contacts. `listed` is what `s.listed` was before, and is
   /// then.
   template <class Block, class Each>
-  COLLIDE_HD void offer_all(Block& block, scratch<Block>& s, Lookup const& near, Each const& each_of_lane,
+  COLLIDE_HD void offer_all(Block& block, scratch<Block>& s, surroundings const& near, Each const& each_of_lane,
                             listing& listed) const {
     constexpr std::uint32_t most = (1u << 31) / together<Block>;
     for (bool is_first = true, more = true; more; is_first = false) {
@@ -321,7 +344,8 @@ struct respond_body {
 
   /// Judges the `n` candidates that are listed, and lists those that may touch. What there is no room for is offered.
   template <class Block>
-  COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t n) const {
+  COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, surroundings const& near,
+                                      std::uint32_t n) const {
     for (std::uint32_t base = 0; base < n << near.bits; base += Block::lanes) {
       block.each([&](int lane) {
         std::uint32_t const i = base + static_cast<std::uint32_t>(lane), k = i >> near.bits;
@@ -340,12 +364,19 @@ struct respond_body {
           s.lists.kept[place].particle = c.particle;
           s.lists.kept[place].triangle = number;
           s.lists.kept[place].time = quick == verdict::hit ? S(0) : S(-1);
-        } else if (quick == verdict::hit || finish(t, ball)) {
-          S const time = time_of(t, ball);
-          offer<Block>(one, time, contact_of(t, ball, time, number));
+          return;
         }
+        offer_late<Block>(one, number, quick == verdict::hit);
       });
     }
+  }
+
+  /// Offers a contact that there is no room for. Hardly ever happens: out of line.
+  template <class Block>
+  COLLIDE_HD_NOINLINE void offer_late(survivor<S, moves>& one, id number, bool sure) const {
+    S time;
+    contact<S> found;
+    if (find_contact(lookup.mesh[number], one.ball(), sure, number, time, found)) offer<Block>(one, time, found);
   }
 
   /// Whether a ball touches a triangle, where that is quick to tell. What is left open, many balls that rest on the
@@ -367,18 +398,25 @@ struct respond_body {
     }
   }
 
+  /// Finds when and how a ball and a triangle touch; `sure` says that they do, else it is open whether.
+  template <class Ball>
+  static COLLIDE_HD_INLINE bool find_contact(triangle<S> const& t, Ball const& ball, bool sure, id number, S& time,
+                                             contact<S>& found) {
+    if (!sure && !finish(t, ball)) return false;
+    time = time_of(t, ball);
+    found = contact_of(t, ball, time, number);
+    return true;
+  }
+
   /// Finds the contacts that are to be kept, many at a time, and offers them.
   template <class Block>
-  COLLIDE_HD_INLINE void offer_found(Block& block, scratch<Block>& s, Lookup const& near) const {
+  COLLIDE_HD_INLINE void offer_found(Block& block, scratch<Block>& s, surroundings const& near) const {
     each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
-      auto const ball = one.ball();
-      triangle<S> const t = near.mesh[k.triangle];
-      if (k.time < 0 && !finish(t, ball)) {
+      contact<S> found;
+      if (!find_contact(near.mesh[k.triangle], one.ball(), k.time >= 0, k.triangle, k.time, found)) {
         k.triangle = no_id;
         return;
       }
-      k.time = time_of(t, ball);
-      contact<S> const found = contact_of(t, ball, k.time, k.triangle);
       k.set(found);
       offer<Block>(one, k.time, found);
     });
@@ -444,14 +482,15 @@ struct respond_body {
 
   /// A lane alone: offers a triangle as the next contact of a particle, if they touch.
   template <class Scratch>
-  COLLIDE_HD_INLINE void offer_next(Scratch& s, candidates const& c, Lookup const& near, id number) const {
+  COLLIDE_HD_INLINE void offer_next(Scratch& s, candidates const& c, surroundings const& near, id number) const {
     if constexpr (moves) {
       if (c.one.best != no_contact && static_cast<id>(c.one.best) == number) return;  // it was in another cell, too
     }
     triangle<S> const t = near.mesh[number];
-    if (!NarrowPhase::intersects(t, c.ball)) return;
-    S const time = time_of(t, c.ball);
-    contact<S> const found = contact_of(t, c.ball, time, number);
+    verdict const quick = attempt(t, c.ball);
+    S time;
+    contact<S> found;
+    if (quick == verdict::miss || !find_contact(t, c.ball, quick == verdict::hit, number, time, found)) return;
     std::uint64_t const before = c.one.best;
     offer<serial_block<1, 0>>(c.one, time, found);
     if (c.one.best == before) return;
@@ -499,7 +538,7 @@ struct respond_body {
 
   /// Lets the effects respond to the contact that was found, and says whether to look for another. If there was none,
   /// the particle's step ends.
-  COLLIDE_HD void respond(survivor<S, moves>& one, Lookup const& near, kept_contact const* kept) const {
+  COLLIDE_HD void respond(survivor<S, moves>& one, surroundings const& near, kept_contact const* kept) const {
     if constexpr (!moves && !Scene::finishes && part_after == 0) {
       if (one.best == no_contact) {  // nothing is left to do
         one.is_active = false;
