@@ -365,8 +365,7 @@ __device__ __forceinline__ void wait_for_turn() {
 
 /// Runs a body in one thread per block.
 template <class Block, class Body>
-__global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>))
-    run_threads(std::size_t blocks, __grid_constant__ Body const body) {
+__global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_threads(std::size_t blocks, Body body) {
   let_next_start();
   wait_for_turn();
   std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
@@ -378,7 +377,7 @@ __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>))
 
 /// Runs a body in one CUDA block per block.
 template <class Block, class Body>
-__global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_blocks(__grid_constant__ Body const body) {
+__global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_blocks(Body body) {
   let_next_start();
   wait_for_turn();
   __shared__ typename Body::template scratch<Block> scratch;

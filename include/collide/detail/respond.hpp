@@ -366,17 +366,18 @@ struct respond_body {
           s.lists.kept[place].time = quick == verdict::hit ? S(0) : S(-1);
           return;
         }
-        offer_late<Block>(one, number, quick == verdict::hit);
+        offer_late<Block>(one, near.mesh, number, quick == verdict::hit);
       });
     }
   }
 
-  /// Offers a contact that there is no room for. Hardly ever happens: out of line.
+  /// Offers a contact that there is no room for. Hardly ever happens: out of line, and without a reference to what is
+  /// in registers or parameters, which each thread would then have to keep in memory.
   template <class Block>
-  COLLIDE_HD_NOINLINE void offer_late(survivor<S, moves>& one, id number, bool sure) const {
+  static COLLIDE_HD_NOINLINE void offer_late(survivor<S, moves>& one, mesh_view<S> mesh, id number, bool sure) {
     S time;
     contact<S> found;
-    if (find_contact(lookup.mesh[number], one.ball(), sure, number, time, found)) offer<Block>(one, time, found);
+    if (find_contact(mesh[number], one.ball(), sure, number, time, found)) offer<Block>(one, time, found);
   }
 
   /// Whether a ball touches a triangle, where that is quick to tell. What is left open, many balls that rest on the
@@ -501,7 +502,7 @@ struct respond_body {
 
   /// Offers a contact as the next one of a particle. False if it does not count.
   template <class Block>
-  COLLIDE_HD_INLINE bool offer(survivor<S, moves>& one, S time, contact<S> const& c) const {
+  static COLLIDE_HD_INLINE bool offer(survivor<S, moves>& one, S time, contact<S> const& c) {
     if (one.knows(c.point)) return false;
     if constexpr (moves) {
       if (!one.approaches(c.normal)) return false;
