@@ -295,7 +295,7 @@ struct respond_body {
     for (bool is_first = true, more = true; more; is_first = false) {
       each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
         if (j == 0 && is_first) s.lists.near_count = s.lists.kept_count = 0;
-        candidate_range range;
+        candidate_range range{};
         if (!one.is_active || !near.next(one.ball(), one.cursor, most, range)) return;
         if (!one.cursor.at_end()) block.add(s.listed.unfinished, 1);
         std::uint32_t const place = block.add(s.listed.ranges, 1) - listed.ranges;
