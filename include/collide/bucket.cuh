@@ -133,31 +133,35 @@ struct bucket_query {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    cell_marks<S> const marks = triangles.marks();
+    bool const simple = tests.spheres.one_radius() && triangles.is_simple(tests.spheres.common_radius());
+    bucket_lookup<S> const near = triangles.opened();
+    typename Block::template per_lane<std::size_t> next;
+    typename Block::template per_lane<group<Block>> own;
+    S const* const quads = quads_of<Block>();
     block.each([&](int lane) {
+      next[lane] = first_of(block, lane);
+      load_ahead<Block>(own[lane], quads, next[lane]);  // before it is known how they are to be asked
       tests.begin(s.hits, lane);
       if (lane != 0) return;
       s.found = {0, 0, 0};
       s.listed = {0, 0};
     });
-    typename Block::template per_lane<std::size_t> next;
-    block.each([&](int lane) { next[lane] = first_of(block, lane); });
-    cell_marks<S> const marks = triangles.marks();
-    bool const simple = tests.spheres.one_radius() && triangles.is_simple(tests.spheres.common_radius());
-    bucket_lookup<S> const near = triangles.opened();
     for (;;) {
       block.each([&](int lane) {
         if (simple) {
-          mark_many(block, s, marks, near, next[lane]);
+          mark_many(block, s, marks, near, next[lane], quads, own[lane]);
         } else {
           place_many<Block>(next[lane], [&](std::size_t first) { return place_own(block, s, near, first); });
         }
         if (next[lane] < tests.spheres.size()) block.add(s.found.unfinished, 1);
       });
       placement const found = block.shared(s.found);
-      if (found.placed != 0) look_up(block, s, near, found, simple);
+      if (found.placed != 0) look_up(block, s, near, marks, found, simple);
       if (found.unfinished == 0) break;
       block.each([&](int lane) {
         if (lane == 0) s.found = {0, 0, 0};
+        load_ahead<Block>(own[lane], quads, next[lane]);
       });
     }
     tests.flush(block, s.hits, entries{near});
@@ -197,38 +201,56 @@ struct bucket_query {
     }
   }
 
-  /// The same where most spheres are asked one bit. Where whole groups can be loaded at once, the next one is on its
-  /// way while a group is marked.
+  struct nothing {};
+  /// Spheres that a lane loads before it needs them, if they rest.
+  template <class Block>
+  using group = std::conditional_t<still, sphere_batch<S, Block::items>, nothing>;
+
+  /// The centres, where whole groups of them can be loaded at once; else null.
+  template <class Block>
+  COLLIDE_HD_INLINE S const* quads_of() const {
+    if constexpr (still) {
+      return tests.spheres.size() < Block::items ? nullptr : group<Block>::quads_of(tests.spheres);
+    } else {
+      return nullptr;
+    }
+  }
+
+  /// Loads the group from `first` on; if not all of it is there, some others: ptxas 13.0 keeps in memory what it loads
+  /// under a condition.
+  template <class Block>
+  COLLIDE_HD_INLINE void load_ahead([[maybe_unused]] group<Block>& own, [[maybe_unused]] S const* quads,
+                                    [[maybe_unused]] std::size_t first) const {
+    if constexpr (still) {
+      if (quads != nullptr) own.load_quads(quads, first + Block::items <= tests.spheres.size() ? first : 0);
+    }
+  }
+
+  /// The same where most spheres are asked one bit. Where whole groups can be loaded at once, `own` is the first, and
+  /// the next one is on its way while a group is marked.
   template <class Block>
   COLLIDE_HD_INLINE void mark_many(Block& block, scratch<Block>& s, cell_marks<S> const& marks,
-                                   bucket_lookup<S> const& near, std::size_t& next) const {
+                                   bucket_lookup<S> const& near, std::size_t& next, [[maybe_unused]] S const* quads,
+                                   [[maybe_unused]] group<Block>& own) const {
     if constexpr (still) {
-      using batch = sphere_batch<S, Block::items>;
       auto const mark = [&](typename cell_marks<S>::template places<Block::items> const& places, std::size_t first) {
         bool marked[Block::items];
         marks.mark(places, marked);
         return list_marked(block, s, marked, first);
       };
       auto const load_and_mark = [&](std::size_t first) {
-        batch own;
-        own.load(tests.spheres, first);
-        return mark(marks.places_of(own.x, own.y, own.z), first);
+        group<Block> some;
+        some.load(tests.spheres, first);
+        return mark(marks.places_of(some.x, some.y, some.z), first);
       };
-      S const* const quads = batch::quads_of(tests.spheres);
-      if (quads == nullptr || tests.spheres.size() < Block::items) {
+      if (quads == nullptr) {
         place_many<Block>(next, load_and_mark);
         return;
       }
-      batch own;
-      auto const load = [&](std::size_t first) {
-        // some others where there are none: ptxas 13.0 keeps in memory what it loads under a condition
-        own.load_quads(quads, first + Block::items <= tests.spheres.size() ? first : 0);
-      };
-      load(next);
       place_many<Block>(next, [&](std::size_t first) {
         if (first + Block::items > tests.spheres.size()) return load_and_mark(first);
         auto const places = marks.places_of(own.x, own.y, own.z);
-        load(first + turn<Block>());
+        load_ahead<Block>(own, quads, first + turn<Block>());
         return mark(places, first);
       });
     } else {
@@ -290,8 +312,8 @@ struct bucket_query {
 
   /// Tests the spheres that are listed; `one_level` says that this is all that the grids have.
   template <class Block>
-  COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, bucket_lookup<S> const& near, placement const& found,
-                                 bool one_level) const {
+  COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
+                                 cell_marks<S> const& marks, placement const& found, bool one_level) const {
     int const usable = near.grid_count;
     // the spheres of one level of one grid after the other, in the end those that no grid serves
     for (int g = 0; g <= usable; ++g) {
@@ -307,7 +329,10 @@ struct bucket_query {
               if (!more) at[lane] = {0, 0};
               std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
               if (i >= found.placed || s.grid_of[i] != (all ? everywhere : g)) return;
-              if (!list_all(block, s, near, here, s.placed[i], at[lane])) block.add(s.listed.unfinished, 1);
+              bool const all_listed = still && one_level
+                                          ? list_marked_cell(block, s, near, marks, s.placed[i], at[lane])
+                                          : list_all(block, s, near, here, s.placed[i], at[lane]);
+              if (!all_listed) block.add(s.listed.unfinished, 1);
             });
             listing const listed = block.shared(s.listed);
             more = listed.unfinished != 0;
@@ -395,6 +420,14 @@ struct bucket_query {
       }
       return true;
     }
+  }
+
+  /// The same of a sphere that was marked: from what is known of its cell, without asking the grid.
+  template <class Block>
+  COLLIDE_HD_INLINE bool list_marked_cell(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
+                                          cell_marks<S> const& marks, id number, cursor& at) const {
+    covered_cell const cell = marks.level.place_of(tests.spheres[number].centre, marks.lower);
+    return list(block, s, number, near.lists[cell.number], cell.part, at);
   }
 
   /// Lists a sphere with the entries of a cell from at.skip on. False if there was no room for all of them.

@@ -162,6 +162,22 @@ struct grid_frame {
   COLLIDE_HD_INLINE std::uint32_t coordinate(grid_level<S> const& l, S x, int axis) const {
     return l.coordinate(x - lower[axis]);
   }
+
+  /// The cells that a triangle with this box is put into, at most one whole turn of the level on each axis, and the
+  /// steps in the first and the last of them from and up to which the dilated box reaches.
+  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b, std::uint32_t (&from)[3],
+                                        std::uint32_t (&to)[3]) const {
+    cell_range r;
+    for (int k = 0; k < 3; ++k) {
+      r.lower[k] = l.coordinate(b.lower[k] - dilation - lower[k], from[k]);
+      r.upper[k] = l.coordinate(b.upper[k] + dilation - lower[k], to[k]);
+      bool const turns = r.upper[k] - r.lower[k] > l.mask[k];  // then a cell may be the first and a later one, too
+      from[k] = turns ? cell_part::before : from[k];
+      to[k] = turns ? cell_part::last : to[k];
+      r.upper[k] = turns ? r.lower[k] + l.mask[k] : r.upper[k];
+    }
+    return r;
+  }
 };
 
 /// The grid for spheres up to one radius.
@@ -207,37 +223,22 @@ struct grid : grid_frame<S> {
     return r;
   }
 
-  /// The same, and the steps in the first and the last cell of each axis from and up to which the box reaches.
-  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b, std::uint32_t (&from)[3],
-                                        std::uint32_t (&to)[3]) const {
-    cell_range r;
-    for (int k = 0; k < 3; ++k) {
-      r.lower[k] = l.coordinate(b.lower[k] - dilation - this->lower[k], from[k]);
-      r.upper[k] = l.coordinate(b.upper[k] + dilation - this->lower[k], to[k]);
-      bool const turns = r.upper[k] - r.lower[k] > l.mask[k];  // then a cell may be the first and a later one, too
-      from[k] = turns ? cell_part::before : from[k];
-      to[k] = turns ? cell_part::last : to[k];
-      r.upper[k] = turns ? r.lower[k] + l.mask[k] : r.upper[k];
-    }
-    return r;
-  }
-
   /// Calls f(cells, m) with m of at most N cells at a time and what the box covers of them, for every `parts`-th of the
-  /// cells that a triangle with this box is put into, from the `part`-th on. What it needs of the grid is read at once,
-  /// before anything is written.
+  /// cells that a triangle with this box is put into, from the `part`-th on. `frame` and `finest` are this grid's.
   template <int N, class F>
-  COLLIDE_HD_INLINE void each_cells(box<S> const& b, std::uint32_t part, std::uint32_t parts, F const& f) const {
-    grid_level<S> l = level[0];
-    if (levels > 1) l = level_of(b);
+  COLLIDE_HD_INLINE void each_cells(grid_frame<S> const& frame, grid_level<S> const& finest, box<S> const& b,
+                                    std::uint32_t part, std::uint32_t parts, F const& f) const {
+    grid_level<S> l = finest;
+    if (frame.levels > 1) l = level_of(b);
     std::uint32_t from[3], to[3];
-    cell_range const r = cells_of(l, b, from, to);
+    cell_range const r = frame.cells_of(l, b, from, to);
     std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
                         nz = r.upper[2] - r.lower[2] + 1;
     auto const covered = [&](std::uint32_t i, std::uint32_t cells, int axis) {
       return cell_part::covered(i == 0 ? from[axis] : cell_part::before, i + 1 == cells ? to[axis] : cell_part::last,
                                 axis);
     };
-    std::uint32_t const n = levels == 0 || b.is_empty() ? 0 : nx * ny * nz;
+    std::uint32_t const n = frame.levels == 0 || b.is_empty() ? 0 : nx * ny * nz;
     for (std::uint32_t i = part; i < n; i += N * parts) {
       covered_cell cells[N];
       std::uint32_t m = 0;
@@ -489,22 +490,35 @@ struct grid_insertion {
   /// Calls f(cells, n, entry) for all cells that are this thread's, n of at most `together` at a time.
   template <class F>
   COLLIDE_HD_INLINE void each_cells(std::size_t thread, F const& f) const {
+    auto const number = static_cast<id>(thread / Parts);
     for (int g = 0; g < grid_count; ++g) {
+      asked_for need{grids[g], grids[g].level[0], box_at(number), {}};
+      need.other = need.own;
+      if (Parts > 1 || need.frame.bits != 0)
+        need.other = box_at(smaller<id>(number ^ 1, static_cast<id>(mesh.size()) - 1));
+      read_at_once(need);
       // the threads of the triangles of an entry share its cells; the last triangle may be alone
-      std::uint32_t const bits = grids[g].bits;
-      auto const number = static_cast<id>(thread / Parts), entry = number >> bits;
+      std::uint32_t const bits = need.frame.bits;
+      id const entry = number >> bits;
       std::size_t const first = std::size_t{entry} << bits;
       bool const two = bits != 0 && first + 1 < mesh.size();
       std::uint32_t const parts = two ? 2 * Parts : Parts;
       std::uint32_t const part = static_cast<std::uint32_t>(thread % Parts) + Parts * (number - (entry << bits));
-      box<S> b = box_at(first);
-      if (two) b = typename box<S>::unite{}(b, box_at(first + 1));
+      box<S> const b = two ? typename box<S>::unite{}(need.own, need.other) : need.own;
       grids[g].template each_cells<together>(
-          b, part, parts, [&](covered_cell const(&cells)[together], std::uint32_t n) { f(cells, n, entry); });
+          need.frame, need.finest, b, part, parts,
+          [&](covered_cell const(&cells)[together], std::uint32_t n) { f(cells, n, entry); });
     }
   }
 
  private:
+  /// What a thread reads before it asks for cells: nothing of that depends on other parts of it.
+  struct asked_for {
+    grid_frame<S> frame;
+    grid_level<S> finest;
+    box<S> own, other;  ///< of the triangle, and of the one that it is a pair with, if it is
+  };
+
   COLLIDE_HD_INLINE box<S> box_at(std::size_t i) const {
     triangle_box<S> const b = boxes != nullptr ? boxes[i] : triangle_box_of(mesh[i]);
     return b;

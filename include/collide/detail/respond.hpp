@@ -255,6 +255,11 @@ struct respond_body {
     };
     each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
       one.number = numbers[j];
+      cell_marks<S> marks{};
+      if (near.all_marked) {
+        marks = near.marks();
+        read_at_once(marks);  // while the number is waited for
+      }
       colliding p;
       state.load(p, one.number);
       one.radius = p.the_radius;
@@ -266,7 +271,7 @@ struct respond_body {
       if (j != 0) return;
       s.listed = {0, 0};
       s.active = 0;
-      if (near.all_marked) s.marks = near.marks();
+      s.marks = marks;
     });
     listing listed{0, 0};
     std::uint32_t active = 0;
