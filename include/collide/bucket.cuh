@@ -34,6 +34,10 @@ struct bucket_query {
   template <class Block>
   static constexpr int residency = still ? 4 : 3;
 
+  /// Whether a lane loads its first spheres before it is known how they are to be asked. Narrow phases that are not in
+  /// stages have no registers left for that on CUDA.
+  static constexpr bool loads_early = in_stages<NarrowPhase>::value;
+
   tester<S, NarrowPhase, Sink> tests;
   bucket_lookup<S> triangles;
   std::size_t blocks;  ///< that share the spheres
@@ -141,7 +145,7 @@ struct bucket_query {
     S const* const quads = quads_of<Block>();
     block.each([&](int lane) {
       next[lane] = first_of(block, lane);
-      load_ahead<Block>(own[lane], quads, next[lane]);  // before it is known how they are to be asked
+      if (loads_early) load_ahead<Block>(own[lane], quads, next[lane]);
       tests.begin(s.hits, lane);
       if (lane != 0) return;
       s.found = {0, 0, 0};
@@ -161,7 +165,7 @@ struct bucket_query {
       if (found.unfinished == 0) break;
       block.each([&](int lane) {
         if (lane == 0) s.found = {0, 0, 0};
-        load_ahead<Block>(own[lane], quads, next[lane]);
+        if (loads_early) load_ahead<Block>(own[lane], quads, next[lane]);
       });
     }
     tests.flush(block, s.hits, entries{near});
@@ -226,8 +230,8 @@ struct bucket_query {
     }
   }
 
-  /// The same where most spheres are asked one bit. Where whole groups can be loaded at once, `own` is the first, and
-  /// the next one is on its way while a group is marked.
+  /// The same where most spheres are asked one bit. Where whole groups can be loaded at once, the next one is on its
+  /// way while a group is marked. `own` is the first one if `loads_early`.
   template <class Block>
   COLLIDE_HD_INLINE void mark_many(Block& block, scratch<Block>& s, cell_marks<S> const& marks,
                                    bucket_lookup<S> const& near, std::size_t& next, [[maybe_unused]] S const* quads,
@@ -247,6 +251,7 @@ struct bucket_query {
         place_many<Block>(next, load_and_mark);
         return;
       }
+      if (!loads_early) load_ahead<Block>(own, quads, next);
       place_many<Block>(next, [&](std::size_t first) {
         if (first + Block::items > tests.spheres.size()) return load_and_mark(first);
         auto const places = marks.places_of(own.x, own.y, own.z);
