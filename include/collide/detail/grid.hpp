@@ -494,7 +494,7 @@ struct grid_insertion {
     for (int g = 0; g < grid_count; ++g) {
       asked_for need{grids[g], grids[g].level[0], box_at(number), {}};
       need.other = need.own;
-      if (Parts > 1 || need.frame.bits != 0)
+      if ((Parts > 1 && boxes != nullptr) || need.frame.bits != 0)
         need.other = box_at(smaller<id>(number ^ 1, static_cast<id>(mesh.size()) - 1));
       read_at_once(need);
       // the threads of the triangles of an entry share its cells; the last triangle may be alone
