@@ -431,7 +431,7 @@ struct bucket_query {
   template <class Block>
   COLLIDE_HD_INLINE bool list_marked_cell(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
                                           cell_marks<S> const& marks, id number, cursor& at) const {
-    covered_cell const cell = marks.level.place_of(tests.spheres[number].centre, marks.lower);
+    covered_cell const cell = marks.place_of(tests.spheres[number].centre);
     return list(block, s, number, near.lists[cell.number], cell.part, at);
   }
 

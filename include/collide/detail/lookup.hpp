@@ -121,6 +121,9 @@ struct cell_marks {
   grid_level<S> level;
   std::uint8_t const* occupied;
 
+  /// The cell of a centre that was marked, and the place of the centre in it.
+  COLLIDE_HD_INLINE covered_cell place_of(vec3<S> const& centre) const { return level.place_of(centre, lower); }
+
   /// The cells of several centres, and whether each is inside the grid at all.
   template <int N>
   struct places {
@@ -311,7 +314,7 @@ struct bucket_lookup : triangle_lookup<S> {
   COLLIDE_HD_INLINE bool next_marked(cell_marks<S> const& marks, vec3<S> const& centre, candidate_cursor& c,
                                      std::uint32_t most, candidate_range& range) const {
     if (c.grid == nowhere) return false;
-    covered_cell const at = marks.level.place_of(centre, marks.lower);
+    covered_cell const at = marks.place_of(centre);
     bool const some = next_of_cell(at.number, at.part, c, most, range);
     if (c.step != 0) c.grid = nowhere;
     return some;
