@@ -28,12 +28,11 @@ namespace {
 struct into_array {
   collide::pair* to;
   std::uint64_t capacity;
-  std::uint64_t* total;
+  collide::detail::tally numbers;
 
   template <class Space, class Query>
-  void run(Space& space, Query const& query) {
-    space.fill(total, 0, sizeof *total);
-    query(collide::detail::append{total, to, capacity});
+  void run(Space&, Query const& query) {
+    query(collide::detail::append{numbers, to, capacity});
   }
 };
 
@@ -76,7 +75,8 @@ struct scene {
   std::optional<collide::uploaded_mesh<float>> mesh;
   std::optional<collide::uploaded_spheres<float>> spheres;
   collide::buffer<collide::pair> pairs;
-  collide::buffer<std::uint64_t> total;
+  collide::detail::tally_memory memory_of_total;
+  collide::detail::tally total;
   float radius;
   double floor, floor_of_frame;
 
@@ -98,14 +98,14 @@ struct scene {
         space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count()));
     spheres = collide::upload(space, collide::spheres_xyz(centres.data(), centres.size() / 3, radius));
     pairs.reserve(space.resource(), capacity);
-    total.reserve(space.resource(), 1);
+    total = memory_of_total.begin(space);
     std::size_t const threads = centres.size() / 12;
     auto const* const from = reinterpret_cast<float4 const*>(spheres->view().x(0));
     auto const time_of = [&](int frames) {
       graph const reading(stream, [&] {
         for (int i = 0; i < frames; ++i) {
           read_centres<<<static_cast<unsigned>((threads + 255) / 256), 256, 0, stream>>>(
-              from, threads, reinterpret_cast<float*>(total.data()));
+              from, threads, reinterpret_cast<float*>(total.total));
         }
       });
       bench::stopwatch<collide::cuda_shared> watch(space);
@@ -128,12 +128,12 @@ template <class Broad, class Precision>
 void run(benchmark::State& state, bool builds, bool queries, int frames) {
   scene& s = scene::get();
   collide::detector<Broad, collide::karabassi<Precision>, collide::cuda_shared> detector(s.space);
-  into_array sink{s.pairs.data(), s.capacity, s.total.data()};
+  into_array sink{s.pairs.data(), s.capacity, s.total};
   auto const mesh = s.mesh->view();
   auto const spheres = s.spheres->view();
   detector.build(mesh, s.radius);
   detector.query(spheres, sink);
-  std::uint64_t const pairs = s.space.read(s.total.data());
+  std::uint64_t const pairs = s.space.read(s.total.total);
   if (pairs > s.capacity) return state.SkipWithError("the array is too small");
   graph const all(s.stream, [&] {
     for (int i = 0; i < frames; ++i) {

@@ -8,9 +8,7 @@ namespace collide {
 
 namespace detail {
 
-struct add_up {
-  std::uint64_t* total;
-  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return fetch_add(total, n); }
+struct add_up : tally {
   template <class Hit>
   COLLIDE_HD_INLINE void store(std::uint64_t, Hit const&) const {}
 };
@@ -25,14 +23,12 @@ class count {
 
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
-    std::uint64_t* const counter = counter_.reserve(space.resource(), 1);
-    space.fill(counter, 0, sizeof *counter);
-    query(detail::add_up{counter});
-    total_ = space.read(counter);
+    query(detail::add_up{total_of_.begin(space)});
+    total_ = total_of_.end(space);
   }
 
  private:
-  buffer<std::uint64_t> counter_;
+  detail::tally_memory total_of_;
   std::uint64_t total_ = 0;
 };
 

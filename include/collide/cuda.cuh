@@ -149,7 +149,8 @@ class cuda_block {
   struct row_scratch {
     T values[lanes * N];
   };
-  using scan_scratch = typename cub::BlockScan<std::uint32_t, lanes>::TempStorage;
+  using block_scan = cub::BlockScan<std::uint32_t, lanes, cub::BLOCK_SCAN_WARP_SCANS>;  // waits least
+  using scan_scratch = typename block_scan::TempStorage;
   using balance_scratch = scan_scratch;
   template <class T>
   using reduce_scratch = typename cub::BlockReduce<T, lanes>::TempStorage;
@@ -241,7 +242,7 @@ class cuda_block {
   __device__ std::uint32_t scan(scan_scratch& s, std::uint32_t* values, std::uint32_t n) {
     auto const i = static_cast<std::uint32_t>(lane());
     std::uint32_t own = i < n ? values[i] : 0, sum;
-    cub::BlockScan<std::uint32_t, lanes>(s).ExclusiveSum(own, own, sum);
+    block_scan(s).ExclusiveSum(own, own, sum);
     if (i < n) values[i] = own;
     sync();
     return sum;

@@ -76,12 +76,15 @@ struct query_pass {
         "collide: what a sink passes to query has a const member reserve(n) and a const member store(slot, hit)");
     static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
                   "collide: what a sink hands to the device must be a plain value");
-    if (mesh.size() == 0 || spheres.size() == 0) return;
-    if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
-      query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open);
-    } else {
-      index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
+    if (mesh.size() != 0 && spheres.size() != 0) {
+      if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
+        query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open);
+        return;
+      } else {
+        index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
+      }
     }
+    if constexpr (finishes<Handle>::value) space.for_each(1, finish_only<Handle>{handle});
   }
 };
 

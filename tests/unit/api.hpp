@@ -81,6 +81,54 @@ class fancy_allocator {
   counting_resource* from_;
 };
 
+/// A sink whose handle wants to know when a pass has ended.
+struct ending_sink {
+  struct handle {
+    std::uint64_t* stored;
+    std::uint64_t* ended;
+    std::uint64_t* stored_then;
+
+    COLLIDE_HD std::uint64_t reserve(std::uint64_t) const { return 0; }
+    template <class Hit>
+    COLLIDE_HD void store(std::uint64_t, Hit const&) const {
+      collide::detail::fetch_add(stored, std::uint64_t{1});
+    }
+    COLLIDE_HD void finish() const {
+      collide::detail::fetch_add(ended, std::uint64_t{1});
+      *stored_then = collide::detail::fetch_add(stored, std::uint64_t{0});
+    }
+  };
+  collide::buffer<std::uint64_t> memory;
+  std::array<std::uint64_t, 3> numbers{};
+
+  template <class Space, class Query>
+  void run(Space& space, Query const& query) {
+    std::uint64_t* const to = memory.reserve(space.resource(), 3);
+    space.fill(to, 0, 3 * sizeof *to);
+    query(handle{to, to + 1, to + 2});
+    space.copy_to_host(numbers.data(), to, 3);
+  }
+};
+
+/// A pass ends once, after its last hit, also where there is nothing to collide and where verdicts are put off.
+template <class NarrowPhase, class Broad, class Space>
+void check_end_of_pass(Space space) {
+  using numbers = std::array<std::uint64_t, 3>;
+  small_scene scene;
+  auto const mesh = collide::upload(space, scene.mesh());
+  collide::detector<Broad, NarrowPhase, Space> detector(space);
+  ending_sink sink;
+  auto const query = [&] { return detector.query(collide::upload(space, scene.spheres()).view(), sink).numbers; };
+  CHECK((query() == numbers{0, 1, 0}));  // nothing is built yet
+  detector.build(mesh.view());
+  for (int k = 0; k < 3; ++k) CHECK((query() == numbers{4, 1, 4}));
+  CHECK((detector.query(collide::sphere_view<float>(), sink).numbers == numbers{0, 1, 0}));
+  scene.radii[0] = 0.25f;  // just touches, as no quick test can tell
+  CHECK((query() == numbers{4, 1, 4}));
+  scene.radii = {0, 0, 0, 0};
+  CHECK((query() == numbers{1, 1, 1}));  // on a corner
+}
+
 /// Every way to hand over and to read a sink.
 template <class Broad, class Space>
 void check_sink_interface(Space space) {
@@ -142,6 +190,9 @@ void check_sink_interface(Space space) {
   CHECK(contacts[3].kind == collide::feature::vertex);
   CHECK(contacts[3].index == 2);
   CHECK(contacts[3].depth == 0.125f);
+
+  check_end_of_pass<collide::karabassi<>, Broad>(space);
+  check_end_of_pass<collide::karabassi<collide::double_precision>, Broad>(space);
 
   auto const none = detector.query(spheres.view(), collide::pairs(nullptr, 0));
   CHECK(none.total() == 4);

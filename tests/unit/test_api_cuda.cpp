@@ -18,12 +18,11 @@ __global__ void set_heights_late(float* vertices, float* centres, std::size_t n,
 
 /// Counts in memory of the device, and waits for nothing.
 struct count_there {
-  std::uint64_t* total;
+  collide::detail::tally numbers;
 
   template <class Space, class Query>
-  void run(Space& space, Query const& query) {
-    space.fill(total, 0, sizeof *total);
-    query(collide::detail::append{total, nullptr, 0});
+  void run(Space&, Query const& query) {
+    query(collide::detail::append{numbers, nullptr, 0});
   }
 };
 
@@ -47,7 +46,8 @@ void check_turns(cudaStream_t stream) {
   collide::buffer<std::uint64_t> totals;
   float* const vertices = copy_of(vertex_memory, corners);
   float* const places = copy_of(centre_memory, centres);
-  std::uint64_t* const counts = totals.reserve(space.resource(), rounds);
+  std::uint64_t* const counts = totals.reserve(space.resource(), rounds + 1);
+  space.fill(counts + rounds, 0, sizeof *counts);
   auto const mesh = collide::triangle_soup(static_cast<float const*>(vertices), 1);
   auto const spheres = collide::spheres_xyz(static_cast<float const*>(places), n, 0.5f);
   collide::detector<BroadPhase, collide::karabassi<>, Space> detector(space);
@@ -59,7 +59,7 @@ void check_turns(cudaStream_t stream) {
     float const height = static_cast<float>(round);
     set(height, round % 3 == 0 ? height + 50 : height);
     detector.build(mesh, 0.5f);
-    count_there sink{counts + round};
+    count_there sink{{counts + rounds, counts + round}};
     detector.query(spheres, sink);
     set(-100, 100);
   }

@@ -76,6 +76,24 @@ class hit {
 
 namespace detail {
 
+/// True for handles that want to know when all hits of a pass are stored; see detail/sink.hpp.
+template <class Handle, class = void>
+struct finishes : std::false_type {};
+template <class Handle>
+struct finishes<Handle, std::void_t<decltype(std::declval<Handle const&>().finish())>> : std::true_type {};
+
+template <class Handle>
+COLLIDE_HD_INLINE void finish_pass([[maybe_unused]] Handle const& handle) {
+  if constexpr (finishes<Handle>::value) handle.finish();
+}
+
+/// Kernel body of `for_each` over one item.
+template <class Handle>
+struct finish_only {
+  Handle handle;
+  COLLIDE_HD void operator()(std::size_t) const { handle.finish(); }
+};
+
 /// What a pass over candidates does with them: decides each, and takes the hits to the handle of the caller's sink. A
 /// pass that puts some off is in detail/undecided.hpp.
 template <class Handle>

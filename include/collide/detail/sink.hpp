@@ -5,7 +5,8 @@
 /// calls `query(handle)` as often as it needs to; each call puts one pass over the scene on the space's stream. The
 /// handle is trivially copyable, goes to the device, and has
 ///   - `std::uint64_t reserve(std::uint64_t n) const`: called once per batch of n hits; returns the slot of the first;
-///   - `void store(std::uint64_t slot, Hit const& hit) const`: called once per hit (see `hit` in detail/hits.hpp).
+///   - `void store(std::uint64_t slot, Hit const& hit) const`: called once per hit (see `hit` in detail/hits.hpp);
+///   - `void finish() const`, if it wants to: called once per pass, when all hits are stored.
 /// `query.mesh` and `query.spheres` are the views, `Query::narrow_phase` and `Query::scalar` are types.
 #pragma once
 
@@ -46,13 +47,49 @@ class downloader {
   void (*copy_)(void const*, T*, T const*, std::size_t) = nullptr;
 };
 
-/// Appends hits as pairs to an array of fixed capacity and counts those beyond it too.
-struct append {
+/// Numbers the hits of a pass. `sum` is 0 before and after it, so that nothing need set it to 0 first; `total` is how
+/// many there were.
+struct tally {
+  std::uint64_t* sum;
   std::uint64_t* total;
+
+  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return fetch_add(sum, n); }
+  COLLIDE_HD_INLINE void finish() const {
+    *total = fetch_add(sum, std::uint64_t{0});
+    *sum = 0;
+  }
+};
+
+/// The memory of a tally.
+class tally_memory {
+ public:
+  /// For a pass that is put on the space's stream next.
+  template <class Space>
+  tally begin(Space& space) {
+    std::uint64_t* const numbers = numbers_.reserve(space.resource(), 2);
+    if (!is_zero_) space.fill(numbers, 0, 2 * sizeof *numbers);
+    is_zero_ = false;
+    return {numbers, numbers + 1};
+  }
+
+  /// How many hits it had. Waits.
+  template <class Space>
+  std::uint64_t end(Space& space) {
+    std::uint64_t const total = space.read(numbers_.data() + 1);
+    is_zero_ = true;
+    return total;
+  }
+
+ private:
+  buffer<std::uint64_t> numbers_;
+  bool is_zero_ = false;  ///< the sum, for sure
+};
+
+/// Appends hits as pairs to an array of fixed capacity and counts those beyond it too.
+struct append : tally {
   pair* to;
   std::uint64_t capacity;
 
-  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return fetch_add(total, n); }
   template <class Hit>
   COLLIDE_HD_INLINE void store(std::uint64_t slot, Hit const& h) const {
     if (slot < capacity) to[slot] = {h.sphere, h.triangle};
@@ -65,11 +102,9 @@ class collector {
   /// Runs the query into `to[0 .. capacity)`.
   template <class Space, class Query>
   void fill(Space& space, Query const& query, pair* to, std::uint64_t capacity) {
-    std::uint64_t* const counter = counter_.reserve(space.resource(), 1);
-    space.fill(counter, 0, sizeof *counter);
-    query(append{counter, to, capacity});
+    query(append{total_of_.begin(space), to, capacity});
     data_ = to;
-    total_ = space.read(counter);
+    total_ = total_of_.end(space);
     size_ = static_cast<std::size_t>(total_ < capacity ? total_ : capacity);
   }
 
@@ -98,7 +133,7 @@ class collector {
   std::uint64_t total() const { return total_; }
 
  private:
-  buffer<std::uint64_t> counter_;
+  tally_memory total_of_;
   buffer<pair> own_, other_;
   buffer<unsigned char> scratch_;
   pair* data_ = nullptr;

@@ -80,8 +80,8 @@ struct finishing : deciding<Handle> {
   }
 };
 
-/// Kernel body of the second step: decides the pairs on the list. If not all are there, it goes through all pairs of
-/// spheres and triangles, plainly: that is slow, but hardly ever happens, and loses nothing.
+/// Kernel body of the second step: decides the pairs on the list, and ends the pass. If not all are there, it goes
+/// through all pairs of spheres and triangles, plainly: that is slow, but hardly ever happens, and loses nothing.
 template <class S, class NarrowPhase, class Handle>
 struct finish_undecided {
   static constexpr int items = 1;
@@ -103,7 +103,14 @@ struct finish_undecided {
     bool const listed = total <= open.capacity;
     std::uint64_t const work = listed ? total : std::uint64_t{spheres.size()} * mesh.size();
     std::uint64_t const busy = smaller<std::uint64_t>(blocks, (work + Block::lanes - 1) / Block::lanes);
-    if (block.index() >= busy) return;
+    if (block.index() >= busy) {
+      if (work == 0 && block.index() == 0) {
+        block.each([&](int lane) {
+          if (lane == 0) finish_pass(handle);
+        });
+      }
+      return;
+    }
 
     tester<S, NarrowPhase, finishing<Handle>> const tests{mesh, spheres, {{handle}, listed}};
     block.each([&](int lane) { tests.begin(s.hits, lane); });
@@ -127,6 +134,7 @@ struct finish_undecided {
     block.each([&](int lane) {
       if (lane != 0 || fetch_add(&open.count->ready, std::uint64_t{1}) + 1 != busy) return;
       open.count->total = open.count->ready = 0;
+      finish_pass(handle);
     });
   }
 };
