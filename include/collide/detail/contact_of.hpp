@@ -54,25 +54,19 @@ COLLIDE_HD_NOINLINE exact_measure measure_exactly(Exactly const& exactly, local_
 /// Doubles are sure of a length from here on, in a problem of at most size 4: to within 2^-45; see docs/numerics.md.
 inline constexpr double clear_length = 0x1p-20;
 
-/// The contact of a finite triangle, as seen from `centre`, computed in double, rounded once, and computed exactly
-/// before that where the digits of a double do not suffice: `exactly()` makes an `exact_triangle`, of what it holds by
-/// value. `clear(distance, depth)`, both local, tells whether they do. The ids are left to the caller.
-template <class S, class Clear, class Exactly>
-COLLIDE_HD contact<S> contact_from(local_triangle<double> const& l, vec3<double> const& centre, S radius,
-                                   Clear const& clear, Exactly const& exactly) {
+/// The contact of a finite triangle, as seen from `centre`, computed in double and rounded once, if the digits of a
+/// double suffice: `clear(distance, depth)`, both local, tells whether they do. If not, `otherwise(q, measured,
+/// normal)` may correct what was computed; false if that returns false. The ids are left to the caller.
+template <class S, class Clear, class Otherwise>
+COLLIDE_HD_INLINE bool contact_if_clear(local_triangle<double> const& l, vec3<double> const& centre, S radius,
+                                        Clear const& clear, Otherwise const& otherwise, contact<S>& found) {
   vec3<double> normal = cross<double>(l.b - l.a, l.c - l.a);
   closest_point<double> q = closest_to_origin(l, normal);
   double const local_distance = root(q.distance_squared);
   gap measured{div(local_distance, l.scale), 0};
   measured.depth = static_cast<double>(radius) - measured.distance;
   if (!clear(local_distance, mul(measured.depth, l.scale))) {
-    Exactly const how = exactly;  // copies, so that the call does not force the originals into memory
-    local_triangle<double> const far = l;
-    exact_measure const m = measure_exactly(how, far, q.distance_squared);
-    measured = m.measured;
-    normal = m.normal;
-    q.kind = m.kind;
-    q.index = m.index;
+    if (!otherwise(q, measured, normal)) return false;
     if (infinite(radius)) measured.depth = static_cast<double>(radius);
   } else if (q.kind == feature::face) {
     normal = unit(normal);
@@ -86,14 +80,35 @@ COLLIDE_HD contact<S> contact_from(local_triangle<double> const& l, vec3<double>
     point = scaled(centre, 0.25) + scaled(q.point, div(0.25, l.scale));
     for (int k = 0; k < 3; ++k) point[k] = mul(4.0, smaller(larger(point[k], -most), most));
   }
-  return {no_id,
-          no_id,
-          point.template cast<S>(),
-          normal.template cast<S>(),
-          static_cast<S>(measured.distance),
-          static_cast<S>(measured.depth),
-          q.kind,
-          static_cast<std::uint32_t>(q.index)};
+  found = {no_id,
+           no_id,
+           point.template cast<S>(),
+           normal.template cast<S>(),
+           static_cast<S>(measured.distance),
+           static_cast<S>(measured.depth),
+           q.kind,
+           static_cast<std::uint32_t>(q.index)};
+  return true;
+}
+
+/// The same, computed exactly where the digits of a double do not suffice: `exactly()` makes an `exact_triangle`, of
+/// what it holds by value.
+template <class S, class Clear, class Exactly>
+COLLIDE_HD contact<S> contact_from(local_triangle<double> const& l, vec3<double> const& centre, S radius,
+                                   Clear const& clear, Exactly const& exactly) {
+  auto const otherwise = [&](closest_point<double>& q, gap& measured, vec3<double>& normal) {
+    Exactly const how = exactly;  // copies, so that the call does not force the originals into memory
+    local_triangle<double> const far = l;
+    exact_measure const m = measure_exactly(how, far, q.distance_squared);
+    measured = m.measured;
+    normal = m.normal;
+    q.kind = m.kind;
+    q.index = m.index;
+    return true;
+  };
+  contact<S> found;
+  contact_if_clear(l, centre, radius, clear, otherwise, found);
+  return found;
 }
 
 /// The contact of a finite triangle and a sphere.

@@ -169,6 +169,7 @@ struct respond_body {
     candidate near[near_room];     ///< let through by the quick test
     kept_contact kept[kept_room];  ///< of those that the narrow phase may accept, as far as there is room
     std::uint32_t near_count, kept_count;
+    std::uint32_t open_count;  ///< how many of those that are kept take long
   };
 
   /// How many ranges of candidates there are, and how often a particle may have had more. These only rise, so that
@@ -299,7 +300,7 @@ struct respond_body {
     constexpr std::uint32_t most = (1u << 31) / together<Block>;
     for (bool is_first = true, more = true; more; is_first = false) {
       each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
-        if (j == 0 && is_first) s.lists.near_count = s.lists.kept_count = 0;
+        if (j == 0 && is_first) s.lists.near_count = s.lists.kept_count = s.lists.open_count = 0;
         candidate_range range{};
         if (!one.is_active || !near.next(one.ball(), one.cursor, most, range)) return;
         if (!one.cursor.at_end()) block.add(s.listed.unfinished, 1);
@@ -414,18 +415,41 @@ struct respond_body {
     return true;
   }
 
-  /// Finds the contacts that are to be kept, many at a time, and offers them.
+  /// Finds the contacts that are to be kept, many at a time, and offers them: first those that take no call. What a
+  /// thread has at hand when it calls something it keeps in memory, and begins to do so long before.
   template <class Block>
   COLLIDE_HD_INLINE void offer_found(Block& block, scratch<Block>& s, surroundings const& near) const {
+    if constexpr (!moves) {
+      each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
+        contact<S> found;
+        verdict const quick = quick_contact_here(near.mesh[k.triangle], one.ball(), k.time >= 0, found);
+        k.time = quick == verdict::unsure ? S(-1) : S(0);
+        if (quick == verdict::unsure) block.add(s.lists.open_count, 1);
+        if (quick == verdict::miss) k.triangle = no_id;
+        if (quick != verdict::hit) return;
+        found.triangle = k.triangle;
+        k.set(found);
+        offer<Block>(one, k.time, found);
+      });
+      if (block.shared(s.lists.open_count) == 0) return;
+    }
     each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
-      contact<S> found;
-      if (!find_contact(near.mesh[k.triangle], one.ball(), k.time >= 0, k.triangle, k.time, found)) {
-        k.triangle = no_id;
-        return;
-      }
-      k.set(found);
-      offer<Block>(one, k.time, found);
+      if (moves || k.time < 0) offer_open<Block>(one, near.mesh, k);
     });
+  }
+
+  /// Finds a contact that is to be kept, and offers it.
+  template <class Block>
+  static COLLIDE_HD_NOINLINE void offer_open(survivor<S, moves>& one, mesh_view<S> mesh, kept_contact& k) {
+    S time;
+    contact<S> found;
+    if (!find_contact(mesh[k.triangle], one.ball(), k.time >= 0, k.triangle, time, found)) {
+      k.triangle = no_id;
+      return;
+    }
+    k.time = time;
+    k.set(found);
+    offer<Block>(one, time, found);
   }
 
   /// Offers the contacts of particles at rest again. False if not all of them were kept.
@@ -544,26 +568,42 @@ struct respond_body {
 
   /// Lets the effects respond to the contact that was found, and says whether to look for another. If there was none,
   /// the particle's step ends.
-  COLLIDE_HD void respond(survivor<S, moves>& one, surroundings const& near, kept_contact const* kept) const {
-    if constexpr (!moves && !Scene::finishes && part_after == 0) {
-      if (one.best == no_contact) {  // nothing is left to do
-        one.is_active = false;
-        return;
+  COLLIDE_HD_INLINE void respond(survivor<S, moves>& one, surroundings const& near, kept_contact const* kept) const {
+    if (one.best == no_contact) {
+      if constexpr (!moves && !Scene::finishes && part_after == 0) {
+        one.is_active = false;  // nothing is left to do
+      } else {
+        respond_to(one, nullptr);
       }
+    } else if (one.best_kept == kept_contact::none) {
+      respond_again(*this, one, near.mesh);
+    } else {
+      respond_to(one, kept + one.best_kept);
     }
+  }
+
+  /// The same to a contact that was not kept. Hardly ever happens; see `offer_late`.
+  static COLLIDE_HD_NOINLINE void respond_again(respond_body self, survivor<S, moves>& one, mesh_view<S> mesh) {
+    auto const number = static_cast<id>(one.best);
+    auto const ball = one.ball();
+    kept_contact again;
+    again.time = time_of(mesh[number], ball);
+    again.set(contact_of(mesh[number], ball, again.time, number));
+    self.respond_to(one, &again);
+  }
+
+  /// The same to a contact; null: there was none.
+  COLLIDE_HD_INLINE void respond_to(survivor<S, moves>& one, kept_contact const* kept) const {
     colliding p;
     state.load(p, one.number);
-    if (one.best == no_contact) {
+    if (kept == nullptr) {
       if constexpr (moves) p[position{}] += p[velocity{}] * one.rest;
       one.is_active = false;
     } else {
-      auto const number = static_cast<id>(one.best);
       auto const ball = one.ball();
-      bool const is_kept = one.best_kept != kept_contact::none;
-      S const time = is_kept ? kept[one.best_kept].time : time_of(near.mesh[number], ball);
+      S const time = kept->time;
       sphere<S> const here = place_at(ball, time);
-      contact<S> const found = is_kept ? kept[one.best_kept].get() : contact_of(near.mesh[number], ball, time, number);
-      touching<S> c{found, vec3<S>(S(0), S(0), S(0)), moves ? S(0) : dt, S(0), false};
+      touching<S> c{kept->get(), vec3<S>(S(0), S(0), S(0)), moves ? S(0) : dt, S(0), false};
       c.sphere = one.number;
       if constexpr (moves) {
         p[position{}] = here.centre;

@@ -14,15 +14,37 @@ struct karabassi_swept;
 
 namespace detail {
 
+/// Whether doubles suffice for the contact of a ball in a simulation.
+struct clear_here {
+  COLLIDE_HD_INLINE bool operator()(double distance, double) const { return distance >= clear_length; }
+};
+
 /// The contact of a ball and a finite triangle. Unlike that of `contact_of`, the depth of a ball that just touches is
 /// known to within the rounding of doubles only: resting balls do just that, all the time.
 template <class S>
 COLLIDE_HD contact<S> contact_here(triangle<S> const& t, sphere<S> const& s) {
   sphere<S> const centre{s.centre, S(0)};
   local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
-  auto const clear = [](double distance, double) { return distance >= clear_length; };
   auto const exactly = [t, centre] { return exact_triangle<>(t, centre); };
-  return contact_from(l, s.centre.template cast<double>(), s.radius, clear, exactly);
+  return contact_from(l, s.centre.template cast<double>(), s.radius, clear_here{}, exactly);
+}
+
+/// Whether a ball touches a finite triangle, and the same contact if so, where doubles suffice for both; `sure` says that
+/// they touch. Calls nothing.
+template <class S>
+COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
+  // a length that doubles are sure of is known to within 2^-45
+  constexpr double clear_depth = 0x1p-40;
+  sphere<S> const centre{s.centre, S(0)};
+  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
+  bool apart = false;
+  auto const clear = [&](double distance, double depth) {
+    apart = !sure && depth < 0;
+    return clear_here{}(distance, depth) && (sure || depth >= clear_depth || depth <= -clear_depth);
+  };
+  auto const otherwise = [](closest_point<double>&, gap&, vec3<double>&) { return false; };
+  if (!contact_if_clear(l, s.centre.template cast<double>(), s.radius, clear, otherwise, found)) return verdict::unsure;
+  return apart ? verdict::miss : verdict::hit;
 }
 
 /// Where a moving ball is at a time within the step.
