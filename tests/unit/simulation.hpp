@@ -524,6 +524,19 @@ void check_tangent_balls(Space const& space) {
   CHECK(touching < w.size() * 3 / 4);
 }
 
+/// Balls whose centres lie on the mesh, or next to it, touch it, whatever the precision of the verdict.
+template <class NarrowPhase, class S, class Space>
+void check_sunk_balls(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, warmth>;
+  world<S> w;
+  add_floor(w, 4, 8);
+  w.radius = S(0.1);
+  for (int i = 0; i < 40; ++i) w.particle(0.05 * i, 0.03 * i, i % 4 == 0 ? std::ldexp(1.0, -20 - i) : 0);
+  running<simulation> made(space, w, warmth{80, 0});
+  made.simulation.step(S(0.1));
+  CHECK((made.simulation.template to_host<temperature>() == std::vector<S>(w.size(), S(80))));
+}
+
 /// Balls of different sizes rest at different heights.
 template <class Space>
 void check_radii(Space const& space) {

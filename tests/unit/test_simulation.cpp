@@ -71,6 +71,9 @@ TEST_CASE_TEMPLATE("simulation: balls that just touch, or just do not", S, float
   tests::check_tangent_balls<S>(host(2));
   tests::check_tangent_balls<S>(tests::lockstep<256, false>());
   tests::check_tangent_balls<S>(tests::lockstep<64, true>());
+  tests::check_sunk_balls<karabassi<>, S>(host(1));
+  tests::check_sunk_balls<karabassi<>, S>(tests::lockstep<64, true>());
+  tests::check_sunk_balls<karabassi<collide::single_precision>, S>(tests::lockstep<64, false>());
 }
 
 TEST_CASE("simulation: elastic bounces keep their height on average, however coarse the step") {

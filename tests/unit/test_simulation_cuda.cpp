@@ -68,6 +68,8 @@ TEST_CASE("simulation: on the GPU, balls that touch hundreds of triangles") {
 TEST_CASE("simulation: on the GPU, balls that just touch, or just do not") {
   tests::check_tangent_balls<float>(cuda_shared());
   tests::check_tangent_balls<double>(cuda_shared());
+  tests::check_sunk_balls<karabassi<>, float>(cuda_shared());
+  tests::check_sunk_balls<karabassi<collide::single_precision>, float>(cuda_shared());
 }
 
 TEST_CASE("simulation: on the GPU, particles stay in a closed mesh for 1e5 steps") {

@@ -145,10 +145,11 @@ struct respond_body {
   /// A contact that a particle may have, in scratch memory.
   struct kept_contact {
     static constexpr std::uint32_t none = ~std::uint32_t{0};
+    static constexpr S open = -1, touching = -2;  ///< in place of a time: it is open whether they touch; they do
 
     std::uint32_t particle;
     id triangle;  ///< `no_id` if they do not touch after all
-    S time;       ///< below 0 while it is not known whether they touch
+    S time;       ///< below 0 while the contact is not known
     alignas(S) unsigned char bytes[sizeof(contact<S>)];
 
     COLLIDE_HD_INLINE void set(contact<S> const& c) { std::memcpy(bytes, static_cast<void const*>(&c), sizeof c); }
@@ -369,7 +370,7 @@ struct respond_body {
         if (place < candidate_lists<Block>::kept_room) {
           s.lists.kept[place].particle = c.particle;
           s.lists.kept[place].triangle = number;
-          s.lists.kept[place].time = quick == verdict::hit ? S(0) : S(-1);
+          s.lists.kept[place].time = quick == verdict::hit ? kept_contact::touching : kept_contact::open;
           return;
         }
         offer_late<Block>(one, near.mesh, number, quick == verdict::hit);
@@ -422,19 +423,20 @@ struct respond_body {
     if constexpr (!moves) {
       each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
         contact<S> found;
-        verdict const quick = quick_contact_here(near.mesh[k.triangle], one.ball(), k.time >= 0, found);
-        k.time = quick == verdict::unsure ? S(-1) : S(0);
+        bool const sure = k.time == kept_contact::touching;
+        verdict const quick = quick_contact_here(near.mesh[k.triangle], one.ball(), sure, found);
         if (quick == verdict::unsure) block.add(s.lists.open_count, 1);
         if (quick == verdict::miss) k.triangle = no_id;
         if (quick != verdict::hit) return;
         found.triangle = k.triangle;
+        k.time = 0;
         k.set(found);
         offer<Block>(one, k.time, found);
       });
       if (block.shared(s.lists.open_count) == 0) return;
     }
     each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
-      if (moves || k.time < 0) offer_open<Block>(one, near.mesh, k);
+      if (k.time < 0) offer_open<Block>(one, near.mesh, k);
     });
   }
 
@@ -443,7 +445,8 @@ struct respond_body {
   static COLLIDE_HD_NOINLINE void offer_open(survivor<S, moves>& one, mesh_view<S> mesh, kept_contact& k) {
     S time;
     contact<S> found;
-    if (!find_contact(mesh[k.triangle], one.ball(), k.time >= 0, k.triangle, time, found)) {
+    bool const sure = k.time == kept_contact::touching;
+    if (!find_contact(mesh[k.triangle], one.ball(), sure, k.triangle, time, found)) {
       k.triangle = no_id;
       return;
     }

@@ -29,18 +29,19 @@ COLLIDE_HD contact<S> contact_here(triangle<S> const& t, sphere<S> const& s) {
   return contact_from(l, s.centre.template cast<double>(), s.radius, clear_here{}, exactly);
 }
 
-/// Whether a ball touches a finite triangle, and the same contact if so, where doubles suffice for both; `sure` says that
-/// they touch. Calls nothing.
+/// Whether a ball touches a finite triangle, and the same contact if so, where doubles suffice for both; `sure` says
+/// that they touch. Calls nothing. The foot that it finds is a point of the triangle, so a depth that is clear means a
+/// hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but not by much:
+/// docs/numerics.md.
 template <class S>
 COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
-  // a length that doubles are sure of is known to within 2^-45
-  constexpr double clear_depth = 0x1p-40;
+  constexpr double clear_depth = 0x1p-40, clear_gap = 0x1p-32;
   sphere<S> const centre{s.centre, S(0)};
   local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
   bool apart = false;
   auto const clear = [&](double distance, double depth) {
     apart = !sure && depth < 0;
-    return clear_here{}(distance, depth) && (sure || depth >= clear_depth || depth <= -clear_depth);
+    return clear_here{}(distance, depth) && (sure || depth >= clear_depth || -depth * distance >= clear_gap);
   };
   auto const otherwise = [](closest_point<double>&, gap&, vec3<double>&) { return false; };
   if (!contact_if_clear(l, s.centre.template cast<double>(), s.radius, clear, otherwise, found)) return verdict::unsure;
