@@ -2,6 +2,7 @@
 #include <atomic>
 
 #include "api.hpp"
+#include "compositions.hpp"
 
 using collide::host;
 
@@ -13,6 +14,33 @@ TEST_CASE("api: sinks on the host") {
 TEST_CASE("api: the baseline precision on the host") {
   tests::check_baseline<collide::all_pairs>(host());
   tests::check_baseline<collide::bucket>(host());
+}
+
+TEST_CASE("api: a sink or a detector that was used, or moved, is used again with other memory") {
+  tests::small_scene const scene;
+  tests::dirty_resource memory[2];
+  collide::detector<collide::bucket> first(host(1, &memory[0])), second(host(2, &memory[1]));
+  first.build(scene.mesh());
+  second.build(scene.mesh());
+  collide::count count;
+  collide::pairs pairs;
+  for (auto* const detector : {&first, &second, &first}) {
+    CHECK(detector->query(scene.spheres(), count).total() == 4);
+    CHECK(detector->query(scene.spheres(), pairs).total() == 4);
+  }
+  auto const moved_count = std::move(count);
+  auto const moved_pairs = std::move(pairs);
+  CHECK(moved_count.total() == 4);
+  CHECK(moved_pairs.size() == 4);
+  CHECK(first.query(scene.spheres(), count).total() == 4);
+  CHECK(first.query(scene.spheres(), pairs).total() == 4);
+
+  collide::detector<collide::bucket, collide::karabassi<>, tests::lockstep<64, true>> steps(
+      tests::lockstep<64, true>(1, &memory[0]));
+  CHECK(steps.detect(scene.mesh(), scene.spheres(), count).total() == 4);
+  auto moved = std::move(steps);
+  CHECK(moved.query(scene.spheres(), count).total() == 4);
+  CHECK(steps.detect(scene.mesh(), scene.spheres(), count).total() == 4);
 }
 
 TEST_CASE("api: uploads on the host") { tests::check_uploads(host()); }

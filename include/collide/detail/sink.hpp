@@ -66,9 +66,10 @@ class tally_memory {
   /// For a pass that is put on the space's stream next.
   template <class Space>
   tally begin(Space& space) {
+    bool const is_zero = numbers_.data() != nullptr && zero_in_ == space.resource();
     std::uint64_t* const numbers = numbers_.reserve(space.resource(), 2);
-    if (!is_zero_) space.fill(numbers, 0, 2 * sizeof *numbers);
-    is_zero_ = false;
+    if (!is_zero) space.fill(numbers, 0, 2 * sizeof *numbers);
+    zero_in_ = nullptr;
     return {numbers, numbers + 1};
   }
 
@@ -76,13 +77,13 @@ class tally_memory {
   template <class Space>
   std::uint64_t end(Space& space) {
     std::uint64_t const total = space.read(numbers_.data() + 1);
-    is_zero_ = true;
+    zero_in_ = space.resource();
     return total;
   }
 
  private:
   buffer<std::uint64_t> numbers_;
-  bool is_zero_ = false;  ///< the sum, for sure
+  std::pmr::memory_resource* zero_in_ = nullptr;  ///< in whose memory the sum is 0 for sure
 };
 
 /// Appends hits as pairs to an array of fixed capacity and counts those beyond it too.

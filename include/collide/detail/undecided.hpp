@@ -39,8 +39,9 @@ class undecided_list {
   undecided begin(Space& space, std::size_t spheres) {
     constexpr std::size_t least = 1024, most = std::size_t{1} << 22;
     std::size_t const capacity = least + smaller(spheres, most);
+    bool const empty = empty_ && count_.data() != nullptr;  // that of a list which was moved is not there
     auto* const count = count_.reserve(space.resource(), 1);
-    if (!empty_) space.fill(count, 0, sizeof *count);
+    if (!empty) space.fill(count, 0, sizeof *count);
     empty_ = false;
     return {count, pairs_.reserve(space.resource(), capacity), capacity};
   }
