@@ -40,7 +40,7 @@ int main() {
 
   std::printf("build\n");  // a summary of the mesh; the plan of a grid; a bit for each cell that a triangle touches
   detector.build(collide::indexed_mesh(vertices, 4, corners, 2), 0.2f);
-  std::printf("query\n");  // spheres listed, counted, scanned, numbered, sorted; the triangles look for them
+  std::printf("query\n");  // spheres listed, counted, scanned, numbered, sorted; the triangles look for them; the end
   auto const hits = detector.query(collide::spheres_xyz(centres, 3, 0.2f), collide::count());
   std::printf("%d hits\n", static_cast<int>(hits.total()));
 }
