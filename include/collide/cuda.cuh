@@ -203,12 +203,9 @@ class cuda_block {
 
   /// A warp reads what lies side by side,
   template <class T, int N>
-  __device__ __forceinline__ void load_row(T const* from, std::uint32_t row, std::uint32_t rows, T (&side)[N]) {
-    if constexpr (N == 1) {
-      if (row < rows) side[0] = from[row];
-    } else {
-      each_beside<N>(row, rows, [&](std::uint32_t i, std::uint32_t, std::uint32_t k) { side[k] = from[i]; });
-    }
+  __device__ __forceinline__ void load_row(T const* from, std::uint32_t row, T (&side)[N]) {
+    from += first_beside<N>(row);
+    for (int k = 0; k < N; ++k) side[k] = from[k * cuda_warp];
   }
 
   /// and its lanes exchange it.
@@ -225,15 +222,16 @@ class cuda_block {
   }
 
   template <class Scratch, class T, int N>
-  __device__ __forceinline__ void store_row(Scratch& s, T* to, std::uint32_t row, std::uint32_t rows,
-                                            T const (&from)[N]) {
+  __device__ __forceinline__ void store_row(Scratch& s, T* to, std::uint32_t row, T const (&from)[N]) {
     if constexpr (N == 1) {
-      if (row < rows) to[row] = from[0];
+      to[row] = from[0];
     } else {
       T* const line = line_of_warp<N>(s.values);
-      for (int k = 0; k < N; ++k) line[threadIdx.x % cuda_warp * N + k] = from[k];
+      std::uint32_t const own = threadIdx.x % cuda_warp;
+      for (int k = 0; k < N; ++k) line[own * N + k] = from[k];
       __syncwarp();
-      each_beside<N>(row, rows, [&](std::uint32_t i, std::uint32_t at, std::uint32_t) { to[i] = line[at]; });
+      to += first_beside<N>(row);
+      for (int k = 0; k < N; ++k) to[k * cuda_warp] = line[own + k * cuda_warp];
       __syncwarp();
     }
   }
@@ -320,14 +318,11 @@ class cuda_block {
     return values + threadIdx.x / cuda_warp * (cuda_warp * N);
   }
 
-  /// f(i, at, k) for a lane's k-th value of its warp's rows that exist, `i` in memory and `at` among those of the warp:
-  /// side by side in neighbouring lanes.
-  template <int N, class F>
-  static __device__ __forceinline__ void each_beside(std::uint32_t row, std::uint32_t rows, F const& f) {
-    std::uint32_t const own = threadIdx.x % cuda_warp, first = (row - own) * N + own;
-    for (std::uint32_t k = 0; k < N; ++k) {
-      if (first + k * cuda_warp < rows * N) f(first + k * cuda_warp, own + k * cuda_warp, k);
-    }
+  /// The first of a lane's values of its warp's rows, side by side: the others are `cuda_warp` apart.
+  template <int N>
+  static __device__ __forceinline__ std::uint32_t first_beside(std::uint32_t row) {
+    std::uint32_t const own = threadIdx.x % cuda_warp;
+    return (row - own) * N + own;
   }
 
   static __device__ __forceinline__ int lane() { return static_cast<int>(threadIdx.x); }

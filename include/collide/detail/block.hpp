@@ -8,10 +8,9 @@
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
 ///   - `block.near(s, from)` gives fast access to one large value in the same way;
-///   - `block.load_row(from, row, rows, to)`, `exchange_row(s, to)` and `store_row(s, to, row, rows, from)` are for
-///     rows of a few values, one for each lane, that follow each other: `row_lanes` lanes call them at a time, and read
-///     and write what lies side by side together; what a lane has read is its own row after the exchange, and not
-///     before; rows from `rows` on do not exist;
+///   - `block.load_row(from, row, to)`, `exchange_row(s, to)` and `store_row(s, to, row, from)` are for rows of a few
+///     values, one for each lane, that follow each other: `row_lanes` lanes call them at a time, and read and write
+///     what lies side by side together; what a lane has read is its own row after the exchange, and not before;
 ///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at least 1, it
 ///     finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f); `find` and `look` only read, and a
 ///     lane does them up to `Ahead` times before it takes, so that it waits for all of them at once if they do not
@@ -116,7 +115,7 @@ class serial_block {
   }
 
   template <class T, int N>
-  COLLIDE_HD_INLINE void load_row(T const* from, std::uint32_t row, std::uint32_t, T (&to)[N]) {
+  COLLIDE_HD_INLINE void load_row(T const* from, std::uint32_t row, T (&to)[N]) {
     for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
   }
 
@@ -124,7 +123,7 @@ class serial_block {
   COLLIDE_HD_INLINE void exchange_row(Scratch&, T (&)[N]) {}
 
   template <class Scratch, class T, int N>
-  COLLIDE_HD_INLINE void store_row(Scratch&, T* to, std::uint32_t row, std::uint32_t, T const (&from)[N]) {
+  COLLIDE_HD_INLINE void store_row(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
     for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
   }
 
@@ -216,7 +215,7 @@ class lockstep_block {
   }
 
   template <class T, int N>
-  void load_row(T const* from, std::uint32_t row, std::uint32_t, T (&to)[N]) {
+  void load_row(T const* from, std::uint32_t row, T (&to)[N]) {
     for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
   }
 
@@ -224,7 +223,7 @@ class lockstep_block {
   void exchange_row(Scratch&, T (&)[N]) {}
 
   template <class Scratch, class T, int N>
-  void store_row(Scratch&, T* to, std::uint32_t row, std::uint32_t, T const (&from)[N]) {
+  void store_row(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
     for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
   }
 

@@ -54,8 +54,9 @@ struct alignas(4 * sizeof(T)) four {
   T v[4];
 };
 
-/// All columns of a simulation in memory. Each has room for a multiple of this many particles.
-inline constexpr std::size_t particle_padding = 16;
+/// All columns of a simulation in memory. Each has room for a multiple of this many particles: as many as a CUDA block
+/// moves, so that no lane asks whether its own are there.
+inline constexpr std::size_t particle_padding = 1024;
 
 template <class S, class List>
 struct particle_state;
@@ -71,6 +72,14 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   template <class D>
   COLLIDE_HD_INLINE column_element<D, S>* at(D) const {
     return static_cast<pointer_of<D, S> const&>(*this).value;
+  }
+
+  COLLIDE_HD_INLINE S radius_at(std::size_t i) const {
+    if constexpr (contains<list, radius>) {
+      return at(radius{})[i];
+    } else {
+      return common_radius;
+    }
   }
 
   /// One particle.
@@ -96,13 +105,33 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   template <class Block>
   using group_scratch = typename Block::template row_scratch<four<S>, 3>;
 
+  /// A group's values of a column, and of all columns of a list, as they are read.
+  template <class D>
+  struct quads {
+    four<column_element<D, S>> of[column_layout<D, S>::width];
+  };
+  template <class List>
+  struct group_of;
+  template <class... D>
+  struct group_of<columns<D...>> : quads<D>... {};
+
   /// A group of particles from `first` on, which is a multiple of their number; see `load_row` in block.hpp.
   template <class Block, class... D>
   COLLIDE_HD_INLINE void load_group(Block& block, group_scratch<Block>& s, particle<S, columns<D...>>* p,
                                     std::size_t first) const {
-    struct : quads<D>... {
-    } read;  // all is on its way before something is waited for
+    group_of<columns<D...>> read;
+    begin_group(block, read, first);
+    end_group(block, s, read, p, first);
+  }
+
+  /// The same in two parts: all is on its way before something is waited for.
+  template <class Block, class... D>
+  COLLIDE_HD_INLINE void begin_group(Block& block, group_of<columns<D...>>& read, std::size_t first) const {
     (load_values(block, D{}, static_cast<quads<D>&>(read).of, first), ...);
+  }
+  template <class Block, class... D>
+  COLLIDE_HD_INLINE void end_group(Block& block, group_scratch<Block>& s, group_of<columns<D...>>& read,
+                                   particle<S, columns<D...>>* p, std::size_t first) const {
     (take_values(block, s, D{}, static_cast<quads<D>&>(read).of, p), ...);
     for (int k = 0; k < particles_per_group; ++k) {
       p[k].number = static_cast<id>(first) + static_cast<id>(k);
@@ -117,12 +146,6 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   }
 
  private:
-  /// How many groups as many particles are, with those that columns have room for.
-  static COLLIDE_HD_INLINE std::uint32_t groups_of(std::size_t particles) {
-    std::size_t const padded = (particles + particle_padding - 1) / particle_padding * particle_padding;
-    return static_cast<std::uint32_t>(padded / particles_per_group);
-  }
-
   template <class P>
   COLLIDE_HD_INLINE S radius_of(P const& p) const {
     if constexpr (contains<typename P::list, radius>) {
@@ -148,16 +171,9 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
     }
   }
 
-  /// A group's values of a column.
-  template <class D>
-  struct quads {
-    four<column_element<D, S>> of[column_layout<D, S>::width];
-  };
-
   template <class Block, class D, class Q, int N>
   COLLIDE_HD_INLINE void load_values(Block& block, D, Q (&read)[N], std::size_t first) const {
-    block.load_row(reinterpret_cast<Q const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
-                   groups_of(size), read);
+    block.load_row(reinterpret_cast<Q const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group), read);
   }
 
   template <class Block, class D, class Q, int N, class P>
@@ -178,7 +194,7 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
       for (int c = 0; c < width; ++c) write[(k * width + c) / 4].v[(k * width + c) % 4] = layout::at(p[k][D{}], c);
     }
     block.store_row(s, reinterpret_cast<quad*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
-                    groups_of(size), write);
+                    write);
   }
 };
 
