@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <collide/detail/neighbours.hpp>
-#include <collide/detail/respond.hpp>
+#include <collide/detail/step.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
@@ -82,9 +82,9 @@ struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup(
 /// There are exactly the columns that the effects name, and `position` and `velocity`. A simulation without effects
 /// moves particles in straight lines, and nothing else.
 ///
-/// `step` allocates nothing and never waits: in the CUDA spaces it puts one kernel on the stream of the space, two if
-/// an effect touches the mesh (more with `meet` or `begin_step`), and can be captured in a CUDA graph, which is good
-/// until the next `set` or `set_mesh`. The same steps give the same bits on every run in the same space.
+/// `step` allocates nothing and never waits: in `cuda_shared` it puts one kernel on the stream of the space, in `cuda`
+/// two if an effect touches the mesh (more with `meet` or `begin_step`), and can be captured in a CUDA graph, which is
+/// good until the next `set` or `set_mesh`. The same steps give the same bits on every run in the same space.
 /// O(particles + candidates) per step. A simulation is for one thread at a time.
 template <class Detector, class... Effect>
 class simulation {
@@ -157,7 +157,7 @@ class simulation {
     if constexpr (scene_type::touches) {
       std::uint32_t* const counters = counters_.reserve(space_.resource(), 2);
       space_.fill(counters, 0, 2 * sizeof *counters);
-      list_ = {counters, counters + 1, listed_.reserve(space_.resource(), room)};
+      list_ = {counters, counters + 1, listed_.reserve(space_.resource(), padded)};
     }
     space_.for_each(padded, detail::place_particles<S, columns>{state_, particles, velocities});
     if constexpr (scene_type::meets) neighbours_.reserve(space_, room, largest_radius(particles));
@@ -193,16 +193,21 @@ class simulation {
     using lookup_type = std::decay_t<decltype(lookup)>;
     detail::fly_body<S, narrow_phase, lookup_type, scene_type> const fly{state_, scene_, lookup, list_, dt, backwards_};
     backwards_ = !backwards_;
-    space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
-    if constexpr (scene_type::touches) {
-      detail::respond_body<S, narrow_phase, lookup_type, scene_type> body{state_, scene_, lookup, list_, dt, 0};
-      using block = typename execution_space::template block<decltype(body)>;
+    using step_body = detail::step_body<S, narrow_phase, lookup_type, scene_type>;
+    using block = typename execution_space::template block<step_body>;
+    if constexpr (!scene_type::touches) {
+      space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
+    } else if constexpr (block::lanes > 1) {
+      step_body body{{fly, 0}};
+      body.blocks = detail::smaller(std::size_t{step_body::template stretches<block>(state_.size)}, busy<step_body>());
+      space_.launch(body.blocks, body);
+    } else {
+      space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
+      detail::respond_body<S, narrow_phase, lookup_type, scene_type> body{fly, 0};
       std::size_t most = state_.size;
       if constexpr (execution_space::host_memory) most = *list_.count;
-      body.blocks = (most + body.template together<block> - 1) / body.template together<block>;
-      if constexpr (!execution_space::host_memory)
-        body.blocks =
-            detail::smaller(body.blocks, detail::smaller(space_.concurrency(), space_.template wave<decltype(body)>()));
+      body.blocks = detail::blocks_for<execution_space>(most, body);
+      if constexpr (!execution_space::host_memory) body.blocks = detail::smaller(body.blocks, busy<decltype(body)>());
       space_.launch(body.blocks, body);
     }
   }
@@ -290,6 +295,12 @@ class simulation {
       detail::looking_up<execution_space> there(space_);
       if (mesh_.size() != 0 && state_.size != 0) index_.prepare(there, options_, spheres());
     }
+  }
+
+  /// How many blocks of a body are at work at a time.
+  template <class Body>
+  std::size_t busy() const {
+    return detail::smaller(space_.concurrency(), space_.template wave<Body>());
   }
 
   template <class E>

@@ -386,6 +386,21 @@ void check_determinism(Space const& space, Other const& other) {
   if constexpr (Space::host_memory) CHECK((run(space, collide::all_pairs()) == first));
 }
 
+/// The same bits where blocks have more particles near the mesh than they resolve at a time, as those of `space` have.
+template <class NarrowPhase, class S, class Space, class Other, class... Effect>
+void check_crowded_blocks(Space const& space, Other const& other, Effect const&... effects) {
+  auto const run = [&](auto const& there) {
+    using space_type = std::decay_t<decltype(there)>;
+    using simulation =
+        collide::simulation<meets_mesh<space_type, NarrowPhase, S>, collide::gravity, collide::bounce, Effect...>;
+    running<simulation> made(there, crowd<S>(4999, 1, 0.1, 3, 13), collide::gravity{}, collide::bounce{0.7},
+                             effects...);
+    made.simulation.steps(25, S(4e-3));
+    return std::make_pair(made.positions(), made.velocities());
+  };
+  CHECK((run(space) == run(other)));
+}
+
 /// `set` allocates the columns of the scene and nothing else that grows with the particles but the list of those that
 /// may touch the mesh; `step` allocates nothing.
 template <class Space, class MakeSpace>

@@ -1,4 +1,6 @@
 /// Simulations on the host.
+#include <collide/absorb.hpp>
+
 #include "compositions.hpp"
 #include "simulation.hpp"
 
@@ -97,6 +99,14 @@ TEST_CASE("simulation: the same bits on every run, with any number of threads, i
   tests::check_determinism<karabassi<>>(host(1), tests::lockstep<256, false>());
   tests::check_determinism<karabassi<>>(host(1), tests::lockstep<64, true>());
   tests::check_determinism<karabassi_swept<>>(host(1), tests::lockstep<64, true>());
+}
+
+TEST_CASE("simulation: the same bits where a block has more particles near the mesh than it resolves at a time") {
+  tests::lockstep<64, true> const one_block;
+  tests::check_crowded_blocks<karabassi<>, float>(one_block, host(2));
+  tests::check_crowded_blocks<karabassi<>, double>(tests::lockstep<256, false>(), host(2));
+  tests::check_crowded_blocks<karabassi_swept<>, float>(one_block, host(2));
+  tests::check_crowded_blocks<karabassi<>, float>(one_block, host(2), collide::absorb_in{{-1, -1, -1}, {0, 1, 1}});
 }
 
 TEST_CASE("simulation: memory is that of the columns, and a step takes none") {

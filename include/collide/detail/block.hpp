@@ -10,7 +10,8 @@
 ///   - `block.near(s, from)` gives fast access to one large value in the same way;
 ///   - `block.load_row(from, row, to)`, `exchange_row(s, to)` and `store_row(s, to, row, from)` are for rows of a few
 ///     values, one for each lane, that follow each other: `row_lanes` lanes call them at a time, and read and write
-///     what lies side by side together; what a lane has read is its own row after the exchange, and not before;
+///     what lies side by side together, so that all of these rows must exist; what a lane has read is its own row after
+///     the exchange, and not before;
 ///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at least 1, it
 ///     finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f); `find` and `look` only read, and a
 ///     lane does them up to `Ahead` times before it takes, so that it waits for all of them at once if they do not

@@ -2,8 +2,9 @@
 /// Which triangles a single sphere could touch, asked from inside a kernel: what a broad phase gives a simulation.
 ///
 /// An index gives a trivially copyable `lookup()`. Of that, `is_simple(radius)` is true if balls of this radius are
-/// best asked several at a time whether they can touch a triangle, `marks().mark(marks().places_of(x, y, z), near)`;
-/// `next_marked` then is `next` of those that were marked. In a kernel, `opened()` is that lookup for use, and then
+/// best asked several at a time whether they can touch a triangle: `marks().mark(marks().places_of(x, y, z), near)`, or
+/// `marks().mark_ways(batch, near)` of those that move; `next_marked` then is `next` of those at rest that were marked.
+/// In a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
 ///     entries, until it returns false; one may appear more than once if the ball moves; `cursor.at_end()` is true if

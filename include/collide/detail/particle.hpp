@@ -55,7 +55,7 @@ struct alignas(4 * sizeof(T)) four {
 };
 
 /// All columns of a simulation in memory. Each has room for a multiple of this many particles: as many as a CUDA block
-/// moves, so that no lane asks whether its own are there.
+/// reads and writes at a time, so that no lane asks whether its own are there.
 inline constexpr std::size_t particle_padding = 1024;
 
 template <class S, class List>

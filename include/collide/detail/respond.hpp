@@ -1,5 +1,5 @@
 /// \file
-/// The second kernel of a simulation's step: finds the contacts of the particles that may touch the mesh, and lets the
+/// The second part of a simulation's step: finds the contacts of the particles that may touch the mesh, and lets the
 /// effects respond.
 ///
 /// The candidates of some particles are spread evenly over the lanes of the block; those that the quick test lets
@@ -21,16 +21,29 @@
 
 namespace collide::detail {
 
+/// Of how many contacts that came before a particle has a note.
+inline constexpr int noted_contacts = 3;
+
+/// What else is known of a particle that moves.
+template <class S, bool Moves>
+struct survivor_way {};
+template <class S>
+struct survivor_way<S, true> {
+  S way[3];
+  id triangles[noted_contacts];  ///< of the contacts that came before
+  S rest;                        ///< of the step, after the impacts so far
+
+  COLLIDE_HD_INLINE vec3<S> along() const { return {way[0], way[1], way[2]}; }
+};
+
 /// A particle that may touch the mesh in this step, in scratch memory. Plain numbers: scratch memory is not
 /// constructed.
 template <class S, bool Moves>
-struct survivor {
-  static constexpr int planes = 3;
+struct survivor : survivor_way<S, Moves> {
+  static constexpr int planes = noted_contacts;
 
-  S centre[3], radius, way[Moves ? 3 : 1];
+  S centre[3], radius;
   S normals[planes][3], feet[planes][3];  ///< of the contacts that came before
-  id triangles[Moves ? planes : 1];       ///< of the same, if it moves
-  S rest;                                 ///< of the step, after the impacts so far
   std::uint64_t best;                     ///< key of the next contact
   std::uint32_t best_kept;                ///< where it is kept
   std::uint32_t offered;                  ///< how many candidates offered themselves
@@ -41,7 +54,7 @@ struct survivor {
 
   COLLIDE_HD_INLINE auto ball() const {
     if constexpr (Moves) {
-      return moving_sphere<S>{{{centre[0], centre[1], centre[2]}, radius}, {way[0], way[1], way[2]}};
+      return moving_sphere<S>{{{centre[0], centre[1], centre[2]}, radius}, this->along()};
     } else {
       return sphere<S>{{centre[0], centre[1], centre[2]}, radius};
     }
@@ -50,7 +63,7 @@ struct survivor {
   COLLIDE_HD_INLINE void place(vec3<S> const& at, vec3<S> const& along) {
     for (int k = 0; k < 3; ++k) {
       centre[k] = at[k];
-      if constexpr (Moves) way[k] = along[k];
+      if constexpr (Moves) this->way[k] = along[k];
     }
   }
 
@@ -60,7 +73,7 @@ struct survivor {
       normals[slot][k] = c.normal[k];
       feet[slot][k] = c.point[k];
     }
-    if constexpr (Moves) triangles[slot] = c.triangle;
+    if constexpr (Moves) this->triangles[slot] = c.triangle;
     ++before;
   }
 
@@ -70,7 +83,7 @@ struct survivor {
     bool left = false;
     if constexpr (Moves) {
       for (int i = 0; i < planes && i < before; ++i) {
-        left = left || (triangles[i] == triangle && !approaches({normals[i][0], normals[i][1], normals[i][2]}));
+        left = left || (this->triangles[i] == triangle && !approaches({normals[i][0], normals[i][1], normals[i][2]}));
       }
     }
     return left;
@@ -92,7 +105,7 @@ struct survivor {
 
   /// True if the way leads towards a surface with this normal, and not only along it.
   COLLIDE_HD_INLINE bool approaches(vec3<S> const& normal) const {
-    vec3<S> const d(way[0], way[1], way[2]);
+    vec3<S> const d = this->along();
     S const into = -dot(d, normal);
     return into > 0 && into * into > tolerance * tolerance * dot(d, d);
   }
@@ -111,21 +124,23 @@ COLLIDE_HD_INLINE std::uint64_t contact_key(S time, S depth, id triangle) {
   return (std::uint64_t{first} << 32) | triangle;
 }
 
-/// Kernel body: the contacts of all listed particles, in `blocks` blocks that share the list.
+/// Kernel body: the contacts of all listed particles, in `blocks` blocks that share the list, of lanes that work alone.
 template <class S, class NarrowPhase, class Lookup, class Scene>
-struct respond_body {
+struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
+  using fly_type = fly_body<S, NarrowPhase, Lookup, Scene>;
+  using fly_type::dt;
+  using fly_type::list;
+  using fly_type::lookup;
+  using fly_type::moves;
+  using fly_type::scene;
+  using fly_type::state;
+
   static constexpr int items = 1;
   template <class Block>
-  static constexpr int residency = Block::lanes > 1 ? 3 : 2;  ///< waits for memory, mostly
-  static constexpr bool moves = !at_rest<NarrowPhase, S>;
+  static constexpr int residency = 2;                  ///< waits for memory, mostly
   static constexpr int most_contacts = moves ? 8 : 4;  ///< of a particle in a step
   static constexpr S part_after = S(Scene::integrator::after);
 
-  particle_state<S, typename Scene::all> state;
-  Scene scene;
-  Lookup lookup;
-  listed_particles list;
-  S dt;
   std::size_t blocks;
 
   static constexpr int ahead = 3;  ///< entries that a lane looks at together
@@ -133,7 +148,7 @@ struct respond_body {
   /// How many particles a block resolves at a time. With the contacts that it keeps, this makes up most of its scratch
   /// memory, of which CUDA has 48 KB: fewer of doubles.
   template <class Block>
-  static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes*(moves ? 3 : 4) / 2 / sizeof(S)
+  static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes*(moves ? 3 : 5) / 2 / sizeof(S)
                                                              : Block::items;
 
   /// A particle of those that are resolved together, and an entry.
@@ -190,45 +205,43 @@ struct respond_body {
     cell_entry const* from[size];
     id first[size];
     std::uint32_t at[size];
-    cell_marks<S> marks;
     candidate_lists<Block> lists;
     typename Block::balance_scratch balance;
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    static_assert(Block::lanes == 1, "lanes that work together have one kernel for both parts");
     std::uint32_t const n = *list.count;
-    surroundings const near{lookup.opened(), s.marks,
-                            fly_body<S, NarrowPhase, Lookup, Scene>::marks_all(lookup, state)};
+    if (n == 0) return;
+    cell_marks<S> const marks = lookup.marks();
+    surroundings const near{lookup.opened(), marks, fly_type::marks_all(lookup, state)};
     // as many as come to each block, or the same each time if it has no room for so many
     auto const shares = static_cast<std::uint32_t>(blocks), most = shares * together<Block>;
-    std::uint32_t const share = n == 0 ? 0 : (n - 1) / (shares * ((n - 1) / most + 1)) + 1;
+    std::uint32_t const share = (n - 1) / (shares * ((n - 1) / most + 1)) + 1;
     for (std::size_t base = block.index() * share; base < n; base += blocks * share) {
-      collide(block, s, near, list.numbers + base, smaller(n - static_cast<std::uint32_t>(base), share));
+      collide(block, s, near, smaller(n - static_cast<std::uint32_t>(base), share),
+              [&](survivor<S, moves>& one, std::uint32_t j) { begin(one, list.numbers[base + j]); });
     }
     // the last block that had something to do empties the list for the next step; those that come later find it so
-    if (n == 0) return;
     std::size_t const busy = smaller(blocks, (n + std::size_t{share} - 1) / share);
-    if (block.index() >= busy) return;
-    block.each([&](int lane) {
-      if (lane != 0 || fetch_add(list.done, 1u) + 1 != busy) return;
-      *list.count = 0;
-      *list.done = 0;
-    });
+    if (block.index() >= busy || fetch_add(list.done, 1u) + 1 != busy) return;
+    *list.count = 0;
+    *list.done = 0;
   }
 
- private:
+ protected:
   using colliding = particle<S, typename Scene::contact>;
 
   /// What is asked for the triangles near a particle. If all were marked when they were listed, what that depends on is
-  /// in scratch memory, so that nothing is waited for before their cells.
+  /// at hand, so that nothing is waited for before their cells.
   struct surroundings : Lookup {
     cell_marks<S> const& known;
     bool all_marked;
 
     template <class Ball>
     COLLIDE_HD_INLINE candidate_cursor begin(Ball const& ball) const {
-      return all_marked ? candidate_cursor::first_marked() : Lookup::begin(ball);
+      return !moves && all_marked ? candidate_cursor::first_marked() : Lookup::begin(ball);
     }
     template <class Ball>
     COLLIDE_HD_INLINE bool next(Ball const& ball, candidate_cursor& c, std::uint32_t most,
@@ -240,10 +253,19 @@ struct respond_body {
     }
   };
 
-  /// Resolves the contacts of some listed particles.
-  template <class Block>
-  COLLIDE_HD void collide(Block& block, scratch<Block>& s, surroundings const& near, id const* numbers,
-                          std::uint32_t n) const {
+  /// What is known of a particle when its contacts are to be found.
+  COLLIDE_HD_INLINE void begin(survivor<S, moves>& one, id number) const {
+    colliding p;
+    state.load(p, number);
+    one.number = number;
+    one.radius = p.the_radius;
+    one.place(p[position{}], p[velocity{}] * dt);
+  }
+
+  /// Resolves the contacts of `n` particles, at most `together`: begin(one, j) for all j < n says which they are.
+  template <class Block, class Begin>
+  COLLIDE_HD void collide(Block& block, scratch<Block>& s, surroundings const& near, std::uint32_t n,
+                          Begin const& begin) const {
     auto const each_of_lane = [&](auto const& f) {
       block.each([&](int lane) {
         for (auto j = static_cast<std::uint32_t>(lane); j < n; j += Block::lanes) f(s.those[j], j);
@@ -256,24 +278,14 @@ struct respond_body {
       one.cursor = near.begin(one.ball());
     };
     each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
-      one.number = numbers[j];
-      cell_marks<S> marks{};
-      if (near.all_marked) {
-        marks = near.marks();
-        read_at_once(marks);  // while the number is waited for
-      }
-      colliding p;
-      state.load(p, one.number);
-      one.radius = p.the_radius;
-      one.place(p[position{}], p[velocity{}] * dt);
-      one.rest = dt;
+      begin(one, j);
+      if constexpr (moves) one.rest = dt;
       one.before = 0;
       one.is_active = true;
       look_around(one);
       if (j != 0) return;
       s.listed = {0, 0};
       s.active = 0;
-      s.marks = marks;
     });
     listing listed{0, 0};
     std::uint32_t active = 0;
@@ -436,13 +448,23 @@ struct respond_body {
       if (block.shared(s.lists.open_count) == 0) return;
     }
     each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
-      if (k.time < 0) offer_open<Block>(one, near.mesh, k);
+      if constexpr (moves) {
+        offer_one<Block>(one, near.mesh, k);
+      } else {
+        if (k.time < 0) offer_open<Block>(one, near.mesh, k);
+      }
     });
+  }
+
+  /// What is open, out of line.
+  template <class Block>
+  static COLLIDE_HD_NOINLINE void offer_open(survivor<S, moves>& one, mesh_view<S> mesh, kept_contact& k) {
+    offer_one<Block>(one, mesh, k);
   }
 
   /// Finds a contact that is to be kept, and offers it.
   template <class Block>
-  static COLLIDE_HD_NOINLINE void offer_open(survivor<S, moves>& one, mesh_view<S> mesh, kept_contact& k) {
+  static COLLIDE_HD_INLINE void offer_one(survivor<S, moves>& one, mesh_view<S> const& mesh, kept_contact& k) {
     S time;
     contact<S> found;
     bool const sure = k.time == kept_contact::touching;
