@@ -136,7 +136,8 @@ class simulation {
 
   /// Copies particles from memory of the space: centres, radii, and three packed coordinates of velocity each, or null
   /// for particles that rest. The other columns get their initial values. `capacity` is for how many there is room, if
-  /// an effect makes more. Radii that differ need `polydisperse` in the scene. Allocates; may wait.
+  /// an effect makes more; more than 2^32 - 2 are refused (`error`), as is room that no effect of the scene fills.
+  /// Radii that differ need `polydisperse` in the scene (else `error`). Allocates; may wait.
   void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
     constexpr bool differ = detail::contains<columns, radius>;
     if (!particles.one_radius() && !differ) {
@@ -146,6 +147,7 @@ class simulation {
     if (room > n && !detail::contains<columns, present>) {
       throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
     }
+    if (room >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
     std::size_t const padded =
         (room + detail::particle_padding - 1) / detail::particle_padding * detail::particle_padding;
     memory_.reserve(space_.resource(), padded);

@@ -127,6 +127,13 @@ TEST_CASE("simulation: radii that differ") {
   CHECK_THROWS_AS(one_size.set(collide::spheres_xyz(centres, 1, 1.0f), nullptr, 2), collide::error);
 }
 
+TEST_CASE("simulation: more particles than there are numbers for them are refused") {
+  float const centre[] = {0, 0, 0};
+  simulation<plain, collide::absorb> sink;
+  CHECK_THROWS_AS(sink.set(collide::spheres_xyz(centre, 1, 1.0f), nullptr, 0xffffffff), collide::error);
+  CHECK(sink.size() == 0);
+}
+
 TEST_CASE("simulation: a narrow phase of one's own says when its balls stop") {
   asked::times = 0;
   tests::check_corner<asked, double>(host(1));
