@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include <collide/detail/block.hpp>
 #include <collide/detail/grid.hpp>
@@ -196,12 +197,19 @@ struct bucket_query {
     return blocks * Block::lanes * Block::items;
   }
 
+  /// How many groups a lane places at most before all look up what they have found: where lanes work together, one that
+  /// finds less than others would else go on alone.
+  template <class Block>
+  static constexpr std::uint32_t most_groups = Block::lanes > 1 ? 12 : std::numeric_limits<std::uint32_t>::max();
+
   /// Places a lane's spheres, from `next` on, as long as there is room; `place(first)` lists some and says how many.
   template <class Block, class Place>
   COLLIDE_HD_INLINE void place_many(std::size_t& next, Place const& place) const {
     constexpr std::uint32_t n = Block::items, room = scratch<Block>::room / Block::lanes;
-    for (std::uint32_t placed = 0; next < tests.spheres.size() && placed + n <= room; next += turn<Block>()) {
+    std::uint32_t placed = 0;
+    for (std::uint32_t k = 0; k < most_groups<Block> && next < tests.spheres.size() && placed + n <= room; ++k) {
       placed += place(next);
+      next += turn<Block>();
     }
   }
 
