@@ -3,8 +3,12 @@
 /// array of fixed size, beside a graph of one kernel that reads every centre once, in the same run.
 ///
 /// Names are BROAD/PRECISION/PHASE; `frames` is one of twenty builds and queries that follow each other in a graph, as
-/// the frames of a scene in which everything moves, without the launch of the graph. Counters: pairs; floor_us;
-/// over_floor, both of the same number of floors in a graph.
+/// the frames of a scene in which everything moves, without the launch of the graph.
+///
+/// least/PRECISION/PHASE is less than any query can do: `asking` is one of as many spheres, none of which is near the
+/// mesh; `told` is that, and then a kernel that is told all pairs and where to write them, and only tests and writes
+/// them; `build_and_told` is a build and that. Counters: pairs; floor_us; over_floor, both of the same number of floors
+/// in a graph.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -69,11 +73,27 @@ __global__ void read_centres(float4 const* centres, std::size_t n, float* never)
   if (sum == 0.12345f) *never = sum;
 }
 
+/// Kernel body of `for_each` over pairs that are told: tests each and writes it where it belongs.
+struct test_told {
+  collide::mesh_view<float> mesh;
+  collide::sphere_view<float> spheres;
+  collide::pair const* told;
+  collide::pair* to;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    using stages = collide::detail::in_stages<collide::karabassi<collide::exact>>;
+    collide::pair const p = told[i];
+    if (stages::attempt(mesh[p.triangle], spheres[p.sphere]) != collide::detail::verdict::miss) to[i] = p;
+  }
+};
+
 struct scene {
   cudaStream_t stream = nullptr;
   collide::cuda_shared space{make_stream(stream)};
   std::optional<collide::uploaded_mesh<float>> mesh;
   std::optional<collide::uploaded_spheres<float>> spheres;
+  std::optional<collide::uploaded_spheres<float>> far;  ///< the same, but for those near the mesh, which are elsewhere
+  collide::pairs told;                                  ///< all pairs, in canonical order
   collide::buffer<collide::pair> pairs;
   collide::detail::tally_memory memory_of_total;
   collide::detail::tally total;
@@ -97,6 +117,9 @@ struct scene {
     mesh = collide::upload(
         space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count()));
     spheres = collide::upload(space, collide::spheres_xyz(centres.data(), centres.size() / 3, radius));
+    far = collide::upload(space, collide::spheres_xyz(far_from_mesh(centres).data(), centres.size() / 3, radius));
+    collide::detector<collide::bucket, collide::karabassi<collide::exact>, collide::cuda_shared> detector(space);
+    told = detector.detect(mesh->view(), spheres->view(), collide::pairs(collide::order::canonical));
     pairs.reserve(space.resource(), capacity);
     total = memory_of_total.begin(space);
     std::size_t const threads = centres.size() / 12;
@@ -116,6 +139,23 @@ struct scene {
     };
     floor = time_of(1);
     floor_of_frame = time_of(frames_of_graph);
+  }
+
+  /// The same centres, but in place of those near the mesh the one before that is not.
+  std::vector<float> far_from_mesh(std::vector<float> centres) {
+    collide::detector<collide::bucket, collide::karabassi<collide::single_precision>, collide::cuda_shared> wide(space);
+    wide.build(mesh->view(), radius);
+    // a cell with triangles is within this of one of them
+    auto const reach = static_cast<float>(radius + 4 * wide.cell_width());
+    auto const around = collide::upload(space, collide::spheres_xyz(centres.data(), centres.size() / 3, reach));
+    std::vector<std::uint8_t> const near = wide.detect(mesh->view(), around.view(), collide::any()).to_host();
+    auto const first = static_cast<std::size_t>(std::find(near.begin(), near.end(), 0) - near.begin());
+    for (std::size_t i = 0, last = first; i < near.size(); ++i) {
+      if (near[i] == 0) last = i;
+      std::copy_n(centres.begin() + static_cast<std::ptrdiff_t>(3 * last), 3,
+                  centres.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    }
+    return centres;
   }
 
   static cudaStream_t make_stream(cudaStream_t& stream) {
@@ -154,6 +194,48 @@ void run(benchmark::State& state, bool builds, bool queries, int frames) {
   state.counters["over_floor"] = seconds / static_cast<double>(state.iterations()) / floor;
 }
 
+/// What a query cannot do without.
+template <class Precision>
+void run_least(benchmark::State& state, bool builds, bool told) {
+  scene& s = scene::get();
+  collide::detector<collide::bucket, collide::karabassi<Precision>, collide::cuda_shared> detector(s.space);
+  into_array sink{s.pairs.data(), s.capacity, s.total};
+  auto const mesh = s.mesh->view();
+  test_told const test{mesh, s.spheres->view(), s.told.data(), s.pairs.data()};
+  detector.build(mesh, s.radius);
+  detector.query(s.far->view(), sink);
+  if (s.space.read(s.total.total) != 0) return state.SkipWithError("a sphere is near the mesh");
+  graph const all(s.stream, [&] {
+    if (builds) detector.build(mesh, s.radius);
+    detector.query(s.far->view(), sink);
+    if (told) s.space.for_each(s.told.size(), test);
+  });
+  bench::stopwatch<collide::cuda_shared> watch(s.space);
+  double seconds = 0;
+  for (auto _ : state) {
+    double const t = watch(all);
+    state.SetIterationTime(t);
+    seconds += t;
+  }
+  state.counters["pairs"] = told ? static_cast<double>(s.told.size()) : 0;
+  state.counters["floor_us"] = s.floor * 1e6;
+  state.counters["over_floor"] = seconds / static_cast<double>(state.iterations()) / s.floor;
+}
+
+template <class Precision>
+void add_least(std::string const& name) {
+  auto const with = [&](char const* phase, bool builds, bool told) {
+    benchmark::RegisterBenchmark((name + "/" + phase).c_str(),
+                                 [=](benchmark::State& state) { run_least<Precision>(state, builds, told); })
+        ->UseManualTime()
+        ->Iterations(1001)
+        ->Unit(benchmark::kMicrosecond);
+  };
+  with("asking", false, false);
+  with("told", false, true);
+  with("build_and_told", true, true);
+}
+
 template <class Broad, class Precision>
 void add(std::string const& name) {
   auto const with = [&](char const* phase, bool builds, bool queries, int frames = 1) {
@@ -181,6 +263,7 @@ int main(int argc, char** argv) {
   if (bench::has_gpu()) {
     add<collide::bucket, collide::single_precision>("bucket/single");
     add<collide::bucket, collide::exact>("bucket/exact");
+    add_least<collide::exact>("least/exact");
     add<collide::all_pairs, collide::single_precision>("all_pairs/single");
     add<collide::all_pairs, collide::exact>("all_pairs/exact");
   }
