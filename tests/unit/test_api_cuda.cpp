@@ -71,19 +71,17 @@ void check_turns(cudaStream_t stream) {
   }
 }
 
-/// Three million spheres, most of which touch one of two large triangles: blocks list as many as there is room for,
-/// several times. Those of some turns are far away, as the first ones are, others in part, and the last group is not
-/// whole.
+/// `n` spheres, of which every `apart`-th may touch one of two large triangles. Those of some turns are far away, as
+/// the first ones are, others in part, and the last group is not whole unless `n` is a multiple of 4.
 template <class NarrowPhase, class Space>
-void check_crowd() {
-  constexpr std::size_t n = 3000001;
+void check_crowd(std::size_t n, std::size_t apart) {
   Space space;
   std::vector<float> const corners{0, 0, 0, 2000, 0, 0, 0, 2000, 0, 0, 0, 50, 2000, 0, 50, 0, 2000, 50};
   std::vector<float> centres(3 * n);
   std::vector<std::uint64_t> expected;
   for (std::size_t i = 0; i < n; ++i) {
     float const x = static_cast<float>(i % 967) + 10, y = static_cast<float>(i / 967 % 967) + 10;
-    bool const away = i % 7 == 3 || i / 5000 % 5 == 0;
+    bool const away = i % 7 == 3 || i / 5000 % 5 == 0 || i % apart != 0;
     collide::id const triangle = i % 3 == 0 ? 1 : 0;
     centres[3 * i] = x, centres[3 * i + 1] = y, centres[3 * i + 2] = (triangle == 1 ? 50.5f : 0.5f) + (away ? 10 : 0);
     if (!away) expected.push_back(std::uint64_t{i} << 32 | triangle);
@@ -155,10 +153,17 @@ TEST_CASE("api: kernels of the caller, before and after, have their turn") {
 }
 
 TEST_CASE("api: more spheres near the mesh than the device has room for at a time") {
-  check_crowd<collide::karabassi<>, collide::cuda_shared>();
-  check_crowd<collide::karabassi<collide::single_precision>, collide::cuda_shared>();
-  check_crowd<collide::karabassi<>, collide::cuda>();
-  check_crowd<collide::karabassi_swept<>, collide::cuda_shared>();
+  constexpr std::size_t n = 3000001;
+  check_crowd<collide::karabassi<>, collide::cuda_shared>(n, 1);
+  check_crowd<collide::karabassi<collide::single_precision>, collide::cuda_shared>(n, 1);
+  check_crowd<collide::karabassi<>, collide::cuda>(n, 1);
+  check_crowd<collide::karabassi_swept<>, collide::cuda_shared>(n, 1);
+}
+
+TEST_CASE("api: more spheres, few of them near the mesh, than the device places at a time") {
+  constexpr std::size_t n = 16000001;
+  check_crowd<collide::karabassi<>, collide::cuda_shared>(n, 61);
+  check_crowd<collide::karabassi_swept<>, collide::cuda_shared>(n, 61);
 }
 
 TEST_CASE("api: a failed CUDA call says which and where") {
