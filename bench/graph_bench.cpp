@@ -5,11 +5,12 @@
 /// Names are BROAD/PRECISION/PHASE; `frames` is one of twenty builds and queries that follow each other in a graph, as
 /// the frames of a scene in which everything moves, without the launch of the graph.
 ///
-/// least/PRECISION/PHASE is less than any query can do: `asking` is one of as many spheres, none of which is near the
+/// least/exact/PHASE is less than any query can do: `asking` is one of as many spheres, none of which is near the
 /// mesh; `told` is that, and then a kernel that is told all pairs and where to write them, and only tests and writes
 /// them; `build_and_told` is a build and that. Counters: pairs; floor_us; over_floor, both of the same number of floors
 /// in a graph.
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -164,6 +165,26 @@ struct scene {
   }
 };
 
+/// Times `frames` times what `frame` puts on the stream, as one graph.
+template <class F>
+void measure(benchmark::State& state, int frames, std::uint64_t pairs, F const& frame) {
+  scene& s = scene::get();
+  graph const all(s.stream, [&] {
+    for (int i = 0; i < frames; ++i) frame();
+  });
+  bench::stopwatch<collide::cuda_shared> watch(s.space);
+  double seconds = 0;
+  for (auto _ : state) {
+    double const t = watch(all) / frames;
+    state.SetIterationTime(t);
+    seconds += t;
+  }
+  double const floor = frames > 1 ? s.floor_of_frame : s.floor;
+  state.counters["pairs"] = static_cast<double>(pairs);
+  state.counters["floor_us"] = floor * 1e6;
+  state.counters["over_floor"] = seconds / static_cast<double>(state.iterations()) / floor;
+}
+
 template <class Broad, class Precision>
 void run(benchmark::State& state, bool builds, bool queries, int frames) {
   scene& s = scene::get();
@@ -175,81 +196,48 @@ void run(benchmark::State& state, bool builds, bool queries, int frames) {
   detector.query(spheres, sink);
   std::uint64_t const pairs = s.space.read(s.total.total);
   if (pairs > s.capacity) return state.SkipWithError("the array is too small");
-  graph const all(s.stream, [&] {
-    for (int i = 0; i < frames; ++i) {
-      if (builds) detector.build(mesh, s.radius);
-      if (queries) detector.query(spheres, sink);
-    }
+  measure(state, frames, pairs, [&] {
+    if (builds) detector.build(mesh, s.radius);
+    if (queries) detector.query(spheres, sink);
   });
-  bench::stopwatch<collide::cuda_shared> watch(s.space);
-  double seconds = 0;
-  for (auto _ : state) {
-    double const t = watch(all) / frames;
-    state.SetIterationTime(t);
-    seconds += t;
-  }
-  state.counters["pairs"] = static_cast<double>(pairs);
-  double const floor = frames > 1 ? s.floor_of_frame : s.floor;
-  state.counters["floor_us"] = floor * 1e6;
-  state.counters["over_floor"] = seconds / static_cast<double>(state.iterations()) / floor;
 }
 
 /// What a query cannot do without.
-template <class Precision>
 void run_least(benchmark::State& state, bool builds, bool told) {
   scene& s = scene::get();
-  collide::detector<collide::bucket, collide::karabassi<Precision>, collide::cuda_shared> detector(s.space);
+  collide::detector<collide::bucket, collide::karabassi<collide::exact>, collide::cuda_shared> detector(s.space);
   into_array sink{s.pairs.data(), s.capacity, s.total};
   auto const mesh = s.mesh->view();
-  test_told const test{mesh, s.spheres->view(), s.told.data(), s.pairs.data()};
+  auto const far = s.far->view();
+  std::size_t const pairs = told ? s.told.size() : 0;
   detector.build(mesh, s.radius);
-  detector.query(s.far->view(), sink);
-  if (s.space.read(s.total.total) != 0) return state.SkipWithError("a sphere is near the mesh");
-  graph const all(s.stream, [&] {
+  detector.query(far, sink);
+  if (s.space.read(s.total.total) != 0) return state.SkipWithError("a sphere that should be far touches the mesh");
+  s.space.fill(s.pairs.data(), 0xff, s.capacity * sizeof(collide::pair));
+  measure(state, 1, pairs, [&] {
     if (builds) detector.build(mesh, s.radius);
-    detector.query(s.far->view(), sink);
-    if (told) s.space.for_each(s.told.size(), test);
+    detector.query(far, sink);
+    s.space.for_each(pairs, test_told{mesh, s.spheres->view(), s.told.data(), s.pairs.data()});
   });
-  bench::stopwatch<collide::cuda_shared> watch(s.space);
-  double seconds = 0;
-  for (auto _ : state) {
-    double const t = watch(all);
-    state.SetIterationTime(t);
-    seconds += t;
+  std::vector<collide::pair> written(pairs);
+  s.space.copy_to_host(written.data(), s.pairs.data(), pairs);
+  auto const alike = [](collide::pair a, collide::pair b) { return a.sphere == b.sphere && a.triangle == b.triangle; };
+  if (!std::equal(written.begin(), written.end(), s.told.to_host().begin(), alike)) {
+    state.SkipWithError("not all pairs that were told were written");
   }
-  state.counters["pairs"] = told ? static_cast<double>(s.told.size()) : 0;
-  state.counters["floor_us"] = s.floor * 1e6;
-  state.counters["over_floor"] = seconds / static_cast<double>(state.iterations()) / s.floor;
 }
 
-template <class Precision>
-void add_least(std::string const& name) {
-  auto const with = [&](char const* phase, bool builds, bool told) {
-    benchmark::RegisterBenchmark((name + "/" + phase).c_str(),
-                                 [=](benchmark::State& state) { run_least<Precision>(state, builds, told); })
-        ->UseManualTime()
-        ->Iterations(1001)
-        ->Unit(benchmark::kMicrosecond);
-  };
-  with("asking", false, false);
-  with("told", false, true);
-  with("build_and_told", true, true);
+void add(std::string const& name, std::function<void(benchmark::State&)> const& run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)->UseManualTime()->Iterations(1001)->Unit(benchmark::kMicrosecond);
 }
 
 template <class Broad, class Precision>
-void add(std::string const& name) {
-  auto const with = [&](char const* phase, bool builds, bool queries, int frames = 1) {
-    benchmark::RegisterBenchmark(
-        (name + "/" + phase).c_str(),
-        [=](benchmark::State& state) { run<Broad, Precision>(state, builds, queries, frames); })
-        ->UseManualTime()
-        ->Iterations(1001)
-        ->Unit(benchmark::kMicrosecond);
-  };
-  with("build", true, false);
-  with("query", false, true);
-  with("both", true, true);
-  with("frames", true, true, scene::frames_of_graph);
+void add_all(std::string const& name) {
+  add(name + "/build", [](benchmark::State& state) { run<Broad, Precision>(state, true, false, 1); });
+  add(name + "/query", [](benchmark::State& state) { run<Broad, Precision>(state, false, true, 1); });
+  add(name + "/both", [](benchmark::State& state) { run<Broad, Precision>(state, true, true, 1); });
+  add(name + "/frames",
+      [](benchmark::State& state) { run<Broad, Precision>(state, true, true, scene::frames_of_graph); });
 }
 
 }  // namespace
@@ -261,11 +249,13 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
 #if defined(__CUDACC__)
   if (bench::has_gpu()) {
-    add<collide::bucket, collide::single_precision>("bucket/single");
-    add<collide::bucket, collide::exact>("bucket/exact");
-    add_least<collide::exact>("least/exact");
-    add<collide::all_pairs, collide::single_precision>("all_pairs/single");
-    add<collide::all_pairs, collide::exact>("all_pairs/exact");
+    add_all<collide::bucket, collide::single_precision>("bucket/single");
+    add_all<collide::bucket, collide::exact>("bucket/exact");
+    add("least/exact/asking", [](benchmark::State& state) { run_least(state, false, false); });
+    add("least/exact/told", [](benchmark::State& state) { run_least(state, false, true); });
+    add("least/exact/build_and_told", [](benchmark::State& state) { run_least(state, true, true); });
+    add_all<collide::all_pairs, collide::single_precision>("all_pairs/single");
+    add_all<collide::all_pairs, collide::exact>("all_pairs/exact");
   }
 #endif
   return bench::run();
