@@ -14,6 +14,8 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/karabassi_swept.hpp>
+#include <collide/memory.hpp>
 #include <collide/upload.hpp>
 #include <collide/validate.hpp>
 
@@ -361,6 +363,44 @@ void check_memory(MakeSpace make, std::pmr::memory_resource* upstream) {
   CHECK_THROWS_AS(detector.query(spheres.view(), collide::pairs()), std::bad_alloc);
   failing.fails = false;
   CHECK((detector.query(spheres.view(), collide::pairs(collide::order::canonical)).to_host() == scene.hits()));
+}
+
+/// `n` spheres, of which every `apart`-th may touch one of two large triangles. Those of some turns are far away, as
+/// the first ones are, others in part, and the last group is not whole unless `n` is a multiple of 4.
+template <class NarrowPhase, class Space>
+void check_crowd(std::size_t n, std::size_t apart) {
+  Space space;
+  std::vector<float> const corners{0, 0, 0, 2000, 0, 0, 0, 2000, 0, 0, 0, 50, 2000, 0, 50, 0, 2000, 50};
+  std::vector<float> centres(3 * n);
+  std::vector<std::uint64_t> expected;
+  for (std::size_t i = 0; i < n; ++i) {
+    float const x = static_cast<float>(i % 967) + 10, y = static_cast<float>(i / 967 % 967) + 10;
+    bool const away = i % 7 == 3 || i / 5000 % 5 == 0 || i % apart != 0;
+    collide::id const triangle = i % 3 == 0 ? 1 : 0;
+    centres[3 * i] = x, centres[3 * i + 1] = y, centres[3 * i + 2] = (triangle == 1 ? 50.5f : 0.5f) + (away ? 100 : 0);
+    if (!away) expected.push_back(std::uint64_t{i} << 32 | triangle);
+  }
+  auto const mesh = collide::upload(space, collide::triangle_soup(corners.data(), 2));
+  auto const spheres = collide::upload(space, collide::spheres_xyz(centres.data(), n, 1.0f));
+  collide::detector<collide::bucket, NarrowPhase, Space> detector(space);
+  detector.build(mesh.view(), 1.0f);
+  std::vector<collide::pair> found;
+  if constexpr (!std::is_same_v<NarrowPhase, collide::karabassi_swept<>>) {
+    found = detector.query(spheres.view(), collide::pairs(collide::order::canonical)).to_host();
+  } else {
+    std::vector<float> const still(3 * n);
+    collide::buffer<float> memory;
+    float* const ways = memory.reserve(space.resource(), still.size());
+    space.copy_from_host(ways, still.data(), still.size());
+    auto const moving = collide::moving(spheres.view(), static_cast<float const*>(ways));
+    found = detector.query(moving, collide::pairs(collide::order::canonical)).to_host();
+  }
+  REQUIRE(found.size() == expected.size());
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    wrong += (std::uint64_t{found[i].sphere} << 32 | found[i].triangle) != expected[i];
+  }
+  CHECK(wrong == 0);
 }
 
 }  // namespace tests

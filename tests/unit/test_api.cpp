@@ -128,3 +128,13 @@ TEST_CASE("api: single precision over doubles that float cannot hold") {
     }
   }
 }
+
+TEST_CASE("api: more spheres near the mesh, or far from it, than blocks go through at a time") {
+  constexpr std::size_t n = 20001;
+  using steps = tests::lockstep<64, true>;
+  for (std::size_t const apart : {std::size_t{1}, std::size_t{61}}) {
+    tests::check_crowd<collide::karabassi<>, steps>(n, apart);
+    tests::check_crowd<collide::karabassi<collide::single_precision>, steps>(n, apart);
+    tests::check_crowd<collide::karabassi_swept<>, steps>(n, apart);
+  }
+}

@@ -1,7 +1,4 @@
 /// The interface of the CUDA spaces.
-#include <collide/karabassi_swept.hpp>
-#include <collide/memory.hpp>
-
 #include "api.hpp"
 
 int cuda_devices() { return collide::cuda_device_count(); }
@@ -71,44 +68,6 @@ void check_turns(cudaStream_t stream) {
   }
 }
 
-/// `n` spheres, of which every `apart`-th may touch one of two large triangles. Those of some turns are far away, as
-/// the first ones are, others in part, and the last group is not whole unless `n` is a multiple of 4.
-template <class NarrowPhase, class Space>
-void check_crowd(std::size_t n, std::size_t apart) {
-  Space space;
-  std::vector<float> const corners{0, 0, 0, 2000, 0, 0, 0, 2000, 0, 0, 0, 50, 2000, 0, 50, 0, 2000, 50};
-  std::vector<float> centres(3 * n);
-  std::vector<std::uint64_t> expected;
-  for (std::size_t i = 0; i < n; ++i) {
-    float const x = static_cast<float>(i % 967) + 10, y = static_cast<float>(i / 967 % 967) + 10;
-    bool const away = i % 7 == 3 || i / 5000 % 5 == 0 || i % apart != 0;
-    collide::id const triangle = i % 3 == 0 ? 1 : 0;
-    centres[3 * i] = x, centres[3 * i + 1] = y, centres[3 * i + 2] = (triangle == 1 ? 50.5f : 0.5f) + (away ? 10 : 0);
-    if (!away) expected.push_back(std::uint64_t{i} << 32 | triangle);
-  }
-  auto const mesh = collide::upload(space, collide::triangle_soup(corners.data(), 2));
-  auto const spheres = collide::upload(space, collide::spheres_xyz(centres.data(), n, 1.0f));
-  collide::detector<collide::bucket, NarrowPhase, Space> detector(space);
-  detector.build(mesh.view(), 1.0f);
-  std::vector<collide::pair> found;
-  if constexpr (!std::is_same_v<NarrowPhase, collide::karabassi_swept<>>) {
-    found = detector.query(spheres.view(), collide::pairs(collide::order::canonical)).to_host();
-  } else {
-    std::vector<float> const still(3 * n);
-    collide::buffer<float> memory;
-    float* const ways = memory.reserve(space.resource(), still.size());
-    space.copy_from_host(ways, still.data(), still.size());
-    auto const moving = collide::moving(spheres.view(), static_cast<float const*>(ways));
-    found = detector.query(moving, collide::pairs(collide::order::canonical)).to_host();
-  }
-  REQUIRE(found.size() == expected.size());
-  std::size_t wrong = 0;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    wrong += (std::uint64_t{found[i].sphere} << 32 | found[i].triangle) != expected[i];
-  }
-  CHECK(wrong == 0);
-}
-
 }  // namespace
 
 TEST_CASE("api: sinks on the device") {
@@ -154,16 +113,16 @@ TEST_CASE("api: kernels of the caller, before and after, have their turn") {
 
 TEST_CASE("api: more spheres near the mesh than the device has room for at a time") {
   constexpr std::size_t n = 3000001;
-  check_crowd<collide::karabassi<>, collide::cuda_shared>(n, 1);
-  check_crowd<collide::karabassi<collide::single_precision>, collide::cuda_shared>(n, 1);
-  check_crowd<collide::karabassi<>, collide::cuda>(n, 1);
-  check_crowd<collide::karabassi_swept<>, collide::cuda_shared>(n, 1);
+  tests::check_crowd<collide::karabassi<>, collide::cuda_shared>(n, 1);
+  tests::check_crowd<collide::karabassi<collide::single_precision>, collide::cuda_shared>(n, 1);
+  tests::check_crowd<collide::karabassi<>, collide::cuda>(n, 1);
+  tests::check_crowd<collide::karabassi_swept<>, collide::cuda_shared>(n, 1);
 }
 
 TEST_CASE("api: more spheres, few of them near the mesh, than the device places at a time") {
   constexpr std::size_t n = 16000001;
-  check_crowd<collide::karabassi<>, collide::cuda_shared>(n, 61);
-  check_crowd<collide::karabassi_swept<>, collide::cuda_shared>(n, 61);
+  tests::check_crowd<collide::karabassi<>, collide::cuda_shared>(n, 61);
+  tests::check_crowd<collide::karabassi_swept<>, collide::cuda_shared>(n, 61);
 }
 
 TEST_CASE("api: a failed CUDA call says which and where") {
