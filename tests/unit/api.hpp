@@ -365,8 +365,9 @@ void check_memory(MakeSpace make, std::pmr::memory_resource* upstream) {
   CHECK((detector.query(spheres.view(), collide::pairs(collide::order::canonical)).to_host() == scene.hits()));
 }
 
-/// `n` spheres, of which every `apart`-th may touch one of two large triangles. Those of some turns are far away, as
-/// the first ones are, others in part, and the last group is not whole unless `n` is a multiple of 4.
+/// `n` spheres, of which every `apart`-th may touch one of two large triangles; those that do not are not even in the
+/// grid. Those of some turns are far away, as the first ones are, others in part, and the last group is not whole
+/// unless `n` is a multiple of 4.
 template <class NarrowPhase, class Space>
 void check_crowd(std::size_t n, std::size_t apart) {
   Space space;
