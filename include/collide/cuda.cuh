@@ -18,8 +18,8 @@
 #include <cuda_runtime.h>
 
 #include <collide/contact.hpp>
-#include <collide/detail/block.hpp>
-#include <collide/detail/costs.hpp>
+#include <collide/detail/execution/block.hpp>
+#include <collide/detail/execution/tuning.hpp>
 #include <collide/error.hpp>
 #include <collide/memory.hpp>
 

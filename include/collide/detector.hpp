@@ -6,7 +6,7 @@
 #include <collide/closest.hpp>
 #include <collide/contacts.hpp>
 #include <collide/count.hpp>
-#include <collide/detail/undecided.hpp>
+#include <collide/detail/query/deferred_pairs.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/mesh.hpp>
@@ -57,7 +57,7 @@ template <class H>
 struct is_handle<H, std::void_t<decltype(std::declval<H const&>().reserve(std::uint64_t{})),
                                 decltype(&H::template store<hit<karabassi<>, float>>)>> : std::true_type {};
 
-/// One pass of a query over the scene, as a sink sees it; see detail/sink.hpp.
+/// One pass of a query over the scene, as a sink sees it; see detail/sinks/output.hpp.
 template <class Index, class NarrowPhase, class Space, class S>
 struct query_pass {
   using narrow_phase = NarrowPhase;
