@@ -15,7 +15,7 @@ PAGE = ROOT / "docs" / "concepts.md"
 LAYERS = {
     "vocabulary": "config.hpp contact.hpp error.hpp geometry.hpp impact.hpp memory.hpp precision.hpp",
     "views": "mesh.hpp moving_spheres.hpp spheres.hpp upload.hpp",
-    "execution": "detail/execution/ cuda.cuh host.hpp",
+    "execution": "detail/execution/ cuda.cuh cuda_memory.cuh host.hpp",
     "numeric": "detail/numeric/",
     "geometry": "detail/geometry/",
     "predicates": "detail/predicates/",
