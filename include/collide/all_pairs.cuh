@@ -6,7 +6,7 @@
 /// all_pairs x cuda_shared = `brute_force_shamem`.
 #pragma once
 
-#include <collide/detail/execution/block.hpp>
+#include <collide/detail/execution/launch.hpp>
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/geometry/lifted_bounds.hpp>
 #include <collide/detail/grid/grid_ref.hpp>

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <collide/detail/execution/block.hpp>
+#include <collide/detail/execution/launch.hpp>
 #include <collide/detail/geometry/sphere_pack.hpp>
 #include <collide/detail/grid/grid.hpp>
 #include <collide/detail/grid/grid_ref.hpp>

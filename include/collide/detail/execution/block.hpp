@@ -19,9 +19,8 @@
 ///   - `block.scan(...)` makes of at most as many values as lanes the sums of those before each;
 ///   - `block.reduce(...)` combines a value per lane.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
-/// Here are the two blocks of plain C++: `serial_block`, a single lane that does everything itself (the host's block,
-/// and a CUDA thread without shared memory), and `lockstep_block`, which runs the cooperative algorithms of a CUDA
-/// block on the host, for tests.
+/// Here is the block of plain C++: `serial_block`, a single lane that does everything itself (the host's block, and a
+/// CUDA thread without shared memory). That of CUDA threads that work together is in cuda_block.cuh.
 #pragma once
 
 #include <cstddef>
@@ -30,38 +29,6 @@
 #include <collide/config.hpp>
 
 namespace collide::detail {
-
-/// The cooperative algorithm behind `balanced`: scans the counts in scratch memory, then spreads all (i, k) with
-/// k < counts[i] evenly over the lanes, each of which finds its i by binary search.
-template <class Block>
-struct balancing {
-  typename Block::scan_scratch scan;
-
-  template <class Item, class Find, class Look, class Take, class Round>
-  COLLIDE_HD void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find,
-                      Look const& look, Take const& take, Round const& after_round) {
-    std::uint32_t const total = block.scan(scan, counts, n);
-    for (std::uint32_t base = 0; base < total; base += Block::lanes) {
-      block.each([&](int lane) {
-        std::uint32_t const work = base + static_cast<std::uint32_t>(lane);
-        if (work >= total) return;
-        std::uint32_t i = 0, end = n;  // the last i whose work begins at or before this
-        while (end - i > 1) {
-          std::uint32_t const middle = (i + end) / 2;
-          if (counts[middle] <= work) {
-            i = middle;
-          } else {
-            end = middle;
-          }
-        }
-        auto const one = item(i);
-        auto const found = find(one, work - counts[i]);
-        if (look(one, found)) take(one, found);
-      });
-      after_round();
-    }
-  }
-};
 
 /// A block of one lane with `Items` items; `Pending` hits are gathered before they go to the sink.
 template <int Items, int Pending>
@@ -155,119 +122,5 @@ class serial_block {
  private:
   std::size_t index_;
 };
-
-/// A block of `Lanes` lanes that take turns, in order or in reverse: finds mistakes in the order of steps that a GPU
-/// would only show now and then.
-template <int Lanes, int Items, bool Reversed>
-class lockstep_block {
- public:
-  static constexpr int lanes = Lanes, items = Items, pending = 2 * Lanes, row_lanes = 1;
-
-  template <class T>
-  struct per_lane {
-    T value[Lanes];
-    T& operator[](int lane) { return value[lane]; }
-  };
-  template <class T, int N>
-  struct staging {
-    T values[N];
-  };
-  template <class T>
-  struct single {
-    T value;
-  };
-  template <class T, int N>
-  struct row_scratch {};
-  struct scan_scratch {};
-  using balance_scratch = balancing<lockstep_block>;
-  template <class T>
-  struct reduce_scratch {};
-
-  explicit lockstep_block(std::size_t index) : index_{index} {}
-
-  std::size_t index() const { return index_; }
-
-  template <class F>
-  void each(F const& f) {
-    for (int i = 0; i < Lanes; ++i) f(Reversed ? Lanes - 1 - i : i);
-  }
-
-  template <class T>
-  T shared(T const& value) {
-    return value;
-  }
-
-  std::uint32_t add(std::uint32_t& counter, std::uint32_t n) {
-    std::uint32_t const before = counter;
-    counter += n;
-    return before;
-  }
-
-  template <class T, int N>
-  T const* stage(staging<T, N>& to, T const* from, int n) {
-    for (int i = 0; i < n; ++i) to.values[i] = from[i];
-    return to.values;
-  }
-
-  template <class T>
-  T const& near(single<T>& to, T const& from) {
-    to.value = from;
-    return to.value;
-  }
-
-  template <class T, int N>
-  void load_row(T const* from, std::uint32_t row, T (&to)[N]) {
-    for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
-  }
-
-  template <class Scratch, class T, int N>
-  void exchange_row(Scratch&, T (&)[N]) {}
-
-  template <class Scratch, class T, int N>
-  void store_row(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
-    for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
-  }
-
-  std::uint32_t scan(scan_scratch&, std::uint32_t* values, std::uint32_t n) {
-    std::uint32_t sum = 0;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      std::uint32_t const value = values[i];
-      values[i] = sum;
-      sum += value;
-    }
-    return sum;
-  }
-
-  template <int Ahead, class Item, class Find, class Look, class Take, class Round>
-  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find,
-                Look const& look, Take const& take, Round const& after_round) {
-    s.run(*this, counts, n, item, find, look, take, after_round);
-  }
-
-  template <class T, class Combine>
-  T reduce(reduce_scratch<T>&, per_lane<T>& values, Combine const& combine) {
-    T result = values[0];
-    for (int lane = 1; lane < Lanes; ++lane) result = combine(result, values[lane]);
-    return result;
-  }
-
- private:
-  std::size_t index_;
-};
-
-/// Number of blocks that cover `n` items of `body` on the space.
-template <class Space, class Body>
-std::size_t blocks_for(std::size_t n, Body const&) {
-  using block = typename Space::template block<Body>;
-  constexpr std::size_t per_block = static_cast<std::size_t>(block::lanes) * block::items;
-  return (n + per_block - 1) / per_block;
-}
-
-/// The same, but no more than are at work at a time, if the space has such a limit: then they take items in turn.
-template <class Space, class Body>
-std::size_t blocks_at_a_time(Space const& space, std::size_t n, Body const& body) {
-  std::size_t const most = blocks_for<Space>(n, body), wave = space.template wave<Body>();
-  return most < wave ? most : wave;
-}
 
 }  // namespace collide::detail

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <collide/detail/execution/atomic.hpp>
-#include <collide/detail/execution/block.hpp>
+#include <collide/detail/execution/launch.hpp>
 #include <collide/detail/geometry/bounding_sphere.hpp>
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>

@@ -17,7 +17,7 @@
 #include <cstring>
 
 #include <collide/detail/execution/atomic.hpp>
-#include <collide/detail/execution/block.hpp>
+#include <collide/detail/execution/launch.hpp>
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/geometry/sphere_pack.hpp>
 #include <collide/detail/grid/grid.hpp>
