@@ -9,7 +9,7 @@
 #include <collide/detail/execution/launch.hpp>
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/geometry/lifted_bounds.hpp>
-#include <collide/detail/grid/grid_ref.hpp>
+#include <collide/detail/grid/all_pairs_ref.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
 #include <collide/detector.hpp>
 

@@ -213,8 +213,8 @@ UNSEEN = [
     ("predicates/exact.hpp", "for (; n > 1000; n -= 1000)", "no row has so large a power: a number beyond the range would follow"),
     ("numeric/rounding.hpp", "T volatile const kept = x",
      "C0 needs it where a compiler may reassociate; g++ 12 and clang++ 14 do not here, with -ffast-math"),
-    ("grid/grid.hpp", "g.reach * (1 + 4 * S(format<float>::unit))", "is for single precision; `exact` needs lo - c <= r only"),
-    ("grid/grid.hpp", " + 64 * format<S>::unit * far",
+    ("grid/plan.hpp", "g.reach * (1 + 4 * S(format<float>::unit))", "is for single precision; `exact` needs lo - c <= r only"),
+    ("grid/plan.hpp", " + 64 * format<S>::unit * far",
      "rounding is monotone, so lo - r <= c implies fl(lo - r) <= c; is for compilers that reassociate"),
 ]
 
