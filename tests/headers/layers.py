@@ -21,7 +21,7 @@ LAYERS = {
     "predicates": "detail/predicates/",
     "narrow phase": "detail/narrow_phase/ karabassi.hpp karabassi_swept.hpp",
     "grid": "detail/grid/",
-    "query": "detail/query/",
+    "query": "detail/query/ concepts.hpp hit.hpp",
     "sinks": "detail/sinks/ any.hpp closest.hpp contacts.hpp count.hpp earliest.hpp impacts.hpp pairs.hpp visit.hpp",
     "detector": "detector.hpp validate.hpp",
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh",

@@ -12,7 +12,7 @@
 #include <collide/detail/execution/block.hpp>
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/grid/grid_ref.hpp>
-#include <collide/detail/narrow_phase/spheres_of.hpp>
+#include <collide/detail/narrow_phase/traits.hpp>
 #include <collide/detail/simulation/effect_list.hpp>
 
 namespace collide::detail {

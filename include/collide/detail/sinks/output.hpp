@@ -1,14 +1,5 @@
 /// \file
-/// What the built-in sinks share.
-///
-/// A sink is a class with a member `template <class Space, class Query> void run(Space& space, Query const& query)`. It
-/// calls `query(handle)` as often as it needs to; each call puts one pass over the scene on the space's stream. The
-/// handle is trivially copyable, goes to the device, and has
-///   - `std::uint64_t reserve(std::uint64_t n) const`: called once per batch of n hits; returns the slot of the first;
-///   - `void store(std::uint64_t slot, Hit const& hit) const`: called once per hit (see `hit` in
-///   detail/query/candidate_pipeline.hpp);
-///   - `void finish() const`, if it wants to: called once per pass, when all hits are stored.
-/// `query.mesh` and `query.spheres` are the views, `Query::narrow_phase` and `Query::scalar` are types.
+/// What the built-in sinks share; what a sink must have is in concepts.hpp.
 #pragma once
 
 #include <new>
