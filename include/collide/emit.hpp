@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include <collide/detail/numeric/rounding.hpp>
 #include <collide/detail/simulation/particle.hpp>
 #include <collide/effect.hpp>
 

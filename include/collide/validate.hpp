@@ -6,6 +6,7 @@
 #include <string>
 
 #include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/host.hpp>
 #include <collide/mesh.hpp>

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 
 namespace collide::detail {

@@ -2,6 +2,7 @@
 /// A conservative sphere around each triangle: the cheap test before the narrow phase.
 #pragma once
 
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/mesh.hpp>
 

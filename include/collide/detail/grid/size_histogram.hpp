@@ -3,7 +3,7 @@
 #pragma once
 
 #include <collide/detail/execution/atomic.hpp>
-#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
 
 namespace collide::detail {
 

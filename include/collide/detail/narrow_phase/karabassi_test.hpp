@@ -3,6 +3,7 @@
 #pragma once
 
 #include <collide/detail/geometry/closest_point.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 
 namespace collide::detail {

@@ -6,6 +6,7 @@
 /// compiler's flags.
 #pragma once
 
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 
 namespace collide::detail {

@@ -2,7 +2,9 @@
 /// Integers of a few words, in registers.
 #pragma once
 
-#include <collide/detail/numeric/rounding.hpp>
+#include <cstdint>
+
+#include <collide/config.hpp>
 
 namespace collide::detail {
 

@@ -21,6 +21,7 @@
 #pragma once
 
 #include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/detail/simulation/attribute_buffers.hpp>
 #include <collide/detail/simulation/effect_list.hpp>

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/sinks/output.hpp>
 
 namespace collide::detail {
