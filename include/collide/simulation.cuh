@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
-#include <collide/detail/mesh_summary.hpp>
-#include <collide/detail/neighbours.hpp>
-#include <collide/detail/step.hpp>
+#include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/detail/simulation/step.hpp>
+#include <collide/detail/simulation/verlet_list.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
@@ -120,7 +120,7 @@ class simulation {
   using columns = typename scene_type::all;
   /// Bytes of state of each particle.
   static constexpr std::size_t bytes_per_particle = detail::column_buffers<S, columns>::bytes_per_particle;
-  /// Pointers to all columns, for kernels; see detail/particle.hpp.
+  /// Pointers to all columns, for kernels; see detail/simulation/particle.hpp.
   using state_type = detail::particle_state<S, columns>;
 
   explicit simulation(execution_space space = execution_space(), broad_phase options = broad_phase())
