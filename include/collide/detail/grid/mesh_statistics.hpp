@@ -25,6 +25,14 @@ struct alignas(16) mesh_summary {
     space.fill(s, 0, sizeof *s);
   }
 
+  /// The largest coordinate, without its sign; 0 of no triangles.
+  COLLIDE_HD S largest_coordinate() const {
+    S most = 0;
+    if (extents[0].empty()) return most;
+    for (int k = 0; k < 3; ++k) most = larger(most, larger(-lower_of(k), upper_of(k)));
+    return most;
+  }
+
   COLLIDE_HD S lower_of(int k) const { return from_ordered<S>(static_cast<bits_of<S>>(~lower[k])); }
   COLLIDE_HD S upper_of(int k) const { return from_ordered<S>(upper[k]); }
 };

@@ -79,6 +79,23 @@ COLLIDE_HD_INLINE double fused(double a, double b, double c) {
 #endif
 }
 
+/// a * b + c, rounded once everywhere.
+COLLIDE_HD_INLINE float multiply_add(float a, float b, float c) {
+#if defined(__CUDA_ARCH__)
+  return __fmaf_rn(a, b, c);
+#else
+  return std::fma(a, b, c);
+#endif
+}
+
+COLLIDE_HD_INLINE double multiply_add(double a, double b, double c) {
+#if defined(__CUDA_ARCH__)
+  return __fma_rn(a, b, c);
+#else
+  return std::fma(a, b, c);
+#endif
+}
+
 /// The value as it was computed: a compiler that may reassociate sums (-ffast-math) cannot look through it.
 template <class T>
 COLLIDE_HD_INLINE T settled(T x) {

@@ -36,6 +36,16 @@ struct survivor_way<S, true> {
   COLLIDE_HD_INLINE vec3<S> along() const { return {way[0], way[1], way[2]}; }
 };
 
+/// A particle of radius `r` that is swept is taken to be at least so large that rounding its centre leaves it in front
+/// of what it touches: 4 units in the last place of its coordinates, but no more than `largest`, for which the index is
+/// prepared.
+template <class S>
+COLLIDE_HD_INLINE S swept_radius(S r, vec3<S> const& centre, vec3<S> const& displacement, S largest) {
+  S const reach = collide::detail::largest<S>(centre.cwiseAbs()) + collide::detail::largest<S>(displacement.cwiseAbs());
+  S const least = 4 * std::numeric_limits<S>::epsilon() * reach;
+  return r >= 0 && r < largest ? larger(r, smaller(least, largest)) : r;
+}
+
 /// A particle that may touch the mesh in this step, in scratch memory. Plain numbers: scratch memory is not
 /// constructed.
 template <class S, bool Moves>
@@ -44,10 +54,13 @@ struct survivor : survivor_way<S, Moves> {
 
   S centre[3], radius;
   S normals[planes][3], feet[planes][3];  ///< of the contacts that came before
+  S impulses[planes];                     ///< with which they repelled the particle
+  S arrival[3];                           ///< velocity before the contacts at this place
   std::uint64_t best;                     ///< key of the next contact
   std::uint32_t best_kept;                ///< where it is kept
   std::uint32_t offered;                  ///< how many candidates offered themselves
   int before;                             ///< how many contacts came before
+  int here;                               ///< how many of those at this place
   id number;
   bool is_active;
   candidate_cursor cursor;
@@ -67,14 +80,74 @@ struct survivor : survivor_way<S, Moves> {
     }
   }
 
-  COLLIDE_HD_INLINE void remember(contact<S> const& c) {
+  COLLIDE_HD_INLINE void remember(touching<S> const& c) {
     int const slot = before % planes;
     for (int k = 0; k < 3; ++k) {
       normals[slot][k] = c.normal[k];
       feet[slot][k] = c.point[k];
     }
+    impulses[slot] = c.impulse;
     if constexpr (Moves) this->triangles[slot] = c.triangle;
     ++before;
+    ++here;
+  }
+
+  /// Begins with the contacts at a place: all in a step, but those of a particle that moves on to the next one.
+  COLLIDE_HD_INLINE void arrive(S time, vec3<S> const& velocity) {
+    bool again = before > 0;
+    if constexpr (Moves) {
+      vec3<S> const moved = scaled(this->along(), time);
+      again = again && dot(moved, moved) <= S(1e-6) * radius * radius;
+    }
+    if (again) return;
+    here = 0;
+    for (int k = 0; k < 3; ++k) arrival[k] = velocity[k];
+  }
+
+  COLLIDE_HD_INLINE vec3<S> normal_of(int slot) const { return {normals[slot][0], normals[slot][1], normals[slot][2]}; }
+
+  /// Finds how to leave a contact such that this leaves the particle on the surfaces of those before it at this place:
+  /// the projection of the normal onto what they leave free. They count where the normal leads into them, and a single
+  /// one also where it leads off it but pushed harder than that relieves it, as in the two sides of an open groove.
+  COLLIDE_HD_INLINE void find_lift(touching<S>& c, vec3<S> const& velocity) const {
+    vec3<S> const& n = c.normal;
+    c.lift = n;
+    c.free_change = std::numeric_limits<S>::max();
+    int const count = smaller(here, planes);
+    int opposed = -1;
+    S along = 0;
+    auto const slot = [&](int i) { return (before - 1 - i) % planes; };
+    for (int i = 0; i < count; ++i) {
+      S const with = dot(n, normal_of(slot(i)));
+      if (with >= along) continue;
+      along = with;
+      opposed = i;
+    }
+    vec3<S> out = n;
+    S free = 0;
+    if (opposed >= 0) {
+      vec3<S> const wall = normal_of(slot(opposed));
+      free = larger(dot(velocity, wall), S(0)) / -along;
+      out -= wall * along;
+      for (int i = 0; i < count; ++i) {
+        if (i == opposed || dot(out, normal_of(slot(i))) >= -contact_tolerance<S>) continue;
+        vec3<S> const edge = cross(wall, normal_of(slot(i)));
+        out = edge * (dot(n, edge) / dot(edge, edge));
+        free = 0;
+      }
+    } else if (count == 1) {
+      vec3<S> const wall = normal_of(slot(0));
+      S const with = dot(n, wall), apart = 1 - with * with;  // the square of the sine of the angle between the two
+      S const relief = 2 * with * larger(-dot(velocity, n), S(0));
+      if (!(apart > S(1e-2) && relief <= impulses[slot(0)] * apart)) return;
+      out -= wall * with;
+    } else {
+      return;
+    }
+    S const height = dot(out, n);
+    if (!(height > S(1e-4))) return;  // between two walls that are nearly parallel
+    c.lift = out * (1 / height);
+    c.free_change = free;
   }
 
   /// True of a triangle that it has touched before and leaves: no part of that is above the tangent plane. To judge it
@@ -89,6 +162,11 @@ struct survivor : survivor_way<S, Moves> {
     return left;
   }
 
+  /// True if the sphere overlaps the mesh by more than rounding.
+  COLLIDE_HD_INLINE bool overlaps(S depth) const {
+    return depth > contact_tolerance<S> * radius + rounding_at(vec3<S>(centre[0], centre[1], centre[2]));
+  }
+
   /// True if a foot is part of the same surface as a contact before: not above its tangent plane.
   COLLIDE_HD_INLINE bool knows(vec3<S> const& foot) const {
     bool known = false;
@@ -98,7 +176,7 @@ struct survivor : survivor_way<S, Moves> {
       for (int k = 0; k < 3; ++k) above += normals[i][k] * (foot[k] - feet[i][k]);
       bool leaves = true;
       if constexpr (Moves) leaves = !approaches({normals[i][0], normals[i][1], normals[i][2]});
-      known = known || (leaves && above <= tolerance * radius);
+      known = known || (leaves && above <= contact_tolerance<S> * radius);
     }
     return known;
   }
@@ -107,21 +185,40 @@ struct survivor : survivor_way<S, Moves> {
   COLLIDE_HD_INLINE bool approaches(vec3<S> const& normal) const {
     vec3<S> const d = this->along();
     S const into = -dot(d, normal);
-    return into > 0 && into * into > tolerance * tolerance * dot(d, d);
+    constexpr S tolerance = contact_tolerance<S>;
+    return into > 0 && (into * into > tolerance * tolerance * dot(d, d) || into > radius / 4);
   }
-
-  /// What feet may differ in height, in radii, and normals in slope, due to rounding.
-  static constexpr S tolerance = sizeof(S) == sizeof(float) ? S(1e-5) : S(1e-9);
 };
 
-/// Keys of contacts: the smaller comes first. Ties go to the lower triangle number.
+/// Keys of contacts: the smaller comes first. That is the earlier contact, and of those at the beginning of the way the
+/// deeper one. Ties go to the face, then to the edge, so that on a plane which is divided into triangles the normal is
+/// that of the face below the centre; then to the lower triangle number.
 inline constexpr std::uint64_t no_contact = ~std::uint64_t{0};
+/// Bits for the time or the depth in a key; one more tells which of them it is.
+inline constexpr int key_bits = 29;
 
+/// The next multiple of 2^-29 at or below a time from 0 to 1: keys tell such times apart.
 template <class S>
-COLLIDE_HD_INLINE std::uint64_t contact_key(S time, S depth, id triangle) {
-  std::uint32_t const first =
-      time > 0 ? (bits(static_cast<float>(time)) | 0x80000000u) : ~ordered(static_cast<float>(depth)) >> 1;
-  return (std::uint64_t{first} << 32) | triangle;
+COLLIDE_HD_INLINE S key_time(S time) {
+  constexpr auto ticks = std::uint32_t{1} << key_bits;
+  return S(smaller(static_cast<std::uint32_t>(time * S(ticks)), ticks - 1)) * (S(1) / S(ticks));
+}
+
+/// `time` is a `key_time`.
+template <class S>
+COLLIDE_HD_INLINE std::uint64_t contact_key(S time, contact<S> const& c) {
+  constexpr auto ticks = std::uint32_t{1} << key_bits;
+  std::uint32_t const first = time > 0 ? static_cast<std::uint32_t>(time * S(ticks)) | ticks
+                                       : ~ordered(static_cast<float>(c.depth)) >> (32 - key_bits);
+  return std::uint64_t{first} << 34 | std::uint64_t{static_cast<std::uint32_t>(c.kind)} << 32 | c.triangle;
+}
+
+/// The time of a contact, from its key.
+template <class S>
+COLLIDE_HD_INLINE S time_of_key(std::uint64_t key) {
+  constexpr auto ticks = std::uint32_t{1} << key_bits;
+  auto const first = static_cast<std::uint32_t>(key >> 34);
+  return (first & ticks) != 0 ? S(first & (ticks - 1)) * (S(1) / S(ticks)) : S(0);
 }
 
 /// Kernel body: the contacts of all listed particles, in `blocks` blocks that share the list, of lanes that work alone.
@@ -129,6 +226,7 @@ template <class S, class NarrowPhase, class Lookup, class Scene>
 struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   using fly_type = fly_body<S, NarrowPhase, Lookup, Scene>;
   using fly_type::dt;
+  using fly_type::least_radius;
   using fly_type::list;
   using fly_type::lookup;
   using fly_type::moves;
@@ -215,7 +313,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
     std::uint32_t const n = *list.count;
     if (n == 0) return;
     cell_marks<S> const marks = lookup.marks();
-    surroundings const near{lookup.opened(), marks, fly_type::marks_all(lookup, state)};
+    surroundings const near{lookup.opened(), marks, this->marks_all()};
     // as many as come to each block, or the same each time if it has no room for so many
     auto const shares = static_cast<std::uint32_t>(blocks), most = shares * together<Block>;
     std::uint32_t const share = (n - 1) / (shares * ((n - 1) / most + 1)) + 1;
@@ -260,6 +358,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
     one.number = number;
     one.radius = p.the_radius;
     one.place(p[position{}], p[velocity{}] * dt);
+    if constexpr (moves) one.radius = swept_radius(p.the_radius, p[position{}], one.along(), least_radius);
   }
 
   /// Resolves the contacts of `n` particles, at most `together`: begin(one, j) for all j < n says which they are.
@@ -280,7 +379,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
     each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
       begin(one, j);
       if constexpr (moves) one.rest = dt;
-      one.before = 0;
+      one.before = one.here = 0;
       one.is_active = true;
       look_around(one);
       if (j != 0) return;
@@ -497,7 +596,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
     if constexpr (candidate_lists<Block>::used) {
       each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t place) {
         contact<S> const c = k.get();
-        if (one.best == contact_key(k.time, c.depth, c.triangle)) fetch_min(&one.best_kept, place);
+        if (one.best == contact_key(k.time, c)) fetch_min(&one.best_kept, place);
       });
     }
   }
@@ -530,7 +629,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
       // times are early by less, or by what the slack of bounding spheres covers; in keys they are rounded
       constexpr S late = S(0x1p-21);
       if (one.best != no_contact)
-        ball.displacement = scaled(ball.displacement, smaller(S(1), time_of(one.best) + late));
+        ball.displacement = scaled(ball.displacement, smaller(S(1), time_of_key<S>(one.best) + late));
     }
     return ball;
   }
@@ -559,9 +658,9 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   static COLLIDE_HD_INLINE bool offer(survivor<S, moves>& one, S time, contact<S> const& c) {
     if (one.knows(c.point)) return false;
     if constexpr (moves) {
-      if (!one.approaches(c.normal)) return false;
+      if (!one.approaches(c.normal) && !(time == 0 && one.overlaps(c.depth))) return false;
     }
-    std::uint64_t const key = contact_key(time, c.depth, c.triangle);
+    std::uint64_t const key = contact_key(time, c);
     if constexpr (Block::lanes > 1) {
       fetch_add(&one.offered, 1u);
       fetch_min(&one.best, key);
@@ -572,20 +671,22 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
     return true;
   }
 
+  /// A surface has two sides. Where the centre lies on it, the normal faces against the path.
+  static COLLIDE_HD_INLINE void face_against(contact<S>& c, vec3<S> const& path) {
+    if (c.distance == 0 && dot(c.normal, path) > 0) c.normal = -c.normal;
+  }
+
   /// The contact of a ball and a triangle that it touches at a time within the step.
   template <class Ball>
   static COLLIDE_HD_INLINE contact<S> contact_of(triangle<S> const& t, Ball const& ball, S time, id number) {
     contact<S> c = contact_here(t, place_at(ball, time));
     c.triangle = number;
+    if constexpr (moves) face_against(c, ball.displacement);
     return c;
   }
 
-  static COLLIDE_HD_INLINE S time_of(std::uint64_t key) {
-    auto const first = static_cast<std::uint32_t>(key >> 32);
-    return (first & 0x80000000u) != 0 ? S(from_bits<float>(first & 0x7fffffffu)) : S(0);
-  }
   static COLLIDE_HD_INLINE S time_of(triangle<S> const& t, moving_sphere<S> const& ball) {
-    return stop_of<NarrowPhase>::time(t, ball);
+    return key_time(stop_of<NarrowPhase>::time(t, ball));
   }
   static COLLIDE_HD_INLINE S time_of(triangle<S> const&, sphere<S> const&) { return 0; }
   static COLLIDE_HD_INLINE sphere<S> place_at(moving_sphere<S> const& ball, S time) { return ball_at(ball, time); }
@@ -628,23 +729,34 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
       auto const ball = one.ball();
       S const time = kept->time;
       sphere<S> const here = place_at(ball, time);
-      touching<S> c{kept->get(), vec3<S>(S(0), S(0), S(0)), moves ? S(0) : dt, S(0), false};
+      vec3<S> const came = p[velocity{}];
+      one.arrive(time, came);
+      vec3<S> const arrival(one.arrival[0], one.arrival[1], one.arrival[2]);
+      touching<S> c{};
+      static_cast<contact<S>&>(c) = kept->get();
       c.sphere = one.number;
       if constexpr (moves) {
         p[position{}] = here.centre;
+        c.start = here.centre;
         one.rest -= one.rest * time;
       } else {
+        c.start = here.centre - arrival * dt;
+        c.moved = dt;
+        face_against(c, arrival);
         c.depth -= dot(c.normal, vec3<S>(p[position{}] - here.centre));  // earlier contacts have moved it
       }
-      one.remember(c);
+      c.approach = -dot(arrival, c.normal);
+      one.find_lift(c, came);
       colliding next = p;
       scene.accelerate(next, dt);
-      c.gain = next[velocity{}] - p[velocity{}];
+      c.gain = next[velocity{}] - came;
       scene.touch(p, c, dt);
+      one.remember(c);
       one.is_active = one.before < most_contacts;
       if constexpr (moves) {
         one.place(p[position{}], p[velocity{}] * one.rest);
-        if (one.approaches(c.normal)) {  // nothing repels: it goes through
+        bool const repelled = dot(c.normal, vec3<S>(p[velocity{}] - came)) > 0;
+        if (!repelled && one.approaches(c.normal)) {  // it goes through
           p[position{}] += p[velocity{}] * one.rest;
           one.is_active = false;
         }
@@ -654,7 +766,10 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
       if (is_skipped(p)) one.is_active = false;
     }
     if (!one.is_active) {
-      if constexpr (part_after != 0) scene.accelerate(p, part_after * dt);
+      if constexpr (part_after != 0) {
+        bool const is_held = one.before > 0 && p[velocity{}] == vec3<S>(S(0), S(0), S(0));
+        if (!is_held) scene.accelerate(p, part_after * dt);
+      }
       scene.finish(p, dt);
     }
     state.store(p, one.number, typename Scene::contact_writes{});

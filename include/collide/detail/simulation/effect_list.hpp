@@ -103,6 +103,12 @@ struct touches_in<E, S,
                   std::void_t<decltype(std::declval<E const&>().touch(
                       std::declval<probed<E, S>&>(), std::declval<touching<S>&>(), S{}))>> : std::true_type {};
 template <class E, class S, class = void>
+struct settles_in : std::false_type {};
+template <class E, class S>
+struct settles_in<E, S,
+                  std::void_t<decltype(std::declval<E const&>().after_touch(
+                      std::declval<probed<E, S>&>(), std::declval<touching<S>&>(), S{}))>> : std::true_type {};
+template <class E, class S, class = void>
 struct meets_in : std::false_type {};
 template <class E, class S>
 struct meets_in<
@@ -129,6 +135,10 @@ struct begins_in<
     std::void_t<decltype(std::declval<E&>().begin_step(std::declval<Space&>(), std::declval<State const&>(), S{}))>>
     : std::true_type {};
 
+/// True for an effect that contacts with the mesh concern.
+template <class E, class S>
+inline constexpr bool touches_mesh_in = touches_in<E, S>::value || settles_in<E, S>::value;
+
 /// An integrator is named in the same list; see velocity_verlet.hpp.
 template <class E, class = void>
 struct is_integrator : std::false_type {};
@@ -142,7 +152,7 @@ inline constexpr bool is_effect = [] {
     return false;
   } else {
     using state = particle_state<S, typename probe<E, S>::list>;
-    return skips_in<E, S>::value || accelerates_in<E, S>::value || touches_in<E, S>::value || meets_in<E, S>::value ||
+    return skips_in<E, S>::value || accelerates_in<E, S>::value || touches_mesh_in<E, S> || meets_in<E, S>::value ||
            finishes_in<E, S>::value || begins_in<E, Space, state, S>::value || is_integrator<E>::value ||
            probe<E, S>::list::size != 0;
   }
@@ -184,7 +194,7 @@ struct scene : held_effect<E>... {
   using integrator = typename integrator_of<E...>::type;
 
   static constexpr bool skips = (skips_in<E, S>::value || ...);
-  static constexpr bool touches = (touches_in<E, S>::value || ...);
+  static constexpr bool touches = (touches_mesh_in<E, S> || ...);
   static constexpr bool meets = (meets_in<E, S>::value || ...);
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
 
@@ -219,8 +229,8 @@ struct scene : held_effect<E>... {
   /// What is read and written for every particle, and what for those that may touch the mesh.
   using flight = joined_t<base, reads_if<E, flies<E>>..., radius_if<touches>>;
   using flight_writes = joined_t<columns<position>, writes_if<E, flies_and_writes<E>>...>;
-  using contact = joined_t<flight, reads_if<E, touches_in<E, S>::value>...>;
-  using contact_writes = joined_t<flight_writes, writes_if<E, touches_in<E, S>::value>...>;
+  using contact = joined_t<flight, reads_if<E, touches_mesh_in<E, S>>...>;
+  using contact_writes = joined_t<flight_writes, writes_if<E, touches_mesh_in<E, S>>...>;
   /// The same for particles that meet; all of them are also copied.
   using meeting = joined_t<columns<position>, reads_if<E, meets_or_skips<E>>..., radius_if<meets>>;
   using meeting_copies = remaining_t<meeting, columns<position, radius>>;  ///< these two are kept together
@@ -250,6 +260,7 @@ struct scene : held_effect<E>... {
   template <class P>
   COLLIDE_HD_INLINE void touch(P& p, touching<S>& t, S dt) const {
     (touch_by<E>(p, t, dt), ...);
+    (settle_by<E>(p, t, dt), ...);
   }
   template <class P>
   COLLIDE_HD_INLINE void meet(P& p, P& self, P& other, S dt) const {
@@ -286,6 +297,14 @@ struct scene : held_effect<E>... {
     if constexpr (touches_in<F, S>::value) {
       seen_by<F, P> seen(p);
       of<F>().touch(seen, t, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void settle_by([[maybe_unused]] P& p, [[maybe_unused]] touching<S>& t,
+                                   [[maybe_unused]] S dt) const {
+    if constexpr (settles_in<F, S>::value) {
+      seen_by<F, P> seen(p);
+      of<F>().after_touch(seen, t, dt);
     }
   }
   template <class F, class P>

@@ -47,6 +47,7 @@ struct fly_body {
   listed_particles list;
   S dt;
   bool backwards;  ///< the last particles first: what the step before has moved last is still in the caches
+  S least_radius;  ///< particles that are swept are looked for as if they were at least so large
 
   template <class Block>
   using group_scratch = typename state_type::template group_scratch<Block>;
@@ -63,8 +64,8 @@ struct fly_body {
   using scratch = scratch_of<Block, Scene::touches>;
 
   /// True if all particles are asked in the same way whether they can touch a triangle: by `cell_marks`.
-  static COLLIDE_HD_INLINE bool marks_all(Lookup const& lookup, state_type const& state) {
-    return has_one_radius && lookup.is_simple(state.common_radius);
+  COLLIDE_HD_INLINE bool marks_all() const {
+    return has_one_radius && lookup.is_simple(larger(state.common_radius, least_radius));
   }
 
   template <class Block>
@@ -73,7 +74,7 @@ struct fly_body {
       static_assert(Block::lanes == 1, "lanes that work together have one kernel for both parts");
       s.count = 0;
       Lookup const near = lookup.opened();
-      bool const simple = marks_all(lookup, state);
+      bool const simple = marks_all();
       auto const marks = lookup.marks();
       auto const list_one = [&](id number, auto const&...) { s.listed[s.count++] = number; };
       auto const opened = [at = &near]() -> Lookup const& { return *at; };
@@ -255,7 +256,8 @@ struct fly_body {
   /// What the narrow phase judges.
   COLLIDE_HD_INLINE auto ball_of(flying const& p) const {
     if constexpr (moves) {
-      return moving_sphere<S>{{p[position{}], p.the_radius}, p[velocity{}] * dt};
+      S const radius = p.the_radius >= 0 ? larger(p.the_radius, least_radius) : p.the_radius;
+      return moving_sphere<S>{{p[position{}], radius}, p[velocity{}] * dt};
     } else {
       return sphere<S>{p[position{}], p.the_radius};
     }

@@ -48,10 +48,13 @@ COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> con
   return apart ? verdict::miss : verdict::hit;
 }
 
-/// Where a moving ball is at a time within the step.
+/// Where a moving ball is at a time within the step, rounded once: what comes from far away stops at the mesh as
+/// accurately as what comes from near.
 template <class S>
 COLLIDE_HD_INLINE sphere<S> ball_at(moving_sphere<S> const& s, S time) {
-  return {s.centre + scaled(s.displacement, time), s.radius};
+  vec3<S> at;
+  for (int k = 0; k < 3; ++k) at[k] = multiply_add(s.displacement[k], time, s.centre[k]);
+  return {at, s.radius};
 }
 
 /// When a moving ball stops that touches a finite triangle on its way. Like `time_of_impact` never late, but early also

@@ -142,7 +142,7 @@ struct step_body : respond_body<S, NarrowPhase, Lookup, Scene> {
     block.each([&](int lane) {
       if (lane != 0) return;
       s.count = 0;
-      s.simple = fly_type::marks_all(lookup, state);
+      s.simple = this->marks_all();
       s.marks = lookup.marks();
     });
     block.each([&](int lane) {
