@@ -122,6 +122,17 @@ class cuda_pinned_memory final : public std::pmr::memory_resource {
 
 namespace detail {
 
+/// Tells the host which memory it cannot read, in all of a program of which nvcc has compiled some part.
+inline bool const host_is_told = [] {
+  in_device_memory = [](void const* p) {
+    cudaPointerAttributes memory{};
+    if (cudaPointerGetAttributes(&memory, p) == cudaSuccess) return memory.type == cudaMemoryTypeDevice;
+    cudaGetLastError();  // there is no device, and so no memory of one
+    return false;
+  };
+  return true;
+}();
+
 inline constexpr int cuda_lanes = 256;  ///< threads of a block, in every kernel
 inline constexpr int cuda_warp = 32;    ///< threads that run together
 
@@ -436,6 +447,19 @@ class cuda_space {
   void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
   static constexpr bool host_memory = false;
+
+  /// False if the memory at `p` is known not to be this space's: pageable memory, where the device cannot read that.
+  static bool reads(void const* p) {
+    cudaPointerAttributes memory{};
+    cuda_check(cudaPointerGetAttributes(&memory, p), "cudaPointerGetAttributes");
+    if (memory.type != cudaMemoryTypeUnregistered) return true;
+    int device = 0, reads_pageable = 0;
+    cuda_check(cudaGetDevice(&device), "cudaGetDevice");
+    cuda_check(cudaDeviceGetAttribute(&reads_pageable, cudaDevAttrPageableMemoryAccess, device),
+               "cudaDeviceGetAttribute");
+    return reads_pageable != 0;
+  }
+
   static constexpr bool defers = true;
   static constexpr bool sorts_spheres = false;
 

@@ -7,6 +7,7 @@
 
 #include <collide/detail/arithmetic.hpp>
 #include <collide/detail/atomic.hpp>
+#include <collide/detail/check_memory.hpp>
 #include <collide/host.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
@@ -162,14 +163,19 @@ report inspect(Space const& space, View const& view) {
 }  // namespace detail
 
 /// Says what is wrong with a mesh in memory of the space, and where. O(triangles); waits for the result.
+/// Throws `error` if CUDA knows that the space cannot read the mesh: device memory on the host, or the other way round.
 template <class S, class Space = host>
 report validate(mesh_view<S> const& mesh, Space const& space = Space()) {
+  detail::check_memory<Space>(mesh, "validate: the mesh is", "pass the space of that memory, as validate(mesh, space)");
   return detail::inspect<detail::inspect_triangle>(space, mesh);
 }
 
-/// Says what is wrong with spheres in memory of the space, and where. O(spheres); waits for the result.
+/// Says what is wrong with spheres in memory of the space, and where. O(spheres); waits for the result. Throws
+/// `error` if CUDA knows that the space cannot read them: device memory on the host, or the other way round.
 template <class S, class Space = host>
 report validate(sphere_view<S> const& spheres, Space const& space = Space()) {
+  detail::check_memory<Space>(spheres, "validate: the spheres are",
+                              "pass the space of that memory, as validate(spheres, space)");
   return detail::inspect<detail::inspect_sphere>(space, spheres);
 }
 
