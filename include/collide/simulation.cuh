@@ -190,7 +190,8 @@ class simulation {
   /// Number of particles, or of places for them, if an effect makes or removes some; see `present`.
   std::size_t size() const { return state_.size; }
 
-  /// A column in memory of the space: three coordinates a particle, or one number. Valid until the next `set`.
+  /// A column in memory of the space: three coordinates a particle, or one number. Valid until the next `set`. Of a
+  /// device, kernels read it; the host reads `to_host<Column>()`.
   template <class Column>
   detail::column_element<Column, S>* data() const {
     check<Column>();
