@@ -18,7 +18,7 @@
 #include "error.hpp"
 #include "number.hpp"
 #include "progress.hpp"
-#include "text.hpp"
+#include "rounding.hpp"
 #include "triangulate.hpp"
 
 namespace io {
@@ -28,6 +28,7 @@ template <class S>
 struct mesh_data {
   std::vector<S> vertices;
   std::vector<std::uint32_t> corners;
+  rounding tally;  ///< of the coordinates
 
   std::size_t size() const { return corners.size() / 3; }
 };
@@ -42,10 +43,10 @@ struct mesh_data {
 template <class S>
 class obj_reader final : private std::streambuf {
  public:
-  /// Throws `data_error`, which names file and line, unless all of the file is understood and it has a face.
-  static mesh_data<S> read(std::string const& path) {
-    text_file const file(path);
-    return obj_reader(path, file.view()).read();
+  /// Reads `text`, which is the file `path`. Throws `data_error`, which names file and line, unless all of it is
+  /// understood and it has a face.
+  static mesh_data<S> read(std::string const& path, std::string_view text) {
+    return obj_reader(path, text).read();
   }
 
  private:
@@ -123,9 +124,12 @@ class obj_reader final : private std::streambuf {
     std::size_t n = 0;
     for_each_word([&](std::string_view word) {
       S value{};
-      if (!parse_number(word, value)) fail(quoted(word) + " is not a number");
+      rounding here;
+      if (!parse_number(word, value, here)) fail(quoted(word) + " is not a number");
       if (!std::isfinite(value)) fail(quoted(word) + " is not finite");
-      if (n++ < 3) mesh_.vertices.push_back(value);  // then a weight or a colour
+      if (n++ >= 3) return;  // a weight or a colour
+      mesh_.vertices.push_back(value);
+      mesh_.tally += here;
     });
     if (n < 3) fail("a vertex has three coordinates");
   }
@@ -207,10 +211,10 @@ class obj_reader final : private std::streambuf {
   std::vector<std::uint32_t> corners_;
 };
 
-/// Reads a mesh from an OBJ file; see `obj_reader`.
+/// Reads a mesh from the text of an OBJ file; see `obj_reader`.
 template <class S>
-mesh_data<S> read_obj(std::string const& path) {
-  return obj_reader<S>::read(path);
+mesh_data<S> read_obj(std::string const& path, std::string_view text) {
+  return obj_reader<S>::read(path, text);
 }
 
 }  // namespace io
