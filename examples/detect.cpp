@@ -24,7 +24,7 @@ using detection::findings, detection::options, detection::scene;
 template <class S>
 scene<S> read(options const& wish, std::string_view mesh, std::string_view spheres) {
   scene<S> from;
-  from.mesh = io::read_obj<S>(wish.mesh, mesh);
+  from.mesh = io::read_obj<S>(wish.mesh, mesh, wish.strict);
   from.spheres = io::read_csv<S>(wish.spheres, spheres);
   from.tally = from.mesh.tally;
   from.tally += from.spheres.tally;
@@ -76,6 +76,7 @@ void write(options const& wish, scene<S> const& from, findings<S>& found, nlohma
 template <class S>
 void summarise(options const& wish, scene<S> const& from, findings<S> const& found,
                nlohmann::ordered_json const& report, std::string const& roundings) {
+  for (auto const& remark : from.mesh.remarks) std::cerr << "detect: " << remark << "\n";
   for (auto const& path : {wish.output, wish.contacts, wish.ply, wish.report}) {
     if (path.empty() || !io::output_file::is_standard_output(path)) continue;
     if (from.tally.rounded > 0) std::cerr << "detect: " << roundings << "\n";
@@ -167,6 +168,8 @@ int main(int argc, char** argv) {
   io::add_choice(
       app, "--scalar", wish.scalar, {"float", "double"},
       "type of the coordinates; double if not given with --precision double or where float is too coarse, else float");
+  app.add_flag("--strict", wish.strict,
+               "refuse a mesh with faces that would be left out, or lines that may be a mistake");
   app.add_option("--threads", wish.threads, "threads of the host; 0 for all")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");

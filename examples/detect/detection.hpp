@@ -26,6 +26,7 @@ struct options {
   double cell_width = 0;
   int threads = 0;
   int repeat = 1;
+  bool strict = false;
 };
 
 /// The files' contents.

@@ -203,6 +203,83 @@ class ObjForms(ObjTest):
         self.assertEqual(self.detect("mesh.obj", "spheres.csv", "--radius", 1), [(0, 2), (1, 0), (1, 1)])
 
 
+class RealExporters(ObjTest):
+    """What programs write that is not quite OBJ: it is read as it was meant, and a line says so."""
+
+    def left_out(self, line, count):
+        return f"{line}: a face of fewer than three corners is left out (the first of {count})"
+
+    def no_continuation(self, line, count=1):
+        return f"{line}: the backslash at the end does not continue this line, as the next begins with a keyword (the first of {count})"
+
+    def refused_if_strict(self, obj, line, words):
+        self.write("mesh.obj", obj)
+        self.write("spheres.csv", "x,y,z\n0,0,0\n")
+        self.fail_with(1, [f"mesh.obj:{line}: ", *words], "detect", "mesh.obj", "spheres.csv", 1, "out.csv", "--strict")
+
+    def test_faces_of_fewer_than_three_corners(self):
+        a, b = "f 1 2 3\n", "f 1 3 4\n"
+        for few in ("f 1 2\n", "f 1\n", "f\n", "f \\\n2\n", "f -1/-1 -2\r\n", "f 1//1 # 2 3\n", " f\t2 3 \n", "f 9 8\n"):
+            with self.subTest(face=few):
+                self.assertEqual(self.triangles(self.square + a + few + b, self.left_out(6, 1)), self.two)
+                self.assertEqual(self.triangles(few + self.square + few + a + few + b + few.rstrip("\n"), self.left_out(1, 4)), self.two)
+                self.refused_if_strict(self.square + a + few + b, 6, ["three corners"])
+        for bad in ("f 1 2x\n", "f 1.5\n", "f 1 nan\n"):  # are no corners, however few
+            self.write("mesh.obj", self.square + a + bad)
+            self.fail_with(1, ["mesh.obj:6: "], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+        self.write("mesh.obj", self.square + "f 1 2\n")
+        self.fail_with(1, ["mesh.obj: no faces"], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+
+    def test_a_well_known_mesh(self):
+        # 124,990 faces, of which 201 have two corners or one; the sphere tells the number of the last
+        faces = ["f 1 2 3"] * 124_990
+        for i in range(201):
+            faces[100 + 617 * i] = "f 1 2" if i % 3 else "f 2"
+        faces[-1] = "f 4 5 6"
+        self.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 0 0\nv 9 1 0\nv 9 0 1\n" + "\n".join(faces) + "\n")
+        self.write("spheres.csv", "x,y,z\n9,0,0\n")
+        text = self.succeed_saying([f"mesh.obj:{self.left_out(107, 201)}"], "detect", "mesh.obj", "spheres.csv", 0.5, "pairs.csv")
+        self.assertIn(" 124789 triangles\n", text)
+        self.assertEqual(self.pairs("pairs.csv"), [(0, 124_788)])
+
+    def test_names_that_end_in_a_backslash(self):
+        for name in ("mtllib C:\\stuff\\", "o a\\", "g a b\\", "g \\ ", "usemtl a \\", "s off\\ ", "usemap D:\\maps\\\t", "maplib \\\\server\\maps\\\\",
+                     "shadow_obj ..\\", "trace_obj ..\\", "call ..\\", "csh dir\\", "lod 1\\", "mg off\\", "bevel off\\", "c_interp off\\", "d_interp off\\",
+                     "vt 0 0\\", "vn 0 0 1 \\", "vp 0\\", "l 1 2\\", "p 1\\"):
+            for end in ("\n", "\r\n"):
+                with self.subTest(name=name, end=end):
+                    vertices, faces = self.square.replace("\n", end), f"f 1 2 3{end}{name}{end}f 1 3 4{end}"
+                    self.assertEqual(self.triangles(vertices + faces, self.no_continuation(6)), self.two)
+                    self.assertEqual(self.triangles(f"{name}{end}{vertices}{faces}", self.no_continuation(1, 2)), self.two)
+                    # nothing that matters goes on in a blank line, a comment or the end of the file
+                    for after in (f"{end}", f" \t{end}", f"# f 1 2 3{end}", f"  # \\{end}", f"\\{end}{end}"):
+                        self.assertEqual(self.triangles(f"{name}{end}{after}{vertices}f 1 2 3{end}{name}{end}{after}f 1 3 4{end}{name}"), self.two)
+                    self.refused_if_strict(vertices + faces, 6, ["backslash"])
+
+    def test_lines_that_go_on(self):
+        for faces in ("f 1 2 \\\n3\nf 1 3 4", "f 1 2\\\n3\nf 1 3 4", "f 1 2 \\  \n  3\nf 1 3 4", "f 1 2 \\\r\n3\r\nf 1 3 4\r\n", "f 1 \\\n2 \\\n3\nf 1 3 4 \\",
+                      "f \\\n1 2 3\nf \\ # now\n1 3 4", "\\\nf 1 2 3\n \\ \n\\\nf 1 3 4\n", "f 1 2 3 \\\n\nf 1 3 4\\\n# the end", "f\\\n1 2 3\nf 1 3 4",
+                      "g a \\\nb c\nf 1 2 3\ng \\\n a\\\nb\nf 1 3 4\n", "vn 0 0 \\\n1\nf 1 2 3\nl 1 \\\n2\nf 1 3 4\n", "# a \\\nf 1 2 3\n#\\\nf 1 3 4"):
+            with self.subTest(faces=faces):
+                self.assertEqual(self.triangles(self.square + faces), self.two)
+        self.assertEqual(self.triangles("v 0 0 \\\n0\nv \\\n4 0 0\nv 4 4\\\n 0\nv 0 4 0\\\n\nf 1 2 3\nf 1 3 4"), self.two)
+
+    def test_what_cannot_go_on_is_refused(self):
+        self.write("spheres.csv", ONE_SPHERE)
+        for lines in ("f 1 2 3 \\\nf 1 3 4\n", "f 1 2 3\\\ng a\nf 1 3 4\n", "f 1 2 \\\n# three\n3\n", "v 1 2 3 \\\nf 1 2 3\n", "v 1 2 3\\\nv 1 2 3\n",
+                      "f 1 2 \\\\\n3\n", "banana\\\nf 1 2 3\n"):
+            with self.subTest(lines=lines):
+                self.write("mesh.obj", self.square + lines)
+                message = self.fail_with(1, ["mesh.obj:"], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+                self.assertRegex(message, "mesh.obj:[567]: ")
+
+    def test_what_is_no_number_is_refused_even_where_no_face_needs_it(self):
+        self.write("spheres.csv", ONE_SPHERE)
+        for number in ("nan", "-nan", "inf", "3.1+e2", "3.1e", "3,1", "-1.IND"):
+            self.write("mesh.obj", TRIANGLE + f"v 0 {number} 0\n")
+            self.fail_with(1, ["mesh.obj:5: ", f"'{number}'"], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+
+
 class CsvForms(ProgramTest):
     def spheres(self, csv, *options):
         """The spheres that touch a triangle around the origin."""
@@ -428,8 +505,8 @@ class Scalar(ProgramTest):
 class BadMesh(ProgramTest):
     def test_bad_lines_are_named(self):
         good = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
-        for line in ("f 1 2", "f 1 2 3x", "f 1 2 4", "f 1 2 0", "f 0/1/1 1/1/1 2/1/1", "f 1 2 -4", "f 1 2 99999999999", "f 1 2 4294967297",
-                     "f 1.5 2 3", "f 1/2/3/4 2 3", "f a b c", "f", "f 1,2,3", "f /1 2 3", "v", "v 1", "v 1 2", "v 1 2 x", "v 1,2,3", "v 1 2 nan",
+        for line in ("f 1 2 3x", "f 1 2 4", "f 1 2 0", "f 0/1/1 1/1/1 2/1/1", "f 1 2 -4", "f 1 2 99999999999", "f 1 2 4294967297",
+                     "f 1.5 2 3", "f 1/2/3/4 2 3", "f a b c", "f 1,2,3", "f /1 2 3", "v", "v 1", "v 1 2", "v 1 2 x", "v 1,2,3", "v 1 2 nan",
                      "v inf 0 0", "v 0 -infinity 0", "v 1e999 0 0", "v 0x10 0 0", "v +-1 0 0", "v -+1 0 0", "v 1e 0 0", "v 1.2.3 0 0",
                      "v 1 2 3 x", "banana", "x,y,z", "vx 1 2 3", "v\0 0 0 0", "f 1 2 3\r4", "\x7fELF"):
             with self.subTest(line=line):
@@ -539,7 +616,7 @@ class BadUsage(ProgramTest):
     def test_help_and_version(self):
         text = self.succeed("detect", "--help")
         for option in ("--radius", "--broad", "--space", "--precision", "--threads", "--cell-width", "--output", "--contacts", "--ply", "--report",
-                       "--repeat", "--scalar", "all_pairs", "bucket", "host", "cuda_shared", "exact", "single", "double"):
+                       "--repeat", "--strict", "--scalar", "all_pairs", "bucket", "host", "cuda_shared", "exact", "single", "double"):
             self.assertIn(option, text)
         self.assertRegex(self.succeed("detect", "--version"), r"^detect .*\d+\.\d+\.\d+\n$")
 
