@@ -1,0 +1,106 @@
+/// \file
+/// Which particles overlap each other: lists of neighbours, which are kept while nothing has moved far.
+///
+/// A list has what is within reach of a particle or a little farther away: by the skin, of which each of two particles
+/// may cross a half before something can be missing (L. Verlet, "Computer experiments on classical fluids I", Physical
+/// Review 159(1), 1967). Until then a step only copies the particles' columns in the order of the last grid, and tries
+/// what is listed. It is found out on the device whether that is so: kernels that renew the lists end at once if not.
+/// The few that come, or move far, are strays: they make a list of their own, and those near them add them to theirs.
+/// Where strays have become too many, all lists are made anew. What is no longer there is left out.
+///
+/// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. They lie in a
+/// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
+/// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
+/// particles, and each particle looks into the 27 cells around it, and through the strays. What has too many neighbours
+/// for its list does so in each step.
+///
+/// Distances must be such that their squares neither overflow nor vanish: with floats, radii from 1e-17 to 1e18.
+///
+/// Neighbours meet in the order of their numbers: so sums over them do not depend on which thread was first, nor on
+/// when the lists were made.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/simulation/attribute_buffers.hpp>
+#include <collide/detail/simulation/build_lists.hpp>
+#include <collide/detail/simulation/pair_interaction.hpp>
+#include <collide/detail/simulation/particle_order.hpp>
+#include <collide/memory.hpp>
+
+namespace collide::detail {
+
+/// The lists, the grid and their memory.
+template <class S, class Scene>
+class neighbours {
+ public:
+  /// Takes all memory that steps need, for `n` particles of radius up to `radius`.
+  template <class Space>
+  void reserve(Space& space, std::size_t n, S radius) {
+    std::uint32_t bits = 0;
+    while (bits < 22 && (std::size_t{cells::per_block} << bits) < 2 * n) ++bits;
+    blocks_ = std::size_t{1} << bits;
+    skin_ = skin_of_diameter * 2 * radius;
+    // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
+    // away from the origin
+    S const width = larger((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
+    cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
+    auto* const resource = space.resource();
+    order_header* const header = header_.reserve(resource, 1);
+    space.fill(header, 0, sizeof *header);
+    space.fill(&header->renew, 1, sizeof header->renew);  // there are no lists yet
+    ends_.reserve(resource, blocks_ * cells::stride);
+    numbers_.reserve(resource, n);
+    memory_.reserve(resource, n);
+    spheres_.reserve(resource, n);
+    references_.reserve(resource, n);
+    if constexpr (order::comes_and_goes) space.fill(known_.reserve(resource, n), 0, n * sizeof(*known_.data()));
+    lists_.reserve(resource, order::listed * n);
+  }
+
+  /// One pass of `meet` over all pairs.
+  template <class Space>
+  void meet(Space& space, particle_state<S, typename Scene::all> const& state, Scene const& scene, S dt) {
+    order const o{cells_,          ends_.data(),
+                  header_.data(),  numbers_.data(),
+                  spheres_.data(), references_.data(),
+                  known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
+                  lists_.data(),   state.size};
+    std::size_t const n = state.size;
+    std::uint32_t const *const renew = &o.header->renew, *const arrivals = &o.header->arrivals,
+                               *const crowded = &o.header->crowded;
+    // half of the skin, but for rounding
+    space.for_each(n, refresh_order<S, Scene>{state, o, S(0.495) * skin_});
+    space.for_each_if(renew, blocks_ * cells::stride, empty_cells<S, Scene>{o});
+    space.for_each_if(renew, n, sort_into_cells<S, Scene, false>{state, o});
+    space.for_each_if(renew, blocks_, allocate_cells<S, Scene>{o});
+    space.for_each_if(renew, n, sort_into_cells<S, Scene, true>{state, o});
+    space.for_each_if(renew, n, copy_in_order<S, Scene>{state, o});
+    space.for_each_if(renew, n, list_neighbours<S, Scene>{o, skin_});
+    space.for_each_if(arrivals, n, admit_strays<S, Scene>{{o, S(1.5) * skin_}});
+    space.for_each(n, meet_neighbours<S, Scene>{{state, o, scene, dt}});
+    space.for_each_if(crowded, n, meet_crowds<S, Scene>{{state, o, scene, dt}});
+  }
+
+ private:
+  using order = particle_order<S, Scene>;
+  using cells = particle_cells<S>;
+
+  static constexpr S skin_of_diameter = S(0.1);
+
+  cells cells_{};
+  S skin_{};
+  std::size_t blocks_ = 0;
+  buffer<order_header> header_;
+  buffer<std::uint32_t> ends_, lists_;
+  buffer<id> numbers_;
+  buffer<near_sphere<S>> spheres_;
+  buffer<reference<S, contains<typename Scene::all, radius>>> references_;
+  buffer<column_element<present, S>> known_;
+  column_buffers<S, typename Scene::meeting_copies> memory_;
+};
+
+}  // namespace collide::detail
