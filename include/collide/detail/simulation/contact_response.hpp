@@ -56,13 +56,13 @@ struct survivor : survivor_way<S, Moves> {
   S normals[planes][3], feet[planes][3];  ///< of the contacts that came before
   S last_impulse;                         ///< with which the last of them repelled the particle
   S arrival[3], start[3];                 ///< velocity before the contacts at this place, and where it led from
-  std::uint64_t best;                     ///< key of the next contact
-  std::uint32_t best_kept;                ///< where it is kept
-  std::uint32_t offered;                  ///< how many candidates offered themselves
   std::uint8_t before;                    ///< how many contacts came before
   std::uint8_t here;                      ///< how many of those at this place
-  id number;
   bool is_active;
+  std::uint64_t best;       ///< key of the next contact
+  std::uint32_t best_kept;  ///< where it is kept
+  std::uint32_t offered;    ///< how many candidates offered themselves
+  id number;
   candidate_cursor cursor;
 
   COLLIDE_HD_INLINE auto ball() const {
@@ -292,7 +292,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   struct candidate_lists {
     static constexpr bool used = Block::lanes > 1;
     static constexpr std::uint32_t near_room = used ? (ahead + 1) * Block::lanes : 1;
-    static constexpr std::uint32_t kept_room = used ? Block::lanes * 3 / sizeof(S) : together<Block>;
+    static constexpr std::uint32_t kept_room = used ? Block::lanes * 5 / 2 / sizeof(S) : together<Block>;
 
     candidate near[near_room];     ///< let through by the quick test
     kept_contact kept[kept_room];  ///< of those that the narrow phase may accept, as far as there is room
