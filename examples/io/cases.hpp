@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "csv_table.hpp"
+#include "text.hpp"
 
 namespace io {
 
@@ -28,14 +30,14 @@ struct case_data {
   std::size_t numbers() const { return corners.size() + spheres.size() + 3 * swept; }
 };
 
-/// Reads cases from a CSV file with the columns id, family, ax .. cz (the triangle), px, py, pz and R (the sphere), and
-/// perhaps hit (0 or 1), dx, dy and dz (the displacement of a swept case; nothing in any of them in others); see
-/// `csv_table`. Numbers are decimal or hexadecimal, nan, inf or -inf, and correctly rounded to `S`. Throws
-/// `data_error`, which names file and line, at what is none, and at a number beyond the range of `S`.
+/// Reads cases from CSV text, which messages call `path`, with the columns id, family, ax .. cz (the triangle), px, py,
+/// pz and R (the sphere), and perhaps hit (0 or 1), dx, dy and dz (the displacement of a swept case; nothing in any of
+/// them in others); see `csv_table`. Numbers are decimal or hexadecimal, nan, inf or -inf, and correctly rounded to
+/// `S`. Throws `data_error`, which names file and line, at what is none, and at a number beyond the range of `S`.
 template <class S>
-case_data<S> read_cases(std::string const& path) {
+case_data<S> read_cases(std::string const& path, std::string_view text) {
   constexpr std::size_t triangle = 9, numbers = 13, id = 13, family = 14, hit = 15, displacement = 16, columns = 19;
-  csv_table table(path,
+  csv_table table(path, text,
                   {"ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz", "px", "py", "pz", "R", "id", "family", "hit",
                    "dx", "dy", "dz"},
                   hit);
@@ -80,6 +82,13 @@ case_data<S> read_cases(std::string const& path) {
     cases.displacements.insert(cases.displacements.end(), row + displacement, row + columns);
   }
   return cases;
+}
+
+/// Reads cases from a CSV file.
+template <class S>
+case_data<S> read_cases(std::string const& path) {
+  text_file const file(path);
+  return read_cases<S>(path, file.view());
 }
 
 }  // namespace io

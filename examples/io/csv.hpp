@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "csv_table.hpp"
+#include "text.hpp"
 
 namespace io {
 
@@ -21,14 +23,14 @@ struct sphere_data {
   std::size_t size() const { return xyz.size() / 3; }
 };
 
-/// Reads spheres from a CSV file with the columns x, y, z and perhaps r; see `csv_table`. Numbers are correctly rounded
-/// to `S`. Throws `data_error`, which names file and line, at what is not a number, at a coordinate or radius that is
-/// not finite and at a radius below 0.
+/// Reads spheres from CSV text, which messages call `path`, with the columns x, y, z and perhaps r; see `csv_table`.
+/// Numbers are correctly rounded to `S`. Throws `data_error`, which names file and line, at what is not a number, at a
+/// coordinate or radius that is not finite and at a radius below 0.
 template <class S>
-sphere_data<S> read_csv(std::string const& path) {
+sphere_data<S> read_csv(std::string const& path, std::string_view text) {
   std::vector<std::string> const names{"x", "y", "z", "r"};
   constexpr std::size_t radius = 3;
-  csv_table table(path, names, 3);
+  csv_table table(path, text, names, 3);
   auto const rows = table.most_rows();
   sphere_data<S> spheres;
   spheres.xyz.reserve(3 * rows);
@@ -46,6 +48,13 @@ sphere_data<S> read_csv(std::string const& path) {
     if (spheres.has_radii) spheres.radii.push_back(row[radius]);
   }
   return spheres;
+}
+
+/// Reads spheres from a CSV file.
+template <class S>
+sphere_data<S> read_csv(std::string const& path) {
+  text_file const file(path);
+  return read_csv<S>(path, file.view());
 }
 
 }  // namespace io

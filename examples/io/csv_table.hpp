@@ -12,7 +12,6 @@
 #include "error.hpp"
 #include "number.hpp"
 #include "progress.hpp"
-#include "text.hpp"
 
 namespace io {
 
@@ -22,11 +21,11 @@ namespace io {
 /// Throws `data_error`, which names file and line, at anything else.
 class csv_table {
  public:
-  /// Reads the header. Columns are known by their place in `names`; the first `required` of them must be there.
-  csv_table(std::string const& path, std::vector<std::string> names, std::size_t required)
+  /// Reads the header of `text`, which must outlive the table and which messages call `path`. Columns are known by
+  /// their place in `names`; the first `required` of them must be there.
+  csv_table(std::string const& path, std::string_view text, std::vector<std::string> names, std::size_t required)
       : path_{path},
-        file_{path},
-        text_{file_.view()},
+        text_{text},
         at_{text_.data()},
         end_{text_.data() + text_.size()},
         names_{std::move(names)},
@@ -170,7 +169,6 @@ class csv_table {
   }
 
   std::string path_;
-  text_file file_;
   std::string_view text_;
   char const* at_;
   char const* end_;

@@ -45,8 +45,11 @@ class obj_reader final : private std::streambuf {
   /// Throws `data_error`, which names file and line, unless all of the file is understood and it has a face.
   static mesh_data<S> read(std::string const& path) {
     text_file const file(path);
-    return obj_reader(path, file.view()).read();
+    return read(path, file.view());
   }
+
+  /// Reads text in memory, which messages call `name`.
+  static mesh_data<S> read(std::string const& name, std::string_view text) { return obj_reader(name, text).read(); }
 
  private:
   /// A polygon: where its corners begin, and the line that it stems from.
