@@ -1,0 +1,57 @@
+/// What the harnesses of the readers share.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <stdio.h>
+
+#include "examples/io/error.hpp"
+#include "require.hpp"
+
+namespace fuzz {
+
+/// The bytes of an input as text.
+inline std::string_view text(std::uint8_t const* data, std::size_t size) {
+  return {reinterpret_cast<char const*>(data), size};
+}
+
+/// What read() returns, or nothing where it refuses. Whatever else it throws ends the program.
+template <class Read>
+auto read_or_refuse(Read const& read) -> std::optional<decltype(read())> {
+  try {
+    return read();
+  } catch (io::data_error const&) {
+    return std::nullopt;
+  }
+}
+
+template <class S>
+bool all_finite(std::vector<S> const& numbers) {
+  for (S const x : numbers) {
+    if (!std::isfinite(x)) return false;
+  }
+  return true;
+}
+
+/// A number as C's %a, or nan or inf.
+inline std::string written(double x) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%a", x);
+  return buffer;
+}
+
+/// A number in decimals that read back the same.
+template <class S>
+std::string in_decimals(S x) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.17g", static_cast<double>(x));
+  return buffer;
+}
+
+}  // namespace fuzz
