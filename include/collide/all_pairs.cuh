@@ -6,11 +6,11 @@
 /// all_pairs x cuda_shared = `brute_force_shamem`.
 #pragma once
 
-#include <collide/detail/block.hpp>
-#include <collide/detail/hits.hpp>
-#include <collide/detail/lifted.hpp>
-#include <collide/detail/lookup.hpp>
-#include <collide/detail/vectorised.hpp>
+#include <collide/detail/execution/launch.hpp>
+#include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/geometry/lifted_bounds.hpp>
+#include <collide/detail/grid/all_pairs_ref.hpp>
+#include <collide/detail/query/candidate_pipeline.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <collide/detail/sink.hpp>
+#include <collide/detail/sinks/output.hpp>
 
 namespace collide {
 

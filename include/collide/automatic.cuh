@@ -74,8 +74,9 @@ struct automatic {
    private:
     template <class Space>
     bool wants_grid(std::size_t spheres) {
-      static_assert(detail::has_costs<Space>::value,
-                    "collide: automatic needs an execution space with a static member costs, see detail/costs.hpp");
+      static_assert(
+          detail::has_costs<Space>::value,
+          "collide: automatic needs an execution space with a static member costs, see detail/execution/tuning.hpp");
       constexpr detail::broad_phase_costs c = Space::costs;
       auto const n = static_cast<double>(spheres), triangles = static_cast<double>(mesh_.size());
       double const saved = n * (c.near + c.per_pair * triangles - c.per_sphere);

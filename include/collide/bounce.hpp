@@ -2,7 +2,7 @@
 /// Effect: the mesh is solid.
 #pragma once
 
-#include <collide/detail/arithmetic.hpp>
+#include <collide/detail/numeric/rounding.hpp>
 #include <collide/effect.hpp>
 
 namespace collide {
@@ -23,14 +23,12 @@ struct bounce {
     S const e = S(restitution), speed = -detail::dot(p[velocity{}], t.normal);
     S back = detail::larger(t.depth, S(0));
     if (speed > 0) {
-      t.rests = e * speed <= -detail::dot(t.gain, t.normal);
-      S const impulse = t.rests ? speed : speed + e * speed;
-      p[velocity{}] += t.normal * impulse;
-      t.impulse += impulse;
+      S const rebound = e * detail::larger(t.approach, S(0));
+      t.rests = rebound <= -detail::dot(t.gain, t.normal);
+      t.repel(p[velocity{}], t.rests ? speed : speed + rebound);
       if (!t.rests) back += e * detail::smaller(back, speed * dt);
     }
-    p[position{}] += t.normal * back;
-    t.depth -= back;
+    t.move_out(p[position{}], back);
   }
 };
 

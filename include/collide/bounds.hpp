@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include <collide/detail/arithmetic.hpp>
+#include <collide/detail/numeric/rounding.hpp>
 #include <collide/effect.hpp>
 
 namespace collide {

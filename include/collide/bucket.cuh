@@ -9,13 +9,16 @@
 #include <algorithm>
 #include <limits>
 
-#include <collide/detail/block.hpp>
-#include <collide/detail/grid.hpp>
-#include <collide/detail/hits.hpp>
-#include <collide/detail/lookup.hpp>
-#include <collide/detail/sorted_spheres.hpp>
-#include <collide/detail/sphere_batch.hpp>
-#include <collide/detail/way.hpp>
+#include <collide/detail/execution/launch.hpp>
+#include <collide/detail/geometry/sphere_pack.hpp>
+#include <collide/detail/grid/build.hpp>
+#include <collide/detail/grid/grid.hpp>
+#include <collide/detail/grid/grid_ref.hpp>
+#include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/detail/grid/plan.hpp>
+#include <collide/detail/grid/swept_cells.hpp>
+#include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/detail/query/sorted_spheres.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
@@ -464,12 +467,12 @@ struct bucket_query {
 
 }  // namespace detail
 
-/// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid.hpp explains how.
+/// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid/grid.hpp explains how.
 /// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 8 scalars, at most 27 entries of 8
 /// bytes in the CUDA spaces and 8 on the host, and up to 8 cells of 8 bytes; several grids only where radii differ by
-/// more than a factor of 4. The host sorts the spheres instead where there are many (detail/sorted_spheres.hpp): that
-/// takes O(triangles + spheres) for a query, 8 scalars per triangle, 4 bytes per cell, and about 12 scalars for each
-/// sphere in a cell with triangles, 19 if it moves; no entries.
+/// more than a factor of 4. The host sorts the spheres instead where there are many (detail/query/sorted_spheres.hpp):
+/// that takes O(triangles + spheres) for a query, 8 scalars per triangle, 4 bytes per cell, and about 12 scalars for
+/// each sphere in a cell with triangles, 19 if it moves; no entries.
 struct bucket {
   /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
   /// such cells go to levels of wider ones.

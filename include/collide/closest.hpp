@@ -2,7 +2,7 @@
 /// Sink: per sphere the nearest of the triangles that it collides with.
 #pragma once
 
-#include <collide/detail/best_of_sphere.hpp>
+#include <collide/detail/sinks/per_sphere_min.hpp>
 
 namespace collide {
 

@@ -2,7 +2,7 @@
 /// Sink: how many pairs collide.
 #pragma once
 
-#include <collide/detail/sink.hpp>
+#include <collide/detail/sinks/output.hpp>
 
 namespace collide {
 

@@ -2,11 +2,15 @@
 /// The detector: broad phase x narrow phase x execution space, composed at compile time.
 #pragma once
 
+#include <type_traits>
+#include <utility>
+
 #include <collide/any.hpp>
 #include <collide/closest.hpp>
+#include <collide/concepts.hpp>
 #include <collide/contacts.hpp>
 #include <collide/count.hpp>
-#include <collide/detail/undecided.hpp>
+#include <collide/detail/query/query_pass.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/mesh.hpp>
@@ -17,85 +21,7 @@
 #include <collide/cuda.cuh>
 #endif
 
-#include <type_traits>
-#include <utility>
-
 namespace collide {
-
-namespace detail {
-
-template <class B, class E, class S, class = void>
-struct is_broad_phase : std::false_type {};
-template <class B, class E, class S>
-struct is_broad_phase<
-    B, E, S,
-    std::void_t<decltype(std::declval<typename B::template index<S>&>().build(
-                    std::declval<E&>(), std::declval<B const&>(), std::declval<mesh_view<S>>())),
-                decltype(std::declval<typename B::template index<S>&>().prepare(
-                    std::declval<E&>(), std::declval<B const&>(), std::declval<S>())),
-                decltype(std::declval<typename B::template index<S>&>().prepare(
-                    std::declval<E&>(), std::declval<B const&>(), std::declval<sphere_view<S> const&>()))>>
-    : std::true_type {};
-
-template <class E, class = void>
-struct is_execution_space : std::false_type {};
-template <class E>
-struct is_execution_space<
-    E, std::void_t<decltype(std::declval<E const&>().resource()), decltype(std::declval<E const&>().concurrency()),
-                   decltype(E::host_memory), decltype(E::defers), decltype(E::sorts_spheres)>> : std::true_type {};
-
-template <class D, class = void>
-struct is_detector : std::false_type {};
-template <class D>
-struct is_detector<
-    D, std::void_t<typename D::broad_phase, typename D::narrow_phase, typename D::execution_space, typename D::scalar>>
-    : std::true_type {};
-
-template <class H, class = void>
-struct is_handle : std::false_type {};
-template <class H>
-struct is_handle<H, std::void_t<decltype(std::declval<H const&>().reserve(std::uint64_t{})),
-                                decltype(&H::template store<hit<karabassi<>, float>>)>> : std::true_type {};
-
-/// One pass of a query over the scene, as a sink sees it; see detail/sink.hpp.
-template <class Index, class NarrowPhase, class Space, class S>
-struct query_pass {
-  using narrow_phase = NarrowPhase;
-  using scalar = S;
-
-  Index const& index;
-  Space& space;
-  mesh_view<S> mesh;
-  spheres_of<NarrowPhase, S> spheres;
-  undecided_list& open;
-
-  template <class Handle>
-  void operator()(Handle const& handle) const {
-    static_assert(
-        is_handle<Handle>::value,
-        "collide: what a sink passes to query has a const member reserve(n) and a const member store(slot, hit)");
-    static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
-                  "collide: what a sink hands to the device must be a plain value");
-    if (mesh.size() != 0 && spheres.size() != 0) {
-      if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
-        query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open);
-        return;
-      } else {
-        index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
-      }
-    }
-    if constexpr (finishes<Handle>::value) space.for_each(1, finish_only<Handle>{handle});
-  }
-};
-
-template <class Sink, class Space, class Query, class = void>
-struct is_sink : std::false_type {};
-template <class Sink, class Space, class Query>
-struct is_sink<Sink, Space, Query,
-               std::void_t<decltype(std::declval<Sink&>().run(std::declval<Space&>(), std::declval<Query const&>()))>>
-    : std::true_type {};
-
-}  // namespace detail
 
 /// Finds all colliding (sphere, triangle) pairs of a scene.
 ///

@@ -2,7 +2,7 @@
 /// Sink: per sphere that moves the first of the triangles that it hits.
 #pragma once
 
-#include <collide/detail/best_of_sphere.hpp>
+#include <collide/detail/sinks/per_sphere_min.hpp>
 
 namespace collide {
 

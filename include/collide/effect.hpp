@@ -15,6 +15,7 @@
 /// | `skips(particle)`                 | first: true if nothing happens to the particle in this step | |
 /// `accelerate(particle&, dt)`       | before positions move: change the velocity                                    |
 /// | `touch(particle&, touching&, dt)` | for each contact with the mesh, the deepest (swept: the earliest) first | |
+/// `after_touch(particle&, touching&, dt)` | after the `touch` of all effects, for the same contact | |
 /// `meet(particle&, self, other, dt)`| for each other particle that overlaps it; only then are neighbours listed     |
 /// | `disturb(particle&, other)`       | instead, if the particle is skipped and the other is not | |
 /// `finish(particle&, dt)`           | at the end of the step                                                        |
@@ -30,6 +31,7 @@
 
 #include <collide/columns.hpp>
 #include <collide/contact.hpp>
+#include <collide/detail/arithmetic.hpp>
 
 namespace collide {
 
@@ -37,14 +39,60 @@ namespace collide {
 template <class... Effect>
 struct effects {};
 
+namespace detail {
+
+/// Differences in height, in radii, and in slope that are put down to rounding.
+template <class S>
+inline constexpr S contact_tolerance = sizeof(S) == sizeof(float) ? S(1e-5) : S(1e-9);
+
+/// The rounding of a position: at least 1 unit in the last place of its largest coordinate.
+template <class S>
+COLLIDE_HD_INLINE S rounding_at(vec3<S> const& position) {
+  return std::numeric_limits<S>::epsilon() * largest<S>(position.cwiseAbs());
+}
+
+}  // namespace detail
+
 /// A particle's contact with the mesh, as `touch` gets it. `depth` is how deep the triangle still is in the sphere,
 /// where the particle is now: an effect that pushes the particle out takes off what it pushed.
+///
+/// Where a particle touches several triangles at the same place, each contact knows of those before it. In a groove
+/// the surface of the second can only be left along the first: `move_out` and `repel` do so.
 template <class S>
 struct touching : contact<S> {
-  vec3<S> gain;  ///< what a step's acceleration adds to the velocity
-  S moved;       ///< for how long the particle has moved before it was stopped: the step, or 0 if its way is swept
-  S impulse;     ///< what the effects have added to the velocity along the normal: 0, or what repels
-  bool rests;    ///< an effect has found that the particle rests on the surface, or slides on it
+  vec3<S> gain;   ///< what a step's acceleration adds to the velocity
+  vec3<S> start;  ///< the centre when the step began; of a swept particle where it was stopped
+  S moved;        ///< for how long the particle has moved from there
+  S approach;     ///< speed towards the surface, before the contacts at this place changed it
+  vec3<S> lift;   ///< displacement that raises the particle above the surface by 1, and leaves it on those before
+  S free_change;  ///< change of speed along the normal up to which no contact before is pressed on
+  S impulse;      ///< what the effects have added to the velocity along the normal: 0, or what repels
+  S grip;         ///< impulse along the surface that static friction has in reserve; 0 where the particle slides
+  bool rests;     ///< an effect has found that the particle rests on the surface, or slides on it
+
+  /// Raises a particle above the surface by `height`.
+  COLLIDE_HD_INLINE void move_out(vec3<S>& position, S height) {
+    position += lift * height;
+    this->depth -= height;
+  }
+
+  /// Makes a particle leave the surface faster by `change` > 0.
+  COLLIDE_HD_INLINE void repel(vec3<S>& velocity, S change) {
+    S const direct = detail::smaller(change, free_change), wedged = change - direct;
+    velocity += this->normal * direct + lift * wedged;
+    impulse += direct + wedged * detail::dot(lift, lift);
+  }
+
+  /// Stops a particle that something holds: its velocity is 0, and it is where it was when the step began, raised or
+  /// lowered to the surface if it was not there to rounding. So what is held does not creep.
+  template <class Particle>
+  COLLIDE_HD_INLINE void hold(Particle& p) {
+    p[velocity{}] = vec3<S>(S(0), S(0), S(0));
+    this->depth += detail::dot(this->normal, vec3<S>(p[position{}] - start));
+    p[position{}] = start;
+    S const rounding = detail::contact_tolerance<S> * p.radius() + detail::rounding_at(start);
+    if (this->depth > rounding || this->depth < -rounding) move_out(p[position{}], this->depth);
+  }
 };
 
 }  // namespace collide

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include <collide/detail/arithmetic.hpp>
-#include <collide/detail/particle.hpp>
+#include <collide/detail/simulation/particle.hpp>
 #include <collide/effect.hpp>
 
 namespace collide {

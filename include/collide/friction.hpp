@@ -24,9 +24,11 @@ struct friction {
     if constexpr (spins) slip -= detail::cross(p[angular_velocity{}], vec3<S>(t.normal * p.radius()));
     slip -= t.normal * detail::dot(slip, t.normal);
     S const speed = detail::root(detail::dot(slip, slip));
-    S const needed = spins ? speed * S(2.0 / 7) : speed;
+    S const needed = spins ? speed * S(2.0 / 7) : speed, most = S(statical) * t.impulse;
+    if (needed <= most) t.grip = most - needed;
+    if (!spins && t.rests && needed <= most) return t.hold(p);
     if (!(needed > 0)) return;
-    S const applied = needed <= S(statical) * t.impulse ? needed : detail::smaller(needed, S(kinetic) * t.impulse);
+    S const applied = needed <= most ? needed : detail::smaller(needed, S(kinetic) * t.impulse);
     vec3<S> const change = slip * (applied / speed);
     p[velocity{}] -= change;
     if (t.rests) p[position{}] -= change * t.moved;  // it acted all the time, not only now

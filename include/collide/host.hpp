@@ -10,9 +10,9 @@
 #include <string>
 
 #include <collide/contact.hpp>
-#include <collide/detail/atomic.hpp>
-#include <collide/detail/block.hpp>
-#include <collide/detail/costs.hpp>
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/execution/block.hpp>
+#include <collide/detail/execution/tuning.hpp>
 #include <collide/error.hpp>
 #include <collide/memory.hpp>
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <collide/contact.hpp>
-#include <collide/detail/contact_of.hpp>
-#include <collide/detail/decide.hpp>
-#include <collide/detail/four_steps.hpp>
+#include <collide/detail/narrow_phase/contact.hpp>
+#include <collide/detail/narrow_phase/intersects.hpp>
+#include <collide/detail/narrow_phase/karabassi_test.hpp>
 #include <collide/precision.hpp>
 
 namespace collide {

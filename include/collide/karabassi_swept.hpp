@@ -2,10 +2,10 @@
 /// Karabassi's intersection test for spheres that move.
 #pragma once
 
-#include <collide/detail/contact_at.hpp>
-#include <collide/detail/decide_swept.hpp>
-#include <collide/detail/swept_in_reach.hpp>
-#include <collide/detail/time_of_impact.hpp>
+#include <collide/detail/narrow_phase/contact_swept.hpp>
+#include <collide/detail/narrow_phase/intersects_swept.hpp>
+#include <collide/detail/narrow_phase/karabassi_swept_test.hpp>
+#include <collide/detail/narrow_phase/time_of_impact.hpp>
 #include <collide/impact.hpp>
 #include <collide/precision.hpp>
 

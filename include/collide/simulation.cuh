@@ -7,8 +7,9 @@
 #include <tuple>
 #include <vector>
 
-#include <collide/detail/neighbours.hpp>
-#include <collide/detail/step.hpp>
+#include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/detail/simulation/step.hpp>
+#include <collide/detail/simulation/verlet_list.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
@@ -119,7 +120,7 @@ class simulation {
   using columns = typename scene_type::all;
   /// Bytes of state of each particle.
   static constexpr std::size_t bytes_per_particle = detail::column_buffers<S, columns>::bytes_per_particle;
-  /// Pointers to all columns, for kernels; see detail/particle.hpp.
+  /// Pointers to all columns, for kernels; see detail/simulation/particle.hpp.
   using state_type = detail::particle_state<S, columns>;
 
   explicit simulation(execution_space space = execution_space(), broad_phase options = broad_phase())
@@ -162,7 +163,8 @@ class simulation {
       list_ = {counters, counters + 1, listed_.reserve(space_.resource(), padded)};
     }
     space_.for_each(padded, detail::place_particles<S, columns>{state_, particles, velocities});
-    if constexpr (scene_type::meets) neighbours_.reserve(space_, room, largest_radius(particles));
+    if constexpr (scene_type::meets || sweeps) largest_radius_ = largest_radius(particles);
+    if constexpr (scene_type::meets) neighbours_.reserve(space_, room, largest_radius_);
     prepare();
   }
 
@@ -173,6 +175,7 @@ class simulation {
     detail::looking_up<execution_space> there(space_);
     if (mesh.size() != 0) index_.build(there, options_, mesh);
     mesh_ = mesh;
+    if constexpr (sweeps) least_radius_ = least_radius(mesh);
     if constexpr (detail::contains<columns, slow_steps>) {  // what slept may have lost its support
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
     }
@@ -193,7 +196,8 @@ class simulation {
       }
     }();
     using lookup_type = std::decay_t<decltype(lookup)>;
-    detail::fly_body<S, narrow_phase, lookup_type, scene_type> const fly{state_, scene_, lookup, list_, dt, backwards_};
+    detail::fly_body<S, narrow_phase, lookup_type, scene_type> const fly{state_, scene_,     lookup,       list_,
+                                                                         dt,     backwards_, least_radius_};
     backwards_ = !backwards_;
     using step_body = detail::step_body<S, narrow_phase, lookup_type, scene_type>;
     using block = typename execution_space::template block<step_body>;
@@ -267,6 +271,7 @@ class simulation {
   execution_space const& space() const { return space_; }
 
  private:
+  static constexpr bool sweeps = scene_type::touches && !detail::at_rest<narrow_phase, S>;
   static constexpr bool begins = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
   struct no_neighbours {};
   using neighbours = std::conditional_t<scene_type::meets, detail::neighbours<S, scene_type>, no_neighbours>;
@@ -295,8 +300,23 @@ class simulation {
   void prepare() {
     if constexpr (scene_type::touches) {
       detail::looking_up<execution_space> there(space_);
-      if (mesh_.size() != 0 && state_.size != 0) index_.prepare(there, options_, spheres());
+      if (mesh_.size() == 0 || state_.size == 0) return;
+      if (largest_radius_ >= 0 && largest_radius_ < least_radius_) {
+        index_.prepare(there, options_, spheres_xyz(state_.at(position{}), state_.size, least_radius_));
+      } else {
+        index_.prepare(there, options_, spheres());
+      }
     }
+  }
+
+  /// 8 units in the last place of the largest coordinate of the mesh. Waits.
+  S least_radius(mesh_view<S> mesh) {
+    using summary = detail::mesh_summary<S>;
+    summary* const seen = mesh_summary_.reserve(space_.resource(), 1);
+    summary::clear(space_, seen);
+    detail::summarise_mesh<S> const body{mesh, seen, nullptr};
+    space_.launch(detail::blocks_for<execution_space>(mesh.size(), body), body);
+    return 8 * std::numeric_limits<S>::epsilon() * space_.read(seen).largest_coordinate();
   }
 
   /// How many blocks of a body are at work at a time.
@@ -320,6 +340,8 @@ class simulation {
   state_type state_{};
   bool backwards_ = false;  ///< the next step goes
   buffer<double> time_;
+  S largest_radius_ = 0, least_radius_ = 0;
+  buffer<detail::mesh_summary<S>> mesh_summary_;
   neighbours neighbours_;
   buffer<std::uint32_t> counters_;
   buffer<id> listed_;

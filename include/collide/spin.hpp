@@ -10,17 +10,45 @@ namespace collide {
 /// two touch: what slid begins to roll. `rolling` is the coefficient of rolling resistance, which stops what rolls: the
 /// largest torque that resists, per radius and repelling force.
 struct spin {
-  using writes = columns<angular_velocity>;
+  using writes = columns<position, velocity, angular_velocity>;
   using follows = effects<bounce>;
 
   double rolling = 0;
 
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void touch(Particle& p, touching<S>& t, S) const {
+  COLLIDE_HD_INLINE void after_touch(Particle& p, touching<S>& t, S) const {
+    S most = S(rolling) * t.impulse;
+    if (!(most > 0)) return;
+    if (t.grip > 0) most = slow_rolling(p, t, most);
     auto& w = p[angular_velocity{}];
-    S const rate = detail::root(detail::dot(w, w)), most = S(2.5) * S(rolling) * t.impulse;
-    if (!(rate > 0 && most > 0)) return;
-    w = w * (detail::larger(rate - most / p.radius(), S(0)) / rate);
+    S const rate = detail::root(detail::dot(w, w));
+    if (rate > 0) w = w * (detail::larger(rate - S(2.5) * most / p.radius(), S(0)) / rate);
+  }
+
+ private:
+  /// What rolls without slipping is slowed down as a whole: friction, as far as it has a reserve, keeps rotation and
+  /// motion together. Returns what is left of the resistance `most`, both per mass.
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE static S slow_rolling(Particle& p, touching<S>& t, S most) {
+    auto& w = p[angular_velocity{}];
+    vec3<S> const turning = w - t.normal * detail::dot(w, t.normal);
+    vec3<S> const rolled = detail::cross(turning, vec3<S>(t.normal * p.radius()));
+    S const speed = detail::root(detail::dot(rolled, rolled)), needed = S(1.4) * speed;
+    S const resistance = detail::smaller(most, S(1.4) * t.grip);
+    if (needed <= resistance) {
+      w -= turning;
+      if (t.rests) {
+        t.hold(p);
+      } else {
+        p[velocity{}] -= rolled;
+      }
+      return most - needed;
+    }
+    S const part = resistance / needed;
+    w -= turning * part;
+    p[velocity{}] -= rolled * part;
+    if (t.rests) p[position{}] -= rolled * (part * t.moved);
+    return most - resistance;
   }
 };
 

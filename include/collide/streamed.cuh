@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <collide/detail/chunks.cuh>
+#include <collide/detail/streaming/chunk_streamer.cuh>
 #include <collide/detector.hpp>
 
 namespace collide {

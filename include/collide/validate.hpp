@@ -5,8 +5,9 @@
 #include <array>
 #include <string>
 
-#include <collide/detail/arithmetic.hpp>
-#include <collide/detail/atomic.hpp>
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/detail/numeric/rounding.hpp>
 #include <collide/host.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>

@@ -2,7 +2,7 @@
 /// Sink: a function of the caller's own, called for every hit.
 #pragma once
 
-#include <collide/detail/sink.hpp>
+#include <collide/detail/sinks/output.hpp>
 
 namespace collide {
 

@@ -2,7 +2,7 @@
 /// Effect: the resistance of a medium that moves.
 #pragma once
 
-#include <collide/detail/arithmetic.hpp>
+#include <collide/detail/numeric/rounding.hpp>
 #include <collide/effect.hpp>
 
 namespace collide {

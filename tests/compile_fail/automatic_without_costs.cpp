@@ -1,4 +1,4 @@
-// expect: collide: automatic needs an execution space with a static member costs, see detail/costs.hpp
+// expect: collide: automatic needs an execution space with a static member costs, see detail/execution/tuning.hpp
 #include <collide/automatic.cuh>
 #include <collide/count.hpp>
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <limits>
 
-#include <collide/detail/contact_of.hpp>
+#include <collide/detail/narrow_phase/contact.hpp>
 
 #include "rows.hpp"
 

@@ -6,9 +6,9 @@
 #include <xmmintrin.h>
 #endif
 
-#include <collide/detail/bounding_sphere.hpp>
-#include <collide/detail/decide.hpp>
-#include <collide/detail/lifted.hpp>
+#include <collide/detail/geometry/bounding_sphere.hpp>
+#include <collide/detail/geometry/lifted_bounds.hpp>
+#include <collide/detail/narrow_phase/intersects.hpp>
 
 #include "rows.hpp"
 

@@ -13,6 +13,7 @@
 #include <collide/pairs.hpp>
 #include <collide/visit.hpp>
 
+#include "lockstep.hpp"
 #include "subject.hpp"
 
 namespace tests {
@@ -22,8 +23,6 @@ struct list {};
 
 using broad_phases = list<collide::all_pairs, collide::bucket>;
 
-template <int Lanes, bool Reversed>
-class lockstep;
 using host_spaces = list<collide::host, lockstep<256, false>, lockstep<64, true>>;
 #if defined(__CUDACC__)
 using cuda_spaces = list<collide::cuda, collide::cuda_shared>;
@@ -37,42 +36,6 @@ inline char const* name_of(list<collide::exact>) { return "exact"; }
 
 inline collide::all_pairs configure(list<collide::all_pairs>, options const&) { return {}; }
 inline collide::bucket configure(list<collide::bucket>, options const& o) { return {o.cell_width, o.memory_budget}; }
-
-/// The cooperative kernels of `cuda_shared` on the host: the lanes take turns, in order or in reverse, and the scratch
-/// memory is full of garbage when a block begins.
-template <int Lanes, bool Reversed>
-class lockstep : public collide::host {
- public:
-  using host::host;
-  static constexpr bool defers = true, sorts_spheres = false, pairs_triangles = true;  // as the CUDA spaces
-  static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
-
-  template <class Body>
-  using block = collide::detail::lockstep_block<Lanes, Body::items, Reversed>;
-
-  template <class Body>
-  std::size_t wave() const {
-    return Reversed ? 1 : 3;
-  }
-
-  template <class Body>
-  void launch(std::size_t blocks, Body const& body) const {
-    using scratch_type = typename Body::template scratch<block<Body>>;
-    static_assert(std::is_trivially_copyable<scratch_type>::value, "scratch memory is never constructed on CUDA");
-    auto const memory = std::make_unique<storage<scratch_type>>();
-    for (std::size_t i = 0; i < blocks; ++i) {
-      std::memset(memory->bytes, Reversed ? 0x7f : 0xff, sizeof(scratch_type));
-      block<Body> here(i);
-      body(here, *reinterpret_cast<scratch_type*>(memory->bytes));
-    }
-  }
-
- private:
-  template <class T>
-  struct storage {
-    alignas(T) unsigned char bytes[sizeof(T)];
-  };
-};
 
 /// Device memory or host memory, as the space has it.
 template <class Space>

@@ -8,8 +8,8 @@
 #include <doctest/doctest.h>
 
 #include <collide/bucket.cuh>
-#include <collide/detail/lookup.hpp>
-#include <collide/detail/way.hpp>
+#include <collide/detail/grid/grid_ref.hpp>
+#include <collide/detail/grid/swept_cells.hpp>
 
 #include "checks.hpp"
 

@@ -1,0 +1,234 @@
+/// \file
+/// A block of CUDA threads that share memory; what a block is stands in block.hpp. Needs nvcc.
+#pragma once
+
+#if !defined(__CUDACC__)
+#error "collide/detail/execution/cuda_block.cuh needs nvcc; without CUDA include the headers of the host space alone"
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include <cub/block/block_reduce.cuh>
+#include <cub/block/block_scan.cuh>
+
+#include <collide/config.hpp>
+
+namespace collide::detail {
+
+inline constexpr int cuda_lanes = 256;  ///< threads of a block, in every kernel
+inline constexpr int cuda_warp = 32;    ///< threads that run together
+
+/// A block of CUDA threads that share memory.
+template <int Items>
+class cuda_block {
+ public:
+  static constexpr int lanes = cuda_lanes, items = Items;
+  static constexpr int pending = 2 * cuda_lanes, row_lanes = cuda_warp;
+
+  template <class T>
+  struct per_lane {
+    T value;
+    __device__ __forceinline__ T& operator[](int) { return value; }
+  };
+  template <class T, int N>
+  struct staging {
+    T values[N];
+  };
+  template <class T>
+  struct single {
+    T value;
+  };
+  template <class T, int N>
+  struct row_scratch {
+    T values[lanes * N];
+  };
+  using block_scan = cub::BlockScan<std::uint32_t, lanes, cub::BLOCK_SCAN_WARP_SCANS>;  // waits least
+  using scan_scratch = typename block_scan::TempStorage;
+  using balance_scratch = scan_scratch;
+  template <class T>
+  using reduce_scratch = typename cub::BlockReduce<T, lanes>::TempStorage;
+
+  __device__ explicit cuda_block(std::size_t index) : index_{index} {}
+
+  __device__ __forceinline__ std::size_t index() const { return index_; }
+
+  template <class F>
+  __device__ __forceinline__ void each(F const& f) {
+    f(lane());
+    sync();
+  }
+
+  template <class T>
+  __device__ __forceinline__ T shared(T const& value) {
+    T const copy = value;
+    sync();
+    return copy;
+  }
+
+  __device__ __forceinline__ std::uint32_t add(std::uint32_t& counter, std::uint32_t n) {
+    return atomicAdd(&counter, n);
+  }
+
+  template <class T, int N>
+  __device__ __forceinline__ T const* stage(staging<T, N>& to, T const* from, int n) {
+    for (int i = lane(); i < n; i += lanes) to.values[i] = from[i];
+    sync();
+    return to.values;
+  }
+
+  /// Each lane copies some pieces, all of which it reads before it writes one.
+  template <class T>
+  __device__ __forceinline__ T const& near(single<T>& to, T const& from) {
+    static_assert(alignof(T) % sizeof(uint4) == 0);
+    constexpr int pieces = sizeof(T) / sizeof(uint4), of_lane = (pieces + lanes - 1) / lanes;
+    uint4 read[of_lane];
+    for (int k = 0; k < of_lane; ++k) {
+      int const i = k * lanes + lane();
+      if (i < pieces) read[k] = reinterpret_cast<uint4 const*>(&from)[i];
+    }
+    for (int k = 0; k < of_lane; ++k) {
+      int const i = k * lanes + lane();
+      if (i < pieces) reinterpret_cast<uint4*>(&to.value)[i] = read[k];
+    }
+    sync();
+    return to.value;
+  }
+
+  /// A warp reads what lies side by side,
+  template <class T, int N>
+  __device__ __forceinline__ void load_row(T const* from, std::uint32_t row, T (&side)[N]) {
+    from += first_beside<N>(row);
+    for (int k = 0; k < N; ++k) side[k] = from[k * cuda_warp];
+  }
+
+  /// and its lanes exchange it.
+  template <class Scratch, class T, int N>
+  __device__ __forceinline__ void exchange_row(Scratch& s, T (&values)[N]) {
+    if constexpr (N > 1) {
+      T* const line = line_of_warp<N>(s.values);
+      std::uint32_t const own = threadIdx.x % cuda_warp;
+      for (std::uint32_t k = 0; k < N; ++k) line[k * cuda_warp + own] = values[k];
+      __syncwarp();
+      for (std::uint32_t k = 0; k < N; ++k) values[k] = line[own * N + k];
+      __syncwarp();
+    }
+  }
+
+  template <class Scratch, class T, int N>
+  __device__ __forceinline__ void store_row(Scratch& s, T* to, std::uint32_t row, T const (&from)[N]) {
+    if constexpr (N == 1) {
+      to[row] = from[0];
+    } else {
+      T* const line = line_of_warp<N>(s.values);
+      std::uint32_t const own = threadIdx.x % cuda_warp;
+      for (int k = 0; k < N; ++k) line[own * N + k] = from[k];
+      __syncwarp();
+      to += first_beside<N>(row);
+      for (int k = 0; k < N; ++k) to[k * cuda_warp] = line[own + k * cuda_warp];
+      __syncwarp();
+    }
+  }
+
+  /// Exclusive scan of at most as many values in shared memory as there are lanes; returns their sum.
+  __device__ std::uint32_t scan(scan_scratch& s, std::uint32_t* values, std::uint32_t n) {
+    auto const i = static_cast<std::uint32_t>(lane());
+    std::uint32_t own = i < n ? values[i] : 0, sum;
+    block_scan(s).ExclusiveSum(own, own, sum);
+    if (i < n) values[i] = own;
+    sync();
+    return sum;
+  }
+
+  /// Each warp takes a stretch of the work at a time. Whose work its first piece is, it searches for; from there on, a
+  /// word of bits tells all its lanes which of the next pieces are the first ones of others. A lane finds and looks at
+  /// all its pieces without a branch between them, so that what it reads for them comes together; where there is no
+  /// more work, at the last piece again.
+  template <int Ahead, class Item, class Find, class Look, class Take, class Round>
+  __device__ __forceinline__ void balanced(scan_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item,
+                                           Find const& find, Look const& look, Take const& take,
+                                           Round const& after_round) {
+    constexpr std::uint32_t stretch = Ahead * cuda_warp;
+    std::uint32_t const total = scan(s, counts, n);  // `counts` are begins now
+    auto const own = static_cast<std::uint32_t>(threadIdx.x) % cuda_warp;
+    for (std::uint32_t base = 0; base < total; base += Ahead * lanes) {
+      std::uint32_t const first = base + static_cast<std::uint32_t>(lane()) / cuda_warp * stretch;
+      if (first < total) {
+        std::uint32_t before = last_begun(counts, n, first), i[Ahead], k[Ahead];
+        for (std::uint32_t a = 0; a < Ahead; ++a) {
+          std::uint32_t const piece = first + a * cuda_warp, next = before + 1 + own;
+          std::uint32_t const to_begin = next < n ? counts[next] - piece : cuda_warp;
+          unsigned const begun = all_bits(to_begin < cuda_warp ? 1u << to_begin : 0u);
+          i[a] = before + static_cast<std::uint32_t>(__popc(begun & ((2u << own) - 1)));
+          k[a] = (piece + own < total ? piece + own : total - 1) - counts[i[a]];
+          before += static_cast<std::uint32_t>(__popc(begun));
+        }
+        decltype(find(item(0), 0)) found[Ahead];
+        bool taken[Ahead];
+        for (int a = 0; a < Ahead; ++a) found[a] = find(item(i[a]), k[a]);
+        for (int a = 0; a < Ahead; ++a) taken[a] = look(item(i[a]), found[a]);
+        for (std::uint32_t a = 0; a < Ahead; ++a) {
+          if (taken[a] && first + a * cuda_warp + own < total) take(item(i[a]), found[a]);
+        }
+      }
+      sync();
+      after_round();
+    }
+  }
+
+  /// The combination of all lanes' values; valid in lane 0.
+  template <class T, class Combine>
+  __device__ __forceinline__ T reduce(reduce_scratch<T>& s, per_lane<T>& values, Combine const& combine) {
+    T const result = cub::BlockReduce<T, lanes>(s).Reduce(values.value, combine);
+    sync();
+    return result;
+  }
+
+ private:
+  /// The last of `n` rising numbers that is not above `x`, as the first is not; asked by a whole warp.
+  static __device__ __forceinline__ std::uint32_t last_begun(std::uint32_t const* begins, std::uint32_t n,
+                                                             std::uint32_t x) {
+    static_assert(lanes <= cuda_warp * cuda_warp);
+    constexpr std::uint32_t apart = lanes / cuda_warp;
+    std::uint32_t const own = threadIdx.x % cuda_warp;
+    auto const not_above = [&](std::uint32_t i) { return __ballot_sync(~0u, i < n && begins[i] <= x); };
+    std::uint32_t const i = static_cast<std::uint32_t>(__popc(not_above(own * apart)) - 1) * apart;
+    return i + static_cast<std::uint32_t>(__popc(not_above(i + own) & ((1u << apart) - 1))) - 1;
+  }
+
+  /// The bits of all lanes of a warp.
+  static __device__ __forceinline__ unsigned all_bits(unsigned own) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+    return __reduce_or_sync(~0u, own);
+#else
+    for (int apart = 1; apart < cuda_warp; apart *= 2) own |= __shfl_xor_sync(~0u, own, apart);
+    return own;
+#endif
+  }
+
+  /// What a warp's rows of `N` values pass through.
+  template <int N, class T>
+  static __device__ __forceinline__ T* line_of_warp(T* values) {
+    return values + threadIdx.x / cuda_warp * (cuda_warp * N);
+  }
+
+  /// The first of a lane's values of its warp's rows, side by side: the others are `cuda_warp` apart.
+  template <int N>
+  static __device__ __forceinline__ std::uint32_t first_beside(std::uint32_t row) {
+    std::uint32_t const own = threadIdx.x % cuda_warp;
+    return (row - own) * N + own;
+  }
+
+  static __device__ __forceinline__ int lane() { return static_cast<int>(threadIdx.x); }
+
+  /// Waits for all lanes. A warp comes together first: ptxas 13.0 keeps loop counters in registers of the warp, but
+  /// lets its threads reach the barrier one after another where what was before it has called a function.
+  __device__ __forceinline__ void sync() {
+    __syncwarp();
+    __syncthreads();
+  }
+
+  std::size_t index_;
+};
+
+}  // namespace collide::detail

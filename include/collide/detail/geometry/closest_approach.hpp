@@ -1,0 +1,77 @@
+/// \file
+/// Where the way of a moving sphere's centre and a triangle come closest.
+#pragma once
+
+#include <collide/detail/geometry/local_sweep.hpp>
+
+namespace collide::detail {
+
+/// A place on the way, as a time, and a point of the triangle, as the weights of its second and third corner. All are
+/// fractions, also where arithmetic was inaccurate, so that the two places are what they claim to be.
+template <class T>
+struct closest_approach {
+  T time, v, w;
+  vec3<T> offset;  ///< from the place on the way to the point of the triangle
+  T distance_squared;
+  vec3<T> normal;  ///< perpendicular to what the two lie in: way and edge, or face; not of length 1
+};
+
+/// 1 / y, or 0 unless y > 0.
+template <class T>
+COLLIDE_HD_INLINE T inverse(T y) {
+  return y > std::numeric_limits<T>::min() ? div(T(1), y) : T(0);
+}
+
+/// The closest approach is that to an edge, or to the face where the way meets the plane or comes nearest to it. (If
+/// it is to the face and the way is parallel to that, it is to an edge as well, or at the beginning or the end.)
+template <class T>
+COLLIDE_HD_INLINE closest_approach<T> approach(local_sweep<T> const& l) {
+  vec3<T> const& d = l.path;
+  local_triangle<T> const& t = l.shape;
+  T const dd = dot(d, d), inverse_dd = inverse(dd);
+  T const da = dot(d, t.a), db = dot(d, t.b), dc = dot(d, t.c);
+  closest_approach<T> best{T(0), T(0), T(0), t.a, dot(t.a, t.a), vec3<T>(T(0), T(0), T(0))};
+  vec3<T> edge = best.normal;
+  // Two lines, after C. Ericson, Real-Time Collision Detection, 5.1.9: the time that is the best on the whole line of
+  // the edge, the best place on the edge for that time, and the best time for that place.
+  auto const along = [&](vec3<T> const& from, vec3<T> const& to, T d_from, T d_to, auto const& weights) {
+    vec3<T> const e = to - from;
+    T const ee = dot(e, e), de = d_to - d_from, ev = dot(e, from);
+    T const first = clamped(mul(mul(d_from, ee) - mul(de, ev), inverse(mul(dd, ee) - mul(de, de))));
+    T const part = clamped(mul(mul(de, first) - ev, inverse(ee)));
+    T const time = clamped(mul(mul(de, part) + d_from, inverse_dd));
+    vec3<T> const offset = from + scaled(e, part) - scaled(d, time);
+    T const square = dot(offset, offset);
+    if (square <= best.distance_squared) {
+      best.time = time;
+      best.offset = offset;
+      best.distance_squared = square;
+      edge = e;
+      weights(part);
+    }
+  };
+  auto const weigh = [&](T v, T w) {
+    best.v = v;
+    best.w = w;
+  };
+  along(t.a, t.b, da, db, [&](T part) { weigh(part, T(0)); });
+  along(t.b, t.c, db, dc, [&](T part) { weigh(1 - part, part); });
+  along(t.c, t.a, dc, da, [&](T part) { weigh(T(0), 1 - part); });
+  best.normal = cross(d, edge);
+
+  vec3<T> const n = cross<T>(t.b - t.a, t.c - t.a);
+  T const height = dot(t.a, n), fall = dot(d, n);
+  T const time = clamped(fall < 0 ? mul(-height, inverse(-fall)) : mul(height, inverse(fall)));
+  local_triangle<T> const there = seen_at(l, time);
+  T const wa = dot(cross(there.b, there.c), n), wb = dot(cross(there.c, there.a), n),
+          wc = dot(cross(there.a, there.b), n);
+  if (wa > 0 && wb > 0 && wc > 0) {
+    T const part = div(T(1), wa + wb + wc), v = clamped(mul(wb, part)), w = smaller(mul(wc, part), 1 - v);
+    vec3<T> const offset = there.a + (scaled<T>(t.b - t.a, v) + scaled<T>(t.c - t.a, w));
+    T const square = dot(offset, offset);
+    if (square <= best.distance_squared) best = {time, v, w, offset, square, n};
+  }
+  return best;
+}
+
+}  // namespace collide::detail

@@ -1,0 +1,70 @@
+/// \file
+/// A triangle and the way of a moving sphere's centre, in coordinates local to where the sphere begins.
+#pragma once
+
+#include <collide/detail/geometry/closest_point.hpp>
+
+namespace collide::detail {
+
+/// The centre moves from the origin along `path`.
+template <class T>
+struct local_sweep {
+  local_triangle<T> shape;
+  vec3<T> path;
+};
+
+/// Subtracts the centre. `W` holds all values of `S`.
+template <class W, class S>
+COLLIDE_HD_INLINE local_sweep<W> relative(triangle<S> const& t, moving_sphere<S> const& s) {
+  return {relative<W>(t, static_cast<sphere<S> const&>(s)), s.displacement.template cast<W>()};
+}
+
+/// The largest number of all, without its sign.
+template <class T>
+COLLIDE_HD_INLINE T size_of(local_sweep<T> const& l) {
+  return larger(size_of(l.shape), magnitude(l.path));
+}
+
+/// All numbers times a power of two.
+template <class T>
+COLLIDE_HD_INLINE local_sweep<T> scaled(local_sweep<T> const& l, T s) {
+  return {scaled(l.shape, s), scaled(l.path, s)};
+}
+
+/// `relative` scaled so that its largest number is below 4 and at least 1, unless all are tiny. Finite input only.
+template <class W, class S>
+COLLIDE_HD_INLINE local_sweep<W> normalised(local_sweep<W> l, triangle<S> const& t, moving_sphere<S> const& s) {
+  if constexpr (sizeof(W) == sizeof(S)) {
+    if (!finite(size_of(l))) {  // a difference was beyond the range
+      constexpr W tiny = std::numeric_limits<W>::min();
+      l = relative<W>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
+                      moving_sphere<S>{{scaled(s.centre, tiny), mul(s.radius, tiny)}, scaled(s.displacement, tiny)});
+      l.shape.scale = tiny;
+    }
+  }
+  return scaled(l, reciprocal_power(size_of(l)));
+}
+
+/// Rounds scaled local coordinates to `T`, whose range they fit.
+template <class T, class W>
+COLLIDE_HD_INLINE local_sweep<T> rounded(local_sweep<W> const& l) {
+  return {rounded<T>(l.shape), l.path.template cast<T>()};
+}
+
+/// False if, on some axis, the triangle's box is farther than `reach` from all of the way.
+template <class T>
+COLLIDE_HD_INLINE bool box_in_reach(local_sweep<T> const& l, T reach) {
+  vec3<T> const still = vec3<T>(T(0), T(0), T(0));
+  vec3<T> const lower = smaller(smaller(l.shape.a, l.shape.b), l.shape.c) - larger(l.path, still);
+  vec3<T> const upper = larger(larger(l.shape.a, l.shape.b), l.shape.c) - smaller(l.path, still);
+  return !(largest<T>(lower) > reach || largest<T>(-upper) > reach);
+}
+
+/// The triangle as seen from the centre at a time.
+template <class T>
+COLLIDE_HD_INLINE local_triangle<T> seen_at(local_sweep<T> const& l, T time) {
+  vec3<T> const gone = scaled(l.path, time);
+  return {l.shape.a - gone, l.shape.b - gone, l.shape.c - gone, l.shape.radius, l.shape.scale};
+}
+
+}  // namespace collide::detail

@@ -1,0 +1,77 @@
+/// \file
+/// A triangle as seen from a sphere's centre.
+#pragma once
+
+#include <limits>
+
+#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/detail/numeric/rounding.hpp>
+
+namespace collide::detail {
+
+/// A triangle as seen from a sphere's centre: local coordinates times `scale`, a power of two.
+template <class T>
+struct local_triangle {
+  vec3<T> a, b, c;
+  T radius;
+  T scale;
+};
+
+/// The largest of |x|, |y| and |z|.
+template <class T>
+COLLIDE_HD_INLINE T magnitude(vec3<T> const& v) {
+  return largest<T>(v.cwiseAbs());
+}
+
+/// Subtracts the centre. `W` holds all values of `S`.
+template <class W, class S>
+COLLIDE_HD_INLINE local_triangle<W> relative(triangle<S> const& t, sphere<S> const& s) {
+  vec3<S> const& c = s.centre;
+  auto const from_centre = [&](vec3<S> const& v) -> vec3<W> {
+    return {settled(W(v.x()) - W(c.x())), settled(W(v.y()) - W(c.y())), settled(W(v.z()) - W(c.z()))};
+  };
+  return {from_centre(t.a), from_centre(t.b), from_centre(t.c), W(s.radius), W(1)};
+}
+
+/// The largest number of all, without its sign.
+template <class T>
+COLLIDE_HD_INLINE T size_of(local_triangle<T> const& t) {
+  return larger(larger(magnitude(t.a), magnitude(t.b)), larger(magnitude(t.c), t.radius));
+}
+
+/// All numbers times a power of two.
+template <class T>
+COLLIDE_HD_INLINE local_triangle<T> scaled(local_triangle<T> const& t, T s) {
+  return {scaled(t.a, s), scaled(t.b, s), scaled(t.c, s), mul(t.radius, s), mul(t.scale, s)};
+}
+
+/// `relative` scaled so that its largest coordinate and the radius are below 4 and the larger of them is at least 1,
+/// unless they are tiny. Finite input only.
+template <class W, class S>
+COLLIDE_HD_INLINE local_triangle<W> normalised(local_triangle<W> l, triangle<S> const& t, sphere<S> const& s) {
+  if constexpr (sizeof(W) == sizeof(S)) {
+    if (!finite(size_of(l))) {  // a difference was beyond the range
+      constexpr W tiny = std::numeric_limits<W>::min();
+      l = relative<W>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
+                      sphere<S>{scaled(s.centre, tiny), mul(s.radius, tiny)});
+      l.scale = tiny;
+    }
+  }
+  return scaled(l, reciprocal_power(size_of(l)));
+}
+
+/// Rounds scaled local coordinates to `T`, whose range they fit.
+template <class T, class W>
+COLLIDE_HD_INLINE local_triangle<T> rounded(local_triangle<W> const& l) {
+  return {l.a.template cast<T>(), l.b.template cast<T>(), l.c.template cast<T>(), static_cast<T>(l.radius), T(0)};
+}
+
+/// False if the triangle's box is farther from the origin than `reach` along some axis. Exact: rounding is monotone.
+template <class T>
+COLLIDE_HD_INLINE bool box_in_reach(local_triangle<T> const& t, T reach) {
+  vec3<T> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
+  bool const below = largest<T>(lower) <= reach, above = largest<T>(-upper) <= reach;
+  return below & above;
+}
+
+}  // namespace collide::detail

@@ -1,0 +1,167 @@
+/// \file
+/// The spheres that a lane works on.
+#pragma once
+
+#include <cstdint>
+
+#include <collide/detail/geometry/swept_bounds.hpp>
+#include <collide/moving_spheres.hpp>
+
+namespace collide::detail {
+
+/// `Items` consecutive spheres: in registers on CUDA, eight or sixteen to a vector register on a CPU. Spheres beyond
+/// the end of the set are far from everything, and have a NaN radius.
+template <class S, int Items>
+struct sphere_batch {
+  static_assert(Items % 4 == 0, "packed centres are loaded four at a time");
+
+  S x[Items], y[Items], z[Items], radius[Items];
+
+  static COLLIDE_HD sphere<S> none() {
+    constexpr S far = std::numeric_limits<S>::max();
+    return {{far, far, far}, std::numeric_limits<S>::quiet_NaN()};
+  }
+
+  /// A ball around the way of each.
+  COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
+    for (int k = 0; k < Items; ++k) {
+      std::size_t const i = first + static_cast<std::size_t>(k);
+      bool const there = i < spheres.size();
+      sphere<S> const s = there ? enclosing(spheres[i]) : none();
+      x[k] = s.centre.x();
+      y[k] = s.centre.y();
+      z[k] = s.centre.z();
+      radius[k] = s.radius;
+    }
+  }
+
+  COLLIDE_HD_INLINE void load(sphere_view<S> const& spheres, std::size_t first) {
+    if (first + Items <= spheres.size()) {
+      load_centres(spheres, first);
+      if (spheres.one_radius()) {
+        for (int k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
+      } else {
+        for (int k = 0; k < Items; ++k) radius[k] = spheres.radius(first + static_cast<std::size_t>(k));
+      }
+    } else {
+      load_last(spheres, first);
+    }
+  }
+
+  /// Where the centres are, if on the device groups of four can be loaded at a time; else null.
+  static COLLIDE_HD_INLINE S const* quads_of(sphere_view<S> const& spheres) {
+#if defined(__CUDA_ARCH__)
+    return spheres.packed() ? quads_at(spheres.x(0)) : nullptr;
+#else
+    static_cast<void>(spheres);
+    return nullptr;
+#endif
+  }
+
+  /// Centres only, which are all there; `first` is a multiple of four, and `quads` is quads_of(spheres), not null.
+  COLLIDE_HD_INLINE void load_quads(S const* quads, std::size_t first) { load_quads(quads, first, x, y, z); }
+
+  /// The same of any packed vectors.
+  static COLLIDE_HD_INLINE void load_quads([[maybe_unused]] S const* quads, [[maybe_unused]] std::size_t first,
+                                           [[maybe_unused]] S (&x)[Items], [[maybe_unused]] S (&y)[Items],
+                                           [[maybe_unused]] S (&z)[Items]) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (sizeof(S) == 4) {  // four packed vectors are three 16-byte loads
+      auto const* const from = reinterpret_cast<float4 const*>(quads + 3 * first);
+      for (int k = 0; k < Items; k += 4) {
+        float4 const read[3] = {from[3 * k / 4], from[3 * k / 4 + 1], from[3 * k / 4 + 2]};
+        x[k] = read[0].x, y[k] = read[0].y, z[k] = read[0].z;
+        x[k + 1] = read[0].w, y[k + 1] = read[1].x, z[k + 1] = read[1].y;
+        x[k + 2] = read[1].z, y[k + 2] = read[1].w, z[k + 2] = read[2].x;
+        x[k + 3] = read[2].y, y[k + 3] = read[2].z, z[k + 3] = read[2].w;
+      }
+    }
+#endif
+  }
+
+  /// `packed`, if groups of four can be loaded from there at a time; else null.
+  static COLLIDE_HD_INLINE S const* quads_at(S const* packed) {
+    return sizeof(S) == 4 && reinterpret_cast<std::uintptr_t>(packed) % 16 == 0 ? packed : nullptr;
+  }
+
+ private:
+  /// What there is of them.
+  COLLIDE_HD_INLINE void load_last(sphere_view<S> const& spheres, std::size_t first) {
+    for (int k = 0; k < Items; ++k) {
+      std::size_t const i = first + static_cast<std::size_t>(k);
+      bool const there = i < spheres.size();
+      sphere<S> const s = there ? spheres[i] : none();
+      x[k] = s.centre.x();
+      y[k] = s.centre.y();
+      z[k] = s.centre.z();
+      radius[k] = s.radius;
+    }
+  }
+
+  COLLIDE_HD_INLINE void load_centres(sphere_view<S> const& spheres, std::size_t first) {
+    if (S const* const quads = quads_of(spheres)) {
+      load_quads(quads, first);
+    } else if (spheres.packed()) {  // a stride that the compiler knows
+      S const* const from = spheres.x(first);
+      for (int k = 0; k < Items; ++k) {
+        x[k] = from[3 * k];
+        y[k] = from[3 * k + 1];
+        z[k] = from[3 * k + 2];
+      }
+    } else {
+      for (int k = 0; k < Items; ++k) {
+        std::size_t const i = first + static_cast<std::size_t>(k);
+        x[k] = *spheres.x(i);
+        y[k] = *spheres.y(i);
+        z[k] = *spheres.z(i);
+      }
+    }
+  }
+};
+
+/// The same of spheres that move.
+template <class S, int Items>
+struct moving_batch {
+  S x[Items], y[Items], z[Items], dx[Items], dy[Items], dz[Items], radius[Items];
+
+  COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
+    if (first + Items <= spheres.size() && spheres.packed() && spheres.packed_displacements() && spheres.one_radius()) {
+      load_packed(spheres, first);
+      for (int k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
+      return;
+    }
+    for (int k = 0; k < Items; ++k) {
+      std::size_t const i = first + static_cast<std::size_t>(k);
+      bool const there = i < spheres.size();
+      moving_sphere<S> const s =
+          there ? spheres[i] : moving_sphere<S>{{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()}, {0, 0, 0}};
+      x[k] = s.centre.x(), y[k] = s.centre.y(), z[k] = s.centre.z();
+      dx[k] = s.displacement.x(), dy[k] = s.displacement.y(), dz[k] = s.displacement.z();
+      radius[k] = s.radius;
+    }
+  }
+
+  COLLIDE_HD_INLINE vec3<S> centre(int k) const { return {x[k], y[k], z[k]}; }
+  COLLIDE_HD_INLINE vec3<S> displacement(int k) const { return {dx[k], dy[k], dz[k]}; }
+  COLLIDE_HD_INLINE moving_sphere<S> ball(int k) const { return {{centre(k), radius[k]}, displacement(k)}; }
+
+ private:
+  COLLIDE_HD_INLINE void load_packed(moving_sphere_view<S> const& spheres, std::size_t first) {
+#if defined(__CUDA_ARCH__)
+    using still = sphere_batch<S, Items>;
+    S const *const centres = still::quads_at(spheres.x(0)), *const ways = still::quads_at(spheres.displacements(0));
+    if (centres != nullptr && ways != nullptr) {
+      still::load_quads(centres, first, x, y, z);
+      still::load_quads(ways, first, dx, dy, dz);
+      return;
+    }
+#endif
+    S const *const from = spheres.x(first), *const along = spheres.displacements(first);
+    for (int k = 0; k < Items; ++k) {  // strides that the compiler knows
+      x[k] = from[3 * k], y[k] = from[3 * k + 1], z[k] = from[3 * k + 2];
+      dx[k] = along[3 * k], dy[k] = along[3 * k + 1], dz[k] = along[3 * k + 2];
+    }
+  }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,233 @@
+/// \file
+/// The uniform grids of the `bucket` broad phase.
+///
+/// Every triangle, dilated by the reach (the largest radius asked for) and a slack for rounding, is put into every cell
+/// that its box touches; a sphere then looks into the one cell that holds its centre. No pair can appear twice, and the
+/// spheres need no sorting.
+///
+/// What keeps the grid from collapsing:
+///   - Levels. Triangles much larger than the rest go to a level of wider cells (each twice as wide as the one before),
+///   so
+///     that a triangle never touches more than a few cells; a sphere looks into one cell per level that is in use.
+///   - Wrapping. A level has a fixed number of cells; where the scene has more, cell coordinates wrap around (modulo a
+///   power
+///     of two). Triangles from far away then share a cell: more candidates, no wrong answer.
+///   - Several grids, where radii differ much: each serves the spheres of one range of radii.
+///
+/// Where a box around two triangles that follow each other is hardly larger than that of one, as in most meshes, they
+/// are put into the cells together (CUDA): half of the entries. An entry is the number of such a pair then. Beside it
+/// is which part of the cell the box covers, to a fifteenth of the cell's width, so that most triangles of a cell
+/// that are not near a sphere in it are left out before anything else of them is read.
+///
+/// The rounding: cell coordinates are floor((x - lower) * inverse_width), a monotone function, so rounding alone cannot
+/// separate a centre from a box that contains it; nor from the part of a cell that it covers. The slack of 64 units in
+/// the last place of the largest coordinate covers the rounding of the box itself and a compiler that reassociates. The
+/// reach is dilated by 4 units of float too, the coarsest arithmetic of a narrow phase, so that none of its hits is
+/// lost here, right or wrong. See docs/numerics.md.
+#pragma once
+
+#include <cstdint>
+
+#include <collide/detail/geometry/aabb.hpp>
+#include <collide/detail/grid/cell_coverage.hpp>
+#include <collide/detail/grid/size_histogram.hpp>
+
+namespace collide::detail {
+
+inline constexpr int max_levels = 16;
+inline constexpr int max_grids = 8;
+
+/// A range of cell coordinates per axis.
+struct cell_range {
+  std::uint32_t lower[3], upper[3];
+};
+
+/// Cells of one width.
+template <class S>
+struct grid_level {
+  S inverse_width;
+  S largest;                ///< the largest dilated extent of a triangle of this level
+  std::uint32_t mask[3];    ///< where cell coordinates wrap: a power of two - 1
+  std::uint32_t stride[2];  ///< how far the cells of neighbours in y and in z are apart
+  std::uint32_t first;      ///< number of the first cell
+
+  /// How many cells fit below an offset from the grid's lower end; from 0 to 2^30.
+  COLLIDE_HD_INLINE std::uint32_t coordinate(S offset) const { return whole(cells_below(offset)); }
+
+  /// The same, and the step of the next cell that it ends in.
+  COLLIDE_HD_INLINE std::uint32_t coordinate(S offset, std::uint32_t& step) const {
+    S const cells = cells_below(offset);
+    std::uint32_t const full = whole(cells);
+    step = cell_part::step_at(cells - static_cast<S>(full));
+    return full;
+  }
+
+  /// The same of an offset that is not above the grid's upper end; of others, any number.
+  COLLIDE_HD_INLINE std::uint32_t coordinate_inside(S offset) const {
+#if defined(__CUDA_ARCH__)
+    if constexpr (sizeof(S) == 4) return __float2uint_rz(mul(offset, inverse_width));  // 0 of what is less
+#endif
+    return coordinate(offset);
+  }
+
+  /// The cell that holds a point inside the grid, whose lower end this is, and the place of the point in it.
+  COLLIDE_HD_INLINE covered_cell place_of(vec3<S> const& p, S const (&lower)[3]) const {
+    std::uint32_t cell[3], place = 0;
+    for (int k = 0; k < 3; ++k) {
+      std::uint32_t step;
+      cell[k] = coordinate(p[k] - lower[k], step);
+      place |= cell_part::at(step, step, k);
+    }
+    return {row(cell[1], cell[2]) + (cell[0] & mask[0]), place};
+  }
+
+  /// True if no cell has the number of another.
+  COLLIDE_HD_INLINE bool is_spread() const { return (mask[0] & mask[1] & mask[2]) == (1u << 31) - 1; }
+
+  /// Number of the first cell of a row along x.
+  COLLIDE_HD_INLINE std::uint32_t row(std::uint32_t y, std::uint32_t z) const {
+    return first + (y & mask[1]) * stride[0] + (z & mask[2]) * stride[1];
+  }
+
+ private:
+  /// Without branches.
+  COLLIDE_HD_INLINE S cells_below(S offset) const {
+    return smaller(larger(S(0), mul(offset, inverse_width)), S(1 << 30));
+  }
+
+  /// By way of a signed integer, for which all processors have an instruction.
+  static COLLIDE_HD_INLINE std::uint32_t whole(S x) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(x)); }
+};
+
+/// What a grid is, but for its levels.
+template <class S>
+struct grid_frame {
+  S reach;     ///< serves spheres of radius up to this
+  S dilation;  ///< reach and slack: how far a triangle's box is dilated
+  S width;     ///< of the cells of the finest level
+  S lower[3];  ///< of the dilated mesh
+  S upper[3];
+  int levels;           ///< 0 if no triangle is in the grid
+  std::uint32_t bits;   ///< log2 of how many triangles an entry is: 2^bits, from number entry * 2^bits on; at most 1
+  std::uint32_t cells;  ///< how many there are, of all levels
+
+  /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.
+  COLLIDE_HD_INLINE std::uint32_t coordinate(grid_level<S> const& l, S x, int axis) const {
+    return l.coordinate(x - lower[axis]);
+  }
+
+  /// The cells that a triangle with this box is put into, at most one whole turn of the level on each axis, and the
+  /// steps in the first and the last of them from and up to which the dilated box reaches.
+  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b, std::uint32_t (&from)[3],
+                                        std::uint32_t (&to)[3]) const {
+    cell_range r;
+    for (int k = 0; k < 3; ++k) {
+      r.lower[k] = l.coordinate(b.lower[k] - dilation - lower[k], from[k]);
+      r.upper[k] = l.coordinate(b.upper[k] + dilation - lower[k], to[k]);
+      bool const turns = r.upper[k] - r.lower[k] > l.mask[k];  // then a cell may be the first and a later one, too
+      from[k] = turns ? cell_part::before : from[k];
+      to[k] = turns ? cell_part::last : to[k];
+      r.upper[k] = turns ? r.lower[k] + l.mask[k] : r.upper[k];
+    }
+    return r;
+  }
+};
+
+/// The grid for spheres up to one radius.
+template <class S>
+struct grid : grid_frame<S> {
+  using grid_frame<S>::levels, grid_frame<S>::dilation, grid_frame<S>::coordinate;
+
+  grid_level<S> level[max_levels];
+
+  /// The cell that holds a point inside the grid.
+  COLLIDE_HD_INLINE std::uint32_t cell_of(grid_level<S> const& l, vec3<S> const& p) const {
+    return l.row(coordinate(l, p.y(), 1), coordinate(l, p.z(), 2)) + (coordinate(l, p.x(), 0) & l.mask[0]);
+  }
+
+  /// The level that a triangle with this box belongs to.
+  COLLIDE_HD_INLINE grid_level<S> const& level_of(box<S> const& b) const {
+    if (levels == 1) return level[0];
+    S const size = S(bin_end(size_bin(b.extent()))) + 2 * dilation;  // as plan_grid has it
+    int l = 0;
+    while (l + 1 < levels && !(size <= level[l].largest)) ++l;
+    return level[l];
+  }
+
+  /// The cells that a triangle's dilated box touches.
+  COLLIDE_HD_INLINE cell_range range_of(grid_level<S> const& l, box<S> const& b) const {
+    cell_range r;
+    for (int k = 0; k < 3; ++k) {
+      r.lower[k] = coordinate(l, b.lower[k] - dilation, k);
+      r.upper[k] = coordinate(l, b.upper[k] + dilation, k);
+    }
+    return r;
+  }
+
+  /// The same, and the place of the point in it.
+  COLLIDE_HD_INLINE covered_cell place_of(grid_level<S> const& l, vec3<S> const& p) const {
+    return l.place_of(p, this->lower);
+  }
+
+  /// The cells that a triangle is put into: at most one whole turn of the level on each axis.
+  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b) const {
+    cell_range r = range_of(l, b);
+    for (int k = 0; k < 3; ++k) r.upper[k] = smaller(r.upper[k], r.lower[k] + l.mask[k]);
+    return r;
+  }
+
+  /// Calls f(cells, m) with m of at most N cells at a time and what the box covers of them, for every `parts`-th of the
+  /// cells that a triangle with this box is put into, from the `part`-th on. `frame` and `finest` are this grid's.
+  template <int N, class F>
+  COLLIDE_HD_INLINE void each_cells(grid_frame<S> const& frame, grid_level<S> const& finest, box<S> const& b,
+                                    std::uint32_t part, std::uint32_t parts, F const& f) const {
+    grid_level<S> l = finest;
+    if (frame.levels > 1) l = level_of(b);
+    std::uint32_t from[3], to[3];
+    cell_range const r = frame.cells_of(l, b, from, to);
+    std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
+                        nz = r.upper[2] - r.lower[2] + 1;
+    auto const covered = [&](std::uint32_t i, std::uint32_t cells, int axis) {
+      return cell_part::covered(i == 0 ? from[axis] : cell_part::before, i + 1 == cells ? to[axis] : cell_part::last,
+                                axis);
+    };
+    std::uint32_t const n = frame.levels == 0 || b.is_empty() ? 0 : nx * ny * nz;
+    for (std::uint32_t i = part; i < n; i += N * parts) {
+      covered_cell cells[N];
+      std::uint32_t m = 0;
+      for (std::uint32_t k = 0; k < N; ++k) {
+        std::uint32_t const number = i + k * parts, rows = number / nx;
+        std::uint32_t const x = number % nx, y = rows % ny, z = rows / ny;
+        cells[k].number = l.row(r.lower[1] + y, r.lower[2] + z) + ((r.lower[0] + x) & l.mask[0]);
+        cells[k].part = covered(x, nx, 0) | covered(y, ny, 1) | covered(z, nz, 2);
+        m += number < n ? 1u : 0u;
+      }
+      f(cells, m);
+    }
+  }
+
+  /// Calls f(first, n) for runs of cells, first .. first + n, which are all that a triangle with this box is put into.
+  template <class F>
+  COLLIDE_HD_INLINE void each_row(box<S> const& b, F const& f) const {
+    if (levels == 0 || b.is_empty()) return;
+    grid_level<S> const& l = level_of(b);
+    cell_range const r = cells_of(l, b);
+    std::uint32_t const from = r.lower[0] & l.mask[0], n = r.upper[0] - r.lower[0] + 1;
+    std::uint32_t const to_end = l.mask[0] + 1 - from;
+    for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
+      for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) {
+        std::uint32_t const row = l.row(y, z);
+        f(row + from, smaller(n, to_end));
+        if (n > to_end) f(row, n - to_end);
+      }
+    }
+  }
+};
+
+/// The triangles of a cell.
+struct alignas(8) cell_list {
+  std::uint32_t count;
+  std::uint32_t end;  ///< of its entries; while they are written, of those that are
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,208 @@
+/// \file
+/// What a kernel asks the grids for a single sphere. The members are those of triangle_ref.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/grid/grid.hpp>
+#include <collide/detail/grid/occupancy.hpp>
+#include <collide/detail/grid/swept_cells.hpp>
+#include <collide/detail/grid/triangle_ref.hpp>
+
+namespace collide::detail {
+
+/// The lookup of `bucket`: the grids, as bucket.cuh has them.
+template <class S>
+struct bucket_lookup : triangle_lookup<S> {
+  grid<S> const* grids;
+  int grid_count;
+  std::uint8_t const* occupied;
+  cell_list const* lists;
+  std::uint32_t const* total;
+  cell_entry const* entries;
+  std::size_t capacity;
+
+  static constexpr int nowhere = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
+
+  COLLIDE_HD bucket_lookup opened() const {
+    bucket_lookup open = *this;
+    if (grid_count > 0) open.bits = grids[0].bits;
+    if (grid_count > 0 && *total > capacity) open.grid_count = 0;
+    return open;
+  }
+
+  COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) != 0; }
+
+  template <class Ball>
+  COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
+    if (this->mesh.size() == 0) return true;
+    int const g = grid_of(ball);
+    return g < 0 ? g == nowhere : empty_in(grids[g], ball);
+  }
+
+  /// The same, of a ball that this grid serves.
+  template <class Ball>
+  COLLIDE_HD_INLINE bool empty_in(grid<S> const& g, Ball const& ball) const {
+    COLLIDE_ROLLED
+    for (int l = 0; l < g.levels; ++l) {
+      if (!empty_level(g, g.level[l], ball)) return false;
+    }
+    return true;
+  }
+
+  /// True if a ball of this radius looks into one cell of one level, wherever it is, and into the few of its way if
+  /// that is short. All that this depends on is read at once.
+  COLLIDE_HD_INLINE bool is_simple(S radius) const {
+    if (grid_count != 1) return false;
+    bool const complete = *total <= capacity, one_level = grids[0].levels == 1, served = radius <= grids[0].reach;
+    return complete & one_level & served & valid_radius(radius);
+  }
+
+  /// Then, what tells it; may be asked before that is known.
+  COLLIDE_HD_INLINE cell_marks<S> marks() const {
+    if (grid_count != 1) return {};
+    grid<S> const& g = grids[0];
+    return {{g.lower[0], g.lower[1], g.lower[2]},
+            {bits(g.upper[0] - g.lower[0]), bits(g.upper[1] - g.lower[1]), bits(g.upper[2] - g.lower[2])},
+            g.level[0],
+            occupied};
+  }
+
+  template <class Ball>
+  COLLIDE_HD candidate_cursor begin(Ball const& ball) const {
+    return {this->mesh.size() == 0 ? nowhere : grid_of(ball), 0, 0, 0};
+  }
+
+  template <class Ball>
+  COLLIDE_HD bool next(Ball const& ball, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    if (c.grid == nowhere) return false;
+    if (c.grid == everywhere) return this->next_of_all(c, most, range);
+    grid<S> const& g = grids[c.grid];
+    for (; c.level < g.levels; ++c.level, c.step = 0) {
+      if (!next_of_level(g, g.level[c.level], ball, c, most, range)) continue;
+      if (c.level + 1 == g.levels && was_last(ball, c)) c.grid = nowhere;
+      return true;
+    }
+    c.grid = nowhere;
+    return false;
+  }
+
+  /// The same of a ball that was marked: from what is known of its cell, without asking the grid. Its cursor begins
+  /// with `candidate_cursor::first_marked()`.
+  COLLIDE_HD_INLINE bool next_marked(cell_marks<S> const& marks, vec3<S> const& centre, candidate_cursor& c,
+                                     std::uint32_t most, candidate_range& range) const {
+    if (c.grid == nowhere) return false;
+    covered_cell const at = marks.place_of(centre);
+    bool const some = next_of_cell(at.number, at.part, c, most, range);
+    if (c.step != 0) c.grid = nowhere;
+    return some;
+  }
+
+ private:
+  /// The tightest grid that serves a ball; grids come by falling reach.
+  template <class Ball>
+  COLLIDE_HD_INLINE int grid_of(Ball const& ball) const {
+    if (!valid_radius(ball.radius) || !finite_way(ball)) return nowhere;
+    int number = everywhere;
+    COLLIDE_ROLLED
+    for (int g = 0; g < grid_count; ++g) {
+      if (!serves(grids[g], ball)) continue;
+      number = meets(grids[g], ball) ? g : nowhere;
+    }
+    return number;
+  }
+
+  /// Of a ball at rest this is not asked: it is in no grid if its centre is NaN.
+  static COLLIDE_HD_INLINE bool finite_way(sphere<S> const&) { return true; }
+  static COLLIDE_HD_INLINE bool finite_way(moving_sphere<S> const& ball) {
+    return finite(ball.centre) && finite(ball.displacement);
+  }
+
+  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& ball) { return ball.radius <= g.reach; }
+  static COLLIDE_HD_INLINE bool meets(grid<S> const& g, sphere<S> const& ball) {
+    std::uint32_t inside = 1;  // without branches
+    for (int k = 0; k < 3; ++k) {
+      inside &= ball.centre[k] >= g.lower[k] ? 1u : 0u;
+      inside &= ball.centre[k] <= g.upper[k] ? 1u : 0u;
+    }
+    return inside != 0;
+  }
+
+  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, moving_sphere<S> const& ball) {
+    S const inverse_width = g.levels > 0 ? g.level[0].inverse_width : S(0);
+    bool served = ball.radius <= g.reach;
+    for (int k = 0; k < 3; ++k) {
+      served = served && way<S>::can_walk(g.lower[k], g.upper[k], inverse_width, ball.centre[k], ball.displacement[k]);
+    }
+    return served;
+  }
+  static COLLIDE_HD_INLINE bool meets(grid<S> const& g, moving_sphere<S> const& ball) {
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      inside = inside && way<S>::enters(g.lower[k], g.upper[k], ball.centre[k], ball.displacement[k]);
+    }
+    return inside;
+  }
+
+  COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball) const {
+    return !is_occupied(g.cell_of(l, ball.centre));
+  }
+  COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball) const {
+    cell_range const r = way<S>::cells_around(g, l, ball.centre, ball.displacement);
+    if (!way<S>::is_short(r)) return false;  // is looked at more closely when it is walked
+    bool occupied = false;
+    for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
+      for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) {
+        std::uint32_t const row = l.row(y, z);
+        for (std::uint32_t x = r.lower[0]; x <= r.upper[0]; ++x) {
+          occupied = occupied || is_occupied(row + (x & l.mask[0]));
+        }
+      }
+    }
+    return !occupied;
+  }
+
+  /// The entries of a cell that have not been gone through; then the cursor is at the next step.
+  COLLIDE_HD bool next_of_cell(std::uint32_t cell, std::uint32_t place, candidate_cursor& c, std::uint32_t most,
+                               candidate_range& range) const {
+    cell_list const list = lists[cell];
+    std::uint32_t const left = list.count - c.skip, some = smaller(left, most);
+    if (left != 0) range = {entries + (list.end - left), 0, some, place};
+    c.skip += some;
+    if (some == left) {
+      ++c.step;
+      c.skip = 0;
+    }
+    return left != 0;
+  }
+
+  /// Whether the cell that was gone through last is known to be the last one of a level: a ball at rest is in one.
+  static COLLIDE_HD_INLINE bool was_last(sphere<S> const&, candidate_cursor const& c) { return c.step != 0; }
+  static COLLIDE_HD_INLINE bool was_last(moving_sphere<S> const&, candidate_cursor const&) { return false; }
+
+  COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball, candidate_cursor& c,
+                                std::uint32_t most, candidate_range& range) const {
+    if (c.step != 0) return false;
+    covered_cell const at = g.place_of(l, ball.centre);
+    return next_of_cell(at.number, at.part, c, most, range);
+  }
+
+  COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball,
+                                candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    way<S> const path(g, l, ball.centre, ball.displacement);
+    while (c.step < path.steps()) {
+      auto const here = path.at(c.step);
+      std::uint32_t const cell = l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]);
+      if (!here.is_cell || !is_occupied(cell)) {
+        ++c.step;
+        c.skip = 0;
+        continue;
+      }
+      if (next_of_cell(cell, here.part, c, most, range)) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace collide::detail

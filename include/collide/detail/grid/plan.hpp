@@ -1,0 +1,209 @@
+/// \file
+/// How wide the cells of a grid are, how many levels it has and how large its table is.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <collide/detail/grid/grid.hpp>
+#include <collide/detail/grid/mesh_statistics.hpp>
+
+namespace collide::detail {
+
+/// Kernel body of a block per grid: chooses widths, levels and table sizes from the summary of the mesh. A single
+/// lane's work of some microseconds, so that a build on the device need not wait for the host; much of that is fetching
+/// instructions, so the fewer the better. Other blocks empty the lists of the cells meanwhile.
+template <class S>
+struct plan_grid {
+  static constexpr int items = 1;
+
+  mesh_summary<S> const* summary;
+  grid<S>* grids;
+  S reaches[max_grids];
+  S cell_width;              ///< asked for; 0 = choose
+  S usual_span;              ///< how many cells wide most triangles are at most, if the width is not asked for
+  float entry_limit;         ///< how many entries a grid may have, if the width is asked for
+  std::uint32_t table_bits;  ///< log2 of the number of cells per grid
+  bool pairs;                ///< triangles may be put into the cells two at a time
+  int grid_count;
+  cell_list* lists;
+  std::size_t list_count;  ///< to be emptied
+
+  static constexpr std::size_t lists_of_lane = 16;
+
+  template <class Block>
+  std::size_t blocks() const {
+    constexpr std::size_t per_block = Block::lanes * lists_of_lane;
+    return static_cast<std::size_t>(grid_count) + (list_count + per_block - 1) / per_block;
+  }
+
+  template <class Block>
+  struct scratch {
+    typename Block::template single<mesh_summary<S>> seen;
+    int medians[2];
+  };
+
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    if (block.index() >= static_cast<std::size_t>(grid_count)) {
+      constexpr std::size_t per_block = Block::lanes * lists_of_lane;
+      std::size_t const first = (block.index() - static_cast<std::size_t>(grid_count)) * per_block;
+      std::size_t const end = smaller(first + per_block, list_count);
+      block.each([&](int lane) {
+        COLLIDE_ROLLED
+        for (std::size_t i = first + static_cast<std::size_t>(lane); i < end; i += Block::lanes) lists[i] = {0, 0};
+      });
+      return;
+    }
+    mesh_summary<S> const& seen = block.near(s.seen, *summary);
+    block.each([&](int lane) {
+      for (int b = lane; b <= (pairs ? 1 : 0); b += Block::lanes) s.medians[b] = median(seen.extents[b]);
+    });
+    block.each([&](int lane) {
+      if (lane != 0) return;
+      auto& g = grids[block.index()];
+      grid_frame<S> const frame = plan(block.index(), seen, s.medians, g.level);
+      static_cast<grid_frame<S>&>(g) = frame;
+    });
+  }
+
+ private:
+  /// Sets the levels and returns the rest; `medians` are the bins that half of the sizes do not exceed.
+  COLLIDE_HD grid_frame<S> plan(std::size_t i, mesh_summary<S> const& seen, int const* medians,
+                                grid_level<S>* levels) const {
+    auto const* const extents = seen.extents;
+    grid_frame<S> g{};
+    g.reach = reaches[i];
+    levels[0] = {};          // is read before it is known whether there is one
+    if (extents->empty()) {  // no finite triangle: a box that contains nothing
+      for (int k = 0; k < 3; ++k) {
+        g.lower[k] = 1;
+        g.upper[k] = -1;
+      }
+      return g;
+    }
+    S far = g.reach;
+    for (int k = 0; k < 3; ++k) {
+      g.lower[k] = seen.lower_of(k);
+      g.upper[k] = seen.upper_of(k);
+      far = larger(far, larger(abs_of(g.lower[k]), abs_of(g.upper[k])));
+    }
+    g.dilation =
+        g.reach * (1 + 4 * S(format<float>::unit)) + 64 * format<S>::unit * far + 64 * std::numeric_limits<S>::min();
+    for (int k = 0; k < 3; ++k) {
+      g.lower[k] -= g.dilation;
+      g.upper[k] += g.dilation;
+    }
+
+    // pairs, if they are hardly larger than triangles, also the largest: in all grids or in none, whatever their reach
+    S const least = 2 * reaches[grid_count - 1];
+    auto const hardly_larger = [&](int bin, int than) { return size(bin) + least <= S(1.25) * (size(than) + least); };
+    bool const alike = pairs && hardly_larger(extents[1].last(), extents[0].last());
+    g.bits = alike && hardly_larger(medians[1], medians[0]) ? 1 : 0;
+    size_histogram const& sizes = extents[g.bits];
+    int const middle = medians[g.bits];
+    S extent = 0;
+    for (int k = 0; k < 3; ++k) extent = larger(extent, g.upper[k] - g.lower[k]);
+    constexpr S end = std::numeric_limits<S>::max() / 16;
+    int const top = sizes.last();
+    S const tallest = margin * size(g, top);
+    if (!(extent < end && far < end &&
+          tallest < end)) {  // the range of S does not suffice: a grid that serves no sphere
+      g.reach = -1;
+      return g;
+    }
+    // from this width on, cell coordinates are exact enough for `margin`
+    S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
+    // the largest must fit also when the quotient is rounded down
+    S const usual = div(smaller(tallest, 2 * margin * size(g, middle)), usual_span) * (1 + 4 * format<S>::unit);
+    S width = larger(narrowest, cell_width > 0 ? cell_width : usual);
+    S const span = cell_width > 0 ? span_for(g, width, sizes) : usual_span;
+    // half of the cells for the finest level, the rest for the others together; all if there are no others
+    std::uint32_t const first_cell = static_cast<std::uint32_t>(i) << table_bits;
+    int bin = sizes.first();
+    while (bin <= top) {
+      if (g.levels + 1 == max_levels) width = larger(width, tallest / span);
+      while (margin * size(g, bin) > width * span) width *= 2;
+      int next = bin + 1;
+      while (next <= top && (sizes.counts[next] == 0 || margin * size(g, next) <= width * span)) ++next;
+      bool const last = next > top;
+      grid_level<S>& l = levels[g.levels++];
+      if (g.levels == 1) g.width = width;
+      l.inverse_width = div(S(1), width);
+      l.largest = last ? std::numeric_limits<S>::infinity() : size(g, next - 1);
+      l.first = first_cell + g.cells;
+      std::uint32_t bits = table_bits;
+      if (g.levels > 1) {
+        bits = table_bits - 5;
+      } else if (!last) {
+        bits = table_bits - 1;
+      }
+      g.cells += dimension(g, l, std::uint32_t{1} << bits);
+      width *= 2;
+      bin = next;
+    }
+    return g;
+  }
+
+ private:
+  /// Cells are wider than the largest triangle of their level by this factor, so that rounding cannot make it touch
+  /// more than `span` + 1 of them on an axis.
+  static constexpr S margin = S(1.125);
+
+  static COLLIDE_HD S abs_of(S x) { return x < 0 ? -x : x; }
+
+  /// The largest extent in a bin of the histogram, and the largest dilated one.
+  static COLLIDE_HD S size(int bin) { return S(bin_end(static_cast<std::uint32_t>(bin))); }
+  static COLLIDE_HD S size(grid_frame<S> const& g, int bin) { return size(bin) + 2 * g.dilation; }
+
+  static COLLIDE_HD int median(size_histogram const& sizes) {
+    if (sizes.empty()) return 0;
+    std::uint64_t total = 0;
+    COLLIDE_ROLLED
+    for (int b = sizes.first(); b <= sizes.last(); ++b) total += sizes.counts[b];
+    int b = sizes.first();
+    COLLIDE_ROLLED
+    for (std::uint64_t below = sizes.counts[b]; 2 * below < total; below += sizes.counts[++b]) {
+    }
+    return b;
+  }
+
+  /// How many cells of the width asked for a triangle may span before it goes to a wider level: as many as the limit on
+  /// entries allows, at most 64.
+  COLLIDE_HD S span_for(grid_frame<S> const& g, S width, size_histogram const& sizes) const {
+    for (S span = 64; span > 1; span /= 2) {
+      float entries = 0;
+      for (int b = sizes.first(); b <= sizes.last(); ++b) {
+        auto const cells = static_cast<float>(smaller(span, size(g, b) / width)) + 2;
+        entries += static_cast<float>(sizes.counts[b]) * cells * cells * cells;
+      }
+      if (entries <= entry_limit) return span;
+    }
+    return 1;
+  }
+
+  /// Gives each axis of the level as many cells as the grid has, and if that is more than `most` in all, cuts the
+  /// longest axes down to powers of two, where coordinates wrap. Returns the number of cells.
+  static COLLIDE_HD std::uint32_t dimension(grid_frame<S> const& g, grid_level<S>& l, std::uint64_t most) {
+    std::uint64_t cells[3];
+    for (int k = 0; k < 3; ++k) {
+      cells[k] = std::uint64_t{g.coordinate(l, g.upper[k], k)} + 1;
+      l.mask[k] = (1u << 31) - 1;
+    }
+    // no product overflows: there are at most 2^30 + 1 cells on an axis
+    while (cells[0] * cells[1] > most || cells[0] * cells[1] * cells[2] > most) {
+      int longest = 0;
+      for (int k = 1; k < 3; ++k) longest = cells[k] > cells[longest] ? k : longest;
+      std::uint64_t power = 1;
+      while (2 * power < cells[longest]) power *= 2;
+      cells[longest] = power;
+      l.mask[longest] = static_cast<std::uint32_t>(power - 1);
+    }
+    l.stride[0] = static_cast<std::uint32_t>(cells[0]);
+    l.stride[1] = static_cast<std::uint32_t>(cells[0] * cells[1]);
+    return static_cast<std::uint32_t>(cells[0] * cells[1] * cells[2]);
+  }
+};
+
+}  // namespace collide::detail

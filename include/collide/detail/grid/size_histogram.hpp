@@ -1,0 +1,93 @@
+/// \file
+/// Histograms of sizes over quarter octaves: what the grid is planned from.
+#pragma once
+
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
+
+namespace collide::detail {
+
+/// Bins for all non-negative floats: four per octave.
+inline constexpr int size_bins = 1024;
+
+/// The bin of a size; sizes beyond the range of float count as its end.
+template <class S>
+COLLIDE_HD_INLINE std::uint32_t size_bin(S size) {
+  float const x =
+      size < S(std::numeric_limits<float>::max()) ? static_cast<float>(size) : std::numeric_limits<float>::max();
+  return bits(x) >> 21;
+}
+
+/// A size that no size in the bin exceeds; +infinity for the last bin, which holds all sizes beyond float.
+COLLIDE_HD_INLINE float bin_end(std::uint32_t bin) {
+  std::uint32_t const end = (bin + 1) << 21;
+  return from_bits<float>(end < format<float>::exponent_mask ? end : format<float>::exponent_mask);
+}
+
+/// A histogram in memory; memory of zeros is an empty one.
+struct size_histogram {
+  std::uint32_t lowest;   ///< ~bin, of the lowest in use
+  std::uint32_t highest;  ///< bin + 1
+  std::uint32_t counts[size_bins];
+
+  /// Empties a histogram in memory of the space.
+  template <class Space>
+  static void clear(Space& space, size_histogram* h) {
+    space.fill(h, 0, sizeof *h);
+  }
+
+  COLLIDE_HD_INLINE void add(std::uint32_t bin, std::uint32_t n) {
+    fetch_add(counts + bin, n);
+    fetch_max(&lowest, ~bin);
+    fetch_max(&highest, bin + 1);
+  }
+
+  COLLIDE_HD int first() const { return static_cast<int>(~lowest); }
+  COLLIDE_HD int last() const { return static_cast<int>(highest) - 1; }
+  COLLIDE_HD bool empty() const { return highest == 0; }
+};
+
+/// Counts in scratch memory first, so that a bin in memory is touched once per block. A block of one lane has so few
+/// sizes, and most of them alike, that it counts the last ones only.
+template <class Block>
+struct block_histogram {
+  static constexpr int kept = Block::lanes > 1 ? size_bins : 8;  ///< a power of two
+
+  std::uint32_t counts[kept];
+  std::uint32_t bins[Block::lanes > 1 ? 1 : kept];  ///< of one lane: whose counts they are
+
+  COLLIDE_HD_INLINE void clear(Block& block) {
+    block.each([&](int lane) {
+      for (int b = lane; b < kept; b += Block::lanes) counts[b] = 0;
+    });
+  }
+
+  COLLIDE_HD_INLINE void add(Block& block, size_histogram* to, std::uint32_t bin) {
+    if constexpr (Block::lanes > 1) {
+      block.add(counts[bin], 1);
+    } else {
+      std::uint32_t const place = bin % kept;
+      if (counts[place] != 0 && bins[place] != bin) {
+        to->add(bins[place], counts[place]);
+        counts[place] = 0;
+      }
+      bins[place] = bin;
+      ++counts[place];
+    }
+  }
+
+  COLLIDE_HD_INLINE void flush(Block& block, size_histogram* to) {
+    block.each([&](int lane) {
+      for (int b = lane; b < kept; b += Block::lanes) {
+        if (counts[b] == 0) continue;
+        if constexpr (Block::lanes > 1) {
+          to->add(static_cast<std::uint32_t>(b), counts[b]);
+        } else {
+          to->add(bins[b], counts[b]);
+        }
+      }
+    });
+  }
+};
+
+}  // namespace collide::detail

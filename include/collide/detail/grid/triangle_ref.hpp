@@ -1,0 +1,117 @@
+/// \file
+/// Which triangles a single sphere could touch, asked from inside a kernel: what a broad phase gives a simulation.
+///
+/// An index gives a trivially copyable `lookup()`. Of that, `is_simple(radius)` is true if balls of this radius are
+/// best asked several at a time whether they can touch a triangle: `marks().mark(marks().places_of(x, y, z), near)`, or
+/// `marks().mark_ways(batch, near)` of those that move; `next_marked` then is `next` of those at rest that were marked.
+/// In a kernel, `opened()` is that lookup for use, and then
+///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
+///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
+///     entries, until it returns false; one may appear more than once if the ball moves; `cursor.at_end()` is true if
+///     it is known to return false the next time;
+///   - `range.at(k)` is an entry, of 2^`bits` triangles, `range.may_touch(entry)` a quick test whether the ball could
+///     touch them, and `near(around, number)` one whether a ball could touch a triangle all of whose way is in the
+///     ball `around`; `each_near(around, entry, f)` calls f(number) for those of an entry that are near.
+#pragma once
+
+#include <cstdint>
+
+#include <collide/detail/geometry/aabb.hpp>
+#include <collide/detail/geometry/swept_bounds.hpp>
+#include <collide/detail/grid/cell_coverage.hpp>
+#include <collide/detail/narrow_phase/intersects.hpp>
+#include <collide/mesh.hpp>
+
+namespace collide::detail {
+
+/// Entries that follow each other in memory, or in number.
+struct candidate_range {
+  cell_entry const* listed;  ///< those of a cell; null: there are all, numbered from `first`
+  id first;
+  std::uint32_t count;
+  std::uint32_t place;  ///< of the ball, or of its way, in the cell
+
+  COLLIDE_HD_INLINE cell_entry at(std::uint32_t k) const {
+    return listed != nullptr ? listed[k] : cell_entry{first + k, cell_part::whole};
+  }
+  COLLIDE_HD_INLINE bool may_touch(cell_entry const& e) const { return cell_part::meets(e.part, place); }
+};
+
+/// How far the candidates of a ball have been gone through.
+struct candidate_cursor {
+  static constexpr int ended = -1;  ///< in place of a grid's number
+
+  int grid, level;
+  std::uint32_t step, skip;
+
+  /// That of a ball which was marked.
+  static COLLIDE_HD_INLINE candidate_cursor first_marked() { return {0, 0, 0, 0}; }
+
+  /// True if there are no more. False where that is not known yet.
+  COLLIDE_HD_INLINE bool at_end() const { return grid == ended; }
+};
+
+/// What both lookups share: the triangles, and a cheap test for each.
+template <class S>
+struct triangle_lookup {
+  mesh_view<S> mesh;
+  triangle_box<S> const* boxes;  ///< and one more, which may be anything; may be null
+  std::uint32_t bits;            ///< log2 of how many triangles an entry is; the last ones need not exist
+
+  COLLIDE_HD_INLINE bool near(sphere<S> const& around, id number) const {
+    triangle_box<S> const box = boxes != nullptr ? boxes[number] : triangle_box<S>::everywhere();
+    bool const reached = box.reached(around.centre, around.radius);
+    return reached & (number < mesh.size());
+  }
+
+  /// Whether a triangle of an entry that has passed the quick tests exists, and is near unless the narrow phase asks
+  /// that itself before anything else.
+  template <class NarrowPhase, class Ball>
+  COLLIDE_HD_INLINE bool may_touch(Ball const& ball, id number) const {
+    if constexpr (in_stages<NarrowPhase>::value) {
+      return number < mesh.size();
+    } else {
+      return near(enclosing(ball), number);
+    }
+  }
+
+  /// The box around an entry.
+  COLLIDE_HD_INLINE box<S> box_of(cell_entry const& e) const {
+    box<S> const first = own_box(e.number << bits);
+    if (bits == 0 || (e.number << bits) + 1 == mesh.size()) return first;
+    return typename box<S>::unite{}(first, own_box((e.number << bits) + 1));
+  }
+
+  template <class F>
+  COLLIDE_HD_INLINE void each_near(sphere<S> const& around, cell_entry const& e, F const& f) const {
+    for (std::uint32_t k = 0; k >> bits == 0; ++k) {
+      id const number = (e.number << bits) + k;
+      if (near(around, number)) f(number);
+    }
+  }
+
+  /// How many entries all triangles are.
+  COLLIDE_HD_INLINE std::uint32_t entry_count() const {
+    return static_cast<std::uint32_t>((mesh.size() + ((std::size_t{1} << bits) - 1)) >> bits);
+  }
+
+  /// All triangles, one range after the other.
+  COLLIDE_HD bool next_of_all(candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    std::uint32_t const n = entry_count();
+    if (c.skip >= n) return false;
+    range = {nullptr, c.skip, smaller(n - c.skip, most), cell_part::anywhere};
+    c.skip += range.count;
+    if (c.skip == n) c.grid = candidate_cursor::ended;
+    return true;
+  }
+
+ private:
+  COLLIDE_HD_INLINE box<S> own_box(id number) const {
+    return boxes != nullptr ? boxes[number] : triangle_box_of(mesh[number]);
+  }
+};
+
+/// In place of a lookup, if nothing asks.
+struct no_lookup {};
+
+}  // namespace collide::detail

@@ -1,0 +1,98 @@
+/// \file
+/// The exact verdict, in stages: each decides what it is sure of, and leaves the rest to the next.
+#pragma once
+
+#include <type_traits>
+
+#include <collide/detail/predicates/exact.hpp>
+#include <collide/detail/predicates/filter.hpp>
+#include <collide/detail/predicates/fixed_width.hpp>
+
+namespace collide::detail {
+
+/// What decided a verdict.
+enum class stage { box, single_certificate, double_certificate, integers };
+
+/// A verdict, and what decided it.
+struct decision {
+  bool hit;
+  stage by;
+};
+
+/// A verdict that may be open.
+struct attempted {
+  detail::verdict verdict;
+  stage by;
+};
+
+/// The later stages, out of line.
+template <class S>
+COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> const& s) {
+  if (!valid_radius(s.radius) || !finite(s.centre) || !finite(t)) return {false, stage::integers};
+  if (infinite(s.radius)) return {true, stage::integers};
+  local_triangle<double> l = relative<double>(t, s);
+  double size;
+  if (brought_to_size<S>(l, size)) {
+    verdict const v = certify(l, size);
+    if (v != verdict::unsure) return {v == verdict::hit, stage::double_certificate};
+  }
+  fixed_triangle<1> const narrow(t, s);
+  if (narrow.holds()) return {narrow.in_reach(), stage::integers};
+  fixed_triangle<2> const wide(t, s);  // as where a mesh has 1e-14 for 0
+  return {wide.holds() ? wide.in_reach() : exact_triangle<>(t, s).in_reach(), stage::integers};
+}
+
+/// False if the triangle's box is out of reach.
+template <class S>
+COLLIDE_HD_INLINE bool box_is_near(local_triangle<S> const& l) {
+  return box_in_reach(l, larger(l.radius, format<S>::unflushed));
+}
+
+/// The first stages: `unsure` is left to `finish`.
+template <class S>
+COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, sphere<S> const& s) {
+  local_triangle<S> l = relative<S>(t, s);
+  if (!box_is_near(l)) return {verdict::miss, stage::box};
+  S size;
+  if (!brought_to_size<S>(l, size)) return {verdict::unsure, stage::single_certificate};
+  return {certify(rounded<float>(l), static_cast<float>(size)), stage::single_certificate};
+}
+
+/// The same without branches, so that a compiler makes vector code of a loop over several pairs. Less certain: leaves
+/// also what would have to be scaled.
+template <class S>
+COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& s) {
+  using bounds = certificate_bounds<float>;
+  local_triangle<S> const l = relative<S>(t, s);
+  bool const near = box_is_near(l);
+  S const size = size_of(l);
+  bool const sized = (size >= S(bounds::smallest)) & (size <= S(bounds::largest));
+  int const sure = static_cast<int>(certify<true>(rounded<float>(l), static_cast<float>(size)));
+  int const then = (sure & -static_cast<int>(sized)) | static_cast<int>(!sized) << 1;
+  return static_cast<verdict>(then & -static_cast<int>(near));
+}
+
+/// The later stages, for any pair.
+template <class S>
+COLLIDE_HD_INLINE decision finish(triangle<S> const& t, sphere<S> const& s) {
+  triangle<S> const far_triangle = t;  // copies, so that the call does not force the originals into memory
+  sphere<S> const far_sphere = s;
+  return decide_closely(far_triangle, far_sphere);
+}
+
+/// Whether the closed ball touches the closed triangle, in exact real arithmetic on the numbers as they are.
+template <class S>
+COLLIDE_HD_INLINE decision decide(triangle<S> const& t, sphere<S> const& s) {
+  attempted const quick = attempt(t, s);
+  if (quick.verdict != verdict::unsure) return {quick.verdict == verdict::hit, quick.by};
+  return finish(t, s);
+}
+
+/// True for narrow phases that have a quick test which may leave a verdict open, and a slow one for these; then it has
+/// static members attempt(triangle, sphere), which returns a `verdict`, and finish(triangle, sphere), which returns
+/// bool. On the device `attempt` must have the same outcome wherever it is inlined. A class that derives from such a
+/// narrow phase is not one itself: it may have another `intersects`.
+template <class NarrowPhase>
+struct in_stages : std::false_type {};
+
+}  // namespace collide::detail

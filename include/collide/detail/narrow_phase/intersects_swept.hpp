@@ -1,0 +1,63 @@
+/// \file
+/// The exact verdict on a moving sphere, in stages as in decide.hpp.
+#pragma once
+
+#include <collide/detail/narrow_phase/intersects.hpp>
+#include <collide/detail/predicates/exact_swept.hpp>
+#include <collide/detail/predicates/filter_swept.hpp>
+
+namespace collide::detail {
+
+/// The later stages of `decide`, for the first part of a step, until `time`. Unless `finely`, what doubles leave open
+/// is a hit.
+template <class S>
+COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, moving_sphere<S> const& s, dyadic time,
+                                            bool finely = true) {
+  if (!valid_radius(s.radius) || !finite(s.centre) || !finite(s.displacement) || !finite(t)) {
+    return {false, stage::integers};
+  }
+  if (infinite(s.radius)) return {true, stage::integers};
+  local_sweep<double> l = relative<double>(t, s);
+  l.path = scaled(l.path, value_of(time));
+  double size;
+  if (brought_to_size<S>(l, size)) {
+    verdict const v = certify(l, size);
+    if (v != verdict::unsure || !finely) return {v != verdict::miss, stage::double_certificate};
+  }
+  return {exact_sweep<S>(t, s, time).in_reach(), stage::integers};
+}
+
+/// The first stages: `unsure` is left to `finish`.
+template <class S>
+COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, moving_sphere<S> const& s) {
+  local_sweep<S> l = relative<S>(t, s);
+  S size;
+  if (!brought_to_size<S>(l, size)) return {verdict::unsure, stage::single_certificate};
+  return {certify(rounded<float>(l), static_cast<float>(size)), stage::single_certificate};
+}
+
+/// An attempt without branches, from a ball that contains all of the way, and one that the sphere contains at some
+/// time.
+template <class S>
+COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& around, sphere<S> const& midway) {
+  bool const far = attempt_straight(t, around) == verdict::miss, met = attempt_straight(t, midway) == verdict::hit;
+  return static_cast<verdict>((2 - static_cast<int>(met)) & -static_cast<int>(!far));
+}
+
+/// The later stages, for any pair.
+template <class S>
+COLLIDE_HD_INLINE decision finish(triangle<S> const& t, moving_sphere<S> const& s) {
+  triangle<S> const far_triangle = t;  // copies, so that the call does not force the originals into memory
+  moving_sphere<S> const far_sphere = s;
+  return decide_closely(far_triangle, far_sphere, dyadic{1, 0});
+}
+
+/// Whether the closed ball touches the closed triangle on its way, in exact real arithmetic on the numbers as they are.
+template <class S>
+COLLIDE_HD_INLINE decision decide(triangle<S> const& t, moving_sphere<S> const& s) {
+  attempted const quick = attempt(t, s);
+  if (quick.verdict != verdict::unsure) return {quick.verdict == verdict::hit, quick.by};
+  return finish(t, s);
+}
+
+}  // namespace collide::detail

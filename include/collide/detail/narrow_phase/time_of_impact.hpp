@@ -1,0 +1,80 @@
+/// \file
+/// When a moving sphere first touches a triangle.
+///
+/// The distance of the two is a convex function of time. From a time without contact, any direction in which all of the
+/// triangle is farther than the radius gives a later one: that at which the sphere could be there at the earliest. With
+/// the direction to the closest point this is Newton's method, from below, and with bounds on all rounding it is never
+/// late. How close it came is then decided exactly, on a grid of times; where arithmetic in double was not good enough,
+/// as for a sphere that only grazes the triangle, that decides the rest as well.
+#pragma once
+
+#include <collide/detail/narrow_phase/intersects_swept.hpp>
+
+namespace collide::detail {
+
+/// The time is found to within 2^-time_bits<S>, and then rounded down to S.
+template <class S>
+inline constexpr int time_bits = sizeof(S) == sizeof(float) ? 25 : 31;
+
+/// A time, from 0 to 1, before which there is certainly no contact.
+template <class S>
+COLLIDE_HD double earliest_time(triangle<S> const& t, moving_sphere<S> const& s) {
+  constexpr int enough = 40;  // for a tangent way each step halves what is left; else a few do
+  local_sweep<double> l = relative<double>(t, s);
+  double size;
+  if (!brought_to_size<S>(l, size)) return 0;
+  double const outer = l.shape.radius + sweep_error<double> * size;
+  vec3<double> const n = cross<double>(l.shape.b - l.shape.a, l.shape.c - l.shape.a);
+  double time = 0;
+  for (int i = 0; i < enough; ++i) {
+    vec3<double> const g = closest_to_origin(seen_at(l, time), n).point;
+    double const least = smaller(smaller(dot(l.shape.a, g), dot(l.shape.b, g)), dot(l.shape.c, g));
+    double const away = least - mul(outer, root(dot(g, g))), nearer = dot(l.path, g);
+    if (!(away > 0 && nearer > 0)) return time;
+    double const next = div(away, nearer);
+    if (!(next > time)) return time;
+    if (next >= 1) return 1;
+    time = next;
+  }
+  return time;
+}
+
+/// The largest number of `S` that is not above x, for x >= 0.
+template <class S>
+COLLIDE_HD S rounded_down(double x) {
+  S const nearest = static_cast<S>(x);
+  return static_cast<double>(nearest) > x ? from_bits<S>(bits(nearest) - 1) : nearest;
+}
+
+/// Never later than the first contact, and what `time_of_impact` says if `finely`. Else contact is also what doubles
+/// leave open, next to tangency.
+template <class S>
+COLLIDE_HD_INLINE S first_contact(triangle<S> const& t, moving_sphere<S> const& s, bool finely) {
+  double const time = earliest_time(t, s);
+  constexpr std::uint32_t steps = std::uint32_t{1} << time_bits<S>;
+  // no contact until `missed` steps, or just then; contact until `hit` steps
+  auto missed = smaller(static_cast<std::uint32_t>(time * steps), steps - 1), hit = steps;
+  for (std::uint32_t ahead = 1; hit - missed > 1;) {
+    std::uint32_t const middle = missed + smaller(ahead, (hit - missed) / 2);
+    if (decide_closely(t, s, reduced(middle, -time_bits<S>), finely).hit) {
+      hit = middle;
+    } else {
+      missed = middle;
+      if (ahead < steps) ahead *= 2;
+    }
+  }
+  return rounded_down<S>(larger(time, missed * (1.0 / steps)));
+}
+
+/// Never later than the first contact, and earlier by at most 2^-23 for floats and 2^-30 for doubles. 0 if the two
+/// overlap at the beginning. Of a sphere that does not touch the triangle at all: about when it is closest.
+template <class S>
+COLLIDE_HD_NOINLINE S time_of_impact(triangle<S> const& t, moving_sphere<S> const& s) {
+  if (decide(t, static_cast<sphere<S> const&>(s)).hit) return 0;
+  if (!decide(t, s).hit) {
+    return rounded_down<S>(approach(normalised(relative<double>(t, s), t, s)).time);
+  }
+  return first_contact(t, s, true);
+}
+
+}  // namespace collide::detail

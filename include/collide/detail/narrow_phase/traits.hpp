@@ -1,0 +1,48 @@
+/// \file
+/// What a narrow phase has: which spheres it judges, those that rest or those that move, and whether it knows contacts
+/// and impacts.
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+#include <collide/moving_spheres.hpp>
+
+namespace collide::detail {
+
+/// True if the narrow phase has a static member intersects(triangle<S>, Ball) that returns bool.
+template <class NarrowPhase, class S, class Ball, class = void>
+struct judges : std::false_type {};
+template <class NarrowPhase, class S, class Ball>
+struct judges<NarrowPhase, S, Ball,
+              std::enable_if_t<std::is_convertible<decltype(NarrowPhase::intersects(std::declval<triangle<S> const&>(),
+                                                                                    std::declval<Ball const&>())),
+                                                   bool>::value>> : std::true_type {};
+
+/// The view of spheres that a query with the narrow phase takes.
+template <class NarrowPhase, class S>
+using spheres_of = std::conditional_t<judges<NarrowPhase, S, sphere<S>>::value, sphere_view<S>, moving_sphere_view<S>>;
+
+/// True if spheres rest.
+template <class NarrowPhase, class S>
+inline constexpr bool at_rest = std::is_same<spheres_of<NarrowPhase, S>, sphere_view<S>>::value;
+
+/// True if the narrow phase has a static member contact_of(triangle<S>, Ball), Ball as `spheres_of` has it.
+template <class N, class S, class = void>
+struct has_contact : std::false_type {};
+template <class N, class S>
+struct has_contact<
+    N, S,
+    std::void_t<decltype(N::contact_of(std::declval<triangle<S> const&>(), std::declval<moving_sphere<S> const&>()))>>
+    : std::true_type {};
+
+/// The same of a static member impact_of.
+template <class N, class S, class = void>
+struct has_impact : std::false_type {};
+template <class N, class S>
+struct has_impact<
+    N, S,
+    std::void_t<decltype(N::impact_of(std::declval<triangle<S> const&>(), std::declval<moving_sphere<S> const&>()))>>
+    : std::true_type {};
+
+}  // namespace collide::detail

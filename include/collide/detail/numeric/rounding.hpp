@@ -1,0 +1,179 @@
+/// \file
+/// Arithmetic that gives the same bits on host and device, whatever the compiler may contract or approximate.
+///
+/// On the device every product, quotient and root is an explicitly rounded intrinsic, so that neither -fmad nor
+/// --use_fast_math changes it; sums of such products cannot be contracted either. On the host the target
+/// collide::collide adds -ffp-contract=off.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include <collide/geometry.hpp>
+
+namespace collide::detail {
+
+COLLIDE_HD_INLINE float mul(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return __fmul_rn(a, b);
+#else
+  return a * b;
+#endif
+}
+
+COLLIDE_HD_INLINE double mul(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __dmul_rn(a, b);
+#else
+  return a * b;
+#endif
+}
+
+COLLIDE_HD_INLINE float div(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return __fdiv_rn(a, b);
+#else
+  return a / b;
+#endif
+}
+
+COLLIDE_HD_INLINE double div(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __ddiv_rn(a, b);
+#else
+  return a / b;
+#endif
+}
+
+COLLIDE_HD_INLINE float root(float a) {
+#if defined(__CUDA_ARCH__)
+  return __fsqrt_rn(a);
+#else
+  return std::sqrt(a);
+#endif
+}
+
+COLLIDE_HD_INLINE double root(double a) {
+#if defined(__CUDA_ARCH__)
+  return __dsqrt_rn(a);
+#else
+  return std::sqrt(a);
+#endif
+}
+
+/// a * b + c: rounded once on the device, and on the host as the compiler likes.
+COLLIDE_HD_INLINE float fused(float a, float b, float c) {
+#if defined(__CUDA_ARCH__)
+  return __fmaf_rn(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+COLLIDE_HD_INLINE double fused(double a, double b, double c) {
+#if defined(__CUDA_ARCH__)
+  return __fma_rn(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+/// a * b + c, rounded once everywhere.
+COLLIDE_HD_INLINE float multiply_add(float a, float b, float c) {
+#if defined(__CUDA_ARCH__)
+  return __fmaf_rn(a, b, c);
+#else
+  return std::fma(a, b, c);
+#endif
+}
+
+COLLIDE_HD_INLINE double multiply_add(double a, double b, double c) {
+#if defined(__CUDA_ARCH__)
+  return __fma_rn(a, b, c);
+#else
+  return std::fma(a, b, c);
+#endif
+}
+
+/// The value as it was computed: a compiler that may reassociate sums (-ffast-math) cannot look through it.
+template <class T>
+COLLIDE_HD_INLINE T settled(T x) {
+#if !defined(__CUDA_ARCH__) && (defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__))
+  T volatile const kept = x;
+  return kept;
+#else
+  return x;
+#endif
+}
+
+/// Makes the device read all of `x` now: else a compiler puts off what is used later, behind a branch, and that waits
+/// for the memory again.
+template <class T>
+COLLIDE_HD_INLINE void read_at_once([[maybe_unused]] T& x) {
+#if defined(__CUDA_ARCH__)
+  static_assert(sizeof(T) % sizeof(std::uint32_t) == 0, "collide: is kept in registers of 32 bits");
+  std::uint32_t words[sizeof(T) / sizeof(std::uint32_t)];
+  std::memcpy(words, static_cast<void const*>(&x), sizeof x);
+  for (auto& word : words) asm volatile("" : "+r"(word));
+  std::memcpy(static_cast<void*>(&x), words, sizeof x);
+#endif
+}
+
+template <class T>
+COLLIDE_HD_INLINE T dot(vec3<T> const& a, vec3<T> const& b) {
+  return mul(a.x(), b.x()) + mul(a.y(), b.y()) + mul(a.z(), b.z());
+}
+
+template <class T>
+COLLIDE_HD_INLINE T fused_dot(vec3<T> const& a, vec3<T> const& b) {
+  return fused(a.x(), b.x(), fused(a.y(), b.y(), mul(a.z(), b.z())));
+}
+
+template <class T>
+COLLIDE_HD_INLINE vec3<T> cross(vec3<T> const& a, vec3<T> const& b) {
+  return {mul(a.y(), b.z()) - mul(a.z(), b.y()), mul(a.z(), b.x()) - mul(a.x(), b.z()),
+          mul(a.x(), b.y()) - mul(a.y(), b.x())};
+}
+
+template <class T>
+COLLIDE_HD_INLINE vec3<T> scaled(vec3<T> const& a, T s) {
+  return {mul(a.x(), s), mul(a.y(), s), mul(a.z(), s)};
+}
+
+/// 1 / x to within two units in the last place, for x between 2^-126 and 2^126.
+COLLIDE_HD_INLINE float quick_reciprocal(float x) {
+#if defined(__CUDA_ARCH__)
+  return __fdividef(1.0f, x);
+#else
+  return 1 / x;
+#endif
+}
+COLLIDE_HD_INLINE double quick_reciprocal(double x) { return 1 / x; }
+
+template <class T>
+COLLIDE_HD_INLINE T smaller(T a, T b) {
+  return b < a ? b : a;
+}
+
+template <class T>
+COLLIDE_HD_INLINE T larger(T a, T b) {
+  return a < b ? b : a;
+}
+
+template <class T>
+COLLIDE_HD_INLINE vec3<T> smaller(vec3<T> const& a, vec3<T> const& b) {
+  return {smaller(a.x(), b.x()), smaller(a.y(), b.y()), smaller(a.z(), b.z())};
+}
+
+template <class T>
+COLLIDE_HD_INLINE vec3<T> larger(vec3<T> const& a, vec3<T> const& b) {
+  return {larger(a.x(), b.x()), larger(a.y(), b.y()), larger(a.z(), b.z())};
+}
+
+template <class T>
+COLLIDE_HD_INLINE T largest(vec3<T> const& a) {
+  return larger(larger(a.x(), a.y()), a.z());
+}
+
+}  // namespace collide::detail

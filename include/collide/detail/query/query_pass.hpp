@@ -1,0 +1,44 @@
+/// \file
+/// One pass of a query, as a sink calls it.
+#pragma once
+
+#include <type_traits>
+
+#include <collide/concepts.hpp>
+#include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/detail/query/deferred_pairs.hpp>
+
+namespace collide::detail {
+
+/// One pass of a query over the scene, as a sink sees it; see concepts.hpp.
+template <class Index, class NarrowPhase, class Space, class S>
+struct query_pass {
+  using narrow_phase = NarrowPhase;
+  using scalar = S;
+
+  Index const& index;
+  Space& space;
+  mesh_view<S> mesh;
+  spheres_of<NarrowPhase, S> spheres;
+  undecided_list& open;
+
+  template <class Handle>
+  void operator()(Handle const& handle) const {
+    static_assert(
+        is_handle<Handle>::value,
+        "collide: what a sink passes to query has a const member reserve(n) and a const member store(slot, hit)");
+    static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
+                  "collide: what a sink hands to the device must be a plain value");
+    if (mesh.size() != 0 && spheres.size() != 0) {
+      if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
+        query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open);
+        return;
+      } else {
+        index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
+      }
+    }
+    if constexpr (finishes<Handle>::value) space.for_each(1, finish_only<Handle>{handle});
+  }
+};
+
+}  // namespace collide::detail

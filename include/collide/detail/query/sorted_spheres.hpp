@@ -1,0 +1,215 @@
+/// \file
+/// Buckets the other way round, for a CPU and many spheres: the spheres are sorted into the cells, and the triangles
+/// look for them there.
+///
+/// The cells are those of detail/grid/grid.hpp, and a triangle looks into those that it would be entered into, so the
+/// same pairs meet, each once. But nothing is entered: a bit per cell is all that is prepared. Most spheres are in
+/// cells that no triangle touches, and are sorted out at the pace of the memory; the few others are copied in the order
+/// of the cells. Neighbouring triangles, which most meshes have one after the other, then read the same spheres from
+/// the nearest cache.
+///
+/// Spheres that move go the same way as the balls around their ways, which are spheres at rest; the narrow phase then
+/// judges the spheres themselves. That is for short ways: the ball around a long one touches much that the sphere does
+/// not.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/execution/launch.hpp>
+#include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/geometry/sphere_pack.hpp>
+#include <collide/detail/grid/grid.hpp>
+#include <collide/detail/query/bin_spheres.hpp>
+#include <collide/detail/query/triangle_major.hpp>
+#include <collide/memory.hpp>
+
+namespace collide::detail {
+
+/// Kernel body of `for_each` over triangles: sets a bit for every cell that a triangle looks into.
+template <class S>
+struct mark_cells {
+  triangle_box<S> const* boxes;
+  grid<S> const* grids;
+  int grid_count;
+  std::uint32_t* occupied;
+
+  void operator()(std::size_t i) const {
+    for (int g = 0; g < grid_count; ++g) {
+      grids[g].each_row(boxes[i], [&](std::uint32_t first, std::uint32_t n) {
+        for (std::uint32_t const end = first + n; first < end;) {
+          std::uint32_t const next = smaller((first / 32 + 1) * 32, end);
+          std::uint32_t const bits = 0xffffffffu >> (32 - (next - first)) << first % 32;
+          if ((load_relaxed(occupied + first / 32) & bits) != bits) fetch_or(occupied + first / 32, bits);
+          first = next;
+        }
+      });
+    }
+  }
+};
+
+/// Kernel body of a block of one lane: the longest displacement, squared, and the farthest coordinate, as bits, of
+/// which the larger are those of the larger number. What is NaN does not count, also where the compiler takes it that
+/// there is none.
+template <class S>
+struct measure_ways {
+  static constexpr int items = 4;
+  static constexpr std::size_t batches = 64;  ///< of `Block::items` spheres
+
+  moving_sphere_view<S> spheres;
+  bits_of<S>* squared_length;  ///< 0 at first
+  bits_of<S>* farthest;        ///< the same
+
+  struct nothing {};
+  template <class>
+  using scratch = nothing;
+
+  template <class Block>
+  void operator()(Block& block, nothing&) const {
+    constexpr std::size_t share = batches * Block::items;
+    std::size_t const begin = block.index() * share, end = smaller(begin + share, spheres.size());
+    bits_of<S> lengths[Block::items] = {}, fars[Block::items] = {};  // one would be compared one after the other
+    vectorised([&] { measure(begin, end, lengths, fars); });
+    for (int k = 1; k < Block::items; ++k) {
+      lengths[0] = larger(lengths[0], lengths[k]);
+      fars[0] = larger(fars[0], fars[k]);
+    }
+    fetch_max(squared_length, lengths[0]);
+    fetch_max(farthest, fars[0]);
+  }
+
+ private:
+  template <std::size_t n>
+  void measure(std::size_t begin, std::size_t end, bits_of<S> (&lengths)[n], bits_of<S> (&fars)[n]) const {
+    for (std::size_t first = begin; first < end; first += n) {
+      moving_batch<S, n> batch;
+      batch.load(spheres, first);
+      for (std::size_t k = 0; k < n; ++k) {
+        S const dx = batch.dx[k], dy = batch.dy[k], dz = batch.dz[k];
+        lengths[k] = larger(lengths[k], magnitude_bits(dx * dx + (dy * dy + dz * dz)));
+        bits_of<S> const xy = larger(magnitude_bits(batch.x[k]), magnitude_bits(batch.y[k]));
+        fars[k] = larger(fars[k], larger(xy, magnitude_bits(batch.z[k])));
+      }
+    }
+  }
+
+  /// Bits of |x|; 0 if that is NaN.
+  static bits_of<S> magnitude_bits(S x) {
+    bits_of<S> const b = bits(x) & ~bits(-S(0));
+    return b > bits(std::numeric_limits<S>::infinity()) ? 0 : b;
+  }
+};
+
+/// The spheres of a query in the order of the cells, and what triangles look for them with.
+template <class S>
+class sorted_spheres {
+ public:
+  /// The most spheres that can be sorted: places have 32 bits, and a sphere may be in a cell of each level.
+  static constexpr std::size_t most = std::size_t{0xffffffffu} / max_levels - sphere_columns<S>::lanes;
+
+  /// Marks the cells that triangles touch. To be called for new grids, the cells of each of which begin at a multiple
+  /// of 2^table_bits.
+  template <class Space>
+  void mark(Space& space, triangle_box<S> const* boxes, std::size_t triangles, grid<S> const* grids, int grid_count,
+            std::uint32_t table_bits) {
+    boxes_ = boxes;
+    grids_ = grids;
+    grid_count_ = grid_count;
+    auto const last = static_cast<std::size_t>(grid_count - 1);
+    cells_ = (last << table_bits) + space.read(grids + last).cells;  // of many grids some cells are not in use
+    std::size_t const words = cells_ / 32 + 1;
+    std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
+    space.fill(occupied, 0, words * sizeof *occupied);
+    space.for_each(triangles, mark_cells<S>{boxes, grids, grid_count, occupied});
+  }
+
+  /// How far the grid must reach for spheres of one radius that move: the radius of a ball around the way of each.
+  template <class Space>
+  S reach_of(Space& space, moving_sphere_view<S> const& spheres) {
+    auto* const found = measures_.reserve(space.resource(), 2);
+    space.fill(found, 0, 2 * sizeof *found);
+    measure_ways<S> const body{spheres, found, found + 1};
+    constexpr std::size_t share = measure_ways<S>::batches * 64;
+    space.launch((spheres.size() + share - 1) / share, body);
+    S const length = root(from_bits<S>(space.read(found))), far = from_bits<S>(space.read(found + 1));
+    // of none is it larger, but for some rounding
+    return enclosing(moving_sphere<S>{{{far, far, far}, spheres.common_radius()}, {length, S(0), S(0)}}).radius *
+           (1 + 32 * S(format<float>::unit));
+  }
+
+  /// Sorts the spheres into the cells: of type sphere_view, or balls_around. O(spheres + cells).
+  template <class Space, class Spheres>
+  void sort(Space& space, Spheres const& spheres) {
+    using place = place_spheres<S, Spheres>;
+    auto* const total = total_.reserve(space.resource(), 1);
+    std::size_t room = larger(placed_.capacity(), spheres.size() / 16 + 1024);
+    for (;; room = static_cast<std::size_t>(*total + *total / 4)) {
+      auto* const placed = placed_.reserve(space.resource(), room);
+      space.fill(total, 0, sizeof *total);
+      place const body{spheres, grids_, grid_count_, occupied_.data(), everywhere(), placed, total, room};
+      constexpr std::size_t share = place::batches * 64;
+      space.launch((spheres.size() + share - 1) / share, body);
+      if (*total <= room) break;
+    }
+    auto const n = static_cast<std::size_t>(*total);
+    columns_ = columns(space, placed_.capacity());
+    if constexpr (std::is_same<Spheres, balls_around<S>>::value) {
+      columns_.moving = moving_.reserve(space.resource(), placed_.capacity());
+    }
+    // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
+    std::size_t const table = cells_ + 2;
+    auto* const counts = ends_.reserve(space.resource(), table);
+    space.fill(counts, 0, table * sizeof *counts);
+    // counters all over a table: few are counted sooner than threads have passed them to each other
+    auto const each_placed = [&](auto const& f) {
+      if (n > (std::size_t{1} << 17)) return space.for_each(n, f);
+      work_alone const alone(true);
+      for (std::size_t i = 0; i < n; ++i) f(i);
+    };
+    each_placed(count_placed<S>{placed_.data(), counts + 1});
+    space.exclusive_scan(counts + 1, table - 1, scratch_);
+    auto* const order = order_.reserve(space.resource(), placed_.capacity());
+    each_placed(number_placed<S>{placed_.data(), order, counts + 1});
+    space.for_each(n, sort_placed<S, Spheres>{placed_.data(), order, columns_, spheres});
+  }
+
+  /// One pass: the triangles look for the spheres.
+  template <class NarrowPhase, class Space, class Sink>
+  void query(Space& space, tester<S, NarrowPhase, Sink> const& tests) const {
+    look_for_spheres<S, NarrowPhase, Sink> const body{tests,    boxes_,       grids_,      grid_count_,
+                                                      columns_, ends_.data(), everywhere()};
+    space.launch(blocks_for<Space>(tests.mesh.size(), body), body);
+  }
+
+ private:
+  template <class Space>
+  sphere_columns<S> columns(Space& space, std::size_t n) {
+    std::size_t const room = n + sphere_columns<S>::lanes;
+    bool const same = numbers_.capacity() == 5 * room;
+    S* const to = numbers_.reserve(space.resource(), 5 * room);
+    id* const ids = ids_.reserve(space.resource(), room);
+    if (!same) space.fill(to, 0, 5 * room * sizeof *to);  // also what is behind the end is read
+    return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids};
+  }
+
+  std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
+
+  triangle_box<S> const* boxes_ = nullptr;
+  grid<S> const* grids_ = nullptr;
+  int grid_count_ = 0;
+  std::size_t cells_ = 0;
+  buffer<std::uint32_t> occupied_, ends_, order_;
+  buffer<std::uint64_t> total_;
+  buffer<bits_of<S>> measures_;
+  buffer<moving_sphere<S>> moving_;
+  buffer<placed_sphere<S>> placed_;
+  buffer<S> numbers_;
+  buffer<id> ids_;
+  sphere_columns<S> columns_ = {};
+  buffer<unsigned char> scratch_;
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,86 @@
+/// \file
+/// Contacts as a simulation needs them: where a ball that touches a triangle does so, and when one that moves does,
+/// without digits that nobody sees.
+#pragma once
+
+#include <collide/detail/geometry/local_sweep.hpp>
+#include <collide/detail/narrow_phase/contact.hpp>
+#include <collide/detail/narrow_phase/time_of_impact.hpp>
+
+namespace collide {
+
+template <class Precision>
+struct karabassi_swept;
+
+namespace detail {
+
+/// Whether doubles suffice for the contact of a ball in a simulation.
+struct clear_here {
+  COLLIDE_HD_INLINE bool operator()(double distance, double) const { return distance >= clear_length; }
+};
+
+/// The contact of a ball and a finite triangle. Unlike that of `contact_of`, the depth of a ball that just touches is
+/// known to within the rounding of doubles only: resting balls do just that, all the time.
+template <class S>
+COLLIDE_HD contact<S> contact_here(triangle<S> const& t, sphere<S> const& s) {
+  sphere<S> const centre{s.centre, S(0)};
+  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
+  auto const exactly = [t, centre] { return exact_triangle<>(t, centre); };
+  return contact_from(l, s.centre.template cast<double>(), s.radius, clear_here{}, exactly);
+}
+
+/// Whether a ball touches a finite triangle, and the same contact if so, where doubles suffice for both; `sure` says
+/// that they touch. Calls nothing. The foot that it finds is a point of the triangle, so a depth that is clear means a
+/// hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but not by much:
+/// docs/numerics.md.
+template <class S>
+COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
+  constexpr double clear_depth = 0x1p-40, clear_gap = 0x1p-32;
+  sphere<S> const centre{s.centre, S(0)};
+  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
+  bool apart = false;
+  auto const clear = [&](double distance, double depth) {
+    apart = !sure && depth < 0;
+    return clear_here{}(distance, depth) && (sure || depth >= clear_depth || -depth * distance >= clear_gap);
+  };
+  auto const otherwise = [](closest_point<double>&, gap&, vec3<double>&) { return false; };
+  if (!contact_if_clear(l, s.centre.template cast<double>(), s.radius, clear, otherwise, found)) return verdict::unsure;
+  return apart ? verdict::miss : verdict::hit;
+}
+
+/// Where a moving ball is at a time within the step, rounded once: what comes from far away stops at the mesh as
+/// accurately as what comes from near.
+template <class S>
+COLLIDE_HD_INLINE sphere<S> ball_at(moving_sphere<S> const& s, S time) {
+  vec3<S> at;
+  for (int k = 0; k < 3; ++k) at[k] = multiply_add(s.displacement[k], time, s.centre[k]);
+  return {at, s.radius};
+}
+
+/// When a moving ball stops that touches a finite triangle on its way. Like `time_of_impact` never late, but early also
+/// where doubles leave open whether the two touch: those that rest on the mesh have so short a way to go in a step that
+/// their times could not be told apart without exact arithmetic.
+template <class S>
+COLLIDE_HD_NOINLINE S time_here(triangle<S> const& t, moving_sphere<S> const& s) {
+  return first_contact(t, s, false);
+}
+
+/// When a ball of a narrow phase stops: if that is not `karabassi_swept` itself, when it says.
+template <class NarrowPhase>
+struct stop_of {
+  template <class S>
+  static COLLIDE_HD_INLINE S time(triangle<S> const& t, moving_sphere<S> const& s) {
+    return NarrowPhase::time_of_impact(t, s);
+  }
+};
+template <class Precision>
+struct stop_of<karabassi_swept<Precision>> {
+  template <class S>
+  static COLLIDE_HD_INLINE S time(triangle<S> const& t, moving_sphere<S> const& s) {
+    return time_here(t, s);
+  }
+};
+
+}  // namespace detail
+
+}  // namespace collide

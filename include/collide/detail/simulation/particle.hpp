@@ -1,0 +1,201 @@
+/// \file
+/// Particles in registers, and their columns in memory.
+#pragma once
+
+#include <collide/detail/simulation/attributes.hpp>
+
+namespace collide::detail {
+
+/// The value of one column, in a base class that is found by its type.
+template <class C, class S>
+struct register_of {
+  column_value<C, S> value;
+};
+
+/// A particle with the columns of a list.
+template <class S, class List>
+struct particle;
+template <class S, class... C>
+struct particle<S, columns<C...>> : register_of<C, S>... {
+  using scalar = S;
+  using list = columns<C...>;
+
+  id number;  ///< of the particle, from 0
+  S the_radius;
+
+  template <class D>
+  COLLIDE_HD_INLINE column_value<D, S>& operator[](D) {
+    return static_cast<register_of<D, S>&>(*this).value;
+  }
+  template <class D>
+  COLLIDE_HD_INLINE column_value<D, S> const& operator[](D) const {
+    return static_cast<register_of<D, S> const&>(*this).value;
+  }
+};
+
+/// A particle with the initial values of all columns.
+template <class S, class... C>
+COLLIDE_HD_INLINE void begin_particle(particle<S, columns<C...>>& p) {
+  ((p[C{}] = initial_of<C, S>::value()), ...);
+}
+
+/// Where a column is in memory.
+template <class C, class S>
+struct pointer_of {
+  column_element<C, S>* value;
+};
+
+/// How many particles are read or written together: four coordinates are 16 bytes.
+inline constexpr int particles_per_group = 4;
+
+/// What is read or written at once.
+template <class T>
+struct alignas(4 * sizeof(T)) four {
+  T v[4];
+};
+
+/// All columns of a simulation in memory. Each has room for a multiple of this many particles: as many as a CUDA block
+/// reads and writes at a time, so that no lane asks whether its own are there.
+inline constexpr std::size_t particle_padding = 1024;
+
+template <class S, class List>
+struct particle_state;
+template <class S, class... C>
+struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
+  using list = columns<C...>;
+
+  std::size_t size;    ///< number of particles, or of places for them
+  std::size_t placed;  ///< how many of them `set` has placed; effects that make particles use the others
+  S common_radius;     ///< if there is no column for it
+  double* time;        ///< since `set`, when the step begins; null unless an effect has a member begin_step
+
+  template <class D>
+  COLLIDE_HD_INLINE column_element<D, S>* at(D) const {
+    return static_cast<pointer_of<D, S> const&>(*this).value;
+  }
+
+  COLLIDE_HD_INLINE S radius_at(std::size_t i) const {
+    if constexpr (contains<list, radius>) {
+      return at(radius{})[i];
+    } else {
+      return common_radius;
+    }
+  }
+
+  /// One particle.
+  template <class... D>
+  COLLIDE_HD_INLINE void load(particle<S, columns<D...>>& p, std::size_t i) const {
+    p.number = static_cast<id>(i);
+    (load_value(D{}, p[D{}], i), ...);
+    p.the_radius = radius_of(p);
+  }
+
+  /// The columns `E` of one particle.
+  template <class P, class... E>
+  COLLIDE_HD_INLINE void load(P& p, std::size_t i, columns<E...>) const {
+    (load_value(E{}, p[E{}], i), ...);
+  }
+
+  template <class P, class... E>
+  COLLIDE_HD_INLINE void store(P const& p, std::size_t i, columns<E...>) const {
+    (store_value(E{}, p[E{}], i), ...);
+  }
+
+  /// Scratch memory of a block that reads and writes groups. Of all columns, vectors take the most.
+  template <class Block>
+  using group_scratch = typename Block::template row_scratch<four<S>, 3>;
+
+  /// A group's values of a column, and of all columns of a list, as they are read.
+  template <class D>
+  struct quads {
+    four<column_element<D, S>> of[column_layout<D, S>::width];
+  };
+  template <class List>
+  struct group_of;
+  template <class... D>
+  struct group_of<columns<D...>> : quads<D>... {};
+
+  /// A group of particles from `first` on, which is a multiple of their number; see `load_row` in block.hpp.
+  template <class Block, class... D>
+  COLLIDE_HD_INLINE void load_group(Block& block, group_scratch<Block>& s, particle<S, columns<D...>>* p,
+                                    std::size_t first) const {
+    group_of<columns<D...>> read;
+    begin_group(block, read, first);
+    end_group(block, s, read, p, first);
+  }
+
+  /// The same in two parts: all is on its way before something is waited for.
+  template <class Block, class... D>
+  COLLIDE_HD_INLINE void begin_group(Block& block, group_of<columns<D...>>& read, std::size_t first) const {
+    (load_values(block, D{}, static_cast<quads<D>&>(read).of, first), ...);
+  }
+  template <class Block, class... D>
+  COLLIDE_HD_INLINE void end_group(Block& block, group_scratch<Block>& s, group_of<columns<D...>>& read,
+                                   particle<S, columns<D...>>* p, std::size_t first) const {
+    (take_values(block, s, D{}, static_cast<quads<D>&>(read).of, p), ...);
+    for (int k = 0; k < particles_per_group; ++k) {
+      p[k].number = static_cast<id>(first) + static_cast<id>(k);
+      p[k].the_radius = radius_of(p[k]);
+    }
+  }
+
+  template <class Block, class P, class... E>
+  COLLIDE_HD_INLINE void store_group(Block& block, group_scratch<Block>& s, P const* p, std::size_t first,
+                                     columns<E...>) const {
+    (store_values(block, s, E{}, p, first), ...);
+  }
+
+ private:
+  template <class P>
+  COLLIDE_HD_INLINE S radius_of(P const& p) const {
+    if constexpr (contains<typename P::list, radius>) {
+      return p[radius{}];
+    } else {
+      return common_radius;
+    }
+  }
+
+  template <class D>
+  COLLIDE_HD_INLINE void load_value(D, column_value<D, S>& value, std::size_t i) const {
+    using layout = column_layout<D, S>;
+    for (int k = 0; k < layout::width; ++k) {
+      layout::at(value, k) = at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)];
+    }
+  }
+
+  template <class D>
+  COLLIDE_HD_INLINE void store_value(D, column_value<D, S> const& value, std::size_t i) const {
+    using layout = column_layout<D, S>;
+    for (int k = 0; k < layout::width; ++k) {
+      at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)] = layout::at(value, k);
+    }
+  }
+
+  template <class Block, class D, class Q, int N>
+  COLLIDE_HD_INLINE void load_values(Block& block, D, Q (&read)[N], std::size_t first) const {
+    block.load_row(reinterpret_cast<Q const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group), read);
+  }
+
+  template <class Block, class D, class Q, int N, class P>
+  COLLIDE_HD_INLINE void take_values(Block& block, group_scratch<Block>& s, D, Q (&read)[N], P* p) const {
+    block.exchange_row(s, read);
+    for (int k = 0; k < particles_per_group; ++k) {
+      for (int c = 0; c < N; ++c) column_layout<D, S>::at(p[k][D{}], c) = read[(k * N + c) / 4].v[(k * N + c) % 4];
+    }
+  }
+
+  template <class Block, class D, class P>
+  COLLIDE_HD_INLINE void store_values(Block& block, group_scratch<Block>& s, D, P const* p, std::size_t first) const {
+    using layout = column_layout<D, S>;
+    using quad = four<column_element<D, S>>;
+    constexpr int width = layout::width;
+    quad write[width];
+    for (int k = 0; k < particles_per_group; ++k) {
+      for (int c = 0; c < width; ++c) write[(k * width + c) / 4].v[(k * width + c) % 4] = layout::at(p[k][D{}], c);
+    }
+    block.store_row(s, reinterpret_cast<quad*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
+                    write);
+  }
+};
+
+}  // namespace collide::detail

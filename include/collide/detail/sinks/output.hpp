@@ -1,0 +1,137 @@
+/// \file
+/// What the built-in sinks share; what a sink must have is in concepts.hpp.
+#pragma once
+
+#include <new>
+#include <type_traits>
+#include <vector>
+
+#include <collide/contact.hpp>
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/memory.hpp>
+
+namespace collide::detail {
+
+/// Remembers the space that an array lives in, whatever its type, to copy the array to the host later.
+template <class T>
+class downloader {
+ public:
+  downloader() = default;
+  template <class Space>
+  explicit downloader(Space const& space) {
+    static_assert(std::is_trivially_copyable<Space>::value && sizeof(Space) <= sizeof(space_),
+                  "collide: an execution space is a small trivially copyable value");
+    new (space_) Space(space);
+    copy_ = [](void const* s, T* to, T const* from, std::size_t n) {
+      static_cast<Space const*>(s)->copy_to_host(to, from, n);
+    };
+  }
+
+  std::vector<T> operator()(T const* from, std::size_t n) const {
+    std::vector<T> copy(n);
+    if (n != 0) copy_(space_, copy.data(), from, n);
+    return copy;
+  }
+
+ private:
+  alignas(16) unsigned char space_[64] = {};
+  void (*copy_)(void const*, T*, T const*, std::size_t) = nullptr;
+};
+
+/// Numbers the hits of a pass. `sum` is 0 before and after it, so that nothing need set it to 0 first; `total` is how
+/// many there were.
+struct tally {
+  std::uint64_t* sum;
+  std::uint64_t* total;
+
+  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return fetch_add(sum, n); }
+  COLLIDE_HD_INLINE void finish() const {
+    *total = fetch_add(sum, std::uint64_t{0});
+    *sum = 0;
+  }
+};
+
+/// The memory of a tally.
+class tally_memory {
+ public:
+  /// For a pass that is put on the space's stream next.
+  template <class Space>
+  tally begin(Space& space) {
+    bool const is_zero = numbers_.data() != nullptr && zero_in_ == space.resource();
+    std::uint64_t* const numbers = numbers_.reserve(space.resource(), 2);
+    if (!is_zero) space.fill(numbers, 0, 2 * sizeof *numbers);
+    zero_in_ = nullptr;
+    return {numbers, numbers + 1};
+  }
+
+  /// How many hits it had. Waits.
+  template <class Space>
+  std::uint64_t end(Space& space) {
+    std::uint64_t const total = space.read(numbers_.data() + 1);
+    zero_in_ = space.resource();
+    return total;
+  }
+
+ private:
+  buffer<std::uint64_t> numbers_;
+  std::pmr::memory_resource* zero_in_ = nullptr;  ///< in whose memory the sum is 0 for sure
+};
+
+/// Appends hits as pairs to an array of fixed capacity and counts those beyond it too.
+struct append : tally {
+  pair* to;
+  std::uint64_t capacity;
+
+  template <class Hit>
+  COLLIDE_HD_INLINE void store(std::uint64_t slot, Hit const& h) const {
+    if (slot < capacity) to[slot] = {h.sphere, h.triangle};
+  }
+};
+
+/// Collects all colliding pairs, in an array of its own that grows until they fit or in the caller's of fixed size.
+class collector {
+ public:
+  /// Runs the query into `to[0 .. capacity)`.
+  template <class Space, class Query>
+  void fill(Space& space, Query const& query, pair* to, std::uint64_t capacity) {
+    query(append{total_of_.begin(space), to, capacity});
+    data_ = to;
+    total_ = total_of_.end(space);
+    size_ = static_cast<std::size_t>(total_ < capacity ? total_ : capacity);
+  }
+
+  /// Runs the query until everything fits: once if the array of the last time is large enough.
+  template <class Space, class Query>
+  void fill(Space& space, Query const& query) {
+    std::size_t const guess = query.spheres.size() / 8 + 1024;
+    pair* const to = own_.reserve(space.resource(), own_.capacity() > guess ? own_.capacity() : guess);
+    fill(space, query, to, own_.capacity());
+    if (total_ > own_.capacity()) {
+      std::size_t const room = total_ + total_ / 4;  // so that a few more next time fit too
+      fill(space, query, own_.reserve(space.resource(), room), room);
+    }
+  }
+
+  /// Sorts what was stored into canonical order.
+  template <class Space, class Query>
+  void sort(Space& space, Query const& query) {
+    // room as for the whole array, so that a few pairs more than last time are no reason to allocate
+    std::size_t const room = data_ == own_.data() ? own_.capacity() : size_;
+    space.sort(other_, data_, size_, room, query.spheres.size(), query.mesh.size(), scratch_);
+  }
+
+  pair* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  std::uint64_t total() const { return total_; }
+
+ private:
+  tally_memory total_of_;
+  buffer<pair> own_, other_;
+  buffer<unsigned char> scratch_;
+  pair* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::uint64_t total_ = 0;
+};
+
+}  // namespace collide::detail

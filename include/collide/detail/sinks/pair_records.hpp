@@ -1,0 +1,83 @@
+/// \file
+/// What sinks share that keep a record of every colliding pair.
+#pragma once
+
+#include <vector>
+
+#include <collide/detail/sinks/output.hpp>
+
+namespace collide::detail {
+
+/// Kernel body of `for_each` over pairs.
+template <class NarrowPhase, class S, class Record>
+struct compute_records {
+  pair const* pairs;
+  Record* to;
+  mesh_view<S> mesh;
+  spheres_of<NarrowPhase, S> spheres;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    hit<NarrowPhase, S> const h(pairs[i], mesh, spheres);
+    if constexpr (std::is_same<Record, contact<S>>::value) {
+      to[i] = h.contact();
+    } else {
+      to[i] = h.impact();
+    }
+  }
+};
+
+/// Contacts or impacts. The pairs are found first and the records computed from them in a second pass over the pairs
+/// alone, so that a miss costs nothing.
+template <class Record, class S>
+class records {
+ public:
+  /// The records are kept in memory of the space, as many as there are.
+  explicit records(order o = order::unspecified) : order_{o} {}
+  /// The records are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total`
+  /// tells how many there are all the same. Which ones are stored if they do not fit is unspecified, unless the order
+  /// is canonical: then they are the first ones.
+  records(Record* buffer, std::size_t capacity, order o = order::unspecified)
+      : external_{buffer}, capacity_{capacity}, order_{o}, fixed_{true} {}
+
+  /// How many pairs collide.
+  std::uint64_t total() const { return collected_.total(); }
+  /// How many records are stored.
+  std::size_t size() const { return size_; }
+  /// True if all of them are stored.
+  bool complete() const { return size_ == total(); }
+
+  /// The stored records, in memory of the space.
+  Record const* data() const { return data_; }
+  Record const* begin() const { return data_; }
+  Record const* end() const { return data_ + size_; }
+  /// A copy of the stored records on the host.
+  std::vector<Record> to_host() const { return download_(data_, size_); }
+
+  template <class Space, class Query>
+  void run(Space& space, Query const& query) {
+    static_assert(std::is_same<S, typename Query::scalar>::value,
+                  "collide: contacts<S> and impacts<S> must have the scalar type of the detector");
+    download_ = downloader<Record>(space);
+    collected_.fill(space, query);
+    if (order_ == order::canonical) collected_.sort(space, query);
+    size_ = collected_.size();
+    if (fixed_ && size_ > capacity_) size_ = capacity_;
+    if (!fixed_ && size_ > own_.capacity()) own_.reserve(space.resource(), size_ + size_ / 4);
+    data_ = fixed_ ? external_ : own_.data();
+    using narrow_phase = typename Query::narrow_phase;
+    space.for_each(size_,
+                   compute_records<narrow_phase, S, Record>{collected_.data(), data_, query.mesh, query.spheres});
+  }
+
+ private:
+  Record* external_ = nullptr;
+  Record* data_ = nullptr;
+  std::size_t capacity_ = 0;
+  std::size_t size_ = 0;
+  order order_;
+  bool fixed_ = false;
+  collector collected_;
+  buffer<Record> own_;
+  downloader<Record> download_;
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,85 @@
+/// \file
+/// What sinks share that keep one triangle per sphere: that of the smallest number, and of these the first.
+#pragma once
+
+#include <vector>
+
+#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/detail/sinks/output.hpp>
+
+namespace collide::detail {
+
+/// Kernel body of `for_each` over spheres: nothing is there yet. Memory of all ones has `no_id` for the triangle
+/// already.
+template <class Entry, class Measure>
+struct reset_best {
+  Entry* to;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto& number = Measure::number_of(to[i]);
+    number = std::numeric_limits<std::decay_t<decltype(number)>>::infinity();
+  }
+};
+
+/// Kernel body of `for_each` over pairs: the smallest number of each sphere. Numbers are not negative, so they sort
+/// like their bits.
+template <class NarrowPhase, class S, class Entry, class Measure>
+struct find_number {
+  pair const* pairs;
+  Entry* to;
+  mesh_view<S> mesh;
+  spheres_of<NarrowPhase, S> spheres;
+  COLLIDE_HD bits_of<S> number(pair p) const { return bits(Measure::of(hit<NarrowPhase, S>(p, mesh, spheres))); }
+  COLLIDE_HD void operator()(std::size_t i) const {
+    pair const p = pairs[i];
+    fetch_min(reinterpret_cast<bits_of<S>*>(&Measure::number_of(to[p.sphere])), number(p));
+  }
+};
+
+/// Kernel body of `for_each` over pairs: the smallest id among the triangles with that number.
+template <class NarrowPhase, class S, class Entry, class Measure>
+struct find_best {
+  find_number<NarrowPhase, S, Entry, Measure> found;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    pair const p = found.pairs[i];
+    Entry& best = found.to[p.sphere];
+    if (found.number(p) == bits(Measure::number_of(best))) fetch_min(&best.triangle, p.triangle);
+  }
+};
+
+/// One entry per sphere. `Measure::of(hit)` is the number of a pair, `Measure::number_of(entry)` that of an entry.
+template <class Entry, class S, class Measure>
+class best_of_sphere {
+ public:
+  /// One entry per sphere, in memory of the space.
+  Entry const* data() const { return own_.data(); }
+  /// Number of spheres of the last query.
+  std::size_t size() const { return size_; }
+  /// How many pairs collide.
+  std::uint64_t total() const { return collected_.total(); }
+  /// A copy on the host.
+  std::vector<Entry> to_host() const { return download_(data(), size_); }
+
+  template <class Space, class Query>
+  void run(Space& space, Query const& query) {
+    static_assert(std::is_same<S, typename Query::scalar>::value,
+                  "collide: closest<S> and earliest<S> must have the scalar type of the detector");
+    using narrow_phase = typename Query::narrow_phase;
+    download_ = downloader<Entry>(space);
+    size_ = query.spheres.size();
+    collected_.fill(space, query);
+    auto* const to = own_.reserve(space.resource(), size_);
+    space.fill(to, 0xff, size_ * sizeof *to);
+    space.for_each(size_, reset_best<Entry, Measure>{to});
+    find_number<narrow_phase, S, Entry, Measure> const step{collected_.data(), to, query.mesh, query.spheres};
+    space.for_each(collected_.size(), step);
+    space.for_each(collected_.size(), find_best<narrow_phase, S, Entry, Measure>{step});
+  }
+
+ private:
+  std::size_t size_ = 0;
+  collector collected_;
+  buffer<Entry> own_;
+  downloader<Entry> download_;
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,53 @@
+/// \file
+/// A colliding pair as a sink sees it.
+#pragma once
+
+#include <collide/contact.hpp>
+#include <collide/detail/narrow_phase/traits.hpp>
+#include <collide/impact.hpp>
+#include <collide/mesh.hpp>
+
+namespace collide {
+
+/// A colliding pair as a sink sees it: its ids, and on demand its geometry.
+template <class NarrowPhase, class S>
+class hit {
+ public:
+  id sphere;    ///< number of the sphere
+  id triangle;  ///< number of the triangle
+
+  using spheres_type = detail::spheres_of<NarrowPhase, S>;
+
+  COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres)
+      : sphere{p.sphere}, triangle{p.triangle}, mesh_{mesh}, spheres_{spheres} {}
+
+  /// Where and how the two touch; computed here and now.
+  COLLIDE_HD collide::contact<S> contact() const {
+    static_assert(
+        detail::has_contact<NarrowPhase, S>::value,
+        "collide: contacts need a narrow phase with a static member contact_of(triangle, sphere) that returns a "
+        "contact");
+    collide::contact<S> c = NarrowPhase::contact_of(mesh_[triangle], spheres_[sphere]);
+    c.sphere = sphere;
+    c.triangle = triangle;
+    return c;
+  }
+
+  /// When the two touch first within the step, and the contact then; computed here and now.
+  COLLIDE_HD collide::impact<S> impact() const {
+    static_assert(
+        detail::has_impact<NarrowPhase, S>::value,
+        "collide: impacts need a narrow phase for spheres that move, with a static member impact_of(triangle, "
+        "moving_sphere) that returns an impact, such as karabassi_swept");
+    collide::impact<S> i = NarrowPhase::impact_of(mesh_[triangle], spheres_[sphere]);
+    i.contact.sphere = sphere;
+    i.contact.triangle = triangle;
+    return i;
+  }
+
+ private:
+  mesh_view<S> const& mesh_;
+  spheres_type const& spheres_;
+};
+
+}  // namespace collide

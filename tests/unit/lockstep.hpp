@@ -1,0 +1,182 @@
+/// \file
+/// An execution space for tests: the cooperative algorithms of a CUDA block, on the host.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <type_traits>
+
+#include <collide/host.hpp>
+
+namespace tests {
+
+/// The cooperative algorithm behind `balanced`: scans the counts in scratch memory, then spreads all (i, k) with
+/// k < counts[i] evenly over the lanes, each of which finds its i by binary search.
+template <class Block>
+struct balancing {
+  typename Block::scan_scratch scan;
+
+  template <class Item, class Find, class Look, class Take, class Round>
+  void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find, Look const& look,
+           Take const& take, Round const& after_round) {
+    std::uint32_t const total = block.scan(scan, counts, n);
+    for (std::uint32_t base = 0; base < total; base += Block::lanes) {
+      block.each([&](int lane) {
+        std::uint32_t const work = base + static_cast<std::uint32_t>(lane);
+        if (work >= total) return;
+        std::uint32_t i = 0, end = n;  // the last i whose work begins at or before this
+        while (end - i > 1) {
+          std::uint32_t const middle = (i + end) / 2;
+          if (counts[middle] <= work) {
+            i = middle;
+          } else {
+            end = middle;
+          }
+        }
+        auto const one = item(i);
+        auto const found = find(one, work - counts[i]);
+        if (look(one, found)) take(one, found);
+      });
+      after_round();
+    }
+  }
+};
+
+/// A block of `Lanes` lanes that take turns, in order or in reverse: finds mistakes in the order of steps that a GPU
+/// would only show now and then.
+template <int Lanes, int Items, bool Reversed>
+class lockstep_block {
+ public:
+  static constexpr int lanes = Lanes, items = Items, pending = 2 * Lanes, row_lanes = 1;
+
+  template <class T>
+  struct per_lane {
+    T value[Lanes];
+    T& operator[](int lane) { return value[lane]; }
+  };
+  template <class T, int N>
+  struct staging {
+    T values[N];
+  };
+  template <class T>
+  struct single {
+    T value;
+  };
+  template <class T, int N>
+  struct row_scratch {};
+  struct scan_scratch {};
+  using balance_scratch = balancing<lockstep_block>;
+  template <class T>
+  struct reduce_scratch {};
+
+  explicit lockstep_block(std::size_t index) : index_{index} {}
+
+  std::size_t index() const { return index_; }
+
+  template <class F>
+  void each(F const& f) {
+    for (int i = 0; i < Lanes; ++i) f(Reversed ? Lanes - 1 - i : i);
+  }
+
+  template <class T>
+  T shared(T const& value) {
+    return value;
+  }
+
+  std::uint32_t add(std::uint32_t& counter, std::uint32_t n) {
+    std::uint32_t const before = counter;
+    counter += n;
+    return before;
+  }
+
+  template <class T, int N>
+  T const* stage(staging<T, N>& to, T const* from, int n) {
+    for (int i = 0; i < n; ++i) to.values[i] = from[i];
+    return to.values;
+  }
+
+  template <class T>
+  T const& near(single<T>& to, T const& from) {
+    to.value = from;
+    return to.value;
+  }
+
+  template <class T, int N>
+  void load_row(T const* from, std::uint32_t row, T (&to)[N]) {
+    for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
+  }
+
+  template <class Scratch, class T, int N>
+  void exchange_row(Scratch&, T (&)[N]) {}
+
+  template <class Scratch, class T, int N>
+  void store_row(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
+    for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
+  }
+
+  std::uint32_t scan(scan_scratch&, std::uint32_t* values, std::uint32_t n) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      std::uint32_t const value = values[i];
+      values[i] = sum;
+      sum += value;
+    }
+    return sum;
+  }
+
+  template <int Ahead, class Item, class Find, class Look, class Take, class Round>
+  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find,
+                Look const& look, Take const& take, Round const& after_round) {
+    s.run(*this, counts, n, item, find, look, take, after_round);
+  }
+
+  template <class T, class Combine>
+  T reduce(reduce_scratch<T>&, per_lane<T>& values, Combine const& combine) {
+    T result = values[0];
+    for (int lane = 1; lane < Lanes; ++lane) result = combine(result, values[lane]);
+    return result;
+  }
+
+ private:
+  std::size_t index_;
+};
+
+/// The cooperative kernels of `cuda_shared` on the host: the lanes take turns, in order or in reverse, and the scratch
+/// memory is full of garbage when a block begins.
+template <int Lanes, bool Reversed>
+class lockstep : public collide::host {
+ public:
+  using host::host;
+  static constexpr bool defers = true, sorts_spheres = false, pairs_triangles = true;  // as the CUDA spaces
+  static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
+
+  template <class Body>
+  using block = lockstep_block<Lanes, Body::items, Reversed>;
+
+  template <class Body>
+  std::size_t wave() const {
+    return Reversed ? 1 : 3;
+  }
+
+  template <class Body>
+  void launch(std::size_t blocks, Body const& body) const {
+    using scratch_type = typename Body::template scratch<block<Body>>;
+    static_assert(std::is_trivially_copyable<scratch_type>::value, "scratch memory is never constructed on CUDA");
+    auto const memory = std::make_unique<storage<scratch_type>>();
+    for (std::size_t i = 0; i < blocks; ++i) {
+      std::memset(memory->bytes, Reversed ? 0x7f : 0xff, sizeof(scratch_type));
+      block<Body> here(i);
+      body(here, *reinterpret_cast<scratch_type*>(memory->bytes));
+    }
+  }
+
+ private:
+  template <class T>
+  struct storage {
+    alignas(T) unsigned char bytes[sizeof(T)];
+  };
+};
+
+}  // namespace tests
