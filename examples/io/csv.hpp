@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "csv_table.hpp"
-#include "text.hpp"
 
 namespace io {
 
@@ -19,13 +18,14 @@ struct sphere_data {
   std::vector<S> xyz;
   std::vector<S> radii;
   bool has_radii = false;
+  rounding tally;
 
   std::size_t size() const { return xyz.size() / 3; }
 };
 
-/// Reads spheres from CSV text, which messages call `path`, with the columns x, y, z and perhaps r; see `csv_table`.
-/// Numbers are correctly rounded to `S`. Throws `data_error`, which names file and line, at what is not a number, at a
-/// coordinate or radius that is not finite and at a radius below 0.
+/// Reads spheres from the text of a CSV file with the columns x, y, z and perhaps r; see `csv_table`. Numbers are
+/// correctly rounded to `S`. Throws `data_error`, which names file and line, at what is not a number, at a coordinate
+/// or radius that is not finite and at a radius below 0.
 template <class S>
 sphere_data<S> read_csv(std::string const& path, std::string_view text) {
   std::vector<std::string> const names{"x", "y", "z", "r"};
@@ -39,7 +39,7 @@ sphere_data<S> read_csv(std::string const& path, std::string_view text) {
 
   S row[4];
   auto const read = [&](std::size_t column) {
-    S const value = row[column] = table.number<S>(column);
+    S const value = row[column] = table.number<S>(column, spheres.tally);
     if (!std::isfinite(value)) table.fail("the number in column '" + names[column] + "' is not finite");
     if (column == radius && value < 0) table.fail("negative radius");
   };
@@ -48,13 +48,6 @@ sphere_data<S> read_csv(std::string const& path, std::string_view text) {
     if (spheres.has_radii) spheres.radii.push_back(row[radius]);
   }
   return spheres;
-}
-
-/// Reads spheres from a CSV file.
-template <class S>
-sphere_data<S> read_csv(std::string const& path) {
-  text_file const file(path);
-  return read_csv<S>(path, file.view());
 }
 
 }  // namespace io

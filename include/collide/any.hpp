@@ -22,7 +22,7 @@ struct raise_flag {
 }  // namespace detail
 
 /// A flag per sphere: 1 if it touches any triangle, else 0. `query` does not wait for them.
-class any {
+class any : public detail::kept_in_space<std::uint8_t> {
  public:
   /// The flags are kept in memory of the space.
   any() = default;

@@ -26,7 +26,7 @@ struct bounce {
       S const rebound = e * detail::larger(t.approach, S(0));
       t.rests = rebound <= -detail::dot(t.gain, t.normal);
       t.repel(p[velocity{}], t.rests ? speed : speed + rebound);
-      if (!t.rests) back += e * detail::smaller(back, speed * dt);
+      if (!t.rests) back += rebound * detail::smaller(back / speed, dt);
     }
     t.move_out(p[position{}], back);
   }

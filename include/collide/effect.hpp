@@ -31,7 +31,7 @@
 
 #include <collide/columns.hpp>
 #include <collide/contact.hpp>
-#include <collide/detail/arithmetic.hpp>
+#include <collide/detail/numeric/rounding.hpp>
 
 namespace collide {
 

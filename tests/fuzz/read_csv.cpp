@@ -10,6 +10,7 @@ template <class S>
 void check(io::sphere_data<S> const& spheres) {
   require(spheres.xyz.size() % 3 == 0, "three coordinates a sphere");
   require(spheres.radii.size() == (spheres.has_radii ? spheres.size() : 0), "a radius for each, or none at all");
+  require(spheres.tally.numbers == spheres.xyz.size() + spheres.radii.size(), "the tally is of all numbers");
   require(fuzz::all_finite(spheres.xyz) && fuzz::all_finite(spheres.radii), "numbers are finite");
   for (S const r : spheres.radii) require(r >= 0, "no radius is below 0");
 
@@ -31,6 +32,8 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   auto const doubles = fuzz::read_or_refuse([&] { return io::read_csv<double>("input", text); });
   if (floats) check(*floats);
   if (doubles) check(*doubles);
-  if (floats && doubles) require(floats->size() == doubles->size(), "as many spheres, whatever the scalar type");
+  if (!floats || !doubles) return 0;
+  fuzz::check_rounding(floats->xyz, doubles->xyz, floats->tally);
+  fuzz::check_rounding(floats->radii, doubles->radii, floats->tally);
   return 0;
 }

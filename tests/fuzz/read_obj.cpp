@@ -20,20 +20,25 @@ void check(io::mesh_data<S> const& mesh) {
   for (std::size_t i = 0; i < mesh.corners.size(); ++i) {
     again += (i % 3 == 0 ? "\nf " : " ") + std::to_string(std::uint64_t{mesh.corners[i]} + 1);
   }
-  auto const same = io::obj_reader<S>::read("again", again);
+  auto const same = io::read_obj<S>("again", again, true);
+  require(same.remarks.empty(), "what is written is not odd");
   require(same.vertices == mesh.vertices && same.corners == mesh.corners, "what is written reads the same");
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
-  std::string const name = "input";
   auto const text = fuzz::text(data, size);
-  auto const floats = fuzz::read_or_refuse([&] { return io::obj_reader<float>::read(name, text); });
-  auto const doubles = fuzz::read_or_refuse([&] { return io::obj_reader<double>::read(name, text); });
+  auto const floats = fuzz::read_or_refuse([&] { return io::read_obj<float>("input", text, false); });
+  auto const doubles = fuzz::read_or_refuse([&] { return io::read_obj<double>("input", text, false); });
+  auto const strict = fuzz::read_or_refuse([&] { return io::read_obj<float>("input", text, true); });
   if (floats) check(*floats);
   if (doubles) check(*doubles);
   require(!floats || doubles, "doubles hold what floats hold");
-  if (floats) require(floats->size() == doubles->size(), "as many triangles, whatever the scalar type");
+  require(strict.has_value() == (floats && floats->remarks.empty()), "strict is to refuse what is remarked on");
+  if (!floats) return 0;
+  require(floats->size() == doubles->size(), "as many triangles, whatever the scalar type");
+  require(floats->tally.numbers == floats->vertices.size(), "the tally is of the coordinates");
+  fuzz::check_rounding(floats->vertices, doubles->vertices, floats->tally);
   return 0;
 }

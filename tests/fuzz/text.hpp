@@ -4,14 +4,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <stdio.h>
-
 #include "examples/io/error.hpp"
+#include "examples/io/rounding.hpp"
 #include "require.hpp"
 
 namespace fuzz {
@@ -37,6 +37,21 @@ bool all_finite(std::vector<S> const& numbers) {
     if (!std::isfinite(x)) return false;
   }
   return true;
+}
+
+/// What the same numbers of a text became, as floats and as doubles: as many, and the tally of the floats tells how
+/// many differ, and by how much at most. (`tally` may count more numbers than are kept.)
+inline void check_rounding(std::vector<float> const& floats, std::vector<double> const& doubles,
+                           io::rounding const& tally) {
+  require(floats.size() == doubles.size(), "as many numbers, whatever the scalar type");
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < floats.size(); ++i) {
+    double const as_float = floats[i];
+    if (as_float == doubles[i] || std::isnan(doubles[i])) continue;
+    ++differ;
+    require(std::abs(as_float - doubles[i]) <= tally.most, "no number was moved by more than the tally says");
+  }
+  require(differ <= tally.rounded && tally.rounded <= tally.numbers, "the tally counts what was rounded");
 }
 
 /// A number as C's %a, or nan or inf.

@@ -39,6 +39,34 @@ class downloader {
   void (*copy_)(void const*, T*, T const*, std::size_t) = nullptr;
 };
 
+/// Base of the sinks that keep an array of `T` in memory of the space. The type of a sink does not say which memory
+/// that is, so a loop over a sink, or an index into it, does not compile in any space: the same code works in all of
+/// them.
+template <class T>
+class kept_in_space {
+ public:
+  template <class U = T>
+  U const* begin() const {
+    return refuse<U>();
+  }
+  template <class U = T>
+  U const* end() const {
+    return refuse<U>();
+  }
+  template <class U = T>
+  U const& operator[](std::size_t) const {
+    return *refuse<U>();
+  }
+
+ private:
+  template <class U>
+  static U const* refuse() {
+    static_assert(!std::is_same<U, T>::value,
+                  "collide: results are in memory of the space, which the host may be unable to read: use to_host()");
+    return nullptr;
+  }
+};
+
 /// Numbers the hits of a pass. `sum` is 0 before and after it, so that nothing need set it to 0 first; `total` is how
 /// many there were.
 struct tally {

@@ -1,4 +1,4 @@
-#include "near_contact.hpp"
+#include "narrow_phase/near_contact.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <collide/host.hpp>
 
 #include "checks.hpp"
-#include "narrow_phase.hpp"
+#include "narrow_phase/narrow_phase.hpp"
 
 TEST_CASE("near contact: 2.5e6 pairs of floats within 4 ulp of tangency") {
   tests::check_near_contact<float>(collide::host(1), 1000, 14);

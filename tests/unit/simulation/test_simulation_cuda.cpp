@@ -1,7 +1,7 @@
 /// Simulations on the GPU.
 #include <collide/absorb.hpp>
 
-#include "simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace {
 

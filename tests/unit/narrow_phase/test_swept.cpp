@@ -13,7 +13,7 @@
 #include <collide/karabassi_swept.hpp>
 
 #include "../oracle/scene.hpp"
-#include "near_contact.hpp"
+#include "narrow_phase/near_contact.hpp"
 #include "scenes.hpp"
 
 namespace {

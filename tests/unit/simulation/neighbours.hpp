@@ -5,7 +5,7 @@
 #include <collide/bounds.hpp>
 #include <collide/emit.hpp>
 
-#include "simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace tests {
 

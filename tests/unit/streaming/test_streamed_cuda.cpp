@@ -1,5 +1,5 @@
 /// Spheres in chunks, on the GPU.
-#include "streamed.hpp"
+#include "streaming/streamed.hpp"
 
 TEST_CASE("streamed: chunks find what a query of all spheres finds, on the device") {
   tests::check_streamed<collide::bucket, float>(collide::cuda_shared(), collide::cuda_pinned_memory::get());

@@ -2,7 +2,7 @@
 #include <collide/absorb.hpp>
 
 #include "compositions.hpp"
-#include "simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace {
 

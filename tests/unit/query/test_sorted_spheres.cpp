@@ -13,7 +13,7 @@
 #include <collide/bucket.cuh>
 #include <collide/karabassi_swept.hpp>
 
-#include "narrow_phase.hpp"
+#include "narrow_phase/narrow_phase.hpp"
 
 namespace {
 

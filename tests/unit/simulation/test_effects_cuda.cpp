@@ -1,6 +1,6 @@
 /// Effects on the GPU.
-#include "effects.hpp"
-#include "neighbours.hpp"
+#include "simulation/effects.hpp"
+#include "simulation/neighbours.hpp"
 
 using collide::cuda_shared;
 using collide::karabassi;

@@ -2,7 +2,7 @@
 #include <collide/detail/streaming/contiguous_ranges.hpp>
 
 #include "compositions.hpp"
-#include "streamed.hpp"
+#include "streaming/streamed.hpp"
 
 namespace {
 

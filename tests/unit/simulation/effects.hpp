@@ -14,7 +14,7 @@
 #include <collide/stick.hpp>
 #include <collide/wind.hpp>
 
-#include "simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace tests {
 

@@ -1,7 +1,7 @@
 /// Effects on the host.
 #include "compositions.hpp"
-#include "effects.hpp"
-#include "neighbours.hpp"
+#include "simulation/effects.hpp"
+#include "simulation/neighbours.hpp"
 
 using collide::host;
 using collide::karabassi;

@@ -11,7 +11,7 @@
 #include <collide/karabassi.hpp>
 #include <collide/memory.hpp>
 
-#include "near_contact.hpp"
+#include "narrow_phase/near_contact.hpp"
 
 namespace tests {
 

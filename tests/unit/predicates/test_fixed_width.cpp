@@ -10,7 +10,7 @@
 #include <collide/detail/predicates/fixed_width.hpp>
 
 #include "../oracle/scene.hpp"
-#include "narrow_phase.hpp"
+#include "narrow_phase/narrow_phase.hpp"
 #include "scenes.hpp"
 
 namespace {
