@@ -165,17 +165,6 @@ struct survivor : survivor_way<S, Moves> {
     return left;
   }
 
-  /// True if the particle is elsewhere than when the step began, and may now overlap what it did not then.
-  COLLIDE_HD_INLINE bool has_moved() const {
-    S const rounding = contact_tolerance<S> * radius + rounding_at(vec3<S>(centre[0], centre[1], centre[2]));
-    bool moved = false;
-    for (int k = 0; k < 3; ++k) {
-      S const by = centre[k] - start[k];
-      moved = moved || by > rounding || by < -rounding;
-    }
-    return moved;
-  }
-
   /// True if the sphere overlaps the mesh by more than rounding.
   COLLIDE_HD_INLINE bool overlaps(S depth) const {
     return depth > contact_tolerance<S> * radius + rounding_at(vec3<S>(centre[0], centre[1], centre[2]));
@@ -746,6 +735,8 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
         face_against(c, arrival);
       }
       c.approach = -dot(arrival, c.normal);
+      // how deep when the step began: what is pushed out farther than it came in may then touch what it did not before
+      [[maybe_unused]] S const deep = c.depth + dot(c.normal, vec3<S>(here.centre - c.start));
       one.find_lift(c, came);
       colliding next = p;
       scene.accelerate(next, dt);
@@ -762,7 +753,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
         }
       } else {
         one.place(p[position{}], p[velocity{}]);
-        one.is_active = one.is_active && (one.offered > 1 || one.has_moved());
+        one.is_active = one.is_active && (one.offered > 1 || one.overlaps(deep));
       }
       if (is_skipped(p)) one.is_active = false;
     }
