@@ -37,7 +37,9 @@ struct query_pass {
         index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
       }
     }
-    if constexpr (finishes<Handle>::value) space.for_each(1, finish_only<Handle>{handle});
+    if constexpr (finishes<Handle>::value) {
+      if (wants_finish(handle)) space.for_each(1, finish_only<Handle>{handle});
+    }
   }
 };
 
