@@ -29,7 +29,7 @@ LAYERS = {
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh",
     "effect interface": "columns.hpp effect.hpp velocity_verlet.hpp",
     "simulation": "detail/simulation/ simulation.cuh",
-    "effects": "absorb.hpp bounce.hpp bounds.hpp drag.hpp emit.hpp friction.hpp gravity.hpp polydisperse.hpp sleep.hpp "
+    "effects": "absorb.hpp bounce.hpp bounds.hpp drag.hpp emit.hpp friction.hpp gravity.hpp lost_motion.hpp polydisperse.hpp sleep.hpp "
                "sphere_contact.hpp spin.hpp stick.hpp wind.hpp",
     "streaming": "detail/streaming/ streamed.cuh",
 }

@@ -8,6 +8,7 @@ import resource
 import signal
 import stat
 import subprocess
+import time
 import unittest
 from fractions import Fraction
 from pathlib import Path
@@ -184,6 +185,15 @@ class ObjForms(ObjTest):
                     self.assertEqual(len(found), len(corners) - 2)
                     self.assertTrue(all(sign * self.area(t) >= 0 for t in found), found)
                     self.assertEqual(sum(abs(self.area(t)) for t in found), abs(whole))
+
+    def test_a_polygon_that_crosses_itself_all_over_takes_no_cubic_time(self):
+        rng = random.Random(1)
+        n = 20000  # took six minutes
+        obj = "".join(f"v {rng.randrange(1000)} {rng.randrange(1000)} 7\n" for _ in range(n))
+        begin = time.monotonic()
+        found = self.triangles(obj + "f " + " ".join(str(i + 1) for i in range(n)))
+        self.assertEqual(len(found), n - 2)
+        self.assertLess(time.monotonic() - begin, 60)
 
     def test_quadrangles_are_cut_along_the_shorter_diagonal(self):
         a, b, c, d = (0, 0), (4, 0), (6, 2), (2, 2)  # from b to d it is shorter

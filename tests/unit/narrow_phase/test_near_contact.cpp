@@ -43,6 +43,18 @@ TEST_CASE_TEMPLATE("near contact: the contact, or the closest point where nothin
     }
 }
 
+TEST_CASE_TEMPLATE("near contact: no contact is deeper than its radius, were that the largest number", S, float,
+                   double) {
+  for (auto c : tests::near_contact<S>(54, 300)) {
+    c.ball.radius = std::numeric_limits<S>::max();
+    CAPTURE(tests::describe(c));
+    tests::narrow_case<S> const made(c);
+    auto const contact = collide::karabassi<collide::exact>::contact_of(made.shape, made.ball);
+    CHECK(contact.depth <= made.ball.radius);
+    tests::check_contact(contact, c.shape, c.ball, false);
+  }
+}
+
 TEST_CASE_TEMPLATE("near contact: what a simulation tells at once is right", S, float, double) {
   std::size_t hits = 0, misses = 0;
   auto const point_of = [](collide::vec3<S> const& v) { return oracle::point{v.x(), v.y(), v.z()}; };

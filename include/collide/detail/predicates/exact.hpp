@@ -151,7 +151,9 @@ class exact_triangle {
       int const top = r.mantissa == 0 ? d.exponent : larger(d.exponent, r.exponent + r.length());
       double const sum =
           times_power(static_cast<double>(r.mantissa), r.exponent - top) + times_power(d.value, d.exponent - top);
-      return {distance, times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent - top)};
+      double const depth = times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent - top);
+      double const radius = times_power(static_cast<double>(r.mantissa), r.exponent);
+      return {distance, smaller(depth, radius)};  // rounding up from the largest number would make it infinite
     }
 
     /// From here to the centre, but for the length; 0 if the centre is here.
