@@ -19,6 +19,9 @@
 #include <collide/detail/query/sorted_spheres.hpp>
 #include <collide/detail/query/sphere_major.hpp>
 #include <collide/detector.hpp>
+#if defined(COLLIDE_COMPILED)
+#include <collide/compiled.hpp>
+#endif
 
 namespace collide {
 
@@ -332,5 +335,13 @@ class bucket::index {
   bool queried_ = false;      ///< this is not the first query since the build
   detail::sorted_spheres<S> sorted_;
 };
+
+#if defined(COLLIDE_COMPILED)
+COLLIDE_COMPILED_ELSEWHERE(bucket, host)
+#if defined(__CUDACC__) && defined(COLLIDE_COMPILED_CUDA)
+COLLIDE_COMPILED_ELSEWHERE(bucket, cuda)
+COLLIDE_COMPILED_ELSEWHERE(bucket, cuda_shared)
+#endif
+#endif
 
 }  // namespace collide

@@ -25,7 +25,7 @@ LAYERS = {
     "grid": "detail/grid/",
     "query": "detail/query/ concepts.hpp hit.hpp",
     "sinks": "detail/sinks/ any.hpp closest.hpp contacts.hpp count.hpp earliest.hpp impacts.hpp pairs.hpp visit.hpp",
-    "detector": "detector.hpp validate.hpp",
+    "detector": "compiled.hpp detector.hpp validate.hpp",
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh",
     "effect interface": "columns.hpp effect.hpp velocity_verlet.hpp",
     "simulation": "detail/simulation/ simulation.cuh",

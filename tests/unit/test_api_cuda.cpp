@@ -19,7 +19,7 @@ struct count_there {
 
   template <class Space, class Query>
   void run(Space&, Query const& query) {
-    query(collide::detail::append{numbers, nullptr, 0});
+    query(collide::detail::output{numbers, nullptr, 0, nullptr});
   }
 };
 
