@@ -37,7 +37,7 @@ struct into_array {
 
   template <class Space, class Query>
   void run(Space&, Query const& query) {
-    query(collide::detail::append{numbers, to, capacity});
+    query(collide::detail::output{numbers, to, capacity, nullptr});
   }
 };
 

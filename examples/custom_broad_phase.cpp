@@ -94,7 +94,7 @@ int main() {
   auto const spheres = collide::spheres_xyz(centres, 4, 0.2f);
 
   collide::detector<one_box> detector;
-  for (auto [sphere, triangle] : detector.detect(mesh, spheres, collide::pairs(collide::order::canonical))) {
+  for (auto [sphere, triangle] : detector.detect(mesh, spheres, collide::pairs(collide::order::canonical)).to_host()) {
     std::printf("%u %u\n", sphere, triangle);
   }
 }

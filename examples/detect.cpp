@@ -1,208 +1,50 @@
 /// \file
-/// Finds every pair of a sphere (CSV) and a triangle (OBJ) that touch.
+/// Finds every pair of a sphere (CSV) and a triangle (OBJ) that touch. What finds them is in detect/, and compiled once
+/// for each scalar type.
 
-#include <chrono>
+#include <algorithm>
+#include <cmath>
 #include <list>
-#include <optional>
 
 #include <nlohmann/json.hpp>
 
-#include <collide/all_pairs.cuh>
-#include <collide/bucket.cuh>
-#include <collide/upload.hpp>
-
-#include "io/counting.hpp"
-#include "io/csv.hpp"
+#include "detect/detection.hpp"
 #include "io/device.hpp"
-#include "io/obj.hpp"
 #include "io/output.hpp"
 #include "io/ply.hpp"
 #include "io/program.hpp"
-#include "io/progress.hpp"
 #include "io/tables.hpp"
+#include "io/text.hpp"
 
 namespace {
 
-using clock = std::chrono::steady_clock;
-
-struct options {
-  std::string mesh, spheres, radius;
-  std::string broad = "bucket", space = "host", precision = "exact", scalar;
-  std::string output, contacts, ply, report;
-  double cell_width = 0;
-  int threads = 0;
-  int repeat = 1;
-};
-
-/// What a detection gives: the pairs or the contacts, if somebody wants them, and what it cost.
-template <class S>
-struct findings {
-  std::uint64_t total = 0;
-  std::vector<collide::pair> pairs;
-  std::vector<collide::contact<S>> contacts;
-  std::vector<double> build_ms, query_ms, total_ms;
-  std::size_t peak_bytes = 0;
-  int threads = 1;
-  double cell_width = 0;
-  std::string device;
-};
-
-/// The files' contents.
-template <class S>
-struct scene {
-  io::mesh_data<S> mesh;
-  io::sphere_data<S> spheres;
-  S radius = 0;  ///< of all spheres, if the file has none
-};
-
-double milliseconds(clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
-
-// ---- detection
-
-/// The input in memory of the space: where it is for the host, a copy for CUDA.
-template <class Space, class S>
-class input {
- public:
-  input(Space const& space, scene<S> const& from) : radius_{from.radius}, size_{from.spheres.size()} {
-    auto const& mesh = from.mesh;
-    auto const local = [&](auto& buffer, auto const& values) {
-      if constexpr (Space::host_memory) {
-        return values.data();
-      } else {
-        auto* const to = buffer.reserve(space.resource(), values.size());
-        space.copy_from_host(to, values.data(), values.size());
-        return to;
-      }
-    };
-    mesh_ = collide::indexed_mesh<S>(local(vertices_, mesh.vertices), mesh.vertices.size() / 3,
-                                     local(corners_, mesh.corners), mesh.size());
-    xyz_ = local(centres_, from.spheres.xyz);
-    if (!from.spheres.radii.empty()) radii_ = local(own_radii_, from.spheres.radii);
-  }
-
-  collide::mesh_view<S> mesh() const { return mesh_; }
-  std::size_t size() const { return size_; }
-  bool one_radius() const { return radii_ == nullptr; }
-
-  /// `count` spheres from number `first` on.
-  collide::sphere_view<S> spheres(std::size_t first, std::size_t count) const {
-    if (one_radius()) return collide::spheres_xyz(xyz_ + 3 * first, count, radius_);
-    return collide::spheres_xyz(xyz_ + 3 * first, count, radii_ + first);
-  }
-
- private:
-  collide::buffer<S> vertices_, centres_, own_radii_;
-  collide::buffer<collide::id> corners_;
-  collide::mesh_view<S> mesh_;
-  S const* xyz_ = nullptr;
-  S const* radii_ = nullptr;
-  S radius_;
-  std::size_t size_;
-};
-
-/// Appends what a query of the spheres from `first` on has found.
-template <class Sink, class Found>
-void append(Sink const& sink, std::size_t first, std::vector<Found>& to) {
-  auto part = sink.to_host();
-  for (auto& found : part) found.sphere += static_cast<collide::id>(first);
-  if (to.empty()) {
-    to = std::move(part);
-  } else {
-    to.insert(to.end(), part.begin(), part.end());
-  }
-}
-
-/// Builds and queries as often as wanted, and calls keep(sink, first) with what the first run finds.
-///
-/// If someone watches and it takes longer than a person has patience for, the spheres are queried in parts of about a
-/// fifth of that time, for the progress bar; otherwise all at once.
-template <class Detector, class Input, class Sink, class S, class Keep>
-void measure(options const& wish, Detector& detector, Input const& in, Sink& sink, findings<S>& out, Keep const& keep) {
-  std::size_t const n = in.size();
-  std::size_t step = n;
-  io::progress bar("detecting", static_cast<double>(n) * wish.repeat);
-  auto const timed = [&](auto const& work) {
-    auto const start = clock::now();
-    work();
-    detector.space().synchronize();
-    return milliseconds(clock::now() - start);
-  };
-  auto const query = [&](std::size_t first, std::size_t count) {
-    return timed([&] { detector.query(in.spheres(first, count), sink); });
-  };
-  for (int run = 0; run < wish.repeat; ++run) {
-    double const build = timed([&] {
-      if (in.one_radius()) {
-        detector.build(in.mesh(), in.spheres(0, 0).common_radius());
-      } else {
-        detector.build(in.mesh());
-      }
-    });
-    constexpr std::size_t probe = 1024;
-    if (run == 0 && io::progress::watched() && n > probe) {
-      double const once = query(0, probe);
-      double const patience = 1000 * io::progress::patience();
-      if (once * static_cast<double>(n / probe) > patience) {
-        step = std::max<std::size_t>(1, static_cast<std::size_t>(probe * std::min(patience / 5 / once, 1e6)));
-      }
-    }
-    double spent = 0;
-    std::size_t first = 0;
-    do {
-      spent += query(first, std::min(step, n - first));
-      if (run == 0) keep(sink, first);
-      first += step;
-      bar.update(static_cast<double>(n) * run + static_cast<double>(std::min(first, n)));
-    } while (first < n);
-    out.build_ms.push_back(build);
-    out.query_ms.push_back(spent);
-    out.total_ms.push_back(build + spent);
-  }
-}
-
-template <class Broad, class Precision, class Space, class S>
-findings<S> detect(options const& wish, scene<S> const& from, Broad const& broad) {
-  using device = io::device_of<Space>;
-  io::counting_resource memory(device::memory());
-  findings<S> out;
-  {
-    collide::detector<Broad, collide::karabassi<Precision>, Space, S> detector(device::make(wish.threads, &memory),
-                                                                               broad);
-    input<Space, S> const in(detector.space(), from);
-    if (Space::host_memory) {
-      memory.add((from.mesh.vertices.size() + from.spheres.xyz.size() + from.spheres.radii.size()) * sizeof(S) +
-                 from.mesh.corners.size() * sizeof(collide::id));
-    }
-    auto const run = [&](auto sink, auto const& keep) { measure(wish, detector, in, sink, out, keep); };
-    if (!wish.contacts.empty()) {
-      run(collide::contacts<S>(collide::order::canonical),
-          [&](auto const& sink, std::size_t first) { append(sink, first, out.contacts); });
-      out.total = out.contacts.size();
-    } else if (!wish.output.empty() || !wish.ply.empty()) {
-      run(collide::pairs(collide::order::canonical),
-          [&](auto const& sink, std::size_t first) { append(sink, first, out.pairs); });
-      out.total = out.pairs.size();
-    } else {
-      run(collide::count(), [&](auto const& sink, std::size_t) { out.total += sink.total(); });
-    }
-    out.cell_width = detector.cell_width();
-    out.threads = device::threads(detector.space());
-  }
-  out.peak_bytes = memory.peak();
-  out.device = device::name();
-  return out;
-}
-
-// ---- input and output
+using detection::clock, detection::milliseconds;
+using detection::findings, detection::options, detection::scene;
 
 template <class S>
-scene<S> read(options const& wish) {
-  scene<S> from{io::read_obj<S>(wish.mesh), io::read_csv<S>(wish.spheres), {}};
+scene<S> read(options const& wish, std::string_view mesh, std::string_view spheres) {
+  scene<S> from;
+  from.mesh = io::read_obj<S>(wish.mesh, mesh, wish.strict);
+  from.spheres = io::read_csv<S>(wish.spheres, spheres);
+  from.tally = from.mesh.tally;
+  from.tally += from.spheres.tally;
   if (!from.spheres.has_radii) {
     if (wish.radius.empty()) throw io::usage_error("--radius: is required, as " + wish.spheres + " has no column r");
-    io::parse_number(wish.radius, from.radius);
+    io::parse_number(wish.radius, from.radius, from.tally);
+  }
+  if (from.spheres.size() > 0) {
+    auto const& radii = from.spheres.radii;
+    S const smallest = radii.empty() ? from.radius : *std::min_element(radii.begin(), radii.end());
+    from.coarse = io::coarse(from.tally.most, smallest);
   }
   return from;
+}
+
+/// Reads the files as the scalar type that the options name, or chooses one.
+auto read(options& wish) {
+  io::text_file const mesh(wish.mesh), spheres(wish.spheres);
+  return io::read_as(wish.scalar,
+                     [&](auto scalar) { return read<decltype(scalar)>(wish, mesh.view(), spheres.view()); });
 }
 
 nlohmann::ordered_json statistics(std::vector<double> values) {
@@ -230,11 +72,15 @@ void write(options const& wish, scene<S> const& from, findings<S>& found, nlohma
   for (auto& file : files) file.commit();
 }
 
+/// Says what may be a surprise, and how it went, unless standard output has something else to take.
 template <class S>
 void summarise(options const& wish, scene<S> const& from, findings<S> const& found,
-               nlohmann::ordered_json const& report) {
+               nlohmann::ordered_json const& report, std::string const& roundings) {
+  for (auto const& remark : from.mesh.remarks) std::cerr << "detect: " << remark << "\n";
   for (auto const& path : {wish.output, wish.contacts, wish.ply, wish.report}) {
-    if (!path.empty() && io::output_file::is_standard_output(path)) return;
+    if (path.empty() || !io::output_file::is_standard_output(path)) continue;
+    if (from.tally.rounded > 0) std::cerr << "detect: " << roundings << "\n";
+    return;
   }
   auto const median = [&](char const* what) { return report[what]["median"].template get<double>(); };
   std::cout << found.total << " colliding pairs of " << from.spheres.size() << " spheres and " << from.mesh.size()
@@ -242,21 +88,17 @@ void summarise(options const& wish, scene<S> const& from, findings<S> const& fou
             << wish.broad << " on " << wish.space << " (" << found.device << "), " << wish.precision << " precision";
   if (found.cell_width > 0) std::cout << ", cells of width " << found.cell_width;
   std::cout << "\nbuild " << median("build_ms") << " ms, query " << median("query_ms") << " ms, "
-            << static_cast<double>(found.peak_bytes) / 1e6 << " MB\n";
+            << static_cast<double>(found.peak_bytes) / 1e6 << " MB\n"
+            << roundings << "\n";
   if (from.spheres.has_radii && !wish.radius.empty()) {
     std::cout << "radii are those of column r of " << wish.spheres << ", not --radius\n";
   }
 }
 
-template <class Broad, class Precision, class Space, class S>
-void run(options const& wish, Broad const& broad) {
-  io::device_of<Space>::require();
-  auto start = clock::now();
-  auto const from = read<S>(wish);
-  double const read_ms = milliseconds(clock::now() - start);
-  auto found = detect<Broad, Precision, Space, S>(wish, from, broad);
-
-  nlohmann::ordered_json report{
+template <class S>
+void run(options const& wish, scene<S> const& from, double read_ms, std::string const& roundings) {
+  auto found = detection::detect(wish, from);
+  nlohmann::ordered_json const report{
       {"pairs", found.total},
       {"build_ms", statistics(found.build_ms)},
       {"query_ms", statistics(found.query_ms)},
@@ -276,42 +118,14 @@ void run(options const& wish, Broad const& broad) {
       {"version", io::version()},
   };
   write(wish, from, found, report);
-  summarise(wish, from, found, report);
+  summarise(wish, from, found, report, roundings);
 }
 
-template <class Broad>
-Broad broad_phase(options const& wish) {
-  if constexpr (std::is_same<Broad, collide::bucket>::value) {
-    return collide::bucket{wish.cell_width};
-  } else {
-    return Broad{};
-  }
-}
-
-/// Runs the composition that the options name.
-void run(options const& wish) {
-  using io::choose, io::named;
-  choose(
-      wish.scalar,
-      [&](auto scalar) {
-        choose(
-            wish.precision,
-            [&](auto precision) {
-              choose(
-                  wish.broad,
-                  [&](auto broad) {
-                    using broad_type = typename decltype(broad)::type;
-                    io::choose_space(wish.space, [&](auto space) {
-                      run<broad_type, typename decltype(precision)::type, typename decltype(space)::type,
-                          typename decltype(scalar)::type>(wish, broad_phase<broad_type>(wish));
-                    });
-                  },
-                  named<collide::all_pairs>{"all_pairs"}, named<collide::bucket>{"bucket"});
-            },
-            named<collide::exact>{"exact"}, named<collide::single_precision>{"single"},
-            named<collide::double_precision>{"double"});
-      },
-      named<float>{"float"}, named<double>{"double"});
+void run(options& wish) {
+  auto const start = clock::now();
+  auto const input = read(wish);
+  double const read_ms = milliseconds(clock::now() - start);
+  std::visit([&](auto const& from) { run(wish, from, read_ms, input.roundings); }, input.data);
 }
 
 /// Checks what CLI11 does not, before any work is done.
@@ -326,10 +140,11 @@ void check(options& wish) {
   if (!(wish.cell_width >= 0) || std::isinf(wish.cell_width)) {
     throw io::usage_error("--cell-width: must be finite and not negative");
   }
-  if (wish.scalar.empty()) wish.scalar = wish.precision == "double" ? "double" : "float";
+  if (wish.scalar.empty() && wish.precision == "double") wish.scalar = "double";
   io::check_outputs(
       {{"MESH", wish.mesh}, {"SPHERES", wish.spheres}},
       {{"--output", wish.output}, {"--contacts", wish.contacts}, {"--ply", wish.ply}, {"--report", wish.report}});
+  io::choose_space(wish.space, [](auto space) { io::device_of<typename decltype(space)::type>::require(); });
 }
 
 }  // namespace
@@ -350,8 +165,11 @@ int main(int argc, char** argv) {
   io::add_choice(app, "--broad", wish.broad, {"all_pairs", "bucket"}, "broad phase");
   io::add_choice(app, "--space", wish.space, {"host", "cuda", "cuda_shared"}, "execution space");
   io::add_choice(app, "--precision", wish.precision, {"exact", "single", "double"}, "how sure verdicts are");
-  io::add_choice(app, "--scalar", wish.scalar, {"float", "double"},
-                 "type of the coordinates; double with --precision double, else float");
+  io::add_choice(
+      app, "--scalar", wish.scalar, {"float", "double"},
+      "type of the coordinates; double if not given with --precision double or where float is too coarse, else float");
+  app.add_flag("--strict", wish.strict,
+               "refuse a mesh with faces that would be left out, or lines that may be a mistake");
   app.add_option("--threads", wish.threads, "threads of the host; 0 for all")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");

@@ -13,6 +13,7 @@
 #include "io/device.hpp"
 #include "io/output.hpp"
 #include "io/program.hpp"
+#include "io/text.hpp"
 
 namespace verdict {
 
@@ -45,7 +46,7 @@ struct judge_swept {
 
 struct options {
   std::string cases, output;
-  std::string precision = "exact", scalar = "float", space = "host";
+  std::string precision = "exact", scalar, space = "host";
 };
 
 /// A row of the table that is printed.
@@ -126,10 +127,7 @@ void print_table(io::case_data<S> const& cases, std::vector<unsigned char> const
 }
 
 template <class Precision, class Space, class S>
-void run(options const& wish) {
-  using device = io::device_of<Space>;
-  device::require();
-  auto const cases = io::read_cases<S>(wish.cases);
+void run(options const& wish, io::case_data<S> const& cases, std::string const& roundings) {
   if (cases.swept > 0 && std::is_same<Precision, collide::baseline>::value) {
     throw io::data_error(wish.cases, "swept cases, with dx, dy, dz, have no baseline: choose another --precision");
   }
@@ -138,32 +136,41 @@ void run(options const& wish) {
   if (wish.output.empty() || !io::output_file::is_standard_output(wish.output)) {
     print_table(cases, hits);
     std::cout << wish.precision << " precision, " << wish.scalar << " coordinates, " << wish.space << " ("
-              << device::name() << ")\n";
+              << io::device_of<Space>::name() << ")\n";
+    if (cases.tally.rounded == 0) std::cout << roundings << "\n";
   }
-  if (cases.rounded > 0) {
-    std::cerr << "verdict: " << wish.cases << ": " << cases.rounded << " of " << cases.numbers()
-              << " numbers had to be rounded to " << wish.scalar << "; the verdicts are those of the rounded numbers\n";
+  if (cases.tally.rounded > 0) {
+    std::cerr << "verdict: " << wish.cases << ": " << roundings << "; the verdicts are those of the rounded numbers\n";
   }
 }
 
+/// Reads the cases as the scalar type that the options name, or chooses one.
+auto read(options& wish) {
+  io::text_file const file(wish.cases);
+  return io::read_as(wish.scalar,
+                     [&](auto scalar) { return io::read_cases<decltype(scalar)>(wish.cases, file.view()); });
+}
+
 /// Runs what the options name.
-void run(options const& wish) {
+void run(options& wish) {
   using io::choose, io::named;
-  choose(
-      wish.scalar,
-      [&](auto scalar) {
-        choose(
-            wish.precision,
-            [&](auto precision) {
-              io::choose_space(wish.space, [&](auto space) {
-                run<typename decltype(precision)::type, typename decltype(space)::type,
-                    typename decltype(scalar)::type>(wish);
-              });
-            },
-            named<collide::baseline>{"baseline"}, named<collide::single_precision>{"single"},
-            named<collide::double_precision>{"double"}, named<collide::exact>{"exact"});
-      },
-      named<float>{"float"}, named<double>{"double"});
+  if (wish.scalar.empty() && wish.precision == "double") wish.scalar = "double";
+  io::choose_space(wish.space, [&](auto space) {
+    using space_type = typename decltype(space)::type;
+    io::device_of<space_type>::require();
+    auto const input = read(wish);
+    std::visit(
+        [&](auto const& cases) {
+          choose(
+              wish.precision,
+              [&](auto precision) {
+                run<typename decltype(precision)::type, space_type>(wish, cases, input.roundings);
+              },
+              named<collide::baseline>{"baseline"}, named<collide::single_precision>{"single"},
+              named<collide::double_precision>{"double"}, named<collide::exact>{"exact"});
+        },
+        input.data);
+  });
 }
 
 }  // namespace verdict
@@ -179,7 +186,9 @@ int main(int argc, char** argv) {
       ->type_name("FILE");
   io::add_choice(app, "--precision", wish.precision, {"baseline", "single", "double", "exact"},
                  "how sure a verdict is");
-  io::add_choice(app, "--scalar", wish.scalar, {"float", "double"}, "type that the numbers are read as");
+  io::add_choice(app, "--scalar", wish.scalar, {"float", "double"},
+                 "type that the numbers are read as; double if not given with --precision double or where float is too "
+                 "coarse, else float");
   io::add_choice(app, "--space", wish.space, {"host", "cuda", "cuda_shared"}, "execution space");
   return io::run_program(app, {argv + 1, argv + argc}, [&] {
     io::check_outputs({{"CASES", wish.cases}}, {{"--output", wish.output}});

@@ -20,10 +20,10 @@ die() {
 # usage: prints the comment at the head of the script, less its first line.
 usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
 
-# has PROBE: is this there? A probe is the name of a command, or the path of a file or a header.
+# has PROBE: is this there? A probe is the name of a command, or the path of a file (a pattern, maybe) or a header.
 has() {
   case $1 in
-    /*) [[ -e $1 ]] ;;
+    /*) compgen -G "$1" > /dev/null ;;
     */* | *.h) [[ -e /usr/include/$1 || -e /usr/local/include/$1 ]] ;;
     *) command -v "$1" > /dev/null ;;
   esac

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "csv_table.hpp"
@@ -21,21 +24,22 @@ struct case_data {
   std::vector<S> displacements;     ///< three numbers per case, 0 for those that are not swept
   std::vector<unsigned char> hits;  ///< 0 or 1 per case, or none if the file does not tell
   bool has_hits = false;
-  std::size_t swept = 0;    ///< how many cases have a displacement in the file
-  std::size_t rounded = 0;  ///< how many numbers of the file are no values of `S`
+  std::size_t swept = 0;  ///< how many cases have a displacement in the file
+  rounding tally;
+  bool coarse = false;  ///< true if rounding moved a number of some case by more than a thousandth of its radius
 
   std::size_t size() const { return ids.size(); }
-  std::size_t numbers() const { return corners.size() + spheres.size() + 3 * swept; }
 };
 
-/// Reads cases from a CSV file with the columns id, family, ax .. cz (the triangle), px, py, pz and R (the sphere), and
-/// perhaps hit (0 or 1), dx, dy and dz (the displacement of a swept case; nothing in any of them in others); see
-/// `csv_table`. Numbers are decimal or hexadecimal, nan, inf or -inf, and correctly rounded to `S`. Throws
+/// Reads cases from the text of a CSV file with the columns id, family, ax .. cz (the triangle), px, py, pz and R (the
+/// sphere), and perhaps hit (0 or 1), dx, dy and dz (the displacement of a swept case; nothing in any of them in
+/// others); see `csv_table`. Numbers are decimal or hexadecimal, nan, inf or -inf, and correctly rounded to `S`. Throws
 /// `data_error`, which names file and line, at what is none, and at a number beyond the range of `S`.
 template <class S>
-case_data<S> read_cases(std::string const& path) {
-  constexpr std::size_t triangle = 9, numbers = 13, id = 13, family = 14, hit = 15, displacement = 16, columns = 19;
-  csv_table table(path,
+case_data<S> read_cases(std::string const& path, std::string_view text) {
+  constexpr std::size_t triangle = 9, radius = 12, numbers = 13, id = 13, family = 14, hit = 15, displacement = 16,
+                        columns = 19;
+  csv_table table(path, text,
                   {"ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz", "px", "py", "pz", "R", "id", "family", "hit",
                    "dx", "dy", "dz"},
                   hit);
@@ -43,11 +47,14 @@ case_data<S> read_cases(std::string const& path) {
   cases.has_hits = table.has(hit);
   S row[columns];
   std::size_t moves = 0;  // how many of dx, dy and dz there are
+  double rounded_by = 0;  // the numbers of the row, at most
   auto const number = [&](std::size_t column, std::string const& text) {
     auto const done = convert(text, row[column]);
     if (done == conversion::not_a_number) table.fail(column, text, "is not a number");
     if (done == conversion::out_of_range) table.fail(column, text, "is beyond the largest number; infinity is inf");
-    if (done == conversion::rounded) ++cases.rounded;
+    double nearest = row[column];
+    if (done == conversion::rounded) nearest = std::strtod(text.c_str(), nullptr);
+    rounded_by = std::max(rounded_by, cases.tally.add(done == conversion::exact, nearest, row[column]));
   };
   auto const read = [&](std::size_t column) {
     if (column < numbers) {
@@ -70,11 +77,13 @@ case_data<S> read_cases(std::string const& path) {
   auto const read_next = [&] {
     std::fill(row + displacement, row + columns, S(0));
     moves = 0;
+    rounded_by = 0;
     return table.read_row(read);
   };
   while (read_next()) {
     if (moves != 0 && moves != 3) table.fail("a swept case needs all of dx, dy and dz");
     cases.swept += moves / 3;
+    cases.coarse = cases.coarse || coarse(rounded_by, std::abs(static_cast<double>(row[radius])));
     cases.corners.insert(cases.corners.end(), row, row + triangle);
     cases.spheres.insert(cases.spheres.end(), row + triangle, row + numbers);
     cases.displacements.insert(cases.displacements.end(), row + displacement, row + columns);

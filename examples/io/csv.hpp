@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "csv_table.hpp"
@@ -17,18 +18,19 @@ struct sphere_data {
   std::vector<S> xyz;
   std::vector<S> radii;
   bool has_radii = false;
+  rounding tally;
 
   std::size_t size() const { return xyz.size() / 3; }
 };
 
-/// Reads spheres from a CSV file with the columns x, y, z and perhaps r; see `csv_table`. Numbers are correctly rounded
-/// to `S`. Throws `data_error`, which names file and line, at what is not a number, at a coordinate or radius that is
-/// not finite and at a radius below 0.
+/// Reads spheres from the text of a CSV file with the columns x, y, z and perhaps r; see `csv_table`. Numbers are
+/// correctly rounded to `S`. Throws `data_error`, which names file and line, at what is not a number, at a coordinate
+/// or radius that is not finite and at a radius below 0.
 template <class S>
-sphere_data<S> read_csv(std::string const& path) {
+sphere_data<S> read_csv(std::string const& path, std::string_view text) {
   std::vector<std::string> const names{"x", "y", "z", "r"};
   constexpr std::size_t radius = 3;
-  csv_table table(path, names, 3);
+  csv_table table(path, text, names, 3);
   auto const rows = table.most_rows();
   sphere_data<S> spheres;
   spheres.xyz.reserve(3 * rows);
@@ -37,7 +39,7 @@ sphere_data<S> read_csv(std::string const& path) {
 
   S row[4];
   auto const read = [&](std::size_t column) {
-    S const value = row[column] = table.number<S>(column);
+    S const value = row[column] = table.number<S>(column, spheres.tally);
     if (!std::isfinite(value)) table.fail("the number in column '" + names[column] + "' is not finite");
     if (column == radius && value < 0) table.fail("negative radius");
   };

@@ -12,7 +12,7 @@
 #include "error.hpp"
 #include "number.hpp"
 #include "progress.hpp"
-#include "text.hpp"
+#include "rounding.hpp"
 
 namespace io {
 
@@ -22,11 +22,11 @@ namespace io {
 /// Throws `data_error`, which names file and line, at anything else.
 class csv_table {
  public:
-  /// Reads the header. Columns are known by their place in `names`; the first `required` of them must be there.
-  csv_table(std::string const& path, std::vector<std::string> names, std::size_t required)
+  /// Reads the header of `text`, which is the file `path`. Columns are known by their place in `names`; the first
+  /// `required` of them must be there.
+  csv_table(std::string const& path, std::string_view text, std::vector<std::string> names, std::size_t required)
       : path_{path},
-        file_{path},
-        text_{file_.view()},
+        text_{text},
         at_{text_.data()},
         end_{text_.data() + text_.size()},
         names_{std::move(names)},
@@ -89,20 +89,23 @@ class csv_table {
     return text;
   }
 
-  /// Reads a decimal number, correctly rounded to `S`.
+  /// Reads a decimal number, correctly rounded to `S`; what that did to it is added to `tally`.
   template <class S>
-  S number(std::size_t column) {
+  S number(std::size_t column, rounding& tally) {
     char const* const begin = at_;
     skip_blanks();
     S value{};
-    char const* const after = read_number(at_, end_, value);
+    rounding here;
+    char const* const after = read_number(at_, end_, value, here);
     bool const plain = after != at_;
     at_ = after;
     if (!plain || !end_of_field()) {
       at_ = begin;
       auto const text = filled_field(column);
-      if (!parse_number(text, value)) fail(column, text, "is not a number");
+      here = {};
+      if (!parse_number(text, value, here)) fail(column, text, "is not a number");
     }
+    tally += here;
     return value;
   }
 
@@ -170,7 +173,6 @@ class csv_table {
   }
 
   std::string path_;
-  text_file file_;
   std::string_view text_;
   char const* at_;
   char const* end_;

@@ -18,7 +18,7 @@
 #include "error.hpp"
 #include "number.hpp"
 #include "progress.hpp"
-#include "text.hpp"
+#include "rounding.hpp"
 #include "triangulate.hpp"
 
 namespace io {
@@ -28,12 +28,14 @@ template <class S>
 struct mesh_data {
   std::vector<S> vertices;
   std::vector<std::uint32_t> corners;
+  rounding tally;                    ///< of the coordinates
+  std::vector<std::string> remarks;  ///< what the file has that was left out or may be a mistake, a line each
 
   std::size_t size() const { return corners.size() / 3; }
 };
 
 /// Reads the triangles of all faces of an OBJ file in the file's order, whatever objects, groups and materials they are
-/// in.
+/// in. Faces of fewer than three corners, which exporters write, are left out.
 ///
 /// tinyobjloader takes the records apart. Three things that it leaves to be desired are done here. It reads from this
 /// class one line at a time, so that each of its callbacks is known to stem from a line, which messages then name. It
@@ -42,10 +44,10 @@ struct mesh_data {
 template <class S>
 class obj_reader final : private std::streambuf {
  public:
-  /// Throws `data_error`, which names file and line, unless all of the file is understood and it has a face.
-  static mesh_data<S> read(std::string const& path) {
-    text_file const file(path);
-    return obj_reader(path, file.view()).read();
+  /// Reads `text`, which is the file `path`. Throws `data_error`, which names file and line, unless all of it is
+  /// understood and it has a face; if `strict`, also where there would be a remark.
+  static mesh_data<S> read(std::string const& path, std::string_view text, bool strict) {
+    return obj_reader(path, text, strict).read();
   }
 
  private:
@@ -55,8 +57,19 @@ class obj_reader final : private std::streambuf {
     std::size_t line;
   };
 
-  obj_reader(std::string const& path, std::string_view text)
-      : path_{path}, left_{text}, bar_{"reading " + path, static_cast<double>(text.size())}, size_{text.size()} {}
+  /// What may be a mistake, and what is made of it unless in strict mode; how often that was, and where first.
+  struct oddity {
+    std::string problem, remark;
+    std::size_t count = 0;
+    std::size_t line = 0;
+  };
+
+  obj_reader(std::string const& path, std::string_view text, bool strict)
+      : path_{path},
+        left_{text},
+        strict_{strict},
+        bar_{"reading " + path, static_cast<double>(text.size())},
+        size_{text.size()} {}
 
   mesh_data<S> read() {
     std::istream stream(this);
@@ -69,9 +82,22 @@ class obj_reader final : private std::streambuf {
       static_cast<obj_reader*>(self)->add_face(corners, static_cast<std::size_t>(size));
     };
     tinyobj::LoadObjWithCallback(stream, callbacks, this);
-    if (faces_.empty()) throw data_error(path_, "no faces");
+    if (faces_.empty()) {
+      throw data_error(path_, short_faces_.count > 0 ? "no faces of at least three corners" : "no faces");
+    }
     triangulate();
+    for (auto const* odd : {&short_faces_, &stray_backslashes_}) {
+      if (odd->count == 0) continue;
+      mesh_.remarks.push_back(path_ + ':' + std::to_string(odd->line) + ": " + odd->remark + " (the first of " +
+                              std::to_string(odd->count) + ')');
+    }
     return std::move(mesh_);
+  }
+
+  /// Counts an oddity of the line that is being read.
+  void note(oddity& odd) {
+    if (strict_) fail(odd.problem);
+    if (odd.count++ == 0) odd.line = number_;
   }
 
   /// Gives tinyobjloader the next line, after a look at its keyword.
@@ -80,16 +106,11 @@ class obj_reader final : private std::streambuf {
     number_ += taken_;
     taken_ = 0;
     line_.clear();
-    for (bool more = true; more && !left_.empty();) {  // a backslash continues a line on the next one
-      auto const end = std::min(left_.find('\n'), left_.size());
-      auto part = left_.substr(0, end);
-      part = trimmed(part.substr(0, part.find('#')));
-      more = !part.empty() && part.back() == '\\';
-      if (more) part.remove_suffix(1);
-      line_.append(part).append(more ? " " : "");
-      left_.remove_prefix(std::min(end + 1, left_.size()));
+    do {
+      line_.append(next_part());
+      left_.remove_prefix(std::min(left_.find('\n'), left_.size() - 1) + 1);
       ++taken_;
-    }
+    } while (continued());
     if (number_ % 4096 == 0) bar_.update(static_cast<double>(size_ - left_.size()));
     check_keyword();
     line_ += '\n';
@@ -97,8 +118,32 @@ class obj_reader final : private std::streambuf {
     return traits_type::to_int_type(line_.front());
   }
 
-  /// Throws unless the line begins with a keyword of OBJ, with something after it where the geometry depends on it.
-  void check_keyword() {
+  /// What the next line of the file says, without a comment and blanks around it.
+  std::string_view next_part() const {
+    auto const line = left_.substr(0, left_.find('\n'));
+    return trimmed(line.substr(0, line.find('#')));
+  }
+
+  /// If the line ends in a backslash, which continues it on the next one, takes that off and returns true. No number
+  /// and no corner is a keyword: where the next line begins with one, the backslash belongs to a name, such as a path
+  /// of Windows, that is of no interest here.
+  bool continued() {
+    if (line_.empty() || line_.back() != '\\') return false;
+    auto const keyword = first_word(line_);
+    if (keyword != "v" && keyword != "f" && keyword != "\\" && is_keyword(first_word(next_part()))) {
+      note(stray_backslashes_);
+      return false;
+    }
+    line_.back() = ' ';
+    return !left_.empty();
+  }
+
+  static std::string_view first_word(std::string_view text) {
+    auto const rest = trimmed(text);
+    return rest.substr(0, rest.find_first_of(" \t"));
+  }
+
+  static bool is_keyword(std::string_view word) {
     static constexpr std::string_view known[] = {
         "v",         "f",      "vn",    "vt",     "vp",   "vw",    "g",        "o",        "s",
         "usemtl",    "mtllib", "l",     "p",      "mg",   "t",     "usemap",   "maplib",   "lod",
@@ -106,16 +151,20 @@ class obj_reader final : private std::streambuf {
         "hole",      "scrv",   "sp",    "end",    "con",  "bevel", "c_interp", "d_interp", "shadow_obj",
         "trace_obj", "ctech",  "stech", "call",   "csh",
     };
+    return std::find(std::begin(known), std::end(known), word) != std::end(known);
+  }
+
+  /// Throws unless the line begins with a keyword of OBJ.
+  void check_keyword() {
     auto const rest = trimmed(line_);
     if (rest.empty()) return;
     if (std::any_of(rest.begin(), rest.end(), [](unsigned char c) { return c < ' ' && c != '\t'; })) {
       fail("this is not a line of text");
     }
-    auto const keyword = rest.substr(0, rest.find_first_of(" \t"));
-    if (std::find(std::begin(known), std::end(known), keyword) == std::end(known)) {
-      fail("OBJ has no keyword " + quoted(keyword));
-    }
-    if (keyword == rest && (keyword == "v" || keyword == "f")) fail("nothing after " + quoted(keyword));
+    auto const keyword = first_word(rest);
+    if (!is_keyword(keyword)) fail("OBJ has no keyword " + quoted(keyword));
+    if (rest == "v") fail("nothing after 'v'");
+    if (rest == "f") note(short_faces_);  // of which tinyobjloader says nothing
   }
 
   /// Reads the coordinates of the `v` line that tinyobjloader has just passed.
@@ -123,9 +172,12 @@ class obj_reader final : private std::streambuf {
     std::size_t n = 0;
     for_each_word([&](std::string_view word) {
       S value{};
-      if (!parse_number(word, value)) fail(quoted(word) + " is not a number");
+      rounding here;
+      if (!parse_number(word, value, here)) fail(quoted(word) + " is not a number");
       if (!std::isfinite(value)) fail(quoted(word) + " is not finite");
-      if (n++ < 3) mesh_.vertices.push_back(value);  // then a weight or a colour
+      if (n++ >= 3) return;  // a weight or a colour
+      mesh_.vertices.push_back(value);
+      mesh_.tally += here;
     });
     if (n < 3) fail("a vertex has three coordinates");
   }
@@ -135,7 +187,7 @@ class obj_reader final : private std::streambuf {
     for_each_word([&](std::string_view word) {
       if (!is_corner(word)) fail(quoted(word) + " is not a corner of a face");
     });
-    if (size < 3) fail("a face has at least three corners");
+    if (size < 3) return note(short_faces_);
     auto const known = static_cast<std::ptrdiff_t>(mesh_.vertices.size() / 3);
     faces_.push_back({corners_.size(), number_});
     for (std::size_t i = 0; i < size; ++i) {
@@ -200,17 +252,21 @@ class obj_reader final : private std::streambuf {
   std::string line_;        ///< the line that it sees
   std::size_t number_ = 0;  ///< its number
   std::size_t taken_ = 1;   ///< how many lines of the file it takes up
+  bool strict_;
   progress bar_;
   std::size_t size_;
   mesh_data<S> mesh_;
   std::vector<face> faces_;
   std::vector<std::uint32_t> corners_;
+  oddity short_faces_{"a face of fewer than three corners", "a face of fewer than three corners is left out"};
+  oddity stray_backslashes_{"a backslash at the end, but the next line begins with a keyword",
+                            "the backslash at the end does not continue this line, as the next begins with a keyword"};
 };
 
-/// Reads a mesh from an OBJ file; see `obj_reader`.
+/// Reads a mesh from the text of an OBJ file; see `obj_reader`.
 template <class S>
-mesh_data<S> read_obj(std::string const& path) {
-  return obj_reader<S>::read(path);
+mesh_data<S> read_obj(std::string const& path, std::string_view text, bool strict) {
+  return obj_reader<S>::read(path, text, strict);
 }
 
 }  // namespace io

@@ -31,7 +31,7 @@ class polygon_cutter {
     rest_.resize(size);
     for (std::size_t i = 0; i < size; ++i) rest_[i] = i;
     if (!convex()) {
-      while (rest_.size() > 3) cut_ear();
+      for (int without = 0; rest_.size() > 3 && without < most_without_ear;) without += cut_ear() ? 0 : 1;
     }
     for (std::size_t i = 1; i + 1 < rest_.size(); ++i) add(rest_[0], rest_[i], rest_[i + 1]);
   }
@@ -100,9 +100,13 @@ class polygon_cutter {
     return true;
   }
 
-  /// Cuts off the first ear of the rest, or, where a polygon that crosses itself has none, its first corner that is not
-  /// flat.
-  void cut_ear() {
+  /// A polygon that has no ear so many times crosses itself all over: what is left becomes a fan, as looking for ears
+  /// would take a time that is cubic in the number of corners.
+  static constexpr int most_without_ear = 16;
+
+  /// Cuts off the first ear of the rest; or, where a polygon that crosses itself has none, its second corner, and
+  /// returns false.
+  bool cut_ear() {
     auto const n = rest_.size();
     std::size_t middle = 1;
     bool found = false;
@@ -113,6 +117,7 @@ class polygon_cutter {
     if (!found) middle = 1;
     add(rest_[(middle + n - 1) % n], rest_[middle], rest_[(middle + 1) % n]);
     rest_.erase(rest_.begin() + static_cast<std::ptrdiff_t>(middle));
+    return found;
   }
 
   /// True if corner b turns left and no other corner lies in the triangle that it makes with its neighbours.

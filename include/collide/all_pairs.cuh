@@ -12,6 +12,9 @@
 #include <collide/detail/grid/all_pairs_ref.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
 #include <collide/detector.hpp>
+#if defined(COLLIDE_COMPILED)
+#include <collide/compiled.hpp>
+#endif
 
 namespace collide {
 
@@ -174,5 +177,13 @@ struct all_pairs {
     buffer<detail::lifted_bounds<S>> bounds_;
   };
 };
+
+#if defined(COLLIDE_COMPILED)
+COLLIDE_COMPILED_ELSEWHERE(all_pairs, host)
+#if defined(__CUDACC__) && defined(COLLIDE_COMPILED_CUDA)
+COLLIDE_COMPILED_ELSEWHERE(all_pairs, cuda)
+COLLIDE_COMPILED_ELSEWHERE(all_pairs, cuda_shared)
+#endif
+#endif
 
 }  // namespace collide

@@ -8,21 +8,8 @@
 
 namespace collide {
 
-namespace detail {
-
-struct raise_flag {
-  std::uint8_t* flags;
-  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t) const { return 0; }
-  template <class Hit>
-  COLLIDE_HD_INLINE void store(std::uint64_t, Hit const& h) const {
-    store_relaxed(flags + h.sphere, std::uint8_t{1});
-  }
-};
-
-}  // namespace detail
-
 /// A flag per sphere: 1 if it touches any triangle, else 0. `query` does not wait for them.
-class any {
+class any : public detail::kept_in_space<std::uint8_t> {
  public:
   /// The flags are kept in memory of the space.
   any() = default;
@@ -42,7 +29,7 @@ class any {
     flags_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), size_);
     download_ = detail::downloader<std::uint8_t>(space);
     space.fill(flags_, 0, size_);
-    query(detail::raise_flag{flags_});
+    query(detail::output{{nullptr, nullptr}, nullptr, 0, flags_});
   }
 
  private:

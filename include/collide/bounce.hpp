@@ -8,8 +8,9 @@
 namespace collide {
 
 /// The mesh repels: the velocity along the normal turns around, times `restitution` (1: elastic, 0: not at all), and
-/// the particle is put back to the surface. A particle that comes in so slowly that the step's acceleration would take
-/// the bounce back within a step rests on the surface.
+/// the particle is put back to the surface. A particle that would leave it by no more than three times a step's
+/// acceleration, and so be back within six steps, rests on the surface: in a groove, what has slid down one wall for a
+/// step meets the other one so fast.
 ///
 /// What is left of the step after the impact, depth / speed, is spent on the way back, so that bounces lose or gain
 /// no height on average, whatever the step.
@@ -24,9 +25,9 @@ struct bounce {
     S back = detail::larger(t.depth, S(0));
     if (speed > 0) {
       S const rebound = e * detail::larger(t.approach, S(0));
-      t.rests = rebound <= -detail::dot(t.gain, t.normal);
+      t.rests = rebound <= 3 * -detail::dot(t.gain, t.normal);
       t.repel(p[velocity{}], t.rests ? speed : speed + rebound);
-      if (!t.rests) back += e * detail::smaller(back, speed * dt);
+      if (!t.rests) back += rebound * detail::smaller(back / speed, dt);
     }
     t.move_out(p[position{}], back);
   }

@@ -1,5 +1,6 @@
 /// \file
-/// What marks functions and loops for host and device, and the version: the only macros of the library.
+/// What marks functions and loops for host and device, and the version: the only macros of the library, but for those
+/// of compiled.hpp.
 #pragma once
 
 #if defined(__CUDACC__)

@@ -6,15 +6,6 @@
 
 namespace collide {
 
-namespace detail {
-
-struct add_up : tally {
-  template <class Hit>
-  COLLIDE_HD_INLINE void store(std::uint64_t, Hit const&) const {}
-};
-
-}  // namespace detail
-
 /// Counts the colliding pairs, in 64 bits. `query` waits until the number is known.
 class count {
  public:
@@ -23,7 +14,7 @@ class count {
 
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
-    query(detail::add_up{total_of_.begin(space)});
+    query(detail::output{total_of_.begin(space), nullptr, 0, nullptr});
     total_ = total_of_.end(space);
   }
 

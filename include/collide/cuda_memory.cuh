@@ -110,4 +110,19 @@ class cuda_pinned_memory final : public std::pmr::memory_resource {
   bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
 };
 
+namespace detail {
+
+/// Tells the host which memory it cannot read, in all of a program of which nvcc has compiled some part.
+inline bool const host_is_told = [] {
+  in_device_memory = [](void const* p) {
+    cudaPointerAttributes memory{};
+    if (cudaPointerGetAttributes(&memory, p) == cudaSuccess) return memory.type == cudaMemoryTypeDevice;
+    cudaGetLastError();  // there is no device, and so no memory of one
+    return false;
+  };
+  return true;
+}();
+
+}  // namespace detail
+
 }  // namespace collide

@@ -63,19 +63,12 @@ class detector {
 
   /// Prepares what depends on the mesh only. Call it again when the mesh has moved. The mesh's memory must stay as it
   /// is until the last query; before the first build nothing collides. O(triangles).
-  void build(mesh_view<Scalar> mesh) {
-    mesh_ = {};
-    if (mesh.size() != 0) index_.build(space_, options_, mesh);
-    mesh_ = mesh;
-  }
+  void build(mesh_view<Scalar> mesh);
 
   /// The same, and everything that spheres at rest of radius up to `radius` need, so that a query has nothing left to
   /// prepare. Many spheres that move may still want a grid of their own on the host.
   /// Spheres with a larger radius are served all the same, more slowly.
-  void build(mesh_view<Scalar> mesh, Scalar radius) {
-    build(mesh);
-    if (mesh.size() != 0) index_.prepare(space_, options_, radius);
-  }
+  void build(mesh_view<Scalar> mesh, Scalar radius);
 
   /// Hands every colliding pair, exactly once, to the sink (`count`, `any`, `pairs`, `contacts`, `closest`, `visit`, or
   /// one of your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used again),
@@ -87,7 +80,7 @@ class detector {
         detail::is_sink<std::remove_reference_t<Sink>, ExecutionSpace, pass>::value,
         "collide: the second argument of query is a sink, such as count, any, pairs, contacts, closest or visit: an "
         "object with a member run(space, query)");
-    if (mesh_.size() != 0 && spheres.size() != 0) index_.prepare(space_, options_, spheres);
+    prepare(spheres);
     sink.run(space_, pass{index_, space_, mesh_, spheres, open_});
     return std::forward<Sink>(sink);
   }
@@ -100,7 +93,7 @@ class detector {
   }
 
   /// The width of the finest cells in use; 0 if there are none. In the CUDA spaces it waits for the device.
-  double cell_width() const { return mesh_.size() == 0 ? 0.0 : index_.cell_width(space_); }
+  double cell_width() const;
 
   // A mesh or spheres of another scalar type end here, with a sentence instead of a list of candidates.
   template <class S>
@@ -133,11 +126,40 @@ class detector {
         "narrowed silently");
   }
 
+  /// Prepares what depends on the spheres.
+  void prepare(spheres_type const& spheres);
+
   ExecutionSpace space_;
   BroadPhase options_;
   mesh_view<Scalar> mesh_;
   typename BroadPhase::template index<Scalar> index_;
   detail::undecided_list open_;
 };
+
+// What follows is not in the class, for then it would be inline, and compiled also where an `extern template` says that
+// it is compiled elsewhere; see compiled.hpp.
+
+template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
+void detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::build(mesh_view<Scalar> mesh) {
+  mesh_ = {};
+  if (mesh.size() != 0) index_.build(space_, options_, mesh);
+  mesh_ = mesh;
+}
+
+template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
+void detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::build(mesh_view<Scalar> mesh, Scalar radius) {
+  build(mesh);
+  if (mesh.size() != 0) index_.prepare(space_, options_, radius);
+}
+
+template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
+void detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::prepare(spheres_type const& spheres) {
+  if (mesh_.size() != 0 && spheres.size() != 0) index_.prepare(space_, options_, spheres);
+}
+
+template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
+double detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::cell_width() const {
+  return mesh_.size() == 0 ? 0.0 : index_.cell_width(space_);
+}
 
 }  // namespace collide

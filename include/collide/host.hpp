@@ -65,6 +65,9 @@ class host {
   /// True if the host reads this memory without waiting for anything.
   static constexpr bool host_memory = true;
 
+  /// False if the memory at `p` is known not to be this space's.
+  static bool reads(void const* p) { return detail::in_device_memory == nullptr || !detail::in_device_memory(p); }
+
   /// True if a pair that takes long to decide is better put on a list, as its neighbours would wait for it.
   static constexpr bool defers = false;
 

@@ -12,6 +12,14 @@
 
 namespace collide {
 
+namespace detail {
+
+/// Says whether `p` is in memory of a CUDA device that the host cannot read. Set where nvcc has compiled some part of
+/// the program, see cuda.cuh, and then used by all of it; else null.
+inline bool (*in_device_memory)(void const* p) = nullptr;
+
+}  // namespace detail
+
 /// Presents an allocator (of the standard's or of Thrust's form: `allocate(n)`, `deallocate(p, n)`, raw or fancy
 /// pointers) as the memory resource that an execution space takes. The allocator must return memory aligned to 256
 /// bytes or to what it serves (cudaMalloc and Thrust's device allocators do).

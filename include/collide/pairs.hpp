@@ -21,7 +21,7 @@ struct copy_pairs {
 
 /// Every colliding (sphere, triangle) pair, each exactly once. `query` waits once, for their number;
 /// where there are more than its memory has room for, it makes room and runs a second time.
-class pairs {
+class pairs : public detail::kept_in_space<pair> {
  public:
   /// The pairs are kept in memory of the space, as many as there are.
   explicit pairs(order o = order::unspecified) : order_{o} {}
@@ -39,8 +39,6 @@ class pairs {
 
   /// The stored pairs, in memory of the space.
   pair const* data() const { return data_; }
-  pair const* begin() const { return data(); }
-  pair const* end() const { return data() + size(); }
   /// A copy of the stored pairs on the host.
   std::vector<pair> to_host() const { return download_(data(), size()); }
 

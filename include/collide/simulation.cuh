@@ -2,12 +2,14 @@
 /// Particles that move, and collide with a mesh and with each other: a detector and the effects that a scene names.
 #pragma once
 
-#include <array>
-#include <string>
+#include <algorithm>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/detail/simulation/particle_kernels.hpp>
 #include <collide/detail/simulation/step.hpp>
 #include <collide/detail/simulation/verlet_list.hpp>
 #include <collide/detector.hpp>
@@ -15,44 +17,6 @@
 namespace collide {
 
 namespace detail {
-
-/// Kernel body of `for_each` over places of particles: what each begins with.
-template <class S, class All>
-struct place_particles {
-  particle_state<S, All> state;
-  sphere_view<S> spheres;
-  S const* velocities;  ///< null: they rest
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    particle<S, All> p;
-    begin_particle(p);
-    bool const there = i < spheres.size();
-    if (there) {
-      p[position{}] = spheres.centre(i);
-      if (velocities != nullptr) {
-        p[velocity{}] = vec3<S>(velocities[3 * i], velocities[3 * i + 1], velocities[3 * i + 2]);
-      }
-    }
-    if constexpr (contains<All, radius>) p[radius{}] = there ? spheres.radius(i) : spheres.common_radius();
-    if constexpr (contains<All, present>) p[present{}] = there;
-    state.store(p, i, All{});
-  }
-};
-
-/// Kernel body of `for_each`.
-template <class T>
-struct copy_values {
-  T const* from;
-  T* to;
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
-};
-
-/// Kernel body of `for_each` over one item.
-struct advance_time {
-  double* time;
-  double dt;
-  COLLIDE_HD void operator()(std::size_t) const { *time += dt; }
-};
 
 /// A space as a broad phase sees it that is asked for the triangles near single spheres: they are sorted, not the
 /// spheres, and into narrow cells, as a look-up is cheap and a candidate is not.
@@ -226,7 +190,8 @@ class simulation {
   /// Number of particles, or of places for them, if an effect makes or removes some; see `present`.
   std::size_t size() const { return state_.size; }
 
-  /// A column in memory of the space: three coordinates a particle, or one number. Valid until the next `set`.
+  /// A column in memory of the space: three coordinates a particle, or one number. Valid until the next `set`. Of a
+  /// device, kernels read it; the host reads `to_host<Column>()`.
   template <class Column>
   detail::column_element<Column, S>* data() const {
     check<Column>();

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include <collide/detail/execution/check_memory.hpp>
+#include <collide/host.hpp>
 #include <collide/memory.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
@@ -16,6 +18,7 @@ class uploaded_mesh {
  public:
   template <class Space>
   uploaded_mesh(Space const& space, mesh_view<S> mesh) {
+    detail::check_memory<host>(mesh, "upload: the mesh is", "upload copies from host memory");
     std::size_t const coordinates = 3 * mesh.vertex_count();
     space.copy_from_host(vertices_.reserve(space.resource(), coordinates), mesh.vertices(), coordinates);
     id const* corners = nullptr;
@@ -41,6 +44,7 @@ class uploaded_spheres {
  public:
   template <class Space>
   uploaded_spheres(Space const& space, sphere_view<S> spheres) {
+    detail::check_memory<host>(spheres, "upload: the spheres are", "upload copies from host memory");
     std::size_t const n = spheres.size();
     std::vector<S> packed(3 * n), radii(spheres.one_radius() ? 0 : n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -67,13 +71,14 @@ class uploaded_spheres {
   sphere_view<S> view_;
 };
 
-/// Copies a mesh from host memory into memory of the space.
+/// Copies a mesh from host memory into memory of the space. Throws `error` if CUDA knows it as device memory.
 template <class Space, class S>
 uploaded_mesh<S> upload(Space const& space, mesh_view<S> mesh) {
   return uploaded_mesh<S>(space, mesh);
 }
 
-/// Copies spheres from host memory into memory of the space, whatever their layout, as packed centres.
+/// Copies spheres from host memory into memory of the space, whatever their layout, as packed centres. Throws `error`
+/// if CUDA knows it as device memory.
 template <class Space, class S>
 uploaded_spheres<S> upload(Space const& space, sphere_view<S> spheres) {
   return uploaded_spheres<S>(space, spheres);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/execution/check_memory.hpp>
 #include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/host.hpp>
@@ -163,14 +164,19 @@ report inspect(Space const& space, View const& view) {
 }  // namespace detail
 
 /// Says what is wrong with a mesh in memory of the space, and where. O(triangles); waits for the result.
+/// Throws `error` if CUDA knows that the space cannot read the mesh: device memory on the host, or the other way round.
 template <class S, class Space = host>
 report validate(mesh_view<S> const& mesh, Space const& space = Space()) {
+  detail::check_memory<Space>(mesh, "validate: the mesh is", "pass the space of that memory, as validate(mesh, space)");
   return detail::inspect<detail::inspect_triangle>(space, mesh);
 }
 
-/// Says what is wrong with spheres in memory of the space, and where. O(spheres); waits for the result.
+/// Says what is wrong with spheres in memory of the space, and where. O(spheres); waits for the result. Throws
+/// `error` if CUDA knows that the space cannot read them: device memory on the host, or the other way round.
 template <class S, class Space = host>
 report validate(sphere_view<S> const& spheres, Space const& space = Space()) {
+  detail::check_memory<Space>(spheres, "validate: the spheres are",
+                              "pass the space of that memory, as validate(spheres, space)");
   return detail::inspect<detail::inspect_sphere>(space, spheres);
 }
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "near_contact.hpp"
+#include "narrow_phase/near_contact.hpp"
 
 namespace {
 

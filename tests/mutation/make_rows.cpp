@@ -8,7 +8,7 @@
 #include <string>
 
 #include "../oracle/scene.hpp"
-#include "near_contact.hpp"
+#include "narrow_phase/near_contact.hpp"
 #include "rows.hpp"
 
 namespace {

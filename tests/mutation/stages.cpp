@@ -18,9 +18,7 @@ bool some_integers_are_wrong(collide::triangle<S> const& t, collide::sphere<S> c
   auto const shape = detail::widened(t);
   auto const ball = detail::widened(s);
   detail::fixed_triangle const fixed(shape, ball);
-  detail::exact_place::memory memory;
-  auto const numbers = detail::exact_numbers_of(memory.table(), shape, {ball, {0, 0, 0}}, {0, 0});
-  return (fixed.holds() && fixed.in_reach() != hit) || detail::exact_triangle(numbers).in_reach() != hit;
+  return (fixed.holds() && fixed.in_reach() != hit) || detail::in_reach_exactly(shape, ball) != hit;
 }
 
 /// Of the quick tests: with branches and without.

@@ -43,6 +43,12 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, b""), args)
         return done.stdout.decode()
 
+    def succeed_saying(self, lines, name, *args, **options):
+        """Runs a program that must succeed and say these lines on standard error; returns its standard output."""
+        done = self.run_program(name, *args, **options)
+        self.assertEqual((done.returncode, done.stderr.decode()), (0, "".join(f"{name}: {line}\n" for line in lines)), args)
+        return done.stdout.decode()
+
     def fail_with(self, status, words, name, *args, **options):
         """Runs a program that must fail with this status, one line that has all of the words, and no new file."""
         before = self.files()

@@ -3,15 +3,20 @@
 import math
 import os
 import random
+import re
 import resource
 import signal
 import stat
 import subprocess
+import time
 import unittest
+from fractions import Fraction
+from pathlib import Path
 
 import programs
 from programs import ProgramTest, nearest, read_ply, true_pairs
 
+DATA = Path(__file__).parents[1] / "data"
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 ONE_SPHERE = "x,y,z\n0.2,0.2,0.1\n"
 CUBE = ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
@@ -97,31 +102,35 @@ class Answers(ProgramTest):
         self.assertEqual(len(outputs), 1)
         self.assertGreater(len(self.pairs("p0")), 1000)
 
-    def test_single_precision_reads_float_and_double_reads_double(self):
+    def test_the_scalar_decides(self):
         # the plane x = 1 + 2^-30 is at distance 2^-30 from the sphere in double, and at distance 0 in float
         self.write("mesh.obj", "v 1.000000000931322574615478515625 0 0\nv 1.000000000931322574615478515625 1 0\n"
                                "v 1.000000000931322574615478515625 0 1\nf 1 2 3\n")
         self.write("spheres.csv", "x,y,z\n1,.25,.25\n")
         call = ["mesh.obj", "spheres.csv", "--radius", 0]
-        self.assertEqual(self.detect(*call), [(0, 0)])
+        self.assertEqual(self.detect(*call, "--scalar", "float"), [(0, 0)])
+        self.assertEqual(self.detect(*call, "--scalar", "double"), [])
+        self.assertEqual(self.detect(*call), [])
         self.assertEqual(self.detect(*call, "--precision", "double"), [])
         self.assertEqual(self.detect(*call, "--precision", "double", "--scalar", "float"), [(0, 0)])
 
 
-class ObjForms(ProgramTest):
-    """One sphere at each point of interest of a plate 0 <= x <= 4, 0 <= y <= 4 tells which triangle is where."""
+class ObjTest(ProgramTest):
+    """The plate 0 <= x <= 4, 0 <= y <= 4, and where the triangles of a mesh are."""
 
-    def triangles(self, obj):
-        """The corners of each triangle of the mesh, from the picture."""
+    def triangles(self, obj, *remarks):
+        """The corners of each triangle of the mesh, from the picture; there must be these remarks about the mesh."""
         self.write("mesh.obj", obj)
         self.write("spheres.csv", "x,y,z\n1000,1000,1000\n")
-        self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 1, "--ply", "hits.ply")
+        self.succeed_saying([f"mesh.obj:{remark}" for remark in remarks], "detect", "mesh.obj", "spheres.csv", "--radius", 1, "--ply", "hits.ply")
         vertices, faces = read_ply(self.read("hits.ply"))
         return [tuple(tuple(int(x) for x in vertices[i][0][:2]) for i in corners) for corners, _ in faces]
 
     square = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n"
     two = [((0, 0), (4, 0), (4, 4)), ((0, 0), (4, 4), (0, 4))]
 
+
+class ObjForms(ObjTest):
     def test_faces_of_every_form(self):
         for faces in ("f 1 2 3\nf 1 3 4\n", "f -4 -3 -2\nf -4 -2 -1\n", "f 1/1 2/2 3/3\nf 1/1 3/1 4/1", "f 1//1 2//1 3//1\nf 1//1 3//1 4//1\n",
                       "f 1/1/1 2/1/1 3/1/1\nf -4/-1/-1 -2/-1/-1 -1/-1/-1\n", "f\t1  2\t 3 \nf 1 3 4 # a comment\n",
@@ -177,6 +186,15 @@ class ObjForms(ProgramTest):
                     self.assertTrue(all(sign * self.area(t) >= 0 for t in found), found)
                     self.assertEqual(sum(abs(self.area(t)) for t in found), abs(whole))
 
+    def test_a_polygon_that_crosses_itself_all_over_takes_no_cubic_time(self):
+        rng = random.Random(1)
+        n = 20000  # took six minutes
+        obj = "".join(f"v {rng.randrange(1000)} {rng.randrange(1000)} 7\n" for _ in range(n))
+        begin = time.monotonic()
+        found = self.triangles(obj + "f " + " ".join(str(i + 1) for i in range(n)))
+        self.assertEqual(len(found), n - 2)
+        self.assertLess(time.monotonic() - begin, 60)
+
     def test_quadrangles_are_cut_along_the_shorter_diagonal(self):
         a, b, c, d = (0, 0), (4, 0), (6, 2), (2, 2)  # from b to d it is shorter
         for corners, cut in (((a, b, c, d), [(a, b, d), (b, c, d)]), ((b, c, d, a), [(b, c, d), (b, d, a)])):
@@ -193,6 +211,83 @@ class ObjForms(ProgramTest):
         self.write("mesh.obj", self.square + "v 9 9 9\nv 10 9 9\nv 9 10 9\nf 1 2 3 4\nf 5 6 7\n")
         self.write("spheres.csv", "x,y,z\n9,9,9\n2,2,0\n")
         self.assertEqual(self.detect("mesh.obj", "spheres.csv", "--radius", 1), [(0, 2), (1, 0), (1, 1)])
+
+
+class RealExporters(ObjTest):
+    """What programs write that is not quite OBJ: it is read as it was meant, and a line says so."""
+
+    def left_out(self, line, count):
+        return f"{line}: a face of fewer than three corners is left out (the first of {count})"
+
+    def no_continuation(self, line, count=1):
+        return f"{line}: the backslash at the end does not continue this line, as the next begins with a keyword (the first of {count})"
+
+    def refused_if_strict(self, obj, line, words):
+        self.write("mesh.obj", obj)
+        self.write("spheres.csv", "x,y,z\n0,0,0\n")
+        self.fail_with(1, [f"mesh.obj:{line}: ", *words], "detect", "mesh.obj", "spheres.csv", 1, "out.csv", "--strict")
+
+    def test_faces_of_fewer_than_three_corners(self):
+        a, b = "f 1 2 3\n", "f 1 3 4\n"
+        for few in ("f 1 2\n", "f 1\n", "f\n", "f \\\n2\n", "f -1/-1 -2\r\n", "f 1//1 # 2 3\n", " f\t2 3 \n", "f 9 8\n"):
+            with self.subTest(face=few):
+                self.assertEqual(self.triangles(self.square + a + few + b, self.left_out(6, 1)), self.two)
+                self.assertEqual(self.triangles(few + self.square + few + a + few + b + few.rstrip("\n"), self.left_out(1, 4)), self.two)
+                self.refused_if_strict(self.square + a + few + b, 6, ["three corners"])
+        for bad in ("f 1 2x\n", "f 1.5\n", "f 1 nan\n"):  # are no corners, however few
+            self.write("mesh.obj", self.square + a + bad)
+            self.fail_with(1, ["mesh.obj:6: "], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+        self.write("mesh.obj", self.square + "f 1 2\n")
+        self.fail_with(1, ["mesh.obj: no faces"], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+
+    def test_a_well_known_mesh(self):
+        # 124,990 faces, of which 201 have two corners or one; the sphere tells the number of the last
+        faces = ["f 1 2 3"] * 124_990
+        for i in range(201):
+            faces[100 + 617 * i] = "f 1 2" if i % 3 else "f 2"
+        faces[-1] = "f 4 5 6"
+        self.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 0 0\nv 9 1 0\nv 9 0 1\n" + "\n".join(faces) + "\n")
+        self.write("spheres.csv", "x,y,z\n9,0,0\n")
+        text = self.succeed_saying([f"mesh.obj:{self.left_out(107, 201)}"], "detect", "mesh.obj", "spheres.csv", 0.5, "pairs.csv")
+        self.assertIn(" 124789 triangles\n", text)
+        self.assertEqual(self.pairs("pairs.csv"), [(0, 124_788)])
+
+    def test_names_that_end_in_a_backslash(self):
+        for name in ("mtllib C:\\stuff\\", "o a\\", "g a b\\", "g \\ ", "usemtl a \\", "s off\\ ", "usemap D:\\maps\\\t", "maplib \\\\server\\maps\\\\",
+                     "shadow_obj ..\\", "trace_obj ..\\", "call ..\\", "csh dir\\", "lod 1\\", "mg off\\", "bevel off\\", "c_interp off\\", "d_interp off\\",
+                     "vt 0 0\\", "vn 0 0 1 \\", "vp 0\\", "l 1 2\\", "p 1\\"):
+            for end in ("\n", "\r\n"):
+                with self.subTest(name=name, end=end):
+                    vertices, faces = self.square.replace("\n", end), f"f 1 2 3{end}{name}{end}f 1 3 4{end}"
+                    self.assertEqual(self.triangles(vertices + faces, self.no_continuation(6)), self.two)
+                    self.assertEqual(self.triangles(f"{name}{end}{vertices}{faces}", self.no_continuation(1, 2)), self.two)
+                    # nothing that matters goes on in a blank line, a comment or the end of the file
+                    for after in (f"{end}", f" \t{end}", f"# f 1 2 3{end}", f"  # \\{end}", f"\\{end}{end}"):
+                        self.assertEqual(self.triangles(f"{name}{end}{after}{vertices}f 1 2 3{end}{name}{end}{after}f 1 3 4{end}{name}"), self.two)
+                    self.refused_if_strict(vertices + faces, 6, ["backslash"])
+
+    def test_lines_that_go_on(self):
+        for faces in ("f 1 2 \\\n3\nf 1 3 4", "f 1 2\\\n3\nf 1 3 4", "f 1 2 \\  \n  3\nf 1 3 4", "f 1 2 \\\r\n3\r\nf 1 3 4\r\n", "f 1 \\\n2 \\\n3\nf 1 3 4 \\",
+                      "f \\\n1 2 3\nf \\ # now\n1 3 4", "\\\nf 1 2 3\n \\ \n\\\nf 1 3 4\n", "f 1 2 3 \\\n\nf 1 3 4\\\n# the end", "f\\\n1 2 3\nf 1 3 4",
+                      "g a \\\nb c\nf 1 2 3\ng \\\n a\\\nb\nf 1 3 4\n", "vn 0 0 \\\n1\nf 1 2 3\nl 1 \\\n2\nf 1 3 4\n", "# a \\\nf 1 2 3\n#\\\nf 1 3 4"):
+            with self.subTest(faces=faces):
+                self.assertEqual(self.triangles(self.square + faces), self.two)
+        self.assertEqual(self.triangles("v 0 0 \\\n0\nv \\\n4 0 0\nv 4 4\\\n 0\nv 0 4 0\\\n\nf 1 2 3\nf 1 3 4"), self.two)
+
+    def test_what_cannot_go_on_is_refused(self):
+        self.write("spheres.csv", ONE_SPHERE)
+        for lines in ("f 1 2 3 \\\nf 1 3 4\n", "f 1 2 3\\\ng a\nf 1 3 4\n", "f 1 2 \\\n# three\n3\n", "v 1 2 3 \\\nf 1 2 3\n", "v 1 2 3\\\nv 1 2 3\n",
+                      "f 1 2 \\\\\n3\n", "banana\\\nf 1 2 3\n"):
+            with self.subTest(lines=lines):
+                self.write("mesh.obj", self.square + lines)
+                message = self.fail_with(1, ["mesh.obj:"], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+                self.assertRegex(message, "mesh.obj:[567]: ")
+
+    def test_what_is_no_number_is_refused_even_where_no_face_needs_it(self):
+        self.write("spheres.csv", ONE_SPHERE)
+        for number in ("nan", "-nan", "inf", "3.1+e2", "3.1e", "3,1", "-1.IND"):
+            self.write("mesh.obj", TRIANGLE + f"v 0 {number} 0\n")
+            self.fail_with(1, ["mesh.obj:5: ", f"'{number}'"], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
 
 
 class CsvForms(ProgramTest):
@@ -294,12 +389,135 @@ class Rounding(ProgramTest):
             self.assertEqual(row[2], text)  # the shortest number that reads back the same
 
 
+class Scalar(ProgramTest):
+    """Which scalar type is taken, and what is said of the numbers that had to be rounded to it."""
+
+    @staticmethod
+    def roundings(numbers, kind):
+        """How many of the texts had to be rounded to 'f'loat or 'd'ouble, and by how much at most."""
+        moved = [abs(Fraction(text) - Fraction(nearest(text, kind))) for text in numbers]
+        return sum(m > 0 for m in moved), max(moved, default=0)
+
+    def check(self, text, numbers, scalar, chosen=False, coarse=False):
+        """That the last line of `text` says what is true of the numbers."""
+        pattern = r"(\w+) of (\d+) numbers had to be rounded to (\w+)(?:, by at most (\S+?))?(, more than a thousandth of a radius)?" \
+                  r"(?:; float (?:would move one by (\S+)|(cannot hold one)))?"
+        found = re.fullmatch(pattern, text.splitlines()[-1])
+        self.assertTrue(found, text)
+        count, most = self.roundings(numbers, scalar[0])
+        self.assertEqual(found.groups()[:3], (str(count) if count else "none", str(len(numbers)), scalar))
+        self.assertEqual(found[4] is not None, count > 0)
+        if count:
+            bound = Fraction(float(found[4]))  # six digits of it
+            self.assertGreaterEqual(bound * (1 + Fraction(1, 10**5)), most)
+            self.assertLessEqual(bound, max(Fraction(abs(float(n))) for n in numbers) / 2**53 if scalar == "double" else most * (1 + Fraction(1, 10**5)))
+        self.assertEqual(found[5] is not None, coarse, text)
+        self.assertEqual(found[6] is not None or found[7] is not None, chosen, text)
+        if found[6]:
+            self.assertAlmostEqual(float(found[6]) / float(self.roundings(numbers, "f")[1]), 1, 5)
+
+    def test_surveyed_coordinates(self):
+        mesh, csv = DATA / "survey.obj", DATA / "survey.csv"
+        words = [line.split() for line in mesh.read_text().splitlines()]
+        rows = [line.split(",") for line in csv.read_text().splitlines()[1:]]
+        vertices = [w[1:] for w in words if w[0] == "v"]
+        triangles = [tuple(int(i) - 1 for i in w[1:]) for w in words if w[0] == "f"]
+        truth = true_pairs(vertices, triangles, rows, ["0.02"] * len(rows))
+        self.assertEqual(len(truth), 11)
+        numbers = [x for row in vertices + rows for x in row] + ["0.02"]
+        call = [mesh, csv, "--radius", "0.02", "--output", "pairs.csv"]
+        for options, scalar, chosen in ((), "double", True), (("--precision", "double"), "double", False), (("--scalar", "double"), "double", False), \
+                                       (("--precision", "single"), "double", True), (("--broad", "all_pairs"), "double", True):
+            with self.subTest(options=options):
+                text = self.succeed("detect", *call, *options)
+                self.assertEqual(self.pairs("pairs.csv"), truth)
+                self.check(text, numbers, scalar, chosen)
+        text = self.succeed("detect", *call, "--scalar", "float")
+        self.assertNotEqual(self.pairs("pairs.csv"), truth)
+        self.check(text, numbers, "float", coarse=True)
+
+    def test_when_float_is_too_coarse(self):
+        near = "16777217"  # is moved by 1
+        for place in ("mesh", "centre", "unused vertex", "radii"):
+            for radius, scalar in (("1001", "float"), ("999", "double")):
+                vertices = ["0", near if place == "mesh" else "1"]
+                self.write("mesh.obj", f"v 0 0 0\nv {vertices[1]} 0 0\nv 0 1 0\nf 1 2 3\n" + (f"v 0 {near} 0\n" if place == "unused vertex" else ""))
+                numbers = ["0"] * 7 + [vertices[1], "1"] + (["0", near, "0"] if place == "unused vertex" else []) + ["0", near if place == "centre" else "5", "0"]
+                if place == "radii":
+                    self.write("spheres.csv", f"x,y,z,r\n0,5,0,{radius}\n0,5,0,{near}\n")
+                    numbers += ["0", "5", "0", radius, near]
+                    call = ["mesh.obj", "spheres.csv"]
+                else:
+                    self.write("spheres.csv", f"x,y,z\n0,{near if place == 'centre' else 5},0\n")
+                    numbers.append(radius)
+                    call = ["mesh.obj", "spheres.csv", "--radius", radius]
+                with self.subTest(place=place, radius=radius):
+                    self.assertEqual(self.report(*call)["scalar"], scalar)
+                    self.check(self.succeed("detect", *call), numbers, scalar, chosen=scalar == "double")
+                    self.check(self.succeed("detect", *call, "--scalar", "float"), numbers, "float", coarse=scalar == "double")
+        self.write("spheres.csv", "x,y,z,r\n")  # no spheres, to which nothing can matter
+        self.write("mesh.obj", f"v 0 0 0\nv {near} 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.assertEqual(self.report("mesh.obj", "spheres.csv")["scalar"], "float")
+
+    def test_the_radius_of_the_command_line(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", "x,y,z\n0,0,1e-40\n")
+        for radius, scalar in (("0.1", "float"), ("1e-40", "float"), ("1e-44", "double"), ("1e39", "double"), ("inf", "float"), ("0", "double")):
+            text = self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", radius)
+            self.assertIn(f" of 13 numbers had to be rounded to {scalar}", text, radius)
+
+    def test_numbers_of_every_form(self):
+        forms = [*Rounding.numbers, "0", "-0", "+0.0", "0e9", "0.000000000000000000000000000", "1", "-1", "+1", "0.5", "0.50", "5e-1", "5E-001", ".5", "1.", "1e3", "1e+3", "12e3",
+                 "1e22", "1e23", "123456789012345", "1234567890123456", "9007199254740993", "0.1e1", "10e-1", "0.1e20", "1e-400", "0.0000005e5", "0.0000005e6", "0.0625", "0.06250000001",
+                 "0.000030517578125", "0.00003051757812500000000000000000000000000000000000001", "1.000000000000000000e+00", "1.250000000000000000e-01", "1.100000023841857910e+00",
+                 "1.10000002384185791015625", "1.10000002384185791015626", "4503599627370496.5", "4503599627370497.25", "0.333251953125", "33.3251953125e-2", "1e-22", "1e-23", "1e15"]
+        self.write("mesh.obj", TRIANGLE)
+        for text in forms:
+            self.write("spheres.csv", f"x,y,z\n0,0,{text}\n")
+            numbers = ["0", "0", "0", "1", "0", "0", "0", "1", "0", "0", "0", text, "1"]
+            for scalar in ("float", "double"):
+                with self.subTest(number=text, scalar=scalar):
+                    if scalar == "float" and abs(float(text)) > 3.5e38:
+                        continue
+                    said = self.succeed("detect", "mesh.obj", "spheres.csv", 1, "--scalar", scalar)
+                    count, most = self.roundings(numbers, scalar[0])
+                    self.assertRegex(said, f"\n{count or 'none'} of 13 numbers had to be rounded to {scalar}")
+                    if count:
+                        bound = Fraction(float(re.search("by at most ([^,;\n]+)", said)[1]))
+                        self.assertLessEqual(most, bound * (1 + Fraction(1, 10**5)))
+
+    def test_it_is_said_where_standard_output_has_something_else(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", "x,y,z\n0.25,0.25,0.1\n")
+        said = "1 of 13 numbers had to be rounded to float, by at most 1.49012e-09"
+        self.assertTrue(self.succeed("detect", "mesh.obj", "spheres.csv", 1).endswith(f"\n{said}\n"))
+        self.assertEqual(self.succeed_saying([said], "detect", "mesh.obj", "spheres.csv", 1, "/dev/stdout"), "sphere,triangle\n0,0\n")
+        self.write("spheres.csv", "x,y,z\n0.25,0.25,0.125\n")
+        self.assertTrue(self.succeed("detect", "mesh.obj", "spheres.csv", 1).endswith("\nnone of 13 numbers had to be rounded to float\n"))
+        self.assertEqual(self.succeed("detect", "mesh.obj", "spheres.csv", 1, "/dev/stdout"), "sphere,triangle\n0,0\n")
+
+    def test_a_float_read_by_choice_is_rounded_once(self):
+        for text in Rounding.numbers:
+            if float(text) < 1e30:
+                self.write("mesh.obj", f"v {text} 0 0\nv {text} 0 0\nv {text} 0 0\nf 1 2 3\n")
+                self.write("spheres.csv", f"x,y,z\n{text},0,0\n")
+                self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", "1e30", "--ply", "hits.ply")
+                vertices, _ = read_ply(self.read("hits.ply"))
+                self.assertEqual([v[0][0] for v in vertices[:3]], [nearest(text, "f")] * 3)
+
+    def test_from_pipes(self):
+        for mesh, csv in ((DATA / "survey.obj", "/dev/stdin"), ("/dev/stdin", DATA / "survey.csv")):
+            content = (DATA / ("survey.csv" if csv == "/dev/stdin" else "survey.obj")).read_bytes()
+            done = subprocess.run([programs.PROGRAMS / "detect", mesh, csv, "0.02"], input=content, capture_output=True)
+            self.assertTrue(done.stdout.startswith(b"11 colliding pairs"), done)
+
+
 class BadMesh(ProgramTest):
     def test_bad_lines_are_named(self):
         good = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
-        for line in ("f 1 2", "f 1 2 3x", "f 1 2 4", "f 1 2 0", "f 0/1/1 1/1/1 2/1/1", "f 1 2 -4", "f 1 2 99999999999", "f 1 2 4294967297",
-                     "f 1.5 2 3", "f 1/2/3/4 2 3", "f a b c", "f", "f 1,2,3", "f /1 2 3", "v", "v 1", "v 1 2", "v 1 2 x", "v 1,2,3", "v 1 2 nan",
-                     "v inf 0 0", "v 0 -infinity 0", "v 1e999 0 0", "v 1e39 0 0", "v 0x10 0 0", "v +-1 0 0", "v -+1 0 0", "v 1e 0 0", "v 1.2.3 0 0",
+        for line in ("f 1 2 3x", "f 1 2 4", "f 1 2 0", "f 0/1/1 1/1/1 2/1/1", "f 1 2 -4", "f 1 2 99999999999", "f 1 2 4294967297",
+                     "f 1.5 2 3", "f 1/2/3/4 2 3", "f a b c", "f 1,2,3", "f /1 2 3", "v", "v 1", "v 1 2", "v 1 2 x", "v 1,2,3", "v 1 2 nan",
+                     "v inf 0 0", "v 0 -infinity 0", "v 1e999 0 0", "v 0x10 0 0", "v +-1 0 0", "v -+1 0 0", "v 1e 0 0", "v 1.2.3 0 0",
                      "v 1 2 3 x", "banana", "x,y,z", "vx 1 2 3", "v\0 0 0 0", "f 1 2 3\r4", "\x7fELF"):
             with self.subTest(line=line):
                 self.write("mesh.obj", good + "# five\n" + line + "\nf 1 2 3\n")
@@ -339,7 +557,7 @@ class BadSpheres(ProgramTest):
     def test_bad_rows_are_named(self):
         self.write("mesh.obj", TRIANGLE)
         for row in ("1,2", "1", "1,2,3,4,5", "1,2,,1", ",,,", "1,2,x,1", "1 2,3,4,1", "1;2;3;4", "nan,0,0,1", "0,NaN,0,1", "0,0,inf,1", "0,-inf,0,1",
-                    "0,0,0,nan", "0,0,0,inf", "0,0,0,-1", "0,0,0,-1e-30", "1e999,0,0,1", "0,0,1e39,1", '"1,0,0,1', '"1"2,0,0,1', "0x1,0,0,1", "1e,0,0,1",
+                    "0,0,0,nan", "0,0,0,inf", "0,0,0,-1", "0,0,0,-1e-30", "1e999,0,0,1", '"1,0,0,1', '"1"2,0,0,1', "0x1,0,0,1", "1e,0,0,1",
                     "--1,0,0,1", "+-1,0,0,1", "x,y,z,r", "1,2,3,4,", "1,2,3,\0"):
             with self.subTest(row=row):
                 self.write("spheres.csv", "x,y,z,r\n0,0,0,1\n\n" + row + "\n0,0,0,1\n")
@@ -350,8 +568,13 @@ class BadSpheres(ProgramTest):
     def test_a_number_that_is_too_large_for_float_only(self):
         self.write("mesh.obj", TRIANGLE)
         self.write("spheres.csv", "x,y,z\n1e39,0,0\n")
-        self.fail_with(1, ["spheres.csv:2: "], "detect", "mesh.obj", "spheres.csv", 1, "out.csv")
+        self.fail_with(1, ["spheres.csv:2: "], "detect", "mesh.obj", "spheres.csv", 1, "out.csv", "--scalar", "float")
         self.assertEqual(self.detect("mesh.obj", "spheres.csv", "--radius", 1, "--precision", "double"), [])
+        self.write("far.obj", "v 0 0 0\nv 1e39 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.fail_with(1, ["far.obj:2: "], "detect", "far.obj", "spheres.csv", 1, "out.csv", "--scalar", "float")
+        self.assertEqual(self.detect("far.obj", "spheres.csv", "--radius", 1), [(0, 0)])
+        text = self.succeed("detect", "mesh.obj", "spheres.csv", 1)
+        self.assertRegex(text, r"^0 colliding pairs.*\n(.*\n)*1 of 13 numbers had to be rounded to double, by at most 1.\d+e\+23, more than a thousandth of a radius; float cannot hold one\n$")
 
     def test_bad_headers(self):
         self.write("mesh.obj", TRIANGLE)
@@ -403,7 +626,7 @@ class BadUsage(ProgramTest):
     def test_help_and_version(self):
         text = self.succeed("detect", "--help")
         for option in ("--radius", "--broad", "--space", "--precision", "--threads", "--cell-width", "--output", "--contacts", "--ply", "--report",
-                       "--repeat", "all_pairs", "bucket", "host", "cuda_shared", "exact", "single", "double"):
+                       "--repeat", "--strict", "--scalar", "all_pairs", "bucket", "host", "cuda_shared", "exact", "single", "double"):
             self.assertIn(option, text)
         self.assertRegex(self.succeed("detect", "--version"), r"^detect .*\d+\.\d+\.\d+\n$")
 
@@ -485,9 +708,11 @@ class Outputs(ProgramTest):
 
     def test_standard_output(self):
         self.succeed("detect", *self.call, "--output", "p.csv")
-        self.assertEqual(self.succeed("detect", *self.call, "--output", "/dev/stdout").encode(), self.read("p.csv"))
+        done = self.run_program("detect", *self.call, "--output", "/dev/stdout")
+        self.assertEqual((done.returncode, done.stdout), (0, self.read("p.csv")))
         with open(self.path("redirected"), "wb") as out:
-            subprocess.run([programs.PROGRAMS / "detect", *self.call, "--output", "/dev/stdout"], cwd=self.folder, stdout=out, check=True)
+            subprocess.run([programs.PROGRAMS / "detect", *self.call, "--output", "/dev/stdout"], cwd=self.folder, stdout=out, stderr=subprocess.DEVNULL,
+                           check=True)
         self.assertEqual(self.read("redirected"), self.read("p.csv"))
 
     def test_summary(self):

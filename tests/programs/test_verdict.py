@@ -230,7 +230,7 @@ class Rounding(VerdictTest):
     ]
 
     def check(self, scalar, kind, integer):
-        rows, expected, inexact = [], [], 0
+        rows, expected, inexact, most = [], [], 0, 0
         for text in self.numbers:
             value = rounded(text, kind)
             bits = struct.unpack(integer, struct.pack(kind, abs(value)))[0]
@@ -240,6 +240,7 @@ class Rounding(VerdictTest):
                     rows.append(f"{len(rows)},f,{','.join([text] * 9)},{','.join([centre.hex()] * 3)},0")
                     expected.append(int(near == bits))
                     inexact += 9 * (Fraction(value) != value_of(text))
+                    most = max(most, abs(Fraction(value) - value_of(text)))
         self.assertEqual(sum(expected), len(self.numbers))
         self.write("cases.csv", "\n".join([HEADER, *rows]) + "\n")
         done = self.run_program("verdict", "cases.csv", "--scalar", scalar, "--output", "out.csv")
@@ -247,8 +248,13 @@ class Rounding(VerdictTest):
         for row, want, (_, got) in zip(rows, expected, self.written()):
             self.assertEqual(got, want, row)
         # said once
-        self.assertEqual(done.stderr.decode(), f"verdict: cases.csv: {inexact} of {13 * len(rows)} numbers had to be rounded to {scalar}; "
-                                               "the verdicts are those of the rounded numbers\n")
+        said = re.fullmatch(f"verdict: cases.csv: {inexact} of {13 * len(rows)} numbers had to be rounded to {scalar}, by at most (.*), "
+                            "more than a thousandth of a radius; the verdicts are those of the rounded numbers\n", done.stderr.decode())
+        self.assertTrue(said, done.stderr)
+        six_digits = 1 + Fraction(1, 10**5)
+        self.assertGreaterEqual(Fraction(said[1]) * six_digits, most)
+        bound = most if scalar == "float" else max(abs(value_of(text)) for text in self.numbers) / 2**53
+        self.assertLessEqual(Fraction(said[1]), bound * six_digits)
 
     def test_to_float(self):
         self.check("float", "f", "i")
@@ -265,10 +271,64 @@ class Rounding(VerdictTest):
             self.assertEqual((done.returncode, self.written()), (0, [("0", hit)]), (radius, scalar))
 
     def test_what_needs_no_rounding_gives_no_note(self):
-        self.assertEqual(self.hits(f"{HEADER}\n0,f,nan,inf,-inf,0x1p-149,0.5,-0,0x1.fffffep127,1e10,3,16777216,1,1,1\n"), [0])
+        self.write("cases.csv", f"{HEADER}\n0,f,nan,inf,-inf,0x1p-149,0.5,-0,0x1.fffffep127,1e10,3,16777216,1,1,1\n")
+        found, printed = self.verdicts("cases.csv")
+        self.assertEqual(found, [("0", 0)])
+        self.assertTrue(printed.endswith(")\nnone of 13 numbers had to be rounded to float\n"), printed)
         self.write("cases.csv", f"{HEADER}\n0,f,0x1.000001p0,0,0,0,0,0,0,0,0,0,0,0,1\n")
         self.assertIn(b" 1 of 13 numbers ", self.run_program("verdict", "cases.csv").stderr)
         self.assertEqual(self.run_program("verdict", "cases.csv", "--scalar", "double").stderr, b"")
+
+
+class Scalar(VerdictTest):
+    """Which scalar type is taken where nobody says it."""
+
+    near = "16777217"  # is moved by 1 if it is a float
+
+    def scalar(self, *numbers, more="", options=()):
+        """The type that is taken for a case with these numbers."""
+        self.write("cases.csv", f"{HEADER}{',dx,dy,dz' if more else ''}\n0,f,{','.join(map(str, numbers))}{more}\n")
+        done = self.run_program("verdict", "cases.csv", *options)
+        self.assertEqual(done.returncode, 0, done)
+        return re.search(r" precision, (\w+) coordinates", done.stdout.decode())[1]
+
+    def test_a_thousandth_of_the_radius_decides(self):
+        for i in range(12):
+            for radius, scalar in ((1001, "float"), (999, "double"), (-999, "double"), (0, "double"), ("inf", "float"), ("nan", "float")):
+                numbers = [0] * 12 + [radius]
+                numbers[i] = self.near
+                self.assertEqual(self.scalar(*numbers), scalar, numbers)
+        self.assertEqual(self.scalar(*[0] * 12, self.near), "float")
+        for radius, scalar in ((1001, "float"), (999, "double")):
+            self.assertEqual(self.scalar(*[0] * 12, radius, more=f",0,{self.near},0"), scalar)
+        self.assertEqual(self.scalar(*[0] * 12, 0), "float")
+
+    def test_each_case_has_its_own_radius(self):
+        zeros = ",".join(["0"] * 11)
+        self.write("cases.csv", f"{HEADER}\n0,f,{self.near},{zeros},1001\n1,f,0,{zeros},0\n")
+        self.assertIn(b" float coordinates", self.run_program("verdict", "cases.csv").stdout)
+
+    def test_the_options_decide(self):
+        numbers = [self.near] + [0] * 11
+        for precision in PRECISIONS:
+            double = "double" if precision == "double" else "float"
+            self.assertEqual(self.scalar(*numbers, 1001, options=("--precision", precision)), double)
+            self.assertEqual(self.scalar(*numbers, 999, options=("--precision", precision)), "double")
+            for scalar in ("float", "double"):
+                self.assertEqual(self.scalar(*numbers, 999, options=("--precision", precision, "--scalar", scalar)), scalar)
+
+    def test_the_verdict_is_that_of_the_text(self):
+        # 2^24 + 1 is at distance 1 from the point, and 2^24 at distance 0
+        row = f"0,f,{self.near},0,0,{self.near},0,0,{self.near},0,0,16777216,0,0,0.5"
+        self.write("cases.csv", f"{HEADER},hit\n{row},0\n")
+        for options, hit in (((), 0), (("--precision", "double"), 0), (("--scalar", "float"), 1), (("--scalar", "float", "--precision", "double"), 1)):
+            done = self.run_program("verdict", "cases.csv", "--output", "out.csv", *options)
+            self.assertEqual((done.returncode, self.written()), (0, [("0", hit)]), options)
+            said = f"verdict: cases.csv: 3 of 13 numbers had to be rounded to float, by at most 1, more than a thousandth of a radius; " \
+                   "the verdicts are those of the rounded numbers\n"
+            self.assertEqual(done.stderr.decode(), said if hit else "")
+            if not options:
+                self.assertTrue(done.stdout.endswith(b"none of 13 numbers had to be rounded to double; float would move one by 1\n"), done.stdout)
 
 
 class BadCases(VerdictTest):
@@ -284,17 +344,22 @@ class BadCases(VerdictTest):
     def test_bad_numbers_are_named(self):
         good = HIT.split(",")
         for bad in ("x", "1x", "0x", "0x1p", "1e", "--1", "+-1", "- 1", "1 2", "1.2.3", "0xg", "nanx", "in", "1_000", "\v1", "1\0", "1e39", "-1e39",
-                    "0x1p128", "0x1.ffffffp127", "3.4028235677973367e38", "1e999", "1e99999999999999999999", ""):
+                    "0x1p128", "0x1.ffffffp127", "3.4028235677973367e38", "1e309", "1e999", "1e99999999999999999999", ""):
             for i in (0, 7, 12):
                 row = ",".join(["3", "f", *good[:i], bad, *good[i + 1:]])
                 with self.subTest(bad=bad, column=NUMBERS[i]):
                     words = ["cases.csv:4: ", f"'{NUMBERS[i]}'"] + (["nothing"] if not bad else [f"'{bad}'"] if bad.isprintable() else ["not a number"])
-                    self.refused(f"{HEADER}\n0,f,{HIT}\n\n{row}\n0,f,{HIT}\n", words)
+                    csv = f"{HEADER}\n0,f,{HIT}\n\n{row}\n0,f,{HIT}\n"
+                    self.refused(csv, words, "--scalar", "float")
+                    if not bad.endswith(("39", "128", "127", "38")):  # which are numbers as doubles
+                        self.refused(csv, words)
+                        self.refused(csv, words, "--scalar", "double")
 
     def test_a_number_that_is_too_large_for_float_only(self):
         for number in ("340282366920938463463374607431768211456", "0x1p128", "0x1.ffffffp127"):
             csv = f"{HEADER}\n0,f,{number},0,0,0,0,0,0,0,0,0,0,0,1\n"
-            self.refused(csv, ["cases.csv:2: ", number, "'ax'", "largest"])
+            self.refused(csv, ["cases.csv:2: ", number, "'ax'", "largest"], "--scalar", "float")
+            self.assertIn("; float cannot hold one\n", self.succeed("verdict", "cases.csv"))
             self.assertEqual(self.hits(csv, "--scalar", "double"), [1])
         self.refused(f"{HEADER}\n0,f,1e309,0,0,0,0,0,0,0,0,0,0,0,1\n", ["cases.csv:2: ", "1e309", "'ax'"], "--scalar", "double")
 

@@ -164,8 +164,14 @@ void check_sink_interface(Space space) {
   static_assert(std::is_same<decltype(kept.total()), std::uint64_t>::value, "totals have 64 bits");
   CHECK(&same == &kept);
   CHECK((kept.to_host() == scene.hits()));
-  CHECK(kept.end() - kept.begin() == 4);
-  CHECK(kept.begin() == kept.data());
+  CHECK(kept.size() == 4);
+  std::vector<collide::pair> read(kept.size());
+  space.copy_to_host(read.data(), kept.data(), kept.size());
+  CHECK((read == scene.hits()));
+  read.clear();
+  for (auto hit : detector.query(spheres.view(), collide::pairs(collide::order::canonical)).to_host())
+    read.push_back(hit);
+  CHECK((read == scene.hits()));
   auto const [sphere, triangle] = kept.to_host()[3];
   CHECK(sphere == 3);
   CHECK(triangle == 1);

@@ -13,7 +13,7 @@
 #include <collide/pairs.hpp>
 #include <collide/visit.hpp>
 
-#include "lockstep.hpp"
+#include "execution/lockstep.hpp"
 #include "subject.hpp"
 
 namespace tests {

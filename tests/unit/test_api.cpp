@@ -1,5 +1,6 @@
 /// The interface on the host.
 #include <atomic>
+#include <utility>
 
 #include "api.hpp"
 #include "compositions.hpp"
@@ -46,6 +47,31 @@ TEST_CASE("api: a sink or a detector that was used, or moved, is used again with
 TEST_CASE("api: uploads on the host") { tests::check_uploads(host()); }
 
 TEST_CASE("api: validate on the host") { tests::check_validate(host()); }
+
+TEST_CASE("api: what is told to be device memory is refused by validate and upload on the host") {
+  tests::small_scene const scene;
+  static void const* there = nullptr;
+  auto const before = std::exchange(collide::detail::in_device_memory, [](void const* p) { return p == there; });
+  CHECK(collide::validate(scene.mesh()).ok());
+  CHECK(collide::validate(scene.spheres()).ok());
+  for (void const* array :
+       {static_cast<void const*>(scene.vertices.data()), static_cast<void const*>(scene.corners.data())}) {
+    there = array;
+    CHECK_THROWS_WITH_AS(
+        collide::validate(scene.mesh()),
+        "collide: validate: the mesh is in device memory, which the space `host` cannot read: pass the "
+        "space of that memory, as validate(mesh, space)",
+        collide::error);
+    CHECK_THROWS_AS(collide::upload(host(), scene.mesh()), collide::error);
+  }
+  for (float const* array : {scene.xyz.data() + 2, scene.radii.data()}) {
+    there = array;
+    CHECK_THROWS_AS(collide::validate(scene.spheres()), collide::error);
+    CHECK_THROWS_AS(collide::upload(host(), scene.spheres()), collide::error);
+  }
+  CHECK(collide::validate(collide::mesh_view<float>()).ok());
+  collide::detail::in_device_memory = before;
+}
 
 TEST_CASE("api: memory of the host") {
   tests::check_memory<host>([](std::pmr::memory_resource* from) { return host(2, from); },

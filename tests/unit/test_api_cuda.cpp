@@ -19,7 +19,7 @@ struct count_there {
 
   template <class Space, class Query>
   void run(Space&, Query const& query) {
-    query(collide::detail::append{numbers, nullptr, 0});
+    query(collide::detail::output{numbers, nullptr, 0, nullptr});
   }
 };
 
@@ -68,6 +68,26 @@ void check_turns(cudaStream_t stream) {
   }
 }
 
+/// Where the radii of spheres are.
+float const* radii_of(collide::sphere_view<float> spheres) {
+  float const* last = nullptr;
+  spheres.each_array([&](float const* from, std::size_t) { last = from; });
+  return last;
+}
+
+/// Calls f, which must throw an `error` that says which memory it cannot read.
+template <class F>
+void check_refused(std::string const& memory, F const& f) {
+  std::string what;
+  try {
+    f();
+  } catch (collide::error const& e) {
+    what = e.what();
+  }
+  CAPTURE(what);
+  CHECK(what.find("in " + memory + ", which the space") != std::string::npos);
+}
+
 }  // namespace
 
 TEST_CASE("api: sinks on the device") {
@@ -83,6 +103,43 @@ TEST_CASE("api: the baseline precision on the device") {
 TEST_CASE("api: uploads to the device") { tests::check_uploads(collide::cuda_shared()); }
 
 TEST_CASE("api: validate on the device") { tests::check_validate(collide::cuda()); }
+
+TEST_CASE("api: memory that a space cannot read is refused where the host would crash, or a kernel fail") {
+  tests::small_scene const scene;
+  collide::cuda const device;
+  auto const mesh = collide::upload(device, scene.mesh());
+  auto const spheres = collide::upload(device, scene.spheres());
+  float const* const radii_there = radii_of(spheres.view());
+  collide::mesh_view<float> const mixed_mesh(scene.vertices.data(), 4, mesh.view().corners(), 2);
+  auto const mixed_spheres = collide::spheres_xyz(scene.xyz.data(), 4, radii_there);
+  check_refused("device memory", [&] { collide::validate(mesh.view()); });
+  check_refused("device memory", [&] { collide::validate(mixed_mesh); });
+  check_refused("device memory", [&] { collide::validate(spheres.view()); });
+  check_refused("device memory", [&] { collide::validate(mixed_spheres, collide::host(1)); });
+  check_refused("device memory", [&] { collide::upload(device, mesh.view()); });
+  check_refused("device memory", [&] { collide::upload(device, mixed_spheres); });
+
+  int reads_all = 0;
+  collide::cuda_check(cudaDeviceGetAttribute(&reads_all, cudaDevAttrPageableMemoryAccess, 0), "cudaDeviceGetAttribute");
+  if (reads_all == 0) {
+    check_refused("host memory", [&] { collide::validate(scene.mesh(), device); });
+    check_refused("host memory", [&] { collide::validate(mixed_mesh, device); });
+    check_refused("host memory", [&] { collide::validate(scene.spheres(), collide::cuda_shared()); });
+  }
+
+  float* managed = nullptr;  // what both can read is refused by neither
+  collide::cuda_check(cudaMallocManaged(&managed, 12 * sizeof(float)), "cudaMallocManaged");
+  std::copy(scene.xyz.begin(), scene.xyz.end(), managed);
+  std::pmr::vector<float> const pinned(scene.xyz.begin(), scene.xyz.end(), collide::cuda_pinned_memory::get());
+  for (float const* xyz : {static_cast<float const*>(managed), pinned.data()}) {
+    CHECK(collide::validate(collide::spheres_xyz(xyz, 4, 1)).ok());
+    CHECK(collide::validate(collide::spheres_xyz(xyz, 4, 1), device).ok());
+  }
+  collide::cuda_check(cudaFree(managed), "cudaFree");
+  CHECK(collide::validate(collide::mesh_view<float>()).ok());
+  CHECK(collide::validate(collide::sphere_view<float>(), device).ok());
+  CHECK(collide::validate(mesh.view(), device).ok());  // the device is as it was
+}
 
 TEST_CASE("api: memory of the device") {
   auto const make = [](std::pmr::memory_resource* from) { return collide::cuda_shared(nullptr, from); };

@@ -48,6 +48,19 @@ class cuda_space {
   void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
   static constexpr bool host_memory = false;
+
+  /// False if the memory at `p` is known not to be this space's: pageable memory, where the device cannot read that.
+  static bool reads(void const* p) {
+    cudaPointerAttributes memory{};
+    cuda_check(cudaPointerGetAttributes(&memory, p), "cudaPointerGetAttributes");
+    if (memory.type != cudaMemoryTypeUnregistered) return true;
+    int device = 0, reads_pageable = 0;
+    cuda_check(cudaGetDevice(&device), "cudaGetDevice");
+    cuda_check(cudaDeviceGetAttribute(&reads_pageable, cudaDevAttrPageableMemoryAccess, device),
+               "cudaDeviceGetAttribute");
+    return reads_pageable != 0;
+  }
+
   static constexpr bool defers = true;
   static constexpr bool sorts_spheres = false;
 

@@ -36,9 +36,7 @@ COLLIDE_HD_NOINLINE inline decision decide_closely(triangle<double> const& t, sp
     if (v != verdict::unsure) return {v == verdict::hit, stage::double_certificate};
   }
   fixed_triangle const fixed(t, s);
-  if (fixed.holds()) return {fixed.in_reach(), stage::integers};
-  exact_place::memory memory;
-  return {exact_triangle(exact_numbers_of(memory.table(), t, {s, {0, 0, 0}}, {0, 0})).in_reach(), stage::integers};
+  return {fixed.holds() ? fixed.in_reach() : in_reach_exactly(t, s), stage::integers};
 }
 
 template <class S>

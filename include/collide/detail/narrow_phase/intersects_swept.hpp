@@ -23,8 +23,7 @@ COLLIDE_HD_NOINLINE inline decision decide_closely(triangle<double> const& t, mo
     verdict const v = certify(l, size);
     if (v != verdict::unsure || !finely) return {v != verdict::miss, stage::double_certificate};
   }
-  exact_sweep_place::memory memory;
-  return {exact_sweep(exact_sweep_of(memory.table(), t, s, time)).in_reach(), stage::integers};
+  return {in_reach_exactly(t, s, time), stage::integers};
 }
 
 template <class S>

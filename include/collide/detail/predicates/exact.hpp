@@ -217,7 +217,9 @@ class exact_triangle {
     int const top = r.mantissa == 0 ? d.exponent : larger(d.exponent, r.exponent + r.length());
     double const sum =
         times_power(static_cast<double>(r.mantissa), r.exponent - top) + times_power(d.value, d.exponent - top);
-    return {distance, times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent - top)};
+    double const depth = times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent - top);
+    double const whole = times_power(static_cast<double>(r.mantissa), r.exponent);
+    return {distance, smaller(depth, whole)};  // rounding up from the largest number would make it infinite
   }
 
   /// The distance, if `by` is the denominator: a value between 1/2 and 2, or 0, times a power of two; that of 0 is
@@ -281,5 +283,11 @@ class exact_triangle {
     return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
   }
 };
+
+/// Whether the ball touches the triangle. Finite coordinates and a finite radius, not below 0.
+COLLIDE_HD_NOINLINE inline bool in_reach_exactly(triangle<double> const& t, sphere<double> const& s) {
+  exact_place::memory memory;
+  return exact_triangle(exact_numbers_of(memory.table(), t, {s, {0, 0, 0}}, {0, 0})).in_reach();
+}
 
 }  // namespace collide::detail

@@ -51,7 +51,7 @@ class exact_sweep {
   COLLIDE_HD explicit exact_sweep(exact_numbers const& numbers) : numbers_(numbers) {}
 
   /// True if the ball touches the triangle on its way until the time that the table was made for.
-  COLLIDE_HD_NOINLINE bool in_reach() const {
+  COLLIDE_HD bool in_reach() const {
     int const seen_from[2] = {start(0), end(0)};
     for (int const corners : seen_from) {
       if (exact_triangle(numbers_, corners).in_reach()) return true;
@@ -135,5 +135,13 @@ class exact_sweep {
     sum.multiply_by(exact_place::radius);
   }
 };
+
+/// Whether the ball touches the triangle on its way until a time of at most 53 bits. Finite coordinates and a finite
+/// radius, not below 0.
+COLLIDE_HD_NOINLINE inline bool in_reach_exactly(triangle<double> const& t, moving_sphere<double> const& s,
+                                                 dyadic time) {
+  exact_sweep_place::memory memory;
+  return exact_sweep(exact_sweep_of(memory.table(), t, s, time)).in_reach();
+}
 
 }  // namespace collide::detail

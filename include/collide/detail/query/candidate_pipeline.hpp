@@ -21,6 +21,12 @@ COLLIDE_HD_INLINE void finish_pass([[maybe_unused]] Handle const& handle) {
   if constexpr (finishes<Handle>::value) handle.finish();
 }
 
+/// False if the handle has no use for `finish` in this pass, though its type has one.
+template <class Handle>
+bool wants_finish(Handle const&) {
+  return finishes<Handle>::value;
+}
+
 /// Kernel body of `for_each` over one item.
 template <class Handle>
 struct finish_only {

@@ -22,23 +22,30 @@ struct query_pass {
   spheres_of<NarrowPhase, S> spheres;
   undecided_list& open;
 
+  /// Not defined in the class, so not inline; see compiled.hpp.
   template <class Handle>
-  void operator()(Handle const& handle) const {
-    static_assert(
-        is_handle<Handle>::value,
-        "collide: what a sink passes to query has a const member reserve(n) and a const member store(slot, hit)");
-    static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
-                  "collide: what a sink hands to the device must be a plain value");
-    if (mesh.size() != 0 && spheres.size() != 0) {
-      if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
-        query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open);
-        return;
-      } else {
-        index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
-      }
-    }
-    if constexpr (finishes<Handle>::value) space.for_each(1, finish_only<Handle>{handle});
-  }
+  void operator()(Handle const& handle) const;
 };
+
+template <class Index, class NarrowPhase, class Space, class S>
+template <class Handle>
+void query_pass<Index, NarrowPhase, Space, S>::operator()(Handle const& handle) const {
+  static_assert(
+      is_handle<Handle>::value,
+      "collide: what a sink passes to query has a const member reserve(n) and a const member store(slot, hit)");
+  static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
+                "collide: what a sink hands to the device must be a plain value");
+  if (mesh.size() != 0 && spheres.size() != 0) {
+    if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
+      query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open);
+      return;
+    } else {
+      index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
+    }
+  }
+  if constexpr (finishes<Handle>::value) {
+    if (wants_finish(handle)) space.for_each(1, finish_only<Handle>{handle});
+  }
+}
 
 }  // namespace collide::detail

@@ -6,7 +6,7 @@
 /// through are listed, and judged as many at a time as there are lanes. Each that the narrow phase accepts offers
 /// itself as the next contact of its particle: the deepest, or of particles that move the earliest, wins, by a minimum
 /// over 64-bit keys, which does not depend on the order. One lane then lets the effects respond. This is repeated until
-/// no contact counts; what a particle at rest touches is kept for that:
+/// no contact counts, each time from where the particle then is:
 ///   - a contact counts only if its foot lies above the tangent planes of those before. In a corner both walls count;
 ///   on
 ///     a plane that is divided into triangles one does, and no inner edge is felt;
@@ -54,15 +54,15 @@ struct survivor : survivor_way<S, Moves> {
 
   S centre[3], radius;
   S normals[planes][3], feet[planes][3];  ///< of the contacts that came before
-  S impulses[planes];                     ///< with which they repelled the particle
-  S arrival[3];                           ///< velocity before the contacts at this place
-  std::uint64_t best;                     ///< key of the next contact
-  std::uint32_t best_kept;                ///< where it is kept
-  std::uint32_t offered;                  ///< how many candidates offered themselves
-  int before;                             ///< how many contacts came before
-  int here;                               ///< how many of those at this place
-  id number;
+  S last_impulse;                         ///< with which the last of them repelled the particle
+  S arrival[3], start[3];                 ///< velocity before the contacts at this place, and where it led from
+  std::uint8_t before;                    ///< how many contacts came before
+  std::uint8_t here;                      ///< how many of those at this place
   bool is_active;
+  std::uint64_t best;       ///< key of the next contact
+  std::uint32_t best_kept;  ///< where it is kept
+  std::uint32_t offered;    ///< how many candidates offered themselves
+  id number;
   candidate_cursor cursor;
 
   COLLIDE_HD_INLINE auto ball() const {
@@ -86,14 +86,14 @@ struct survivor : survivor_way<S, Moves> {
       normals[slot][k] = c.normal[k];
       feet[slot][k] = c.point[k];
     }
-    impulses[slot] = c.impulse;
+    last_impulse = c.impulse;
     if constexpr (Moves) this->triangles[slot] = c.triangle;
     ++before;
     ++here;
   }
 
   /// Begins with the contacts at a place: all in a step, but those of a particle that moves on to the next one.
-  COLLIDE_HD_INLINE void arrive(S time, vec3<S> const& velocity) {
+  COLLIDE_HD_INLINE void arrive(S time, vec3<S> const& velocity, vec3<S> const& from) {
     bool again = before > 0;
     if constexpr (Moves) {
       vec3<S> const moved = scaled(this->along(), time);
@@ -101,7 +101,10 @@ struct survivor : survivor_way<S, Moves> {
     }
     if (again) return;
     here = 0;
-    for (int k = 0; k < 3; ++k) arrival[k] = velocity[k];
+    for (int k = 0; k < 3; ++k) {
+      arrival[k] = velocity[k];
+      start[k] = from[k];
+    }
   }
 
   COLLIDE_HD_INLINE vec3<S> normal_of(int slot) const { return {normals[slot][0], normals[slot][1], normals[slot][2]}; }
@@ -113,7 +116,7 @@ struct survivor : survivor_way<S, Moves> {
     vec3<S> const& n = c.normal;
     c.lift = n;
     c.free_change = std::numeric_limits<S>::max();
-    int const count = smaller(here, planes);
+    int const count = smaller(int{here}, planes);
     int opposed = -1;
     S along = 0;
     auto const slot = [&](int i) { return (before - 1 - i) % planes; };
@@ -139,7 +142,7 @@ struct survivor : survivor_way<S, Moves> {
       vec3<S> const wall = normal_of(slot(0));
       S const with = dot(n, wall), apart = 1 - with * with;  // the square of the sine of the angle between the two
       S const relief = 2 * with * larger(-dot(velocity, n), S(0));
-      if (!(apart > S(1e-2) && relief <= impulses[slot(0)] * apart)) return;
+      if (!(apart > S(1e-2) && relief <= last_impulse * apart)) return;
       out -= wall * with;
     } else {
       return;
@@ -246,7 +249,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   /// How many particles a block resolves at a time. With the contacts that it keeps, this makes up most of its scratch
   /// memory, of which CUDA has 48 KB: fewer of doubles.
   template <class Block>
-  static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes*(moves ? 3 : 5) / 2 / sizeof(S)
+  static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes*(moves ? 14 : 24) / 10 / sizeof(S)
                                                              : Block::items;
 
   /// A particle of those that are resolved together, and an entry.
@@ -278,7 +281,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   struct candidate_lists {
     static constexpr bool used = Block::lanes > 1;
     static constexpr std::uint32_t near_room = used ? (ahead + 1) * Block::lanes : 1;
-    static constexpr std::uint32_t kept_room = used ? Block::lanes * 3 / sizeof(S) : together<Block>;
+    static constexpr std::uint32_t kept_room = used ? Block::lanes * 5 / 2 / sizeof(S) : together<Block>;
 
     candidate near[near_room];     ///< let through by the quick test
     kept_contact kept[kept_room];  ///< of those that the narrow phase may accept, as far as there is room
@@ -332,22 +335,24 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   using colliding = particle<S, typename Scene::contact>;
 
   /// What is asked for the triangles near a particle. If all were marked when they were listed, what that depends on is
-  /// at hand, so that nothing is waited for before their cells.
+  /// at hand, so that nothing is waited for before their cells: for their first contacts, before which they stay there.
   struct surroundings : Lookup {
     cell_marks<S> const& known;
     bool all_marked;
 
-    template <class Ball>
-    COLLIDE_HD_INLINE candidate_cursor begin(Ball const& ball) const {
-      return !moves && all_marked ? candidate_cursor::first_marked() : Lookup::begin(ball);
+    COLLIDE_HD_INLINE candidate_cursor begin(survivor<S, moves> const& one) const {
+      return is_marked(one) ? candidate_cursor::first_marked() : Lookup::begin(one.ball());
     }
-    template <class Ball>
-    COLLIDE_HD_INLINE bool next(Ball const& ball, candidate_cursor& c, std::uint32_t most,
-                                candidate_range& range) const {
+    COLLIDE_HD_INLINE bool next(survivor<S, moves>& one, std::uint32_t most, candidate_range& range) const {
       if constexpr (!moves) {
-        if (all_marked) return Lookup::next_marked(known, ball.centre, c, most, range);
+        if (is_marked(one)) return Lookup::next_marked(known, one.ball().centre, one.cursor, most, range);
       }
-      return Lookup::next(ball, c, most, range);
+      return Lookup::next(one.ball(), one.cursor, most, range);
+    }
+
+   private:
+    COLLIDE_HD_INLINE bool is_marked(survivor<S, moves> const& one) const {
+      return !moves && all_marked && one.before == 0;
     }
   };
 
@@ -374,7 +379,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
       one.best = no_contact;
       one.best_kept = kept_contact::none;
       one.offered = 0;
-      one.cursor = near.begin(one.ball());
+      one.cursor = near.begin(one);
     };
     each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
       begin(one, j);
@@ -388,8 +393,8 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
     });
     listing listed{0, 0};
     std::uint32_t active = 0;
-    for (bool is_first = true;; is_first = false) {
-      if (is_first || !offer_kept(block, s)) offer_all(block, s, near, each_of_lane, listed);
+    for (;;) {
+      offer_all(block, s, near, each_of_lane, listed);
       find_best(block, s);
       each_of_lane([&](survivor<S, moves>& one, std::uint32_t) {
         if (!one.is_active) return;
@@ -414,7 +419,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
       each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
         if (j == 0 && is_first) s.lists.near_count = s.lists.kept_count = s.lists.open_count = 0;
         candidate_range range{};
-        if (!one.is_active || !near.next(one.ball(), one.cursor, most, range)) return;
+        if (!one.is_active || !near.next(one, most, range)) return;
         if (!one.cursor.at_end()) block.add(s.listed.unfinished, 1);
         std::uint32_t const place = block.add(s.listed.ranges, 1) - listed.ranges;
         s.owner[place] = j;
@@ -576,20 +581,6 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
     offer<Block>(one, time, found);
   }
 
-  /// Offers the contacts of particles at rest again. False if not all of them were kept.
-  template <class Block>
-  COLLIDE_HD_INLINE bool offer_kept(Block& block, scratch<Block>& s) const {
-    if constexpr (moves || !candidate_lists<Block>::used) {
-      return false;
-    } else {
-      if (block.shared(s.lists.kept_count) > candidate_lists<Block>::kept_room) return false;
-      each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
-        if (one.is_active) offer<Block>(one, k.time, k.get());
-      });
-      return true;
-    }
-  }
-
   /// Finds where the best contacts are kept. A lane alone knows.
   template <class Block>
   COLLIDE_HD_INLINE void find_best(Block& block, scratch<Block>& s) const {
@@ -730,22 +721,22 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
       S const time = kept->time;
       sphere<S> const here = place_at(ball, time);
       vec3<S> const came = p[velocity{}];
-      one.arrive(time, came);
+      one.arrive(time, came, moves ? here.centre : vec3<S>(here.centre - came * dt));
       vec3<S> const arrival(one.arrival[0], one.arrival[1], one.arrival[2]);
       touching<S> c{};
       static_cast<contact<S>&>(c) = kept->get();
       c.sphere = one.number;
+      c.start = vec3<S>(one.start[0], one.start[1], one.start[2]);
       if constexpr (moves) {
         p[position{}] = here.centre;
-        c.start = here.centre;
         one.rest -= one.rest * time;
       } else {
-        c.start = here.centre - arrival * dt;
         c.moved = dt;
         face_against(c, arrival);
-        c.depth -= dot(c.normal, vec3<S>(p[position{}] - here.centre));  // earlier contacts have moved it
       }
       c.approach = -dot(arrival, c.normal);
+      // how deep when the step began: what is pushed out farther than it came in may then touch what it did not before
+      [[maybe_unused]] S const deep = c.depth + dot(c.normal, vec3<S>(here.centre - c.start));
       one.find_lift(c, came);
       colliding next = p;
       scene.accelerate(next, dt);
@@ -761,7 +752,8 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
           one.is_active = false;
         }
       } else {
-        one.is_active = one.is_active && one.offered > 1;
+        one.place(p[position{}], p[velocity{}]);
+        one.is_active = one.is_active && (one.offered > 1 || one.overlaps(deep));
       }
       if (is_skipped(p)) one.is_active = false;
     }

@@ -39,18 +39,66 @@ class downloader {
   void (*copy_)(void const*, T*, T const*, std::size_t) = nullptr;
 };
 
+/// Base of the sinks that keep an array of `T` in memory of the space. The type of a sink does not say which memory
+/// that is, so a loop over a sink, or an index into it, does not compile in any space: the same code works in all of
+/// them.
+template <class T>
+class kept_in_space {
+ public:
+  template <class U = T>
+  U const* begin() const {
+    return refuse<U>();
+  }
+  template <class U = T>
+  U const* end() const {
+    return refuse<U>();
+  }
+  template <class U = T>
+  U const& operator[](std::size_t) const {
+    return *refuse<U>();
+  }
+
+ private:
+  template <class U>
+  static U const* refuse() {
+    static_assert(!std::is_same<U, T>::value,
+                  "collide: results are in memory of the space, which the host may be unable to read: use to_host()");
+    return nullptr;
+  }
+};
+
 /// Numbers the hits of a pass. `sum` is 0 before and after it, so that nothing need set it to 0 first; `total` is how
 /// many there were.
 struct tally {
   std::uint64_t* sum;
   std::uint64_t* total;
+};
 
-  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return fetch_add(sum, n); }
+/// What a query writes of its hits, and all that it knows of a built-in sink: so a kernel is compiled once for all of
+/// them. What a sink does not want is null, or no room.
+struct output {
+  tally count;             ///< of all hits, also of those that find no room
+  pair* pairs;             ///< hits, one after the other
+  std::uint64_t capacity;  ///< how many pairs there is room for
+  std::uint8_t* flags;     ///< one per sphere, set to 1 where it touches anything
+
+  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const {
+    return count.sum != nullptr ? fetch_add(count.sum, n) : 0;
+  }
+  template <class Hit>
+  COLLIDE_HD_INLINE void store(std::uint64_t slot, Hit const& h) const {
+    if (slot < capacity) pairs[slot] = {h.sphere, h.triangle};
+    if (flags != nullptr) store_relaxed(flags + h.sphere, std::uint8_t{1});
+  }
   COLLIDE_HD_INLINE void finish() const {
-    *total = fetch_add(sum, std::uint64_t{0});
-    *sum = 0;
+    if (count.sum == nullptr) return;
+    *count.total = fetch_add(count.sum, std::uint64_t{0});
+    *count.sum = 0;
   }
 };
+
+/// Flags are complete as they are.
+inline bool wants_finish(output const& o) { return o.count.sum != nullptr; }
 
 /// The memory of a tally.
 class tally_memory {
@@ -78,24 +126,13 @@ class tally_memory {
   std::pmr::memory_resource* zero_in_ = nullptr;  ///< in whose memory the sum is 0 for sure
 };
 
-/// Appends hits as pairs to an array of fixed capacity and counts those beyond it too.
-struct append : tally {
-  pair* to;
-  std::uint64_t capacity;
-
-  template <class Hit>
-  COLLIDE_HD_INLINE void store(std::uint64_t slot, Hit const& h) const {
-    if (slot < capacity) to[slot] = {h.sphere, h.triangle};
-  }
-};
-
 /// Collects all colliding pairs, in an array of its own that grows until they fit or in the caller's of fixed size.
 class collector {
  public:
   /// Runs the query into `to[0 .. capacity)`.
   template <class Space, class Query>
   void fill(Space& space, Query const& query, pair* to, std::uint64_t capacity) {
-    query(append{total_of_.begin(space), to, capacity});
+    query(output{total_of_.begin(space), to, capacity, nullptr});
     data_ = to;
     total_ = total_of_.end(space);
     size_ = static_cast<std::size_t>(total_ < capacity ? total_ : capacity);

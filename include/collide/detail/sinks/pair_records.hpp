@@ -28,7 +28,7 @@ struct compute_records {
 /// Contacts or impacts. The pairs are found first and the records computed from them in a second pass over the pairs
 /// alone, so that a miss costs nothing.
 template <class Record, class S>
-class records {
+class records : public kept_in_space<Record> {
  public:
   /// The records are kept in memory of the space, as many as there are.
   explicit records(order o = order::unspecified) : order_{o} {}
@@ -47,8 +47,6 @@ class records {
 
   /// The stored records, in memory of the space.
   Record const* data() const { return data_; }
-  Record const* begin() const { return data_; }
-  Record const* end() const { return data_ + size_; }
   /// A copy of the stored records on the host.
   std::vector<Record> to_host() const { return download_(data_, size_); }
 

@@ -48,7 +48,7 @@ struct find_best {
 
 /// One entry per sphere. `Measure::of(hit)` is the number of a pair, `Measure::number_of(entry)` that of an entry.
 template <class Entry, class S, class Measure>
-class best_of_sphere {
+class best_of_sphere : public kept_in_space<Entry> {
  public:
   /// One entry per sphere, in memory of the space.
   Entry const* data() const { return own_.data(); }

@@ -1,0 +1,59 @@
+/// \file
+/// What the program `detect` detects: its input, its output, and the function from one to the other.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <collide/contact.hpp>
+
+#include "../io/csv.hpp"
+#include "../io/obj.hpp"
+
+namespace detection {
+
+using clock = std::chrono::steady_clock;
+
+inline double milliseconds(clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
+
+struct options {
+  std::string mesh, spheres, radius;
+  std::string broad = "bucket", space = "host", precision = "exact", scalar;
+  std::string output, contacts, ply, report;
+  double cell_width = 0;
+  int threads = 0;
+  int repeat = 1;
+  bool strict = false;
+};
+
+/// The files' contents.
+template <class S>
+struct scene {
+  io::mesh_data<S> mesh;
+  io::sphere_data<S> spheres;
+  S radius = 0;         ///< of all spheres, if the file has none
+  io::rounding tally;   ///< of all numbers
+  bool coarse = false;  ///< true if rounding moved one by more than a thousandth of the smallest radius
+};
+
+/// What a detection gives: the pairs or the contacts, if somebody wants them, and what it cost.
+template <class S>
+struct findings {
+  std::uint64_t total = 0;
+  std::vector<collide::pair> pairs;
+  std::vector<collide::contact<S>> contacts;
+  std::vector<double> build_ms, query_ms, total_ms;
+  std::size_t peak_bytes = 0;
+  int threads = 1;
+  double cell_width = 0;
+  std::string device;
+};
+
+/// Detects with the composition that the options name. It is instantiated in a file for each scalar type.
+template <class S>
+findings<S> detect(options const& wish, scene<S> const& from);
+
+}  // namespace detection

@@ -1,0 +1,199 @@
+/// \file
+/// Kernel bodies that keep the lists of neighbours: what has moved far, cells, lists, strays.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/simulation/effect_list.hpp>
+#include <collide/detail/simulation/first_neighbours.hpp>
+#include <collide/detail/simulation/particle_order.hpp>
+
+namespace collide::detail {
+
+/// Kernel body of `for_each` over particles, and places in the order: copies what particles must know of each other,
+/// and finds out whether the lists still have all of them.
+template <class S, class Scene>
+struct refresh_order {
+  particle_state<S, typename Scene::all> state;
+  particle_order<S, Scene> order;
+  S most;  ///< that a particle may have moved
+
+  using ordered = particle_order<S, Scene>;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if constexpr (ordered::comes_and_goes) {
+      if (is_there(i) && order.known[i] == 0) come(i);
+    }
+    if (i >= order.header->before) return;
+    id const number = order.numbers[i];
+    if constexpr (ordered::comes_and_goes) {
+      if (!is_there(number)) return order.leave_out(i);
+    }
+    typename ordered::meeting p;
+    state.load(p, number);
+    if (!finite(p[position{}])) return order.leave_out(i);
+    near_sphere<S> const now = order.store(i, p);
+    auto const before = order.references[i];
+    vec3<S> const way(now.x - before.x, now.y - before.y, now.z - before.z);
+    S const left = most - before.resized(now);
+    bool const stayed = dot(way, way) < mul(left, left) && left > 0;
+    if (!stayed) order.stray(static_cast<std::uint32_t>(i), now);
+  }
+
+ private:
+  COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(present{})[number] != 0; }
+
+  COLLIDE_HD_INLINE void come(std::size_t number) const {
+    typename ordered::meeting p;
+    state.load(p, number);
+    std::uint32_t const place = fetch_add(&order.header->now, 1u);
+    order.known[number] = 1;
+    order.numbers[place] = p.number;
+    order.stray(place, order.store(place, p));
+  }
+};
+
+/// Kernel body of `for_each_if` over the table: empties it.
+template <class S, class Scene>
+struct empty_cells {
+  particle_order<S, Scene> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    order.ends[i] = 0;
+    if (i != 0) return;
+    auto& h = *order.header;
+    h.crowded = h.now = h.arrivals = h.seen = h.count = 0;
+  }
+};
+
+/// Kernel body of `for_each_if` over particles: counts them into cells, or, once blocks have their share of the order,
+/// fills in their numbers.
+template <class S, class Scene, bool Fill>
+struct sort_into_cells {
+  particle_state<S, typename Scene::all> state;
+  particle_order<S, Scene> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    using placing = joined_t<columns<position>, common_t<columns<present>, typename Scene::all>>;
+    particle<S, placing> p;
+    state.load(p, i);
+    if constexpr (contains<placing, present>) {
+      if constexpr (Fill) order.known[i] = p[present{}];
+      if (p[present{}] == 0) return;
+    }
+    vec3<S> const& c = p[position{}];
+    std::uint32_t const slot = fetch_add(order.ends + order.cells.number(order.cells.of(c.x(), c.y(), c.z())) + 1, 1u);
+    if constexpr (Fill) order.numbers[slot] = static_cast<id>(i);
+  }
+};
+
+/// Kernel body of `for_each_if` over blocks: counts become where cells begin.
+template <class S, class Scene>
+struct allocate_cells {
+  particle_order<S, Scene> order;
+
+  COLLIDE_HD void operator()(std::size_t b) const {
+    constexpr std::uint32_t n = particle_cells<S>::per_block;
+    std::uint32_t* const ends = order.ends + b * order.cells.stride;
+    std::uint32_t counts[n], sum = 0;  // all are on their way at once
+    for (std::uint32_t c = 0; c < n; ++c) counts[c] = ends[c + 1];
+    for (std::uint32_t c = 0; c < n; ++c) sum += counts[c];
+    if (sum == 0) return;
+    std::uint32_t next = fetch_add(&order.header->now, sum);
+    ends[0] = next;
+    for (std::uint32_t c = 0; c < n; ++c) {
+      ends[c + 1] = next;
+      next += counts[c];
+    }
+  }
+};
+
+/// Kernel body of `for_each_if` over places in the order: copies particles there.
+template <class S, class Scene>
+struct copy_in_order {
+  particle_state<S, typename Scene::all> state;
+  particle_order<S, Scene> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (i >= order.header->now) return;
+    typename particle_order<S, Scene>::meeting p;
+    state.load(p, order.numbers[i]);
+    order.references[i].set(order.store(i, p));
+  }
+};
+
+/// Kernel body of `for_each_if` over places in the order: lists what is near.
+template <class S, class Scene>
+struct list_neighbours {
+  particle_order<S, Scene> order;
+  S skin;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (i < order.header->now) list(static_cast<std::uint32_t>(i));
+  }
+
+ protected:
+  static constexpr std::uint32_t room = particle_order<S, Scene>::listed;
+
+  COLLIDE_HD_INLINE void list(std::uint32_t i) const {
+    std::uint32_t places[room], found = 0;
+    std::uint8_t rows[room];
+    order.each_near(i, skin, [&](std::uint32_t k, int row) {
+      if (found < room) {
+        places[found] = k;
+        rows[found] = static_cast<std::uint8_t>(row);
+      }
+      ++found;
+    });
+    if (found > room) return crowd(i);
+    first_neighbours<room> near;
+    COLLIDE_ROLLED
+    for (std::uint32_t n = 0; n < found; ++n) {
+      if (order.is_in_row(places[n], i, rows[n])) near.add(order.numbers[places[n]], places[n]);
+    }
+    COLLIDE_ROLLED
+    for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];
+    if (near.size < room) order.list(near.size, i) = i;
+  }
+
+  COLLIDE_HD_INLINE void crowd(std::uint32_t i) const {
+    order.list(0, i) = order.too_many;
+    store_relaxed(&order.header->crowded, 1u);
+  }
+};
+
+/// Kernel body of `for_each_if` over places in the order, where a few have come or moved far: these make a list, and
+/// the others near them put them into theirs. `skin` is larger by half of the skin, which others may have moved
+/// already.
+template <class S, class Scene>
+struct admit_strays : list_neighbours<S, Scene> {
+  COLLIDE_HD void operator()(std::size_t place) const {
+    auto const& order = this->order;
+    std::uint32_t const first = order.header->seen;
+    if (place >= order.header->now) return;
+    auto const i = static_cast<std::uint32_t>(place);
+    if (order.has_strayed(i, first)) return this->list(i);
+    order.each_stray_near(i, first, this->skin, [&](std::uint32_t stray) { insert(i, stray); });
+  }
+
+ private:
+  COLLIDE_HD_INLINE void insert(std::uint32_t i, std::uint32_t stray) const {
+    auto const& order = this->order;
+    std::uint32_t at = 0, size = 0;
+    for (; size < this->room && order.list(size, i) != i; ++size) {
+      std::uint32_t const other = order.list(size, i);
+      if (other == stray || other == order.too_many) return;
+      if (order.numbers[other] < order.numbers[stray]) at = size + 1;
+    }
+    if (size == this->room) return this->crowd(i);
+    if (size + 1 < this->room) order.list(size + 1, i) = i;
+    for (std::uint32_t n = size; n > at; --n) order.list(n, i) = order.list(n - 1, i);
+    order.list(at, i) = stray;
+  }
+};
+
+}  // namespace collide::detail

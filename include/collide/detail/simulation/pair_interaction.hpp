@@ -1,0 +1,121 @@
+/// \file
+/// Kernel bodies in which particles that overlap each other meet.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/simulation/first_neighbours.hpp>
+#include <collide/detail/simulation/particle_order.hpp>
+
+namespace collide::detail {
+
+/// What happens where particles meet.
+template <class S, class Scene>
+struct meetings {
+  particle_state<S, typename Scene::all> state;
+  particle_order<S, Scene> order;
+  Scene scene;
+  S dt;
+
+ protected:
+  using meeting = typename particle_order<S, Scene>::meeting;
+
+  /// A particle before and after.
+  struct participant {
+    meeting self, changed;
+    bool met = false;
+    COLLIDE_HD_INLINE explicit participant(meeting const& p) : self(p), changed(p) {}
+  };
+
+  COLLIDE_HD_INLINE void meet(participant& p, std::uint32_t place) const {
+    meeting other = order.load(place);
+    if (!is_skipped(p.self)) {
+      scene.meet(p.changed, p.self, other, dt);
+    } else if (!is_skipped(other)) {
+      scene.disturb(p.changed, other);
+    } else {
+      return;
+    }
+    p.met = true;
+  }
+
+  COLLIDE_HD_INLINE void store(participant const& p) const {
+    if (p.met) state.store(p.changed, p.self.number, typename Scene::meeting_writes{});
+  }
+
+ private:
+  COLLIDE_HD_INLINE bool is_skipped(meeting& p) const {
+    if constexpr (Scene::skips) {
+      return scene.is_skipped(p);
+    } else {
+      return false;
+    }
+  }
+};
+
+/// Kernel body of `for_each` over places in the order: a particle meets those on its list that overlap it.
+template <class S, class Scene>
+struct meet_neighbours : meetings<S, Scene> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& order = this->order;
+    if (i == 0) settle(*order.header);
+    if (i >= order.header->now) return;
+    auto const self = static_cast<std::uint32_t>(i);
+    std::uint32_t ahead = order.list(0, i);
+    if (ahead == order.too_many) return;
+    typename meetings<S, Scene>::participant p(order.load(i));
+    near_sphere<S> const own = order.spheres[i];
+    // while one is met, the next and the entry behind it are on their way
+    auto const entry = [&](std::uint32_t n) {
+      return ahead != self && n < particle_order<S, Scene>::listed ? order.list(n, i) : self;
+    };
+    near_sphere<S> close = order.spheres[ahead];
+    std::uint32_t behind = entry(1);
+    COLLIDE_ROLLED
+    for (std::uint32_t n = 2; ahead != self; ++n) {
+      std::uint32_t const place = ahead;
+      near_sphere<S> const other = close;
+      ahead = behind;
+      close = order.spheres[ahead];
+      behind = entry(n);
+      if (order.are_near(own, other, S(0))) this->meet(p, place);
+    }
+    this->store(p);
+  }
+
+ private:
+  /// The header for the next step; what is written here is not read until then.
+  static COLLIDE_HD_INLINE void settle(order_header& h) {
+    h.renew = h.arrivals = 0;
+    h.before = h.now;
+    h.seen = h.count;
+  }
+};
+
+/// Kernel body of `for_each_if` over places in the order: the same for particles with more neighbours than lists have
+/// room for. As many as can be held at a time are found, by rising numbers.
+template <class S, class Scene>
+struct meet_crowds : meetings<S, Scene> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& order = this->order;
+    if (i >= order.header->now || order.list(0, i) != order.too_many) return;
+    auto const self = static_cast<std::uint32_t>(i);
+    typename meetings<S, Scene>::participant p(order.load(i));
+    id last = 0;
+    for (bool first = true, complete = false; !complete; first = false) {
+      first_neighbours<16> near;
+      order.each_near(self, S(0), [&](std::uint32_t k, int row) {
+        id const number = order.numbers[k];
+        if ((first || number > last) && order.is_in_row(k, self, row)) near.add(number, k);
+      });
+      COLLIDE_ROLLED
+      for (std::uint32_t k = 0; k < near.size; ++k) this->meet(p, near.places[k]);
+      complete = near.complete;
+      if (!complete) last = near.numbers[near.size - 1];
+    }
+    this->store(p);
+  }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,50 @@
+/// \file
+/// Kernel bodies for what is done with particles besides a step.
+#pragma once
+
+#include <cstddef>
+
+#include <collide/detail/simulation/particle.hpp>
+#include <collide/spheres.hpp>
+
+namespace collide::detail {
+
+/// Kernel body of `for_each` over places of particles: what each begins with.
+template <class S, class All>
+struct place_particles {
+  particle_state<S, All> state;
+  sphere_view<S> spheres;
+  S const* velocities;  ///< null: they rest
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    particle<S, All> p;
+    begin_particle(p);
+    bool const there = i < spheres.size();
+    if (there) {
+      p[position{}] = spheres.centre(i);
+      if (velocities != nullptr) {
+        p[velocity{}] = vec3<S>(velocities[3 * i], velocities[3 * i + 1], velocities[3 * i + 2]);
+      }
+    }
+    if constexpr (contains<All, radius>) p[radius{}] = there ? spheres.radius(i) : spheres.common_radius();
+    if constexpr (contains<All, present>) p[present{}] = there;
+    state.store(p, i, All{});
+  }
+};
+
+/// Kernel body of `for_each`.
+template <class T>
+struct copy_values {
+  T const* from;
+  T* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
+};
+
+/// Kernel body of `for_each` over one item.
+struct advance_time {
+  double* time;
+  double dt;
+  COLLIDE_HD void operator()(std::size_t) const { *time += dt; }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,405 @@
+/// Effects in a space, against closed forms; instantiated by test_effects.cpp and test_effects_cuda.cpp.
+#pragma once
+
+#include <numeric>
+
+#include <collide/absorb.hpp>
+#include <collide/bounds.hpp>
+#include <collide/drag.hpp>
+#include <collide/emit.hpp>
+#include <collide/friction.hpp>
+#include <collide/sleep.hpp>
+#include <collide/sphere_contact.hpp>
+#include <collide/spin.hpp>
+#include <collide/stick.hpp>
+#include <collide/wind.hpp>
+
+#include "simulation/simulation.hpp"
+
+namespace tests {
+
+using collide::angular_velocity;
+using collide::bounce;
+using collide::drag;
+using collide::friction;
+using collide::gravity;
+using collide::present;
+using collide::slow_steps;
+using collide::sphere_contact;
+using collide::stuck;
+
+/// Falling with drag: on the way, and in the end.
+template <class Space>
+void check_drag(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, gravity, drag>;
+  world<float> w;
+  w.particle(0, 0, 0);
+  float const dt = 1e-3f;
+  double const g = 9.81;
+  auto const speed_after = [&](drag const& d, std::size_t steps) {
+    running<simulation> made(space, w, gravity{}, d);
+    made.simulation.steps(steps, dt);
+    return -double(made.velocities()[2]);
+  };
+  CHECK(speed_after({2, 0}, 500) == doctest::Approx(g / 2 * (1 - std::exp(-2 * 0.5))).epsilon(2e-3));
+  CHECK(speed_after({2, 0}, 20000) == doctest::Approx(g / 2).epsilon(1e-4));
+  CHECK(speed_after({0, 0.5}, 300) ==
+        doctest::Approx(std::sqrt(g / 0.5) * std::tanh(0.3 * std::sqrt(g * 0.5))).epsilon(2e-3));
+  CHECK(speed_after({0, 0.5}, 20000) == doctest::Approx(std::sqrt(g / 0.5)).epsilon(2e-3));
+  CHECK(std::isfinite(speed_after({1e6, 1e6}, 100)));  // however strong
+}
+
+/// A field that a user might write: air that turns around the z axis.
+struct vortex {
+  double rate = 1;
+  template <class S>
+  COLLIDE_HD collide::vec3<S> operator()(collide::vec3<S> const& x) const {
+    return {-S(rate) * x.y(), S(rate) * x.x(), S(0)};
+  }
+};
+
+template <class Space>
+void check_wind(Space const& space) {
+  world<float> w;
+  w.particle(0, 0, 0);
+  w.particle(3, 0, 0, 0, 0, 1);
+  running<collide::simulation<meets_mesh<Space>, collide::wind<>>> blown(space, w, collide::wind<>{4, 0.1, {5, -1, 2}});
+  blown.simulation.steps(5000, 1e-3f);
+  auto v = blown.velocities();
+  for (std::size_t i = 0; i < 6; ++i)
+    CHECK(v[i] == doctest::Approx(i % 3 == 0 ? 5 : (i % 3 == 1 ? -1 : 2)).epsilon(1e-4));
+  running<collide::simulation<meets_mesh<Space>, collide::wind<vortex>>> turned(space, w,
+                                                                                collide::wind<vortex>{1, 0, {2}});
+  turned.simulation.step(1e-3f);
+  v = turned.velocities();
+  CHECK(v[3] == 0);
+  CHECK(v[4] == doctest::Approx(6e-3).epsilon(2e-3));
+  CHECK(v[5] == doctest::Approx(1 - 1e-3).epsilon(1e-4));
+}
+
+/// Balls that do not spin, on an incline made of triangles: how far down they are after a second.
+template <class NarrowPhase, class Space>
+std::vector<double> slid(Space const& space, double slope, friction const& f, double speed) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, bounce, friction>;
+  double const angle = std::atan(slope), c = std::cos(angle), s = std::sin(angle), radius = 0.1;
+  world<float> flat, w;
+  add_floor(flat, 12, 24);
+  for (std::size_t i = 0; i < flat.corners.size(); i += 3) {  // turned about the y axis: x leads down
+    double const x = double(flat.corners[i]), y = double(flat.corners[i + 1]);
+    for (double v : {x * c, y, -x * s}) w.corners.push_back(static_cast<float>(v));
+  }
+  w.radius = static_cast<float>(radius);
+  for (int i = 0; i < 8; ++i) {
+    double const x = -2 + 0.21 * i, y = -3 + 0.7 * i;
+    w.particle(x * c + radius * s, y, -x * s + radius * c, speed * c, 0, -speed * s);
+  }
+  running<simulation> made(space, w, gravity{}, bounce{0.3}, f);
+  made.simulation.steps(4000, 2.5e-4f);
+  auto const x = made.positions();
+  std::vector<double> far;
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    far.push_back((double(x[3 * i]) - double(w.centres[3 * i])) * c -
+                  (double(x[3 * i + 2]) - double(w.centres[3 * i + 2])) * s);
+    CHECK(double(x[3 * i]) * s + double(x[3 * i + 2]) * c == doctest::Approx(radius).epsilon(1e-3));  // on the surface
+  }
+  return far;
+}
+
+template <class NarrowPhase, class Space>
+void check_incline(Space const& space) {
+  double const g = 9.81;
+  auto const check = [&](double slope, friction const& f, double speed, double expected) {
+    for (double far : slid<NarrowPhase>(space, slope, f, speed)) {
+      if (expected == 0) {
+        CHECK(std::abs(far) < 1e-4);
+      } else {
+        CHECK(far == doctest::Approx(expected).epsilon(0.01));
+      }
+    }
+  };
+  auto const acceleration = [&](double slope, double mu) { return g * (slope - mu) / std::sqrt(1 + slope * slope); };
+  for (double const mu : {0.2, 0.7}) {
+    check(0.98 * mu, {mu, mu}, 0, 0);
+    check(1.1 * mu, {mu, mu}, 0, acceleration(1.1 * mu, mu) / 2);
+  }
+  check(0.5, {0.6, 0.3}, 0, 0);  // statical friction holds, what moves is slowed down by kinetic friction only
+  check(0.5, {0.6, 0.3}, 1, 1 + acceleration(0.5, 0.3) / 2);
+  double const stops = acceleration(0.1, 0.5);
+  check(0.1, {0.5, 0.5}, 2, -2 * 2 / (2 * stops));  // slides until it stops, and stays
+}
+
+/// Sliding becomes rolling at 5/7 of the speed; down a slope a rolling ball has 5/7 of the acceleration.
+template <class NarrowPhase, class Space>
+void check_rolling(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, bounce, friction, collide::spin>;
+  static_assert(simulation::bytes_per_particle == 36, "positions, velocities and angular velocities");
+  world<float> w;
+  add_floor(w, 12, 24);
+  w.radius = 0.2f;
+  for (int i = 0; i < 8; ++i) w.particle(-6, -5 + i, 0.2, 2, 0.25 * i, 0);
+  running<simulation> made(space, w, gravity{}, bounce{0.3}, friction{0.4, 0.4}, collide::spin{});
+  made.simulation.steps(3000, 1e-3f);
+  auto v = made.velocities(), turn = made.simulation.template to_host<angular_velocity>();
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    CHECK(v[3 * i] == doctest::Approx(2 * 5 / 7.0).epsilon(1e-3));
+    CHECK(v[3 * i + 1] == doctest::Approx(0.25 * double(i) * 5 / 7.0).epsilon(1e-3));
+    CHECK(turn[3 * i + 1] * 0.2f == doctest::Approx(v[3 * i]).epsilon(1e-3));
+    CHECK(turn[3 * i] * 0.2f == doctest::Approx(-v[3 * i + 1]).epsilon(1e-3));
+  }
+  world<float> still = w;
+  std::fill(still.velocities.begin(), still.velocities.end(), 0.0f);
+  running<simulation> down(space, still, gravity{2, 0, -9}, bounce{0.3}, friction{0.4, 0.4}, collide::spin{});
+  down.simulation.steps(2000, 1e-3f);
+  v = down.velocities();
+  for (std::size_t i = 0; i < w.size(); ++i) CHECK(v[3 * i] == doctest::Approx(2 * 2 * 5 / 7.0).epsilon(2e-3));
+
+  running<simulation> resisted(space, w, gravity{}, bounce{0.3}, friction{0.4, 0.4}, collide::spin{0.05});
+  resisted.simulation.steps(8000, 1e-3f);
+  v = resisted.velocities();
+  for (std::size_t i = 0; i < w.size(); ++i) CHECK(std::abs(v[3 * i]) < 1e-3);
+}
+
+/// Sums over all particles, in double.
+template <class S>
+double kinetic_energy(std::vector<S> const& v) {
+  double sum = 0;
+  for (S x : v) sum += double(x) * double(x);
+  return sum / 2;
+}
+template <class S>
+double momentum(std::vector<S> const& v, std::size_t axis) {
+  double sum = 0;
+  for (std::size_t i = axis; i < v.size(); i += 3) sum += double(v[i]);
+  return sum;
+}
+
+/// Two spheres part with e times the speed; many conserve momentum, and energy if e = 1.
+template <class S, class Space>
+void check_collisions(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, sphere_contact>;
+  for (double const e : {1.0, 0.9, 0.5, 0.2}) {
+    world<S> w;
+    w.radius = S(0.1);
+    w.particle(0, 0, 0, 1, 0.5, 0);
+    w.particle(0.3, 0, 0, -1, 0.5, 0);
+    running<simulation> pair(space, w, sphere_contact::of_collision(e, 0.01, 0.1, 1000));
+    pair.simulation.steps(10000, S(2e-5));
+    auto const v = pair.velocities();
+    CHECK(double(v[3] - v[0]) == doctest::Approx(2 * e).epsilon(0.01));
+    CHECK(std::abs(double(v[0] + v[3])) < 1e-6);
+    CHECK(v[1] == S(0.5));
+  }
+  for (double const f : {0.0, 0.4}) {
+    world<S> w;
+    w.radius = S(0.05);
+    std::mt19937 engine(2);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (int i = 0; i < 5; ++i)
+      for (int j = 0; j < 5; ++j)
+        for (int k = 0; k < 5; ++k)
+          w.particle(0.2 * (i - 2), 0.2 * (j - 2), 0.2 * (k - 2), -(i - 2) + 0.3 * uniform(engine),
+                     -(j - 2) + 0.3 * uniform(engine), -(k - 2) + 0.3 * uniform(engine));
+    running<simulation> many(space, w, sphere_contact::of_collision(1, 0.005, 0.05, 1000, f));
+    many.simulation.steps(20000, S(1e-4));
+    auto const v = many.velocities();
+    CHECK((v != w.velocities));
+    double const rounding = 125 * 20000 * 1e-3 * double(std::numeric_limits<S>::epsilon());
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      CHECK(std::abs(momentum(v, axis) - momentum(w.velocities, axis)) < rounding);
+    double const before = kinetic_energy(w.velocities), after = kinetic_energy(v);
+    if (f == 0) {
+      CHECK(after == doctest::Approx(before).epsilon(2e-3));
+    } else {
+      CHECK(after < 0.99 * before);
+    }
+  }
+}
+
+/// A pile of balls that push each other stays in a closed mesh.
+template <class Space>
+void check_pile(Space const& space, std::size_t steps, std::size_t n) {
+  using simulation = collide::simulation<meets_mesh<Space>, sphere_contact, gravity, bounce, friction>;
+  double const radius = 0.1;
+  world<float> w;
+  add_cube(w, 1, 6);
+  w.radius = static_cast<float>(radius);
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<double> uniform(-0.02, 0.02);
+  for (std::size_t i = 0; i < n; ++i)
+    w.particle(-0.8 + 0.22 * double(i % 8) + uniform(engine), -0.8 + 0.22 * double(i / 8 % 8) + uniform(engine),
+               -0.8 + 0.22 * double(i / 64) + uniform(engine));
+  running<simulation> made(space, w, sphere_contact::of_collision(0.5, 0.02, radius, 1000, 0.5), gravity{}, bounce{0.3},
+                           friction{0.5, 0.5});
+  double worst = -1;
+  for (int i = 0; i < 10; ++i) {
+    made.simulation.steps(steps / 10, 1e-3f);
+    worst = std::max(worst, excess(made.positions(), 1, radius));
+  }
+  CHECK(worst <= 1e-5);
+  CHECK(kinetic_energy(made.velocities()) / double(n) < 1e-4);  // and comes to rest
+  double top = -1;
+  for (std::size_t i = 0; i < n; ++i) top = std::max(top, double(made.positions()[3 * i + 2]));
+  CHECK(top > -0.8);  // as a pile, not in one layer
+}
+
+/// The same bits with any number of threads, with spheres that meet.
+template <class Space, class Other>
+void check_meeting_determinism(Space const& space, Other const& other) {
+  auto const run = [](auto const& there) {
+    using space_type = std::decay_t<decltype(there)>;
+    using simulation =
+        collide::simulation<meets_mesh<space_type>, sphere_contact, gravity, bounce, friction, collide::spin>;
+    auto const w = crowd<float>(600, 1, 0.08, 2, 11);
+    running<simulation> made(there, w, sphere_contact::of_collision(0.6, 0.02, 0.08, 1000, 0.5), gravity{}, bounce{0.5},
+                             friction{0.5, 0.5}, collide::spin{});
+    made.simulation.steps(200, 1e-3f);
+    return std::make_pair(made.positions(), made.simulation.template to_host<angular_velocity>());
+  };
+  auto const first = run(space);
+  CHECK((run(space) == first));
+  CHECK((run(other) == first));
+}
+
+/// What rests falls asleep, where it is, and wakes up when it is hit or when the mesh changes.
+template <class Space>
+void check_sleep(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, collide::sleep, sphere_contact, gravity, drag, bounce>;
+  static_assert(simulation::bytes_per_particle == 25, "a byte more");
+  world<float> w;
+  add_floor(w, 4, 8);
+  w.radius = 0.1f;
+  w.particle(0, 0, 0.15);
+  w.particle(0.05, 0, 3);
+  running<simulation> made(space, w, collide::sleep{0.02, 100}, sphere_contact::of_collision(0.5, 0.01, 0.1, 1000),
+                           gravity{}, drag{2, 0}, bounce{0.3});
+  auto const asleep = [&](std::size_t i) { return made.simulation.template to_host<slow_steps>()[i] >= 100; };
+  made.simulation.steps(600, 5e-4f);
+  CHECK(asleep(0));
+  CHECK_FALSE(asleep(1));
+  auto const before = made.positions();
+  made.simulation.steps(200, 5e-4f);
+  auto after = made.positions();
+  for (std::size_t k = 0; k < 3; ++k) CHECK(after[k] == before[k]);
+  made.simulation.steps(2000, 5e-4f);  // the other one comes down
+  after = made.positions();
+  CHECK(after[0] < -0.02f);
+  made.simulation.steps(10000, 5e-4f);
+  CHECK(asleep(0));
+  CHECK(asleep(1));
+  made.simulation.set_mesh({});
+  made.simulation.steps(200, 5e-4f);
+  CHECK(made.positions()[2] < 0.06f);
+}
+
+/// What sticks stays where it is until forces are too strong.
+template <class NarrowPhase, class Space>
+void check_stick(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, bounce, collide::stick>;
+  world<float> w;
+  add_floor(w, 4, 8);
+  w.radius = 0.1f;
+  w.particle(0.1, 0.2, 0.5, 0.3, 0, 2);
+  auto const run = [&](double strength, gravity const& g, double capture = 100) {
+    running<simulation> made(space, w, gravity{0, 0, -9.81}, bounce{0.5}, collide::stick{strength, capture});
+    made.simulation.steps(2000, 1e-3f);
+    auto const at = made.positions();
+    made.simulation.template effect<gravity>() = g;
+    made.simulation.steps(1000, 1e-3f);
+    auto const x = made.positions();
+    return std::array<float, 3>{x[0] - at[0], x[1] - at[1], x[2] - at[2]};
+  };
+  for (double const strength : {5.0, 20.0}) {
+    auto const wall = run(strength, {9.81, 0, 0}), ceiling = run(strength, {0, 0, 9.81});
+    if (strength > 9.81) {
+      for (float moved : wall) CHECK(moved == 0);
+      for (float moved : ceiling) CHECK(moved == 0);
+    } else {
+      CHECK(wall[0] == doctest::Approx(9.81 / 2).epsilon(0.02));
+      CHECK(ceiling[2] == doctest::Approx(9.81 / 2).epsilon(0.02));
+    }
+  }
+  CHECK(std::abs(run(5, {4, 0, -8})[0]) < 1e-4f);        // a slope that pulls less along than it holds
+  CHECK(std::abs(run(20, {0, 0, -9.81}, 0)[0]) > 0.1f);  // too fast to be captured: slides on
+}
+
+template <class Space>
+void check_bounds(Space const& space) {
+  world<float> w;
+  w.radius = 0.1f;
+  w.particle(0, 0, 1, 3, 2, 0);
+  using simulation = collide::simulation<meets_mesh<Space>, gravity, collide::bounds>;
+  collide::bounds box;
+  box.lower[0] = box.lower[1] = -1, box.upper[0] = box.upper[1] = 1, box.lower[2] = 0;
+  running<simulation> made(space, w, gravity{}, box);
+  bool inside = true;
+  for (int i = 0; i < 100; ++i) {
+    made.simulation.steps(20, 1e-3f);
+    auto const x = made.positions();
+    inside = inside && std::abs(x[0]) <= 0.9f && std::abs(x[1]) <= 0.9f && x[2] >= 0.1f;
+  }
+  CHECK(inside);
+  CHECK(made.positions()[2] == doctest::Approx(0.1).epsilon(0.01));
+
+  running<collide::simulation<meets_mesh<Space>, collide::periodic>> around(space, w,
+                                                                            collide::periodic{{-1, -1, 0}, {1, 1, 2}});
+  around.simulation.steps(1000, 1e-3f);
+  auto const x = around.positions();
+  CHECK(x[0] == doctest::Approx(-1).epsilon(1e-3));  // 3 on, 4 and a half rounds... modulo 2 from 0 on
+  CHECK(x[1] == doctest::Approx(0).scale(1).epsilon(1e-3));
+  CHECK(x[2] == 1);
+}
+
+template <class Space>
+std::size_t count_present(std::vector<std::uint8_t> const& flags) {
+  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
+}
+
+template <class NarrowPhase, class Space>
+void check_absorb(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, collide::absorb, collide::absorb_in>;
+  static_assert(simulation::bytes_per_particle == 25, "a byte more");
+  world<float> w;
+  add_floor(w, 4, 8);
+  w.radius = 0.1f;
+  for (int i = 0; i < 30; ++i) w.particle(-2 + 0.1 * i, 0, i < 20 ? 1 : 100);
+  w.particle(50, 0, 1);
+  running<simulation> made(space, w, gravity{}, collide::absorb{}, collide::absorb_in{{40, -1, -2}, {60, 1, -1}});
+  made.simulation.steps(1000, 1e-3f);
+  auto const flags = made.simulation.template to_host<present>();
+  for (std::size_t i = 0; i < flags.size(); ++i) CHECK(int(flags[i]) == (i < 20 || i == 30 ? 0 : 1));
+  auto const x = made.positions();
+  CHECK(x[2] == doctest::Approx(0.1).epsilon(0.1));  // where it touched
+  CHECK(x[3 * 30 + 2] == doctest::Approx(-1).epsilon(0.02));
+}
+
+template <class Space>
+void check_emit(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, collide::emit, gravity>;
+  collide::nozzle const nozzle{{1, 2, 3}, 0.5, {0, 0, 4}, 1};
+  auto const run = [&](std::size_t steps, std::size_t room) {
+    simulation made(space, collide::emit{1000, nozzle}, gravity{});
+    placed<float> const centres(space, std::vector<float>{7, 7, 7, 8, 8, 8});
+    made.set(collide::spheres_xyz(centres.data(), 2, 0.1f), nullptr, room);
+    made.steps(steps, 0.00175f);
+    return std::make_tuple(made.template to_host<present>(), made.template to_host<position>(),
+                           made.template to_host<velocity>());
+  };
+  auto const few = run(40, 100);  // 0.07 time units
+  CHECK(count_present<Space>(std::get<0>(few)) == 2 + 70);
+  CHECK((run(40, 100) == few));
+  auto const& x = std::get<1>(few);
+  CHECK(x[0] == 7);
+  bool spread = false, near = true;
+  for (std::size_t i = 2; i < 72; ++i) {
+    near = near && std::abs(x[3 * i] - 1) <= 0.5f + 0.08f && std::abs(x[3 * i + 1] - 2) <= 0.5f + 0.08f;
+    spread = spread || std::abs(x[3 * i] - x[6]) > 0.3f;
+  }
+  CHECK(near);
+  CHECK(spread);
+  auto const many = run(200, 100);  // 350 in 98 places: the oldest made room
+  CHECK(count_present<Space>(std::get<0>(many)) == 100);
+  for (std::size_t i = 2; i < 100; ++i)
+    CHECK(std::get<2>(many)[3 * i + 2] > 5 - 2 - 9.81f * 0.1f - 0.1f);  // all are young
+}
+
+}  // namespace tests

@@ -1,0 +1,116 @@
+/// Effects on the host.
+#include "compositions.hpp"
+#include "simulation/effects.hpp"
+#include "simulation/neighbours.hpp"
+
+using collide::host;
+using collide::karabassi;
+using collide::karabassi_swept;
+using tests::lockstep;
+
+namespace {
+
+/// Does what is to be done in any order in the reverse order.
+class reversed : public host {
+ public:
+  using host::host;
+
+  template <class F>
+  void for_each(std::size_t n, F const& f) const {
+    for (std::size_t i = n; i-- > 0;) f(i);
+  }
+  template <class F>
+  void for_each_if(std::uint32_t const* condition, std::size_t n, F const& f) const {
+    if (*condition != 0) for_each(n, f);
+  }
+};
+
+/// Counts what is seldom done.
+class counting_space : public host {
+ public:
+  using host::host;
+  static inline int done = 0;
+
+  template <class F>
+  void for_each_if(std::uint32_t const* condition, std::size_t n, F const& f) const {
+    done += *condition != 0;
+    host::for_each_if(condition, n, f);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("effects: drag leads to the terminal velocity, as the closed form has it") { tests::check_drag(host(1)); }
+
+TEST_CASE("effects: wind, uniform and a user's field") { tests::check_wind(host(1)); }
+
+TEST_CASE("effects: what is on an incline slides if and only if it is steeper than friction holds") {
+  tests::check_incline<karabassi<>>(host(2));
+  tests::check_incline<karabassi_swept<>>(host(2));
+}
+
+TEST_CASE("effects: sliding becomes rolling at 5/7 of the speed") {
+  tests::check_rolling<karabassi<>>(host(1));
+  tests::check_rolling<karabassi_swept<>>(host(1));
+}
+
+TEST_CASE_TEMPLATE("effects: spheres that meet conserve momentum, and energy if e = 1", S, float, double) {
+  tests::check_collisions<S>(host(1));
+}
+
+TEST_CASE("effects: a pile of spheres stays in a closed mesh for 1e5 steps") {
+  tests::check_pile(host(1), 100000, 200);
+}
+
+TEST_CASE("effects: spheres that meet do so in the same bits on every run") {
+  tests::check_meeting_determinism(host(1), host(2));
+  tests::check_meeting_determinism(host(1), lockstep<256, true>());
+  tests::check_meeting_determinism(host(1), reversed());
+}
+
+TEST_CASE_TEMPLATE("effects: particles meet those that they overlap, in the order of their numbers", S, float, double) {
+  tests::check_neighbours<S>(host(1));
+}
+
+TEST_CASE("effects: particles meet those that they overlap, whoever is first") {
+  tests::check_neighbours<float>(host(2));
+  tests::check_neighbours<float>(reversed());
+}
+
+TEST_CASE("effects: lists of neighbours are kept while little has moved, whatever few do") {
+  using namespace tests;
+  using simulation = collide::simulation<meets_mesh<counting_space>, ghosts, greets, collide::bounds>;
+  auto w = packed_cube<float>(700, 0.1, 0.00001);
+  for (std::size_t k = 0; k < 3; ++k) w.velocities[k] = 0.3f;
+  running<simulation> made(counting_space(1), w, ghosts{}, greets{}, collide::bounds{{-1, -1, -1}, {1, 1, 1}, 1});
+  for (std::size_t i = 600; i < 700; ++i) write_particle<present>(made.simulation, i, {std::uint8_t(0)});
+  auto const after = [&](std::size_t steps) {
+    counting_space::done = 0;
+    made.simulation.steps(steps, 1);
+    return counting_space::done;
+  };
+  CHECK(after(1) == 6);    // the lists are made, and no particle is crowded out
+  CHECK(after(40) == 40);  // the fast one strays in each step
+  write_particle<present>(made.simulation, 650, {std::uint8_t(1)});
+  CHECK(after(1) == 1);        // with it one that came
+  CHECK(after(9) == 9);        // as many as 700 particles may have: 51
+  CHECK(after(1) == 6);        // one too many
+  CHECK(after(51) == 51);      // and again
+  CHECK(after(10) == 10 + 5);  // in the first of these
+}
+
+TEST_CASE("effects: what rests sleeps until it is hit") { tests::check_sleep(host(1)); }
+
+TEST_CASE("effects: what sticks stays until it is pulled off") {
+  tests::check_stick<karabassi<>>(host(1));
+  tests::check_stick<karabassi_swept<>>(host(1));
+}
+
+TEST_CASE("effects: boxes with walls and boxes that repeat") { tests::check_bounds(host(1)); }
+
+TEST_CASE("effects: particles vanish in sinks") {
+  tests::check_absorb<karabassi<>>(host(1));
+  tests::check_absorb<karabassi_swept<>>(lockstep<64, true>());
+}
+
+TEST_CASE("effects: particles come out of sources") { tests::check_emit(host(1)); }

@@ -1,0 +1,38 @@
+/// The cells of particles in a table.
+#include <limits>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include <collide/detail/simulation/spatial_hash.hpp>
+
+TEST_CASE_TEMPLATE("spatial hash: coordinates are rounded down, and what is too far away is somewhere", S, float,
+                   double) {
+  collide::detail::particle_cells<S> const cells{S(2), 63};
+  auto const c = cells.of(S(0.75), S(-0.25), S(-3));
+  CHECK((c.x == 1 && c.y == -1 && c.z == -6));
+  CHECK(cells.of(std::numeric_limits<S>::max(), -std::numeric_limits<S>::infinity(), 0).x == 1 << 30);
+  CHECK(cells.of(std::numeric_limits<S>::max(), -std::numeric_limits<S>::infinity(), 0).y == -(1 << 30));
+}
+
+TEST_CASE(
+    "spatial hash: cells of a block have places of their own, which follow each other along x, within the table") {
+  using table = collide::detail::particle_cells<float>;
+  table const cells{1, 63};
+  for (std::int32_t block = -4; block < 4; ++block) {
+    std::set<std::uint32_t> places;
+    for (std::int32_t z = 0; z < 2; ++z) {
+      for (std::int32_t y = 0; y < 2; ++y) {
+        std::uint32_t const row = cells.number({16 * block, y, z});
+        for (std::int32_t x = 0; x < 16; ++x) {
+          std::uint32_t const place = cells.number({16 * block + x, y, z});
+          CHECK(place == row + static_cast<std::uint32_t>(x));
+          CHECK(place / table::stride == row / table::stride);
+          CHECK(place < 64 * table::stride);
+          places.insert(place);
+        }
+      }
+    }
+    CHECK(places.size() == table::per_block);
+  }
+}
