@@ -11,6 +11,6 @@ int main() {
   detector.build(collide::indexed_mesh(thrust::raw_pointer_cast(vertices.data()), 3,
                                        thrust::raw_pointer_cast(triangles.data()), 1));
   auto const spheres = collide::spheres_xyz(thrust::raw_pointer_cast(centres.data()), 2, 0.5f);
-  for (auto [sphere, triangle] : detector.query(spheres, collide::pairs()))
+  for (auto [sphere, triangle] : detector.query(spheres, collide::pairs()).to_host())
     std::cout << "sphere " << sphere << " touches triangle " << triangle << "\n";
 }
