@@ -25,6 +25,14 @@
 #endif
 
 #if defined(__CUDA_ARCH__)
+/// Marks a function that is called rarely: small on the host, and inlined on the device, where its loops become
+/// registers.
+#define COLLIDE_HD_RARE COLLIDE_HD_INLINE
+#else
+#define COLLIDE_HD_RARE COLLIDE_HD_NOINLINE inline
+#endif
+
+#if defined(__CUDA_ARCH__)
 /// Before a loop that the device does not unroll.
 #define COLLIDE_ROLLED _Pragma("unroll 1")
 #else

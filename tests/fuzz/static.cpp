@@ -28,12 +28,11 @@ void check_bad_values(pair<S> const& n) {
 /// Integers of each kind, where they hold.
 template <class S>
 void check_integers(pair<S> const& n, bool hit) {
-  collide::detail::fixed_triangle<1> const narrow(n.shape(), n.ball());
-  collide::detail::fixed_triangle<2> const wide(n.shape(), n.ball());
-  n.require(!narrow.holds() || narrow.in_reach() == hit, "integers of one word are right");
-  n.require(!wide.holds() || wide.in_reach() == hit, "integers of two words are right");
-  n.require(collide::detail::exact_triangle<>(n.shape(), n.ball()).in_reach() == hit,
-            "integers of any width are right");
+  auto const shape = collide::detail::widened(n.shape());
+  auto const ball = collide::detail::widened(n.ball());
+  collide::detail::fixed_triangle const fixed(shape, ball);
+  n.require(!fixed.holds() || fixed.in_reach() == hit, "integers of fixed width are right");
+  n.require(collide::detail::in_reach_exactly(shape, ball) == hit, "integers of any width are right");
 }
 
 template <class S>

@@ -78,7 +78,8 @@ void check(pair<S> const& n) {
   n.require(exact_hit(n.turned(hash)) == hit, "the order of corners and axes does not matter");
   check_backwards(n, hit);
   if (n.plain()) {
-    n.require(collide::detail::exact_sweep<S>(n.shape(), n.moving(), {1, 0}).in_reach() == hit, "integers are right");
+    using namespace collide::detail;
+    n.require(in_reach_exactly(widened(n.shape()), widened(n.moving()), {1, 0}) == hit, "integers are right");
   }
   if (asks) {
     n.require(oracle::hit(n.exact_shape(), n.exact_ball(), n.exact_point(4)) == hit, "the oracle says the same");

@@ -14,10 +14,11 @@
 
 template <class S>
 bool some_integers_are_wrong(collide::triangle<S> const& t, collide::sphere<S> const& s, bool hit) {
-  collide::detail::fixed_triangle<1> const narrow(t, s);
-  collide::detail::fixed_triangle<2> const wide(t, s);
-  return (narrow.holds() && narrow.in_reach() != hit) || (wide.holds() && wide.in_reach() != hit) ||
-         collide::detail::exact_triangle<>(t, s).in_reach() != hit;
+  namespace detail = collide::detail;
+  auto const shape = detail::widened(t);
+  auto const ball = detail::widened(s);
+  detail::fixed_triangle const fixed(shape, ball);
+  return (fixed.holds() && fixed.in_reach() != hit) || detail::in_reach_exactly(shape, ball) != hit;
 }
 
 /// Of the quick tests: with branches and without.

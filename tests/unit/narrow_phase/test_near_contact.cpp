@@ -43,6 +43,17 @@ TEST_CASE_TEMPLATE("near contact: the contact, or the closest point where nothin
     }
 }
 
+TEST_CASE_TEMPLATE("near contact: a simulation knows the depth of a ball whose centre lies on the triangle", S, float,
+                   double) {
+  collide::triangle<S> const t{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+  for (S const height : {S(0), S(0x1p-21), S(-0x1p-30)}) {
+    CAPTURE(height);
+    collide::contact<S> const c = collide::detail::contact_here(t, collide::sphere<S>{{1, 1, height}, S(0.5)});
+    CHECK(c.distance == std::abs(height));
+    CHECK(c.depth == S(0.5) - std::abs(height));
+  }
+}
+
 TEST_CASE_TEMPLATE("near contact: no contact is deeper than its radius, were that the largest number", S, float,
                    double) {
   for (auto c : tests::near_contact<S>(54, 300)) {

@@ -44,7 +44,10 @@ struct sweep {
   bool hit() const {
     return karabassi_swept<Precision>::intersects(shape, ball);
   }
-  bool hit_in_integers() const { return collide::detail::exact_sweep<S>(shape, ball, {1, 0}).in_reach(); }
+  bool hit_in_integers() const {
+    using namespace collide::detail;
+    return in_reach_exactly(widened(shape), widened(ball), {1, 0});
+  }
 };
 
 std::vector<oracle::hard_case> hard_cases() { return oracle::read_hard_cases(data + "/swept_f32.csv", true); }
@@ -253,8 +256,9 @@ TEST_CASE_TEMPLATE("swept: ordinary pairs are decided at once, and their times a
     auto const given = [](collide::vec3<S> const& p) { return point{p.x(), p.y(), p.z()}; };
     oracle::triangle const exact_t{given(drawn.shape.a), given(drawn.shape.b), given(drawn.shape.c)};
     oracle::sphere const exact_s{given(drawn.ball.centre), drawn.ball.radius};
-    double const late = oracle::impact_time(exact_t, exact_s, given(drawn.ball.displacement)) -
-                        collide::detail::earliest_time(drawn.shape, drawn.ball);
+    double const late =
+        oracle::impact_time(exact_t, exact_s, given(drawn.ball.displacement)) -
+        collide::detail::earliest_time(collide::detail::widened(drawn.shape), collide::detail::widened(drawn.ball));
     ++hits;
     rough += late > 1e-12;
     CHECK(late >= 0);

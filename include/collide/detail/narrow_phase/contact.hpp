@@ -2,6 +2,8 @@
 /// The contact of a colliding pair.
 #pragma once
 
+#include <limits>
+
 #include <collide/detail/geometry/closest_point.hpp>
 #include <collide/detail/predicates/exact.hpp>
 
@@ -22,24 +24,25 @@ COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
   return m.z() >= larger(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
 }
 
-/// What exact arithmetic tells of a contact.
-struct exact_measure {
+/// A contact, but for its place.
+struct measured_contact {
   gap measured;
   vec3<double> normal;
   feature kind;
   int index;
 };
 
-/// What doubles cannot tell of a contact: distance and depth of the closest foot to nearly all digits, however small
-/// they are, and its direction. `exactly()` makes an `exact_triangle`; doubles take `distance_squared` for the square
-/// of the distance.
-template <class Exactly>
-COLLIDE_HD_NOINLINE exact_measure measure_exactly(Exactly const& exactly, local_triangle<double> const& l,
-                                                  double distance_squared) {
-  auto const e = exactly();
+/// What exact arithmetic tells of a contact: distance and depth of the closest foot to nearly all digits, however small
+/// they are, and its direction. `l` is the triangle as seen from where the sphere is at the time, and
+/// `distance_squared` what doubles take for the square of its distance.
+COLLIDE_HD_NOINLINE inline measured_contact measure_exactly(triangle<double> const& t, moving_sphere<double> const& s,
+                                                            double time, local_triangle<double> const& l,
+                                                            double distance_squared) {
+  exact_place::memory memory;
+  exact_triangle const e(exact_numbers_of(memory.table(), t, s, decoded(time)));
   gap measured{0, 0};
-  auto const f = e.nearest(l, distance_squared, measured);
-  vec3<double> normal = f.towards_centre();
+  int const foot = e.nearest(l, distance_squared, measured);
+  vec3<double> normal = e.towards_centre(foot);
   if (magnitude(normal) == 0) normal = e.normal();
   if (magnitude(normal) == 0) {  // a segment or a point, and the centre lies on it
     vec3<double> const ab = l.b - l.a, bc = l.c - l.b, ca = l.a - l.c;
@@ -48,79 +51,96 @@ COLLIDE_HD_NOINLINE exact_measure measure_exactly(Exactly const& exactly, local_
   } else {
     normal = unit(normal);
   }
-  return {measured, normal, f.kind, f.index};
+  return {measured, normal, exact_triangle::kind_of(foot), exact_triangle::index_of(foot)};
 }
 
 /// Doubles are sure of a length from here on, in a problem of at most size 4: to within 2^-45; see docs/numerics.md.
 inline constexpr double clear_length = 0x1p-20;
 
-/// The contact of a finite triangle, as seen from `centre`, computed in double and rounded once, if the digits of a
-/// double suffice: `clear(distance, depth)`, both local, tells whether they do. If not, `otherwise(q, measured,
-/// normal)` may correct what was computed; false if that returns false. The ids are left to the caller.
-template <class S, class Clear, class Otherwise>
-COLLIDE_HD_INLINE bool contact_if_clear(local_triangle<double> const& l, vec3<double> const& centre, S radius,
-                                        Clear const& clear, Otherwise const& otherwise, contact<S>& found) {
-  vec3<double> normal = cross<double>(l.b - l.a, l.c - l.a);
-  closest_point<double> q = closest_to_origin(l, normal);
-  double const local_distance = root(q.distance_squared);
-  gap measured{div(local_distance, l.scale), 0};
-  measured.depth = static_cast<double>(radius) - measured.distance;
-  if (!clear(local_distance, mul(measured.depth, l.scale))) {
-    if (!otherwise(q, measured, normal)) return false;
-    if (infinite(radius)) measured.depth = static_cast<double>(radius);
-  } else if (q.kind == feature::face) {
-    normal = unit(normal);
-    if (dot(l.a, normal) > 0) normal = -normal;
+/// The contact of a finite triangle, as seen from a sphere's centre, in doubles; `foot` is the point of the triangle.
+/// False if their digits do not suffice: `clear(distance, depth)`, both local, tells whether they do.
+template <class Clear>
+COLLIDE_HD_INLINE bool measure_if_clear(local_triangle<double> const& l, double radius, Clear const& clear,
+                                        closest_point<double>& foot, measured_contact& found) {
+  vec3<double> const normal = cross<double>(l.b - l.a, l.c - l.a);
+  foot = closest_to_origin(l, normal);
+  double const local_distance = root(foot.distance_squared), distance = div(local_distance, l.scale);
+  found = {{distance, radius - distance}, normal, foot.kind, foot.index};
+  if (!clear(local_distance, mul(found.measured.depth, l.scale))) return false;
+  if (foot.kind == feature::face) {
+    found.normal = unit(found.normal);
+    if (dot(l.a, found.normal) > 0) found.normal = -found.normal;
   } else {
-    normal = unit<double>(-q.point);
+    found.normal = unit<double>(-foot.point);
   }
-  vec3<double> point = centre + scaled(q.point, div(1.0, l.scale));
-  if (!finite(point)) {  // the way there is longer than the largest number, or rounded up to more than that
-    constexpr double most = std::numeric_limits<double>::max() / 4;
-    point = scaled(centre, 0.25) + scaled(q.point, div(0.25, l.scale));
-    for (int k = 0; k < 3; ++k) point[k] = mul(4.0, smaller(larger(point[k], -most), most));
-  }
-  found = {no_id,
-           no_id,
-           point.template cast<S>(),
-           normal.template cast<S>(),
-           static_cast<S>(measured.distance),
-           static_cast<S>(measured.depth),
-           q.kind,
-           static_cast<std::uint32_t>(q.index)};
   return true;
 }
 
-/// The same, computed exactly where the digits of a double do not suffice: `exactly()` makes an `exact_triangle`, of
-/// what it holds by value.
-template <class S, class Clear, class Exactly>
-COLLIDE_HD contact<S> contact_from(local_triangle<double> const& l, vec3<double> const& centre, S radius,
-                                   Clear const& clear, Exactly const& exactly) {
-  auto const otherwise = [&](closest_point<double>& q, gap& measured, vec3<double>& normal) {
-    Exactly const how = exactly;  // copies, so that the call does not force the originals into memory
-    local_triangle<double> const far = l;
-    exact_measure const m = measure_exactly(how, far, q.distance_squared);
-    measured = m.measured;
-    normal = m.normal;
-    q.kind = m.kind;
-    q.index = m.index;
-    return true;
-  };
-  contact<S> found;
-  contact_if_clear(l, centre, radius, clear, otherwise, found);
-  return found;
+/// The contact at a place, rounded once; the ids are left to the caller.
+template <class S>
+COLLIDE_HD_INLINE contact<S> contact_at_foot(measured_contact const& m, vec3<double> const& foot, double scale,
+                                             vec3<double> const& centre) {
+  vec3<double> point = centre + scaled(foot, div(1.0, scale));
+  if (!finite(point)) {  // the way there is longer than the largest number, or rounded up to more than that
+    constexpr double most = std::numeric_limits<double>::max() / 4;
+    point = scaled(centre, 0.25) + scaled(foot, div(0.25, scale));
+    for (int k = 0; k < 3; ++k) point[k] = mul(4.0, smaller(larger(point[k], -most), most));
+  }
+  return {no_id,
+          no_id,
+          point.template cast<S>(),
+          m.normal.template cast<S>(),
+          static_cast<S>(m.measured.distance),
+          static_cast<S>(m.measured.depth),
+          m.kind,
+          static_cast<std::uint32_t>(m.index)};
 }
 
-/// The contact of a finite triangle and a sphere.
+template <class S>
+COLLIDE_HD contact<S> rounded(contact<double> const& c) {
+  return {c.sphere,
+          c.triangle,
+          c.point.template cast<S>(),
+          c.normal.template cast<S>(),
+          static_cast<S>(c.distance),
+          static_cast<S>(c.depth),
+          c.kind,
+          c.index};
+}
+
+/// From what local length on doubles tell a contact with all digits of `S`.
+template <class S>
+inline constexpr double enough_for = sizeof(S) == sizeof(float) ? clear_length : std::numeric_limits<double>::max();
+
+/// The contact of a finite triangle and a sphere where that is at a time, when its centre is where `l` is seen from.
+/// Computed exactly where the distance, or with `deeply` the depth too, is below `enough`.
+COLLIDE_HD_NOINLINE inline contact<double> contact_from(local_triangle<double> const& l, vec3<double> const& centre,
+                                                        triangle<double> const& t, moving_sphere<double> const& s,
+                                                        double time, double enough, bool deeply) {
+  auto const clear = [&](double distance, double depth) {
+    return distance >= enough && (!deeply || depth >= enough || depth <= -enough);
+  };
+  closest_point<double> foot;
+  measured_contact found;
+  if (!measure_if_clear(l, s.radius, clear, foot, found)) {
+    bool const all = infinite(s.radius);
+    found = measure_exactly(t, {{s.centre, all ? 0 : s.radius}, s.displacement}, time, l, foot.distance_squared);
+    if (all) found.measured.depth = s.radius;
+  }
+  return contact_at_foot<double>(found, foot.point, l.scale, centre);
+}
+
+/// The contact of a finite triangle and a sphere at rest.
+COLLIDE_HD_NOINLINE inline contact<double> contact_between(triangle<double> const& t, sphere<double> const& s,
+                                                           double enough, bool deeply) {
+  sphere<double> const centre{s.centre, 0};
+  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
+  return contact_from(l, s.centre, t, {s, {0, 0, 0}}, 0, enough, deeply);
+}
+
 template <class S>
 COLLIDE_HD contact<S> contact_between(triangle<S> const& t, sphere<S> const& s) {
-  sphere<S> const centre{s.centre, S(0)};
-  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
-  auto const clear = [](double distance, double depth) {
-    return sizeof(S) == sizeof(float) && distance >= clear_length && (depth >= clear_length || depth <= -clear_length);
-  };
-  auto const exactly = [t, s = infinite(s.radius) ? centre : s] { return exact_triangle<>(t, s); };
-  return contact_from(l, s.centre.template cast<double>(), s.radius, clear, exactly);
+  return rounded<S>(contact_between(widened(t), widened(s), enough_for<S>, true));
 }
 
 }  // namespace collide::detail

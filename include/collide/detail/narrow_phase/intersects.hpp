@@ -25,21 +25,23 @@ struct attempted {
   stage by;
 };
 
-/// The later stages, out of line.
-template <class S>
-COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> const& s) {
+/// The later stages, out of line, and once for all scalars: floats are widened.
+COLLIDE_HD_NOINLINE inline decision decide_closely(triangle<double> const& t, sphere<double> const& s) {
   if (!valid_radius(s.radius) || !finite(s.centre) || !finite(t)) return {false, stage::integers};
   if (infinite(s.radius)) return {true, stage::integers};
   local_triangle<double> l = relative<double>(t, s);
   double size;
-  if (brought_to_size<S>(l, size)) {
+  if (brought_to_size<double>(l, size)) {
     verdict const v = certify(l, size);
     if (v != verdict::unsure) return {v == verdict::hit, stage::double_certificate};
   }
-  fixed_triangle<1> const narrow(t, s);
-  if (narrow.holds()) return {narrow.in_reach(), stage::integers};
-  fixed_triangle<2> const wide(t, s);  // as where a mesh has 1e-14 for 0
-  return {wide.holds() ? wide.in_reach() : exact_triangle<>(t, s).in_reach(), stage::integers};
+  fixed_triangle const fixed(t, s);
+  return {fixed.holds() ? fixed.in_reach() : in_reach_exactly(t, s), stage::integers};
+}
+
+template <class S>
+COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> const& s) {
+  return decide_closely(widened(t), widened(s));
 }
 
 /// False if the triangle's box is out of reach.

@@ -10,9 +10,8 @@ namespace collide::detail {
 
 /// The later stages of `decide`, for the first part of a step, until `time`. Unless `finely`, what doubles leave open
 /// is a hit.
-template <class S>
-COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, moving_sphere<S> const& s, dyadic time,
-                                            bool finely = true) {
+COLLIDE_HD_NOINLINE inline decision decide_closely(triangle<double> const& t, moving_sphere<double> const& s,
+                                                   dyadic time, bool finely = true) {
   if (!valid_radius(s.radius) || !finite(s.centre) || !finite(s.displacement) || !finite(t)) {
     return {false, stage::integers};
   }
@@ -20,11 +19,16 @@ COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, moving_sphere<
   local_sweep<double> l = relative<double>(t, s);
   l.path = scaled(l.path, value_of(time));
   double size;
-  if (brought_to_size<S>(l, size)) {
+  if (brought_to_size<double>(l, size)) {
     verdict const v = certify(l, size);
     if (v != verdict::unsure || !finely) return {v != verdict::miss, stage::double_certificate};
   }
-  return {exact_sweep<S>(t, s, time).in_reach(), stage::integers};
+  return {in_reach_exactly(t, s, time), stage::integers};
+}
+
+template <class S>
+COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, moving_sphere<S> const& s, dyadic time) {
+  return decide_closely(widened(t), widened(s), time);
 }
 
 /// The first stages: `unsure` is left to `finish`.

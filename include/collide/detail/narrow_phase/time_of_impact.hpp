@@ -17,12 +17,11 @@ template <class S>
 inline constexpr int time_bits = sizeof(S) == sizeof(float) ? 25 : 31;
 
 /// A time, from 0 to 1, before which there is certainly no contact.
-template <class S>
-COLLIDE_HD double earliest_time(triangle<S> const& t, moving_sphere<S> const& s) {
+COLLIDE_HD_NOINLINE inline double earliest_time(triangle<double> const& t, moving_sphere<double> const& s) {
   constexpr int enough = 40;  // for a tangent way each step halves what is left; else a few do
   local_sweep<double> l = relative<double>(t, s);
   double size;
-  if (!brought_to_size<S>(l, size)) return 0;
+  if (!brought_to_size<double>(l, size)) return 0;
   double const outer = l.shape.radius + sweep_error<double> * size;
   vec3<double> const n = cross<double>(l.shape.b - l.shape.a, l.shape.c - l.shape.a);
   double time = 0;
@@ -46,35 +45,38 @@ COLLIDE_HD S rounded_down(double x) {
   return static_cast<double>(nearest) > x ? from_bits<S>(bits(nearest) - 1) : nearest;
 }
 
-/// Never later than the first contact, and what `time_of_impact` says if `finely`. Else contact is also what doubles
+/// Never later than the first contact, and earlier by at most 2^-bits. Unless `finely`, contact is also what doubles
 /// leave open, next to tangency.
-template <class S>
-COLLIDE_HD_INLINE S first_contact(triangle<S> const& t, moving_sphere<S> const& s, bool finely) {
+COLLIDE_HD_NOINLINE inline double first_contact(triangle<double> const& t, moving_sphere<double> const& s, int bits,
+                                                bool finely) {
   double const time = earliest_time(t, s);
-  constexpr std::uint32_t steps = std::uint32_t{1} << time_bits<S>;
+  std::uint32_t const steps = std::uint32_t{1} << bits;
   // no contact until `missed` steps, or just then; contact until `hit` steps
   auto missed = smaller(static_cast<std::uint32_t>(time * steps), steps - 1), hit = steps;
   for (std::uint32_t ahead = 1; hit - missed > 1;) {
     std::uint32_t const middle = missed + smaller(ahead, (hit - missed) / 2);
-    if (decide_closely(t, s, reduced(middle, -time_bits<S>), finely).hit) {
+    if (decide_closely(t, s, reduced(middle, -bits), finely).hit) {
       hit = middle;
     } else {
       missed = middle;
       if (ahead < steps) ahead *= 2;
     }
   }
-  return rounded_down<S>(larger(time, missed * (1.0 / steps)));
+  return larger(time, missed * value_of({1, -bits}));
+}
+
+/// `time_of_impact`, but for its rounding.
+COLLIDE_HD_NOINLINE inline double time_of_impact(triangle<double> const& t, moving_sphere<double> const& s, int bits) {
+  if (decide_closely(t, static_cast<sphere<double> const&>(s)).hit) return 0;
+  if (!decide_closely(t, s, dyadic{1, 0}).hit) return approach(normalised(relative<double>(t, s), t, s)).time;
+  return first_contact(t, s, bits, true);
 }
 
 /// Never later than the first contact, and earlier by at most 2^-23 for floats and 2^-30 for doubles. 0 if the two
 /// overlap at the beginning. Of a sphere that does not touch the triangle at all: about when it is closest.
 template <class S>
 COLLIDE_HD_NOINLINE S time_of_impact(triangle<S> const& t, moving_sphere<S> const& s) {
-  if (decide(t, static_cast<sphere<S> const&>(s)).hit) return 0;
-  if (!decide(t, s).hit) {
-    return rounded_down<S>(approach(normalised(relative<double>(t, s), t, s)).time);
-  }
-  return first_contact(t, s, true);
+  return rounded_down<S>(time_of_impact(widened(t), widened(s), time_bits<S>));
 }
 
 }  // namespace collide::detail

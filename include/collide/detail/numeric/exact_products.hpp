@@ -1,76 +1,97 @@
 /// \file
-/// Products of vectors whose components are exact numbers, as sums of products of components: what `exact_sum` sums.
+/// Sums of products of exact numbers, as lists of what is to be multiplied: what `exact_sum` evaluates.
 ///
-/// Each function calls add(weight, factors...) for every product; `weight` and the further factors multiply all of it.
+/// A number is known by its place in a table (`exact_numbers`), a vector by the place of its first component. Each
+/// function adds some products to a list; `weight` multiplies all of them.
 #pragma once
 
-#include <collide/detail/numeric/exact_sum.hpp>
+#include <cstdint>
+
+#include <collide/config.hpp>
 
 namespace collide::detail {
 
-template <int Room>
-using exact_vector = exact_number<Room>[3];
+/// A weight times some numbers.
+struct exact_product {
+  static constexpr int most_factors = 6;
+
+  std::int8_t weight;  ///< -2, -1, 1 or 2
+  std::uint8_t count;
+  std::uint8_t factors[most_factors];
+};
+
+class exact_products {
+ public:
+  template <class... Places>
+  COLLIDE_HD void add(int weight, Places... factors) {
+    static_assert(sizeof...(factors) <= exact_product::most_factors, "collide: no formula has that many factors");
+    products_[count_++] = {static_cast<std::int8_t>(weight),
+                           static_cast<std::uint8_t>(sizeof...(factors)),
+                           {static_cast<std::uint8_t>(factors)...}};
+  }
+
+  /// Multiplies all that has been added so far.
+  COLLIDE_HD void multiply_by(int factor) {
+    for (int i = 0; i < count_; ++i) products_[i].factors[products_[i].count++] = static_cast<std::uint8_t>(factor);
+  }
+
+  COLLIDE_HD exact_product const* begin() const { return products_; }
+  COLLIDE_HD exact_product const* end() const { return products_ + count_; }
+
+ private:
+  exact_product products_[30];
+  int count_ = 0;
+};
 
 /// p.q
-template <class Add, int P, int Q, class... Factors>
-COLLIDE_HD void sum_dot(int weight, exact_number<P> const (&p)[3], exact_number<Q> const (&q)[3], Add const& add,
-                        Factors const&... factors) {
-  for (int k = 0; k < 3; ++k) add(weight, p[k], q[k], factors...);
+COLLIDE_HD inline void add_dot(exact_products& sum, int weight, int p, int q) {
+  for (int k = 0; k < 3; ++k) sum.add(weight, p + k, q + k);
 }
 
 /// Component k of p x q.
-template <class Add, int P, int Q>
-COLLIDE_HD void sum_cross(int k, int weight, exact_number<P> const (&p)[3], exact_number<Q> const (&q)[3],
-                          Add const& add) {
+COLLIDE_HD inline void add_cross(exact_products& sum, int weight, int k, int p, int q) {
   int const i = (k + 1) % 3, j = (k + 2) % 3;
-  add(weight, p[i], q[j]);
-  add(-weight, p[j], q[i]);
+  sum.add(weight, p + i, q + j);
+  sum.add(-weight, p + j, q + i);
 }
 
 /// |p x q|^2
-template <class Add, int P, int Q, class... Factors>
-COLLIDE_HD void sum_cross_squared(int weight, exact_number<P> const (&p)[3], exact_number<Q> const (&q)[3],
-                                  Add const& add, Factors const&... factors) {
+COLLIDE_HD_NOINLINE inline void add_cross_squared(exact_products& sum, int weight, int p, int q) {
   for (int k = 0; k < 3; ++k) {
     int const l = (k + 1) % 3;
-    add(weight, p[k], p[k], q[l], q[l], factors...);
-    add(weight, p[l], p[l], q[k], q[k], factors...);
-    add(-2 * weight, p[k], p[l], q[k], q[l], factors...);
+    sum.add(weight, p + k, p + k, q + l, q + l);
+    sum.add(weight, p + l, p + l, q + k, q + k);
+    sum.add(-2 * weight, p + k, p + l, q + k, q + l);
   }
 }
 
 /// (v x e).(p x q)
-template <class Add, int V, int E, int P, int Q>
-COLLIDE_HD void sum_cross_dot_cross(int weight, exact_number<V> const (&v)[3], exact_number<E> const (&e)[3],
-                                    exact_number<P> const (&p)[3], exact_number<Q> const (&q)[3], Add const& add) {
+COLLIDE_HD_NOINLINE inline void add_cross_dot_cross(exact_products& sum, int v, int e, int p, int q) {
   for (int k = 0; k < 3; ++k) {
     int const l = (k + 1) % 3;
-    add(weight, v[k], e[l], p[k], q[l]);
-    add(-weight, v[k], e[l], p[l], q[k]);
-    add(-weight, v[l], e[k], p[k], q[l]);
-    add(weight, v[l], e[k], p[l], q[k]);
+    sum.add(1, v + k, e + l, p + k, q + l);
+    sum.add(-1, v + k, e + l, p + l, q + k);
+    sum.add(-1, v + l, e + k, p + k, q + l);
+    sum.add(1, v + l, e + k, p + l, q + k);
   }
 }
 
 /// v . (p x q): six products, every other one negative.
-template <class Add, int V, int P, int Q>
-COLLIDE_HD void sum_determinant(int weight, exact_number<V> const (&v)[3], exact_number<P> const (&p)[3],
-                                exact_number<Q> const (&q)[3], Add const& add) {
+COLLIDE_HD_NOINLINE inline void add_determinant(exact_products& sum, int weight, int v, int p, int q) {
   for (int s = 0; s < 6; ++s) {
     int const i = s / 2, j = (i + 1 + s % 2) % 3, k = 3 - i - j;
-    add(s % 2 == 0 ? weight : -weight, v[i], p[j], q[k]);
+    sum.add(s % 2 == 0 ? weight : -weight, v + i, p + j, q + k);
   }
 }
 
 /// (v . (p x q))^2
-template <class Add, int V, int P, int Q>
-COLLIDE_HD void sum_determinant_squared(int weight, exact_number<V> const (&v)[3], exact_number<P> const (&p)[3],
-                                        exact_number<Q> const (&q)[3], Add const& add) {
+COLLIDE_HD_NOINLINE inline void add_determinant_squared(exact_products& sum, int weight, int v, int p, int q) {
   for (int s = 0; s < 6; ++s) {
     int const i = s / 2, j = (i + 1 + s % 2) % 3, k = 3 - i - j;
     for (int t = 0; t <= s; ++t) {
       int const l = t / 2, m = (l + 1 + t % 2) % 3, n = 3 - l - m;
-      add(((s + t) % 2 == 0 ? weight : -weight) * (s == t ? 1 : 2), v[i], p[j], q[k], v[l], p[m], q[n]);
+      int const sign = (s + t) % 2 == 0 ? 1 : -1, both = s == t ? 1 : 2;
+      sum.add(sign * both * weight, v + i, p + j, q + k, v + l, p + m, q + n);
     }
   }
 }

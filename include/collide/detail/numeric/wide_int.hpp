@@ -1,5 +1,5 @@
 /// \file
-/// Integers of a few words, in registers.
+/// Integers of a few words: in registers, where a compiler unrolls and inlines.
 #pragma once
 
 #include <cstdint>
@@ -15,59 +15,69 @@ template <int N>
 struct wide {
   std::uint64_t word[N];  ///< the lowest first
 
-  COLLIDE_HD_INLINE bool negative() const { return word[N - 1] >> 63 != 0; }
-  COLLIDE_HD_INLINE bool positive() const {
+  COLLIDE_HD bool negative() const { return word[N - 1] >> 63 != 0; }
+  COLLIDE_HD bool positive() const {
     std::uint64_t some = 0;
     for (auto const w : word) some |= w;
     return some != 0 && !negative();
   }
 };
 
-template <int N>
-COLLIDE_HD_INLINE wide<N> operator+(wide<N> const& x, wide<N> const& y) {
-  wide<N> sum;
+/// Adds the `n` words of y to those of x.
+COLLIDE_HD_RARE void add_words(std::uint64_t* x, std::uint64_t const* y, int n) {
   std::uint64_t carry = 0;
-  for (int i = 0; i < N; ++i) {
-    two_words const s = two_words{x.word[i]} + y.word[i] + carry;
-    sum.word[i] = static_cast<std::uint64_t>(s);
+  for (int i = 0; i < n; ++i) {
+    two_words const s = two_words{x[i]} + y[i] + carry;
+    x[i] = static_cast<std::uint64_t>(s);
     carry = static_cast<std::uint64_t>(s >> 64);
   }
-  return sum;
 }
 
-/// Subtracts `y` from the upper M words of `x`, if so wanted.
-template <int N, int M>
-COLLIDE_HD_INLINE void subtract_from_top(wide<N>& x, wide<M> const& y, bool wanted) {
+/// Subtracts the `n` words of y from those of x, if so wanted.
+COLLIDE_HD_RARE void subtract_words(std::uint64_t* x, std::uint64_t const* y, int n, bool wanted) {
   std::uint64_t const mask = wanted ? ~std::uint64_t{0} : 0;
   std::uint64_t borrow = 0;
-  for (int i = 0; i < M; ++i) {
-    two_words const d = two_words{x.word[N - M + i]} - (y.word[i] & mask) - borrow;
-    x.word[N - M + i] = static_cast<std::uint64_t>(d);
+  for (int i = 0; i < n; ++i) {
+    two_words const d = two_words{x[i]} - (y[i] & mask) - borrow;
+    x[i] = static_cast<std::uint64_t>(d);
     borrow = static_cast<std::uint64_t>(d >> 127);
   }
 }
 
+/// Multiplies n words by m words, as integers that are not negative.
+COLLIDE_HD_RARE void multiply_words(std::uint64_t* product, std::uint64_t const* x, int n, std::uint64_t const* y,
+                                    int m) {
+  for (int i = 0; i < n + m; ++i) product[i] = 0;
+  for (int i = 0; i < n; ++i) {
+    std::uint64_t carry = 0;
+    for (int k = 0; k < m; ++k) {
+      two_words const p = two_words{x[i]} * y[k] + product[i + k] + carry;
+      product[i + k] = static_cast<std::uint64_t>(p);
+      carry = static_cast<std::uint64_t>(p >> 64);
+    }
+    product[i + m] = carry;
+  }
+}
+
 template <int N>
-COLLIDE_HD_INLINE wide<N> operator-(wide<N> x, wide<N> const& y) {
-  subtract_from_top(x, y, true);
+COLLIDE_HD_RARE wide<N> operator+(wide<N> x, wide<N> const& y) {
+  add_words(x.word, y.word, N);
+  return x;
+}
+
+template <int N>
+COLLIDE_HD_RARE wide<N> operator-(wide<N> x, wide<N> const& y) {
+  subtract_words(x.word, y.word, N, true);
   return x;
 }
 
 template <int N, int M>
-COLLIDE_HD_INLINE wide<N + M> operator*(wide<N> const& x, wide<M> const& y) {
-  wide<N + M> product{};
-  for (int i = 0; i < N; ++i) {
-    std::uint64_t carry = 0;
-    for (int k = 0; k < M; ++k) {
-      two_words const p = two_words{x.word[i]} * y.word[k] + product.word[i + k] + carry;
-      product.word[i + k] = static_cast<std::uint64_t>(p);
-      carry = static_cast<std::uint64_t>(p >> 64);
-    }
-    product.word[i + M] = carry;
-  }
+COLLIDE_HD_RARE wide<N + M> operator*(wide<N> const& x, wide<M> const& y) {
+  wide<N + M> product;
+  multiply_words(product.word, x.word, N, y.word, M);
   // a negative x has been taken for x + 2^(64 N), a negative y for y + 2^(64 M)
-  subtract_from_top(product, y, x.negative());
-  subtract_from_top(product, x, y.negative());
+  subtract_words(product.word + N, y.word, M, x.negative());
+  subtract_words(product.word + M, x.word, N, y.negative());
   return product;
 }
 

@@ -10,208 +10,232 @@
 ///     edge       -v.e > 0 and (v + e).e > 0              |v x e|^2 / e.e
 ///     face       (v x e).n > 0 for all three edges       (v.n)^2 / n.n
 ///
-/// All of these are sums of products of at most six differences of coordinates.
+/// All of these are sums of products of at most six numbers of a table.
+///
+/// It runs for two pairs in a million, so it is there once, for doubles, and small: floats are widened.
 #pragma once
 
 #include <collide/detail/geometry/closest_point.hpp>
-#include <collide/detail/numeric/exact_products.hpp>
+#include <collide/detail/numeric/exact_sum.hpp>
 
 namespace collide::detail {
+
+/// Where the numbers of a triangle and a sphere stand in their table. Vectors have three numbers; there are three
+/// corners and three edges.
+struct exact_place {
+  enum : int {
+    corner = 0,  ///< relative to the centre
+    edge = 9,    ///< from each corner to the next
+    radius = 18,
+    end = 19
+  };
+  using memory = exact_memory<9 * 4 + 9 * 2 + 1, end>;
+};
+
+/// Adds the corners as seen from a centre that moves, when it is where it is at a time of at most 53 bits.
+COLLIDE_HD_NOINLINE inline void add_corners(exact_numbers& table, triangle<double> const& t,
+                                            moving_sphere<double> const& s, dyadic time) {
+  for (int i = 0; i < 9; ++i) {
+    int const k = i % 3;
+    table.begin_number();
+    table.add(decoded((i < 3 ? t.a : (i < 6 ? t.b : t.c))[k]));
+    table.subtract(decoded(s.centre[k]));
+    table.add_product(decoded(-s.displacement[k]), time);
+  }
+}
+
+/// Fills the table for a sphere where it is at that time. Finite coordinates and a finite radius, not below 0.
+COLLIDE_HD_NOINLINE inline exact_numbers exact_numbers_of(exact_numbers table, triangle<double> const& t,
+                                                          moving_sphere<double> const& s, dyadic time) {
+  add_corners(table, t, s, time);
+  for (int i = 0; i < 9; ++i) {
+    int const k = i % 3;
+    table.begin_number();
+    table.add(decoded((i < 3 ? t.b : (i < 6 ? t.c : t.a))[k]));
+    table.subtract(decoded((i < 3 ? t.a : (i < 6 ? t.b : t.c))[k]));
+  }
+  table.begin_number();
+  table.add(decoded(s.radius));
+  return table;
+}
 
 /// How a point lies to a sphere: the distance from the centre, and how deep that is inside.
 struct gap {
   double distance, depth;
 };
 
-/// Finite coordinates and a finite radius, not below 0. The centre may be moved by a vector of `Moved` parts.
-template <int Moved = 0>
+/// Formulas on the numbers of a table, which must outlive this. Feet have numbers: corners 0, 1 and 2, edges 3, 4 and
+/// 5, the face 6.
 class exact_triangle {
  public:
-  template <class S>
-  COLLIDE_HD exact_triangle(triangle<S> const& t, sphere<S> const& s) : exact_triangle(t, s, nullptr) {}
+  /// `corners` is the place of the first one.
+  COLLIDE_HD explicit exact_triangle(exact_numbers const& numbers, int corners = exact_place::corner)
+      : numbers_(numbers), corners_(corners) {}
 
-  template <class S>
-  COLLIDE_HD exact_triangle(triangle<S> const& t, sphere<S> const& s, exact_number<Moved> const* moved)
-      : radius_{decoded(s.radius)} {
-    vec3<S> const* const corners[3] = {&t.a, &t.b, &t.c};
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        dyadic const from = decoded((*corners[i])[k]);
-        exact_difference const corner(from, decoded(s.centre[k]));
-        if constexpr (Moved == 0) {
-          corner_[i][k] = corner;
-        } else {
-          corner_[i][k] = minus(corner, moved[k]);
-        }
-        edge_[i][k] = {decoded((*corners[(i + 1) % 3])[k]), from};
-      }
-    }
+  static COLLIDE_HD feature kind_of(int foot) {
+    return foot < 3 ? feature::vertex : (foot < 6 ? feature::edge : feature::face);
   }
-
-  /// Relative to the centre.
-  COLLIDE_HD exact_vector<2 + Moved> const& corner(int i) const { return corner_[i]; }
-  /// From each corner to the next.
-  COLLIDE_HD exact_vector<2> const& edge(int i) const { return edge_[i]; }
-  COLLIDE_HD exact_difference const& radius() const { return radius_; }
+  /// Which corner or edge it is.
+  static COLLIDE_HD int index_of(int foot) { return foot % 3; }
 
   /// True if the ball touches the triangle.
   COLLIDE_HD bool in_reach() const {
-    bool reached = false;
-    for_each_foot([&](foot const& f) {
-      reached = f.within();
-      return reached;
-    });
-    return reached;
+    for (int foot = 0; foot < feet; ++foot) {
+      if (exists(foot) && excess(foot, false).value >= 0) return true;
+    }
+    return false;
   }
-
-  struct foot;
 
   /// The foot that is the closest point, and how it lies to the sphere. `l` is the same triangle in doubles,
   /// `normalised`, and `around` the square of its distance.
-  COLLIDE_HD foot nearest(local_triangle<double> const& l, double around, gap& to_nearest) const {
-    foot best{this, feature::vertex, 0};
-    int found = 0;
-    auto const offer = [&](foot const& f) {
-      gap const there = f.measured();
-      // each of the two has all its digits where it is the smaller one
-      bool const nearer =
-          there.depth > there.distance ? there.distance < to_nearest.distance : there.depth > to_nearest.depth;
-      if (found++ == 0 || nearer) {
-        best = f;
-        to_nearest = there;
+  COLLIDE_HD int nearest(local_triangle<double> const& l, double around, gap& to_nearest) const {
+    int best = 0, found = 0;
+    for (unsigned wanted = near_feet(l, around); found == 0; wanted = all_feet) {
+      for (int foot = 0; foot < feet; ++foot) {
+        if ((wanted >> foot & 1) == 0 || !exists(foot)) continue;
+        gap const there = measured(foot);
+        // each of the two has all its digits where it is the smaller one
+        bool const nearer =
+            there.depth > there.distance ? there.distance < to_nearest.distance : there.depth > to_nearest.depth;
+        if (found++ == 0 || nearer) {
+          best = foot;
+          to_nearest = there;
+        }
       }
-      return false;
-    };
-    for_each_foot(offer, near_feet(l, around));
-    if (found == 0) for_each_foot(offer);
+    }
     return best;
   }
 
-  /// (b - a) x (c - a), but for its length.
-  COLLIDE_HD vec3<double> normal() const {
-    return direction([&](int k, auto const& add) { sum_cross(k, 1, edge_[0], edge_[1], add); });
+  /// From the foot to the centre, but for the length; 0 if the centre is there.
+  COLLIDE_HD vec3<double> towards_centre(int foot) const {
+    if (foot != face) return direction(foot);
+    double const height = sign_of_height();
+    return normal() * -height;
   }
 
-  /// A point of the triangle that may be the closest one: corner `index`, the foot on edge `index`, or that on the
-  /// face.
-  struct foot {
-    exact_triangle const* of;
-    feature kind;
-    int index;
-
-    /// Sums the squared distance, multiplied by `length`.
-    template <class Add>
-    COLLIDE_HD void distance_squared(int weight, Add const& add) const {
-      auto const& v = of->corner_[index];
-      auto const& e = of->edge_[index];
-      if (kind == feature::vertex) {
-        sum_dot(weight, v, v, add);
-      } else if (kind == feature::edge) {
-        sum_cross_squared(weight, v, e, add);
-      } else {
-        sum_determinant_squared(weight, v, e, of->edge_[1], add);
-      }
-    }
-
-    /// Sums the squared length of the edge or of the normal, or 1, multiplied by the factors.
-    template <class Add, class... Factors>
-    COLLIDE_HD void length(int weight, Add const& add, Factors const&... factors) const {
-      auto const& e = of->edge_[index];
-      if (kind == feature::vertex) {
-        add(weight, factors...);
-      } else if (kind == feature::edge) {
-        sum_dot(weight, e, e, add, factors...);
-      } else {
-        sum_cross_squared(weight, e, of->edge_[1], add, factors...);
-      }
-    }
-
-    /// Sums what the square of the radius is above that of the distance, multiplied by `length`.
-    template <class Add>
-    COLLIDE_HD void excess(Add const& add) const {
-      length(1, add, of->radius_, of->radius_);
-      distance_squared(-1, add);
-    }
-
-    /// True if the ball reaches it.
-    COLLIDE_HD bool within() const {
-      return exact_sum::sign_of([&](auto const& add) { excess(add); }) >= 0;
-    }
-
-    /// The errors are a few units in the last place, however small the numbers are.
-    COLLIDE_HD gap measured() const {
-      exact_difference const one(dyadic{1, 0});
-      wide_number const by = exact_sum::of([&](auto const& add) { length(1, add, one); });
-      wide_number const d = root_of_distance_squared(by);
-      double const distance = times_power(d.value, d.exponent);
-      wide_number const above = exact_sum::of([&](auto const& add) { excess(add); });
-      if (above.value == 0) return {distance, 0};
-      // R - d = (R^2 - d^2) / (R + d), where R and d are divided by a power of two as large as the larger one
-      dyadic const r = of->radius_.parts().count == 0 ? dyadic{0, 0} : of->radius_.parts()[0];
-      int const top = r.mantissa == 0 ? d.exponent : larger(d.exponent, r.exponent + r.length());
-      double const sum =
-          times_power(static_cast<double>(r.mantissa), r.exponent - top) + times_power(d.value, d.exponent - top);
-      double const depth = times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent - top);
-      double const radius = times_power(static_cast<double>(r.mantissa), r.exponent);
-      return {distance, smaller(depth, radius)};  // rounding up from the largest number would make it infinite
-    }
-
-    /// From here to the centre, but for the length; 0 if the centre is here.
-    COLLIDE_HD vec3<double> towards_centre() const {
-      auto const& v = of->corner_[index];
-      auto const& e = of->edge_[index];
-      if (kind == feature::vertex) {
-        return direction([&](int k, auto const& add) { add(-1, v[k]); });
-      }
-      if (kind == feature::edge) {  // e (v.e) - v (e.e)
-        return direction([&](int k, auto const& add) {
-          for (int i = 0; i < 3; ++i) {
-            add(1, e[k], v[i], e[i]);
-            add(-1, v[k], e[i], e[i]);
-          }
-        });
-      }
-      int const side = exact_sum::sign_of([&](auto const& add) { sum_determinant(1, v, e, of->edge_[1], add); });
-      return of->normal() * -side;
-    }
-
-   private:
-    /// The distance, if `by` is the denominator: a value between 1/2 and 2, or 0, times a power of two; that of 0 is
-    /// below all others.
-    COLLIDE_HD wide_number root_of_distance_squared(wide_number const& by) const {
-      wide_number const square = exact_sum::of([&](auto const& add) { distance_squared(1, add); });
-      if (square.value == 0) return {0, -4000};
-      int const exponent = square.exponent - by.exponent, half = exponent / 2;
-      return {root(times_power(div(square.value, by.value), exponent - 2 * half)), half};
-    }
-  };
+  /// (b - a) x (c - a), but for its length.
+  COLLIDE_HD vec3<double> normal() const { return direction(face); }
 
  private:
-  /// Calls f(foot) for every foot that there is, until it returns true.
-  template <class F>
-  COLLIDE_HD void for_each_foot(F const& f) const {
-    for_each_foot(f, all_feet);
+  static constexpr int feet = 7, face = 6;
+  static constexpr unsigned all_feet = 0x7f;  ///< a bit for each
+
+  exact_numbers numbers_;
+  int corners_;
+
+  COLLIDE_HD int corner(int i) const { return corners_ + 3 * i; }
+  COLLIDE_HD int edge(int i) const { return exact_place::edge + 3 * i; }
+
+  // Each formula has its list of products in a function of its own, out of line, so that there is memory for one.
+
+  /// The centre projects into the edge or the face.
+  COLLIDE_HD bool exists(int foot) const {
+    if (foot < 3) return true;
+    if (foot < face) return along(foot - 3, foot - 3, -1) > 0 && along(foot - 3, (foot + 1) % 3, 1) > 0;
+    for (int i = 0; i < 3; ++i) {
+      if (side_of_edge(i) <= 0) return false;
+    }
+    return true;
   }
 
-  /// A bit for each corner, then for each edge, then for the face: whether to look at it.
-  static constexpr unsigned all_feet = 0x7f;
+  /// The sign of a corner's place along an edge.
+  COLLIDE_HD_NOINLINE int along(int i, int from, int weight) const {
+    exact_products place;
+    add_dot(place, weight, corner(from), edge(i));
+    return exact_sum::sign_of(numbers_, place);
+  }
 
-  template <class F>
-  COLLIDE_HD void for_each_foot(F const& f, unsigned wanted) const {
-    for (int i = 0; i < 3; ++i) {
-      if ((wanted >> i & 1) != 0 && f(foot{this, feature::vertex, i})) return;
+  /// On which side of the edge the centre projects: above 0 if on that of the face.
+  COLLIDE_HD_NOINLINE int side_of_edge(int i) const {
+    exact_products side;
+    add_cross_dot_cross(side, corner(i), edge(i), edge(0), edge(1));
+    return exact_sum::sign_of(numbers_, side);
+  }
+
+  /// On which side of the face the centre is.
+  COLLIDE_HD_NOINLINE int sign_of_height() const {
+    exact_products height;
+    add_determinant(height, 1, corner(0), edge(0), edge(1));
+    return exact_sum::sign_of(numbers_, height);
+  }
+
+  /// The squared length of the edge or of the normal, or 1.
+  COLLIDE_HD void add_length(exact_products& sum, int foot) const {
+    int const e = edge(index_of(foot));
+    if (foot < 3) {
+      sum.add(1);
+    } else if (foot < face) {
+      add_dot(sum, 1, e, e);
+    } else {
+      add_cross_squared(sum, 1, e, edge(1));
     }
-    for (int i = 0; i < 3; ++i) {
-      if ((wanted >> (3 + i) & 1) != 0 && beside_edge(i) && f(foot{this, feature::edge, i})) return;
+  }
+
+  /// The squared distance, multiplied by `add_length`.
+  COLLIDE_HD void add_distance_squared(exact_products& sum, int weight, int foot) const {
+    int const v = corner(index_of(foot)), e = edge(index_of(foot));
+    if (foot < 3) {
+      add_dot(sum, weight, v, v);
+    } else if (foot < face) {
+      add_cross_squared(sum, weight, v, e);
+    } else {
+      add_determinant_squared(sum, weight, v, e, edge(1));
     }
-    if ((wanted >> 6 & 1) != 0 && over_face()) f(foot{this, feature::face, 0});
+  }
+
+  COLLIDE_HD_NOINLINE wide_number length(int foot) const {
+    exact_products sum;
+    add_length(sum, foot);
+    return exact_sum::of(numbers_, sum);
+  }
+
+  COLLIDE_HD_NOINLINE wide_number distance_squared(int foot) const {
+    exact_products sum;
+    add_distance_squared(sum, 1, foot);
+    return exact_sum::of(numbers_, sum);
+  }
+
+  /// What the square of the radius is above that of the distance, multiplied by `length`; or only a number of its sign.
+  COLLIDE_HD_NOINLINE wide_number excess(int foot, bool with_value) const {
+    exact_products sum;
+    add_length(sum, foot);
+    sum.multiply_by(exact_place::radius);
+    sum.multiply_by(exact_place::radius);
+    add_distance_squared(sum, -1, foot);
+    return exact_sum::of(numbers_, sum, with_value);
+  }
+
+  /// The errors are a few units in the last place, however small the numbers are.
+  COLLIDE_HD gap measured(int foot) const {
+    wide_number const by = length(foot), d = root_of_distance_squared(foot, by);
+    double const distance = times_power(d.value, d.exponent);
+    wide_number const above = excess(foot, true);
+    if (above.value == 0) return {distance, 0};
+    // R - d = (R^2 - d^2) / (R + d), where R and d are divided by a power of two as large as the larger one
+    parts_view const radius = numbers_[exact_place::radius];
+    dyadic const r = radius.count == 0 ? dyadic{0, 0} : radius[0];
+    int const top = r.mantissa == 0 ? d.exponent : larger(d.exponent, r.exponent + r.length());
+    double const sum =
+        times_power(static_cast<double>(r.mantissa), r.exponent - top) + times_power(d.value, d.exponent - top);
+    double const depth = times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent - top);
+    double const whole = times_power(static_cast<double>(r.mantissa), r.exponent);
+    return {distance, smaller(depth, whole)};  // rounding up from the largest number would make it infinite
+  }
+
+  /// The distance, if `by` is the denominator: a value between 1/2 and 2, or 0, times a power of two; that of 0 is
+  /// below all others.
+  COLLIDE_HD wide_number root_of_distance_squared(int foot, wide_number const& by) const {
+    wide_number const square = distance_squared(foot);
+    if (square.value == 0) return {0, -4000};
+    int const exponent = square.exponent - by.exponent, half = exponent / 2;
+    return {root(times_power(div(square.value, by.value), exponent - 2 * half)), half};
   }
 
   /// The feet that are not certainly farther than the root of `around`, as far as doubles can tell.
   static COLLIDE_HD unsigned near_feet(local_triangle<double> const& l, double around) {
     double const reach = root(around) + 0x1p-40, limit = mul(mul(reach, reach), 1 + 0x1p-40);  // l is below 4
     vec3<double> const v[3] = {l.a, l.b, l.c};
-    unsigned near = 1u << 6;
+    unsigned near = 1u << face;
     for (int i = 0; i < 3; ++i) {
       vec3<double> const e = v[(i + 1) % 3] - v[i], c = detail::cross(v[i], e);
       double const ee = dot(e, e);
@@ -221,37 +245,35 @@ class exact_triangle {
     return near;
   }
 
-  /// A vector of three exact sums, but for its length.
-  template <class Component>
-  static COLLIDE_HD vec3<double> direction(Component const& component) {
+  /// From a corner or an edge to the centre, or the normal of the face; but for the length.
+  COLLIDE_HD vec3<double> direction(int foot) const {
     wide_number w[3];
     int top = -(1 << 30);
     for (int k = 0; k < 3; ++k) {
-      w[k] = exact_sum::of([&](auto const& add) { component(k, add); });
+      w[k] = component_of_direction(foot, k);
       if (w[k].value != 0) top = larger(top, w[k].exponent);
     }
     vec3<double> d;
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k) {
       d[k] = w[k].value == 0 ? 0 : times_power(w[k].value, larger(w[k].exponent - top, -2000));
+    }
     return d;
   }
 
-  /// The centre projects into the edge.
-  COLLIDE_HD bool beside_edge(int i) const {
-    auto const along = [&](int corner, int weight) {
-      return exact_sum::sign_of([&](auto const& add) { sum_dot(weight, corner_[corner], edge_[i], add); });
-    };
-    return along(i, -1) > 0 && along((i + 1) % 3, 1) > 0;
-  }
-
-  /// The centre projects into the face.
-  COLLIDE_HD bool over_face() const {
-    for (int i = 0; i < 3; ++i) {
-      int const side = exact_sum::sign_of(
-          [&](auto const& add) { sum_cross_dot_cross(1, corner_[i], edge_[i], edge_[0], edge_[1], add); });
-      if (side <= 0) return false;
+  COLLIDE_HD_NOINLINE wide_number component_of_direction(int foot, int k) const {
+    exact_products sum;
+    int const v = corner(index_of(foot)), e = edge(index_of(foot));
+    if (foot < 3) {
+      sum.add(-1, v + k);
+    } else if (foot < face) {
+      for (int i = 0; i < 3; ++i) {  // e (v.e) - v (e.e)
+        sum.add(1, e + k, v + i, e + i);
+        sum.add(-1, v + k, e + i, e + i);
+      }
+    } else {
+      add_cross(sum, 1, k, edge(0), edge(1));
     }
-    return true;
+    return exact_sum::of(numbers_, sum);
   }
 
   /// x * 2^n, also where 2^n is beyond the range.
@@ -260,10 +282,12 @@ class exact_triangle {
     for (; n < -1000; n += 1000) x *= 0x1p-1000;
     return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
   }
-
-  exact_vector<2 + Moved> corner_[3];
-  exact_vector<2> edge_[3];
-  exact_difference radius_;
 };
+
+/// Whether the ball touches the triangle. Finite coordinates and a finite radius, not below 0.
+COLLIDE_HD_NOINLINE inline bool in_reach_exactly(triangle<double> const& t, sphere<double> const& s) {
+  exact_place::memory memory;
+  return exact_triangle(exact_numbers_of(memory.table(), t, {s, {0, 0, 0}}, {0, 0})).in_reach();
+}
 
 }  // namespace collide::detail

@@ -2,7 +2,7 @@
 /// A moving sphere and a triangle in exact arithmetic.
 ///
 /// The way of the centre and the triangle are closest where one of these is the case:
-///   - the way begins or ends, and there the triangle is closest: see exact_triangle.hpp;
+///   - the way begins or ends, and there the triangle is closest: see exact.hpp;
 ///   - the way goes through the triangle;
 ///   - the foot of a corner lies inside the way;
 ///   - the common perpendicular of way and edge has its feet inside of both.
@@ -23,31 +23,40 @@
 
 namespace collide::detail {
 
-/// Of how many parts time * displacement may be. For floats it has one, so a time may have 29 bits.
-template <class S>
-inline constexpr int path_parts = sizeof(S) == sizeof(float) ? 1 : 4;
-
-/// The way until a time.
-template <class S>
-struct exact_path {
-  exact_vector<path_parts<S>> to;
-
-  COLLIDE_HD exact_path(vec3<S> const& displacement, dyadic time) {
-    for (int k = 0; k < 3; ++k) to[k] = product<path_parts<S>>(decoded(displacement[k]), time);
-  }
+/// Where the further numbers of a sweep stand in the table. Those of `exact_place` are as seen from the end of the way.
+struct exact_sweep_place {
+  enum : int {
+    path = exact_place::end,  ///< from the beginning of the way to its end
+    first_corner = path + 3,  ///< relative to the beginning
+    end = first_corner + 9
+  };
+  using memory = exact_memory<9 * 4 + 9 * 2 + 1 + 3 * 2 + 9 * 2, end>;
 };
 
-/// Finite coordinates and a finite radius, not below 0.
-template <class S>
+/// Fills the table for the way of a sphere until a time.
+COLLIDE_HD_NOINLINE inline exact_numbers exact_sweep_of(exact_numbers table, triangle<double> const& t,
+                                                        moving_sphere<double> const& s, dyadic time) {
+  table = exact_numbers_of(table, t, s, time);
+  for (int k = 0; k < 3; ++k) {
+    table.begin_number();
+    table.add_product(decoded(s.displacement[k]), time);
+  }
+  add_corners(table, t, s, {0, 0});
+  return table;
+}
+
+/// Formulas on the numbers of a table, whose memory must outlive this.
 class exact_sweep {
  public:
-  /// The first part of a step, until `time`.
-  COLLIDE_HD exact_sweep(triangle<S> const& t, moving_sphere<S> const& s, dyadic time)
-      : path_(s.displacement, time), start_(t, s), end_(t, s, path_.to) {}
+  COLLIDE_HD explicit exact_sweep(exact_numbers const& numbers) : numbers_(numbers) {}
 
-  /// True if the ball touches the triangle on its way.
+  /// True if the ball touches the triangle on its way until the time that the table was made for.
   COLLIDE_HD bool in_reach() const {
-    if (start_.in_reach() || end_.in_reach() || through_face()) return true;
+    int const seen_from[2] = {start(0), end(0)};
+    for (int const corners : seen_from) {
+      if (exact_triangle(numbers_, corners).in_reach()) return true;
+    }
+    if (through_face()) return true;
     for (int i = 0; i < 3; ++i) {
       if ((beside_corner(i) && corner_within(i)) || (across_edge(i) && edge_within(i))) return true;
     }
@@ -55,60 +64,84 @@ class exact_sweep {
   }
 
  private:
-  /// The sign of what `terms` sums.
-  template <class Terms>
-  static COLLIDE_HD int sign(Terms const& terms) {
-    return exact_sum::sign_of(terms);
+  static constexpr int path = exact_sweep_place::path;
+
+  exact_numbers numbers_;
+
+  /// A corner as seen from the beginning, and from the end.
+  static COLLIDE_HD int start(int i) { return exact_sweep_place::first_corner + 3 * i; }
+  static COLLIDE_HD int end(int i) { return exact_place::corner + 3 * i; }
+  static COLLIDE_HD int edge(int i) { return exact_place::edge + 3 * i; }
+
+  COLLIDE_HD int sign(exact_products const& sum) const { return exact_sum::sign_of(numbers_, sum); }
+
+  // Each formula is out of line, as in exact_triangle.
+
+  COLLIDE_HD_NOINLINE int sign_of_determinant(int v, int p, int q) const {
+    exact_products sum;
+    add_determinant(sum, 1, v, p, q);
+    return sign(sum);
   }
 
   COLLIDE_HD bool through_face() const {
-    auto const &p = start_.edge(0), &q = start_.edge(1);
-    int const before = sign([&](auto const& add) { sum_determinant(1, start_.corner(0), p, q, add); });
-    if (before == 0) return false;
-    if (sign([&](auto const& add) { sum_determinant(before, end_.corner(0), p, q, add); }) >= 0) return false;
+    int const before = sign_of_determinant(start(0), edge(0), edge(1));
+    if (before == 0 || sign_of_determinant(end(0), edge(0), edge(1)) != -before) return false;
     int const side = passes(0);
     return side != 0 && passes(1) == side && passes(2) == side;
   }
 
   /// On which side the line of the way passes the edge.
-  COLLIDE_HD int passes(int i) const {
-    return sign([&](auto const& add) { sum_determinant(1, path_.to, start_.corner(i), start_.edge(i), add); });
+  COLLIDE_HD int passes(int i) const { return sign_of_determinant(path, start(i), edge(i)); }
+
+  COLLIDE_HD bool beside_corner(int i) const { return along_path(start(i)) > 0 && along_path(end(i)) < 0; }
+
+  COLLIDE_HD_NOINLINE int along_path(int v) const {
+    exact_products sum;
+    add_dot(sum, 1, v, path);
+    return sign(sum);
   }
 
-  COLLIDE_HD bool beside_corner(int i) const {
-    return sign([&](auto const& add) { sum_dot(1, start_.corner(i), path_.to, add); }) > 0 &&
-           sign([&](auto const& add) { sum_dot(1, end_.corner(i), path_.to, add); }) < 0;
-  }
-
-  COLLIDE_HD bool corner_within(int i) const {
-    return sign([&](auto const& add) {
-             sum_dot(1, path_.to, path_.to, add, start_.radius(), start_.radius());
-             sum_cross_squared(-1, start_.corner(i), path_.to, add);
-           }) >= 0;
+  COLLIDE_HD_NOINLINE bool corner_within(int i) const {
+    exact_products excess;
+    add_dot(excess, 1, path, path);
+    times_square_of_radius(excess);
+    add_cross_squared(excess, -1, start(i), path);
+    return sign(excess) >= 0;
   }
 
   COLLIDE_HD bool across_edge(int i) const {
-    auto const& d = path_.to;
-    auto const& e = start_.edge(i);
-    auto const side = [&](auto const& v, auto const& along) {
-      return sign([&](auto const& add) { sum_cross_dot_cross(1, v, along, d, e, add); });
-    };
-    return side(start_.corner(i), e) > 0 && side(end_.corner(i), e) < 0 && side(start_.corner(i), d) > 0 &&
-           side(start_.corner((i + 1) % 3), d) < 0;
+    int const e = edge(i);
+    return side(start(i), e, e) > 0 && side(end(i), e, e) < 0 && side(start(i), path, e) > 0 &&
+           side(start((i + 1) % 3), path, e) < 0;
   }
 
-  COLLIDE_HD bool edge_within(int i) const {
-    auto const& d = path_.to;
-    auto const& e = start_.edge(i);
-    return sign([&](auto const& add) {
-             sum_cross_squared(1, d, e, add, start_.radius(), start_.radius());
-             sum_determinant_squared(-1, start_.corner(i), d, e, add);
-           }) >= 0;
+  /// The sign of (v x along).(d x e).
+  COLLIDE_HD_NOINLINE int side(int v, int along, int e) const {
+    exact_products sum;
+    add_cross_dot_cross(sum, v, along, path, e);
+    return sign(sum);
   }
 
-  exact_path<S> path_;
-  exact_triangle<> start_;
-  exact_triangle<path_parts<S>> end_;
+  COLLIDE_HD_NOINLINE bool edge_within(int i) const {
+    exact_products excess;
+    add_cross_squared(excess, 1, path, edge(i));
+    times_square_of_radius(excess);
+    add_determinant_squared(excess, -1, start(i), path, edge(i));
+    return sign(excess) >= 0;
+  }
+
+  static COLLIDE_HD void times_square_of_radius(exact_products& sum) {
+    sum.multiply_by(exact_place::radius);
+    sum.multiply_by(exact_place::radius);
+  }
 };
+
+/// Whether the ball touches the triangle on its way until a time of at most 53 bits. Finite coordinates and a finite
+/// radius, not below 0.
+COLLIDE_HD_NOINLINE inline bool in_reach_exactly(triangle<double> const& t, moving_sphere<double> const& s,
+                                                 dyadic time) {
+  exact_sweep_place::memory memory;
+  return exact_sweep(exact_sweep_of(memory.table(), t, s, time)).in_reach();
+}
 
 }  // namespace collide::detail

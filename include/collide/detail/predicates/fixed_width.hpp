@@ -19,7 +19,7 @@
 /// proof, and that nothing overflows.
 #pragma once
 
-#include <collide/detail/numeric/exact_sum.hpp>
+#include <collide/detail/numeric/exact_number.hpp>
 #include <collide/detail/numeric/wide_int.hpp>
 
 namespace collide::detail {
@@ -34,42 +34,30 @@ COLLIDE_HD_INLINE void turn(T (&x)[3]) {
   x[2] = first;
 }
 
-/// Finite coordinates and a finite radius, not below 0; differences of coordinates take `Words` words of 64 bits.
-template <int Words>
+/// Finite coordinates and a finite radius, not below 0; differences of coordinates take two words of 64 bits.
 class fixed_triangle {
-  static_assert(Words == 1 || Words == 2, "collide: differences are computed in two words");
-
  public:
-  template <class S>
-  COLLIDE_HD fixed_triangle(triangle<S> const& t, sphere<S> const& s) {
+  COLLIDE_HD_NOINLINE fixed_triangle(triangle<double> const& t, sphere<double> const& s) {
+    vec3<double> const* const points[4] = {&s.centre, &t.a, &t.b, &t.c};
     extend_unit(s.radius);
     COLLIDE_ROLLED
-    for (int k = 0; k < 3; ++k) {
-      extend_unit(s.centre[k]);
-      extend_unit(t.a[k]);
-      extend_unit(t.b[k]);
-      extend_unit(t.c[k]);
-    }
+    for (int i = 0; i < 12; ++i) extend_unit((*points[i / 3])[i % 3]);
     radius_ = fitted(in_units(s.radius));
     COLLIDE_ROLLED
-    for (int k = 0; k < 3; ++k) {
-      two_words const centre = in_units(s.centre[k]);
-      corner_[0].component[0] = fitted(in_units(t.a[k]) - centre);
-      corner_[1].component[0] = fitted(in_units(t.b[k]) - centre);
-      corner_[2].component[0] = fitted(in_units(t.c[k]) - centre);
-      for (auto& v : corner_) turn(v.component);
+    for (int i = 0; i < 9; ++i) {
+      corner_[i / 3].component[i % 3] = fitted(in_units((*points[1 + i / 3])[i % 3]) - in_units(s.centre[i % 3]));
     }
   }
 
   /// True if all differences and the radius, in units of one power of two, are integers of at most
-  /// 64 Words - 2 bits.
+  /// 126 bits.
   COLLIDE_HD bool holds() const { return holds_; }
 
   /// True if the ball touches the triangle; if this holds.
-  COLLIDE_HD bool in_reach() const {
+  COLLIDE_HD_NOINLINE bool in_reach() const {
     vector v[3] = {corner_[0], corner_[1], corner_[2]};
-    wide<2 * Words> own[3] = {}, next[3] = {};  // m_ii, and m_ik for the next corner k, of each corner i
-    wide<2 * Words> const square = radius_ * radius_;
+    wide<4> own[3] = {}, next[3] = {};  // m_ii, and m_ik for the next corner k, of each corner i
+    wide<4> const square = radius_ * radius_;
     COLLIDE_ROLLED
     for (int i = 0; i < 3; ++i) {
       own[0] = dot(v[0], v[0]) - square;
@@ -82,11 +70,11 @@ class fixed_triangle {
       if (next[0].negative() && !(own[0] * own[1] - next[0] * next[0]).positive()) return true;
       turn(own), turn(next);
     }
-    wide<2 * Words> row[3] = {own[0], next[0], next[2]};
-    wide<6 * Words> determinant{};
+    wide<4> row[3] = {own[0], next[0], next[2]};
+    wide<12> determinant{};
     COLLIDE_ROLLED
     for (int i = 0; i < 3; ++i) {
-      wide<4 * Words> const weight = (own[1] - next[1]) * (own[2] - next[2]) + (next[1] - next[0]) * (own[2] - next[1]);
+      wide<8> const weight = (own[1] - next[1]) * (own[2] - next[2]) + (next[1] - next[0]) * (own[2] - next[1]);
       if (!weight.positive()) return false;
       determinant = determinant + row[0] * weight;
       turn(row), turn(own), turn(next);
@@ -96,25 +84,23 @@ class fixed_triangle {
 
  private:
   struct vector {
-    wide<Words> component[3];
+    wide<2> component[3];
   };
 
-  static constexpr int most_bits = 64 * Words - 2;
+  static constexpr int most_bits = 126;
   static constexpr int most_length = 126;  ///< of a number: a bit of two words is for differences, one for the sign
 
   int unit_ = 1 << 30;  ///< as a power of two
   bool holds_ = true;
-  wide<Words> radius_;
+  wide<2> radius_;
   vector corner_[3] = {};  ///< relative to the centre
 
-  template <class S>
-  COLLIDE_HD_INLINE void extend_unit(S x) {
+  COLLIDE_HD void extend_unit(double x) {
     dyadic const d = decoded(x);
     if (d.mantissa != 0) unit_ = smaller(unit_, d.exponent);
   }
 
-  template <class S>
-  COLLIDE_HD_INLINE two_words in_units(S x) {
+  COLLIDE_HD two_words in_units(double x) {
     dyadic const d = decoded(x);
     if (d.mantissa == 0) return 0;
     int const shift = d.exponent - unit_;
@@ -122,15 +108,13 @@ class fixed_triangle {
     return static_cast<two_words>(d.mantissa) << (shift & 127);
   }
 
-  COLLIDE_HD_INLINE wide<Words> fitted(two_words x) {
+  COLLIDE_HD wide<2> fitted(two_words x) {
     constexpr two_words most = two_words{1} << most_bits;
     holds_ = holds_ && x + most <= 2 * most;  // from -most to most
-    wide<Words> w;
-    for (int i = 0; i < Words; ++i) w.word[i] = static_cast<std::uint64_t>(x >> (64 * i));
-    return w;
+    return {{static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(x >> 64)}};
   }
 
-  static COLLIDE_HD_INLINE wide<2 * Words> dot(vector const& p, vector const& q) {
+  static COLLIDE_HD wide<4> dot(vector const& p, vector const& q) {
     return p.component[0] * q.component[0] + p.component[1] * q.component[1] + p.component[2] * q.component[2];
   }
 };

@@ -14,24 +14,16 @@ struct karabassi_swept;
 
 namespace detail {
 
-/// Whether doubles suffice for the contact of a ball in a simulation.
-struct clear_here {
-  COLLIDE_HD_INLINE bool operator()(double distance, double) const { return distance >= clear_length; }
-};
-
 /// The contact of a ball and a finite triangle. Unlike that of `contact_of`, the depth of a ball that just touches is
 /// known to within the rounding of doubles only: resting balls do just that, all the time.
 template <class S>
 COLLIDE_HD contact<S> contact_here(triangle<S> const& t, sphere<S> const& s) {
-  sphere<S> const centre{s.centre, S(0)};
-  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
-  auto const exactly = [t, centre] { return exact_triangle<>(t, centre); };
-  return contact_from(l, s.centre.template cast<double>(), s.radius, clear_here{}, exactly);
+  return rounded<S>(contact_between(widened(t), widened(s), clear_length, false));
 }
 
-/// Whether a ball touches a finite triangle, and the same contact if so, where doubles suffice for both; `sure` says
-/// that they touch. Calls nothing. The foot that it finds is a point of the triangle, so a depth that is clear means a
-/// hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but not by much:
+/// Whether a ball touches a finite triangle, and the contact that `contact_here` tells if so, where doubles suffice for
+/// both; `sure` says that they touch. Calls nothing. The foot that it finds is a point of the triangle, so a depth that
+/// is clear means a hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but not by much:
 /// docs/numerics.md.
 template <class S>
 COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
@@ -41,10 +33,12 @@ COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> con
   bool apart = false;
   auto const clear = [&](double distance, double depth) {
     apart = !sure && depth < 0;
-    return clear_here{}(distance, depth) && (sure || depth >= clear_depth || -depth * distance >= clear_gap);
+    return distance >= clear_length && (sure || depth >= clear_depth || -depth * distance >= clear_gap);
   };
-  auto const otherwise = [](closest_point<double>&, gap&, vec3<double>&) { return false; };
-  if (!contact_if_clear(l, s.centre.template cast<double>(), s.radius, clear, otherwise, found)) return verdict::unsure;
+  closest_point<double> foot;
+  measured_contact m;
+  if (!measure_if_clear(l, static_cast<double>(s.radius), clear, foot, m)) return verdict::unsure;
+  found = contact_at_foot<S>(m, foot.point, l.scale, s.centre.template cast<double>());
   return apart ? verdict::miss : verdict::hit;
 }
 
@@ -62,7 +56,7 @@ COLLIDE_HD_INLINE sphere<S> ball_at(moving_sphere<S> const& s, S time) {
 /// their times could not be told apart without exact arithmetic.
 template <class S>
 COLLIDE_HD_NOINLINE S time_here(triangle<S> const& t, moving_sphere<S> const& s) {
-  return first_contact(t, s, false);
+  return rounded_down<S>(first_contact(widened(t), widened(s), time_bits<S>, false));
 }
 
 /// When a ball of a narrow phase stops: if that is not `karabassi_swept` itself, when it says.
