@@ -1,4 +1,5 @@
-// The unit of scripts/compile-cost for nvcc: the libraries that a program for a GPU includes anyway, one kernel of each.
+// The unit of scripts/compile-cost for nvcc: the libraries that a program for a GPU includes anyway, one kernel of
+// each.
 #include <Eigen/Core>
 #include <cub/device/device_radix_sort.cuh>
 #include <thrust/device_vector.h>

@@ -1,8 +1,9 @@
 // Ten lines for scripts/compile-cost: a query on a GPU, as the README has it for the host.
 #include <iostream>
 
-#include <collide/bucket.cuh>
 #include <thrust/device_vector.h>
+
+#include <collide/bucket.cuh>
 
 int main() {
   thrust::device_vector<float> vertices(9), centres(6);
