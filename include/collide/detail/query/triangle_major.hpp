@@ -76,7 +76,7 @@ struct look_for_spheres {
 
   /// Tests what was found. Out of line: `look` is a tight loop that is compiled for two vector units.
   template <class Block>
-  COLLIDE_HD_NOINLINE void test(Block& block, scratch<Block>& s) const {
+  [[gnu::noinline]] void test(Block& block, scratch<Block>& s) const {
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
       [[maybe_unused]] triangle<S> const t = tests.mesh[r.triangle];
