@@ -176,8 +176,6 @@ MUTATIONS = {
                      [("sizeof(S) == sizeof(float) ? clear_length : std::numeric_limits<double>::max()", "clear_length")]),
     "depth-of-a-tie": ("predicates/exact.hpp", "a centre on the triangle and a radius of 0", "contacts", "plain",
                        [("    if (above.value == 0) return {distance, 0};\n", "")]),
-    "distance-of-0": ("predicates/exact.hpp", "a distance of 0 has no exponent", "contacts", "plain",
-                      [("    if (square.value == 0) return {0, -4000};\n", "")]),
     "equally-deep": ("predicates/exact.hpp", "of feet that are equally deep the closest", "contacts", "plain",
                      [("there.depth > there.distance ? there.distance < to_nearest.distance : there.depth", "there.depth")]),
     "near-feet": ("predicates/exact.hpp", "feet that doubles take for farther by mistake", "contacts", "plain",
@@ -193,6 +191,8 @@ SOUND["none.regions"] = ("predicates/filter.hpp", None, "stages", "plain", [NO_R
 
 # (file, the guard as it stands there, why no row goes wrong without it)
 UNSEEN = [
+    ("predicates/exact.hpp", "if (square.value == 0) return {0, -4000};",
+     "a distance of 0 has no exponent; the depth, which then is infinite or too large, is limited by the radius, and that is right"),
     ("predicates/fixed_width.hpp", "static constexpr int most_bits = 126;",
      "no more bits than products have room for; no row has a number from 2^126 to 2^127"),
     ("geometry/lifted_bounds.hpp", "lifted_radius_slack = 32 * S(format<float>::unit)",
