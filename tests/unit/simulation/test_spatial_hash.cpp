@@ -15,8 +15,7 @@ TEST_CASE_TEMPLATE("spatial hash: coordinates are rounded down, and what is too 
   CHECK(cells.of(std::numeric_limits<S>::max(), -std::numeric_limits<S>::infinity(), 0).y == -(1 << 30));
 }
 
-TEST_CASE(
-    "spatial hash: cells of a block have places of their own, which follow each other along x, within the table") {
+TEST_CASE("spatial hash: cells of a block have places of their own, one after the other along x") {
   using table = collide::detail::particle_cells<float>;
   table const cells{1, 63};
   for (std::int32_t block = -4; block < 4; ++block) {
