@@ -14,9 +14,9 @@ __attribute__((target("avx2"), flatten)) void run_with_avx2(F const& f) {
 }
 
 /// Calls f(), in which a loop over plain arrays had better be vectorised. On x86 it is compiled twice, and a processor
-/// with AVX2 runs the version that does 8 floats at a time, with all that f() calls and that is not out
-/// of line: so call what is not a tight loop so. Elsewhere, or compiled with -march, it is just a
-/// call. The results are the same bits: no product is fused with a sum.
+/// with AVX2 runs the version that does 8 floats at a time. That version contains all that f() calls, but for functions
+/// that are not inlined: what is not a tight loop had better be one of those. Elsewhere, or compiled with -march, it is
+/// just a call. The results are the same bits: no product is fused with a sum.
 template <class F>
 void vectorised(F const& f) {
   __builtin_cpu_supports("avx2") ? run_with_avx2(f) : f();
