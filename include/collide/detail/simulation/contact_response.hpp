@@ -6,9 +6,9 @@
 /// through are listed, and judged as many at a time as there are lanes. Each that the narrow phase accepts offers
 /// itself as the next contact of its particle: the deepest, or of particles that move the earliest, wins, by a minimum
 /// over 64-bit keys, which does not depend on the order. One lane then lets the effects respond. This is repeated until
-/// no contact counts, each time from where the particle then is. A contact counts only if its foot lies above the tangent
-/// planes of those before: in a corner both walls count; on a plane that is divided into triangles one does, and no
-/// inner edge is felt. A swept particle spends what is left of the step after each impact.
+/// no contact counts, each time from where the particle then is. A contact counts only if its foot lies above the
+/// tangent planes of those before: in a corner both walls count; on a plane that is divided into triangles one does,
+/// and no inner edge is felt. A swept particle spends what is left of the step after each impact.
 #pragma once
 
 #include <cstring>
