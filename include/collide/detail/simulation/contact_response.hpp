@@ -442,8 +442,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
 
   /// Judges the `n` candidates that are listed, and lists those that may touch. What there is no room for is offered.
   template <class Block>
-  COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, Lookup const& near,
-                                      std::uint32_t n) const {
+  COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t n) const {
     for (std::uint32_t base = 0; base < n << near.bits; base += Block::lanes) {
       block.each([&](int lane) {
         std::uint32_t const i = base + static_cast<std::uint32_t>(lane), k = i >> near.bits;
