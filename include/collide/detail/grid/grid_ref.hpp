@@ -27,7 +27,6 @@ struct bucket_lookup : triangle_lookup<S> {
 
   COLLIDE_HD bucket_lookup opened() const {
     bucket_lookup open = *this;
-    if (grid_count > 0) open.bits = grids[0].bits;
     if (grid_count > 0 && *total > capacity) open.grid_count = 0;
     return open;
   }

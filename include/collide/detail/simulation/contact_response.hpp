@@ -250,10 +250,10 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes*(moves ? 14 : 24) / 10 / sizeof(S)
                                                              : Block::items;
 
-  /// A particle of those that are resolved together, and an entry.
+  /// A particle of those that are resolved together, and a triangle.
   struct candidate {
     std::uint32_t particle;
-    id entry;
+    id triangle;
   };
 
   /// A contact that a particle may have, in scratch memory.
@@ -420,11 +420,9 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
           [&](candidates const& c, cell_entry const& e) { return c.range.may_touch(e); },
           [&](candidates const& c, cell_entry const& e) {
             if constexpr (candidate_lists<Block>::used) {
-              s.lists.near[block.add(s.lists.near_count, 1)] = {c.particle, e.number};
+              s.lists.near[block.add(s.lists.near_count, 1)] = {c.particle, e.triangle};
             } else {
-              near.each_near(c.around, e, [&](id number) {
-                if (!c.one.leaves(number)) offer_next(s, c, near, number);
-              });
+              if (near.near(c.around, e.triangle) && !c.one.leaves(e.triangle)) offer_next(s, c, near, e.triangle);
             }
           },
           [&] {
@@ -443,13 +441,13 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   /// Judges the `n` candidates that are listed, and lists those that may touch. What there is no room for is offered.
   template <class Block>
   COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t n) const {
-    for (std::uint32_t base = 0; base < n << near.bits; base += Block::lanes) {
+    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
       block.each([&](int lane) {
-        std::uint32_t const i = base + static_cast<std::uint32_t>(lane), k = i >> near.bits;
+        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
         if (lane == 0) s.lists.near_count = 0;
-        if (k >= n) return;
-        candidate const c = s.lists.near[k];
-        id const number = (c.entry << near.bits) + (i - (k << near.bits));
+        if (i >= n) return;
+        candidate const c = s.lists.near[i];
+        id const number = c.triangle;
         auto& one = s.those[c.particle];
         auto const ball = one.ball();
         if (!near.template may_touch<NarrowPhase>(ball, number) || one.leaves(number)) return;
