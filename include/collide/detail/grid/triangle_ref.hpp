@@ -3,7 +3,7 @@
 ///
 /// An index gives a trivially copyable `lookup()`. Of that, `is_simple(radius)` is true if balls of this radius are
 /// best asked several at a time whether they can touch a triangle: `marks().mark(marks().places_of(x, y, z), near)`, or
-/// `marks().mark_ways(batch, near)` of those that move; `next_marked` then is `next` of those at rest that were marked.
+/// `marks().mark_ways(batch, near)` of those that move.
 /// In a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
@@ -42,9 +42,6 @@ struct candidate_cursor {
 
   int grid, level;
   std::uint32_t step, skip;
-
-  /// That of a ball which was marked.
-  static COLLIDE_HD_INLINE candidate_cursor first_marked() { return {0, 0, 0, 0}; }
 
   /// True if there are no more. False where that is not known yet.
   COLLIDE_HD_INLINE bool at_end() const { return grid == ended; }
