@@ -56,12 +56,12 @@ struct automatic {
       }
     }
 
-    template <class NarrowPhase, class Space, class Sink>
-    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
+    template <class NarrowPhase, class Space, class Output>
+    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) {
       if (uses_grid_) {
-        grid_.template query<NarrowPhase>(space, spheres, sink);
+        grid_.template query<NarrowPhase>(space, spheres, output);
       } else {
-        bounds_.template query<NarrowPhase>(space, spheres, sink);
+        bounds_.template query<NarrowPhase>(space, spheres, output);
       }
     }
 

@@ -60,10 +60,6 @@ class lockstep_block {
   struct staging {
     T values[N];
   };
-  template <class T>
-  struct single {
-    T value;
-  };
   template <class T, int N>
   struct row_scratch {};
   struct scan_scratch {};
@@ -95,12 +91,6 @@ class lockstep_block {
   T const* stage(staging<T, N>& to, T const* from, int n) {
     for (int i = 0; i < n; ++i) to.values[i] = from[i];
     return to.values;
-  }
-
-  template <class T>
-  T const& near(single<T>& to, T const& from) {
-    to.value = from;
-    return to.value;
   }
 
   template <class T, int N>
@@ -149,7 +139,7 @@ template <int Lanes, bool Reversed>
 class lockstep : public collide::host {
  public:
   using host::host;
-  static constexpr bool defers = true, sorts_spheres = false, pairs_triangles = true;  // as the CUDA spaces
+  static constexpr bool defers = true, sorts_spheres = false;  // as the CUDA spaces
   static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
 
   template <class Body>

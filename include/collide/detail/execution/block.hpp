@@ -7,7 +7,6 @@
 ///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
-///   - `block.near(s, from)` gives fast access to one large value in the same way;
 ///   - `block.load_row(from, row, to)`, `exchange_row(s, to)` and `store_row(s, to, row, from)` are for rows of a few
 ///     values, one for each lane, that follow each other: `row_lanes` lanes call them at a time, and read and write
 ///     what lies side by side together, so that all of these rows must exist; what a lane has read is its own row after
@@ -43,8 +42,6 @@ class serial_block {
   };
   template <class T, int N>
   struct staging {};
-  template <class T>
-  struct single {};
   template <class T, int N>
   struct row_scratch {};
   struct scan_scratch {};
@@ -74,11 +71,6 @@ class serial_block {
 
   template <class T, int N>
   COLLIDE_HD_INLINE T const* stage(staging<T, N>&, T const* from, int) {
-    return from;
-  }
-
-  template <class T>
-  COLLIDE_HD_INLINE T const& near(single<T>&, T const& from) {
     return from;
   }
 

@@ -48,6 +48,8 @@ struct sphere_batch {
     }
   }
 
+  COLLIDE_HD_INLINE sphere<S> ball(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
+
   /// Where the centres are, if on the device groups of four can be loaded at a time; else null.
   static COLLIDE_HD_INLINE S const* quads_of(sphere_view<S> const& spheres) {
 #if defined(__CUDA_ARCH__)

@@ -16,11 +16,11 @@ struct query_pass {
   using narrow_phase = NarrowPhase;
   using scalar = S;
 
-  Index const& index;
+  Index& index;
   Space& space;
   mesh_view<S> mesh;
   spheres_of<NarrowPhase, S> spheres;
-  undecided_list& open;
+  deferred_pair_buffer& deferred;
 
   /// Not defined in the class, so not inline; see compiled.hpp.
   template <class Handle>
@@ -37,10 +37,10 @@ void query_pass<Index, NarrowPhase, Space, S>::operator()(Handle const& handle) 
                 "collide: what a sink hands to the device must be a plain value");
   if (mesh.size() != 0 && spheres.size() != 0) {
     if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
-      query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open);
+      query_two_pass<NarrowPhase>(space, index, mesh, spheres, handle, deferred);
       return;
     } else {
-      index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
+      index.template query<NarrowPhase>(space, spheres, handle);
     }
   }
   if constexpr (finishes<Handle>::value) {
