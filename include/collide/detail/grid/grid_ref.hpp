@@ -23,7 +23,7 @@ struct bucket_lookup : triangle_lookup<S> {
   cell_entry const* entries;
   std::size_t capacity;
 
-  static constexpr int nowhere = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
+  static constexpr std::int8_t nowhere = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
 
   COLLIDE_HD bucket_lookup opened() const {
     bucket_lookup open = *this;
@@ -36,7 +36,7 @@ struct bucket_lookup : triangle_lookup<S> {
   /// Which grid serves each of the balls of a pack, if there may be triangles near it; `nowhere` if not, `everywhere`
   /// if no grid serves it.
   template <class Pack, int N>
-  COLLIDE_HD_INLINE void locate(Pack const& pack, int (&number)[N]) const {
+  COLLIDE_HD_INLINE void locate(Pack const& pack, std::int8_t (&number)[N]) const {
     select_grids(pack, number);
     for (int k = 0; k < N; ++k) {
       if (number[k] >= 0 && empty_in(grids[number[k]], pack.ball(k))) number[k] = nowhere;
@@ -47,7 +47,7 @@ struct bucket_lookup : triangle_lookup<S> {
   template <class Ball>
   COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
     if (this->mesh.size() == 0) return true;
-    int number[1];
+    std::int8_t number[1];
     locate(pack_of_one<Ball>{ball}, number);
     return number[0] == nowhere;
   }
@@ -72,7 +72,7 @@ struct bucket_lookup : triangle_lookup<S> {
 
   template <class Ball>
   COLLIDE_HD candidate_cursor begin(Ball const& ball) const {
-    int number[1] = {nowhere};
+    std::int8_t number[1] = {nowhere};
     if (this->mesh.size() != 0) select_grids(pack_of_one<Ball>{ball}, number);
     return {number[0], 0, 0, 0};
   }
@@ -100,14 +100,14 @@ struct bucket_lookup : triangle_lookup<S> {
 
   /// The tightest grid that serves each ball; grids come by falling reach.
   template <class Pack, int N>
-  COLLIDE_HD_INLINE void select_grids(Pack const& pack, int (&number)[N]) const {
+  COLLIDE_HD_INLINE void select_grids(Pack const& pack, std::int8_t (&number)[N]) const {
     for (int k = 0; k < N; ++k) number[k] = is_sound(pack.ball(k)) ? everywhere : nowhere;
     COLLIDE_ROLLED
     for (int g = 0; g < grid_count; ++g) {
       for (int k = 0; k < N; ++k) {
         // a ball that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
         bool const served = (number[k] != nowhere) & serves(grids[g], pack.ball(k));
-        int const there = meets(grids[g], pack.ball(k)) ? g : nowhere;
+        std::int8_t const there = meets(grids[g], pack.ball(k)) ? static_cast<std::int8_t>(g) : nowhere;
         number[k] = served ? there : number[k];
       }
     }

@@ -61,7 +61,7 @@ struct compact_spheres {
     auto const one_pack = [&](std::size_t first) {
       pack<Block> own;
       own.load(spheres, first);
-      int grid_of[Block::items];
+      std::int8_t grid_of[Block::items];
       locate(own, first, grid_of);
       return append(block, s, grid_of, first);
     };
@@ -73,7 +73,7 @@ struct compact_spheres {
   }
 
  private:
-  static constexpr int nowhere = bucket_lookup<S>::nowhere, everywhere = bucket_lookup<S>::everywhere;
+  static constexpr std::int8_t nowhere = bucket_lookup<S>::nowhere, everywhere = bucket_lookup<S>::everywhere;
 
   /// How many packs a lane goes through at most before all expand what they have found: where lanes work together, one
   /// that finds less than others would else go on alone.
@@ -113,18 +113,18 @@ struct compact_spheres {
       load_ahead(first + stride<Block>());
       bool near[n];
       marks.mark(places, near);
-      int grid_of[n];
-      for (int k = 0; k < n; ++k) grid_of[k] = near[k] ? 0 : nowhere;
+      std::int8_t grid_of[n];
+      for (int k = 0; k < n; ++k) grid_of[k] = near[k] ? std::int8_t{0} : nowhere;
       return append(block, s, grid_of, first);
     });
   }
 
   /// The grids of a pack's spheres, if they may be near a triangle.
   template <class Pack, int N>
-  COLLIDE_HD_INLINE void locate(Pack const& own, std::size_t first, int (&grid_of)[N]) const {
+  COLLIDE_HD_INLINE void locate(Pack const& own, std::size_t first, std::int8_t (&grid_of)[N]) const {
     bool near[N];
     if (has_one_level && first + N <= spheres.size() && marks.mark(own, near)) {
-      for (int k = 0; k < N; ++k) grid_of[k] = near[k] ? 0 : nowhere;
+      for (int k = 0; k < N; ++k) grid_of[k] = near[k] ? std::int8_t{0} : nowhere;
       return;
     }
     grids.locate(own, grid_of);
@@ -132,7 +132,7 @@ struct compact_spheres {
 
   /// Appends those of a pack's spheres that may be near a triangle; returns how many.
   template <class Block, int N>
-  COLLIDE_HD_INLINE std::uint32_t append(Block& block, scratch<Block>& s, int const (&grid_of)[N],
+  COLLIDE_HD_INLINE std::uint32_t append(Block& block, scratch<Block>& s, std::int8_t const (&grid_of)[N],
                                          std::size_t first) const {
     std::uint32_t active = 0, ungridded = 0;
     for (int k = 0; k < N; ++k) {
@@ -145,7 +145,7 @@ struct compact_spheres {
     for (int k = 0; k < N; ++k) {
       if (grid_of[k] == nowhere) continue;
       s.active[slot] = static_cast<id>(first) + static_cast<id>(k);
-      s.grid_of[slot++] = static_cast<std::int8_t>(grid_of[k]);
+      s.grid_of[slot++] = grid_of[k];
     }
     return active;
   }
