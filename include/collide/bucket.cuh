@@ -87,7 +87,7 @@ class bucket::index {
     swapped_ = grid_count_ > 0 && swaps<Space>(options) && spheres.size() <= detail::sorted_spheres<S>::most &&
                (!queried_ || spheres.size() / 3 >= mesh_.size() / 2);
     queried_ = true;
-    if constexpr (Space::sorts_spheres) {
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
       if (swapped_) sorted_.sort(space, spheres);
     }
     if (!swapped_) make_lists(space, options);
@@ -98,7 +98,7 @@ class bucket::index {
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
     swapped_ = false;
-    if constexpr (Space::sorts_spheres) {
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
       if (swaps<Space>(options) && has_summary_ && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
           spheres.size() <= detail::sorted_spheres<S>::most) {
         S const reach = sorted_.reach_of(space, spheres);
@@ -124,7 +124,7 @@ class bucket::index {
   /// Puts one pass over the spheres on the space's stream.
   template <class NarrowPhase, class Space, class Sink>
   void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
-    if constexpr (Space::sorts_spheres) {
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
       if (swapped_) {
         sorted_.query(space, detail::tester<S, NarrowPhase, Sink>{mesh_, spheres, sink, nullptr});
         return;
@@ -153,8 +153,9 @@ class bucket::index {
 
   /// How many cells a triangle may touch at most, on an axis and in all, unless a width is asked for.
   template <class Space>
-  static constexpr std::size_t cells_per_axis = std::size_t(Space::bucket_span) +
-                                                (Space::bucket_span > int(Space::bucket_span) ? 2 : 1);
+  static constexpr std::size_t cells_per_axis =
+      std::size_t(bucket_tuning<Space>::triangle_span_in_cells) +
+      (bucket_tuning<Space>::triangle_span_in_cells > int(bucket_tuning<Space>::triangle_span_in_cells) ? 2 : 1);
   template <class Space>
   static constexpr std::size_t cells_per_triangle = cells_per_axis<Space>* cells_per_axis<Space>* cells_per_axis<Space>;
 
@@ -216,7 +217,7 @@ class bucket::index {
                               grids,
                               {},
                               static_cast<S>(options.cell_width),
-                              static_cast<S>(Space::bucket_span),
+                              static_cast<S>(bucket_tuning<Space>::triangle_span_in_cells),
                               l.entry_limit,
                               l.table_bits,
                               l.grids,
@@ -225,7 +226,7 @@ class bucket::index {
     std::copy(reaches, reaches + count, plan.reaches);
     space.launch(plan.template blocks<typename Space::template block<detail::plan_grid<S>>>(), plan);
 
-    if constexpr (Space::sorts_spheres) {
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
       if (swapping) sorted_.mark(space, boxes_.data(), n, grids, l.grids, l.table_bits);
     }
     grid_count_ = l.grids;
@@ -241,7 +242,7 @@ class bucket::index {
     std::size_t const n = mesh_.size();
     if (listed_ || grid_count_ == 0) return;
     auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
-    constexpr int parts = Space::insertion_parts;
+    constexpr int parts = bucket_tuning<Space>::threads_per_triangle;
     detail::grid_insertion<S, parts> const insertion{mesh_, boxes(), grids_.data(), grid_count_};
     if (!lists_empty_) space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
     lists_empty_ = false;
@@ -262,7 +263,7 @@ class bucket::index {
   /// True if spheres can be sorted into the cells instead of triangles: what that takes is not part of a budget.
   template <class Space>
   static bool swaps(bucket const& options) {
-    return Space::sorts_spheres && options.memory_budget == 0;
+    return bucket_tuning<Space>::bins_spheres && options.memory_budget == 0;
   }
 
   struct layout {

@@ -23,7 +23,6 @@ class cuda : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda"; }
-  static constexpr detail::broad_phase_costs costs{0, 30, 0.08, 0.2, 30000};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::serial_block<Body::items, 0>;
@@ -42,13 +41,18 @@ class cuda : public detail::cuda_space {
   }
 };
 
+/// Measured on an H100.
+template <>
+struct broad_phase_costs<cuda> {
+  static constexpr broad_phase_cost_model value{0, 30, 0.08, 0.2, 30000};
+};
+
 /// Execution space: an NVIDIA GPU, the threads of a block working together through shared memory. Views point to device
 /// memory; work is put on a stream.
 class cuda_shared : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda_shared"; }
-  static constexpr detail::broad_phase_costs costs{0, 1.9, 0.012, 0.1, 30000};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::cuda_block<Body::items>;

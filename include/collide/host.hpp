@@ -52,27 +52,11 @@ class host {
   template <class Body>
   using block = detail::serial_block<64, 256>;
 
-  /// Tuning of `bucket`: how many cells wide most triangles are. Narrow cells have fewer candidates and more entries.
-  static constexpr double bucket_span = 1;
-
-  /// Tuning of `automatic`.
-  static constexpr detail::broad_phase_costs costs{350, 0.137, 4, 40, 1000};
-
-  /// Tuning of `bucket`: how many threads put a triangle into its cells.
-  static constexpr int insertion_parts = 1;
-
   /// True if the host reads this memory without waiting for anything.
-  static constexpr bool host_memory = true;
+  static constexpr bool host_accessible = true;
 
   /// False if the memory at `p` is known not to be this space's.
   static bool reads(void const* p) { return detail::in_device_memory == nullptr || !detail::in_device_memory(p); }
-
-  /// True if a pair that takes long to decide is better put on a list, as its neighbours would wait for it.
-  static constexpr bool defers = false;
-
-  /// True if `bucket` had better sort many spheres into the cells and let triangles look for them than the other way
-  /// round: where a core does one thing at a time and waits for the memory. Blocks have one lane and 64 items then.
-  static constexpr bool sorts_spheres = true;
 
   /// Runs `body` once for each of `blocks` blocks.
   template <class Body>

@@ -23,8 +23,6 @@ namespace detail {
 template <class Space>
 struct looking_up : Space {
   explicit looking_up(Space const& space) : Space(space) {}
-  static constexpr bool sorts_spheres = false;
-  static constexpr double bucket_span = 2;
 };
 
 template <class Index, class = void>
@@ -33,6 +31,12 @@ template <class Index>
 struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
 
 }  // namespace detail
+
+template <class Space>
+struct bucket_tuning<detail::looking_up<Space>> : bucket_tuning<Space> {
+  static constexpr bool bins_spheres = false;
+  static constexpr double triangle_span_in_cells = 2;
+};
 
 /// Particles, a mesh, and what happens to the particles in a step: only what the scene names.
 ///
@@ -175,9 +179,10 @@ class simulation {
       space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
       detail::respond_body<S, narrow_phase, lookup_type, scene_type> body{fly, 0};
       std::size_t most = state_.size;
-      if constexpr (execution_space::host_memory) most = *list_.count;
+      if constexpr (execution_space::host_accessible) most = *list_.count;
       body.blocks = detail::blocks_for<execution_space>(most, body);
-      if constexpr (!execution_space::host_memory) body.blocks = detail::smaller(body.blocks, busy<decltype(body)>());
+      if constexpr (!execution_space::host_accessible)
+        body.blocks = detail::smaller(body.blocks, busy<decltype(body)>());
       space_.launch(body.blocks, body);
     }
   }

@@ -149,7 +149,6 @@ template <int Lanes, bool Reversed>
 class lockstep : public collide::host {
  public:
   using host::host;
-  static constexpr bool defers = true, sorts_spheres = false, pairs_triangles = true;  // as the CUDA spaces
   static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
 
   template <class Body>
@@ -180,3 +179,14 @@ class lockstep : public collide::host {
 };
 
 }  // namespace tests
+
+namespace collide {
+
+template <int Lanes, bool Reversed>
+struct bucket_tuning<tests::lockstep<Lanes, Reversed>> : device_bucket_tuning {};
+template <int Lanes, bool Reversed>
+struct query_tuning<tests::lockstep<Lanes, Reversed>> {
+  static constexpr bool defers_exact_tests = true;
+};
+
+}  // namespace collide

@@ -47,7 +47,7 @@ class cuda_space {
   /// Waits until all work on the stream is done.
   void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
-  static constexpr bool host_memory = false;
+  static constexpr bool host_accessible = false;
 
   /// False if the memory at `p` is known not to be this space's: pageable memory, where the device cannot read that.
   static bool reads(void const* p) {
@@ -60,13 +60,6 @@ class cuda_space {
                "cudaDeviceGetAttribute");
     return reads_pageable != 0;
   }
-
-  static constexpr bool defers = true;
-  static constexpr bool sorts_spheres = false;
-
-  /// Tuning of `bucket`; see `host`.
-  static constexpr int insertion_parts = 2;
-  static constexpr double bucket_span = 1.75;
 
   template <class F>
   void for_each(std::size_t n, F const& f) const {
