@@ -67,7 +67,7 @@ class bucket::index {
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
     detail::summarise_mesh<S> const body{mesh, summary, has_boxes_ ? boxes_.data() : nullptr};
-    space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
+    space.launch(detail::grid_size<Space>(mesh.size(), body), body);
   }
 
   /// Makes a grid for spheres up to `radius`, which serves until the next build, or until many spheres that move want
@@ -131,7 +131,7 @@ class bucket::index {
       }
     }
     detail::bucket_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink, boxes()}, lookup(), 0};
-    body.blocks = detail::blocks_at_a_time<Space>(space, spheres.size(), body);
+    body.blocks = detail::persistent_grid_size<Space>(space, spheres.size(), body);
     space.launch(body.blocks, body);
   }
 
@@ -183,7 +183,7 @@ class bucket::index {
     auto* const radii = radii_.reserve(space.resource(), 1);
     detail::size_histogram::clear(space, radii);
     detail::summarise_radii<S> const body{spheres, radii};
-    space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
+    space.launch(detail::grid_size<Space>(spheres.size(), body), body);
     detail::size_histogram const seen = space.read(radii);
     if (seen.empty()) return 0;
     constexpr int bins_per_factor_4 = 8;
@@ -249,7 +249,7 @@ class bucket::index {
     space.for_each(insertion.size(), detail::count_entries<S, parts>{insertion, lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
                                                  lists,         occupied(),  &lists[cells_].count};
-    space.launch(detail::blocks_for<Space>(cells_, allocation), allocation);
+    space.launch(detail::grid_size<Space>(cells_, allocation), allocation);
     // only a width that was asked for leaves open how many entries there are: then the device must be asked
     std::size_t const capacity = options.cell_width > 0
                                      ? space.read(lists_total())

@@ -38,9 +38,9 @@ struct is_broad_phase<
 template <class E, class = void>
 struct is_execution_space : std::false_type {};
 template <class E>
-struct is_execution_space<E,
-                          std::void_t<decltype(std::declval<E const&>().resource()),
-                                      decltype(std::declval<E const&>().concurrency()), decltype(E::host_accessible)>>
+struct is_execution_space<
+    E, std::void_t<decltype(std::declval<E const&>().resource()),
+                   decltype(std::declval<E const&>().saturating_blocks()), decltype(E::host_accessible)>>
     : std::true_type {};
 
 template <class D, class = void>

@@ -33,10 +33,10 @@ class cuda : public detail::cuda_space {
     launch_kernel("launch of run_threads", detail::run_threads<block<Body>, Body>, grid_of(blocks), blocks, body);
   }
 
-  std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 2048; }
+  std::size_t saturating_blocks() const { return static_cast<std::size_t>(processors_) * 2048; }
 
   template <class Body>
-  std::size_t wave() const {
+  std::size_t max_resident_blocks() const {
     return std::numeric_limits<std::size_t>::max();
   }
 };
@@ -66,11 +66,11 @@ class cuda_shared : public detail::cuda_space {
     launch_kernel("launch of run_blocks", detail::run_blocks<block<Body>, Body>, static_cast<unsigned>(blocks), body);
   }
 
-  std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 8; }
+  std::size_t saturating_blocks() const { return static_cast<std::size_t>(processors_) * 8; }
 
   /// How many blocks of a body are at work at a time.
   template <class Body>
-  std::size_t wave() const {
+  std::size_t max_resident_blocks() const {
     return static_cast<std::size_t>(processors_) * detail::residency<Body, block<Body>>;
   }
 };

@@ -155,7 +155,7 @@ class lockstep : public collide::host {
   using block = lockstep_block<Lanes, Body::items, Reversed>;
 
   template <class Body>
-  std::size_t wave() const {
+  std::size_t max_resident_blocks() const {
     return Reversed ? 1 : 3;
   }
 

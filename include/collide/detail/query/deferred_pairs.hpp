@@ -147,7 +147,7 @@ void query_in_steps(Space& space, Index const& index, mesh_view<S> const& mesh,
   undecided const open = list.begin(space, spheres.size());
   index.template query<NarrowPhase>(space, spheres, deferring<Handle>{{handle}, open});
   finish_undecided<S, NarrowPhase, Handle> body{mesh, spheres, handle, open, 0};
-  body.blocks = smaller(larger<std::size_t>(1, space.concurrency() / 8), blocks_for<Space>(open.capacity, body));
+  body.blocks = smaller(larger<std::size_t>(1, space.saturating_blocks() / 8), grid_size<Space>(open.capacity, body));
   space.launch(body.blocks, body);
   list.end();
 }
