@@ -158,9 +158,9 @@ struct all_pairs {
     template <class NarrowPhase, class Space, class Output>
     void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) const {
       detail::all_pairs_query<S, NarrowPhase, Output> body{{mesh_, spheres, output}, bounds_.data(), 1};
-      std::size_t const blocks = detail::blocks_for<Space>(spheres.size(), body);
+      std::size_t const blocks = detail::grid_size<Space>(spheres.size(), body);
       std::size_t const tiles = (mesh_.size() + body.tile - 1) / body.tile;
-      std::size_t const wanted = (space.concurrency() + blocks - 1) / blocks;
+      std::size_t const wanted = (space.saturating_blocks() + blocks - 1) / blocks;
       body.splits = detail::larger<std::size_t>(1, detail::smaller(wanted, tiles));
       space.launch(blocks * body.splits, body);
     }

@@ -71,7 +71,7 @@ class bucket::index {
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
     detail::summarise_mesh<S> const body{mesh, summary, boxes_.data()};
-    space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
+    space.launch(detail::grid_size<Space>(mesh.size(), body), body);
   }
 
   /// Makes a grid for spheres up to `radius`, which serves until the next build, or until many spheres that move want
@@ -100,7 +100,7 @@ class bucket::index {
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
     bool bins = false;
-    if constexpr (Space::sorts_spheres) {
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
       if (summary_.data() != nullptr && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
           can_bin<Space>(options, spheres.size())) {
         S const reach = bins_.reach_of(space, spheres);
@@ -123,7 +123,7 @@ class bucket::index {
   template <class NarrowPhase, class Space, class Output>
   void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) {
     using pipeline = detail::candidate_pipeline<S, NarrowPhase, Output>;
-    if constexpr (Space::sorts_spheres) {
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
       if (algorithm_ == algorithm::triangle_major) {
         if (bins_.empty()) bin(space, spheres);
         bins_.query(space, pipeline{mesh_, spheres, output});
@@ -131,7 +131,7 @@ class bucket::index {
       }
     }
     detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes_.data()}, lookup(), 0};
-    body.blocks = detail::blocks_at_a_time<Space>(space, spheres.size(), body);
+    body.blocks = detail::persistent_grid_size<Space>(space, spheres.size(), body);
     space.launch(body.blocks, body);
   }
 
@@ -163,15 +163,16 @@ class bucket::index {
 
   /// How many cells a triangle may touch at most, on an axis and in all, unless a width is asked for.
   template <class Space>
-  static constexpr std::size_t cells_per_axis = std::size_t(Space::bucket_span) +
-                                                (Space::bucket_span > int(Space::bucket_span) ? 2 : 1);
+  static constexpr std::size_t cells_per_axis =
+      std::size_t(bucket_tuning<Space>::triangle_span_in_cells) +
+      (bucket_tuning<Space>::triangle_span_in_cells > int(bucket_tuning<Space>::triangle_span_in_cells) ? 2 : 1);
   template <class Space>
   static constexpr std::size_t cells_per_triangle = cells_per_axis<Space>* cells_per_axis<Space>* cells_per_axis<Space>;
 
   /// True if spheres can be binned into the cells: what that takes is not part of a budget.
   template <class Space>
   static bool bins_spheres(bucket const& options) {
-    return Space::sorts_spheres && options.memory_budget == 0;
+    return bucket_tuning<Space>::bins_spheres && options.memory_budget == 0;
   }
   template <class Space>
   static bool can_bin(bucket const& options, std::size_t spheres) {
@@ -222,7 +223,7 @@ class bucket::index {
     auto* const radii = radii_.reserve(space.resource(), 1);
     detail::size_histogram::clear(space, radii);
     detail::summarise_radii<S> const body{spheres, radii};
-    space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
+    space.launch(detail::grid_size<Space>(spheres.size(), body), body);
     detail::size_histogram const seen = space.read(radii);
     if (seen.empty()) return 0;
     constexpr int bins_per_factor_4 = 8;
@@ -250,12 +251,16 @@ class bucket::index {
       cells_ = count << plan.table_bits;
       table_bits_ = plan.table_bits;
       auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
-      detail::plan_grid<S> body{
-          summary_.data(),  grids,          {}, static_cast<S>(options.cell_width), static_cast<S>(Space::bucket_span),
-          plan.entry_limit, plan.table_bits};
+      detail::plan_grid<S> body{summary_.data(),
+                                grids,
+                                {},
+                                static_cast<S>(options.cell_width),
+                                static_cast<S>(bucket_tuning<Space>::triangle_span_in_cells),
+                                plan.entry_limit,
+                                plan.table_bits};
       std::copy(reaches, reaches + count, body.reaches);
       space.launch(count, body);
-      if constexpr (Space::sorts_spheres) {
+      if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) {
           bins_.mark(space, boxes_.data(), mesh_.size(), grids, plan.grids, plan.table_bits);
         }
@@ -272,12 +277,12 @@ class bucket::index {
     std::size_t const n = mesh_.size();
     auto* const lists = lists_.reserve(space.resource(), detail::table_size(cells_));
     space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
-    constexpr int parts = Space::insertion_parts;
+    constexpr int parts = bucket_tuning<Space>::threads_per_triangle;
     detail::grid_insertion<S, parts> const insertion{mesh_, boxes_.data(), grids_.data(), grid_count_};
     space.for_each(insertion.size(), detail::count_entries<S, parts>{insertion, lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
                                                  lists,         occupied(),  &lists[cells_].count};
-    space.launch(detail::blocks_for<Space>(cells_, allocation), allocation);
+    space.launch(detail::grid_size<Space>(cells_, allocation), allocation);
     // only a width that was asked for leaves open how many entries there are: then the device must be asked
     std::size_t const capacity = options.cell_width > 0
                                      ? space.read(lists_total())

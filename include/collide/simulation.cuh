@@ -23,8 +23,6 @@ namespace detail {
 template <class Space>
 struct looking_up : Space {
   explicit looking_up(Space const& space) : Space(space) {}
-  static constexpr bool sorts_spheres = false;
-  static constexpr double bucket_span = 2;
 };
 
 template <class Index, class = void>
@@ -33,6 +31,12 @@ template <class Index>
 struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
 
 }  // namespace detail
+
+template <class Space>
+struct bucket_tuning<detail::looking_up<Space>> : bucket_tuning<Space> {
+  static constexpr bool bins_spheres = false;
+  static constexpr double triangle_span_in_cells = 2;
+};
 
 /// Particles, a mesh, and what happens to the particles in a step: only what the scene names.
 ///
@@ -166,18 +170,19 @@ class simulation {
     using step_body = detail::step_body<S, narrow_phase, lookup_type, scene_type>;
     using block = typename execution_space::template block<step_body>;
     if constexpr (!scene_type::touches) {
-      space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
+      space_.launch(detail::grid_size<execution_space>(state_.size, fly), fly);
     } else if constexpr (block::lanes > 1) {
       step_body body{{fly, 0}};
       body.blocks = detail::smaller(std::size_t{step_body::template stretches<block>(state_.size)}, busy<step_body>());
       space_.launch(body.blocks, body);
     } else {
-      space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
+      space_.launch(detail::grid_size<execution_space>(state_.size, fly), fly);
       detail::respond_body<S, narrow_phase, lookup_type, scene_type> body{fly, 0};
       std::size_t most = state_.size;
-      if constexpr (execution_space::host_memory) most = *list_.count;
-      body.blocks = detail::blocks_for<execution_space>(most, body);
-      if constexpr (!execution_space::host_memory) body.blocks = detail::smaller(body.blocks, busy<decltype(body)>());
+      if constexpr (execution_space::host_accessible) most = *list_.count;
+      body.blocks = detail::grid_size<execution_space>(most, body);
+      if constexpr (!execution_space::host_accessible)
+        body.blocks = detail::smaller(body.blocks, busy<decltype(body)>());
       space_.launch(body.blocks, body);
     }
   }
@@ -280,14 +285,14 @@ class simulation {
     summary* const seen = mesh_summary_.reserve(space_.resource(), 1);
     summary::clear(space_, seen);
     detail::summarise_mesh<S> const body{mesh, seen, nullptr};
-    space_.launch(detail::blocks_for<execution_space>(mesh.size(), body), body);
+    space_.launch(detail::grid_size<execution_space>(mesh.size(), body), body);
     return 8 * std::numeric_limits<S>::epsilon() * space_.read(seen).largest_coordinate();
   }
 
   /// How many blocks of a body are at work at a time.
   template <class Body>
   std::size_t busy() const {
-    return detail::smaller(space_.concurrency(), space_.template wave<Body>());
+    return detail::smaller(space_.saturating_blocks(), space_.template max_resident_blocks<Body>());
   }
 
   template <class E>

@@ -139,14 +139,13 @@ template <int Lanes, bool Reversed>
 class lockstep : public collide::host {
  public:
   using host::host;
-  static constexpr bool defers = true, sorts_spheres = false;  // as the CUDA spaces
   static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
 
   template <class Body>
   using block = lockstep_block<Lanes, Body::items, Reversed>;
 
   template <class Body>
-  std::size_t wave() const {
+  std::size_t max_resident_blocks() const {
     return Reversed ? 1 : 3;
   }
 
@@ -170,3 +169,14 @@ class lockstep : public collide::host {
 };
 
 }  // namespace tests
+
+namespace collide {
+
+template <int Lanes, bool Reversed>
+struct bucket_tuning<tests::lockstep<Lanes, Reversed>> : device_bucket_tuning {};
+template <int Lanes, bool Reversed>
+struct query_tuning<tests::lockstep<Lanes, Reversed>> {
+  static constexpr bool defers_exact_tests = true;
+};
+
+}  // namespace collide

@@ -214,10 +214,10 @@ TEST_CASE_TEMPLATE("grids: the width that is asked for is the width in use", S, 
 }
 
 /// The host, with cells as wide as those of a GPU.
-struct wide_cells : collide::host {
-  static constexpr bool sorts_spheres = false;
-  static constexpr double bucket_span = 1.75;
-};
+struct wide_cells : collide::host {};
+
+template <>
+struct collide::bucket_tuning<wide_cells> : collide::device_bucket_tuning {};
 
 TEST_CASE_TEMPLATE("grids: triangles of two sizes are of one level, and cells no wider than they must be", S, float,
                    double) {

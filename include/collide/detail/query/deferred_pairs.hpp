@@ -112,7 +112,8 @@ void query_two_pass(Space& space, Index& index, mesh_view<S> const& mesh, sphere
   deferred_pairs const deferred = buffer.acquire(space, spheres.size());
   index.template query<NarrowPhase>(space, spheres, deferring<Handle>{handle, deferred});
   resolve_deferred<S, NarrowPhase, Handle> body{{mesh, spheres, handle}, deferred, 0};
-  body.blocks = smaller(larger<std::size_t>(1, space.concurrency() / 8), blocks_for<Space>(deferred.capacity, body));
+  body.blocks =
+      smaller(larger<std::size_t>(1, space.saturating_blocks() / 8), grid_size<Space>(deferred.capacity, body));
   space.launch(body.blocks, body);
   buffer.release();
 }

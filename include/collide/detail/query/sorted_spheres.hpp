@@ -18,6 +18,7 @@
 #include <limits>
 #include <type_traits>
 
+#include <collide/detail/execution/algorithms.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/execution/launch.hpp>
 #include <collide/detail/execution/multiversion.hpp>
@@ -171,7 +172,7 @@ class sorted_spheres {
       for (std::size_t i = 0; i < n; ++i) f(i);
     };
     each_placed(count_placed<S>{placed_.data(), counts + 1});
-    space.exclusive_scan(counts + 1, table - 1, scratch_);
+    exclusive_scan(space, counts + 1, table - 1);
     auto* const order = order_.reserve(space.resource(), placed_.capacity());
     each_placed(number_placed<S>{placed_.data(), order, counts + 1});
     space.for_each(n, sort_placed<S, Spheres>{placed_.data(), order, columns_, spheres});
@@ -188,7 +189,7 @@ class sorted_spheres {
   void query(Space& space, candidate_pipeline<S, NarrowPhase, Output> const& pipeline) const {
     look_for_spheres<S, NarrowPhase, Output> const body{pipeline, boxes_,       grids_,      grid_count_,
                                                         columns_, ends_.data(), everywhere()};
-    space.launch(blocks_for<Space>(pipeline.mesh.size(), body), body);
+    space.launch(grid_size<Space>(pipeline.mesh.size(), body), body);
   }
 
  private:
@@ -216,7 +217,6 @@ class sorted_spheres {
   buffer<S> numbers_;
   buffer<id> ids_;
   sphere_columns<S> columns_ = {};
-  buffer<unsigned char> scratch_;
   bool is_empty_ = true;
 };
 

@@ -48,7 +48,7 @@ struct refresh_order {
   COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(present{})[number] != 0; }
 };
 
-/// Kernel body of `for_each_if` over the table: empties it.
+/// Kernel body of `for_each_if_nonzero` over the table: empties it.
 template <class S, class Scene>
 struct empty_cells {
   particle_order<S, Scene> order;
@@ -59,8 +59,8 @@ struct empty_cells {
   }
 };
 
-/// Kernel body of `for_each_if` over particles: counts them into cells, or, once blocks have their share of the order,
-/// fills in their numbers.
+/// Kernel body of `for_each_if_nonzero` over particles: counts them into cells, or, once blocks have their share of the
+/// order, fills in their numbers.
 template <class S, class Scene, bool Fill>
 struct sort_into_cells {
   particle_state<S, typename Scene::all> state;
@@ -80,7 +80,7 @@ struct sort_into_cells {
   }
 };
 
-/// Kernel body of `for_each_if` over blocks: counts become where cells begin.
+/// Kernel body of `for_each_if_nonzero` over blocks: counts become where cells begin.
 template <class S, class Scene>
 struct allocate_cells {
   particle_order<S, Scene> order;
@@ -101,7 +101,7 @@ struct allocate_cells {
   }
 };
 
-/// Kernel body of `for_each_if` over places in the order: copies particles there.
+/// Kernel body of `for_each_if_nonzero` over places in the order: copies particles there.
 template <class S, class Scene>
 struct copy_in_order {
   particle_state<S, typename Scene::all> state;
@@ -115,7 +115,7 @@ struct copy_in_order {
   }
 };
 
-/// Kernel body of `for_each_if` over places in the order: lists what is near.
+/// Kernel body of `for_each_if_nonzero` over places in the order: lists what is near.
 template <class S, class Scene>
 struct list_neighbours {
   particle_order<S, Scene> order;

@@ -74,8 +74,8 @@ struct meet_neighbours : meetings<S, Scene> {
   }
 };
 
-/// Kernel body of `for_each_if` over places in the order: particles with more neighbours than lists have room for meet
-/// those that overlap them. As many as can be held at a time are found, by rising numbers.
+/// Kernel body of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have room
+/// for meet those that overlap them. As many as can be held at a time are found, by rising numbers.
 template <class S, class Scene>
 struct meet_crowds : meetings<S, Scene> {
   COLLIDE_HD void operator()(std::size_t i) const {

@@ -23,6 +23,7 @@
 #include <cstdint>
 #include <limits>
 
+#include <collide/detail/execution/algorithms.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/detail/simulation/attribute_buffers.hpp>
 #include <collide/detail/simulation/build_lists.hpp>
@@ -72,14 +73,14 @@ class neighbours {
     std::uint32_t const *const renew = &o.header->renew, *const crowded = &o.header->crowded;
     // half of the skin, but for rounding
     space.for_each(n, refresh_order<S, Scene>{state, o, S(0.495) * skin_});
-    space.for_each_if(renew, blocks_ * cells::stride, empty_cells<S, Scene>{o});
-    space.for_each_if(renew, n, sort_into_cells<S, Scene, false>{state, o});
-    space.for_each_if(renew, blocks_, allocate_cells<S, Scene>{o});
-    space.for_each_if(renew, n, sort_into_cells<S, Scene, true>{state, o});
-    space.for_each_if(renew, n, copy_in_order<S, Scene>{state, o});
-    space.for_each_if(renew, n, list_neighbours<S, Scene>{o, skin_});
+    for_each_if_nonzero(space, renew, blocks_ * cells::stride, empty_cells<S, Scene>{o});
+    for_each_if_nonzero(space, renew, n, sort_into_cells<S, Scene, false>{state, o});
+    for_each_if_nonzero(space, renew, blocks_, allocate_cells<S, Scene>{o});
+    for_each_if_nonzero(space, renew, n, sort_into_cells<S, Scene, true>{state, o});
+    for_each_if_nonzero(space, renew, n, copy_in_order<S, Scene>{state, o});
+    for_each_if_nonzero(space, renew, n, list_neighbours<S, Scene>{o, skin_});
     space.for_each(n, meet_neighbours<S, Scene>{{state, o, scene, dt}});
-    space.for_each_if(crowded, n, meet_crowds<S, Scene>{{state, o, scene, dt}});
+    for_each_if_nonzero(space, crowded, n, meet_crowds<S, Scene>{{state, o, scene, dt}});
   }
 
  private:
