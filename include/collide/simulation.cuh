@@ -47,10 +47,10 @@ struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup(
 /// There are exactly the columns that the effects name, and `position` and `velocity`. A simulation without effects
 /// moves particles in straight lines, and nothing else.
 ///
-/// `step` allocates nothing and never waits: in `cuda_shared` it puts one kernel on the stream of the space, in `cuda`
-/// two if an effect touches the mesh (more with `meet` or `begin_step`), and can be captured in a CUDA graph, which is
-/// good until the next `set` or `set_mesh`. The same steps give the same bits on every run in the same space.
-/// O(particles + candidates) per step. A simulation is for one thread at a time.
+/// `step` allocates nothing and never waits: it puts one kernel on the stream of a CUDA space (more with `meet` or
+/// `begin_step`), and can be captured in a CUDA graph, which is good until the next `set` or `set_mesh`. The same steps
+/// give the same bits on every run in the same space. O(particles + candidates) per step. A simulation is for one
+/// thread at a time.
 template <class Detector, class... Effect>
 class simulation {
   static_assert(detail::is_detector<Detector>::value,
@@ -88,16 +88,17 @@ class simulation {
   using state_type = detail::particle_state<S, columns>;
 
   explicit simulation(execution_space space = execution_space(), broad_phase options = broad_phase())
-      : space_(std::move(space)), options_(std::move(options)), scene_(Effect()...) {}
+      : space_(std::move(space)), options_(std::move(options)), effects_(Effect()...) {}
 
   /// With parameters of all effects, in the order of the list.
   template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
                                                  std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
-  explicit simulation(execution_space space, E... effects) : space_(std::move(space)), scene_(std::move(effects)...) {}
+  explicit simulation(execution_space space, E... effects)
+      : space_(std::move(space)), effects_(std::move(effects)...) {}
   template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
                                                  std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
   simulation(execution_space space, broad_phase options, E... effects)
-      : space_(std::move(space)), options_(std::move(options)), scene_(std::move(effects)...) {}
+      : space_(std::move(space)), options_(std::move(options)), effects_(std::move(effects)...) {}
 
   /// Copies particles from memory of the space: centres, radii, and three packed coordinates of velocity each, or null
   /// for particles that rest. The other columns get their initial values. `capacity` is for how many there is room, if
@@ -122,9 +123,10 @@ class simulation {
       space_.fill(state_.time, 0, sizeof *state_.time);
     }
     if constexpr (scene_type::touches) {
-      std::uint32_t* const counters = counters_.reserve(space_.resource(), 2);
-      space_.fill(counters, 0, 2 * sizeof *counters);
-      list_ = {counters, counters + 1, listed_.reserve(space_.resource(), padded)};
+      using kernel = detail::step_kernel<step_context<std::decay_t<decltype(index_.lookup())>>>;
+      if constexpr (kernel::template has_many_tiles<typename execution_space::template block<kernel>>) {
+        overflow_.reserve(space_.resource(), padded);
+      }
     }
     space_.for_each(padded, detail::place_particles<S, columns>{state_, particles, velocities});
     if constexpr (scene_type::meets || sweeps) largest_radius_ = largest_radius(particles);
@@ -151,7 +153,7 @@ class simulation {
     if (state_.size == 0) return;
     (begin<Effect>(dt), ...);
     if constexpr (begins) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
-    if constexpr (scene_type::meets) neighbours_.meet(space_, state_, scene_, dt);
+    if constexpr (scene_type::meets) neighbours_.meet(space_, state_, effects_, dt);
     auto const lookup = [&] {
       if constexpr (scene_type::touches) {
         return mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
@@ -159,27 +161,12 @@ class simulation {
         return detail::no_lookup{};
       }
     }();
-    using lookup_type = std::decay_t<decltype(lookup)>;
-    detail::fly_body<S, narrow_phase, lookup_type, scene_type> const fly{state_, scene_,     lookup,       list_,
-                                                                         dt,     backwards_, least_radius_};
-    backwards_ = !backwards_;
-    using step_body = detail::step_body<S, narrow_phase, lookup_type, scene_type>;
-    using block = typename execution_space::template block<step_body>;
-    if constexpr (!scene_type::touches) {
-      space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
-    } else if constexpr (block::lanes > 1) {
-      step_body body{{fly, 0}};
-      body.blocks = detail::smaller(std::size_t{step_body::template stretches<block>(state_.size)}, busy<step_body>());
-      space_.launch(body.blocks, body);
-    } else {
-      space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
-      detail::respond_body<S, narrow_phase, lookup_type, scene_type> body{fly, 0};
-      std::size_t most = state_.size;
-      if constexpr (execution_space::host_memory) most = *list_.count;
-      body.blocks = detail::blocks_for<execution_space>(most, body);
-      if constexpr (!execution_space::host_memory) body.blocks = detail::smaller(body.blocks, busy<decltype(body)>());
-      space_.launch(body.blocks, body);
-    }
+    using kernel = detail::step_kernel<step_context<std::decay_t<decltype(lookup)>>>;
+    using block = typename execution_space::template block<kernel>;
+    kernel const body{{state_, effects_, lookup, overflow_.data(), dt, reverse_order_, least_radius_},
+                      kernel::template blocks_for<block>(state_.size, resident_blocks<kernel>())};
+    reverse_order_ = !reverse_order_;
+    space_.launch(body.blocks, body);
   }
 
   /// Advances `n` times by `dt`.
@@ -228,7 +215,7 @@ class simulation {
   /// The parameters of an effect, which may be changed between steps.
   template <class E>
   E& effect() {
-    return scene_.template of<E>();
+    return effects_.template of<E>();
   }
 
   state_type const& state() const { return state_; }
@@ -238,6 +225,8 @@ class simulation {
  private:
   static constexpr bool sweeps = scene_type::touches && !detail::at_rest<narrow_phase, S>;
   static constexpr bool begins = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
+  template <class Triangles>
+  using step_context = detail::step_context<S, narrow_phase, Triangles, scene_type>;
   struct no_neighbours {};
   using neighbours = std::conditional_t<scene_type::meets, detail::neighbours<S, scene_type>, no_neighbours>;
 
@@ -286,7 +275,7 @@ class simulation {
 
   /// How many blocks of a body are at work at a time.
   template <class Body>
-  std::size_t busy() const {
+  std::size_t resident_blocks() const {
     return detail::smaller(space_.concurrency(), space_.template wave<Body>());
   }
 
@@ -298,19 +287,17 @@ class simulation {
 
   execution_space space_;
   broad_phase options_;
-  scene_type scene_;
+  scene_type effects_;
   mesh_view<S> mesh_;
   index index_;
   detail::column_buffers<S, columns> memory_;
   state_type state_{};
-  bool backwards_ = false;  ///< the next step goes
+  bool reverse_order_ = false;  ///< of the next step
   buffer<double> time_;
   S largest_radius_ = 0, least_radius_ = 0;
   buffer<detail::mesh_summary<S>> mesh_summary_;
   neighbours neighbours_;
-  buffer<std::uint32_t> counters_;
-  buffer<id> listed_;
-  detail::listed_particles list_{};
+  buffer<id> overflow_;
 };
 
 }  // namespace collide
