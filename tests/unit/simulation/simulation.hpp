@@ -401,6 +401,11 @@ void check_crowded_blocks(Space const& space, Other const& other, Effect const&.
   CHECK((run(space) == run(other)));
 }
 
+/// A kernel body as far as a space asks for blocks.
+struct any_body {
+  static constexpr int items = 1;
+};
+
 /// `set` allocates the columns of the scene and nothing else that grows with the particles but, where threads share a
 /// block, the list of those that may touch the mesh; `step` allocates nothing.
 template <class Space, class MakeSpace>
@@ -434,9 +439,6 @@ void check_memory_of_steps(MakeSpace make, std::pmr::memory_resource* upstream) 
   CHECK(bytes_of(none{}, n) == 24 * n);
   CHECK(bytes_of(falls{}, n) == 24 * n);
   CHECK(bytes_of(sizes{}, n) == 28 * n);
-  struct any_body {
-    static constexpr int items = 1;
-  };
   constexpr bool shares_blocks = Space::template block<any_body>::lanes > 1;
   CHECK(bytes_of(bounces{}, n) == 24 * n + (shares_blocks ? 4 * n : 0));
   // for what meets: number, copies, reference, list; cells of at most four and at least two to a particle, by 65 in 64

@@ -126,7 +126,7 @@ struct expand_cells {
           }
           tests.test(block, s.hits, {c.of.sphere, e.triangle});
         },
-        [&] { tests.make_room(block, s.hits); });
+        [&](bool) { tests.make_room(block, s.hits); });
   }
 
   /// True if an entry counts in this cell of a way, and not in another.

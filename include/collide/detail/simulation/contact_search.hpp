@@ -24,21 +24,18 @@ struct contact_queues {
   static constexpr bool used = Block::lanes > 1;
   static constexpr std::uint32_t ahead = 3;  ///< cell items that a lane looks at together
   static constexpr std::uint32_t candidate_capacity = used ? (ahead + 1) * Block::lanes : 1;
-  static constexpr std::uint32_t record_capacity = used ? Block::lanes * 3 / 2 : 1;
+  static constexpr std::uint32_t record_capacity = used ? Block::lanes * 2 : 1;
 
+  /// A particle of the batch, and a triangle.
   struct candidate {
-    std::uint32_t particle;  ///< of the batch
     id triangle;
-  };
-  /// A pair that touches, or may do so; `miss` once its contact is known.
-  struct contact_record {
-    std::uint32_t particle;
-    id triangle;
-    verdict touches;
+    std::uint16_t particle;
+    std::int8_t touches;  ///< its verdict, once it has been filtered; `miss` once its contact is known
+    COLLIDE_HD_INLINE bool has(verdict v) const { return touches == static_cast<std::int8_t>(v); }
   };
 
   candidate candidates[candidate_capacity];
-  contact_record records[record_capacity];
+  candidate records[record_capacity];  ///< those that touch, or may do so
   std::uint32_t candidate_count, record_count, unsure_count;
 };
 
@@ -52,8 +49,8 @@ struct span_counts {
 template <class S, bool IsSwept, class Block>
 struct contact_scratch {
   using particle_type = active_particle<S, IsSwept>;
-  static constexpr std::size_t bytes_per_particle =
-      sizeof(particle_type) + sizeof(cell_entry const*) + 4 * sizeof(std::uint32_t) + sizeof(id);
+  static constexpr std::size_t bytes_per_particle = sizeof(particle_type) + sizeof(cell_entry const*) +
+                                                    3 * sizeof(std::uint32_t) + sizeof(std::uint16_t) + sizeof(id);
 
   /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block. The rest is for what else
   /// a step keeps there.
@@ -62,7 +59,8 @@ struct contact_scratch {
                        : Block::items;
 
   particle_type particles[batch_size];
-  std::uint32_t particle_of_span[batch_size], span_sizes[batch_size], span_coverage[batch_size];
+  std::uint16_t particle_of_span[batch_size];
+  std::uint32_t span_sizes[batch_size], span_coverage[batch_size];
   cell_entry const* span_items[batch_size];
   id span_first[batch_size];
   contact_queues<Block> queues;
@@ -80,7 +78,7 @@ struct contact_search {
   template <class Block>
   using scratch = contact_scratch<S, is_swept, Block>;
   template <class Block>
-  using record_of = typename contact_queues<Block>::contact_record;
+  using record_of = typename contact_queues<Block>::candidate;
 
   Triangles triangles;
 
@@ -115,25 +113,27 @@ struct contact_search {
           [](span const& c, cell_entry const& e) { return c.range.may_touch(e); },
           [&](span const& c, cell_entry const& e) {
             if constexpr (queues::used) {
-              s.queues.candidates[block.add(s.queues.candidate_count, 1)] = {c.particle, e.triangle};
+              s.queues.candidates[block.add(s.queues.candidate_count, 1)] = {e.triangle, c.particle, 0};
             } else {
               consider_at_once(c, e.triangle);
             }
           },
-          [&] {
+          [&](bool is_last) {
             if constexpr (queues::used) {
               std::uint32_t const candidates = block.shared(s.queues.candidate_count);
-              if (candidates + queues::ahead * Block::lanes > queues::candidate_capacity) drain(block, s, candidates);
+              bool const is_full = candidates + queues::ahead * Block::lanes > queues::candidate_capacity;
+              if (is_full || (is_last && !is_swept)) drain(block, s, candidates);
             }
           });
     }
-    if constexpr (queues::used) drain(block, s, block.shared(s.queues.candidate_count));
+    // candidates of a swept particle come a cell at a time
+    if constexpr (queues::used && is_swept) drain(block, s, block.shared(s.queues.candidate_count));
   }
 
  private:
   /// A particle and candidates that follow each other.
   struct span {
-    std::uint32_t particle;
+    std::uint16_t particle;
     active& one;
     shape whole;
     sphere<S> around;  ///< the part of its motion on which something may come before the best contact so far
@@ -151,7 +151,7 @@ struct contact_search {
         if (!a.is_active || !triangles.next(a.shape(), a.cursor, most, range)) continue;
         if (!a.cursor.at_end()) block.add(s.spans.unfinished, 1);
         std::uint32_t const i = block.add(s.spans.spans, 1) - before.spans;
-        s.particle_of_span[i] = j;
+        s.particle_of_span[i] = static_cast<std::uint16_t>(j);
         s.span_sizes[i] = range.count;
         s.span_items[i] = range.listed;
         s.span_first[i] = range.first;
@@ -194,7 +194,8 @@ struct contact_search {
         if (!triangles.template may_touch<NarrowPhase>(whole, c.triangle) || a.is_leaving(c.triangle)) return;
         verdict const quick = filter<NarrowPhase>(triangles.mesh[c.triangle], whole);
         if (quick == verdict::miss) return;
-        s.queues.records[block.add(s.queues.record_count, 1)] = {c.particle, c.triangle, quick};
+        s.queues.records[block.add(s.queues.record_count, 1)] = {c.triangle, c.particle,
+                                                                 static_cast<std::int8_t>(quick)};
       });
       records = block.shared(s.queues.record_count);
       if (records + Block::lanes > queues::record_capacity || base + Block::lanes >= n) {
@@ -211,13 +212,12 @@ struct contact_search {
     if (n == 0) return;
     if constexpr (!is_swept) {
       consider_all(block, s, n, [&](active& a, record& r, contact<S>& found) {
-        verdict const quick =
-            quick_contact_here(triangles.mesh[r.triangle], a.shape(), r.touches == verdict::hit, found);
+        verdict const quick = quick_contact_here(triangles.mesh[r.triangle], a.shape(), r.has(verdict::hit), found);
         if (quick == verdict::unsure) {
           block.add(s.queues.unsure_count, 1);
           return no_contact;
         }
-        r.touches = verdict::miss;
+        r.touches = static_cast<std::int8_t>(verdict::miss);
         if (quick == verdict::miss) return no_contact;
         found.triangle = r.triangle;
         return consider<Block>(a, S(0), found);
@@ -225,8 +225,8 @@ struct contact_search {
       if (block.shared(s.queues.unsure_count) == 0) return;
     }
     consider_all(block, s, n, [&](active& a, record& r, contact<S>& found) {
-      if (r.touches == verdict::miss) return no_contact;
-      return compute_contact<Block>(a, triangles.mesh, r.triangle, r.touches == verdict::hit, found);
+      if (r.has(verdict::miss)) return no_contact;
+      return compute_contact<Block>(a, triangles.mesh, r.triangle, r.has(verdict::hit), found);
     });
   }
 

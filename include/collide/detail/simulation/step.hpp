@@ -2,10 +2,10 @@
 /// A simulation's step: each block moves its share of the particles, and then resolves the contacts of those that may
 /// touch the mesh.
 ///
-/// Particles are divided into tiles, as many as lanes that read and write together have. Where lanes share a block,
-/// there are as many blocks as can be at work at the same time. Each has tiles from everywhere among the particles, as
-/// those that are close to each other there may be close to the mesh together; so all have about as many contacts to
-/// resolve, and none waits for another. A lane alone has one tile.
+/// Particles are divided into tiles. Where lanes share a block and something touches the mesh, there are as many blocks
+/// as can be at work at the same time. Each has tiles from everywhere among the particles, as those that are close to
+/// each other there may be close to the mesh together; so all have about as many contacts to resolve, and none waits
+/// for another. Else a block has one tile.
 #pragma once
 
 #include <cstddef>
@@ -32,10 +32,19 @@ struct step_kernel {
   Context context;
   std::size_t blocks;
 
+  /// True if a block has many tiles, and may have more particles near the mesh than its queue has room for: then it
+  /// needs `context.overflow`.
   template <class Block>
-  static constexpr std::uint32_t tile = std::uint32_t{Block::row_lanes} * Block::items;
+  static constexpr bool has_many_tiles = Context::touches&& Block::lanes > 1;
+
+  /// A tile: the particles of lanes that read and write together. One that is a block's only one is all of the block's.
   template <class Block>
-  static constexpr std::uint32_t tiles_together = Block::lanes / Block::row_lanes;  ///< of a block
+  static constexpr std::uint32_t tile_lanes = has_many_tiles<Block> ? Block::row_lanes : Block::lanes;
+  template <class Block>
+  static constexpr std::uint32_t tile = tile_lanes<Block>* Block::items;
+  template <class Block>
+  static constexpr std::uint32_t tiles_together = Block::lanes / tile_lanes<Block>;  ///< of a block
+
   template <class Block>
   static COLLIDE_HD_INLINE std::uint32_t tile_count(std::size_t particles) {
     return static_cast<std::uint32_t>((particles + tile<Block> - 1) / tile<Block>);
@@ -45,13 +54,8 @@ struct step_kernel {
   template <class Block>
   static std::size_t blocks_for(std::size_t particles, std::size_t resident) {
     std::size_t const tiles = tile_count<Block>(particles);
-    return has_many_tiles<Block> ? smaller(tiles, resident) : (tiles - 1) / tiles_together<Block> + 1;
+    return has_many_tiles<Block> ? smaller(tiles, resident) : tiles;
   }
-
-  /// True if a block may have more particles near the mesh than its queue has room for: then it needs
-  /// `context.overflow`.
-  template <class Block>
-  static constexpr bool has_many_tiles = Context::touches&& Block::lanes > 1;
 
   template <class Block, bool Touches>
   struct scratch_of {
@@ -108,15 +112,14 @@ struct step_kernel {
   /// The number of a block's `k`-th tile.
   template <class Block>
   COLLIDE_HD_INLINE std::uint32_t tile_index(Block const& block, std::uint32_t k) const {
-    auto const index = static_cast<std::uint32_t>(block.index());
-    return has_many_tiles<Block> ? k * static_cast<std::uint32_t>(blocks) + index : index * tiles_together<Block> + k;
+    return k * static_cast<std::uint32_t>(blocks) + static_cast<std::uint32_t>(block.index());
   }
 
   /// The first particle of a lane in a tile that exists.
   template <class Block>
   COLLIDE_HD_INLINE std::uint32_t first_of(int lane, std::uint32_t tile_number, std::uint32_t tiles) const {
     return (context.reverse_order ? tiles - 1 - tile_number : tile_number) * tile<Block> +
-           static_cast<std::uint32_t>(lane) % Block::row_lanes * Block::items;
+           static_cast<std::uint32_t>(lane) % tile_lanes<Block> * Block::items;
   }
 
   /// Where a block has the number of its `i`-th particle for which its queue has no room: where its own tiles would be.
@@ -171,16 +174,16 @@ struct step_kernel {
     integration_type const integrate{context};
     std::uint32_t const tiles = tile_count<Block>(context.state.size);
     block.each([&](int lane) {
-      std::uint32_t k = static_cast<std::uint32_t>(lane) / Block::row_lanes, i = tile_index(block, k);
+      std::uint32_t k = static_cast<std::uint32_t>(lane) / tile_lanes<Block>;
       if constexpr (prefetches<Block>) {
-        advance_with_prefetch(block, s, lane, i, tiles, filter);
+        advance_with_prefetch(block, s, lane, tile_index(block, k), tiles, filter);
       } else if constexpr (has_many_tiles<Block>) {
         COLLIDE_ROLLED
-        for (; i < tiles; k += tiles_together<Block>, i = tile_index(block, k)) {
+        for (std::uint32_t i; (i = tile_index(block, k)) < tiles; k += tiles_together<Block>) {
           integrate.template advance<N>(block, s.packs, first_of<Block>(lane, i, tiles), filter);
         }
-      } else if (i < tiles) {
-        std::uint32_t const first = first_of<Block>(lane, i, tiles);
+      } else {
+        std::uint32_t const first = first_of<Block>(lane, tile_index(block, 0), tiles);
         for (int n = 0; n < Block::items; n += N) {
           integrate.template advance<N>(block, s.packs, first + static_cast<std::uint32_t>(n), filter);
         }
