@@ -21,16 +21,16 @@ namespace detail {
 /// A space as a broad phase sees it that is asked for the triangles near single spheres: they are sorted, not the
 /// spheres, and into narrow cells, as a look-up is cheap and a candidate is not.
 template <class Space>
-struct looking_up : Space {
-  explicit looking_up(Space const& space) : Space(space) {}
+struct lookup_tuning : Space {
+  explicit lookup_tuning(Space const& space) : Space(space) {}
   static constexpr bool sorts_spheres = false;
   static constexpr double bucket_span = 2;
 };
 
 template <class Index, class = void>
-struct looks_up : std::false_type {};
+struct has_lookup : std::false_type {};
 template <class Index>
-struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
+struct has_lookup<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
 
 }  // namespace detail
 
@@ -60,7 +60,7 @@ class simulation {
   using detector_type = Detector;
   using execution_space = typename Detector::execution_space;
   using scalar = typename Detector::scalar;
-  using scene_type = detail::scene<scalar, Effect...>;
+  using effects_type = detail::effect_list<scalar, Effect...>;
 
  private:
   using S = scalar;
@@ -73,15 +73,15 @@ class simulation {
                 "classes with at least one of the members that effect.hpp names");
   static_assert(((int(detail::is_integrator<Effect>::value)) + ... + 0) <= 1,
                 "collide: a simulation has one integrator");
-  static_assert(detail::well_ordered<Effect...>,
+  static_assert(detail::respects_order<Effect...>,
                 "collide: an effect comes after those whose result it uses: name friction after bounce");
-  static_assert(!scene_type::touches || detail::looks_up<index>::value,
+  static_assert(!effects_type::touches || detail::has_lookup<index>::value,
                 "collide: effects that touch the mesh need a broad phase whose index has a member lookup(), such as "
                 "bucket or all_pairs");
 
  public:
   /// The state that a particle has.
-  using columns = typename scene_type::all;
+  using columns = typename effects_type::all;
   /// Bytes of state of each particle.
   static constexpr std::size_t bytes_per_particle = detail::column_buffers<S, columns>::bytes_per_particle;
   /// Pointers to all columns, for kernels; see detail/simulation/particle.hpp.
@@ -118,19 +118,19 @@ class simulation {
         (room + detail::particle_padding - 1) / detail::particle_padding * detail::particle_padding;
     memory_.reserve(space_.resource(), padded);
     state_ = memory_.state(room, n, particles.common_radius());
-    if constexpr (begins) {
+    if constexpr (has_begin_step) {
       state_.time = time_.reserve(space_.resource(), 1);
       space_.fill(state_.time, 0, sizeof *state_.time);
     }
-    if constexpr (scene_type::touches) {
+    if constexpr (effects_type::touches) {
       using kernel = detail::step_kernel<step_context<std::decay_t<decltype(index_.lookup())>>>;
       if constexpr (kernel::template has_many_tiles<typename execution_space::template block<kernel>>) {
         overflow_.reserve(space_.resource(), padded);
       }
     }
-    space_.for_each(padded, detail::place_particles<S, columns>{state_, particles, velocities});
-    if constexpr (scene_type::meets || sweeps) largest_radius_ = largest_radius(particles);
-    if constexpr (scene_type::meets) neighbours_.reserve(space_, room, largest_radius_);
+    space_.for_each(padded, detail::init_particles<S, columns>{state_, particles, velocities});
+    if constexpr (effects_type::meets || sweeps) largest_radius_ = largest_radius(particles);
+    if constexpr (effects_type::meets) neighbours_.reserve(space_, room, largest_radius_);
     prepare();
   }
 
@@ -138,7 +138,7 @@ class simulation {
   /// Allocates unless there was a mesh of this size before; may wait. O(triangles).
   void set_mesh(mesh_view<S> mesh) {
     mesh_ = {};
-    detail::looking_up<execution_space> there(space_);
+    detail::lookup_tuning<execution_space> there(space_);
     if (mesh.size() != 0) index_.build(there, options_, mesh);
     mesh_ = mesh;
     if constexpr (sweeps) least_radius_ = least_radius(mesh);
@@ -152,10 +152,10 @@ class simulation {
   void step(S dt) {
     if (state_.size == 0) return;
     (begin<Effect>(dt), ...);
-    if constexpr (begins) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
-    if constexpr (scene_type::meets) neighbours_.meet(space_, state_, effects_, dt);
+    if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
+    if constexpr (effects_type::meets) neighbours_.meet(space_, state_, effects_, dt);
     auto const lookup = [&] {
-      if constexpr (scene_type::touches) {
+      if constexpr (effects_type::touches) {
         return mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
       } else {
         return detail::no_lookup{};
@@ -223,12 +223,12 @@ class simulation {
   execution_space const& space() const { return space_; }
 
  private:
-  static constexpr bool sweeps = scene_type::touches && !detail::at_rest<narrow_phase, S>;
-  static constexpr bool begins = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
+  static constexpr bool sweeps = effects_type::touches && !detail::at_rest<narrow_phase, S>;
+  static constexpr bool has_begin_step = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
   template <class Triangles>
-  using step_context = detail::step_context<S, narrow_phase, Triangles, scene_type>;
-  struct no_neighbours {};
-  using neighbours = std::conditional_t<scene_type::meets, detail::neighbours<S, scene_type>, no_neighbours>;
+  using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
+  struct no_lists {};
+  using neighbour_lists = std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, no_lists>;
 
   S largest_radius(sphere_view<S> const& particles) {
     if constexpr (detail::contains<columns, radius>) {
@@ -252,8 +252,8 @@ class simulation {
   }
 
   void prepare() {
-    if constexpr (scene_type::touches) {
-      detail::looking_up<execution_space> there(space_);
+    if constexpr (effects_type::touches) {
+      detail::lookup_tuning<execution_space> there(space_);
       if (mesh_.size() == 0 || state_.size == 0) return;
       if (largest_radius_ >= 0 && largest_radius_ < least_radius_) {
         index_.prepare(there, options_, spheres_xyz(state_.at(position{}), state_.size, least_radius_));
@@ -287,7 +287,7 @@ class simulation {
 
   execution_space space_;
   broad_phase options_;
-  scene_type effects_;
+  effects_type effects_;
   mesh_view<S> mesh_;
   index index_;
   detail::column_buffers<S, columns> memory_;
@@ -296,7 +296,7 @@ class simulation {
   buffer<double> time_;
   S largest_radius_ = 0, least_radius_ = 0;
   buffer<detail::mesh_summary<S>> mesh_summary_;
-  neighbours neighbours_;
+  neighbour_lists neighbours_;
   buffer<id> overflow_;
 };
 

@@ -203,7 +203,7 @@ void check_bounces(typename Simulation::execution_space const& space) {
   w.radius = S(radius);
   for (double x : {0.03, 0.91, -1.37}) w.particle(x, 0.2 + x, radius + height);
   auto made = [&] {
-    if constexpr (std::is_same<typename Simulation::scene_type::integrator, collide::velocity_verlet>::value) {
+    if constexpr (std::is_same<typename Simulation::effects_type::integrator, collide::velocity_verlet>::value) {
       return running<Simulation>(space, w, collide::velocity_verlet{}, collide::gravity{}, collide::bounce{e});
     } else {
       return running<Simulation>(space, w, collide::gravity{}, collide::bounce{e});

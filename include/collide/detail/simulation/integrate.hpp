@@ -25,8 +25,8 @@ struct integration {
   using effects_type = typename Context::effects_type;
   using state_type = typename Context::state_type;
   using triangles_type = typename Context::triangles_type;
-  using integrated = particle<S, typename effects_type::flight>;
-  using loaded_pack = typename state_type::template group_of<typename effects_type::flight>;
+  using integrated = particle<S, typename effects_type::integration_reads>;
+  using loaded_pack = typename state_type::template group_of<typename effects_type::integration_reads>;
   template <class Block>
   using scratch = typename state_type::template group_scratch<Block>;
 
@@ -73,7 +73,8 @@ struct integration {
       effects.finish(p[k], dt);
     }
     for (int k = 0; k < N; k += pack) {
-      state.store_group(block, s, p + k, first + static_cast<std::size_t>(k), typename effects_type::flight_writes{});
+      state.store_group(block, s, p + k, first + static_cast<std::size_t>(k),
+                        typename effects_type::integration_writes{});
     }
   }
 
