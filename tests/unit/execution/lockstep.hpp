@@ -39,7 +39,7 @@ struct balancing {
         auto const found = find(one, work - counts[i]);
         if (look(one, found)) take(one, found);
       });
-      after_round();
+      after_round(base + Block::lanes >= total);
     }
   }
 };

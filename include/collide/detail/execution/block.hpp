@@ -14,7 +14,7 @@
 ///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at least 1, it
 ///     finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f); `find` and `look` only read, and a
 ///     lane does them up to `Ahead` times before it takes, so that it waits for all of them at once if they do not
-///     branch; after each round the whole block calls `after_round()`;
+///     branch; after each round the whole block calls `after_round(is_last)`;
 ///   - `block.scan(...)` makes of at most as many values as lanes the sums of those before each;
 ///   - `block.reduce(...)` combines a value per lane.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
@@ -102,7 +102,7 @@ class serial_block {
         auto const found = find(one, k);
         if (look(one, found)) take(one, found);
       }
-      after_round();
+      after_round(i + 1 == n);
     }
   }
 

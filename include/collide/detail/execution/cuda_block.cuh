@@ -150,7 +150,7 @@ class cuda_block {
         }
       }
       sync();
-      after_round();
+      after_round(base + Ahead * lanes >= total);
     }
   }
 

@@ -128,7 +128,7 @@ struct expand_cells {
           }
           pipeline.push(block, s.hits, {c.of.sphere, e.triangle});
         },
-        [&] { pipeline.drain_if_full(block, s.hits); });
+        [&](bool) { pipeline.drain_if_full(block, s.hits); });
   }
 
   /// True if the pair counts in this cell of a way, and not in another that has the entry too.
