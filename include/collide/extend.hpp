@@ -25,16 +25,17 @@ using serial_block = detail::serial_block<Items, HitCapacity>;
 /// How many blocks cover `n` items of a kernel functor: each thread of a block has `Block::items` of them.
 using detail::grid_size;
 
-/// From candidates to hits, in a kernel of one's own: `begin(buffer, thread)` first, by each thread;
-/// `test(block, buffer, {sphere, triangle}, sphere value)` for each candidate; `make_room(block, buffer)` by the whole
-/// block, after each thread had at most as many candidates as the buffer was made for; `flush(block, buffer)` last.
+/// From candidates to hits, in a kernel of one's own: `reset(buffer, thread)` first, by each thread;
+/// `push(block, buffer, {sphere, triangle}, sphere value)` for each candidate; `drain_if_full(block, buffer)` by the
+/// whole block, after each thread had at most as many candidates as the buffer was made for; `drain(block, buffer)`
+/// last.
 /// Made as `{mesh, spheres, sink, nullptr}`.
 template <class S, class NarrowPhase, class Sink>
-using candidate_pipeline = detail::tester<S, NarrowPhase, Sink>;
+using candidate_pipeline = detail::candidate_pipeline<S, NarrowPhase, Sink>;
 
 /// The memory of a `candidate_pipeline`, a member of the kernel's scratch memory.
 template <class Block, int CandidatesPerThread = 1>
-using candidate_buffer = detail::hit_buffer<Block, CandidatesPerThread>;
+using candidate_buffer = detail::pipeline_storage<Block, CandidatesPerThread>;
 
 /// A conservative sphere around a triangle; no sphere reaches that of a triangle that is not finite.
 template <class S>

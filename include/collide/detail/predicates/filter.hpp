@@ -4,7 +4,7 @@
 /// The closest point that is computed here may be wrong, and so may the region that it lies in: a verdict is only given
 /// where it holds all the same. Every line is proved in docs/numerics.md, for any order and any fusing of the sums,
 /// and with subnormal numbers or without. On the device each operation is spelled out all the same, so that a pair has
-/// the same outcome in every kernel; see undecided.hpp.
+/// the same outcome in every kernel; see deferred_pairs.hpp.
 #pragma once
 
 #include <collide/detail/geometry/closest_point.hpp>
