@@ -156,7 +156,7 @@ struct all_pairs {
 
     template <class NarrowPhase, class Space, class Sink>
     void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
-      detail::all_pairs_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink}, bounds_.data(), 1};
+      detail::all_pairs_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink, nullptr}, bounds_.data(), 1};
       std::size_t const blocks = detail::blocks_for<Space>(spheres.size(), body);
       std::size_t const tiles = (mesh_.size() + body.tile - 1) / body.tile;
       std::size_t const wanted = (space.concurrency() + blocks - 1) / blocks;
@@ -165,7 +165,7 @@ struct all_pairs {
     }
 
     /// What a kernel asks for the triangles near a single sphere; valid until the next build.
-    detail::all_pairs_lookup<S> lookup() const { return {{mesh_, nullptr, 0}}; }
+    detail::all_pairs_lookup<S> lookup() const { return {{mesh_, nullptr}}; }
 
     template <class Space>
     double cell_width(Space&) const {

@@ -61,13 +61,12 @@ class bucket::index {
     radius_given_ = false;
     listed_ = swapped_ = queried_ = false;
     has_boxes_ = options.memory_budget == 0 || fixed_bytes + boxes_bytes() <= options.memory_budget;
-    if (has_boxes_) boxes_.reserve(space.resource(), mesh.size() + 1);
+    if (has_boxes_) boxes_.reserve(space.resource(), mesh.size());
     has_summary_ = options.memory_budget == 0 || fixed_bytes <= options.memory_budget;
     if (!has_summary_) return;
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
-    detail::summarise_mesh<S> const body{mesh, summary, has_boxes_ ? boxes_.data() : nullptr,
-                                         has_boxes_ && Space::pairs_triangles};
+    detail::summarise_mesh<S> const body{mesh, summary, has_boxes_ ? boxes_.data() : nullptr};
     space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
   }
 
@@ -127,19 +126,19 @@ class bucket::index {
   void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
     if constexpr (Space::sorts_spheres) {
       if (swapped_) {
-        sorted_.query(space, detail::tester<S, NarrowPhase, Sink>{mesh_, spheres, sink});
+        sorted_.query(space, detail::tester<S, NarrowPhase, Sink>{mesh_, spheres, sink, nullptr});
         return;
       }
     }
-    detail::bucket_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink}, lookup(), 0};
+    detail::bucket_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink, boxes()}, lookup(), 0};
     body.blocks = detail::blocks_at_a_time<Space>(space, spheres.size(), body);
     space.launch(body.blocks, body);
   }
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
   detail::bucket_lookup<S> lookup() const {
-    return {{mesh_, boxes(), 0}, grids_.data(), grid_count_,     occupied(),
-            lists_.data(),       lists_total(), entries_.data(), entries_.capacity()};
+    return {{mesh_, boxes()}, grids_.data(), grid_count_,     occupied(),
+            lists_.data(),    lists_total(), entries_.data(), entries_.capacity()};
   }
 
   /// Width of the finest cells in use; 0 if there is no grid.
@@ -220,7 +219,6 @@ class bucket::index {
                               static_cast<S>(Space::bucket_span),
                               l.entry_limit,
                               l.table_bits,
-                              has_boxes_ && Space::pairs_triangles,
                               l.grids,
                               swapping ? nullptr : lists_.reserve(space.resource(), table_size(cells_)),
                               swapping ? 0 : cells_ + 1};
@@ -305,7 +303,7 @@ class bucket::index {
   std::uint32_t const* lists_total() const { return &lists_.data()[cells_].count; }
   std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
 
-  std::size_t boxes_bytes() const { return (mesh_.size() + 1) * sizeof(detail::triangle_box<S>); }
+  std::size_t boxes_bytes() const { return mesh_.size() * sizeof(detail::triangle_box<S>); }
   detail::triangle_box<S> const* boxes() const { return has_boxes_ ? boxes_.data() : nullptr; }
 
   /// What is held for another layout would come on top of what the budget was planned for.

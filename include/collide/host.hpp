@@ -60,7 +60,6 @@ class host {
 
   /// Tuning of `bucket`: how many threads put a triangle into its cells.
   static constexpr int insertion_parts = 1;
-  static constexpr bool pairs_triangles = false;
 
   /// True if the host reads this memory without waiting for anything.
   static constexpr bool host_memory = true;

@@ -151,7 +151,7 @@ TEST_CASE_TEMPLATE("grids: of spheres that move, a few bits tell what walking th
   std::vector<std::uint8_t> occupied((3 + 8 * 11 * 4) / 8 + 1);
   for (auto& byte : occupied) byte = static_cast<std::uint8_t>(1u << dice.integer(0, 7));
   std::uint32_t const total = 0;
-  collide::detail::bucket_lookup<S> lookup{{{}, nullptr, 0}, &grid, 1, occupied.data(), nullptr, &total, nullptr, 0};
+  collide::detail::bucket_lookup<S> lookup{{{}, nullptr}, &grid, 1, occupied.data(), nullptr, &total, nullptr, 0};
   auto const marks = lookup.marks();
   S const bad[] = {std::numeric_limits<S>::infinity(), -std::numeric_limits<S>::infinity(),
                    std::numeric_limits<S>::quiet_NaN()};

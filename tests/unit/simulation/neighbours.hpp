@@ -189,9 +189,7 @@ void check_neighbours(Space const& space) {
     };
     check_meetings<S>(made.simulation, S(0.1), 60, S(1), change, 50000);
   }
-  SUBCASE(
-      "that come one after the other, also where lists are full, while some are fast, and more at a time than can "
-      "stray") {
+  SUBCASE("that come one after the other, also where lists are full, while some are fast, and many at a time") {
     using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
     auto w = packed_cube<S>(n, 0.15, 0.0005);
     for (std::size_t i = 0; i < 9; ++i) w.velocities[3 * 11 * i] = S(0.05 * (double(i) - 4));

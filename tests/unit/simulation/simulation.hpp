@@ -437,7 +437,7 @@ void check_memory_of_steps(MakeSpace make, std::pmr::memory_resource* upstream) 
   CHECK(bytes_of(bounces{}, n) == 24 * n + 4 * n + 8);
   // for what meets: number, copies, reference, list; cells of at most four and at least two to a particle, by 65 in 64
   using meets = std::common_type<collide::simulation<detector, collide::sphere_contact>>;
-  CHECK(bytes_of(meets{}, n) == 24 * n + (4 + 28 + 12 + 64) * n + 2 * n * 4 * 65 / 64 + 540);
+  CHECK(bytes_of(meets{}, n) == 24 * n + (4 + 28 + 12 + 64) * n + 2 * n * 4 * 65 / 64 + 12);
 }
 
 /// A column and an effect of a user: what touches the mesh becomes warm, and cools down.

@@ -67,7 +67,6 @@ class cuda_space {
   /// Tuning of `bucket`; see `host`.
   static constexpr int insertion_parts = 2;
   static constexpr double bucket_span = 1.75;
-  static constexpr bool pairs_triangles = true;
 
   template <class F>
   void for_each(std::size_t n, F const& f) const {

@@ -60,12 +60,6 @@ template <class S>
 struct alignas(4 * sizeof(S)) triangle_box : box<S> {
   S slack;  ///< room for the rounding of the coarsest narrow phase, as far as it goes with the triangle
 
-  /// The box that every ball comes near.
-  static COLLIDE_HD_INLINE triangle_box everywhere() {
-    constexpr S far = std::numeric_limits<S>::infinity();
-    return {{{-far, -far, -far}, {far, far, far}}, S(0)};
-  }
-
   /// How far from the box the centre of a ball that touches the triangle is at most, `slack` apart; the root of the
   /// smallest normal number covers squares that underflow. See docs/numerics.md.
   static COLLIDE_HD_INLINE S reach(S radius) {

@@ -28,10 +28,6 @@ struct all_pairs_lookup : triangle_lookup<S> {
   COLLIDE_HD bool next(Ball const&, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
     return this->next_of_all(c, most, range);
   }
-  COLLIDE_HD bool next_marked(cell_marks<S> const&, vec3<S> const&, candidate_cursor&, std::uint32_t,
-                              candidate_range&) const {
-    return false;
-  }
 };
 
 }  // namespace collide::detail

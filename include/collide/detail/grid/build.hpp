@@ -27,27 +27,16 @@ struct grid_insertion {
 
   static constexpr int together = Parts > 1 ? 4 : 1;  ///< cells that a thread asks at a time
 
-  /// Calls f(cells, n, entry) for all cells that are this thread's, n of at most `together` at a time.
+  /// Calls f(cells, n, triangle) for all cells that are this thread's, n of at most `together` at a time.
   template <class F>
   COLLIDE_HD_INLINE void each_cells(std::size_t thread, F const& f) const {
     auto const number = static_cast<id>(thread / Parts);
     for (int g = 0; g < grid_count; ++g) {
-      asked_for need{grids[g], grids[g].level[0], box_at(number), {}};
-      need.other = need.own;
-      if ((Parts > 1 && boxes != nullptr) || need.frame.bits != 0)
-        need.other = box_at(smaller<id>(number ^ 1, static_cast<id>(mesh.size()) - 1));
+      asked_for need{grids[g], grids[g].level[0], box_at(number)};
       read_at_once(need);
-      // the threads of the triangles of an entry share its cells; the last triangle may be alone
-      std::uint32_t const bits = need.frame.bits;
-      id const entry = number >> bits;
-      std::size_t const first = std::size_t{entry} << bits;
-      bool const two = bits != 0 && first + 1 < mesh.size();
-      std::uint32_t const parts = two ? 2 * Parts : Parts;
-      std::uint32_t const part = static_cast<std::uint32_t>(thread % Parts) + Parts * (number - (entry << bits));
-      box<S> const b = two ? typename box<S>::unite{}(need.own, need.other) : need.own;
       grids[g].template each_cells<together>(
-          need.frame, need.finest, b, part, parts,
-          [&](covered_cell const(&cells)[together], std::uint32_t n) { f(cells, n, entry); });
+          need.frame, need.finest, need.own, static_cast<std::uint32_t>(thread % Parts), Parts,
+          [&](covered_cell const(&cells)[together], std::uint32_t n) { f(cells, n, number); });
     }
   }
 
@@ -56,7 +45,7 @@ struct grid_insertion {
   struct asked_for {
     grid_frame<S> frame;
     grid_level<S> finest;
-    box<S> own, other;  ///< of the triangle, and of the one that it is a pair with, if it is
+    box<S> own;  ///< of the triangle
   };
 
   COLLIDE_HD_INLINE box<S> box_at(std::size_t i) const {
@@ -165,13 +154,13 @@ struct fill_entries {
   std::size_t capacity;
   COLLIDE_HD void operator()(std::size_t thread) const {
     constexpr std::uint32_t together = grid_insertion<S, Parts>::together;
-    insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id entry) {
+    insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id triangle) {
       std::uint32_t slots[together];
       for (std::uint32_t k = 0; k < together; ++k) {
         if (k < n) slots[k] = fetch_add(&cells[some[k].number].end, 1u);
       }
       for (std::uint32_t k = 0; k < together; ++k) {
-        if (k < n && slots[k] < capacity) entries[slots[k]] = {entry, some[k].part};
+        if (k < n && slots[k] < capacity) entries[slots[k]] = {triangle, some[k].part};
       }
     });
   }

@@ -54,9 +54,9 @@ struct covered_cell {
   std::uint32_t number, part;
 };
 
-/// What is in a cell: a triangle, or a pair of them, and the part of the cell that its dilated box covers.
+/// What is in a cell: a triangle, and the part of the cell that its dilated box covers.
 struct alignas(8) cell_entry {
-  id number;
+  id triangle;
   std::uint32_t part;
 };
 

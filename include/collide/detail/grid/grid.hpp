@@ -14,10 +14,9 @@
 ///     of two). Triangles from far away then share a cell: more candidates, no wrong answer.
 ///   - Several grids, where radii differ much: each serves the spheres of one range of radii.
 ///
-/// Where a box around two triangles that follow each other is hardly larger than that of one, as in most meshes, they
-/// are put into the cells together (CUDA): half of the entries. An entry is the number of such a pair then. Beside it
-/// is which part of the cell the box covers, to a fifteenth of the cell's width, so that most triangles of a cell
-/// that are not near a sphere in it are left out before anything else of them is read.
+/// An entry is the number of a triangle. Beside it is which part of the cell the triangle's box covers, to a fifteenth
+/// of the cell's width, so that most triangles of a cell that are not near a sphere in it are left out before anything
+/// else of them is read.
 ///
 /// The rounding: cell coordinates are floor((x - lower) * inverse_width), a monotone function, so rounding alone cannot
 /// separate a centre from a box that contains it; nor from the part of a cell that it covers. The slack of 64 units in
@@ -108,7 +107,6 @@ struct grid_frame {
   S lower[3];  ///< of the dilated mesh
   S upper[3];
   int levels;           ///< 0 if no triangle is in the grid
-  std::uint32_t bits;   ///< log2 of how many triangles an entry is: 2^bits, from number entry * 2^bits on; at most 1
   std::uint32_t cells;  ///< how many there are, of all levels
 
   /// Cell coordinate, before wrapping, of the coordinate `x` on an axis. Monotone in x; ends at 2^30.

@@ -27,7 +27,6 @@ struct bucket_lookup : triangle_lookup<S> {
 
   COLLIDE_HD bucket_lookup opened() const {
     bucket_lookup open = *this;
-    if (grid_count > 0) open.bits = grids[0].bits;
     if (grid_count > 0 && *total > capacity) open.grid_count = 0;
     return open;
   }
@@ -86,17 +85,6 @@ struct bucket_lookup : triangle_lookup<S> {
     }
     c.grid = nowhere;
     return false;
-  }
-
-  /// The same of a ball that was marked: from what is known of its cell, without asking the grid. Its cursor begins
-  /// with `candidate_cursor::first_marked()`.
-  COLLIDE_HD_INLINE bool next_marked(cell_marks<S> const& marks, vec3<S> const& centre, candidate_cursor& c,
-                                     std::uint32_t most, candidate_range& range) const {
-    if (c.grid == nowhere) return false;
-    covered_cell const at = marks.place_of(centre);
-    bool const some = next_of_cell(at.number, at.part, c, most, range);
-    if (c.step != 0) c.grid = nowhere;
-    return some;
   }
 
  private:

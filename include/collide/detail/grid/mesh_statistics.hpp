@@ -15,9 +15,9 @@ namespace collide::detail {
 /// both updated by a maximum.
 template <class S>
 struct alignas(16) mesh_summary {
-  bits_of<S> lower[3];        ///< ~ordered(coordinate)
-  bits_of<S> upper[3];        ///< ordered(coordinate)
-  size_histogram extents[2];  ///< of the triangles' boxes; of those around 0 and 1, 2 and 3, ..., if asked for
+  bits_of<S> lower[3];     ///< ~ordered(coordinate)
+  bits_of<S> upper[3];     ///< ordered(coordinate)
+  size_histogram extents;  ///< of the triangles' boxes
 
   /// Makes a summary in memory of the space that of no triangles.
   template <class Space>
@@ -28,7 +28,7 @@ struct alignas(16) mesh_summary {
   /// The largest coordinate, without its sign; 0 of no triangles.
   COLLIDE_HD S largest_coordinate() const {
     S most = 0;
-    if (extents[0].empty()) return most;
+    if (extents.empty()) return most;
     for (int k = 0; k < 3; ++k) most = larger(most, larger(-lower_of(k), upper_of(k)));
     return most;
   }
@@ -44,41 +44,37 @@ struct summarise_mesh {
 
   mesh_view<S> mesh;
   mesh_summary<S>* summary;
-  triangle_box<S>* boxes;  ///< and room for one more; null if they are not wanted
-  bool pairs = false;      ///< whether they are asked for
+  triangle_box<S>* boxes;  ///< null if they are not wanted
 
   template <class Block>
   struct scratch {
-    block_histogram<Block> extents, pairs;
+    block_histogram<Block> extents;
     typename Block::template reduce_scratch<box<S>> reduction;
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    static_assert(Block::items % 2 == 0, "collide: a lane looks at both triangles of a pair");
+    static_assert(Block::items % 2 == 0, "collide: a lane reads two triangles at a time");
     typename Block::template per_lane<box<S>> all;
     s.extents.clear(block);
-    s.pairs.clear(block);
     block.each([&](int lane) {
       constexpr auto n = static_cast<std::size_t>(Block::items);
       std::size_t const first = (block.index() * Block::lanes + static_cast<std::size_t>(lane)) * n;
       all[lane] = box<S>::empty();
+      auto const add = [&](std::size_t i, triangle_box<S> const& b) {
+        if (boxes != nullptr) boxes[i] = b;
+        if (b.is_empty()) return;
+        all[lane] = typename box<S>::unite{}(all[lane], b);
+        s.extents.add(block, &summary->extents, size_bin(b.extent()));
+      };
       for (std::size_t i = first; i < first + n && i < mesh.size(); i += 2) {
         bool const two = i + 1 < mesh.size();
         triangle<S> const a = mesh[i], b = mesh[two ? i + 1 : i];  // both before anything is written
-        triangle_box<S> const of_a = triangle_box_of(a), of_b = triangle_box_of(b);
-        if (boxes != nullptr) boxes[i] = of_a;
-        if (boxes != nullptr) boxes[i + 1] = of_b;  // there is room for one more
-        box<S> const around = typename box<S>::unite{}(of_a, of_b);
-        if (around.is_empty()) continue;
-        all[lane] = typename box<S>::unite{}(all[lane], around);
-        if (!of_a.is_empty()) s.extents.add(block, &summary->extents[0], size_bin(of_a.extent()));
-        if (!of_b.is_empty() && two) s.extents.add(block, &summary->extents[0], size_bin(of_b.extent()));
-        if (pairs) s.pairs.add(block, &summary->extents[1], size_bin(around.extent()));
+        add(i, triangle_box_of(a));
+        if (two) add(i + 1, triangle_box_of(b));
       }
     });
-    s.extents.flush(block, &summary->extents[0]);
-    s.pairs.flush(block, &summary->extents[1]);
+    s.extents.flush(block, &summary->extents);
     box<S> const extent = block.reduce(s.reduction, all, typename box<S>::unite{});
     block.each([&](int lane) {
       if (lane != 0) return;

@@ -25,7 +25,6 @@ struct plan_grid {
   S usual_span;              ///< how many cells wide most triangles are at most, if the width is not asked for
   float entry_limit;         ///< how many entries a grid may have, if the width is asked for
   std::uint32_t table_bits;  ///< log2 of the number of cells per grid
-  bool pairs;                ///< triangles may be put into the cells two at a time
   int grid_count;
   cell_list* lists;
   std::size_t list_count;  ///< to be emptied
@@ -41,7 +40,6 @@ struct plan_grid {
   template <class Block>
   struct scratch {
     typename Block::template single<mesh_summary<S>> seen;
-    int medians[2];
   };
 
   template <class Block>
@@ -58,25 +56,21 @@ struct plan_grid {
     }
     mesh_summary<S> const& seen = block.near(s.seen, *summary);
     block.each([&](int lane) {
-      for (int b = lane; b <= (pairs ? 1 : 0); b += Block::lanes) s.medians[b] = median(seen.extents[b]);
-    });
-    block.each([&](int lane) {
       if (lane != 0) return;
       auto& g = grids[block.index()];
-      grid_frame<S> const frame = plan(block.index(), seen, s.medians, g.level);
+      grid_frame<S> const frame = plan(block.index(), seen, g.level);
       static_cast<grid_frame<S>&>(g) = frame;
     });
   }
 
  private:
-  /// Sets the levels and returns the rest; `medians` are the bins that half of the sizes do not exceed.
-  COLLIDE_HD grid_frame<S> plan(std::size_t i, mesh_summary<S> const& seen, int const* medians,
-                                grid_level<S>* levels) const {
-    auto const* const extents = seen.extents;
+  /// Sets the levels and returns the rest.
+  COLLIDE_HD grid_frame<S> plan(std::size_t i, mesh_summary<S> const& seen, grid_level<S>* levels) const {
+    size_histogram const& sizes = seen.extents;
     grid_frame<S> g{};
     g.reach = reaches[i];
-    levels[0] = {};          // is read before it is known whether there is one
-    if (extents->empty()) {  // no finite triangle: a box that contains nothing
+    levels[0] = {};       // is read before it is known whether there is one
+    if (sizes.empty()) {  // no finite triangle: a box that contains nothing
       for (int k = 0; k < 3; ++k) {
         g.lower[k] = 1;
         g.upper[k] = -1;
@@ -96,13 +90,6 @@ struct plan_grid {
       g.upper[k] += g.dilation;
     }
 
-    // pairs, if they are hardly larger than triangles, also the largest: in all grids or in none, whatever their reach
-    S const least = 2 * reaches[grid_count - 1];
-    auto const hardly_larger = [&](int bin, int than) { return size(bin) + least <= S(1.25) * (size(than) + least); };
-    bool const alike = pairs && hardly_larger(extents[1].last(), extents[0].last());
-    g.bits = alike && hardly_larger(medians[1], medians[0]) ? 1 : 0;
-    size_histogram const& sizes = extents[g.bits];
-    int const middle = medians[g.bits];
     S extent = 0;
     for (int k = 0; k < 3; ++k) extent = larger(extent, g.upper[k] - g.lower[k]);
     constexpr S end = std::numeric_limits<S>::max() / 16;
@@ -116,7 +103,7 @@ struct plan_grid {
     // from this width on, cell coordinates are exact enough for `margin`
     S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
     // the largest must fit also when the quotient is rounded down
-    S const usual = div(smaller(tallest, 2 * margin * size(g, middle)), usual_span) * (1 + 4 * format<S>::unit);
+    S const usual = div(smaller(tallest, 2 * margin * size(g, median(sizes))), usual_span) * (1 + 4 * format<S>::unit);
     S width = larger(narrowest, cell_width > 0 ? cell_width : usual);
     S const span = cell_width > 0 ? span_for(g, width, sizes) : usual_span;
     // half of the cells for the finest level, the rest for the others together; all if there are no others
@@ -157,8 +144,8 @@ struct plan_grid {
   static COLLIDE_HD S size(int bin) { return S(bin_end(static_cast<std::uint32_t>(bin))); }
   static COLLIDE_HD S size(grid_frame<S> const& g, int bin) { return size(bin) + 2 * g.dilation; }
 
+  /// The bin that half of the sizes do not exceed.
   static COLLIDE_HD int median(size_histogram const& sizes) {
-    if (sizes.empty()) return 0;
     std::uint64_t total = 0;
     COLLIDE_ROLLED
     for (int b = sizes.first(); b <= sizes.last(); ++b) total += sizes.counts[b];

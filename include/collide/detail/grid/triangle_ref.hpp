@@ -3,15 +3,14 @@
 ///
 /// An index gives a trivially copyable `lookup()`. Of that, `is_simple(radius)` is true if balls of this radius are
 /// best asked several at a time whether they can touch a triangle: `marks().mark(marks().places_of(x, y, z), near)`, or
-/// `marks().mark_ways(batch, near)` of those that move; `next_marked` then is `next` of those at rest that were marked.
+/// `marks().mark_ways(batch, near)` of those that move.
 /// In a kernel, `opened()` is that lookup for use, and then
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
 ///     entries, until it returns false; one may appear more than once if the ball moves; `cursor.at_end()` is true if
 ///     it is known to return false the next time;
-///   - `range.at(k)` is an entry, of 2^`bits` triangles, `range.may_touch(entry)` a quick test whether the ball could
-///     touch them, and `near(around, number)` one whether a ball could touch a triangle all of whose way is in the
-///     ball `around`; `each_near(around, entry, f)` calls f(number) for those of an entry that are near.
+///   - `range.at(k)` is an entry, which is a triangle, `range.may_touch(entry)` a quick test whether the ball could
+///     touch it, and `near(around, triangle)` one whether a ball could all of whose way is in the ball `around`.
 #pragma once
 
 #include <cstdint>
@@ -44,9 +43,6 @@ struct candidate_cursor {
   int grid, level;
   std::uint32_t step, skip;
 
-  /// That of a ball which was marked.
-  static COLLIDE_HD_INLINE candidate_cursor first_marked() { return {0, 0, 0, 0}; }
-
   /// True if there are no more. False where that is not known yet.
   COLLIDE_HD_INLINE bool at_end() const { return grid == ended; }
 };
@@ -55,59 +51,35 @@ struct candidate_cursor {
 template <class S>
 struct triangle_lookup {
   mesh_view<S> mesh;
-  triangle_box<S> const* boxes;  ///< and one more, which may be anything; may be null
-  std::uint32_t bits;            ///< log2 of how many triangles an entry is; the last ones need not exist
+  triangle_box<S> const* boxes;  ///< may be null
 
-  COLLIDE_HD_INLINE bool near(sphere<S> const& around, id number) const {
-    triangle_box<S> const box = boxes != nullptr ? boxes[number] : triangle_box<S>::everywhere();
-    bool const reached = box.reached(around.centre, around.radius);
-    return reached & (number < mesh.size());
+  COLLIDE_HD_INLINE bool near(sphere<S> const& around, id triangle) const {
+    return boxes == nullptr || boxes[triangle].reached(around.centre, around.radius);
   }
 
-  /// Whether a triangle of an entry that has passed the quick tests exists, and is near unless the narrow phase asks
-  /// that itself before anything else.
+  /// Whether a triangle that has passed the quick tests is near, unless the narrow phase asks that itself before
+  /// anything else.
   template <class NarrowPhase, class Ball>
-  COLLIDE_HD_INLINE bool may_touch(Ball const& ball, id number) const {
+  COLLIDE_HD_INLINE bool may_touch(Ball const& ball, id triangle) const {
     if constexpr (in_stages<NarrowPhase>::value) {
-      return number < mesh.size();
+      return true;
     } else {
-      return near(enclosing(ball), number);
+      return near(enclosing(ball), triangle);
     }
   }
 
-  /// The box around an entry.
-  COLLIDE_HD_INLINE box<S> box_of(cell_entry const& e) const {
-    box<S> const first = own_box(e.number << bits);
-    if (bits == 0 || (e.number << bits) + 1 == mesh.size()) return first;
-    return typename box<S>::unite{}(first, own_box((e.number << bits) + 1));
-  }
-
-  template <class F>
-  COLLIDE_HD_INLINE void each_near(sphere<S> const& around, cell_entry const& e, F const& f) const {
-    for (std::uint32_t k = 0; k >> bits == 0; ++k) {
-      id const number = (e.number << bits) + k;
-      if (near(around, number)) f(number);
-    }
-  }
-
-  /// How many entries all triangles are.
-  COLLIDE_HD_INLINE std::uint32_t entry_count() const {
-    return static_cast<std::uint32_t>((mesh.size() + ((std::size_t{1} << bits) - 1)) >> bits);
+  COLLIDE_HD_INLINE box<S> box_at(id triangle) const {
+    return boxes != nullptr ? boxes[triangle] : triangle_box_of(mesh[triangle]);
   }
 
   /// All triangles, one range after the other.
   COLLIDE_HD bool next_of_all(candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
-    std::uint32_t const n = entry_count();
+    auto const n = static_cast<std::uint32_t>(mesh.size());
     if (c.skip >= n) return false;
     range = {nullptr, c.skip, smaller(n - c.skip, most), cell_part::anywhere};
     c.skip += range.count;
     if (c.skip == n) c.grid = candidate_cursor::ended;
     return true;
-  }
-
- private:
-  COLLIDE_HD_INLINE box<S> own_box(id number) const {
-    return boxes != nullptr ? boxes[number] : triangle_box_of(mesh[number]);
   }
 };
 

@@ -6,6 +6,9 @@
 #include <type_traits>
 #include <utility>
 
+#include <collide/detail/geometry/aabb.hpp>
+#include <collide/detail/geometry/swept_bounds.hpp>
+#include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/hit.hpp>
 
 namespace collide::detail {
@@ -53,17 +56,6 @@ struct deciding {
   }
 };
 
-/// What candidates are: a sphere and a triangle each. Others are a sphere and the triangles from number * 2^bits on,
-/// 2^bits of them, of which those count that `allow` says.
-struct single_triangles {
-  static constexpr std::uint32_t bits = 0;
-
-  template <class Ball>
-  COLLIDE_HD_INLINE bool allow(id, Ball const&) const {
-    return true;
-  }
-};
-
 /// The way of candidates to the sink, in the scratch memory of a block. Where lanes work together, each step is made
 /// for many pairs at once, so that no lane waits for another that has more to do: candidates are listed, then decided;
 /// hits are listed, then stored, so that the sink's atomic counter is touched once per batch. A single lane decides
@@ -88,6 +80,7 @@ struct tester {
   mesh_view<S> mesh;
   spheres_of<NarrowPhase, S> spheres;
   Sink sink;
+  triangle_box<S> const* boxes = nullptr;  ///< of candidates that may be out of reach; null if there are no such
 
   /// To be called first, by every lane; what follows may be done when the block has waited.
   template <class Block, int Ahead>
@@ -117,22 +110,22 @@ struct tester {
   }
 
   /// Makes room for `Ahead` more candidates per lane. Called by the whole block.
-  template <class Block, int Ahead, class Candidates = single_triangles>
-  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block, Ahead>& b, Candidates const& kind = {}) const {
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block, Ahead>& b) const {
     if constexpr (hit_buffer<Block, Ahead>::together) {
       std::uint32_t const n = block.shared(b.candidate_count);
-      if (n + Ahead * Block::lanes > hit_buffer<Block, Ahead>::candidate_capacity) decide_all(block, b, n, kind);
+      if (n + Ahead * Block::lanes > hit_buffer<Block, Ahead>::candidate_capacity) decide_all(block, b, n);
     } else {
       if (b.hit_count == hit_buffer<Block, Ahead>::capacity) store_all(block, b, b.hit_count);
     }
   }
 
   /// Finishes everything. Called by the whole block, last.
-  template <class Block, int Ahead, class Candidates = single_triangles>
-  COLLIDE_HD_INLINE void flush(Block& block, hit_buffer<Block, Ahead>& b, Candidates const& kind = {}) const {
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void flush(Block& block, hit_buffer<Block, Ahead>& b) const {
     if constexpr (hit_buffer<Block, Ahead>::together) {
       std::uint32_t const n = block.shared(b.candidate_count);
-      if (n != 0) decide_all(block, b, n, kind);
+      if (n != 0) decide_all(block, b, n);
     }
     store_all(block, b, block.shared(b.hit_count));
   }
@@ -152,21 +145,23 @@ struct tester {
  private:
   template <class Block, int Ahead, class Ball>
   COLLIDE_HD_INLINE void decide(Block& block, hit_buffer<Block, Ahead>& b, pair p, Ball const& s) const {
+    if constexpr (!(Block::lanes > 1 && in_stages<NarrowPhase>::value)) {  // else its first stage asks the same
+      sphere<S> const around = enclosing(s);
+      if (boxes != nullptr && !boxes[p.triangle].reached(around.centre, around.radius)) return;
+    }
     if (sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) keep(block, b, p);
   }
 
   /// Decides the `n` candidates that are listed.
-  template <class Block, int Ahead, class Candidates>
-  COLLIDE_HD_INLINE void decide_all(Block& block, hit_buffer<Block, Ahead>& b, std::uint32_t n,
-                                    Candidates const& kind) const {
-    for (std::uint32_t base = 0; base < n << kind.bits; base += Block::lanes) {
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void decide_all(Block& block, hit_buffer<Block, Ahead>& b, std::uint32_t n) const {
+    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
       block.each([&](int lane) {
-        std::uint32_t const i = base + static_cast<std::uint32_t>(lane), k = i >> kind.bits;
+        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
         if (lane == 0) b.candidate_count = 0;
-        if (k >= n) return;
-        pair const p{b.candidates[k].sphere, (b.candidates[k].triangle << kind.bits) + (i - (k << kind.bits))};
-        auto const s = spheres[p.sphere];
-        if (kind.allow(p.triangle, s)) decide(block, b, p, s);
+        if (i >= n) return;
+        pair const p = b.candidates[i];
+        decide(block, b, p, spheres[p.sphere]);
       });
       std::uint32_t const hits = block.shared(b.hit_count);
       if (hits + Block::lanes > hit_buffer<Block, Ahead>::capacity) store_all(block, b, hits);

@@ -113,7 +113,7 @@ struct finish_undecided {
       return;
     }
 
-    tester<S, NarrowPhase, finishing<Handle>> const tests{mesh, spheres, {{handle}, listed}};
+    tester<S, NarrowPhase, finishing<Handle>> const tests{mesh, spheres, {{handle}, listed}, nullptr};
     block.each([&](int lane) { tests.begin(s.hits, lane); });
     for (std::uint64_t base = block.index() * Block::lanes; base < work; base += blocks * Block::lanes) {
       block.each([&](int lane) {

@@ -55,17 +55,6 @@ struct expand_cells {
     hit_buffer<Block, ahead> hits;
   };
 
-  /// What the candidates are: entries.
-  struct entries {
-    bucket_lookup<S> const& of;
-    std::uint32_t bits = of.bits;
-
-    template <class Ball>
-    COLLIDE_HD_INLINE bool allow(id triangle, Ball const& s) const {
-      return of.template may_touch<NarrowPhase>(s, triangle);
-    }
-  };
-
   /// Tests the spheres that are listed; `one_level` says that this is all that the grids have.
   template <class Block>
   COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, typename compact::template scratch<Block> const& from,
@@ -135,22 +124,15 @@ struct expand_cells {
           if constexpr (!still) {
             if (!all && !counts_in(here, s.places[c.list], e)) return;
           }
-          if constexpr (Block::lanes > 1) {
-            tests.test(block, s.hits, {c.of.sphere, e.number});
-          } else {
-            auto const ball = tests.spheres[c.of.sphere];
-            near.each_near(enclosing(ball), e, [&](id triangle) {
-              tests.test(block, s.hits, {c.of.sphere, triangle}, ball);
-            });
-          }
+          tests.test(block, s.hits, {c.of.sphere, e.triangle});
         },
-        [&] { tests.make_room(block, s.hits, entries{near}); });
+        [&] { tests.make_room(block, s.hits); });
   }
 
   /// True if an entry counts in this cell of a way, and not in another.
   COLLIDE_HD_INLINE bool counts_in(cells const& here, typename way<S>::place const& place, cell_entry const& e) const {
     if (place.later != way<S>::place::unknown) return !cell_part::begins_before(e.part, place.later);
-    return place.is_only || place.is_first_of(here.of->range_of(*here.level, near.box_of(e)));
+    return place.is_only || place.is_first_of(here.of->range_of(*here.level, near.box_at(e.triangle)));
   }
 
   /// Lists a sphere with the entries of its cells that are not empty, as far as there is room. True if that was all.
@@ -158,7 +140,8 @@ struct expand_cells {
   COLLIDE_HD_INLINE bool list_all(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
     auto const ball = tests.spheres[number];
     if (here.of == nullptr) {
-      return list(block, s, number, {near.entry_count(), near.entry_count()}, cell_part::anywhere, at);
+      auto const all = static_cast<std::uint32_t>(near.mesh.size());
+      return list(block, s, number, {all, all}, cell_part::anywhere, at);
     } else if constexpr (still) {
       covered_cell const cell = here.of->place_of(*here.level, ball.centre);
       return list(block, s, number, near.lists[cell.number], cell.part, at);

@@ -70,7 +70,7 @@ struct bucket_query {
         if (compact::loads_early) spheres.template load_ahead<Block>(own[lane], quads, next[lane]);
       });
     }
-    tests.flush(block, s.cells.hits, typename expand::entries{near});
+    tests.flush(block, s.cells.hits);
   }
 };
 

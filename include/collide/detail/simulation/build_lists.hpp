@@ -1,5 +1,5 @@
 /// \file
-/// Kernel bodies that keep the lists of neighbours: what has moved far, cells, lists, strays.
+/// Kernel bodies that keep the neighbour lists: what has moved far, cells, lists.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 namespace collide::detail {
 
 /// Kernel body of `for_each` over particles, and places in the order: copies what particles must know of each other,
-/// and finds out whether the lists still have all of them.
+/// and asks for new lists if these may lack something: where a particle has come, or has moved too far.
 template <class S, class Scene>
 struct refresh_order {
   particle_state<S, typename Scene::all> state;
@@ -26,9 +26,9 @@ struct refresh_order {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     if constexpr (ordered::comes_and_goes) {
-      if (is_there(i) && order.known[i] == 0) come(i);
+      if (is_there(i) && order.known[i] == 0) order.ask_to_renew();
     }
-    if (i >= order.header->before) return;
+    if (i >= order.header->count) return;
     id const number = order.numbers[i];
     if constexpr (ordered::comes_and_goes) {
       if (!is_there(number)) return order.leave_out(i);
@@ -38,23 +38,14 @@ struct refresh_order {
     if (!finite(p[position{}])) return order.leave_out(i);
     near_sphere<S> const now = order.store(i, p);
     auto const before = order.references[i];
-    vec3<S> const way(now.x - before.x, now.y - before.y, now.z - before.z);
+    vec3<S> const moved(now.x - before.x, now.y - before.y, now.z - before.z);
     S const left = most - before.resized(now);
-    bool const stayed = dot(way, way) < mul(left, left) && left > 0;
-    if (!stayed) order.stray(static_cast<std::uint32_t>(i), now);
+    bool const stayed = dot(moved, moved) < mul(left, left) && left > 0;
+    if (!stayed) order.ask_to_renew();
   }
 
  private:
   COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(present{})[number] != 0; }
-
-  COLLIDE_HD_INLINE void come(std::size_t number) const {
-    typename ordered::meeting p;
-    state.load(p, number);
-    std::uint32_t const place = fetch_add(&order.header->now, 1u);
-    order.known[number] = 1;
-    order.numbers[place] = p.number;
-    order.stray(place, order.store(place, p));
-  }
 };
 
 /// Kernel body of `for_each_if` over the table: empties it.
@@ -64,9 +55,7 @@ struct empty_cells {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     order.ends[i] = 0;
-    if (i != 0) return;
-    auto& h = *order.header;
-    h.crowded = h.now = h.arrivals = h.seen = h.count = 0;
+    if (i == 0) order.header->crowded = order.header->count = 0;
   }
 };
 
@@ -103,7 +92,7 @@ struct allocate_cells {
     for (std::uint32_t c = 0; c < n; ++c) counts[c] = ends[c + 1];
     for (std::uint32_t c = 0; c < n; ++c) sum += counts[c];
     if (sum == 0) return;
-    std::uint32_t next = fetch_add(&order.header->now, sum);
+    std::uint32_t next = fetch_add(&order.header->count, sum);
     ends[0] = next;
     for (std::uint32_t c = 0; c < n; ++c) {
       ends[c + 1] = next;
@@ -119,7 +108,7 @@ struct copy_in_order {
   particle_order<S, Scene> order;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (i >= order.header->now) return;
+    if (i >= order.header->count) return;
     typename particle_order<S, Scene>::meeting p;
     state.load(p, order.numbers[i]);
     order.references[i].set(order.store(i, p));
@@ -133,10 +122,10 @@ struct list_neighbours {
   S skin;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (i < order.header->now) list(static_cast<std::uint32_t>(i));
+    if (i < order.header->count) list(static_cast<std::uint32_t>(i));
   }
 
- protected:
+ private:
   static constexpr std::uint32_t room = particle_order<S, Scene>::listed;
 
   COLLIDE_HD_INLINE void list(std::uint32_t i) const {
@@ -149,7 +138,11 @@ struct list_neighbours {
       }
       ++found;
     });
-    if (found > room) return crowd(i);
+    if (found > room) {
+      order.list(0, i) = order.too_many;
+      store_relaxed(&order.header->crowded, 1u);
+      return;
+    }
     first_neighbours<room> near;
     COLLIDE_ROLLED
     for (std::uint32_t n = 0; n < found; ++n) {
@@ -158,41 +151,6 @@ struct list_neighbours {
     COLLIDE_ROLLED
     for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];
     if (near.size < room) order.list(near.size, i) = i;
-  }
-
-  COLLIDE_HD_INLINE void crowd(std::uint32_t i) const {
-    order.list(0, i) = order.too_many;
-    store_relaxed(&order.header->crowded, 1u);
-  }
-};
-
-/// Kernel body of `for_each_if` over places in the order, where a few have come or moved far: these make a list, and
-/// the others near them put them into theirs. `skin` is larger by half of the skin, which others may have moved
-/// already.
-template <class S, class Scene>
-struct admit_strays : list_neighbours<S, Scene> {
-  COLLIDE_HD void operator()(std::size_t place) const {
-    auto const& order = this->order;
-    std::uint32_t const first = order.header->seen;
-    if (place >= order.header->now) return;
-    auto const i = static_cast<std::uint32_t>(place);
-    if (order.has_strayed(i, first)) return this->list(i);
-    order.each_stray_near(i, first, this->skin, [&](std::uint32_t stray) { insert(i, stray); });
-  }
-
- private:
-  COLLIDE_HD_INLINE void insert(std::uint32_t i, std::uint32_t stray) const {
-    auto const& order = this->order;
-    std::uint32_t at = 0, size = 0;
-    for (; size < this->room && order.list(size, i) != i; ++size) {
-      std::uint32_t const other = order.list(size, i);
-      if (other == stray || other == order.too_many) return;
-      if (order.numbers[other] < order.numbers[stray]) at = size + 1;
-    }
-    if (size == this->room) return this->crowd(i);
-    if (size + 1 < this->room) order.list(size + 1, i) = i;
-    for (std::uint32_t n = size; n > at; --n) order.list(n, i) = order.list(n - 1, i);
-    order.list(at, i) = stray;
   }
 };
 

@@ -250,10 +250,10 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   static constexpr std::uint32_t together = Block::lanes > 1 ? Block::lanes*(moves ? 14 : 24) / 10 / sizeof(S)
                                                              : Block::items;
 
-  /// A particle of those that are resolved together, and an entry.
+  /// A particle of those that are resolved together, and a triangle.
   struct candidate {
     std::uint32_t particle;
-    id entry;
+    id triangle;
   };
 
   /// A contact that a particle may have, in scratch memory.
@@ -313,8 +313,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
     static_assert(Block::lanes == 1, "lanes that work together have one kernel for both parts");
     std::uint32_t const n = *list.count;
     if (n == 0) return;
-    cell_marks<S> const marks = lookup.marks();
-    surroundings const near{lookup.opened(), marks, this->marks_all()};
+    Lookup const near = lookup.opened();
     // as many as come to each block, or the same each time if it has no room for so many
     auto const shares = static_cast<std::uint32_t>(blocks), most = shares * together<Block>;
     std::uint32_t const share = (n - 1) / (shares * ((n - 1) / most + 1)) + 1;
@@ -332,28 +331,6 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
  protected:
   using colliding = particle<S, typename Scene::contact>;
 
-  /// What is asked for the triangles near a particle. If all were marked when they were listed, what that depends on is
-  /// at hand, so that nothing is waited for before their cells: for their first contacts, before which they stay there.
-  struct surroundings : Lookup {
-    cell_marks<S> const& known;
-    bool all_marked;
-
-    COLLIDE_HD_INLINE candidate_cursor begin(survivor<S, moves> const& one) const {
-      return is_marked(one) ? candidate_cursor::first_marked() : Lookup::begin(one.ball());
-    }
-    COLLIDE_HD_INLINE bool next(survivor<S, moves>& one, std::uint32_t most, candidate_range& range) const {
-      if constexpr (!moves) {
-        if (is_marked(one)) return Lookup::next_marked(known, one.ball().centre, one.cursor, most, range);
-      }
-      return Lookup::next(one.ball(), one.cursor, most, range);
-    }
-
-   private:
-    COLLIDE_HD_INLINE bool is_marked(survivor<S, moves> const& one) const {
-      return !moves && all_marked && one.before == 0;
-    }
-  };
-
   /// What is known of a particle when its contacts are to be found.
   COLLIDE_HD_INLINE void begin(survivor<S, moves>& one, id number) const {
     colliding p;
@@ -366,7 +343,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
 
   /// Resolves the contacts of `n` particles, at most `together`: begin(one, j) for all j < n says which they are.
   template <class Block, class Begin>
-  COLLIDE_HD void collide(Block& block, scratch<Block>& s, surroundings const& near, std::uint32_t n,
+  COLLIDE_HD void collide(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t n,
                           Begin const& begin) const {
     auto const each_of_lane = [&](auto const& f) {
       block.each([&](int lane) {
@@ -377,7 +354,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
       one.best = no_contact;
       one.best_kept = kept_contact::none;
       one.offered = 0;
-      one.cursor = near.begin(one);
+      one.cursor = near.begin(one.ball());
     };
     each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
       begin(one, j);
@@ -410,14 +387,14 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   /// Offers all candidates of the active ones, and keeps their contacts. `listed` is what `s.listed` was before, and is
   /// then.
   template <class Block, class Each>
-  COLLIDE_HD void offer_all(Block& block, scratch<Block>& s, surroundings const& near, Each const& each_of_lane,
+  COLLIDE_HD void offer_all(Block& block, scratch<Block>& s, Lookup const& near, Each const& each_of_lane,
                             listing& listed) const {
     constexpr std::uint32_t most = (1u << 31) / together<Block>;
     for (bool is_first = true, more = true; more; is_first = false) {
       each_of_lane([&](survivor<S, moves>& one, std::uint32_t j) {
         if (j == 0 && is_first) s.lists.near_count = s.lists.kept_count = s.lists.open_count = 0;
         candidate_range range{};
-        if (!one.is_active || !near.next(one, most, range)) return;
+        if (!one.is_active || !near.next(one.ball(), one.cursor, most, range)) return;
         if (!one.cursor.at_end()) block.add(s.listed.unfinished, 1);
         std::uint32_t const place = block.add(s.listed.ranges, 1) - listed.ranges;
         s.owner[place] = j;
@@ -443,11 +420,9 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
           [&](candidates const& c, cell_entry const& e) { return c.range.may_touch(e); },
           [&](candidates const& c, cell_entry const& e) {
             if constexpr (candidate_lists<Block>::used) {
-              s.lists.near[block.add(s.lists.near_count, 1)] = {c.particle, e.number};
+              s.lists.near[block.add(s.lists.near_count, 1)] = {c.particle, e.triangle};
             } else {
-              near.each_near(c.around, e, [&](id number) {
-                if (!c.one.leaves(number)) offer_next(s, c, near, number);
-              });
+              if (near.near(c.around, e.triangle) && !c.one.leaves(e.triangle)) offer_next(s, c, near, e.triangle);
             }
           },
           [&] {
@@ -465,15 +440,14 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
 
   /// Judges the `n` candidates that are listed, and lists those that may touch. What there is no room for is offered.
   template <class Block>
-  COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, surroundings const& near,
-                                      std::uint32_t n) const {
-    for (std::uint32_t base = 0; base < n << near.bits; base += Block::lanes) {
+  COLLIDE_HD_INLINE void judge_listed(Block& block, scratch<Block>& s, Lookup const& near, std::uint32_t n) const {
+    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
       block.each([&](int lane) {
-        std::uint32_t const i = base + static_cast<std::uint32_t>(lane), k = i >> near.bits;
+        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
         if (lane == 0) s.lists.near_count = 0;
-        if (k >= n) return;
-        candidate const c = s.lists.near[k];
-        id const number = (c.entry << near.bits) + (i - (k << near.bits));
+        if (i >= n) return;
+        candidate const c = s.lists.near[i];
+        id const number = c.triangle;
         auto& one = s.those[c.particle];
         auto const ball = one.ball();
         if (!near.template may_touch<NarrowPhase>(ball, number) || one.leaves(number)) return;
@@ -533,7 +507,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
   /// Finds the contacts that are to be kept, many at a time, and offers them: first those that take no call. What a
   /// thread has at hand when it calls something it keeps in memory, and begins to do so long before.
   template <class Block>
-  COLLIDE_HD_INLINE void offer_found(Block& block, scratch<Block>& s, surroundings const& near) const {
+  COLLIDE_HD_INLINE void offer_found(Block& block, scratch<Block>& s, Lookup const& near) const {
     if constexpr (!moves) {
       each_kept(block, s, [&](survivor<S, moves>& one, kept_contact& k, std::uint32_t) {
         contact<S> found;
@@ -625,7 +599,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
 
   /// A lane alone: offers a triangle as the next contact of a particle, if they touch.
   template <class Scratch>
-  COLLIDE_HD_INLINE void offer_next(Scratch& s, candidates const& c, surroundings const& near, id number) const {
+  COLLIDE_HD_INLINE void offer_next(Scratch& s, candidates const& c, Lookup const& near, id number) const {
     if constexpr (moves) {
       if (c.one.best != no_contact && static_cast<id>(c.one.best) == number) return;  // it was in another cell, too
     }
@@ -683,7 +657,7 @@ struct respond_body : fly_body<S, NarrowPhase, Lookup, Scene> {
 
   /// Lets the effects respond to the contact that was found, and says whether to look for another. If there was none,
   /// the particle's step ends.
-  COLLIDE_HD_INLINE void respond(survivor<S, moves>& one, surroundings const& near, kept_contact const* kept) const {
+  COLLIDE_HD_INLINE void respond(survivor<S, moves>& one, Lookup const& near, kept_contact const* kept) const {
     if (one.best == no_contact) {
       if constexpr (!moves && !Scene::finishes && part_after == 0) {
         one.is_active = false;  // nothing is left to do

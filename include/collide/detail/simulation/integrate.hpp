@@ -76,7 +76,7 @@ struct fly_body {
       Lookup const near = lookup.opened();
       bool const simple = marks_all();
       auto const marks = lookup.marks();
-      auto const list_one = [&](id number, auto const&...) { s.listed[s.count++] = number; };
+      auto const list_one = [&](id number) { s.listed[s.count++] = number; };
       auto const opened = [at = &near]() -> Lookup const& { return *at; };
       auto const list_near = lister(simple, marks, opened, list_one);
       if constexpr (lists_afterwards<Block>) {
@@ -136,7 +136,7 @@ struct fly_body {
   }
 
   /// What `move_some` calls: for those of some particles that may touch the mesh, sets listed[k], and calls
-  /// list(number, centre). If all are `simple`, they are asked `marks`. `near()` is the opened lookup.
+  /// list(number). If all are `simple`, they are asked `marks`. `near()` is the opened lookup.
   template <class Near, class List>
   COLLIDE_HD_INLINE auto lister(bool const& simple, cell_marks<S> const& marks, Near const& near,
                                 List const& list) const {
@@ -145,7 +145,7 @@ struct fly_body {
       if (!simple || !mark_near(marks, p, listed)) ask_each(near(), p, listed);
       for (int k = 0; k < n; ++k) {
         listed[k] = listed[k] && !skipped[k] && p[k].number < size;
-        if (listed[k]) list(p[k].number, p[k][position{}]);
+        if (listed[k]) list(p[k].number);
       }
     };
   }

@@ -59,47 +59,28 @@ template <class S, class Scene>
 struct meet_neighbours : meetings<S, Scene> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& order = this->order;
-    if (i == 0) settle(*order.header);
-    if (i >= order.header->now) return;
+    if (i == 0) order.header->renew = 0;  // not read again in this step
+    if (i >= order.header->count) return;
     auto const self = static_cast<std::uint32_t>(i);
-    std::uint32_t ahead = order.list(0, i);
-    if (ahead == order.too_many) return;
+    if (order.list(0, i) == order.too_many) return;
     typename meetings<S, Scene>::participant p(order.load(i));
-    near_sphere<S> const own = order.spheres[i];
-    // while one is met, the next and the entry behind it are on their way
-    auto const entry = [&](std::uint32_t n) {
-      return ahead != self && n < particle_order<S, Scene>::listed ? order.list(n, i) : self;
-    };
-    near_sphere<S> close = order.spheres[ahead];
-    std::uint32_t behind = entry(1);
     COLLIDE_ROLLED
-    for (std::uint32_t n = 2; ahead != self; ++n) {
-      std::uint32_t const place = ahead;
-      near_sphere<S> const other = close;
-      ahead = behind;
-      close = order.spheres[ahead];
-      behind = entry(n);
-      if (order.are_near(own, other, S(0))) this->meet(p, place);
+    for (std::uint32_t n = 0; n < particle_order<S, Scene>::listed; ++n) {
+      std::uint32_t const place = order.list(n, i);
+      if (place == self) break;
+      if (order.are_near(order.spheres[i], order.spheres[place], S(0))) this->meet(p, place);
     }
     this->store(p);
   }
-
- private:
-  /// The header for the next step; what is written here is not read until then.
-  static COLLIDE_HD_INLINE void settle(order_header& h) {
-    h.renew = h.arrivals = 0;
-    h.before = h.now;
-    h.seen = h.count;
-  }
 };
 
-/// Kernel body of `for_each_if` over places in the order: the same for particles with more neighbours than lists have
-/// room for. As many as can be held at a time are found, by rising numbers.
+/// Kernel body of `for_each_if` over places in the order: particles with more neighbours than lists have room for meet
+/// those that overlap them. As many as can be held at a time are found, by rising numbers.
 template <class S, class Scene>
 struct meet_crowds : meetings<S, Scene> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& order = this->order;
-    if (i >= order.header->now || order.list(0, i) != order.too_many) return;
+    if (i >= order.header->count || order.list(0, i) != order.too_many) return;
     auto const self = static_cast<std::uint32_t>(i);
     typename meetings<S, Scene>::participant p(order.load(i));
     id last = 0;

@@ -44,24 +44,6 @@ struct step_body : respond_body<S, NarrowPhase, Lookup, Scene> {
   template <class Block>
   static constexpr std::uint32_t room = respond_type::template together<Block>;
 
-  /// A particle that may touch the mesh, and where it is, if it has moved.
-  template <bool Moves, class = void>
-  struct listed_ball {
-    id number;
-    S centre[3];
-
-    COLLIDE_HD_INLINE void set(id i, vec3<S> const& at) {
-      number = i;
-      for (int k = 0; k < 3; ++k) centre[k] = at[k];
-    }
-  };
-  template <class Never>
-  struct listed_ball<true, Never> {
-    id number;
-
-    COLLIDE_HD_INLINE void set(id i, vec3<S> const&) { number = i; }
-  };
-
   template <class Block>
   struct scratch {
     union {  // one after the other
@@ -71,7 +53,7 @@ struct step_body : respond_body<S, NarrowPhase, Lookup, Scene> {
     cell_marks<S> marks;
     bool simple;  ///< all are asked `marks` whether they may touch the mesh
     std::uint32_t count;
-    listed_ball<moves> listed[room<Block>];  ///< the first of those that may
+    id listed[room<Block>];  ///< the first of those that may
   };
 
   template <class Block>
@@ -80,7 +62,7 @@ struct step_body : respond_body<S, NarrowPhase, Lookup, Scene> {
     move_share(block, s);
     std::uint32_t const n = block.shared(s.count);
     if (n == 0) return;
-    typename respond_type::surroundings const near{lookup.opened(), s.marks, s.simple};
+    Lookup const near = lookup.opened();
     std::uint32_t const share = (n - 1) / ((n - 1) / room<Block> + 1) + 1;
     for (std::uint32_t base = 0; base < n; base += share) {
       this->collide(block, s.contacts, near, smaller(n - base, share),
@@ -106,16 +88,7 @@ struct step_body : respond_body<S, NarrowPhase, Lookup, Scene> {
   template <class Block>
   COLLIDE_HD_INLINE void begin(Block const& block, scratch<Block> const& s, survivor<S, moves>& one,
                                std::uint32_t i) const {
-    if (i >= room<Block>) {
-      respond_type::begin(one, list.numbers[place_of(block, i - room<Block>)]);
-    } else if constexpr (moves) {
-      respond_type::begin(one, s.listed[i].number);
-    } else {
-      listed_ball<moves> const& b = s.listed[i];
-      one.number = b.number;
-      one.radius = state.radius_at(b.number);
-      one.place({b.centre[0], b.centre[1], b.centre[2]}, {});
-    }
+    respond_type::begin(one, i < room<Block> ? s.listed[i] : list.numbers[place_of(block, i - room<Block>)]);
   }
 
   /// Moves the particles of a block, and lists those that may touch the mesh.
@@ -123,10 +96,10 @@ struct step_body : respond_body<S, NarrowPhase, Lookup, Scene> {
   COLLIDE_HD_INLINE void move_share(Block& block, scratch<Block>& s) const {
     constexpr std::uint32_t row = Block::row_lanes, rows = Block::lanes / row;
     std::uint32_t const n = stretches<Block>(state.size);
-    auto const list_one = [&](id number, vec3<S> const& centre) {
+    auto const list_one = [&](id number) {
       std::uint32_t const i = block.add(s.count, 1);
       if (i < room<Block>) {
-        s.listed[i].set(number, centre);
+        s.listed[i] = number;
       } else {
         list.numbers[place_of(block, i - room<Block>)] = number;
       }

@@ -5,14 +5,13 @@
 /// may cross a half before something can be missing (L. Verlet, "Computer experiments on classical fluids I", Physical
 /// Review 159(1), 1967). Until then a step only copies the particles' columns in the order of the last grid, and tries
 /// what is listed. It is found out on the device whether that is so: kernels that renew the lists end at once if not.
-/// The few that come, or move far, are strays: they make a list of their own, and those near them add them to theirs.
-/// Where strays have become too many, all lists are made anew. What is no longer there is left out.
+/// Where something has come, or moved far, all lists are made anew. What is no longer there is left out.
 ///
 /// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. They lie in a
 /// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
 /// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
-/// particles, and each particle looks into the 27 cells around it, and through the strays. What has too many neighbours
-/// for its list does so in each step.
+/// particles, and each particle looks into the 27 cells around it. What has too many neighbours for its list does so in
+/// each step.
 ///
 /// Distances must be such that their squares neither overflow nor vanish: with floats, radii from 1e-17 to 1e18.
 ///
@@ -70,8 +69,7 @@ class neighbours {
                   known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
                   lists_.data(),   state.size};
     std::size_t const n = state.size;
-    std::uint32_t const *const renew = &o.header->renew, *const arrivals = &o.header->arrivals,
-                               *const crowded = &o.header->crowded;
+    std::uint32_t const *const renew = &o.header->renew, *const crowded = &o.header->crowded;
     // half of the skin, but for rounding
     space.for_each(n, refresh_order<S, Scene>{state, o, S(0.495) * skin_});
     space.for_each_if(renew, blocks_ * cells::stride, empty_cells<S, Scene>{o});
@@ -80,7 +78,6 @@ class neighbours {
     space.for_each_if(renew, n, sort_into_cells<S, Scene, true>{state, o});
     space.for_each_if(renew, n, copy_in_order<S, Scene>{state, o});
     space.for_each_if(renew, n, list_neighbours<S, Scene>{o, skin_});
-    space.for_each_if(arrivals, n, admit_strays<S, Scene>{{o, S(1.5) * skin_}});
     space.for_each(n, meet_neighbours<S, Scene>{{state, o, scene, dt}});
     space.for_each_if(crowded, n, meet_crowds<S, Scene>{{state, o, scene, dt}});
   }
