@@ -18,8 +18,6 @@ namespace bench {
 
 using vec = collide::vec3<double>;
 
-constexpr double study_cube = 592.2;  ///< half the width of the cube that the study's spheres lie in
-
 inline io::scene study(std::size_t spheres, std::uint64_t seed) {
   return io::study_scene(spheres, io::study_triangles, seed);
 }
@@ -43,13 +41,13 @@ inline io::scene thin(std::size_t spheres, std::uint64_t seed) {
     return vec(p[0], p[1], p[2]);
   };
   for (std::size_t i = 0; i < io::study_triangles; ++i) {
-    vec const middle = vector(study_cube), half = vector(1).normalized() * length / 2;
+    vec const middle = vector(io::study_cube), half = vector(1).normalized() * length / 2;
     vec const aside = half.cross(vector(1)).normalized() * length * std::pow(10, random.between(-6, -2));
     vec const a = middle - half, b = middle + half;
     vec const c = aside + (i % 2 == 0 ? b : vec(middle + random.between(-0.8, 0.8) * half));
-    io::detail::add_triangle(s, {a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()});
+    io::add_triangle(s, {a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()});
   }
-  io::detail::add_spheres(s, spheres, of_spheres, study_cube);
+  io::add_spheres(s, spheres, of_spheres, io::study_cube);
   return s;
 }
 
