@@ -21,6 +21,7 @@
 
 #include "io/scenes.hpp"
 #include "program.hpp"
+#include "scene.hpp"
 #include "stopwatch.hpp"
 
 namespace {
@@ -68,20 +69,15 @@ io::scene const& scene_of(make_scene make, std::size_t value, std::size_t larges
 template <class Space>
 void run(benchmark::State& state, Space space, make_scene make, std::size_t value, std::size_t largest) {
   io::scene const& from = scene_of(make, value, largest);
-  std::vector<float> const vertices(from.vertices.begin(), from.vertices.end());
-  std::vector<float> const centres(from.centres.begin(), from.centres.end());
-  std::vector<float> const radii(from.radii.begin(), from.radii.end());
+  bench::scene<float> const rounded(from);
   std::size_t const n = from.sphere_count();
-  auto const mesh = collide::upload(
-      space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, from.corners.data(), from.triangle_count()));
-  auto const spheres =
-      collide::upload(space, radii.empty() ? collide::spheres_xyz(centres.data(), n, static_cast<float>(from.radius))
-                                           : collide::spheres_xyz(centres.data(), n, radii.data()));
+  auto const mesh = collide::upload(space, rounded.mesh());
+  auto const spheres = collide::upload(space, rounded.spheres());
   collide::detector<collide::bucket, collide::karabassi<>, Space> detector(space);
   collide::pairs pairs;
   auto const detect = [&] {
-    if (radii.empty()) {
-      detector.build(mesh.view(), static_cast<float>(from.radius));
+    if (from.radii.empty()) {
+      detector.build(mesh.view(), rounded.largest_radius());
     } else {
       detector.build(mesh.view());
     }
