@@ -52,6 +52,11 @@ inline io::scene thin(std::size_t spheres, std::uint64_t seed) {
   return s;
 }
 
+/// Spheres on slivers of 1:2,000 and more.
+inline io::scene long_slivers(std::size_t spheres, std::uint64_t seed) {
+  return io::long_slivers_scene(spheres, io::study_triangles, seed);
+}
+
 /// A radius of type float that is within 2 ulp of a distance, at random below it or not.
 inline float radius_near(double distance, io::random_numbers& random) {
   auto r = static_cast<float>(distance);

@@ -85,7 +85,7 @@ class Study(GenerateTest):
 
 # What libraries are compared on (issue 32 and docs/performance.md), and scenes that are hard or small.
 MEASURED = ("study", "few", "hits", "many_hits", "radii_1000", "radii_100", "many_triangles", "drum", "camera", "grains", "soup", "crowd", "sparse")
-OTHERS = ("radii", "ball", "terrain", "slivers", "giant", "clusters", "pile", "cube", "octahedron")
+OTHERS = ("radii", "ball", "terrain", "slivers", "long_slivers", "giant", "clusters", "pile", "cube", "octahedron")
 
 
 class Scenes(GenerateTest):

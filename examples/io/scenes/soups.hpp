@@ -37,6 +37,29 @@ inline scene slivers_scene(std::size_t spheres, std::size_t triangles, std::uint
   return s;
 }
 
+/// Slivers 100 long and 2,000 to 5,000 times as thin, and spheres that lie on them, 1 to 5 % of their radius deep, each
+/// above a point inside one. The slivers do not depend on the seed.
+inline scene long_slivers_scene(std::size_t spheres, std::size_t triangles, std::uint64_t seed) {
+  constexpr double size = 100;
+  scene s;
+  s.radius = 2;
+  random_numbers of_slivers(12), random(seed + 13);
+  for (std::size_t i = 0; i < triangles; ++i) {
+    point const middle = of_slivers.in_cube(500), along = size * normalized(of_slivers.in_cube(1));
+    point const aside = normalized(cross(along, of_slivers.in_cube(1)));
+    point const top = middle + of_slivers.between(-0.4, 0.4) * along + size / of_slivers.between(2000, 5000) * aside;
+    add_triangle(s, middle - 0.5 * along, middle + 0.5 * along, top);
+  }
+  for (std::size_t i = 0; i < spheres && triangles > 0; ++i) {
+    std::size_t const corner = 3 * random.below(triangles);
+    point const a = vertex_of(s, corner), ab = vertex_of(s, corner + 1) - a, ac = vertex_of(s, corner + 2) - a;
+    double const u = random.unit(), v = random.unit() * (1 - u);
+    double const height = s.radius * (1 - random.between(0.01, 0.05));
+    add_point(s.centres, a + u * ab + v * ac + height * normalized(cross(ab, ac)));
+  }
+  return s;
+}
+
 /// A soup of small triangles, and one a million times as large.
 inline scene giant_scene(std::size_t spheres, std::size_t triangles, std::uint64_t seed) {
   scene s;
