@@ -2,7 +2,7 @@
 /// The scenes that libraries are compared on: scenes_bench [PART] [OPTION OF GOOGLE BENCHMARK...]
 ///
 /// Names are scenes/SCENE/BROAD_x_SPACE/PHASE, with the scenes of io/scenes.hpp. PHASE is
-///   first  a new detector, its build and its first query, into the sink `pairs`;
+///   first  the build and the first query of a new detector, into the sink `pairs`, memory included;
 ///   both   build, and the first query after it, of a detector that has its memory;
 ///   query  a query like the one before.
 /// Arrays are in memory of the space, and so are the pairs. Counters: spheres, triangles, pairs; bound_us, the time of
@@ -86,11 +86,11 @@ void run(benchmark::State& state, io::scene_kind const& kind, std::size_t part, 
     }
   };
   auto const query = [&] { detector->query(spheres, *pairs); };
+  auto const renew = [&] {
+    detector = std::make_unique<detector_type>(space);
+    pairs = std::make_unique<collide::pairs>();
+  };
   auto const work = [&] {
-    if (what == phase::first) {
-      detector = std::make_unique<detector_type>(space);
-      pairs = std::make_unique<collide::pairs>();
-    }
     if (what != phase::query) build();
     query();
   };
@@ -100,6 +100,7 @@ void run(benchmark::State& state, io::scene_kind const& kind, std::size_t part, 
   bench::stopwatch<Space> watch(space);
   double seconds = 0;
   for (auto _ : state) {
+    if (what == phase::first) renew();
     double const t = watch(work);
     state.SetIterationTime(t);
     seconds += t;
