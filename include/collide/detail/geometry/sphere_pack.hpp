@@ -48,6 +48,8 @@ struct sphere_batch {
     }
   }
 
+  COLLIDE_HD_INLINE sphere<S> ball(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
+
   /// The packed centres if the device can load four at a time with 16-byte loads; else null.
   static COLLIDE_HD_INLINE S const* quads_of(sphere_view<S> const& spheres) {
 #if defined(__CUDA_ARCH__)

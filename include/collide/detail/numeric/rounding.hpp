@@ -107,19 +107,6 @@ COLLIDE_HD_INLINE T settled(T x) {
 #endif
 }
 
-/// Makes the device read all of `x` now: else a compiler puts off what is used later, behind a branch, and that waits
-/// for the memory again.
-template <class T>
-COLLIDE_HD_INLINE void read_at_once([[maybe_unused]] T& x) {
-#if defined(__CUDA_ARCH__)
-  static_assert(sizeof(T) % sizeof(std::uint32_t) == 0, "collide: is kept in registers of 32 bits");
-  std::uint32_t words[sizeof(T) / sizeof(std::uint32_t)];
-  std::memcpy(words, static_cast<void const*>(&x), sizeof x);
-  for (auto& word : words) asm volatile("" : "+r"(word));
-  std::memcpy(static_cast<void*>(&x), words, sizeof x);
-#endif
-}
-
 template <class T>
 COLLIDE_HD_INLINE T dot(vec3<T> const& a, vec3<T> const& b) {
   return mul(a.x(), b.x()) + mul(a.y(), b.y()) + mul(a.z(), b.z());

@@ -18,7 +18,7 @@ namespace collide::detail {
 
 /// each(space, spheres, size, f) calls f(chunk, first) for all spheres, `size` of them at a time, the first of them
 /// being number `first`; `size` is from 1 to the number of spheres.
-template <class Space, class Spheres, bool HostMemory = Space::host_memory>
+template <class Space, class Spheres, bool HostMemory = Space::host_accessible>
 class chunks;
 
 /// The streamer for spaces that read host memory: chunks are views of it, nothing is copied.
