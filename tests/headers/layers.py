@@ -26,7 +26,7 @@ LAYERS = {
     "query": "detail/query/ concepts.hpp hit.hpp",
     "sinks": "detail/sinks/ any.hpp closest.hpp contacts.hpp count.hpp earliest.hpp impacts.hpp pairs.hpp visit.hpp",
     "detector": "compiled.hpp detector.hpp validate.hpp",
-    "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh",
+    "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh extend.hpp",
     "effect interface": "columns.hpp effect.hpp velocity_verlet.hpp",
     "simulation": "detail/simulation/ simulation.cuh",
     "effects": "absorb.hpp bounce.hpp bounds.hpp drag.hpp emit.hpp friction.hpp gravity.hpp lost_motion.hpp polydisperse.hpp sleep.hpp "

@@ -1,0 +1,151 @@
+/// \file
+/// For those who write a broad phase or an execution space: names that stay. See docs/extending.md.
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/execution/block.hpp>
+#include <collide/detail/execution/launch.hpp>
+#include <collide/detail/execution/tuning.hpp>
+#include <collide/detail/geometry/bounding_sphere.hpp>
+#include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/detail/query/per_sphere.hpp>
+#include <collide/detector.hpp>
+
+namespace collide {
+
+/// A block of one thread, for spaces whose threads do not work together: `Items` items, and `HitCapacity` hits that are
+/// gathered before they go to the sink. detail/execution/block.hpp says what a block has.
+template <int Items, int HitCapacity>
+using serial_block = detail::serial_block<Items, HitCapacity>;
+
+/// How many blocks cover `n` items of a kernel functor: each thread of a block has `Block::items` of them.
+using detail::grid_size;
+
+/// From candidates to hits, in a kernel of one's own: `begin(buffer, thread)` first, by each thread;
+/// `test(block, buffer, {sphere, triangle}, sphere value)` for each candidate; `make_room(block, buffer)` by the whole
+/// block, after each thread had at most as many candidates as the buffer was made for; `flush(block, buffer)` last.
+/// Made as `{mesh, spheres, sink, nullptr}`.
+template <class S, class NarrowPhase, class Sink>
+using candidate_pipeline = detail::tester<S, NarrowPhase, Sink>;
+
+/// The memory of a `candidate_pipeline`, a member of the kernel's scratch memory.
+template <class Block, int CandidatesPerThread = 1>
+using candidate_buffer = detail::hit_buffer<Block, CandidatesPerThread>;
+
+/// A conservative sphere around a triangle; no sphere reaches that of a triangle that is not finite.
+template <class S>
+class bounding_sphere {
+ public:
+  bounding_sphere() = default;
+  COLLIDE_HD explicit bounding_sphere(triangle<S> const& t) : sphere_(detail::bounds_of(t)) {}
+
+  /// True if the sphere can touch the triangle. Rounding never makes it false.
+  COLLIDE_HD bool is_reached_by(sphere<S> const& s) const { return sphere_.reached(s.centre, s.radius); }
+
+ private:
+  detail::bounding_sphere<S> sphere_;
+};
+
+/// Whether a sphere can touch a mesh at all: a plain value for kernels, see `mesh_bounds`.
+template <class S>
+class mesh_bounds_ref {
+ public:
+  mesh_bounds_ref() = default;
+  explicit mesh_bounds_ref(detail::mesh_summary<S> const* summary) : summary_{summary} {}
+
+  /// True if the sphere can touch the box around the mesh. Rounding never makes it false.
+  COLLIDE_HD bool is_reached_by(sphere<S> const& s) const {
+    if (summary_ == nullptr || summary_->extents.empty()) return false;
+    detail::box<S> box;
+    for (int k = 0; k < 3; ++k) {
+      box.lower[k] = summary_->lower_of(k);
+      box.upper[k] = summary_->upper_of(k);
+    }
+    S const padding = 16 * S(detail::format<float>::unit) * box.extent();
+    return detail::triangle_box<S>{box, padding}.reached(s.centre, s.radius);
+  }
+
+ private:
+  detail::mesh_summary<S> const* summary_ = nullptr;
+};
+
+/// The box around a mesh, in memory of a space.
+template <class S>
+class mesh_bounds {
+ public:
+  /// Puts the computation on the space's stream. O(triangles). Allocates the first time.
+  template <class Space>
+  void build(Space& space, mesh_view<S> mesh) {
+    auto* const summary = summary_.reserve(space.resource(), 1);
+    detail::mesh_summary<S>::clear(space, summary);
+    detail::summarise_mesh<S> const kernel{mesh, summary, nullptr};
+    space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
+  }
+
+  mesh_bounds_ref<S> ref() const { return mesh_bounds_ref<S>(summary_.data()); }
+
+ private:
+  buffer<detail::mesh_summary<S>> summary_;
+};
+
+/// Broad phase made of one that only enumerates: for all spaces, spheres at rest and moving ones, and simulations.
+///
+/// `Policy` holds the options, and a class template `index<S>` with
+///   - `build(space, options, mesh)`, for every mesh that is not empty;
+///   - `ref() const`: a trivially copyable value with a const member `template <class F> void
+///     for_each_candidate(sphere<S>, F f)` that calls f(triangle) for all that the sphere could touch, each once. It
+///     runs where the space is, so it is `COLLIDE_HD`. For a sphere that moves it is called with a sphere around all of
+///     its motion, unless it takes a `moving_sphere<S>` too.
+/// A query takes O(spheres * enumeration); in spaces with threads that work together an enumeration is made for every 8
+/// candidates of a sphere, in simulations for every candidate.
+template <class Policy>
+struct per_sphere {
+  Policy policy{};  ///< its options
+
+  template <class S>
+  class index {
+    using policy_index = typename Policy::template index<S>;
+
+   public:
+    template <class Space>
+    void build(Space& space, per_sphere const& options, mesh_view<S> mesh) {
+      using ref_type = decltype(index_.ref());
+      static_assert(std::is_trivially_copyable<ref_type>::value && std::is_default_constructible<ref_type>::value,
+                    "collide: what ref() of a per_sphere policy returns is a trivially copyable value, and has a "
+                    "default constructor");
+      static_assert(detail::enumerates_candidates_of<ref_type, sphere<S>>::value,
+                    "collide: what ref() of a per_sphere policy returns has a const member "
+                    "for_each_candidate(sphere<S>, f)");
+      mesh_ = mesh;
+      index_.build(space, options.policy, mesh);
+    }
+
+    template <class Space, class RadiusOrSpheres>
+    void prepare(Space&, per_sphere const&, RadiusOrSpheres const&) {}
+
+    template <class NarrowPhase, class Space, class Sink>
+    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
+      detail::per_sphere_query<S, NarrowPhase, Sink, decltype(index_.ref())> const kernel{
+          {mesh_, spheres, sink, nullptr}, index_.ref()};
+      space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);
+    }
+
+    /// What a kernel of a simulation asks for the triangles near a single sphere; valid until the next build.
+    auto lookup() const { return detail::per_sphere_lookup<S, decltype(index_.ref())>{{mesh_, nullptr}, index_.ref()}; }
+
+    template <class Space>
+    double cell_width(Space&) const {
+      return 0;
+    }
+
+   private:
+    mesh_view<S> mesh_;
+    policy_index index_;
+  };
+};
+
+}  // namespace collide
