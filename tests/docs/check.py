@@ -57,6 +57,9 @@ def examples():
     for program in sorted((ROOT / "examples").glob("*.cpp")):
         if program.name not in text and f"`{program.stem}`" not in text:
             yield f"no page mentions examples/{program.name}"
+    for source in sorted((ROOT / "examples").rglob("*.?pp")):
+        if re.search(r"collide(::|/)detail", source.read_text()):
+            yield f"{source}: uses what may change at any time"
 
 
 def glossary():
