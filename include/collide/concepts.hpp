@@ -10,38 +10,144 @@
 /// `query.mesh` and `query.spheres` are the views, `Query::narrow_phase` and `Query::scalar` are types.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
 
-#include <collide/hit.hpp>
-#include <collide/karabassi.hpp>
+#include <collide/detail/narrow_phase/traits.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {
 
-/// A broad phase B for a space E and coordinates of type S.
-template <class B, class E, class S, class = void>
-struct is_broad_phase : std::false_type {};
-template <class B, class E, class S>
-struct is_broad_phase<
-    B, E, S,
-    std::void_t<decltype(std::declval<typename B::template index<S>&>().build(
-                    std::declval<E&>(), std::declval<B const&>(), std::declval<mesh_view<S>>())),
-                decltype(std::declval<typename B::template index<S>&>().prepare(
-                    std::declval<E&>(), std::declval<B const&>(), std::declval<S>())),
-                decltype(std::declval<typename B::template index<S>&>().prepare(
-                    std::declval<E&>(), std::declval<B const&>(), std::declval<sphere_view<S> const&>()))>>
-    : std::true_type {};
+template <class Void, template <class...> class Expression, class... T>
+struct is_valid_expression : std::false_type {};
+template <template <class...> class Expression, class... T>
+struct is_valid_expression<std::void_t<Expression<T...>>, Expression, T...> : std::true_type {};
 
-template <class E, class = void>
-struct is_execution_space : std::false_type {};
+/// True if Expression<T...> is a type.
+template <template <class...> class Expression, class... T>
+inline constexpr bool is_valid = is_valid_expression<void, Expression, T...>::value;
+
+/// In place of a function, a kernel functor and a sink, where only signatures are asked for.
+struct any_function {
+  void operator()(std::size_t) const {}
+};
+struct any_kernel {
+  static constexpr int items = 1;
+  template <class Block>
+  struct scratch {};
+  template <class Block>
+  void operator()(Block&, scratch<Block>&) const {}
+};
+struct any_sink {};
+
+/// The members of an execution space E.
 template <class E>
-struct is_execution_space<
-    E, std::void_t<decltype(std::declval<E const&>().resource()),
-                   decltype(std::declval<E const&>().saturating_blocks()), decltype(E::host_accessible)>>
-    : std::true_type {};
+struct space_member {
+  template <class T>
+  using resource = decltype(std::declval<T const&>().resource());
+  template <class T>
+  using name = decltype(T::name());
+  template <class T>
+  using host_accessible = std::enable_if_t<std::is_same<decltype(T::host_accessible), bool const>::value>;
+  template <class T>
+  using block = typename T::template block<any_kernel>;
+  template <class T>
+  using launch = decltype(std::declval<T const&>().launch(std::size_t{}, any_kernel()));
+  template <class T>
+  using for_each = decltype(std::declval<T const&>().for_each(std::size_t{}, any_function()));
+  template <class T>
+  using fill = decltype(std::declval<T const&>().fill(static_cast<void*>(nullptr), static_cast<unsigned char>(0),
+                                                      std::size_t{}));
+  template <class T>
+  using read = decltype(std::declval<T const&>().read(static_cast<int const*>(nullptr)));
+  template <class T>
+  using copy_to_host = decltype(std::declval<T const&>().copy_to_host(static_cast<int*>(nullptr),
+                                                                      static_cast<int const*>(nullptr), std::size_t{}));
+  template <class T>
+  using copy_from_host = decltype(std::declval<T const&>().copy_from_host(
+      static_cast<int*>(nullptr), static_cast<int const*>(nullptr), std::size_t{}));
+  template <class T>
+  using saturating_blocks = decltype(std::declval<T const&>().saturating_blocks());
+  template <class T>
+  using max_resident_blocks = decltype(std::declval<T const&>().template max_resident_blocks<any_kernel>());
+  template <class T>
+  using synchronize = decltype(std::declval<T const&>().synchronize());
+};
+
+/// True if E looks like an execution space at all: then `check_space` says what it lacks.
+template <class E>
+inline constexpr bool is_execution_space =
+    is_valid<space_member<E>::template host_accessible, E> || is_valid<space_member<E>::template resource, E>;
+
+template <class E>
+constexpr bool check_space() {
+  using m = space_member<E>;
+  static_assert(is_valid<m::template resource, E>,
+                "collide: an execution space has a const member resource(), a std::pmr::memory_resource*");
+  static_assert(is_valid<m::template host_accessible, E>,
+                "collide: an execution space has a static constexpr bool host_accessible");
+  static_assert(is_valid<m::template name, E>, "collide: an execution space has a static member name()");
+  static_assert(is_valid<m::template block, E>, "collide: an execution space has a member template block<Kernel>");
+  static_assert(is_valid<m::template launch, E>,
+                "collide: an execution space has a const member launch(blocks, kernel)");
+  static_assert(is_valid<m::template for_each, E>, "collide: an execution space has a const member for_each(n, f)");
+  static_assert(is_valid<m::template fill, E>, "collide: an execution space has a const member fill(to, byte, bytes)");
+  static_assert(is_valid<m::template read, E>, "collide: an execution space has a const member read(from)");
+  static_assert(is_valid<m::template copy_to_host, E>,
+                "collide: an execution space has a const member copy_to_host(to, from, n)");
+  static_assert(is_valid<m::template copy_from_host, E>,
+                "collide: an execution space has a const member copy_from_host(to, from, n)");
+  static_assert(is_valid<m::template saturating_blocks, E>,
+                "collide: an execution space has a const member saturating_blocks()");
+  static_assert(is_valid<m::template max_resident_blocks, E>,
+                "collide: an execution space has a const member template max_resident_blocks<Kernel>()");
+  static_assert(is_valid<m::template synchronize, E>, "collide: an execution space has a const member synchronize()");
+  return true;
+}
+
+/// The members of the index of a broad phase B for a narrow phase N, a space E and coordinates of type S.
+template <class B, class N, class E, class S>
+struct broad_phase_member {
+  template <class T>
+  using index = typename T::template index<S>;
+  template <class T>
+  using build = decltype(std::declval<index<T>&>().build(std::declval<E&>(), std::declval<T const&>(),
+                                                         std::declval<mesh_view<S>>()));
+  template <class T>
+  using prepare_radius =
+      decltype(std::declval<index<T>&>().prepare(std::declval<E&>(), std::declval<T const&>(), std::declval<S>()));
+  template <class T>
+  using prepare_spheres = decltype(std::declval<index<T>&>().prepare(std::declval<E&>(), std::declval<T const&>(),
+                                                                     std::declval<sphere_view<S> const&>()));
+  template <class T>
+  using query = decltype(std::declval<index<T> const&>().template query<N>(
+      std::declval<E&>(), std::declval<spheres_of<N, S> const&>(), std::declval<any_sink const&>()));
+  template <class T>
+  using cell_width = decltype(std::declval<index<T> const&>().cell_width(std::declval<E const&>()));
+};
+
+template <class B, class S>
+inline constexpr bool is_broad_phase = is_valid<broad_phase_member<B, int, int, S>::template index, B>;
+
+template <class B, class N, class E, class S>
+constexpr bool check_broad_phase() {
+  using m = broad_phase_member<B, N, E, S>;
+  static_assert(is_valid<m::template build, B>,
+                "collide: the index of a broad phase has a member build(space, options, mesh)");
+  static_assert(is_valid<m::template prepare_radius, B>,
+                "collide: the index of a broad phase has a member prepare(space, options, radius)");
+  static_assert(is_valid<m::template prepare_spheres, B>,
+                "collide: the index of a broad phase has a member prepare(space, options, spheres)");
+  static_assert(
+      is_valid<m::template query, B>,
+      "collide: the index of a broad phase has a const member template query<NarrowPhase>(space, spheres, sink)");
+  static_assert(is_valid<m::template cell_width, B>,
+                "collide: the index of a broad phase has a const member cell_width(space)");
+  return true;
+}
 
 template <class D, class = void>
 struct is_detector : std::false_type {};
@@ -50,18 +156,15 @@ struct is_detector<
     D, std::void_t<typename D::broad_phase, typename D::narrow_phase, typename D::execution_space, typename D::scalar>>
     : std::true_type {};
 
-/// What a sink passes to a query.
-template <class H, class = void>
-struct is_handle : std::false_type {};
+/// The members of what a sink passes to a query.
 template <class H>
-struct is_handle<H, std::void_t<decltype(std::declval<H const&>().reserve(std::uint64_t{})),
-                                decltype(&H::template store<hit<karabassi<>, float>>)>> : std::true_type {};
+using handle_reserve = std::enable_if_t<
+    std::is_convertible<decltype(std::declval<H const&>().reserve(std::uint64_t{})), std::uint64_t>::value>;
+template <class H, class Hit>
+using handle_store = decltype(std::declval<H const&>().store(std::uint64_t{}, std::declval<Hit const&>()));
 
-template <class Sink, class Space, class Query, class = void>
-struct is_sink : std::false_type {};
+/// The member of a sink.
 template <class Sink, class Space, class Query>
-struct is_sink<Sink, Space, Query,
-               std::void_t<decltype(std::declval<Sink&>().run(std::declval<Space&>(), std::declval<Query const&>()))>>
-    : std::true_type {};
+using sink_run = decltype(std::declval<Sink&>().run(std::declval<Space&>(), std::declval<Query const&>()));
 
 }  // namespace collide::detail

@@ -39,16 +39,18 @@ template <class BroadPhase, class NarrowPhase = karabassi<>, class ExecutionSpac
 class detector {
   static_assert(std::is_same<Scalar, float>::value || std::is_same<Scalar, double>::value,
                 "collide: the fourth parameter of a detector is the type of the coordinates, float or double");
-  static_assert(detail::is_execution_space<ExecutionSpace>::value,
+  static_assert(detail::is_execution_space<ExecutionSpace>,
                 "collide: the third parameter of a detector is an execution space: host, cuda or cuda_shared");
   static_assert(
-      detail::is_broad_phase<BroadPhase, ExecutionSpace, Scalar>::value,
+      detail::is_broad_phase<BroadPhase, Scalar>,
       "collide: the first parameter of a detector is a broad phase, such as bucket or all_pairs: a class with a "
-      "member template index<Scalar>, which has members build, prepare (for a radius and for spheres) and query");
+      "member template index<Scalar>");
   static_assert(
       detail::judges<NarrowPhase, Scalar, moving_sphere<Scalar>>::value,
       "collide: the second parameter of a detector is a narrow phase, such as karabassi<>: a class with a static "
       "member intersects(triangle, sphere) that returns bool");
+  static_assert(detail::check_space<ExecutionSpace>());
+  static_assert(detail::check_broad_phase<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>());
 
  public:
   using broad_phase = BroadPhase;
@@ -77,7 +79,7 @@ class detector {
   Sink query(spheres_type const& spheres, Sink&& sink) {
     using pass = detail::query_pass<typename BroadPhase::template index<Scalar>, NarrowPhase, ExecutionSpace, Scalar>;
     static_assert(
-        detail::is_sink<std::remove_reference_t<Sink>, ExecutionSpace, pass>::value,
+        detail::is_valid<detail::sink_run, std::remove_reference_t<Sink>, ExecutionSpace, pass>,
         "collide: the second argument of query is a sink, such as count, any, pairs, contacts, closest or visit: an "
         "object with a member run(space, query)");
     prepare(spheres);

@@ -24,6 +24,9 @@
 /// called before the other members but `begin_step`: `self` and `other` are as they were when the step began, and what
 /// changes is `particle`, so that both of a pair see the same.
 ///
+/// `accelerate` of every effect is called once more for each contact with the mesh, on a copy of the particle, to learn
+/// `touching::gain`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
+///
 /// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
 /// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. Members are
 /// called in the order of the scene's list. What a scene does not name costs nothing: neither memory nor instructions.

@@ -1,8 +1,10 @@
-// expect: collide: the first parameter of a detector is a broad phase
-#include <collide/bucket.cuh>
+// expect: collide: the index of a broad phase has a member build(space, options, mesh)
+#include <collide/all_pairs.cuh>
 
-struct broad {
+struct broad : collide::all_pairs {
   template <class S>
-  struct index {};
+  class index : public all_pairs::index<S> {
+    using all_pairs::index<S>::build;
+  };
 };
 collide::detector<broad> detector;

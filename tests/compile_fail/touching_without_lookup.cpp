@@ -4,13 +4,10 @@
 #include <collide/bucket.cuh>
 #include <collide/simulation.cuh>
 
-struct blind {
+struct blind : collide::bucket {
   template <class S>
-  struct index {
-    template <class Space>
-    void build(Space&, blind const&, collide::mesh_view<S>) {}
-    template <class Space, class Spheres>
-    void prepare(Space&, blind const&, Spheres const&) {}
+  class index : public bucket::index<S> {
+    using bucket::index<S>::lookup;
   };
 };
 

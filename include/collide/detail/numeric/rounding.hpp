@@ -62,7 +62,7 @@ COLLIDE_HD_INLINE double root(double a) {
 #endif
 }
 
-/// a * b + c: rounded once on the device, and on the host as the compiler likes.
+/// a * b + c: fused on the device; on the host the compiler chooses.
 COLLIDE_HD_INLINE float fused(float a, float b, float c) {
 #if defined(__CUDA_ARCH__)
   return __fmaf_rn(a, b, c);

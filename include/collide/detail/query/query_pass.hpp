@@ -31,9 +31,10 @@ struct query_pass {
 template <class Index, class NarrowPhase, class Space, class S>
 template <class Handle>
 void query_pass<Index, NarrowPhase, Space, S>::operator()(Handle const& handle) const {
-  static_assert(
-      is_handle<Handle>::value,
-      "collide: what a sink passes to query has a const member reserve(n) and a const member store(slot, hit)");
+  static_assert(is_valid<handle_reserve, Handle>,
+                "collide: what a sink passes to query has a const member reserve(n) that returns the number of a slot");
+  static_assert(is_valid<handle_store, Handle, hit<NarrowPhase, S>>,
+                "collide: what a sink passes to query has a const member store(slot, hit)");
   static_assert(std::is_trivially_destructible<Handle>::value || Space::host_accessible,
                 "collide: what a sink hands to the device must be a plain value");
   if (mesh.size() != 0 && spheres.size() != 0) {

@@ -1,0 +1,10 @@
+// expect: collide: the index of a broad phase has a const member template query<NarrowPhase>(space, spheres, sink)
+#include <collide/all_pairs.cuh>
+
+struct broad : collide::all_pairs {
+  template <class S>
+  class index : public all_pairs::index<S> {
+    using all_pairs::index<S>::query;
+  };
+};
+collide::detector<broad> detector;
