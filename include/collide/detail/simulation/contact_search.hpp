@@ -3,9 +3,9 @@
 ///
 /// The candidates of a batch of particles are spread evenly over the lanes of the block. Those that the quick test of
 /// their cell lets through are queued, and go through the narrow phase's filter as many at a time as there are lanes;
-/// what passes is queued again, and its contact computed as many at a time. Each queue is drained when it is full. A
-/// lane alone does all of this at once with each candidate. The deepest contact, or of particles that move the
-/// earliest, wins by a minimum over 64-bit keys, which does not depend on the order.
+/// what passes is queued again, and its contact computed as many at a time. Queues are drained when they are full, and
+/// at the end. A lane alone does all of this at once with each candidate. The deepest contact, or of particles that
+/// move the earliest, wins by a minimum over 64-bit keys, which does not depend on the order.
 #pragma once
 
 #include <cstdint>
@@ -45,6 +45,7 @@ COLLIDE_HD_INLINE verdict_byte packed(verdict v) { return static_cast<verdict_by
 template <class Block>
 struct contact_queues {
   static constexpr bool used = Block::lanes > 1;
+  static_assert(Block::lanes <= 256, "a byte counts the particles of a batch");
   static constexpr std::uint32_t ahead = 5;  ///< cell items that a lane looks at together
 
   pair_queue<used ? (ahead + 1) * Block::lanes : 1> candidates;
@@ -66,11 +67,13 @@ struct contact_scratch {
   static constexpr std::size_t bytes_per_particle = sizeof(particle_type) + sizeof(cell_entry const*) +
                                                     2 * sizeof(std::uint32_t) + sizeof(std::uint8_t) + 2 * sizeof(id);
 
-  /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block, but no more than bytes can
-  /// count. The rest is for what else a step keeps there.
+  /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block, but fewer than lanes, and
+  /// than bytes can count. The rest is for what else a step keeps there.
   static constexpr std::uint32_t room =
       static_cast<std::uint32_t>((47 * 1024 - sizeof(contact_queues<Block>)) / bytes_per_particle);
-  static constexpr std::uint32_t batch_size = Block::lanes == 1 ? Block::items : room < 255 ? room : 255;
+  static constexpr std::uint32_t batch_size = Block::lanes == 1     ? Block::items
+                                              : room < Block::lanes ? room
+                                                                    : Block::lanes - 1;
 
   particle_type particles[batch_size];
   std::uint8_t particle_of_span[batch_size];
