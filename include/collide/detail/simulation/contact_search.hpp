@@ -3,9 +3,9 @@
 ///
 /// The candidates of a batch of particles are spread evenly over the lanes of the block. Those that the quick test of
 /// their cell lets through are queued, and go through the narrow phase's filter as many at a time as there are lanes;
-/// what passes is queued again, and its contact computed as many at a time. Each queue is drained when it is full. A
-/// lane alone does all of this at once with each candidate. The deepest contact, or of particles that move the
-/// earliest, wins by a minimum over 64-bit keys, which does not depend on the order.
+/// what passes is queued again, and its contact computed as many at a time. Queues are drained when they are full, and
+/// at the end. A lane alone does all of this at once with each candidate. The deepest contact, or of particles that
+/// move the earliest, wins by a minimum over 64-bit keys, which does not depend on the order.
 #pragma once
 
 #include <cstdint>
@@ -18,25 +18,40 @@
 
 namespace collide::detail {
 
-/// Candidates and contacts of a batch that wait for the lanes of their block.
+/// Pairs of a particle of the batch and a triangle, that wait for the lanes of their block.
+template <std::uint32_t Capacity>
+struct pair_queue {
+  static constexpr std::uint32_t capacity = Capacity;
+
+  id triangles[Capacity];
+  std::uint8_t particles[Capacity];
+  std::uint32_t size;
+
+  /// To be called by any lane, where there is room.
+  template <class Block>
+  COLLIDE_HD_INLINE std::uint32_t push(Block& block, std::uint8_t particle, id triangle) {
+    std::uint32_t const i = block.add(size, 1);
+    particles[i] = particle;
+    triangles[i] = triangle;
+    return i;
+  }
+};
+
+/// A verdict in scratch memory.
+enum class verdict_byte : std::uint8_t {};
+COLLIDE_HD_INLINE verdict_byte packed(verdict v) { return static_cast<verdict_byte>(v); }
+
+/// The queues of a block; a lane alone has none.
 template <class Block>
 struct contact_queues {
   static constexpr bool used = Block::lanes > 1;
-  static constexpr std::uint32_t ahead = 3;  ///< cell items that a lane looks at together
-  static constexpr std::uint32_t candidate_capacity = used ? (ahead + 1) * Block::lanes : 1;
-  static constexpr std::uint32_t record_capacity = used ? Block::lanes * 2 : 1;
+  static_assert(Block::lanes <= 256, "a byte counts the particles of a batch");
+  static constexpr std::uint32_t ahead = 5;  ///< cell items that a lane looks at together
 
-  /// A particle of the batch, and a triangle.
-  struct candidate {
-    id triangle;
-    std::uint16_t particle;
-    std::int8_t touches;  ///< its verdict, once it has been filtered; `miss` once its contact is known
-    COLLIDE_HD_INLINE bool has(verdict v) const { return touches == static_cast<std::int8_t>(v); }
-  };
-
-  candidate candidates[candidate_capacity];
-  candidate records[record_capacity];  ///< those that touch, or may do so
-  std::uint32_t candidate_count, record_count, unsure_count;
+  pair_queue<used ? (ahead + 1) * Block::lanes : 1> candidates;
+  pair_queue<used ? 2 * Block::lanes : 1> contacts;    ///< pairs that touch, or may do so
+  verdict_byte verdicts[used ? 2 * Block::lanes : 1];  ///< on the latter; `miss` once the contact is known
+  std::uint32_t unsure_count;
 };
 
 /// How many spans of candidates have been listed, and how often a particle may have had more. They only rise, so that
@@ -50,16 +65,18 @@ template <class S, bool IsSwept, class Block>
 struct contact_scratch {
   using particle_type = active_particle<S, IsSwept>;
   static constexpr std::size_t bytes_per_particle = sizeof(particle_type) + sizeof(cell_entry const*) +
-                                                    3 * sizeof(std::uint32_t) + sizeof(std::uint16_t) + sizeof(id);
+                                                    2 * sizeof(std::uint32_t) + sizeof(std::uint8_t) + 2 * sizeof(id);
 
-  /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block. The rest is for what else
-  /// a step keeps there.
-  static constexpr std::uint32_t batch_size =
-      Block::lanes > 1 ? static_cast<std::uint32_t>((47 * 1024 - sizeof(contact_queues<Block>)) / bytes_per_particle)
-                       : Block::items;
+  /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block, but fewer than lanes, and
+  /// than bytes can count. The rest is for what else a step keeps there.
+  static constexpr std::uint32_t room =
+      static_cast<std::uint32_t>((47 * 1024 - sizeof(contact_queues<Block>)) / bytes_per_particle);
+  static constexpr std::uint32_t batch_size = Block::lanes == 1     ? Block::items
+                                              : room < Block::lanes ? room
+                                                                    : Block::lanes - 1;
 
   particle_type particles[batch_size];
-  std::uint16_t particle_of_span[batch_size];
+  std::uint8_t particle_of_span[batch_size];
   std::uint32_t span_sizes[batch_size], span_coverage[batch_size];
   cell_entry const* span_items[batch_size];
   id span_first[batch_size];
@@ -77,15 +94,13 @@ struct contact_search {
   using shape = std::conditional_t<is_swept, moving_sphere<S>, sphere<S>>;
   template <class Block>
   using scratch = contact_scratch<S, is_swept, Block>;
-  template <class Block>
-  using record_of = typename contact_queues<Block>::candidate;
 
   Triangles triangles;
 
   /// Called by one lane when the block begins with a batch.
   template <class Block>
   COLLIDE_HD_INLINE void reset(scratch<Block>& s) const {
-    s.queues.candidate_count = s.queues.record_count = s.queues.unsure_count = 0;
+    s.queues.candidates.size = s.queues.contacts.size = s.queues.unsure_count = 0;
     s.spans = {0, 0};
   }
 
@@ -113,27 +128,27 @@ struct contact_search {
           [](span const& c, cell_entry const& e) { return c.range.may_touch(e); },
           [&](span const& c, cell_entry const& e) {
             if constexpr (queues::used) {
-              s.queues.candidates[block.add(s.queues.candidate_count, 1)] = {e.triangle, c.particle, 0};
+              s.queues.candidates.push(block, c.particle, e.triangle);
             } else {
               consider_at_once(c, e.triangle);
             }
           },
           [&](bool is_last) {
             if constexpr (queues::used) {
-              std::uint32_t const candidates = block.shared(s.queues.candidate_count);
-              bool const is_full = candidates + queues::ahead * Block::lanes > queues::candidate_capacity;
+              std::uint32_t const candidates = block.shared(s.queues.candidates.size);
+              bool const is_full = candidates + queues::ahead * Block::lanes > s.queues.candidates.capacity;
               if (is_full || (is_last && !is_swept)) drain(block, s, candidates);
             }
           });
     }
     // candidates of a swept particle come a cell at a time
-    if constexpr (queues::used && is_swept) drain(block, s, block.shared(s.queues.candidate_count));
+    if constexpr (queues::used && is_swept) drain(block, s, block.shared(s.queues.candidates.size));
   }
 
  private:
   /// A particle and candidates that follow each other.
   struct span {
-    std::uint16_t particle;
+    std::uint8_t particle;
     active& one;
     shape whole;
     sphere<S> around;  ///< the part of its motion on which something may come before the best contact so far
@@ -151,7 +166,7 @@ struct contact_search {
         if (!a.is_active || !triangles.next(a.shape(), a.cursor, most, range)) continue;
         if (!a.cursor.at_end()) block.add(s.spans.unfinished, 1);
         std::uint32_t const i = block.add(s.spans.spans, 1) - before.spans;
-        s.particle_of_span[i] = static_cast<std::uint16_t>(j);
+        s.particle_of_span[i] = static_cast<std::uint8_t>(j);
         s.span_sizes[i] = range.count;
         s.span_items[i] = range.listed;
         s.span_first[i] = range.first;
@@ -181,26 +196,22 @@ struct contact_search {
   /// Filters the `n` candidates that are queued, and computes the contacts of those that may touch.
   template <class Block>
   COLLIDE_HD_INLINE void drain(Block& block, scratch<Block>& s, std::uint32_t n) const {
-    using queues = contact_queues<Block>;
-    std::uint32_t records = 0;
+    auto& q = s.queues;
     for (std::uint32_t base = 0; base < n; base += Block::lanes) {
       block.each([&](int lane) {
         std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
-        if (lane == 0) s.queues.candidate_count = s.queues.unsure_count = 0;
+        if (lane == 0) q.candidates.size = q.unsure_count = 0;
         if (i >= n) return;
-        auto const c = s.queues.candidates[i];
-        active const& a = s.particles[c.particle];
+        id const number = q.candidates.triangles[i];
+        active const& a = s.particles[q.candidates.particles[i]];
         shape const whole = a.shape();
-        if (!triangles.template may_touch<NarrowPhase>(whole, c.triangle) || a.is_leaving(c.triangle)) return;
-        verdict const quick = filter<NarrowPhase>(triangles.mesh[c.triangle], whole);
+        if (!triangles.template may_touch<NarrowPhase>(whole, number) || a.is_leaving(number)) return;
+        verdict const quick = filter<NarrowPhase>(triangles.mesh[number], whole);
         if (quick == verdict::miss) return;
-        s.queues.records[block.add(s.queues.record_count, 1)] = {c.triangle, c.particle,
-                                                                 static_cast<std::int8_t>(quick)};
+        q.verdicts[q.contacts.push(block, q.candidates.particles[i], number)] = packed(quick);
       });
-      records = block.shared(s.queues.record_count);
-      if (records + Block::lanes > queues::record_capacity || base + Block::lanes >= n) {
-        compute_contacts(block, s, records);
-      }
+      std::uint32_t const found = block.shared(q.contacts.size);
+      if (found + Block::lanes > q.contacts.capacity || base + Block::lanes >= n) compute_contacts(block, s, found);
     }
   }
 
@@ -208,43 +219,46 @@ struct contact_search {
   /// when it calls something it keeps in memory, and begins to do so long before.
   template <class Block>
   COLLIDE_HD_INLINE void compute_contacts(Block& block, scratch<Block>& s, std::uint32_t n) const {
-    using record = record_of<Block>;
+    auto& q = s.queues;
     if (n == 0) return;
     if constexpr (!is_swept) {
-      consider_all(block, s, n, [&](active& a, record& r, contact<S>& found) {
-        verdict const quick = quick_contact_here(triangles.mesh[r.triangle], a.shape(), r.has(verdict::hit), found);
+      consider_all(block, s, n, [&](active& a, id number, std::uint32_t i, contact<S>& found) {
+        bool const is_sure = q.verdicts[i] == packed(verdict::hit);
+        verdict const quick = quick_contact_here(triangles.mesh[number], a.shape(), is_sure, found);
         if (quick == verdict::unsure) {
-          block.add(s.queues.unsure_count, 1);
+          block.add(q.unsure_count, 1);
           return no_contact;
         }
-        r.touches = static_cast<std::int8_t>(verdict::miss);
+        q.verdicts[i] = packed(verdict::miss);
         if (quick == verdict::miss) return no_contact;
-        found.triangle = r.triangle;
+        found.triangle = number;
         return consider<Block>(a, S(0), found);
       });
-      if (block.shared(s.queues.unsure_count) == 0) return;
+      if (block.shared(q.unsure_count) == 0) return;
     }
-    consider_all(block, s, n, [&](active& a, record& r, contact<S>& found) {
-      if (r.has(verdict::miss)) return no_contact;
-      return compute_contact<Block>(a, triangles.mesh, r.triangle, r.has(verdict::hit), found);
+    consider_all(block, s, n, [&](active& a, id number, std::uint32_t i, contact<S>& found) {
+      if (q.verdicts[i] == packed(verdict::miss)) return no_contact;
+      return compute_contact<Block>(a, triangles.mesh, number, q.verdicts[i] == packed(verdict::hit), found);
     });
   }
 
-  /// Calls key = compute(particle, record, contact) for `n` records, and keeps the contacts that are the best ones.
+  /// Calls key = compute(particle, triangle, i, contact) for all pairs i < n that are queued, and keeps the contacts
+  /// that are the best ones.
   template <class Block, class Compute>
   COLLIDE_HD_INLINE void consider_all(Block& block, scratch<Block>& s, std::uint32_t n, Compute const& compute) const {
+    auto& queue = s.queues.contacts;
     for (std::uint32_t base = 0; base < n; base += Block::lanes) {
       typename Block::template per_lane<contact<S>> found;
       typename Block::template per_lane<std::uint64_t> key;
       block.each([&](int lane) {
         std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
-        auto& r = s.queues.records[i < n ? i : base];
-        if (lane == 0) s.queues.record_count = 0;
-        key[lane] = i < n ? compute(s.particles[r.particle], r, found[lane]) : no_contact;
+        if (lane == 0) queue.size = 0;
+        key[lane] = no_contact;
+        if (i < n) key[lane] = compute(s.particles[queue.particles[i]], queue.triangles[i], i, found[lane]);
       });
       block.each([&](int lane) {
         if (key[lane] == no_contact) return;
-        active& a = s.particles[s.queues.records[base + static_cast<std::uint32_t>(lane)].particle];
+        active& a = s.particles[queue.particles[base + static_cast<std::uint32_t>(lane)]];
         if (key[lane] == a.best_key) a.set_best(found[lane]);
       });
     }
