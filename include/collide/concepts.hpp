@@ -123,7 +123,7 @@ struct broad_phase_member {
   using prepare_spheres = decltype(std::declval<index<T>&>().prepare(std::declval<E&>(), std::declval<T const&>(),
                                                                      std::declval<sphere_view<S> const&>()));
   template <class T>
-  using query = decltype(std::declval<index<T> const&>().template query<N>(
+  using query = decltype(std::declval<index<T>&>().template query<N>(
       std::declval<E&>(), std::declval<spheres_of<N, S> const&>(), std::declval<any_sink const&>()));
   template <class T>
   using cell_width = decltype(std::declval<index<T> const&>().cell_width(std::declval<E const&>()));
@@ -141,9 +141,8 @@ constexpr bool check_broad_phase() {
                 "collide: the index of a broad phase has a member prepare(space, options, radius)");
   static_assert(is_valid<m::template prepare_spheres, B>,
                 "collide: the index of a broad phase has a member prepare(space, options, spheres)");
-  static_assert(
-      is_valid<m::template query, B>,
-      "collide: the index of a broad phase has a const member template query<NarrowPhase>(space, spheres, sink)");
+  static_assert(is_valid<m::template query, B>,
+                "collide: the index of a broad phase has a member template query<NarrowPhase>(space, spheres, sink)");
   static_assert(is_valid<m::template cell_width, B>,
                 "collide: the index of a broad phase has a const member cell_width(space)");
   return true;
