@@ -231,12 +231,13 @@ struct effect_list : effect_slot<E>... {
  public:
   /// What is read to find out which particles are left out.
   using skipping = union_of<columns<>, reads_if<E, skips_in<E, S>::value>...>;
-  /// What is read and written for every particle, and what for those that may touch the mesh.
+  /// What is read and written for every particle,
   using integration_reads = union_of<base, reads_if<E, is_integrated<E>>..., radius_if<touches>>;
   using integration_writes = union_of<columns<position>, writes_if<E, writes_while_integrated<E>>...>;
+  /// and for those that may touch the mesh.
   using contact = union_of<integration_reads, reads_if<E, touches_mesh_in<E, S>>...>;
   using contact_writes = union_of<integration_writes, writes_if<E, touches_mesh_in<E, S>>...>;
-  /// The same for particles that meet; all of them are also copied.
+  /// What is read and written for particles that meet others; what is read is also copied.
   using interaction = union_of<columns<position>, reads_if<E, interacts_or_skips<E>>..., radius_if<meets>>;
   using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
   using interaction_writes = union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>;

@@ -124,7 +124,7 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
     end_group(block, s, read, p, first);
   }
 
-  /// The same in two parts: all is on its way before something is waited for.
+  /// `load_group` in two parts: all is on its way before something is waited for.
   template <class Block, class... D>
   COLLIDE_HD_INLINE void begin_group(Block& block, group_of<columns<D...>>& read, std::size_t first) const {
     (load_values(block, D{}, static_cast<quads<D>&>(read).of, first), ...);

@@ -32,8 +32,8 @@ struct step_kernel {
   Context context;
   std::size_t blocks;
 
-  /// True if a block has many tiles, and may have more particles near the mesh than its queue has room for: then it
-  /// needs `context.overflow`.
+  /// True if a block has many tiles. It may have more particles near the mesh than its queue has room for, which need
+  /// `context.overflow`.
   template <class Block>
   static constexpr bool has_many_tiles = Context::touches&& Block::lanes > 1;
 
