@@ -46,24 +46,24 @@ COLLIDE_HD_INLINE void for_each_candidate(Ref const& ref, Sphere const& s, F con
 
 /// Kernel functor: a thread has a sphere. Where threads work together a sphere's candidates are enumerated again for
 /// each `items_per_thread` of them, as there is room for only so many.
-template <class S, class NarrowPhase, class Sink, class Ref>
+template <class S, class NarrowPhase, class Output, class Ref>
 struct per_sphere_query {
   static constexpr int items = 1;
   static constexpr int items_per_thread = 8;
 
-  tester<S, NarrowPhase, Sink> tests;
+  candidate_pipeline<S, NarrowPhase, Output> pipeline;
   Ref ref;
 
   template <class Block>
   struct scratch {
-    hit_buffer<Block, items_per_thread> hits;
+    pipeline_storage<Block, items_per_thread> hits;
     std::uint32_t unfinished;  ///< how often a sphere had more candidates; only rises
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     block.each([&](int lane) {
-      tests.begin(s.hits, lane);
+      pipeline.reset(s.hits, lane);
       if (lane == 0) s.unfinished = 0;
     });
     std::size_t const base = block.index() * Block::lanes * Block::items;
@@ -71,37 +71,37 @@ struct per_sphere_query {
     for (std::size_t k = 0; k < static_cast<std::size_t>(Block::items); ++k) {
       std::size_t const first = base + k * Block::lanes;
       if constexpr (Block::lanes == 1) {
-        if (first < tests.spheres.size()) test_all(block, s, first);
-        tests.make_room(block, s.hits);
+        if (first < pipeline.spheres.size()) test_all(block, s, first);
+        pipeline.drain_if_full(block, s.hits);
       } else {
         for (std::uint32_t skip = 0;; skip += items_per_thread) {
           block.each([&](int lane) {
             std::size_t const i = first + static_cast<std::size_t>(lane);
-            if (i < tests.spheres.size()) test_some(block, s, i, skip);
+            if (i < pipeline.spheres.size()) test_some(block, s, i, skip);
           });
-          tests.make_room(block, s.hits);
+          pipeline.drain_if_full(block, s.hits);
           std::uint32_t const unfinished = block.shared(s.unfinished);
           if (unfinished == seen) break;
           seen = unfinished;
         }
       }
     }
-    tests.flush(block, s.hits);
+    pipeline.drain(block, s.hits);
   }
 
  private:
   template <class Block>
   COLLIDE_HD_INLINE void test_all(Block& block, scratch<Block>& s, std::size_t i) const {
-    auto const own = tests.spheres[i];
-    for_each_candidate(ref, own, [&](id t) { tests.test(block, s.hits, {static_cast<id>(i), t}, own); });
+    auto const own = pipeline.spheres[i];
+    for_each_candidate(ref, own, [&](id t) { pipeline.push(block, s.hits, {static_cast<id>(i), t}, own); });
   }
 
   /// Candidates number `skip` and the next ones.
   template <class Block>
   COLLIDE_HD_INLINE void test_some(Block& block, scratch<Block>& s, std::size_t i, std::uint32_t skip) const {
     std::uint32_t number = 0;
-    for_each_candidate(ref, tests.spheres[i], [&](id t) {
-      if (number >= skip && number - skip < items_per_thread) tests.test(block, s.hits, {static_cast<id>(i), t});
+    for_each_candidate(ref, pipeline.spheres[i], [&](id t) {
+      if (number >= skip && number - skip < items_per_thread) pipeline.push(block, s.hits, {static_cast<id>(i), t});
       ++number;
     });
     if (number > skip + items_per_thread) block.add(s.unfinished, 1);
