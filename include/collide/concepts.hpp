@@ -30,7 +30,7 @@ struct is_valid_expression<std::void_t<Expression<T...>>, Expression, T...> : st
 template <template <class...> class Expression, class... T>
 inline constexpr bool is_valid = is_valid_expression<void, Expression, T...>::value;
 
-/// In place of a function, a kernel functor and a sink, where only signatures are asked for.
+/// In place of a function, a kernel functor and an output, where only signatures are asked for.
 struct any_function {
   void operator()(std::size_t) const {}
 };
@@ -41,7 +41,7 @@ struct any_kernel {
   template <class Block>
   void operator()(Block&, scratch<Block>&) const {}
 };
-struct any_sink {};
+struct any_output {};
 
 /// The members of an execution space E.
 template <class E>
@@ -124,7 +124,7 @@ struct broad_phase_member {
                                                                      std::declval<sphere_view<S> const&>()));
   template <class T>
   using query = decltype(std::declval<index<T>&>().template query<N>(
-      std::declval<E&>(), std::declval<spheres_of<N, S> const&>(), std::declval<any_sink const&>()));
+      std::declval<E&>(), std::declval<spheres_of<N, S> const&>(), std::declval<any_output const&>()));
   template <class T>
   using cell_width = decltype(std::declval<index<T> const&>().cell_width(std::declval<E const&>()));
 };
@@ -142,7 +142,7 @@ constexpr bool check_broad_phase() {
   static_assert(is_valid<m::template prepare_spheres, B>,
                 "collide: the index of a broad phase has a member prepare(space, options, spheres)");
   static_assert(is_valid<m::template query, B>,
-                "collide: the index of a broad phase has a member template query<NarrowPhase>(space, spheres, sink)");
+                "collide: the index of a broad phase has a member template query<NarrowPhase>(space, spheres, output)");
   static_assert(is_valid<m::template cell_width, B>,
                 "collide: the index of a broad phase has a const member cell_width(space)");
   return true;

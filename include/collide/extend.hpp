@@ -25,17 +25,16 @@ using serial_block = detail::serial_block<Items, HitCapacity>;
 /// How many blocks cover `n` items of a kernel functor: each thread of a block has `Block::items` of them.
 using detail::grid_size;
 
-/// From candidates to hits, in a kernel of one's own: `reset(buffer, thread)` first, by each thread;
-/// `push(block, buffer, {sphere, triangle}, sphere value)` for each candidate; `drain_if_full(block, buffer)` by the
-/// whole block, after each thread had at most as many candidates as the buffer was made for; `drain(block, buffer)`
-/// last.
-/// Made as `{mesh, spheres, sink, nullptr}`.
-template <class S, class NarrowPhase, class Sink>
-using candidate_pipeline = detail::candidate_pipeline<S, NarrowPhase, Sink>;
+/// From candidates to hits, in a kernel of one's own: `reset(storage, thread)` first, by each thread;
+/// `push(block, storage, {sphere, triangle}, sphere value)` for each candidate; `drain_if_full(block, storage)` by the
+/// whole block, after each thread had at most as many candidates as the storage was made for; `drain(block, storage)`
+/// last. Made as `{mesh, spheres, output}`.
+template <class S, class NarrowPhase, class Output>
+using candidate_pipeline = detail::candidate_pipeline<S, NarrowPhase, Output>;
 
 /// The memory of a `candidate_pipeline`, a member of the kernel's scratch memory.
 template <class Block, int CandidatesPerThread = 1>
-using candidate_buffer = detail::pipeline_storage<Block, CandidatesPerThread>;
+using pipeline_storage = detail::pipeline_storage<Block, CandidatesPerThread>;
 
 /// A conservative sphere around a triangle; no sphere reaches that of a triangle that is not finite.
 template <class S>
@@ -128,10 +127,10 @@ struct per_sphere {
     template <class Space, class RadiusOrSpheres>
     void prepare(Space&, per_sphere const&, RadiusOrSpheres const&) {}
 
-    template <class NarrowPhase, class Space, class Sink>
-    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
-      detail::per_sphere_query<S, NarrowPhase, Sink, decltype(index_.ref())> const kernel{
-          {mesh_, spheres, sink, nullptr}, index_.ref()};
+    template <class NarrowPhase, class Space, class Output>
+    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) const {
+      detail::per_sphere_query<S, NarrowPhase, Output, decltype(index_.ref())> const kernel{{mesh_, spheres, output},
+                                                                                            index_.ref()};
       space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);
     }
 

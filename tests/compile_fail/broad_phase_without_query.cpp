@@ -1,4 +1,4 @@
-// expect: collide: the index of a broad phase has a member template query<NarrowPhase>(space, spheres, sink)
+// expect: collide: the index of a broad phase has a member template query<NarrowPhase>(space, spheres, output)
 #include <collide/all_pairs.cuh>
 
 struct broad : collide::all_pairs {
