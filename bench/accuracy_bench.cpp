@@ -9,7 +9,8 @@
 /// The scenes are those of accuracy_scenes.hpp with coordinates of type float; study_double has type double.
 ///
 /// An iteration runs all precisions, one after the other, so that what disturbs the machine disturbs all alike. The
-/// counters PRECISION_ms are the medians of each; the time of the benchmark is the sum, and of no interest.
+/// counters PRECISION_ms are the medians of each; the time of the benchmark is the sum, and of no interest. Beside the
+/// precisions of the library there is `textbook`, the test of textbook.hpp.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -28,19 +29,21 @@
 #include "accuracy_scenes.hpp"
 #include "program.hpp"
 #include "race.hpp"
+#include "textbook.hpp"
 
 namespace {
 
 /// As many spheres as `all_pairs` can be asked for on the host, and as many tests as time is taken of.
 constexpr std::size_t few_spheres = 2048, timed_tests = 1 << 20;
 
-/// make(Precision()) of each precision.
+/// make(NarrowPhase()) of each narrow phase, by the name of its precision.
 template <class Make>
 std::vector<bench::contestant> each_precision(Make const& make) {
-  return {{"baseline", make(collide::baseline())},
-          {"single", make(collide::single_precision())},
-          {"double", make(collide::double_precision())},
-          {"exact", make(collide::exact())}};
+  return {{"textbook", make(bench::textbook())},
+          {"baseline", make(collide::karabassi<collide::baseline>())},
+          {"single", make(collide::karabassi<collide::single_precision>())},
+          {"double", make(collide::karabassi<collide::double_precision>())},
+          {"exact", make(collide::karabassi<collide::exact>())}};
 }
 
 /// A scene in memory of a space. Made once.
@@ -71,8 +74,8 @@ bench::test_list<S> const& tests_of(bench::scene_kind const& kind) {
 template <class Broad, class S, class Space>
 void detect(benchmark::State& state, bench::scene_kind const& kind, Space space) {
   auto const& scene = scene_in<Space, S>::get(kind, space);
-  bench::race(state, space, bench::warmed(each_precision([&](auto precision) {
-                using narrow_phase = collide::karabassi<decltype(precision)>;
+  bench::race(state, space, bench::warmed(each_precision([&](auto of) {
+                using narrow_phase = decltype(of);
                 auto const detector = std::make_shared<collide::detector<Broad, narrow_phase, Space, S>>(space);
                 auto const pairs = std::make_shared<collide::pairs>();
                 return [=, &scene] {
@@ -125,8 +128,8 @@ void test(benchmark::State& state, bench::scene_kind const& kind, Space space) {
   auto const& in = tests_in<Space, S>::get(kind, space);
   auto const& truth = tests_of<S>(kind).truth;
   std::size_t const n = truth.size(), timed = std::min(n, timed_tests);
-  auto const decide = [&](auto precision, std::size_t count) {
-    using narrow_phase = collide::karabassi<decltype(precision)>;
+  auto const decide = [&](auto of, std::size_t count) {
+    using narrow_phase = decltype(of);
     space.for_each(count,
                    decide_all<narrow_phase, S>{in.mesh.view(), in.spheres.view(), in.tests.data(), in.hits.data()});
   };
@@ -143,7 +146,7 @@ void test(benchmark::State& state, bench::scene_kind const& kind, Space space) {
       counts["colliding"] += t.hit;
       ++counts[stages[static_cast<int>(t.by)]];
     }
-    for (auto const& c : each_precision([&](auto precision) { return [=] { decide(precision, n); }; })) {
+    for (auto const& c : each_precision([&](auto of) { return [=] { decide(of, n); }; })) {
       c.work();
       std::vector<std::uint8_t> hits(n);
       space.copy_to_host(hits.data(), in.hits.data(), hits.size());
@@ -156,8 +159,7 @@ void test(benchmark::State& state, bench::scene_kind const& kind, Space space) {
       counts[c.name + "_false_misses"] = false_misses;
     }
   }
-  bench::race(state, space,
-              bench::warmed(each_precision([&](auto precision) { return [=] { decide(precision, timed); }; })));
+  bench::race(state, space, bench::warmed(each_precision([&](auto of) { return [=] { decide(of, timed); }; })));
   for (auto const& [name, count] : counts) state.counters[name] = count;
   if (counts["exact_false_hits"] + counts["exact_false_misses"] > 0) {
     state.SkipWithError("exact is not what it is on the host");
@@ -189,6 +191,7 @@ void add_scenes(std::size_t spheres, Space space) {
   add_scene<float>({"study", spheres, bench::study}, space);
   add_scene<float>({"offset", spheres, bench::far_away}, space);
   add_scene<float>({"slivers", spheres / 2, bench::thin}, space);
+  add_scene<float>({"long_slivers", spheres / 8, bench::long_slivers}, space);
   add_scene<float>({"contact", spheres / 4, bench::contact}, space);
   add_scene<double>({"study_double", spheres, bench::study}, space);
 }

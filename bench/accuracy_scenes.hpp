@@ -13,12 +13,11 @@
 #include <collide/detail/narrow_phase/intersects.hpp>
 
 #include "io/scenes.hpp"
+#include "scene.hpp"
 
 namespace bench {
 
 using vec = collide::vec3<double>;
-
-constexpr double study_cube = 592.2;  ///< half the width of the cube that the study's spheres lie in
 
 inline io::scene study(std::size_t spheres, std::uint64_t seed) {
   return io::study_scene(spheres, io::study_triangles, seed);
@@ -43,14 +42,19 @@ inline io::scene thin(std::size_t spheres, std::uint64_t seed) {
     return vec(p[0], p[1], p[2]);
   };
   for (std::size_t i = 0; i < io::study_triangles; ++i) {
-    vec const middle = vector(study_cube), half = vector(1).normalized() * length / 2;
+    vec const middle = vector(io::study_cube), half = vector(1).normalized() * length / 2;
     vec const aside = half.cross(vector(1)).normalized() * length * std::pow(10, random.between(-6, -2));
     vec const a = middle - half, b = middle + half;
     vec const c = aside + (i % 2 == 0 ? b : vec(middle + random.between(-0.8, 0.8) * half));
-    io::detail::add_triangle(s, {a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()});
+    io::add_triangle(s, {a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()});
   }
-  io::detail::add_spheres(s, spheres, of_spheres, study_cube);
+  io::add_spheres(s, spheres, of_spheres, io::study_cube);
   return s;
+}
+
+/// Spheres on slivers of 1:2,000 and more.
+inline io::scene long_slivers(std::size_t spheres, std::uint64_t seed) {
+  return io::long_slivers_scene(spheres, io::study_triangles, seed);
 }
 
 /// A radius of type float that is within 2 ulp of a distance, at random below it or not.
@@ -110,34 +114,6 @@ struct scene_kind {
   char const* name;
   std::size_t spheres;
   io::scene (*make)(std::size_t spheres, std::uint64_t seed);
-};
-
-/// A scene in coordinates of type `S`, in host memory.
-template <class S>
-struct scene {
-  std::vector<S> vertices;
-  std::vector<std::uint32_t> corners;
-  std::vector<S> centres, radii;
-
-  explicit scene(io::scene const& from)
-      : vertices(from.vertices.begin(), from.vertices.end()),
-        corners(from.corners),
-        centres(from.centres.begin(), from.centres.end()),
-        radii(from.radii.begin(), from.radii.end()),
-        radius_{static_cast<S>(from.radius)} {}
-
-  collide::mesh_view<S> mesh() const {
-    return collide::indexed_mesh(vertices.data(), vertices.size() / 3, corners.data(), corners.size() / 3);
-  }
-  collide::sphere_view<S> spheres() const {
-    std::size_t const n = centres.size() / 3;
-    return radii.empty() ? collide::spheres_xyz(centres.data(), n, radius_)
-                         : collide::spheres_xyz(centres.data(), n, radii.data());
-  }
-  S largest_radius() const { return radii.empty() ? radius_ : *std::max_element(radii.begin(), radii.end()); }
-
- private:
-  S radius_;
 };
 
 /// A narrow phase that takes every candidate for a hit.

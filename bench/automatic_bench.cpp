@@ -67,7 +67,7 @@ void add(Space const& space, std::size_t largest) {
     bool const builds = kind < 2, wide = kind % 2 != 0;
     for (std::size_t const triangles : {16, 64, 256, 1024, 4096, 16384, 65536}) {
       for (std::size_t const spheres : {100, 1000, 10000, 100000, 1000000}) {
-        bool const is_long = Space::host_memory && triangles * spheres > 10'000'000'000;
+        bool const is_long = Space::host_accessible && triangles * spheres > 10'000'000'000;
         if (triangles > largest || spheres > largest || is_long) continue;
         std::string const name = std::string("automatic/") + (builds ? "detect/" : "query/") +
                                  (wide ? "wide/" : "small/") + Space::name() + "/" + std::to_string(triangles) + "/" +

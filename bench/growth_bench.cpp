@@ -10,7 +10,6 @@
 /// The time is that of build and query, into the sink `pairs`. Counters: spheres, triangles, pairs; ns_per_item, the
 /// time over their sum: linear growth is a line that does not rise. LARGEST bounds spheres and triangles; 100000000
 /// triangles take 10 s to make, 10 GB of host memory and 20 GB of the device's.
-#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -22,6 +21,7 @@
 
 #include "io/scenes.hpp"
 #include "program.hpp"
+#include "scene.hpp"
 #include "stopwatch.hpp"
 
 namespace {
@@ -33,37 +33,22 @@ std::size_t at_most(std::size_t n, std::size_t largest) { return n < largest ? n
 io::scene of_spheres(std::size_t value, std::size_t) { return io::study_scene(value); }
 
 io::scene of_triangles(std::size_t value, std::size_t largest) {
-  io::scene s = io::study_scene(at_most(1 << 20, largest), value);
-  s.radius = 3 * std::sqrt(static_cast<double>(io::study_triangles) / static_cast<double>(value));
-  return s;
+  return io::finer_scene(at_most(1 << 20, largest), value, 0);
 }
 
 io::scene of_hits(std::size_t value, std::size_t largest) {
-  io::scene s = io::study_scene(0, at_most(io::study_triangles, largest));
-  s.radius = static_cast<double>(value) / 100;
-  io::random_numbers random(1);
-  for (std::size_t n = at_most(1 << 15, largest); n > 0; --n) {
-    std::size_t const corner = s.corners[static_cast<std::size_t>(random.between(0, double(s.corners.size())))];
-    io::point const at{s.vertices[3 * corner], s.vertices[3 * corner + 1], s.vertices[3 * corner + 2]};
-    io::detail::add_point(s.centres, random.in_cube(5, at));
-  }
-  return s;
+  return io::hits_scene(static_cast<double>(value) / 100, at_most(1 << 15, largest),
+                        at_most(io::study_triangles, largest), 0);
 }
 
 io::scene of_radii(std::size_t value, std::size_t largest) {
-  io::scene s = io::study_scene(at_most(1 << 17, largest), at_most(io::study_triangles, largest));
-  io::random_numbers random(2);
-  s.radii.resize(s.sphere_count());
-  for (auto& r : s.radii) r = 30 * std::pow(static_cast<double>(value), -random.unit());
-  return s;
+  return io::ratio_scene(static_cast<double>(value), at_most(1 << 17, largest), at_most(io::study_triangles, largest),
+                         0);
 }
 
-io::scene of_cluster(std::size_t value, std::size_t largest) {
-  io::scene s = io::study_scene(0, at_most(io::study_triangles, largest));
-  io::random_numbers random(3);
-  io::detail::add_spheres(s, at_most(1 << 18, largest), random, static_cast<double>(value),
-                          {s.vertices[0], s.vertices[1], s.vertices[2]});
-  return s;
+io::scene of_crowd(std::size_t value, std::size_t largest) {
+  return io::crowd_scene(static_cast<double>(value), at_most(1 << 18, largest), at_most(io::study_triangles, largest),
+                         0);
 }
 
 /// The scene of the last measurement is kept: Google Benchmark comes back for it to iterate more often, and large ones
@@ -84,20 +69,15 @@ io::scene const& scene_of(make_scene make, std::size_t value, std::size_t larges
 template <class Space>
 void run(benchmark::State& state, Space space, make_scene make, std::size_t value, std::size_t largest) {
   io::scene const& from = scene_of(make, value, largest);
-  std::vector<float> const vertices(from.vertices.begin(), from.vertices.end());
-  std::vector<float> const centres(from.centres.begin(), from.centres.end());
-  std::vector<float> const radii(from.radii.begin(), from.radii.end());
+  bench::scene<float> const rounded(from);
   std::size_t const n = from.sphere_count();
-  auto const mesh = collide::upload(
-      space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, from.corners.data(), from.triangle_count()));
-  auto const spheres =
-      collide::upload(space, radii.empty() ? collide::spheres_xyz(centres.data(), n, static_cast<float>(from.radius))
-                                           : collide::spheres_xyz(centres.data(), n, radii.data()));
+  auto const mesh = collide::upload(space, rounded.mesh());
+  auto const spheres = collide::upload(space, rounded.spheres());
   collide::detector<collide::bucket, collide::karabassi<>, Space> detector(space);
   collide::pairs pairs;
   auto const detect = [&] {
-    if (radii.empty()) {
-      detector.build(mesh.view(), static_cast<float>(from.radius));
+    if (from.radii.empty()) {
+      detector.build(mesh.view(), rounded.largest_radius());
     } else {
       detector.build(mesh.view());
     }
@@ -138,7 +118,7 @@ void add(std::string const& composition, Space space, std::size_t largest) {
   axis("triangles", of_triangles, triangles);
   axis("hits", of_hits, {0, 100, 300, 1000, 3000, 8500});
   axis("radii", of_radii, {1, 3, 10, 30, 100, 300, 1000});
-  axis("cluster", of_cluster, {592, 200, 60, 20, 6, 2});
+  axis("cluster", of_crowd, {592, 200, 60, 20, 6, 2});
 }
 
 }  // namespace

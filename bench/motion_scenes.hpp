@@ -109,12 +109,12 @@ inline vec cube_end(vec const& x, vec const& v) {
 inline io::scene torus_mesh() { return io::study_scene(0); }
 
 inline vec torus_start(io::random_numbers& random) {
-  double const u = random.between(0, 2 * io::detail::pi), v = random.between(0, 2 * io::detail::pi);
+  double const u = random.between(0, 2 * io::pi), v = random.between(0, 2 * io::pi);
   double const r = 95 * std::sqrt(random.unit()), d = 300 + r * std::cos(v);
   return {d * std::cos(u), d * std::sin(u), r * std::sin(v)};
 }
 
-/// As io::detail::add_torus has it.
+/// As io::add_torus has it.
 inline bool is_in_torus(vec const& x) {
   double const u = std::atan2(x.y(), x.x()), d = std::hypot(x.x(), x.y()) - 300, v = std::atan2(x.z(), d);
   return std::hypot(d, x.z()) < 120 * (1 + 0.12 * std::sin(5 * u) * std::cos(3 * v));
@@ -139,7 +139,7 @@ struct crowd {
     for (std::size_t i = 0; i < balls; ++i) {
       vec const x = in.start(random);
       double const speed = ball_radius * frames_per_second * slowest * std::pow(fastest / slowest, random.unit());
-      double const up = random.between(-1, 1), around = random.between(0, 2 * io::detail::pi);
+      double const up = random.between(-1, 1), around = random.between(0, 2 * io::pi);
       double const level = speed * std::sqrt(1 - up * up);
       for (int k = 0; k < 3; ++k) centres.push_back(static_cast<float>(x[k]));
       for (double const v : {level * std::cos(around), level * std::sin(around), speed * up}) {

@@ -77,7 +77,7 @@ struct move_all {
 
 /// How many steps are timed together, and how often.
 template <class Space>
-constexpr int series = Space::host_memory ? 1 : 20;
+constexpr int series = Space::host_accessible ? 1 : 20;
 constexpr int iterations = 21;
 
 /// A step, and what comes before the first of those that are timed together.
@@ -150,7 +150,7 @@ class suite {
   /// The same when many spheres lie on the mesh. On the GPU: elsewhere they take long to get there.
   template <class... Effect>
   void add_lying(std::string const& name, Effect const&... effects) const {
-    if (!Space::host_memory) add_with<collide::karabassi<>>("lying: " + name, spheres_, 600, 0.01f, effects...);
+    if (!Space::host_accessible) add_with<collide::karabassi<>>("lying: " + name, spheres_, 600, 0.01f, effects...);
   }
 
   /// The same among balls that fill space, each in touch with six others. Their lists of neighbours are kept.

@@ -70,7 +70,7 @@ class cuda_stopwatch {
 template <class Space>
 struct stopwatch_of {
 #if defined(__CUDACC__)
-  using type = std::conditional_t<Space::host_memory, host_stopwatch, cuda_stopwatch>;
+  using type = std::conditional_t<Space::host_accessible, host_stopwatch, cuda_stopwatch>;
 #else
   using type = host_stopwatch;
 #endif
@@ -101,7 +101,7 @@ double floor_of(Space const& space, S const* xyz, std::size_t n) {
   S* const to = sink.reserve(space.resource(), 1);
   read_all<S> const body{reinterpret_cast<typename read_all<S>::four const*>(xyz), to};
   auto const read = [&] {
-    if constexpr (Space::host_memory) {
+    if constexpr (Space::host_accessible) {
       *to = Eigen::Map<Eigen::Array<S, Eigen::Dynamic, 1> const>(xyz, static_cast<Eigen::Index>(3 * n)).sum();
     } else {
       space.for_each(3 * n / 4, body);

@@ -88,7 +88,7 @@ template <class Space>
 void copy(Space const& space, float* to, float const* from, std::size_t n, std::size_t chunk) {
   for (std::size_t first = 0; first < n; first += chunk) {
     std::size_t const size = std::min(chunk, n - first);
-    if constexpr (Space::host_memory) {
+    if constexpr (Space::host_accessible) {
       space.copy_from_host(to, from + first, size);
     } else {
 #if defined(__CUDACC__)

@@ -60,7 +60,7 @@ struct one_box {
       auto* const summary = summary_.reserve(space.resource(), 1);
       collide::detail::mesh_summary<S>::clear(space, summary);
       collide::detail::summarise_mesh<S> const body{mesh, summary, nullptr};
-      space.launch(collide::detail::blocks_for<Space>(mesh.size(), body), body);
+      space.launch(collide::detail::grid_size<Space>(mesh.size(), body), body);
     }
 
     /// What depends on the radius, or on the spheres; here nothing does.
@@ -72,7 +72,7 @@ struct one_box {
     template <class NarrowPhase, class Space, class Sink>
     void query(Space& space, collide::sphere_view<S> const& spheres, Sink const& sink) const {
       one_box_query<S, NarrowPhase, Sink> const body{{mesh_, spheres, sink}, summary_.data()};
-      space.launch(collide::detail::blocks_for<Space>(spheres.size(), body), body);
+      space.launch(collide::detail::grid_size<Space>(spheres.size(), body), body);
     }
 
     template <class Space>

@@ -15,8 +15,7 @@ struct options {
   std::string scene = "study";
   std::string mesh = "mesh.obj";
   std::string spheres_file = "spheres.csv";
-  std::size_t spheres = io::study_spheres;
-  std::size_t triangles = io::study_triangles;
+  std::optional<std::size_t> spheres, triangles;
   std::uint64_t seed = 0;
   std::string offset = "0";
   std::optional<double> radius;
@@ -93,9 +92,8 @@ std::vector<std::string> join_offset(int argc, char** argv) {
 
 void generate(options const& wish) {
   auto const offset = offset_of(wish);
-  auto const kind = std::find_if(std::begin(io::scene_kinds), std::end(io::scene_kinds),
-                                 [&](io::scene_kind const& k) { return k.name == wish.scene; });
-  auto scene = kind->make(wish.spheres, wish.triangles, wish.seed);
+  auto const& kind = *io::find_scene(wish.scene);
+  auto scene = kind.make(wish.spheres.value_or(kind.spheres), wish.triangles.value_or(kind.triangles), wish.seed);
   io::shift(scene, offset);
   if (wish.radius) {
     scene.radii.clear();
@@ -121,16 +119,27 @@ void generate(options const& wish) {
   }
 }
 
+/// What the help says of a kind of scene.
+std::string line_of(io::scene_kind const& kind) {
+  auto const name = std::string(kind.name), spheres = std::to_string(kind.spheres),
+             triangles = std::to_string(kind.triangles);
+  auto const gap = [](std::size_t width, std::string const& text) {
+    return std::string(width - std::min(width, text.size()), ' ');
+  };
+  return "  " + name + gap(16, name) + gap(8, spheres) + spheres + gap(10, triangles) + triangles + "  " + kind.about +
+         "\n";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   options wish;
   std::vector<std::string> names;
-  std::string footer = "Scenes:\n";
-  for (auto const& kind : io::scene_kinds) {
+  std::string footer = "Scenes, with how many spheres and triangles they have if nothing else is said:\n";
+  io::for_each_scene([&](io::scene_kind const& kind) {
     names.emplace_back(kind.name);
-    footer += "  " + names.back() + std::string(12 - names.back().size(), ' ') + kind.about + "\n";
-  }
+    footer += line_of(kind);
+  });
   footer += "\nThe same options write the same files everywhere.";
 
   CLI::App app("Writes a mesh (OBJ) and spheres (CSV) to detect collisions between.", "generate");
@@ -138,8 +147,9 @@ int main(int argc, char** argv) {
   app.add_option("mesh,--mesh", wish.mesh, "the mesh's file")->type_name("MESH.obj");
   app.add_option("spheres_file,--spheres-file,--csv", wish.spheres_file, "the spheres' file")->type_name("SPHERES.csv");
   app.add_option("--scene", wish.scene, "which scene, see below")->check(CLI::IsMember(names))->type_name("NAME");
-  app.add_option("-n,--spheres", wish.spheres, "how many spheres")->type_name("N");
-  app.add_option("--triangles", wish.triangles, "about how many triangles")->type_name("N");
+  app.add_option("-n,--spheres", wish.spheres, "how many spheres; the scene's own number if not given")->type_name("N");
+  app.add_option("--triangles", wish.triangles, "about how many triangles; the scene's own number if not given")
+      ->type_name("N");
   app.add_option("--offset", wish.offset, "moves everything: by one number along each axis, or by three")
       ->type_name("X [Y Z]");
   app.add_option("--seed", wish.seed, "seed of the random numbers")->type_name("N");
@@ -151,8 +161,8 @@ int main(int argc, char** argv) {
   return io::run_program(app, join_offset(argc, argv), [&] {
     constexpr std::size_t most = 4'000'000'000;
     if (wish.radius && !(*wish.radius >= 0)) throw io::usage_error("--radius: must not be negative");
-    if (wish.spheres > most) throw io::usage_error("--spheres: at most 4000000000");
-    if (wish.triangles > most) throw io::usage_error("--triangles: at most 4000000000");
+    if (wish.spheres.value_or(0) > most) throw io::usage_error("--spheres: at most 4000000000");
+    if (wish.triangles.value_or(0) > most) throw io::usage_error("--triangles: at most 4000000000");
     generate(wish);
   });
 }

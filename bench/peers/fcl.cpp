@@ -37,9 +37,9 @@ class fcl_model {
       fcl::CollisionRequestd request;
       request.num_max_contacts = from_.triangles();
       request.enable_contact = false;
-      fcl::Sphered const sphere(from_.radius);
       fcl::Transform3d at = fcl::Transform3d::Identity();
       for (std::size_t i = first; i < last; ++i) {
+        fcl::Sphered const sphere(static_cast<double>(spheres.radius(i)));
         at.translation() = spheres.centre(i).cast<double>();
         fcl::CollisionResultd result;
         fcl::collide(mesh_.get(), fcl::Transform3d::Identity(), &sphere, at, request, result);

@@ -1,7 +1,12 @@
 /// \file
 /// Other libraries at the study's job, on the host: every pair of a sphere and a triangle that touch, build included.
+/// peers_bench [SCENE [PART]] [OPTION OF GOOGLE BENCHMARK...]
 ///
-/// With one thread and with all; OMP_NUM_THREADS says how many that are. CMake found out which libraries there are.
+/// SCENE is a name that `generate --help` lists, the study's if none is given; PART divides the number of its spheres,
+/// where it would take some library minutes (--benchmark_filter leaves libraries out). With one thread and with all;
+/// OMP_NUM_THREADS says how many that are. CMake found out which libraries there are.
+#include <cstdio>
+
 #include "peer.hpp"
 #include "peers.hpp"
 #include "program.hpp"
@@ -12,7 +17,11 @@ namespace {
 class ours {
  public:
   ours(peers::scene const& from, int threads) : from_{from}, detector_{collide::host(threads)} {
-    detector_.build(from.mesh(), from.radius);
+    if (from.radii.empty()) {
+      detector_.build(from.mesh(), from.largest_radius());
+    } else {
+      detector_.build(from.mesh());
+    }
   }
   peers::pair_list query() { return detector_.query(from_.view(), collide::pairs()).to_host(); }
 
@@ -27,7 +36,12 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   std::vector<int> threads{1};
   if (int const all = collide::host().threads(); all > 1) threads.push_back(all);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  if (argc > 1) peers::scene::kind = io::find_scene(argv[1]);
+  if (argc > 2) peers::scene::part = bench::count_of(argv[2], 1);
+  if (argc > 3 || peers::scene::kind == nullptr || peers::scene::part == 0) {
+    std::fputs("usage: peers_bench [SCENE [PART, at least 1]] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
+    return 2;
+  }
   peers::add<ours>("collide, bucket x host", threads);
 #if defined(COLLIDE_HAVE_EMBREE)
   peers::add_embree(threads);

@@ -1,5 +1,5 @@
 /// \file
-/// What the peers have in common: the study's scene, a benchmark, and a check of what they find.
+/// What the peers have in common: a scene, a benchmark, and a check of what they find.
 #pragma once
 
 #include <algorithm>
@@ -14,36 +14,28 @@
 #include <collide/bucket.cuh>
 
 #include "io/scenes.hpp"
+#include "scene.hpp"
 
 namespace peers {
 
-/// The study's scene in float, and what `exact` finds in it, sorted.
-struct scene {
-  std::vector<float> vertices, centres;
-  std::vector<collide::id> corners;
-  float radius;
+/// The scene that was asked for, in float, and what `exact` finds in it, sorted.
+struct scene : bench::scene<float> {
+  static inline io::scene_kind const* kind = io::find_scene("study");
+  static inline std::size_t part = 1;  ///< divides the number of spheres
+
   std::vector<collide::pair> truth;
 
-  std::size_t triangles() const { return corners.size() / 3; }
-  std::size_t spheres() const { return centres.size() / 3; }
-  collide::mesh_view<float> mesh() const {
-    return collide::indexed_mesh(vertices.data(), vertices.size() / 3, corners.data(), triangles());
+  explicit scene(io::scene const& from) : bench::scene<float>(from) {
+    collide::detector<collide::bucket> detector;
+    truth = detector.detect(mesh(), view(), collide::pairs(collide::order::canonical)).to_host();
   }
-  collide::sphere_view<float> view() const { return collide::spheres_xyz(centres.data(), spheres(), radius); }
+
+  std::size_t triangles() const { return corners.size() / 3; }
+  collide::sphere_view<float> view() const { return spheres(); }
 
   static scene const& get() {
-    static scene const s = [] {
-      io::scene const from = io::study_scene(io::study_spheres);
-      scene to;
-      to.vertices.assign(from.vertices.begin(), from.vertices.end());
-      to.centres.assign(from.centres.begin(), from.centres.end());
-      to.corners.assign(from.corners.begin(), from.corners.end());
-      to.radius = static_cast<float>(from.radius);
-      collide::detector<collide::bucket> detector;
-      to.truth = detector.detect(to.mesh(), to.view(), collide::pairs(collide::order::canonical)).to_host();
-      return to;
-    }();
-    return s;
+    static scene const made(kind->make(kind->spheres / part, kind->triangles, 0));
+    return made;
   }
 };
 
@@ -75,14 +67,16 @@ pair_list in_parts(std::size_t n, int threads, Find const& find) {
   return std::move(lists[0]);
 }
 
-/// Registers the benchmark peers/NAME/THREADS: from arrays in memory to all pairs in memory.
+/// Registers the benchmark peers/NAME/THREADS, or peers/NAME/THREADS/SCENE if that is not the study's: from arrays in
+/// memory to all pairs in memory.
 ///
 /// A `Peer` is made from the scene and a number of threads, and has `pair_list query()`. Counters: build_ms; query_ms;
 /// pairs; missed and invented, pairs that `exact` has and has not.
 template <class Peer>
 void add(std::string const& name, std::vector<int> const& threads) {
+  std::string const of = scene::kind->name == "study" ? "" : "/" + std::string(scene::kind->name);
   for (int const t : threads) {
-    benchmark::RegisterBenchmark(("peers/" + name + "/" + std::to_string(t)).c_str(),
+    benchmark::RegisterBenchmark(("peers/" + name + "/" + std::to_string(t) + of).c_str(),
                                  [t](benchmark::State& state) {
                                    using clock = std::chrono::steady_clock;
                                    auto const& from = scene::get();

@@ -24,7 +24,7 @@ class input {
   input(Space const& space, scene<S> const& from) : radius_{from.radius}, size_{from.spheres.size()} {
     auto const& mesh = from.mesh;
     auto const local = [&](auto& buffer, auto const& values) {
-      if constexpr (Space::host_memory) {
+      if constexpr (Space::host_accessible) {
         return values.data();
       } else {
         auto* const to = buffer.reserve(space.resource(), values.size());
@@ -127,7 +127,7 @@ findings<S> detect_with(options const& wish, scene<S> const& from, Broad const& 
     collide::detector<Broad, collide::karabassi<Precision>, Space, S> detector(device::make(wish.threads, &memory),
                                                                                broad);
     input<Space, S> const in(detector.space(), from);
-    if (Space::host_memory) {
+    if (Space::host_accessible) {
       memory.add((from.mesh.vertices.size() + from.spheres.xyz.size() + from.spheres.radii.size()) * sizeof(S) +
                  from.mesh.corners.size() * sizeof(collide::id));
     }

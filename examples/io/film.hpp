@@ -171,7 +171,7 @@ void shoot(film const& wish, Simulation simulation) {
     for (; done < until; ++done) {
       if (done == wish.pouring_steps()) stop_sources(simulation);
       simulation.step(step);
-      if (Simulation::execution_space::host_memory) bar.update(static_cast<double>(done));
+      if (Simulation::execution_space::host_accessible) bar.update(static_cast<double>(done));
     }
     space.synchronize();
     spent += std::chrono::duration<double, std::milli>(clock::now() - start).count();

@@ -23,14 +23,14 @@ namespace detail {
 /// Kernel body: each lane keeps some spheres; tiles of bounding spheres of the triangles pass by, in shared memory
 /// where there is some. Where one is reached by some sphere of a lane, the two are listed, and looked at closely by all
 /// lanes together. With few spheres the mesh is split among `splits` blocks.
-template <class S, class NarrowPhase, class Sink>
+template <class S, class NarrowPhase, class Output>
 struct all_pairs_query {
   static constexpr int items = 8;
   template <class Block>
   static constexpr int residency = 3;
   static constexpr int tile = 512;
 
-  tester<S, NarrowPhase, Sink> tests;
+  candidate_pipeline<S, NarrowPhase, Output> pipeline;
   lifted_bounds<S> const* bounds;
   std::size_t splits;
 
@@ -41,85 +41,86 @@ struct all_pairs_query {
 
   template <class Block>
   struct scratch {
-    static constexpr std::uint32_t capacity = Block::lanes > 1 ? 2 * Block::lanes : 1;
+    static constexpr std::uint32_t capacity = Block::lanes > 1 ? 2 * Block::lanes : 32;
     typename Block::template staging<lifted_bounds<S>, tile> staged;
     encounter encounters[capacity];
     std::uint32_t count;  ///< may be more than there is room for
-    hit_buffer<Block> hits;
+    pipeline_storage<Block> hits;
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
     std::size_t const first = block.index() / splits * Block::lanes * n;
-    std::size_t const triangles = tests.mesh.size();
+    std::size_t const triangles = pipeline.mesh.size();
     std::size_t const share = (triangles + splits - 1) / splits;
     std::size_t const begin = block.index() % splits * share;
     std::size_t const end = smaller(begin + share, triangles);
 
     typename Block::template per_lane<lifted_batch<S, n>> own;
-    vec3<S> const origin = lifted_origin(tests.mesh);
+    vec3<S> const origin = lifted_origin(pipeline.mesh);
     block.each([&](int lane) {
-      tests.begin(s.hits, lane);
+      pipeline.reset(s.hits, lane);
       if (lane == 0) s.count = 0;
-      own[lane].load(tests.spheres, first + static_cast<std::size_t>(lane) * n, origin);
+      own[lane].load(pipeline.spheres, first + static_cast<std::size_t>(lane) * n, origin);
     });
     for (std::size_t base = begin; base < end; base += tile) {
       int const m = static_cast<int>(smaller(static_cast<std::size_t>(tile), end - base));
       auto const* const staged = block.stage(s.staged, bounds + base, m);
-      if constexpr (Block::lanes == 1) {
-        vectorised([&] {
-          for (int t = 0; t < m; ++t) {
-            if (!own[0].any_reaches(staged[t])) continue;
-            for (int k = 0; k < n; ++k) {
-              look(block, s, first + static_cast<std::size_t>(k), base + static_cast<std::size_t>(t));
-            }
-            tests.make_room(block, s.hits);
-          }
+      typename Block::template per_lane<int> next;
+      bool more = false;
+      do {  // again if there were more encounters than go on the list
+        block.each([&](int lane) {
+          if (!more) next[lane] = 0;
+          vectorised([&] { next[lane] = find(block, s, own[lane], staged, next[lane], m, lane); });
         });
-      } else {
-        typename Block::template per_lane<int> next;
-        bool more = false;
-        do {  // again if there were more encounters than go on the list
-          block.each([&](int lane) {
-            auto const& mine = own[lane];
-            int t = more ? next[lane] : 0;
-            for (; t < m; ++t) {
-              if (!mine.any_reaches(staged[t])) continue;
-              std::uint32_t const place = block.add(s.count, 1);
-              if (place >= scratch<Block>::capacity) break;
-              s.encounters[place] = {static_cast<std::uint16_t>(lane), static_cast<std::uint16_t>(t)};
-            }
-            next[lane] = t;
-          });
-          std::uint32_t const found = block.shared(s.count);
-          more = found > scratch<Block>::capacity;
-          std::uint32_t const looks = smaller(found, scratch<Block>::capacity) * n;
-          for (std::uint32_t i = 0; i < looks; i += Block::lanes) {
-            block.each([&](int lane) {
-              if (lane == 0) s.count = 0;
-              std::uint32_t const own_look = i + static_cast<std::uint32_t>(lane);
-              if (own_look >= looks) return;
-              encounter const e = s.encounters[own_look / n];
-              look(block, s, first + std::size_t{e.lane} * n + own_look % n, base + e.triangle);
-            });
-            tests.make_room(block, s.hits);
-          }
-        } while (more);
-      }
+        std::uint32_t const found = block.shared(s.count);
+        more = found > scratch<Block>::capacity;
+        test(block, s, smaller(found, scratch<Block>::capacity), first, base);
+      } while (more);
     }
-    tests.flush(block, s.hits);
+    pipeline.drain(block, s.hits);
   }
 
  private:
-  /// Makes a sphere and a triangle a candidate if the sphere reaches the bounding sphere.
+  /// Lists the triangles of a tile, from `t` on, that spheres of a lane may touch, as long as there is room; returns
+  /// the first for which there was none.
+  template <class Block, int N>
+  COLLIDE_HD_INLINE static int find(Block& block, scratch<Block>& s, lifted_batch<S, N> const& own,
+                                    lifted_bounds<S> const* staged, int t, int m, int lane) {
+    for (; t < m; ++t) {
+      if (!own.any_reaches(staged[t])) continue;
+      std::uint32_t const slot = block.add(s.count, 1);
+      if (slot >= scratch<Block>::capacity) break;
+      s.encounters[slot] = {static_cast<std::uint16_t>(lane), static_cast<std::uint16_t>(t)};
+    }
+    return t;
+  }
+
+  /// Makes candidates of the spheres and triangles of `n` encounters that reach each other.
   template <class Block>
-  COLLIDE_HD_INLINE void look(Block& block, scratch<Block>& s, std::size_t i, std::size_t triangle) const {
-    if (i >= tests.spheres.size()) return;
-    auto const ball = tests.spheres[i];
+  COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, std::uint32_t n, std::size_t first,
+                              std::size_t base) const {
+    constexpr std::uint32_t per_lane = Block::items;
+    for (std::uint32_t i = 0; i < n * per_lane; i += Block::lanes) {
+      block.each([&](int lane) {
+        if (lane == 0) s.count = 0;
+        std::uint32_t const own = i + static_cast<std::uint32_t>(lane);
+        if (own >= n * per_lane) return;
+        encounter const e = s.encounters[own / per_lane];
+        test_one(block, s, first + std::size_t{e.lane} * per_lane + own % per_lane, base + e.triangle);
+      });
+      pipeline.drain_if_full(block, s.hits);
+    }
+  }
+
+  template <class Block>
+  COLLIDE_HD_INLINE void test_one(Block& block, scratch<Block>& s, std::size_t i, std::size_t triangle) const {
+    if (i >= pipeline.spheres.size()) return;
+    auto const ball = pipeline.spheres[i];
     sphere<S> const around = enclosing(ball);
-    if (!bounds_of(tests.mesh[triangle]).reached(around.centre, around.radius)) return;
-    tests.test(block, s.hits, {static_cast<id>(i), static_cast<id>(triangle)}, ball);
+    if (!bounds_of(pipeline.mesh[triangle]).reached(around.centre, around.radius)) return;
+    pipeline.push(block, s.hits, {static_cast<id>(i), static_cast<id>(triangle)}, ball);
   }
 };
 
@@ -154,12 +155,12 @@ struct all_pairs {
     template <class Space>
     void prepare(Space&, all_pairs const&, sphere_view<S> const&) {}
 
-    template <class NarrowPhase, class Space, class Sink>
-    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
-      detail::all_pairs_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink, nullptr}, bounds_.data(), 1};
-      std::size_t const blocks = detail::blocks_for<Space>(spheres.size(), body);
+    template <class NarrowPhase, class Space, class Output>
+    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) const {
+      detail::all_pairs_query<S, NarrowPhase, Output> body{{mesh_, spheres, output}, bounds_.data(), 1};
+      std::size_t const blocks = detail::grid_size<Space>(spheres.size(), body);
       std::size_t const tiles = (mesh_.size() + body.tile - 1) / body.tile;
-      std::size_t const wanted = (space.concurrency() + blocks - 1) / blocks;
+      std::size_t const wanted = (space.saturating_blocks() + blocks - 1) / blocks;
       body.splits = detail::larger<std::size_t>(1, detail::smaller(wanted, tiles));
       space.launch(blocks * body.splits, body);
     }

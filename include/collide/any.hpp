@@ -1,5 +1,5 @@
 /// \file
-/// Sink: which spheres collide.
+/// Sink: one flag per sphere.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,8 @@
 
 namespace collide {
 
-/// A flag per sphere: 1 if it touches any triangle, else 0. `query` does not wait for them.
+/// A flag per sphere: 1 if it touches any triangle, else 0. `query` does not wait for the flags. Memory: one byte per
+/// sphere.
 class any : public detail::kept_in_space<std::uint8_t> {
  public:
   /// The flags are kept in memory of the space.

@@ -2,21 +2,10 @@
 /// Broad phase: `all_pairs` or `bucket`, whichever the sizes of the scene make the faster one.
 #pragma once
 
-#include <type_traits>
-
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
 
 namespace collide {
-
-namespace detail {
-
-template <class Space, class = void>
-struct has_costs : std::false_type {};
-template <class Space>
-struct has_costs<Space, std::void_t<decltype(Space::costs.build)>> : std::true_type {};
-
-}  // namespace detail
 
 /// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
 /// long as no grid has been made; `bucket` wins for all else. Which it is follows from the numbers of triangles and
@@ -56,12 +45,12 @@ struct automatic {
       }
     }
 
-    template <class NarrowPhase, class Space, class Sink>
-    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
+    template <class NarrowPhase, class Space, class Output>
+    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) {
       if (uses_grid_) {
-        grid_.template query<NarrowPhase>(space, spheres, sink);
+        grid_.template query<NarrowPhase>(space, spheres, output);
       } else {
-        bounds_.template query<NarrowPhase>(space, spheres, sink);
+        bounds_.template query<NarrowPhase>(space, spheres, output);
       }
     }
 
@@ -74,14 +63,11 @@ struct automatic {
    private:
     template <class Space>
     bool wants_grid(std::size_t spheres) {
-      static_assert(
-          detail::has_costs<Space>::value,
-          "collide: automatic needs an execution space with a static member costs, see detail/execution/tuning.hpp");
-      constexpr detail::broad_phase_costs c = Space::costs;
+      constexpr broad_phase_cost_model c = broad_phase_costs<Space>::value;
       auto const n = static_cast<double>(spheres), triangles = static_cast<double>(mesh_.size());
-      double const saved = n * (c.near + c.per_pair * triangles - c.per_sphere);
+      double const saved = n * (c.per_near_sphere_ns + c.per_pair_ns * triangles - c.per_sphere_ns);
       // as long as a query does not pay for the grid alone, nobody knows whether there will be another
-      if (c.build + c.per_triangle * triangles < saved + spent_) return true;
+      if (c.build_ns + c.per_triangle_ns * triangles < saved + spent_) return true;
       spent_ += saved > 0 ? saved : 0;
       return false;
     }

@@ -13,6 +13,7 @@
 #include <collide/detail/grid/build.hpp>
 #include <collide/detail/grid/grid.hpp>
 #include <collide/detail/grid/grid_ref.hpp>
+#include <collide/detail/grid/memory_plan.hpp>
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/grid/plan.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
@@ -52,93 +53,92 @@ class bucket::index {
   template <class Space>
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
     if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
-    if (options.memory_budget != 0 && mesh.size() != mesh_.size()) {
-      boxes_.release();
-      release_grids();
-    }
+    if (options.memory_budget != 0 && mesh.size() != mesh_.size()) release_grids();
     mesh_ = mesh;
-    grid_count_ = wanted_ = 0;
-    radius_given_ = false;
-    listed_ = swapped_ = queried_ = false;
-    has_boxes_ = options.memory_budget == 0 || fixed_bytes + boxes_bytes() <= options.memory_budget;
-    if (has_boxes_) boxes_.reserve(space.resource(), mesh.size());
-    has_summary_ = options.memory_budget == 0 || fixed_bytes <= options.memory_budget;
-    if (!has_summary_) return;
+    stage_ = stage::none;
+    origin_ = origin::none;
+    grid_count_ = requested_ = 0;
+    queries_ = 0;
+    auto const affords = [&](std::size_t bytes) {
+      return options.memory_budget == 0 || bytes <= options.memory_budget;
+    };
+    if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_box<S>))) {
+      boxes_.reserve(space.resource(), mesh.size());
+    } else {
+      boxes_.release();
+    }
+    if (!affords(fixed_bytes)) return summary_.release();
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_summary<S>::clear(space, summary);
-    detail::summarise_mesh<S> const body{mesh, summary, has_boxes_ ? boxes_.data() : nullptr};
-    space.launch(detail::blocks_for<Space>(mesh.size(), body), body);
+    detail::summarise_mesh<S> const body{mesh, summary, boxes_.data()};
+    space.launch(detail::grid_size<Space>(mesh.size(), body), body);
   }
 
   /// Makes a grid for spheres up to `radius`, which serves until the next build, or until many spheres that move want
   /// another.
   template <class Space>
   void prepare(Space& space, bucket const& options, S radius) {
-    radius_given_ = true;
-    if (has_summary_ && detail::valid_radius(radius) && detail::finite(radius)) make_grids(space, options, &radius, 1);
+    origin_ = origin::radius;
+    if (summary_.data() == nullptr || !detail::valid_radius(radius) || !detail::finite(radius)) return;
+    make_grids(space, options, &radius, 1);
+    if (stage_ == stage::planned && !bins_spheres<Space>(options)) enter_triangles(space, options);
   }
 
-  /// Makes the grids that the spheres need, unless they are there. Waits for the host to see the radii where they
-  /// differ.
+  /// Makes the grids that the spheres need, unless they are there, and chooses how they are used. Waits for the host to
+  /// see the radii where they differ.
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
-    prepare_grids(space, options, spheres);
-    // The first time that is faster than making lists; later only if there are many spheres (docs/performance.md).
-    swapped_ = grid_count_ > 0 && swaps<Space>(options) && spheres.size() <= detail::sorted_spheres<S>::most &&
-               (!queried_ || spheres.size() / 3 >= mesh_.size() / 2);
-    queried_ = true;
-    if constexpr (Space::sorts_spheres) {
-      if (swapped_) sorted_.sort(space, spheres);
-    }
-    if (!swapped_) make_lists(space, options);
+    request_grids(space, options, spheres);
+    // The first time that is faster than entering triangles; later only if there are many spheres
+    // (docs/performance.md).
+    bool const pays = queries_ == 0 || spheres.size() / 3 >= mesh_.size() / 2;
+    choose(space, options, pays && stage_ != stage::none && can_bin<Space>(options, spheres.size()));
   }
 
-  /// Spheres that move are sorted, too, if there are many, of one radius, and none moves far; else they look for
+  /// Spheres that move are binned, too, if there are many, of one radius, and none moves far; else they look for
   /// triangles along their ways.
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
-    swapped_ = false;
-    if constexpr (Space::sorts_spheres) {
-      if (swaps<Space>(options) && has_summary_ && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
-          spheres.size() <= detail::sorted_spheres<S>::most) {
-        S const reach = sorted_.reach_of(space, spheres);
+    bool bins = false;
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (summary_.data() != nullptr && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
+          can_bin<Space>(options, spheres.size())) {
+        S const reach = bins_.reach_of(space, spheres);
         if (detail::finite(reach) && reach <= 2 * spheres.common_radius()) {
-          S const wider = reach + reach / 16;  // so that a bit more next time fits too
-          bool const kept = wanted_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
+          bool const kept = requested_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
           if (!kept) {
+            S const wider = reach + reach / 16;  // so that a bit more next time fits too
             make_grids(space, options, &wider, 1);
-            radius_given_ = false;  // the grid of that radius is no more
+            origin_ = origin::spheres;
           }
-          swapped_ = grid_count_ > 0;
-          if (swapped_) {
-            sorted_.sort(space, detail::balls_around<S>{spheres, reach});
-            return;
-          }
+          bins = stage_ != stage::none;
         }
       }
     }
-    prepare_grids(space, options, spheres);
-    make_lists(space, options);
+    if (!bins) request_grids(space, options, spheres);
+    choose(space, options, bins);
   }
 
-  /// Puts one pass over the spheres on the space's stream.
-  template <class NarrowPhase, class Space, class Sink>
-  void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Sink const& sink) const {
-    if constexpr (Space::sorts_spheres) {
-      if (swapped_) {
-        sorted_.query(space, detail::tester<S, NarrowPhase, Sink>{mesh_, spheres, sink, nullptr});
+  /// Puts one pass over the spheres on the space's stream; the last `prepare` was for these.
+  template <class NarrowPhase, class Space, class Output>
+  void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) {
+    using pipeline = detail::candidate_pipeline<S, NarrowPhase, Output>;
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (algorithm_ == algorithm::triangle_major) {
+        if (bins_.empty()) bin(space, spheres);
+        bins_.query(space, pipeline{mesh_, spheres, output});
         return;
       }
     }
-    detail::bucket_query<S, NarrowPhase, Sink> body{{mesh_, spheres, sink, boxes()}, lookup(), 0};
-    body.blocks = detail::blocks_at_a_time<Space>(space, spheres.size(), body);
+    detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes_.data()}, lookup(), 0};
+    body.blocks = detail::persistent_grid_size<Space>(space, spheres.size(), body);
     space.launch(body.blocks, body);
   }
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
   detail::bucket_lookup<S> lookup() const {
-    return {{mesh_, boxes()}, grids_.data(), grid_count_,     occupied(),
-            lists_.data(),    lists_total(), entries_.data(), entries_.capacity()};
+    return {{mesh_, boxes_.data()}, grids_.data(), grid_count_,     occupied(),
+            lists_.data(),          lists_total(), entries_.data(), entries_.capacity()};
   }
 
   /// Width of the finest cells in use; 0 if there is no grid.
@@ -148,30 +148,71 @@ class bucket::index {
   }
 
  private:
+  /// How far the grids have come: there are none; their cells are chosen; the triangles are entered into the cells.
+  enum class stage { none, planned, entered };
+
+  /// What the grids are for: nothing yet; a radius that was given; the radii that the spheres have.
+  enum class origin { none, radius, spheres };
+
+  /// How a query goes: spheres look for triangles in the cells, or triangles look for spheres that are binned into the
+  /// cells.
+  enum class algorithm { sphere_major, triangle_major };
+
   static constexpr std::size_t fixed_bytes =
       sizeof(detail::mesh_summary<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
 
   /// How many cells a triangle may touch at most, on an axis and in all, unless a width is asked for.
   template <class Space>
-  static constexpr std::size_t cells_per_axis = std::size_t(Space::bucket_span) +
-                                                (Space::bucket_span > int(Space::bucket_span) ? 2 : 1);
+  static constexpr std::size_t cells_per_axis =
+      std::size_t(bucket_tuning<Space>::triangle_span_in_cells) +
+      (bucket_tuning<Space>::triangle_span_in_cells > int(bucket_tuning<Space>::triangle_span_in_cells) ? 2 : 1);
   template <class Space>
   static constexpr std::size_t cells_per_triangle = cells_per_axis<Space>* cells_per_axis<Space>* cells_per_axis<Space>;
 
+  /// True if spheres can be binned into the cells: what that takes is not part of a budget.
   template <class Space>
-  void prepare_grids(Space& space, bucket const& options, sphere_view<S> const& spheres) {
-    if (radius_given_ || !has_summary_) return;
+  static bool bins_spheres(bucket const& options) {
+    return bucket_tuning<Space>::bins_spheres && options.memory_budget == 0;
+  }
+  template <class Space>
+  static bool can_bin(bucket const& options, std::size_t spheres) {
+    return bins_spheres<Space>(options) && spheres <= detail::sorted_spheres<S>::most;
+  }
+
+  /// Chooses the algorithm of the next query, and makes what it needs of the mesh.
+  template <class Space>
+  void choose(Space& space, bucket const& options, bool bins) {
+    algorithm_ = bins ? algorithm::triangle_major : algorithm::sphere_major;
+    bins_.clear();
+    ++queries_;
+    if (!bins && stage_ == stage::planned) enter_triangles(space, options);
+  }
+
+  template <class Space>
+  void bin(Space& space, sphere_view<S> const& spheres) {
+    bins_.sort(space, spheres);
+  }
+  template <class Space>
+  void bin(Space& space, moving_sphere_view<S> const& spheres) {
+    bins_.sort(space, detail::balls_around<S>{spheres, reaches_[0]});
+  }
+
+  /// Makes the grids for the radii of the spheres, unless they are there or a radius was given.
+  template <class Space>
+  void request_grids(Space& space, bucket const& options, sphere_view<S> const& spheres) {
+    if (origin_ == origin::radius || summary_.data() == nullptr) return;
     S reaches[detail::max_grids];
     int const n =
         spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
-    if (n == 0 || (n == wanted_ && std::equal(reaches, reaches + n, reaches_))) return;
+    if (n == 0 || (n == requested_ && std::equal(reaches, reaches + n, reaches_))) return;
+    origin_ = origin::spheres;
     make_grids(space, options, reaches, n);
   }
 
   /// The grid of one radius: the one that is there if it is not much too wide.
   int reach_of(S radius, S* reaches) const {
     if (!detail::valid_radius(radius) || !detail::finite(radius)) return 0;
-    bool const kept = wanted_ == 1 && radius <= reaches_[0] && reaches_[0] <= 4 * radius;
+    bool const kept = requested_ == 1 && radius <= reaches_[0] && reaches_[0] <= 4 * radius;
     reaches[0] = kept ? reaches_[0] : radius;
     return 1;
   }
@@ -182,7 +223,7 @@ class bucket::index {
     auto* const radii = radii_.reserve(space.resource(), 1);
     detail::size_histogram::clear(space, radii);
     detail::summarise_radii<S> const body{spheres, radii};
-    space.launch(detail::blocks_for<Space>(spheres.size(), body), body);
+    space.launch(detail::grid_size<Space>(spheres.size(), body), body);
     detail::size_histogram const seen = space.read(radii);
     if (seen.empty()) return 0;
     constexpr int bins_per_factor_4 = 8;
@@ -195,60 +236,53 @@ class bucket::index {
     return n;
   }
 
+  /// Chooses the cells of grids up to these radii, as many of `requested` as the budget allows.
   template <class Space>
-  void make_grids(Space& space, bucket const& options, S const* reaches, int wanted) {
-    grid_count_ = wanted_ = 0;  // until all is done: an exception leaves no half-made grid behind
-    std::size_t const n = mesh_.size();
-    layout const l = plan_memory(space, options, wanted);
-    std::copy(reaches, reaches + wanted, reaches_);
-    if (l.grids == 0) {
-      wanted_ = wanted;
-      return;
+  void make_grids(Space& space, bucket const& options, S const* reaches, int requested) {
+    stage_ = stage::none;  // until all is done: an exception leaves no half-made grid behind
+    grid_count_ = requested_ = 0;
+    std::size_t const taken = fixed_bytes + (boxes_.data() != nullptr ? mesh_.size() * sizeof *boxes_.data() : 0);
+    auto const plan =
+        detail::memory_plan::make(mesh_.size(), requested, cells_per_triangle<Space>, taken, options.memory_budget);
+    std::copy(reaches, reaches + requested, reaches_);
+    if (plan.grids != 0) {
+      auto const count = static_cast<std::size_t>(plan.grids);
+      if (options.memory_budget != 0 && cells_ != count << plan.table_bits) release_cells();
+      cells_ = count << plan.table_bits;
+      table_bits_ = plan.table_bits;
+      auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
+      detail::plan_grid<S> body{summary_.data(),
+                                grids,
+                                {},
+                                static_cast<S>(options.cell_width),
+                                static_cast<S>(bucket_tuning<Space>::triangle_span_in_cells),
+                                plan.entry_limit,
+                                plan.table_bits};
+      std::copy(reaches, reaches + count, body.reaches);
+      space.launch(count, body);
+      if constexpr (bucket_tuning<Space>::bins_spheres) {
+        if (bins_spheres<Space>(options)) {
+          bins_.mark(space, boxes_.data(), mesh_.size(), grids, plan.grids, plan.table_bits);
+        }
+      }
+      grid_count_ = plan.grids;
+      stage_ = stage::planned;
     }
-    auto const count = static_cast<std::size_t>(l.grids);
-    if (options.memory_budget != 0 && cells_ != count << l.table_bits) release_grids();
-    cells_ = count << l.table_bits;
-    table_bits_ = l.table_bits;
-
-    bool const swapping = swaps<Space>(options);
-    auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
-    detail::plan_grid<S> plan{summary_.data(),
-                              grids,
-                              {},
-                              static_cast<S>(options.cell_width),
-                              static_cast<S>(Space::bucket_span),
-                              l.entry_limit,
-                              l.table_bits,
-                              l.grids,
-                              swapping ? nullptr : lists_.reserve(space.resource(), table_size(cells_)),
-                              swapping ? 0 : cells_ + 1};
-    std::copy(reaches, reaches + count, plan.reaches);
-    space.launch(plan.template blocks<typename Space::template block<detail::plan_grid<S>>>(), plan);
-
-    if constexpr (Space::sorts_spheres) {
-      if (swapping) sorted_.mark(space, boxes_.data(), n, grids, l.grids, l.table_bits);
-    }
-    grid_count_ = l.grids;
-    wanted_ = wanted;
-    listed_ = false;
-    lists_empty_ = !swapping;
-    if (!swapping) make_lists(space, options);
+    requested_ = requested;
   }
 
-  /// Enters the triangles into the cells, unless they are there.
+  /// Enters the triangles into the cells.
   template <class Space>
-  void make_lists(Space& space, bucket const& options) {
+  void enter_triangles(Space& space, bucket const& options) {
     std::size_t const n = mesh_.size();
-    if (listed_ || grid_count_ == 0) return;
-    auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
-    constexpr int parts = Space::insertion_parts;
-    detail::grid_insertion<S, parts> const insertion{mesh_, boxes(), grids_.data(), grid_count_};
-    if (!lists_empty_) space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
-    lists_empty_ = false;
+    auto* const lists = lists_.reserve(space.resource(), detail::table_size(cells_));
+    space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
+    constexpr int parts = bucket_tuning<Space>::threads_per_triangle;
+    detail::grid_insertion<S, parts> const insertion{mesh_, boxes_.data(), grids_.data(), grid_count_};
     space.for_each(insertion.size(), detail::count_entries<S, parts>{insertion, lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
                                                  lists,         occupied(),  &lists[cells_].count};
-    space.launch(detail::blocks_for<Space>(cells_, allocation), allocation);
+    space.launch(detail::grid_size<Space>(cells_, allocation), allocation);
     // only a width that was asked for leaves open how many entries there are: then the device must be asked
     std::size_t const capacity = options.cell_width > 0
                                      ? space.read(lists_total())
@@ -256,82 +290,41 @@ class bucket::index {
     entries_.reserve(space.resource(), capacity);
     space.for_each(insertion.size(),
                    detail::fill_entries<S, parts>{insertion, lists, entries_.data(), entries_.capacity()});
-    listed_ = true;
+    stage_ = stage::entered;
   }
-
-  /// True if spheres can be sorted into the cells instead of triangles: what that takes is not part of a budget.
-  template <class Space>
-  static bool swaps(bucket const& options) {
-    return Space::sorts_spheres && options.memory_budget == 0;
-  }
-
-  struct layout {
-    int grids = 0;
-    std::uint32_t table_bits = 0;
-    float entry_limit = 0;  ///< per grid
-  };
-
-  /// How many grids with how many cells the budget allows; the more grids the better, then the more cells.
-  template <class Space>
-  layout plan_memory(Space const&, bucket const& options, int wanted) const {
-    constexpr std::size_t id_limit = std::numeric_limits<std::uint32_t>::max();
-    std::size_t const n = mesh_.size();
-    std::uint32_t most_bits = 12;
-    while (most_bits < 28 && (std::size_t{1} << most_bits) < 4 * n) ++most_bits;
-    for (int g = wanted; g > 0; --g) {
-      auto const grids = static_cast<std::size_t>(g);
-      if (cells_per_triangle<Space> * n * grids > id_limit) continue;
-      for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
-        std::size_t const cells = grids << bits;
-        std::size_t const base =
-            fixed_bytes + (has_boxes_ ? boxes_bytes() : 0) + table_size(cells) * sizeof(detail::cell_list);
-        std::size_t const least = base + cells_per_triangle<Space> * n * grids * sizeof(detail::cell_entry);
-        std::size_t most_entries = std::min(512 * n + (std::size_t{1} << 20), id_limit / grids);
-        if (options.memory_budget != 0) {
-          if (least > options.memory_budget) continue;
-          most_entries = std::min(most_entries, (options.memory_budget - base) / (grids * sizeof(detail::cell_entry)));
-        }
-        return {g, bits, 0.99f * static_cast<float>(most_entries)};
-      }
-    }
-    return {};
-  }
-
-  /// Size of `lists_`: a list per cell, the number of all entries, and a bit per cell.
-  static std::size_t table_size(std::size_t cells) { return cells + 1 + cells / 64; }
 
   std::uint32_t const* lists_total() const { return &lists_.data()[cells_].count; }
   std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
 
-  std::size_t boxes_bytes() const { return mesh_.size() * sizeof(detail::triangle_box<S>); }
-  detail::triangle_box<S> const* boxes() const { return has_boxes_ ? boxes_.data() : nullptr; }
-
-  /// What is held for another layout would come on top of what the budget was planned for.
-  void release_grids() {
+  /// What is held for another number of cells would come on top of what the budget was planned for,
+  void release_cells() {
     lists_.release();
     entries_.release();
   }
 
+  /// and so would boxes of another number of triangles.
+  void release_grids() {
+    boxes_.release();
+    release_cells();
+  }
+
   mesh_view<S> mesh_;
-  buffer<detail::triangle_box<S>> boxes_;
-  buffer<detail::mesh_summary<S>> summary_;
+  stage stage_ = stage::none;
+  origin origin_ = origin::none;
+  algorithm algorithm_ = algorithm::sphere_major;
+  std::size_t queries_ = 0;  ///< since the build
+  int requested_ = 0;        ///< how many grids are wanted: the budget may have allowed fewer
+  int grid_count_ = 0;
+  S reaches_[detail::max_grids] = {};  ///< of the grids that are wanted
+  std::size_t cells_ = 0;
+  std::uint32_t table_bits_ = 0;
+  buffer<detail::triangle_box<S>> boxes_;    ///< empty if the budget has no room for them
+  buffer<detail::mesh_summary<S>> summary_;  ///< empty if the budget has no room for it
   buffer<detail::size_histogram> radii_;
   buffer<detail::grid<S>> grids_;
   buffer<detail::cell_list> lists_;
   buffer<detail::cell_entry> entries_;
-  std::size_t cells_ = 0;
-  std::uint32_t table_bits_ = 0;
-  int grid_count_ = 0;
-  int wanted_ = 0;  ///< how many grids the spheres asked for: the budget may have allowed fewer
-  S reaches_[detail::max_grids] = {};
-  bool radius_given_ = false;
-  bool has_boxes_ = false;  ///< there was room for them
-  bool has_summary_ = false;
-  bool lists_empty_ = false;  ///< of the cells
-  bool swapped_ = false;      ///< the spheres are, for this query
-  bool listed_ = false;       ///< the triangles are in the lists of the cells
-  bool queried_ = false;      ///< this is not the first query since the build
-  detail::sorted_spheres<S> sorted_;
+  detail::sorted_spheres<S> bins_;
 };
 
 #if defined(COLLIDE_COMPILED)

@@ -1,12 +1,12 @@
 /// \file
-/// Sink: per sphere the nearest of the triangles that it collides with.
+/// Sink: the closest colliding triangle of each sphere.
 #pragma once
 
 #include <collide/detail/sinks/per_sphere_min.hpp>
 
 namespace collide {
 
-/// The nearest colliding triangle of a sphere.
+/// The closest colliding triangle of a sphere.
 template <class S>
 struct nearest {
   id triangle;  ///< `no_id` if the sphere touches nothing
@@ -30,8 +30,8 @@ struct distance_of_contact {
 
 }  // namespace detail
 
-/// Per sphere the colliding triangle that is nearest to its centre; of equally near ones that with the smallest id.
-/// Distances are those of `contact::distance`. `data()`, `size()`, `total()` and `to_host()` are those of
+/// The colliding triangle closest to each sphere's centre; of equally close ones that with the smallest id. Distances
+/// are those of `contact::distance`. `data()`, `size()`, `total()` and `to_host()` are those of
 /// `detail::best_of_sphere`.
 template <class S = float>
 class closest : public detail::best_of_sphere<nearest<S>, S, detail::distance_of_contact> {};

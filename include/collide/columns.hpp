@@ -1,9 +1,9 @@
 /// \file
-/// The columns of a simulation's state: what is known of each particle.
+/// The columns of a simulation's state: arrays with one value per particle (SoA).
 ///
-/// A column is a type with a member template `value<S>`: what a particle has of it, where S is the scalar of the
-/// simulation: `vec3<S>`, `S`, or a plain integer. `static constexpr value<S> initial<S>` may say what a particle
-/// begins with; else it is zero. A user's effect may name columns of its own:
+/// A column is a type with a member template `value<S>`, the type of its values, where S is the scalar of the
+/// simulation: `vec3<S>`, `S`, or a plain integer. `static constexpr value<S> initial<S>` is the value that a particle
+/// begins with, zero by default. An effect may name columns of its own:
 ///
 ///     struct temperature {
 ///       template <class S> using value = S;

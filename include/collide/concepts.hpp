@@ -39,8 +39,9 @@ template <class E, class = void>
 struct is_execution_space : std::false_type {};
 template <class E>
 struct is_execution_space<
-    E, std::void_t<decltype(std::declval<E const&>().resource()), decltype(std::declval<E const&>().concurrency()),
-                   decltype(E::host_memory), decltype(E::defers), decltype(E::sorts_spheres)>> : std::true_type {};
+    E, std::void_t<decltype(std::declval<E const&>().resource()),
+                   decltype(std::declval<E const&>().saturating_blocks()), decltype(E::host_accessible)>>
+    : std::true_type {};
 
 template <class D, class = void>
 struct is_detector : std::false_type {};

@@ -1,5 +1,5 @@
 /// \file
-/// What is known of a colliding pair: its ids, and where and how the two touch.
+/// A colliding pair of a sphere and a triangle, and its contact: where and how the two touch.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,15 @@ struct pair {
   }
 };
 
-/// Order of the pairs or contacts in an array. `canonical` is by sphere, then by triangle, and costs a sort.
+/// Order of the pairs or contacts in an array. `canonical` is sorted by sphere and within a sphere by triangle; it
+/// costs a sort, O(n log n) on the host and a radix or merge sort on a GPU.
 enum class order { unspecified, canonical };
 
-/// The part of a triangle that the closest point lies in.
+/// The feature of a triangle that the closest point lies in: its interior (face), one of its edges or vertices.
 enum class feature : std::uint32_t { face, edge, vertex };
 
-/// Where and how a sphere touches a triangle. Without padding: equal contacts are equal bytes.
+/// Contact of a sphere and a triangle, lengths in the units of the scene. It has no padding: equal contacts are equal
+/// bytes.
 template <class S>
 struct contact {
   id sphere;
@@ -36,7 +38,7 @@ struct contact {
   vec3<S> normal;  ///< unit vector from the triangle to the centre; a normal of the triangle if the centre is on it
   S distance;      ///< from the centre to the triangle
   S depth;         ///< radius - distance: how deep the triangle is in the sphere
-  feature kind;    ///< the part of the triangle that `point` lies in
+  feature kind;    ///< the feature of the triangle that `point` lies in
   std::uint32_t index;  ///< edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
 };
 

@@ -23,7 +23,6 @@ class cuda : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda"; }
-  static constexpr detail::broad_phase_costs costs{0, 30, 0.08, 0.2, 30000};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::serial_block<Body::items, 0>;
@@ -34,12 +33,18 @@ class cuda : public detail::cuda_space {
     launch_kernel("launch of run_threads", detail::run_threads<block<Body>, Body>, grid_of(blocks), blocks, body);
   }
 
-  std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 2048; }
+  std::size_t saturating_blocks() const { return static_cast<std::size_t>(processors_) * 2048; }
 
   template <class Body>
-  std::size_t wave() const {
+  std::size_t max_resident_blocks() const {
     return std::numeric_limits<std::size_t>::max();
   }
+};
+
+/// Measured on an H100.
+template <>
+struct broad_phase_costs<cuda> {
+  static constexpr broad_phase_cost_model value{0, 30, 0.08, 0.2, 30000};
 };
 
 /// Execution space: an NVIDIA GPU, the threads of a block working together through shared memory. Views point to device
@@ -48,7 +53,6 @@ class cuda_shared : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
   static constexpr char const* name() { return "cuda_shared"; }
-  static constexpr detail::broad_phase_costs costs{0, 1.9, 0.012, 0.1, 30000};  ///< tuning of `automatic`
 
   template <class Body>
   using block = detail::cuda_block<Body::items>;
@@ -62,11 +66,11 @@ class cuda_shared : public detail::cuda_space {
     launch_kernel("launch of run_blocks", detail::run_blocks<block<Body>, Body>, static_cast<unsigned>(blocks), body);
   }
 
-  std::size_t concurrency() const { return static_cast<std::size_t>(processors_) * 8; }
+  std::size_t saturating_blocks() const { return static_cast<std::size_t>(processors_) * 8; }
 
   /// How many blocks of a body are at work at a time.
   template <class Body>
-  std::size_t wave() const {
+  std::size_t max_resident_blocks() const {
     return static_cast<std::size_t>(processors_) * detail::residency<Body, block<Body>>;
   }
 };

@@ -1,5 +1,5 @@
 /// \file
-/// Memory of an NVIDIA GPU, and what is thrown where CUDA fails. Needs nvcc.
+/// Memory resources for NVIDIA GPUs, and the error that failed CUDA calls throw. Needs nvcc.
 #pragma once
 
 #if !defined(__CUDACC__)
@@ -88,8 +88,8 @@ class cuda_async_memory final : public std::pmr::memory_resource {
   cudaStream_t stream_;
 };
 
-/// Pinned host memory by cudaMallocHost and cudaFreeHost: what `streamed` copies from it takes the full bandwidth, and
-/// nothing waits meanwhile. Slow to allocate; no other program can have it.
+/// Pinned host memory by cudaMallocHost and cudaFreeHost: copies of `streamed` from it run at full bandwidth and do
+/// not block the host. Slow to allocate, and not available to other programs.
 class cuda_pinned_memory final : public std::pmr::memory_resource {
  public:
   /// The one instance.

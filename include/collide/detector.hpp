@@ -81,7 +81,7 @@ class detector {
         "collide: the second argument of query is a sink, such as count, any, pairs, contacts, closest or visit: an "
         "object with a member run(space, query)");
     prepare(spheres);
-    sink.run(space_, pass{index_, space_, mesh_, spheres, open_});
+    sink.run(space_, pass{index_, space_, mesh_, spheres, deferred_});
     return std::forward<Sink>(sink);
   }
 
@@ -133,7 +133,7 @@ class detector {
   BroadPhase options_;
   mesh_view<Scalar> mesh_;
   typename BroadPhase::template index<Scalar> index_;
-  detail::undecided_list open_;
+  detail::deferred_pair_buffer deferred_;
 };
 
 // What follows is not in the class, for then it would be inline, and compiled also where an `extern template` says that

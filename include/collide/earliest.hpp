@@ -1,5 +1,5 @@
 /// \file
-/// Sink: per sphere that moves the first of the triangles that it hits.
+/// Sink: the first triangle that each moving sphere hits.
 #pragma once
 
 #include <collide/detail/sinks/per_sphere_min.hpp>
@@ -28,8 +28,8 @@ struct time_of_hit {
 
 }  // namespace detail
 
-/// Per sphere the triangle with the smallest time of impact; of equally early ones that with the smallest id. Needs a
-/// narrow phase for spheres that move.
+/// The triangle with the smallest time of impact of each moving sphere; of equal times that with the smallest id. Needs
+/// a narrow phase for spheres that move.
 template <class S = float>
 class earliest : public detail::best_of_sphere<first_impact<S>, S, detail::time_of_hit> {};
 

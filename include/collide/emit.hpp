@@ -49,7 +49,7 @@ struct emit_particles {
     std::uint64_t const number = begin + i, room = state.size - state.placed;
     if (number >= end || end - number > room) return;
     particle<S, typename State::list> p;
-    begin_particle(p);
+    set_initial_values(p);
     if constexpr (contains<typename State::list, radius>) p[radius{}] = state.common_radius;
     source(number, p[position{}], p[velocity{}]);
     state.store(p, state.placed + static_cast<std::size_t>(number % room), typename State::list{});

@@ -20,21 +20,22 @@ inline constexpr id no_id = 0xffffffffu;
 template <class S>
 using vec3 = Eigen::Matrix<S, 3, 1>;
 
-/// The closed triangle with the corners a, b, c; a segment or a point if the corners are collinear or equal.
+/// The triangle with vertices a, b, c, its boundary included; a segment or a point if they are collinear or equal.
 template <class S>
 struct triangle {
   vec3<S> a, b, c;
 };
 
-/// The closed ball around `centre`; empty if the radius is negative or NaN.
+/// A sphere, as a solid: all points within `radius` of `centre`, the boundary included. Empty if the radius is negative
+/// or NaN.
 template <class S>
 struct sphere {
   vec3<S> centre;
   S radius;
 };
 
-/// A ball whose centre moves from `centre` to `centre + displacement` within a step: at the time t, from 0 to 1, it is
-/// at centre + t * displacement, in real arithmetic.
+/// A sphere that moves along a straight path within a step: at time t, from 0 to 1, its centre is at
+/// centre + t * displacement, in real arithmetic.
 template <class S>
 struct moving_sphere : sphere<S> {
   vec3<S> displacement;

@@ -21,7 +21,8 @@ class hit {
   COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres)
       : sphere{p.sphere}, triangle{p.triangle}, mesh_{mesh}, spheres_{spheres} {}
 
-  /// Where and how the two touch; computed here and now.
+  /// Contact of the pair; of a moving sphere, at its time of impact. Computed by this call. The narrow phase needs a
+  /// member contact_of.
   COLLIDE_HD collide::contact<S> contact() const {
     static_assert(
         detail::has_contact<NarrowPhase, S>::value,
@@ -33,7 +34,8 @@ class hit {
     return c;
   }
 
-  /// When the two touch first within the step, and the contact then; computed here and now.
+  /// First time of contact within the step, and the contact at that time. Computed by this call. The narrow phase needs
+  /// a member impact_of.
   COLLIDE_HD collide::impact<S> impact() const {
     static_assert(
         detail::has_impact<NarrowPhase, S>::value,

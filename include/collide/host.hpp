@@ -6,10 +6,7 @@
 #include <cstring>
 #include <exception>
 #include <limits>
-#include <numeric>
-#include <string>
 
-#include <collide/contact.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/execution/block.hpp>
 #include <collide/detail/execution/tuning.hpp>
@@ -52,27 +49,11 @@ class host {
   template <class Body>
   using block = detail::serial_block<64, 256>;
 
-  /// Tuning of `bucket`: how many cells wide most triangles are. Narrow cells have fewer candidates and more entries.
-  static constexpr double bucket_span = 1;
-
-  /// Tuning of `automatic`.
-  static constexpr detail::broad_phase_costs costs{350, 0.137, 4, 40, 1000};
-
-  /// Tuning of `bucket`: how many threads put a triangle into its cells.
-  static constexpr int insertion_parts = 1;
-
   /// True if the host reads this memory without waiting for anything.
-  static constexpr bool host_memory = true;
+  static constexpr bool host_accessible = true;
 
   /// False if the memory at `p` is known not to be this space's.
   static bool reads(void const* p) { return detail::in_device_memory == nullptr || !detail::in_device_memory(p); }
-
-  /// True if a pair that takes long to decide is better put on a list, as its neighbours would wait for it.
-  static constexpr bool defers = false;
-
-  /// True if `bucket` had better sort many spheres into the cells and let triangles look for them than the other way
-  /// round: where a core does one thing at a time and waits for the memory. Blocks have one lane and 64 items then.
-  static constexpr bool sorts_spheres = true;
 
   /// Runs `body` once for each of `blocks` blocks.
   template <class Body>
@@ -95,18 +76,12 @@ class host {
     });
   }
 
-  /// The same if *condition is not 0.
-  template <class F>
-  void for_each_if(std::uint32_t const* condition, std::size_t n, F const& f) const {
-    if (*condition != 0) for_each(n, f);
-  }
-
   /// How many blocks keep all threads busy.
-  std::size_t concurrency() const { return 4 * static_cast<std::size_t>(threads()); }
+  std::size_t saturating_blocks() const { return threads() == 1 ? 1 : 4 * static_cast<std::size_t>(threads()); }
 
   /// How many blocks of a body can be at work at a time; here that does not matter.
   template <class Body>
-  std::size_t wave() const {
+  std::size_t max_resident_blocks() const {
     return std::numeric_limits<std::size_t>::max();
   }
 
@@ -127,53 +102,6 @@ class host {
   template <class T>
   void copy_from_host(T* to, T const* from, std::size_t n) const {
     if (n != 0) std::memcpy(static_cast<void*>(to), from, n * sizeof(T));
-  }
-
-  /// Running sums of the values before each.
-  void exclusive_scan(std::uint32_t* values, std::size_t n, buffer<unsigned char>&) const {
-    constexpr std::size_t most = 64, least = 1 << 14;  // parts, and values in a part
-    std::size_t const parts = std::min(threads() > 1 ? n / least + 1 : 1, most), share = (n + parts - 1) / parts;
-    if (parts == 1) {
-      std::exclusive_scan(values, values + n, values, std::uint32_t{0});
-      return;
-    }
-    std::uint32_t before[most];
-    auto const each_part = [&](auto const& f) {
-      run(parts, [&](std::size_t p, std::size_t last) {
-        for (; p < last; ++p) f(p, values + std::min(p * share, n), values + std::min((p + 1) * share, n));
-      });
-    };
-    each_part([&](std::size_t p, std::uint32_t const* from, std::uint32_t const* to) {
-      before[p] = std::accumulate(from, to, std::uint32_t{0});
-    });
-    std::exclusive_scan(before, before + parts, before, std::uint32_t{0});
-    each_part(
-        [&](std::size_t p, std::uint32_t* from, std::uint32_t* to) { std::exclusive_scan(from, to, from, before[p]); });
-  }
-
-  /// Sorts pairs into canonical order: first into parts by the leading bits of the sphere, then each part. Takes
-  /// temporary memory for `room` pairs, at least `n`.
-  void sort(buffer<pair>& other, pair* pairs, std::size_t n, std::size_t room, std::size_t spheres, std::size_t,
-            buffer<unsigned char>&) const {
-    constexpr std::size_t parts = 2048;
-    pair* const copy = other.reserve(resource_, room);
-    if (n < parts) {
-      std::sort(pairs, pairs + n);
-      return;
-    }
-    int shift = 0;
-    while ((spheres - 1) >> shift >= parts) ++shift;
-    std::size_t begin[parts + 2] = {};  // of part p at p + 1, while the pairs are brought there; then at p
-    for (std::size_t i = 0; i < n; ++i) ++begin[(pairs[i].sphere >> shift) + 2];
-    std::partial_sum(begin, begin + parts + 2, begin);
-    for (std::size_t i = 0; i < n; ++i) copy[begin[(pairs[i].sphere >> shift) + 1]++] = pairs[i];
-    run(parts, [&](std::size_t p, std::size_t last) {
-      pair* const from = copy + begin[p];
-      for (std::size_t const end = begin[last]; p < last; ++p) {
-        std::sort(copy + begin[p], copy + begin[p + 1]);
-        if (p + 1 == last) std::copy(from, copy + end, pairs + (from - copy));
-      }
-    });
   }
 
  private:

@@ -15,11 +15,11 @@ namespace collide {
 /// steps: (1) the plane is farther than the radius: miss; (2) a vertex lies in the sphere: hit; (3) the centre projects
 /// into the triangle: hit; (4) a point on an edge lies in the sphere: hit; otherwise miss.
 ///
-/// `Precision` says how sure the verdict must be: `exact` (never wrong), `double_precision`, `single_precision` or
-/// `baseline`; see precision.hpp, and docs/accuracy.md for what each costs. The contact of a colliding pair is the same
-/// with all of them.
+/// `Precision` is the precision of the test: `exact` (never wrong), `double_precision`, `single_precision` or
+/// `baseline`; see precision.hpp, and docs/accuracy.md for the cost of each. It does not change the contact of a
+/// colliding pair.
 ///
-/// A degenerate triangle is the segment or point that it is. A NaN or infinite coordinate and a NaN or negative radius
+/// A degenerate triangle is treated as a segment or a point. A NaN or infinite coordinate and a NaN or negative radius
 /// never collide; an infinite radius always does where the geometry is finite. (`baseline` promises none of this.)
 template <class Precision = exact>
 struct karabassi {
@@ -27,7 +27,7 @@ struct karabassi {
                 "collide: the parameter of karabassi is a precision, such as exact or single_precision: a class with a "
                 "member type scalar");
 
-  /// True if the closed ball touches the closed triangle.
+  /// True if sphere and triangle, both with their boundaries, have a point in common. O(1).
   template <class S>
   static COLLIDE_HD_INLINE bool intersects(triangle<S> const& t, sphere<S> const& s) {
     if constexpr (std::is_same<Precision, exact>::value) {
@@ -39,7 +39,7 @@ struct karabassi {
     }
   }
 
-  /// Where and how a colliding pair touches; the ids are left to the caller. O(1).
+  /// Contact of a colliding pair; the caller sets the ids. O(1).
   template <class S>
   static COLLIDE_HD contact<S> contact_of(triangle<S> const& t, sphere<S> const& s) {
     return detail::contact_between(t, s);

@@ -1,5 +1,5 @@
 /// \file
-/// Karabassi's intersection test for spheres that move.
+/// Karabassi's intersection test for moving spheres: continuous collision detection.
 #pragma once
 
 #include <collide/detail/narrow_phase/contact_swept.hpp>
@@ -12,13 +12,14 @@
 namespace collide {
 
 /// Narrow phase: the particle/triangle test of E.-A. Karabassi, G. Papaioannou, T. Theoharis and A. Boehm,
-/// "Intersection test for collision detection in particle systems", J. Graphics Tools 4(1), 1999: the way of a ball
-/// within a step is a cylinder with spherical caps; does the triangle touch that, when first, and where?
+/// "Intersection test for collision detection in particle systems", J. Graphics Tools 4(1), 1999: a sphere sweeps out a
+/// cylinder with spherical caps within a step. Tells whether the triangle touches it, the first time of contact, and
+/// the contact then.
 ///
-/// `Precision` says how sure the verdict must be: `exact` (never wrong), `double_precision` or `single_precision`. Time
-/// and contact of a colliding pair are the same with all of them.
+/// `Precision` is the precision of the test: `exact` (never wrong), `double_precision` or `single_precision`. It does
+/// not change time and contact of a colliding pair.
 ///
-/// A degenerate triangle is the segment or point that it is. A NaN or infinite coordinate or displacement and a NaN or
+/// A degenerate triangle is treated as a segment or a point. A NaN or infinite coordinate or displacement and a NaN or
 /// negative radius never collide; an infinite radius always does where the geometry is finite. A sphere that does not
 /// move collides if and only if it does with `karabassi`.
 template <class Precision = exact>
@@ -28,7 +29,7 @@ struct karabassi_swept {
       "collide: the parameter of karabassi_swept is exact, double_precision, single_precision or a precision of "
       "your own: a class with a member type scalar");
 
-  /// True if the closed ball touches the closed triangle on its way.
+  /// True if the sphere touches the triangle at some time of the step, boundaries included. O(1).
   template <class S>
   static COLLIDE_HD_INLINE bool intersects(triangle<S> const& t, moving_sphere<S> const& s) {
     if constexpr (std::is_same<Precision, exact>::value) {
@@ -38,20 +39,21 @@ struct karabassi_swept {
     }
   }
 
-  /// When a colliding pair first touches, from 0 to 1: never later than in exact arithmetic, and earlier by at most
-  /// 2^-23 for floats and 2^-30 for doubles. 0 if the two overlap at the beginning.
+  /// First time of contact of a colliding pair, as a fraction of the step, 0 to 1: never later than in exact
+  /// arithmetic, and earlier by at most 2^-23 for floats and 2^-30 for doubles. 0 if the two overlap at the beginning.
   template <class S>
   static COLLIDE_HD S time_of_impact(triangle<S> const& t, moving_sphere<S> const& s) {
     return detail::time_of_impact(t, s);
   }
 
-  /// Where and how a colliding pair touches at its time of impact; the ids are left to the caller.
+  /// Contact of a colliding pair at its time of impact; the caller sets the ids.
   template <class S>
   static COLLIDE_HD contact<S> contact_of(triangle<S> const& t, moving_sphere<S> const& s) {
     return detail::contact_at(t, s, time_of_impact(t, s));
   }
 
-  /// Both. The depth is that of the overlap at the beginning, else next to zero.
+  /// Time of impact and contact of a colliding pair; the caller sets the ids. The depth is that of an overlap at the
+  /// beginning of the step, else next to zero.
   template <class S>
   static COLLIDE_HD impact<S> impact_of(triangle<S> const& t, moving_sphere<S> const& s) {
     S const time = time_of_impact(t, s);

@@ -70,7 +70,8 @@ class buffer {
   }
   ~buffer() { release(); }
 
-  /// Makes room for `n` values, losing the old ones if it must grow. Allocates only then.
+  /// Makes room for `n` values and returns their address. Allocates only if it must grow, and loses the old values
+  /// then.
   T* reserve(std::pmr::memory_resource* resource, std::size_t n) {
     if (n > capacity_ || (resource_ != nullptr && resource_ != resource)) {
       release();
@@ -81,7 +82,7 @@ class buffer {
     return data_;
   }
 
-  /// Gives the memory back.
+  /// Returns the memory to its resource.
   void release() noexcept {
     if (data_ != nullptr) resource_->deallocate(data_, capacity_ * sizeof(T), alignment);
     data_ = nullptr;

@@ -1,5 +1,5 @@
 /// \file
-/// Views of a triangle mesh in the caller's memory: indexed, or a soup of corners.
+/// Views of a triangle mesh in the caller's memory: indexed, or a triangle soup.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,9 @@
 
 namespace collide {
 
-/// A mesh in memory that somebody else owns: host memory for `host`, device memory for the CUDA spaces.
-/// Nothing is copied or checked (`validate` does that); an index outside the vertices is undefined behaviour.
-/// The memory must live as long as a detector that was built from the view. Made by `indexed_mesh` and `triangle_soup`.
+/// A non-owning view of a mesh: host memory for `host`, device memory for the CUDA spaces. Nothing is copied or checked
+/// (`validate` does that); an index that is not below the number of vertices is undefined behaviour. The memory must
+/// outlive every detector that was built from the view. Made by `indexed_mesh` and `triangle_soup`.
 template <class S>
 class mesh_view {
   static_assert(std::is_same<S, float>::value || std::is_same<S, double>::value,
@@ -45,9 +45,11 @@ class mesh_view {
     return {from[0], from[1], from[2]};
   }
 
+  /// The coordinates, three per vertex.
   COLLIDE_HD S const* vertices() const { return vertices_; }
+  /// Number of vertices.
   COLLIDE_HD std::size_t vertex_count() const { return vertex_count_; }
-  /// Three vertex numbers per triangle; null for a soup.
+  /// The index array, three vertex numbers per triangle; null for a triangle soup.
   COLLIDE_HD id const* corners() const { return corners_; }
 
  private:
@@ -58,7 +60,8 @@ class mesh_view {
 };
 
 /// View of an indexed mesh: `vertices` holds 3 * `vertex_count` coordinates, `corners` 3 * `triangle_count` vertex
-/// numbers from 0, of any 32-bit integer type. Throws `error` if there are more triangles than ids.
+/// numbers from 0, of any 32-bit integer type. O(1). Throws `error` if there are more than 2^32 - 2 triangles, or
+/// triangles but no index array.
 template <class S, class Index>
 mesh_view<S> indexed_mesh(S const* vertices, std::size_t vertex_count, Index const* corners,
                           std::size_t triangle_count) {
@@ -70,7 +73,8 @@ mesh_view<S> indexed_mesh(S const* vertices, std::size_t vertex_count, Index con
   return {vertices, vertex_count, reinterpret_cast<id const*>(corners), triangle_count};
 }
 
-/// View of a triangle soup: 9 coordinates per triangle, corner by corner.
+/// View of a triangle soup: 9 coordinates per triangle, vertex by vertex. O(1). Throws `error` if there are more than
+/// 2^32 - 2 triangles.
 template <class S>
 mesh_view<S> triangle_soup(S const* coordinates, std::size_t triangle_count) {
   if (triangle_count >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles");

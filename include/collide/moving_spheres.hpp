@@ -1,12 +1,12 @@
 /// \file
-/// Views of a set of spheres that move in a straight line within a step.
+/// Views of a set of moving spheres, each with a straight path within a step: for continuous collision detection.
 #pragma once
 
 #include <collide/spheres.hpp>
 
 namespace collide {
 
-/// Spheres and their displacements within a step, in memory that somebody else owns. Made by `moving`.
+/// A non-owning view of spheres and their displacements within a step. Made by `moving`.
 template <class S>
 class moving_sphere_view : public sphere_view<S> {
  public:
@@ -15,25 +15,28 @@ class moving_sphere_view : public sphere_view<S> {
   moving_sphere_view(sphere_view<S> const& spheres, S const* x, S const* y, S const* z, std::size_t stride)
       : sphere_view<S>(spheres), x_{x}, y_{y}, z_{z}, stride_{stride} {}
 
+  /// Displacement of sphere `i`, read from memory.
   COLLIDE_HD_INLINE vec3<S> displacement(std::size_t i) const {
     return {x_[i * stride_], y_[i * stride_], z_[i * stride_]};
   }
 
+  /// Moving sphere `i`, read from memory.
   COLLIDE_HD_INLINE moving_sphere<S> operator[](std::size_t i) const {
     return {sphere_view<S>::operator[](i), displacement(i)};
   }
 
-  /// Where the displacement of sphere `i` is, and whether the others follow it as x1, y1, z1, x2, ...
+  /// Address of the x component of the displacement of sphere `i`.
   COLLIDE_HD_INLINE S const* displacements(std::size_t i) const { return x_ + i * stride_; }
+  /// True if the displacements are packed: x0, y0, z0, x1, y1, z1, ...
   COLLIDE_HD bool packed_displacements() const { return stride_ == 3 && y_ == x_ + 1 && z_ == x_ + 2; }
 
-  /// `n` of the spheres, from number `first` on.
+  /// View of the `n` moving spheres from number `first` on. O(1); the range must exist.
   moving_sphere_view part(std::size_t first, std::size_t n) const {
     std::size_t const skip = first * stride_;
     return {sphere_view<S>::part(first, n), x_ + skip, y_ + skip, z_ + skip, stride_};
   }
 
-  /// See `sphere_view`.
+  /// Calls f(array, stride) for each array that the view reads, displacements included; see `sphere_view`.
   template <class F>
   void each_array(F const& f) {
     sphere_view<S>::each_array(f);
@@ -49,13 +52,13 @@ class moving_sphere_view : public sphere_view<S> {
   std::size_t stride_ = 3;
 };
 
-/// Spheres with packed displacements, 3 coordinates each.
+/// View of moving spheres with packed displacements: 3 n components. O(1).
 template <class S>
 moving_sphere_view<S> moving(sphere_view<S> const& spheres, S const* displacements) {
   return {spheres, displacements, displacements + 1, displacements + 2, 3};
 }
 
-/// Spheres with the coordinates of their displacements in three arrays.
+/// View of moving spheres with the components of their displacements in three arrays of n. O(1).
 template <class S>
 moving_sphere_view<S> moving(sphere_view<S> const& spheres, S const* x, S const* y, S const* z) {
   return {spheres, x, y, z, 1};

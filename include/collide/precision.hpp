@@ -6,29 +6,30 @@
 
 namespace collide {
 
-/// The test as textbooks have it: float, in the coordinates of the world, no care taken. Verdicts go wrong near
-/// contact, for slivers and degenerate triangles, and the farther from the origin the more; they may depend on the
-/// compiler's flags. It is there to be compared with.
+/// The textbook test: float, in world coordinates, without error analysis. Results are wrong near contact, for slivers
+/// and degenerate triangles, and more often with the distance from the origin; they may depend on compiler flags. A
+/// baseline for comparisons, not for use.
 struct baseline {
   using scalar = float;
 };
 
-/// Arithmetic in float, in coordinates local to the sphere. Verdicts within a few units in the last place of contact
-/// may be wrong.
+/// Arithmetic in float, in coordinates local to the sphere. Results may be wrong for pairs within a few units in the
+/// last place (of float) of contact.
 struct single_precision {
   using scalar = float;
 };
 
-/// Arithmetic in double, in coordinates local to the sphere. Verdicts within a few units in the last place (of double)
-/// of contact may be wrong.
+/// Arithmetic in double, in coordinates local to the sphere. Results may be wrong for pairs within a few units in the
+/// last place (of double) of contact.
 struct double_precision {
   using scalar = double;
 };
 
-/// No verdict is wrong: each equals that of exact real arithmetic on the coordinates as given, whatever they are. A
-/// verdict is certified in float where an error bound allows it, else in double, else computed in integers.
+/// Exact predicates: every result equals that of real arithmetic on the coordinates as given. A floating-point filter
+/// in float decides nearly all pairs, one in double most of the rest, and integers what both leave uncertain (J. R.
+/// Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997).
 struct exact {
-  using scalar = float;  ///< of the first attempt
+  using scalar = float;  ///< of the first filter
 };
 
 namespace detail {

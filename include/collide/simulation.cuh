@@ -21,18 +21,22 @@ namespace detail {
 /// A space as a broad phase sees it that is asked for the triangles near single spheres: they are sorted, not the
 /// spheres, and into narrow cells, as a look-up is cheap and a candidate is not.
 template <class Space>
-struct looking_up : Space {
-  explicit looking_up(Space const& space) : Space(space) {}
-  static constexpr bool sorts_spheres = false;
-  static constexpr double bucket_span = 2;
+struct lookup_tuning : Space {
+  explicit lookup_tuning(Space const& space) : Space(space) {}
 };
 
 template <class Index, class = void>
-struct looks_up : std::false_type {};
+struct has_lookup : std::false_type {};
 template <class Index>
-struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
+struct has_lookup<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
 
 }  // namespace detail
+
+template <class Space>
+struct bucket_tuning<detail::lookup_tuning<Space>> : bucket_tuning<Space> {
+  static constexpr bool bins_spheres = false;
+  static constexpr double triangle_span_in_cells = 2;
+};
 
 /// Particles, a mesh, and what happens to the particles in a step: only what the scene names.
 ///
@@ -47,10 +51,10 @@ struct looks_up<Index, std::void_t<decltype(std::declval<Index const&>().lookup(
 /// There are exactly the columns that the effects name, and `position` and `velocity`. A simulation without effects
 /// moves particles in straight lines, and nothing else.
 ///
-/// `step` allocates nothing and never waits: in `cuda_shared` it puts one kernel on the stream of the space, in `cuda`
-/// two if an effect touches the mesh (more with `meet` or `begin_step`), and can be captured in a CUDA graph, which is
-/// good until the next `set` or `set_mesh`. The same steps give the same bits on every run in the same space.
-/// O(particles + candidates) per step. A simulation is for one thread at a time.
+/// `step` allocates nothing and never waits: it puts one kernel on the stream of a CUDA space (more with `meet` or
+/// `begin_step`), and can be captured in a CUDA graph, which is good until the next `set` or `set_mesh`. The same steps
+/// give the same bits on every run in the same space. O(particles + candidates) per step. A simulation is for one
+/// thread at a time.
 template <class Detector, class... Effect>
 class simulation {
   static_assert(detail::is_detector<Detector>::value,
@@ -60,7 +64,7 @@ class simulation {
   using detector_type = Detector;
   using execution_space = typename Detector::execution_space;
   using scalar = typename Detector::scalar;
-  using scene_type = detail::scene<scalar, Effect...>;
+  using effects_type = detail::effect_list<scalar, Effect...>;
 
  private:
   using S = scalar;
@@ -73,31 +77,32 @@ class simulation {
                 "classes with at least one of the members that effect.hpp names");
   static_assert(((int(detail::is_integrator<Effect>::value)) + ... + 0) <= 1,
                 "collide: a simulation has one integrator");
-  static_assert(detail::well_ordered<Effect...>,
+  static_assert(detail::respects_order<Effect...>,
                 "collide: an effect comes after those whose result it uses: name friction after bounce");
-  static_assert(!scene_type::touches || detail::looks_up<index>::value,
+  static_assert(!effects_type::touches || detail::has_lookup<index>::value,
                 "collide: effects that touch the mesh need a broad phase whose index has a member lookup(), such as "
                 "bucket or all_pairs");
 
  public:
   /// The state that a particle has.
-  using columns = typename scene_type::all;
+  using columns = typename effects_type::all;
   /// Bytes of state of each particle.
   static constexpr std::size_t bytes_per_particle = detail::column_buffers<S, columns>::bytes_per_particle;
   /// Pointers to all columns, for kernels; see detail/simulation/particle.hpp.
   using state_type = detail::particle_state<S, columns>;
 
   explicit simulation(execution_space space = execution_space(), broad_phase options = broad_phase())
-      : space_(std::move(space)), options_(std::move(options)), scene_(Effect()...) {}
+      : space_(std::move(space)), options_(std::move(options)), effects_(Effect()...) {}
 
   /// With parameters of all effects, in the order of the list.
   template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
                                                  std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
-  explicit simulation(execution_space space, E... effects) : space_(std::move(space)), scene_(std::move(effects)...) {}
+  explicit simulation(execution_space space, E... effects)
+      : space_(std::move(space)), effects_(std::move(effects)...) {}
   template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
                                                  std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
   simulation(execution_space space, broad_phase options, E... effects)
-      : space_(std::move(space)), options_(std::move(options)), scene_(std::move(effects)...) {}
+      : space_(std::move(space)), options_(std::move(options)), effects_(std::move(effects)...) {}
 
   /// Copies particles from memory of the space: centres, radii, and three packed coordinates of velocity each, or null
   /// for particles that rest. The other columns get their initial values. `capacity` is for how many there is room, if
@@ -117,18 +122,19 @@ class simulation {
         (room + detail::particle_padding - 1) / detail::particle_padding * detail::particle_padding;
     memory_.reserve(space_.resource(), padded);
     state_ = memory_.state(room, n, particles.common_radius());
-    if constexpr (begins) {
+    if constexpr (has_begin_step) {
       state_.time = time_.reserve(space_.resource(), 1);
       space_.fill(state_.time, 0, sizeof *state_.time);
     }
-    if constexpr (scene_type::touches) {
-      std::uint32_t* const counters = counters_.reserve(space_.resource(), 2);
-      space_.fill(counters, 0, 2 * sizeof *counters);
-      list_ = {counters, counters + 1, listed_.reserve(space_.resource(), padded)};
+    if constexpr (effects_type::touches) {
+      using kernel = detail::step_kernel<step_context<std::decay_t<decltype(index_.lookup())>>>;
+      if constexpr (kernel::template has_many_tiles<typename execution_space::template block<kernel>>) {
+        overflow_.reserve(space_.resource(), padded);
+      }
     }
-    space_.for_each(padded, detail::place_particles<S, columns>{state_, particles, velocities});
-    if constexpr (scene_type::meets || sweeps) largest_radius_ = largest_radius(particles);
-    if constexpr (scene_type::meets) neighbours_.reserve(space_, room, largest_radius_);
+    space_.for_each(padded, detail::init_particles<S, columns>{state_, particles, velocities});
+    if constexpr (effects_type::meets || sweeps) largest_radius_ = largest_radius(particles);
+    if constexpr (effects_type::meets) neighbours_.reserve(space_, room, largest_radius_);
     prepare();
   }
 
@@ -136,7 +142,7 @@ class simulation {
   /// Allocates unless there was a mesh of this size before; may wait. O(triangles).
   void set_mesh(mesh_view<S> mesh) {
     mesh_ = {};
-    detail::looking_up<execution_space> there(space_);
+    detail::lookup_tuning<execution_space> there(space_);
     if (mesh.size() != 0) index_.build(there, options_, mesh);
     mesh_ = mesh;
     if constexpr (sweeps) least_radius_ = least_radius(mesh);
@@ -150,36 +156,21 @@ class simulation {
   void step(S dt) {
     if (state_.size == 0) return;
     (begin<Effect>(dt), ...);
-    if constexpr (begins) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
-    if constexpr (scene_type::meets) neighbours_.meet(space_, state_, scene_, dt);
+    if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
+    if constexpr (effects_type::meets) neighbours_.meet(space_, state_, effects_, dt);
     auto const lookup = [&] {
-      if constexpr (scene_type::touches) {
+      if constexpr (effects_type::touches) {
         return mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
       } else {
         return detail::no_lookup{};
       }
     }();
-    using lookup_type = std::decay_t<decltype(lookup)>;
-    detail::fly_body<S, narrow_phase, lookup_type, scene_type> const fly{state_, scene_,     lookup,       list_,
-                                                                         dt,     backwards_, least_radius_};
-    backwards_ = !backwards_;
-    using step_body = detail::step_body<S, narrow_phase, lookup_type, scene_type>;
-    using block = typename execution_space::template block<step_body>;
-    if constexpr (!scene_type::touches) {
-      space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
-    } else if constexpr (block::lanes > 1) {
-      step_body body{{fly, 0}};
-      body.blocks = detail::smaller(std::size_t{step_body::template stretches<block>(state_.size)}, busy<step_body>());
-      space_.launch(body.blocks, body);
-    } else {
-      space_.launch(detail::blocks_for<execution_space>(state_.size, fly), fly);
-      detail::respond_body<S, narrow_phase, lookup_type, scene_type> body{fly, 0};
-      std::size_t most = state_.size;
-      if constexpr (execution_space::host_memory) most = *list_.count;
-      body.blocks = detail::blocks_for<execution_space>(most, body);
-      if constexpr (!execution_space::host_memory) body.blocks = detail::smaller(body.blocks, busy<decltype(body)>());
-      space_.launch(body.blocks, body);
-    }
+    using kernel = detail::step_kernel<step_context<std::decay_t<decltype(lookup)>>>;
+    using block = typename execution_space::template block<kernel>;
+    kernel const body{{state_, effects_, lookup, overflow_.data(), dt, reverse_order_, least_radius_},
+                      kernel::template blocks_for<block>(state_.size, resident_blocks<kernel>())};
+    reverse_order_ = !reverse_order_;
+    space_.launch(body.blocks, body);
   }
 
   /// Advances `n` times by `dt`.
@@ -228,7 +219,7 @@ class simulation {
   /// The parameters of an effect, which may be changed between steps.
   template <class E>
   E& effect() {
-    return scene_.template of<E>();
+    return effects_.template of<E>();
   }
 
   state_type const& state() const { return state_; }
@@ -236,10 +227,12 @@ class simulation {
   execution_space const& space() const { return space_; }
 
  private:
-  static constexpr bool sweeps = scene_type::touches && !detail::at_rest<narrow_phase, S>;
-  static constexpr bool begins = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
-  struct no_neighbours {};
-  using neighbours = std::conditional_t<scene_type::meets, detail::neighbours<S, scene_type>, no_neighbours>;
+  static constexpr bool sweeps = effects_type::touches && !detail::at_rest<narrow_phase, S>;
+  static constexpr bool has_begin_step = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
+  template <class Triangles>
+  using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
+  struct no_lists {};
+  using neighbour_lists = std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, no_lists>;
 
   S largest_radius(sphere_view<S> const& particles) {
     if constexpr (detail::contains<columns, radius>) {
@@ -263,8 +256,8 @@ class simulation {
   }
 
   void prepare() {
-    if constexpr (scene_type::touches) {
-      detail::looking_up<execution_space> there(space_);
+    if constexpr (effects_type::touches) {
+      detail::lookup_tuning<execution_space> there(space_);
       if (mesh_.size() == 0 || state_.size == 0) return;
       if (largest_radius_ >= 0 && largest_radius_ < least_radius_) {
         index_.prepare(there, options_, spheres_xyz(state_.at(position{}), state_.size, least_radius_));
@@ -280,14 +273,14 @@ class simulation {
     summary* const seen = mesh_summary_.reserve(space_.resource(), 1);
     summary::clear(space_, seen);
     detail::summarise_mesh<S> const body{mesh, seen, nullptr};
-    space_.launch(detail::blocks_for<execution_space>(mesh.size(), body), body);
+    space_.launch(detail::grid_size<execution_space>(mesh.size(), body), body);
     return 8 * std::numeric_limits<S>::epsilon() * space_.read(seen).largest_coordinate();
   }
 
   /// How many blocks of a body are at work at a time.
   template <class Body>
-  std::size_t busy() const {
-    return detail::smaller(space_.concurrency(), space_.template wave<Body>());
+  std::size_t resident_blocks() const {
+    return detail::smaller(space_.saturating_blocks(), space_.template max_resident_blocks<Body>());
   }
 
   template <class E>
@@ -298,19 +291,17 @@ class simulation {
 
   execution_space space_;
   broad_phase options_;
-  scene_type scene_;
+  effects_type effects_;
   mesh_view<S> mesh_;
   index index_;
   detail::column_buffers<S, columns> memory_;
   state_type state_{};
-  bool backwards_ = false;  ///< the next step goes
+  bool reverse_order_ = false;  ///< of the next step
   buffer<double> time_;
   S largest_radius_ = 0, least_radius_ = 0;
   buffer<detail::mesh_summary<S>> mesh_summary_;
-  neighbours neighbours_;
-  buffer<std::uint32_t> counters_;
-  buffer<id> listed_;
-  detail::listed_particles list_{};
+  neighbour_lists neighbours_;
+  buffer<id> overflow_;
 };
 
 }  // namespace collide

@@ -11,9 +11,8 @@
 
 namespace collide {
 
-/// Spheres in memory that somebody else owns: host memory for `host`, device memory for the CUDA spaces. Nothing is
-/// copied. All layouts are the same view with other strides, so they share one kernel. Made by `spheres_xyz`,
-/// `spheres_soa` and `spheres_xyzr`.
+/// A non-owning view of spheres: host memory for `host`, device memory for the CUDA spaces. Nothing is copied. A layout
+/// is a set of strides, so one kernel serves all layouts. Made by `spheres_xyz`, `spheres_soa` and `spheres_xyzr`.
 template <class S>
 class sphere_view {
   static_assert(std::is_same<S, float>::value || std::is_same<S, double>::value,
@@ -43,31 +42,36 @@ class sphere_view {
   /// Number of spheres.
   COLLIDE_HD std::size_t size() const { return size_; }
 
+  /// Centre of sphere `i`, read from memory.
   COLLIDE_HD_INLINE vec3<S> centre(std::size_t i) const { return {*x(i), *y(i), *z(i)}; }
 
+  /// Radius of sphere `i`, read from memory unless all have one.
   COLLIDE_HD_INLINE S radius(std::size_t i) const { return radii_ == nullptr ? radius_ : radii_[i * radius_stride_]; }
 
+  /// Sphere `i`, read from memory.
   COLLIDE_HD_INLINE sphere<S> operator[](std::size_t i) const { return {centre(i), radius(i)}; }
 
-  /// Where the coordinates of sphere `i` are.
+  /// Addresses of the coordinates of sphere `i`.
   COLLIDE_HD_INLINE S const* x(std::size_t i) const { return x_ + i * stride_; }
   COLLIDE_HD_INLINE S const* y(std::size_t i) const { return y_ + i * stride_; }
   COLLIDE_HD_INLINE S const* z(std::size_t i) const { return z_ + i * stride_; }
 
   /// True if all spheres have the radius `common_radius()`.
   COLLIDE_HD bool one_radius() const { return radii_ == nullptr; }
+  /// The radius of all spheres; 0 if each has its own.
   COLLIDE_HD S common_radius() const { return radius_; }
 
-  /// True if the centres lie as x0, y0, z0, x1, y1, z1, ...
+  /// True if the centres are packed: x0, y0, z0, x1, y1, z1, ...
   COLLIDE_HD bool packed() const { return stride_ == 3 && y_ == x_ + 1 && z_ == x_ + 2; }
 
-  /// `n` of the spheres, from number `first` on.
+  /// View of the `n` spheres from number `first` on. O(1); the range must exist.
   sphere_view part(std::size_t first, std::size_t n) const {
     S const* const radii = radii_ == nullptr ? nullptr : radii_ + first * radius_stride_;
     return {x(first), y(first), z(first), stride_, radii, radius_stride_, radius_, n};
   }
 
-  /// Calls f(array, stride) for each array that the view reads; where f changes the pointer, the view reads there.
+  /// Calls f(array, stride) for each array that the view reads. f gets the pointer by reference: the view then reads
+  /// where f points it.
   template <class F>
   void each_array(F const& f) {
     f(x_, std::size_t{stride_});

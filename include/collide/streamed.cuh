@@ -1,6 +1,5 @@
 /// \file
-/// Queries of spheres in host memory, more than the memory of the space has room for, with any detector: they stream
-/// through in chunks.
+/// Queries of spheres in host memory, also of more than fit into the memory of the space: they are streamed in chunks.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +14,8 @@ namespace collide {
 ///
 /// In the CUDA spaces a chunk is copied to the device while those before it are queried: copies are put on a stream of
 /// their own, one after the other, and together take as long as the whole, if a query does not take longer than a copy
-/// from pinned memory (`cuda_pinned_memory`). A copy from pageable memory holds the host up: it takes longer, and the
-/// queries come on top. On the host nothing is copied.
+/// from pinned memory (`cuda_pinned_memory`). A copy from pageable memory blocks the host: it takes longer, and does
+/// not overlap with queries. On the host nothing is copied.
 ///
 /// Memory of the space: three chunks in the layout of the spheres, where there are so many; 38 MB for packed floats
 /// and chunks of the usual size. It is kept between queries. One object is for one thread at a time.

@@ -12,7 +12,7 @@
 
 namespace collide {
 
-/// A mesh in memory of its own, made by `upload`.
+/// An owning copy of a mesh in memory of a space, made by `upload`.
 template <class S>
 class uploaded_mesh {
  public:
@@ -30,6 +30,7 @@ class uploaded_mesh {
     view_ = mesh_view<S>(vertices_.data(), mesh.vertex_count(), corners, mesh.size());
   }
 
+  /// The copy, valid as long as this object.
   mesh_view<S> view() const { return view_; }
 
  private:
@@ -38,7 +39,7 @@ class uploaded_mesh {
   mesh_view<S> view_;
 };
 
-/// Spheres in memory of their own, packed, made by `upload`.
+/// An owning, packed copy of spheres in memory of a space, made by `upload`.
 template <class S>
 class uploaded_spheres {
  public:
@@ -63,6 +64,7 @@ class uploaded_spheres {
     }
   }
 
+  /// The copy, valid as long as this object.
   sphere_view<S> view() const { return view_; }
 
  private:
@@ -71,14 +73,15 @@ class uploaded_spheres {
   sphere_view<S> view_;
 };
 
-/// Copies a mesh from host memory into memory of the space. Throws `error` if CUDA knows it as device memory.
+/// Copies a mesh from host memory into memory of the space. O(vertices + triangles); may wait. Throws `error` if CUDA
+/// knows the mesh's memory as device memory.
 template <class Space, class S>
 uploaded_mesh<S> upload(Space const& space, mesh_view<S> mesh) {
   return uploaded_mesh<S>(space, mesh);
 }
 
-/// Copies spheres from host memory into memory of the space, whatever their layout, as packed centres. Throws `error`
-/// if CUDA knows it as device memory.
+/// Copies spheres of any layout from host memory into memory of the space, as packed centres. O(n); may wait. Throws
+/// `error` if CUDA knows the spheres' memory as device memory.
 template <class Space, class S>
 uploaded_spheres<S> upload(Space const& space, sphere_view<S> spheres) {
   return uploaded_spheres<S>(space, spheres);

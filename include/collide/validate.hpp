@@ -1,5 +1,5 @@
 /// \file
-/// What is wrong with a mesh or a set of spheres, and where.
+/// Checks of input: invalid or unusual triangles and spheres, and which they are.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace collide {
 
-/// What can be wrong with a triangle or a sphere.
+/// A defect of a triangle or a sphere.
 enum class problem : int {
   corner_out_of_range,  ///< a triangle names a vertex that does not exist: reading it is undefined behaviour
   triangle_not_finite,  ///< a corner has a NaN or infinite coordinate: the triangle never collides
@@ -163,7 +163,7 @@ report inspect(Space const& space, View const& view) {
 
 }  // namespace detail
 
-/// Says what is wrong with a mesh in memory of the space, and where. O(triangles); waits for the result.
+/// Checks all triangles of a mesh in memory of the space. O(triangles); waits for the result.
 /// Throws `error` if CUDA knows that the space cannot read the mesh: device memory on the host, or the other way round.
 template <class S, class Space = host>
 report validate(mesh_view<S> const& mesh, Space const& space = Space()) {
@@ -171,7 +171,7 @@ report validate(mesh_view<S> const& mesh, Space const& space = Space()) {
   return detail::inspect<detail::inspect_triangle>(space, mesh);
 }
 
-/// Says what is wrong with spheres in memory of the space, and where. O(spheres); waits for the result. Throws
+/// Checks all spheres of a view in memory of the space. O(spheres); waits for the result. Throws
 /// `error` if CUDA knows that the space cannot read them: device memory on the host, or the other way round.
 template <class S, class Space = host>
 report validate(sphere_view<S> const& spheres, Space const& space = Space()) {

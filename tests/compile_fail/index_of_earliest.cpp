@@ -6,7 +6,7 @@
 /// The host, but it says of its memory what the CUDA spaces say of theirs.
 struct device : collide::host {
   using host::host;
-  static constexpr bool host_memory = false;
+  static constexpr bool host_accessible = false;
 };
 
 using detector = collide::detector<collide::bucket, collide::karabassi_swept<>, device>;

@@ -1,9 +1,10 @@
-"""check.py code|links|examples: the README, the pages of docs/ and what they promise.
+"""check.py code|links|examples|glossary: the README, the pages of docs/ and what they promise.
 
 code      The first block of C++ in the README is examples/minimal.cpp, and every other block of C++ stands word for word in
           the file that the comment before it names (`<!-- from: FILE -->`).
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
+glossary  Each name in docs/glossary.md is in the file, or in the folder, that it is said to be in; words are in order.
 """
 import pathlib
 import re
@@ -58,6 +59,21 @@ def examples():
             yield f"no page mentions examples/{program.name}"
 
 
-problems = list({"code": code, "links": links, "examples": examples}[sys.argv[1]]())
+def glossary():
+    page = ROOT / "docs" / "glossary.md"
+    rows = re.findall(r"^\| (.+?) \| .+ \| `(\w+)` in \[.+\]\((.+)\) \|$", page.read_text(), flags=re.M)
+    words = [word.lower() for word, _, _ in rows]
+    if len(rows) < 40:
+        yield f"{page}: only {len(rows)} words"
+    yield from (f"{page}: {word} is not in alphabetic order" for word, sorted_word in zip(words, sorted(words)) if word != sorted_word)
+    for word, name, target in rows:
+        path = (page.parent / target).resolve()
+        texts = [p.read_text() for p in ([path] if path.is_file() else path.rglob("*.*"))]
+        if not any(re.search(rf"\b{name}\b", text) for text in texts):
+            yield f"{page}: {word}: there is no {name} in {target}"
+
+
+checks = {"code": code, "links": links, "examples": examples, "glossary": glossary}
+problems = list(checks[sys.argv[1]]())
 print("\n".join(problems) or "fine")
 sys.exit(bool(problems))

@@ -15,9 +15,9 @@ MORE_REGISTERS = 24  # all loads are issued first, which takes registers and sav
 MORE_INSTRUCTIONS = 1.12
 
 PAIRS = {
-    "by_hand_none": r"fly_body.*sceneIfJEE",
-    "by_hand_gravity": r"fly_body.*sceneIfJNS_7gravityEEE",
-    "by_hand_gravity_drag": r"fly_body.*sceneIfJNS_7gravityENS_4dragEEE",
+    "by_hand_none": r"step_kernel.*effect_listIfJEE",
+    "by_hand_gravity": r"step_kernel.*effect_listIfJNS_7gravityEEE",
+    "by_hand_gravity_drag": r"step_kernel.*effect_listIfJNS_7gravityENS_4dragEEE",
 }
 
 

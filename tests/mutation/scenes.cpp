@@ -8,8 +8,11 @@
 #include "rows.hpp"
 
 /// The steps of a query that CUDA has, on the host.
-struct stepwise : collide::host {
-  static constexpr bool defers = true;
+struct stepwise : collide::host {};
+
+template <>
+struct collide::query_tuning<stepwise> {
+  static constexpr bool defers_exact_tests = true;
 };
 
 template <class S>

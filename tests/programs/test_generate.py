@@ -83,21 +83,61 @@ class Study(GenerateTest):
                          [[programs.nearest(repr(x), "f") for x in s] for s in self.spheres()])
 
 
+# What libraries are compared on (issue 32 and docs/performance.md), and scenes that are hard or small.
+MEASURED = ("study", "few", "hits", "many_hits", "radii_1000", "radii_100", "many_triangles", "drum", "camera", "grains", "soup", "crowd", "sparse")
+OTHERS = ("radii", "ball", "terrain", "slivers", "long_slivers", "giant", "clusters", "pile", "cube", "octahedron")
+
+
 class Scenes(GenerateTest):
     def test_every_scene_runs(self):
         found = {}
-        for scene in ("study", "radii", "ball", "terrain", "slivers", "giant", "clusters", "pile", "cube", "octahedron"):
+        for scene in MEASURED + OTHERS:
             summary = self.succeed("generate", "--scene", scene, "--spheres", 2000, "--triangles", 600, "mesh.obj", "spheres.csv")
             vertices, triangles = self.mesh()
             self.assertTrue(all(0 <= i < len(vertices) for t in triangles for i in t))
             if scene not in ("cube", "octahedron"):
                 self.assertTrue(400 <= len(triangles) <= 800, (scene, len(triangles)))
-            radius = [] if scene == "radii" else ["--radius", summary.split("--radius ")[1].strip()]
+                self.assertIn("2000 spheres", summary)
+            radius = [] if "with radii" in summary else ["--radius", summary.split("--radius ")[1].strip()]
+            self.assertEqual(radius == [], scene.startswith("radii"))
             pairs = self.detect("mesh.obj", "spheres.csv", *radius)
             self.assertEqual(self.detect("mesh.obj", "spheres.csv", *radius, "--broad", "all_pairs"), pairs, scene)
             found[scene] = len(pairs)
         self.assertEqual(found["octahedron"], 4)
         self.assertEqual([scene for scene, pairs in found.items() if pairs == 0], [])
+
+    def test_the_measured_scenes_are_the_same_everywhere(self):
+        digest = hashlib.sha256()
+        for scene in MEASURED:
+            self.generate("--scene", scene, "--spheres", 2000, "--triangles", 600)
+            for file in ("mesh.obj", "spheres.csv"):
+                digest.update(self.read(file))
+        self.assertEqual(digest.hexdigest(), "ba8de7b5ad6119fab5e1064323678d91e05277bcb68ffafc93da94e840c082b3")
+
+    def test_a_scene_has_its_own_numbers(self):
+        self.generate("--scene", "few")
+        self.assertEqual((len(self.spheres()), len(self.mesh()[1])), (1000, 1008))
+        self.generate("--scene", "few", "--triangles", 4000)
+        self.assertEqual((len(self.spheres()), len(self.mesh()[1])), (1000, 4032))
+        self.generate("--scene", "soup", "--spheres", 10)
+        self.assertEqual((len(self.spheres()), len(self.mesh()[1])), (10, 200000))
+
+    def test_drum(self):
+        self.generate("--scene", "drum", "--spheres", 3000, "--triangles", 2000)
+        vertices, triangles = self.mesh()
+        spheres = self.spheres()
+        self.assertEqual((len(spheres), len(triangles)), (3000, 1896))
+        wall = max(math.hypot(x, z) for x, _, z in vertices)
+        gaps = [min(wall - math.hypot(x, z), wall / 2 - abs(y)) for x, y, z in spheres]
+        self.assertTrue(0.96 < min(gaps) and sum(gap < 1 for gap in gaps) > 450)
+        self.assertLess(max(z for _, _, z in spheres), 1)
+
+    def test_camera(self):
+        self.generate("--scene", "camera", "--spheres", 3000)
+        vertices, triangles = self.mesh()
+        self.assertEqual((len(vertices), len(triangles)), (15020, 30000))
+        near = [p for p in self.spheres() if p[2] > 0]
+        self.assertTrue(850 < len(near) < 1150)
 
     def test_radii(self):
         self.generate("--scene", "radii", "--spheres", 2000)

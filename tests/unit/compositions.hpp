@@ -41,7 +41,7 @@ inline collide::bucket configure(list<collide::bucket>, options const& o) { retu
 template <class Space>
 std::pmr::memory_resource* memory_of_space() {
 #if defined(__CUDACC__)
-  if constexpr (!Space::host_memory) return collide::cuda_memory::get();
+  if constexpr (!Space::host_accessible) return collide::cuda_memory::get();
 #endif
   return std::pmr::new_delete_resource();
 }
@@ -49,7 +49,7 @@ std::pmr::memory_resource* memory_of_space() {
 /// Makes a space with the default stream, with `threads` if it is the host.
 template <class Space>
 Space make_space(int threads, std::pmr::memory_resource* resource) {
-  if constexpr (Space::host_memory) {
+  if constexpr (Space::host_accessible) {
     return Space(threads, resource);
   } else {
     return Space(nullptr, resource);

@@ -118,7 +118,7 @@ void check_motion(Space const& space, BroadPhase const& broad, moving_scene<S> c
   placed_scene<S> const scene(space, made);
   collide::detector<BroadPhase, NarrowPhase, Space, S> detector(space, broad);
   CHECK((detector.detect(scene.mesh, scene.moving, collide::pairs(collide::order::canonical)).to_host() == expected));
-  if constexpr (Space::host_memory)  // on CUDA it would be some more minutes of compilation
+  if constexpr (Space::host_accessible)  // on CUDA it would be some more minutes of compilation
     CHECK(detector.query(scene.moving, collide::count()).total() == expected.size());
 
   auto const impacts = detector.query(scene.moving, collide::impacts<S>(collide::order::canonical)).to_host();

@@ -1,8 +1,9 @@
 /// The scene of the study, at the origin and far from it, with exact verdicts.
 #include <doctest/doctest.h>
-#include <io/scenes.hpp>
+#include <io/scenes/torus.hpp>
 
 #include "checks.hpp"
+#include "rounded_scene.hpp"
 
 namespace {
 
@@ -10,23 +11,7 @@ template <class S>
 tests::scene<S> study(int spheres, double offset) {
   auto made = io::study_scene(static_cast<std::size_t>(spheres));
   io::shift(made, {offset, offset, offset});
-  tests::scene<S> rounded;
-  rounded.mesh.corners = made.corners;
-  for (double x : made.vertices) rounded.mesh.vertices.push_back(static_cast<S>(x));
-  for (double x : made.centres) rounded.spheres.centres.push_back(static_cast<S>(x));
-  rounded.spheres.radii.assign(made.sphere_count(), static_cast<S>(made.radius));
-  return rounded;
-}
-
-/// The spheres that touch something, and as many others.
-template <class S>
-tests::scene<S> touching(tests::scene<S> const& all, oracle::expectation const& expected) {
-  std::vector<bool> touches(all.spheres.size());
-  for (auto p : expected.exact) touches[p.sphere] = touches[p.sphere ^ 1] = true;
-  tests::scene<S> some{all.mesh, {}};
-  for (std::size_t i = 0; i < all.spheres.size(); ++i)
-    if (touches[i]) some.spheres.add(all.spheres[i].centre, all.spheres[i].radius);
-  return some;
+  return tests::rounded<S>(made);
 }
 
 }  // namespace
@@ -37,7 +22,7 @@ TEST_CASE_TEMPLATE("study: exact pairs at any distance from the origin", S, floa
     auto const all = study<S>(100'000, offset);
     auto const expected = all.expect(0);
     CHECK(expected.exact.size() > 500);
-    auto const some = touching(all, expected);
+    auto const some = tests::touching(all, expected);
     auto const expected_of_some = some.expect(0);
     CHECK(expected_of_some.exact.size() == expected.exact.size());
     for (auto const& c : tests::compositions<S>("exact")) {

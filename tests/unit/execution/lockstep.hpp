@@ -39,7 +39,7 @@ struct balancing {
         auto const found = find(one, work - counts[i]);
         if (look(one, found)) take(one, found);
       });
-      after_round();
+      after_round(base + Block::lanes >= total);
     }
   }
 };
@@ -59,10 +59,6 @@ class lockstep_block {
   template <class T, int N>
   struct staging {
     T values[N];
-  };
-  template <class T>
-  struct single {
-    T value;
   };
   template <class T, int N>
   struct row_scratch {};
@@ -95,12 +91,6 @@ class lockstep_block {
   T const* stage(staging<T, N>& to, T const* from, int n) {
     for (int i = 0; i < n; ++i) to.values[i] = from[i];
     return to.values;
-  }
-
-  template <class T>
-  T const& near(single<T>& to, T const& from) {
-    to.value = from;
-    return to.value;
   }
 
   template <class T, int N>
@@ -149,14 +139,13 @@ template <int Lanes, bool Reversed>
 class lockstep : public collide::host {
  public:
   using host::host;
-  static constexpr bool defers = true, sorts_spheres = false, pairs_triangles = true;  // as the CUDA spaces
   static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
 
   template <class Body>
   using block = lockstep_block<Lanes, Body::items, Reversed>;
 
   template <class Body>
-  std::size_t wave() const {
+  std::size_t max_resident_blocks() const {
     return Reversed ? 1 : 3;
   }
 
@@ -180,3 +169,14 @@ class lockstep : public collide::host {
 };
 
 }  // namespace tests
+
+namespace collide {
+
+template <int Lanes, bool Reversed>
+struct bucket_tuning<tests::lockstep<Lanes, Reversed>> : device_bucket_tuning {};
+template <int Lanes, bool Reversed>
+struct query_tuning<tests::lockstep<Lanes, Reversed>> {
+  static constexpr bool defers_exact_tests = true;
+};
+
+}  // namespace collide

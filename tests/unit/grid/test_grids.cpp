@@ -214,10 +214,10 @@ TEST_CASE_TEMPLATE("grids: the width that is asked for is the width in use", S, 
 }
 
 /// The host, with cells as wide as those of a GPU.
-struct wide_cells : collide::host {
-  static constexpr bool sorts_spheres = false;
-  static constexpr double bucket_span = 1.75;
-};
+struct wide_cells : collide::host {};
+
+template <>
+struct collide::bucket_tuning<wide_cells> : collide::device_bucket_tuning {};
 
 TEST_CASE_TEMPLATE("grids: triangles of two sizes are of one level, and cells no wider than they must be", S, float,
                    double) {
@@ -300,10 +300,9 @@ TEST_CASE_TEMPLATE("grids: entries contain what is in a triangle's dilated box, 
       collide::detail::box<S> const b = collide::detail::triangle_box_of(mesh[i]);
       auto const& level = grid.level_of(b);
       std::map<std::uint32_t, std::uint32_t> parts;
-      grid.template each_cells<1>(grid, grid.level[0], b, 0, 1,
-                                  [&](collide::detail::covered_cell const(&c)[1], std::uint32_t m) {
-                                    if (m == 1) parts[c[0].number] = c[0].part;
-                                  });
+      grid.template each_cells<1>(b, 0, 1, [&](collide::detail::covered_cell const(&c)[1], std::uint32_t m) {
+        if (m == 1) parts[c[0].number] = c[0].part;
+      });
       for (int j = 0; j < 2000; ++j) {
         collide::vec3<S> p;
         bool in_box = true, in_grid = true;
@@ -319,7 +318,6 @@ TEST_CASE_TEMPLATE("grids: entries contain what is in a triangle's dilated box, 
         }
         if (!in_grid) continue;
         auto const place = grid.place_of(level, p);
-        CHECK(place.number == grid.cell_of(level, p));
         auto const found = parts.find(place.number);
         bool const meets = found != parts.end() && collide::detail::cell_part::meets(found->second, place.part);
         if (in_box) {

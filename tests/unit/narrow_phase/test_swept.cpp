@@ -98,10 +98,10 @@ void check_impact(oracle::triangle const& t, oracle::sphere const& s, point cons
 /// Checks the time at which a ball of a simulation stops: not late, and no earlier than one that is larger by
 /// `most_close` times the size of the problem would have to.
 template <class S>
-void check_time_here(oracle::triangle const& t, oracle::sphere const& s, point const& move) {
+void check_stopping_time(oracle::triangle const& t, oracle::sphere const& s, point const& move) {
   constexpr double most_close = 0x1p-26;
   sweep<S> const made(t, s, move);
-  auto const time = static_cast<double>(collide::detail::stop_of<karabassi_swept<>>::time(made.shape, made.ball));
+  auto const time = static_cast<double>(collide::detail::stopping_time<karabassi_swept<>>::of(made.shape, made.ball));
   CAPTURE(time);
   REQUIRE(time >= 0);
   REQUIRE(time <= 1);
@@ -218,14 +218,14 @@ TEST_CASE_TEMPLATE("swept: the time of impact is never late, and early by little
     CAPTURE(row.id);
     if (!row.hit || std::isinf(row.ball.radius)) continue;
     check_impact<S>(row.shape, row.ball, row.move);
-    check_time_here<S>(row.shape, row.ball, row.move);
+    check_stopping_time<S>(row.shape, row.ball, row.move);
   }
   for (auto const& cases : {tests::near_sweeps<S>(500, 1500), tests::lattice_sweeps<S>(4, 20000)})
     for (auto const& c : cases) {
       CAPTURE(tests::describe(c));
       if (!c.hit) continue;
       check_impact<S>(c.shape, c.ball, c.move);
-      check_time_here<S>(c.shape, c.ball, c.move);
+      check_stopping_time<S>(c.shape, c.ball, c.move);
     }
 }
 

@@ -196,8 +196,7 @@ TEST_CASE("sorted spheres: running sums, in parts or not") {
     for (std::size_t i = 0; i < n; ++i) values[i] = static_cast<std::uint32_t>(i * 2654435761u >> 7);
     for (int threads : {1, 2, 5}) {
       auto sums = values;
-      collide::buffer<unsigned char> scratch;
-      collide::host(threads).exclusive_scan(sums.data(), n, scratch);
+      collide::detail::exclusive_scan(collide::host(threads), sums.data(), n);
       std::uint32_t sum = 0;
       std::size_t wrong = 0;
       for (std::size_t i = 0; i < n; sum += values[i++]) wrong += sums[i] != sum;
@@ -216,9 +215,9 @@ TEST_CASE("sorted spheres: pairs in canonical order, whatever the number of sphe
     std::sort(expected.begin(), expected.end());
     for (int threads : {1, 3}) {
       auto sorted = pairs;
-      collide::buffer<collide::pair> other;
-      collide::buffer<unsigned char> scratch;
-      collide::host(threads).sort(other, sorted.data(), sorted.size(), sorted.size(), spheres, 3, scratch);
+      collide::detail::sort_memory memory;
+      collide::detail::sort_pairs(collide::host(threads), sorted.data(), sorted.size(), sorted.size(), spheres, 3,
+                                  memory);
       CHECK(sorted == expected);
     }
   }

@@ -20,7 +20,7 @@ template <std::size_t Blocks>
 struct narrow : cuda_shared {
   using cuda_shared::cuda_shared;
   template <class Body>
-  std::size_t wave() const {
+  std::size_t max_resident_blocks() const {
     return Blocks;
   }
 };

@@ -8,7 +8,7 @@
 
 TEST_CASE_TEMPLATE("spatial hash: coordinates are rounded down, and what is too far away is somewhere", S, float,
                    double) {
-  collide::detail::particle_cells<S> const cells{S(2), 63};
+  collide::detail::spatial_hash<S> const cells{S(2), 63};
   auto const c = cells.of(S(0.75), S(-0.25), S(-3));
   CHECK((c.x == 1 && c.y == -1 && c.z == -6));
   CHECK(cells.of(std::numeric_limits<S>::max(), -std::numeric_limits<S>::infinity(), 0).x == 1 << 30);
@@ -16,7 +16,7 @@ TEST_CASE_TEMPLATE("spatial hash: coordinates are rounded down, and what is too 
 }
 
 TEST_CASE("spatial hash: cells of a block have places of their own, one after the other along x") {
-  using table = collide::detail::particle_cells<float>;
+  using table = collide::detail::spatial_hash<float>;
   table const cells{1, 63};
   for (std::int32_t block = -4; block < 4; ++block) {
     std::set<std::uint32_t> places;
@@ -32,6 +32,6 @@ TEST_CASE("spatial hash: cells of a block have places of their own, one after th
         }
       }
     }
-    CHECK(places.size() == table::per_block);
+    CHECK(places.size() == table::cells_per_brick);
   }
 }

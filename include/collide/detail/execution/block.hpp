@@ -7,7 +7,6 @@
 ///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
-///   - `block.near(s, from)` gives fast access to one large value in the same way;
 ///   - `block.load_row(from, row, to)`, `exchange_row(s, to)` and `store_row(s, to, row, from)` are for rows of a few
 ///     values, one for each lane, that follow each other: `row_lanes` lanes call them at a time, and read and write
 ///     what lies side by side together, so that all of these rows must exist; what a lane has read is its own row after
@@ -15,7 +14,7 @@
 ///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at least 1, it
 ///     finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f); `find` and `look` only read, and a
 ///     lane does them up to `Ahead` times before it takes, so that it waits for all of them at once if they do not
-///     branch; after each round the whole block calls `after_round()`;
+///     branch; after each round the whole block calls `after_round(is_last)`;
 ///   - `block.scan(...)` makes of at most as many values as lanes the sums of those before each;
 ///   - `block.reduce(...)` combines a value per lane.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
@@ -43,8 +42,6 @@ class serial_block {
   };
   template <class T, int N>
   struct staging {};
-  template <class T>
-  struct single {};
   template <class T, int N>
   struct row_scratch {};
   struct scan_scratch {};
@@ -77,11 +74,6 @@ class serial_block {
     return from;
   }
 
-  template <class T>
-  COLLIDE_HD_INLINE T const& near(single<T>&, T const& from) {
-    return from;
-  }
-
   template <class T, int N>
   COLLIDE_HD_INLINE void load_row(T const* from, std::uint32_t row, T (&to)[N]) {
     for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
@@ -110,7 +102,7 @@ class serial_block {
         auto const found = find(one, k);
         if (look(one, found)) take(one, found);
       }
-      after_round();
+      after_round(i + 1 == n);
     }
   }
 

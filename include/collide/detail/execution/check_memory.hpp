@@ -26,7 +26,7 @@ void check_memory(View const& view, char const* what, char const* advice) {
   if (view.size() == 0) return;
   each_array(view, [&](void const* p) {
     if (Space::reads(p)) return;
-    throw error(std::string("collide: ") + what + " in " + (Space::host_memory ? "device" : "host") +
+    throw error(std::string("collide: ") + what + " in " + (Space::host_accessible ? "device" : "host") +
                 " memory, which the space `" + Space::name() + "` cannot read: " + advice);
   });
 }

@@ -35,10 +35,6 @@ class cuda_block {
   struct staging {
     T values[N];
   };
-  template <class T>
-  struct single {
-    T value;
-  };
   template <class T, int N>
   struct row_scratch {
     T values[lanes * N];
@@ -75,24 +71,6 @@ class cuda_block {
     for (int i = lane(); i < n; i += lanes) to.values[i] = from[i];
     sync();
     return to.values;
-  }
-
-  /// Each lane copies some pieces, all of which it reads before it writes one.
-  template <class T>
-  __device__ __forceinline__ T const& near(single<T>& to, T const& from) {
-    static_assert(alignof(T) % sizeof(uint4) == 0);
-    constexpr int pieces = sizeof(T) / sizeof(uint4), of_lane = (pieces + lanes - 1) / lanes;
-    uint4 read[of_lane];
-    for (int k = 0; k < of_lane; ++k) {
-      int const i = k * lanes + lane();
-      if (i < pieces) read[k] = reinterpret_cast<uint4 const*>(&from)[i];
-    }
-    for (int k = 0; k < of_lane; ++k) {
-      int const i = k * lanes + lane();
-      if (i < pieces) reinterpret_cast<uint4*>(&to.value)[i] = read[k];
-    }
-    sync();
-    return to.value;
   }
 
   /// A warp reads what lies side by side,
@@ -172,7 +150,7 @@ class cuda_block {
         }
       }
       sync();
-      after_round();
+      after_round(base + Ahead * lanes >= total);
     }
   }
 

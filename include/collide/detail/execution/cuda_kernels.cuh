@@ -66,16 +66,6 @@ __global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
   if (i < n) f(i);
 }
 
-/// The same with fewer threads, each of which has several items, and only if something is not 0.
-template <class F>
-__global__ void __launch_bounds__(cuda_lanes) run_for_each_if(std::uint32_t const* condition, std::size_t n, F f) {
-  wait_for_turn();
-  let_next_start();
-  if (*condition == 0) return;
-  std::size_t const stride = std::size_t{gridDim.x} * cuda_lanes;
-  for (std::size_t i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x; i < n; i += stride) f(i);
-}
-
 /// Kernel body of `for_each` over bytes.
 struct fill_bytes {
   unsigned char* to;

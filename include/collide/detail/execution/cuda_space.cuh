@@ -8,22 +8,12 @@
 
 #include <limits>
 
-#include <cub/device/device_merge_sort.cuh>
-#include <cub/device/device_radix_sort.cuh>
 #include <cuda_runtime.h>
 
-#include <collide/contact.hpp>
 #include <collide/cuda_memory.cuh>
 #include <collide/detail/execution/cuda_kernels.cuh>
 
 namespace collide::detail {
-
-/// The canonical order of pairs that are one number each, with the sphere in its lower half.
-struct canonical_before {
-  __device__ __forceinline__ bool operator()(std::uint64_t a, std::uint64_t b) const {
-    return (a << 32 | a >> 32) < (b << 32 | b >> 32);
-  }
-};
 
 /// What both CUDA spaces have in common: a stream and memory.
 class cuda_space {
@@ -47,7 +37,7 @@ class cuda_space {
   /// Waits until all work on the stream is done.
   void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
-  static constexpr bool host_memory = false;
+  static constexpr bool host_accessible = false;
 
   /// False if the memory at `p` is known not to be this space's: pageable memory, where the device cannot read that.
   static bool reads(void const* p) {
@@ -61,25 +51,10 @@ class cuda_space {
     return reads_pageable != 0;
   }
 
-  static constexpr bool defers = true;
-  static constexpr bool sorts_spheres = false;
-
-  /// Tuning of `bucket`; see `host`.
-  static constexpr int insertion_parts = 2;
-  static constexpr double bucket_span = 1.75;
-
   template <class F>
   void for_each(std::size_t n, F const& f) const {
     if (n == 0) return;
     launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n), n, f);
-  }
-
-  /// `for_each` if *condition, in memory of the space, is not 0 then; meant for what is seldom done.
-  template <class F>
-  void for_each_if(std::uint32_t const* condition, std::size_t n, F const& f) const {
-    if (n == 0) return;
-    unsigned const wave = static_cast<unsigned>(processors_) * (2048 / cuda_lanes), blocks = grid_of(n);
-    launch_kernel("launch of run_for_each_if", run_for_each_if<F>, blocks < wave ? blocks : wave, condition, n, f);
   }
 
   /// A little is filled by a kernel: in a graph, between kernels, that takes half as long as a memory set.
@@ -117,43 +92,6 @@ class cuda_space {
     synchronize();
   }
 
-  /// Sorts pairs into canonical order: not very many by merging; more by radix, by triangle, then (stably) by sphere,
-  /// only the bits that ids below `spheres` and `triangles` have. Takes temporary memory for `room` pairs, at least
-  /// `n`.
-  void sort(buffer<pair>& other, pair* pairs, std::size_t n, std::size_t room, std::size_t spheres,
-            std::size_t triangles, buffer<unsigned char>& scratch) const {
-    static_assert(sizeof(pair) == sizeof(std::uint64_t), "a pair is one 64-bit key");
-    if (n < 2) return;
-    auto* const keys = reinterpret_cast<std::uint64_t*>(pairs);
-    // where there is room for many, the memory for both ways is taken the first time
-    bool const many = n > most_merged, first = room > most_merged && other.capacity() < room;
-    std::size_t merging = 0, by_radix = 0;
-    if (!many || first) {
-      std::size_t const most = room < most_merged ? room : most_merged;
-      cuda_check(cub::DeviceMergeSort::SortKeys(nullptr, merging, keys, most, canonical_before{}, stream_),
-                 "cub::DeviceMergeSort::SortKeys");
-    }
-    if (many || first) {
-      cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, by_radix, keys, keys, room, 0, 64, stream_),
-                 "cub::DeviceRadixSort::SortKeys");
-    }
-    void* const temporary = scratch.reserve(resource_, merging > by_radix ? merging : by_radix);
-    auto* const sorted = reinterpret_cast<std::uint64_t*>(first ? other.reserve(resource_, room) : other.data());
-    if (!many) {
-      cuda_check(cub::DeviceMergeSort::SortKeys(temporary, merging, keys, n, canonical_before{}, stream_),
-                 "cub::DeviceMergeSort::SortKeys");
-      return;
-    }
-    cuda_check(
-        cub::DeviceRadixSort::SortKeys(temporary, by_radix, keys, sorted, n, 32, 32 + bits_for(triangles), stream_),
-        "cub::DeviceRadixSort::SortKeys");
-    cuda_check(cub::DeviceRadixSort::SortKeys(temporary, by_radix, sorted, keys, n, 0, bits_for(spheres), stream_),
-               "cub::DeviceRadixSort::SortKeys");
-  }
-
-  /// Up to so many pairs it is faster to merge (docs/performance.md).
-  static constexpr std::size_t most_merged = std::size_t{1} << 18;
-
  protected:
   /// Launches a kernel that begins with `wait_for_turn`.
   template <class... Parameters>
@@ -177,13 +115,6 @@ class cuda_space {
       throw error("collide: too much work for one CUDA launch");
     }
     return static_cast<unsigned>(blocks);
-  }
-
-  /// Bits that ids below `n` take; at least one.
-  static int bits_for(std::size_t n) {
-    int b = 1;
-    while (b < 32 && (std::size_t{1} << b) < n) ++b;
-    return b;
   }
 
   cudaStream_t stream_;

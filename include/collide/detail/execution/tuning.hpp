@@ -1,17 +1,64 @@
 /// \file
-/// What the broad phases cost on an execution space: by this `automatic` chooses.
+/// The numbers by which the library is tuned for an execution space: traits, of which a space has to know nothing. The
+/// defaults follow from where its memory is; specialise a trait for a space that wants other numbers.
 #pragma once
 
-namespace collide::detail {
+namespace collide {
 
-/// Nanoseconds, as measured by `bench/automatic_bench`; only their ratios count. Those of the CUDA spaces are of an
-/// H100, those of the host of one thread of an AMD EPYC.
-struct broad_phase_costs {
-  double near;          ///< `all_pairs`: a sphere and the few triangles that it is near to
-  double per_pair;      ///< `all_pairs`: a sphere and any triangle
-  double per_sphere;    ///< `bucket`: a sphere
-  double per_triangle;  ///< a triangle of the build
-  double build;         ///< the build, however small the mesh
+/// How `bucket` works on a host: one core after the other waits for the memory.
+struct host_bucket_tuning {
+  /// How many cells wide most triangles are. Narrow cells have fewer candidates and more entries.
+  static constexpr double triangle_span_in_cells = 1;
+  /// How many threads put a triangle into its cells: 1 or 2.
+  static constexpr int threads_per_triangle = 1;
+  /// True if many spheres are sorted into the cells, and triangles look for them, rather than the other way round.
+  /// Needs memory that the host can access, and blocks of one thread with 64 items.
+  static constexpr bool bins_spheres = true;
 };
 
-}  // namespace collide::detail
+/// How `bucket` works on a device, with many threads.
+struct device_bucket_tuning {
+  static constexpr double triangle_span_in_cells = 1.75;
+  static constexpr int threads_per_triangle = 2;
+  static constexpr bool bins_spheres = false;
+};
+
+namespace detail {
+
+template <bool HostAccessible>
+struct default_bucket_tuning : host_bucket_tuning {};
+template <>
+struct default_bucket_tuning<false> : device_bucket_tuning {};
+
+}  // namespace detail
+
+/// How `bucket` works in a space.
+template <class Space>
+struct bucket_tuning : detail::default_bucket_tuning<Space::host_accessible> {};
+
+/// How a query works in a space.
+template <class Space>
+struct query_tuning {
+  /// True if a pair that takes long to decide is listed, and decided in a kernel of its own, as its neighbours in a
+  /// block would wait for it.
+  static constexpr bool defers_exact_tests = !Space::host_accessible;
+};
+
+/// What the broad phases cost, in nanoseconds, as `bench/automatic_bench` measures it; only the ratios count.
+struct broad_phase_cost_model {
+  double per_near_sphere_ns;  ///< `all_pairs`: a sphere and the few triangles that it is near to
+  double per_pair_ns;         ///< `all_pairs`: a sphere and any triangle
+  double per_sphere_ns;       ///< `bucket`: a sphere
+  double per_triangle_ns;     ///< `bucket`: a triangle of the build
+  double build_ns;            ///< `bucket`: the build, however small the mesh
+};
+
+/// By what `automatic` chooses in a space. The default is one thread of an AMD EPYC, or `cuda_shared` on an H100.
+template <class Space>
+struct broad_phase_costs {
+  static constexpr broad_phase_cost_model value = Space::host_accessible
+                                                      ? broad_phase_cost_model{350, 0.137, 4, 40, 1000}
+                                                      : broad_phase_cost_model{0, 1.9, 0.012, 0.1, 30000};
+};
+
+}  // namespace collide

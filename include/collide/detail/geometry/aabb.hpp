@@ -1,5 +1,5 @@
 /// \file
-/// Axis-aligned boxes: that of a triangle, and whether a ball comes near it.
+/// Axis-aligned bounding boxes, and the overlap test of a triangle's box and a sphere.
 #pragma once
 
 #include <limits>

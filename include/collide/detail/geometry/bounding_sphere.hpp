@@ -1,5 +1,5 @@
 /// \file
-/// A conservative sphere around each triangle: the cheap test before the narrow phase.
+/// The bounding sphere of a triangle: the cheap test before the narrow phase.
 #pragma once
 
 #include <collide/detail/numeric/float_bits.hpp>
@@ -8,8 +8,7 @@
 
 namespace collide::detail {
 
-/// A ball that contains a triangle; `radius` is NaN if the triangle has a NaN or infinite corner, so that nothing
-/// reaches it.
+/// A sphere that contains a triangle; `radius` is NaN if the triangle is not finite, so that nothing overlaps it.
 template <class S>
 struct alignas(4 * sizeof(S)) bounding_sphere {
   S x, y, z, radius;
@@ -35,7 +34,7 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
   }
 };
 
-/// The ball around the middle of the triangle's box.
+/// A bounding sphere around the centre of the triangle's box.
 template <class S>
 COLLIDE_HD_INLINE bounding_sphere<S> bounds_of(triangle<S> const& t) {
   if (!finite(t)) return {S(0), S(0), S(0), std::numeric_limits<S>::quiet_NaN()};

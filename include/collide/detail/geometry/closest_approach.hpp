@@ -1,19 +1,19 @@
 /// \file
-/// Where the way of a moving sphere's centre and a triangle come closest.
+/// The closest approach of a moving point, a sphere's centre, and a triangle.
 #pragma once
 
 #include <collide/detail/geometry/local_sweep.hpp>
 
 namespace collide::detail {
 
-/// A place on the way, as a time, and a point of the triangle, as the weights of its second and third corner. All are
-/// fractions, also where arithmetic was inaccurate, so that the two places are what they claim to be.
+/// A point of the path, as a time, and a point of the triangle, as the barycentric weights of its second and third
+/// vertex. All are in 0 .. 1, also where arithmetic was inaccurate, so that both points exist.
 template <class T>
 struct closest_approach {
   T time, v, w;
-  vec3<T> offset;  ///< from the place on the way to the point of the triangle
+  vec3<T> offset;  ///< from the point of the path to the point of the triangle
   T distance_squared;
-  vec3<T> normal;  ///< perpendicular to what the two lie in: way and edge, or face; not of length 1
+  vec3<T> normal;  ///< perpendicular to path and edge, or to the face; not normalised
 };
 
 /// 1 / y, or 0 unless y > 0.
@@ -22,8 +22,8 @@ COLLIDE_HD_INLINE T inverse(T y) {
   return y > std::numeric_limits<T>::min() ? div(T(1), y) : T(0);
 }
 
-/// The closest approach is that to an edge, or to the face where the way meets the plane or comes nearest to it. (If
-/// it is to the face and the way is parallel to that, it is to an edge as well, or at the beginning or the end.)
+/// The closest approach is that to an edge, or to the face where the path meets the plane or comes nearest to it.
+/// (If it is to the face and the path is parallel to that, it is to an edge as well, or at the start or the end.)
 template <class T>
 COLLIDE_HD_INLINE closest_approach<T> approach(local_sweep<T> const& l) {
   vec3<T> const& d = l.path;

@@ -18,7 +18,7 @@ COLLIDE_HD_INLINE bool foot_inside(local_triangle<T> const& t, vec3<T> const& n,
   return true;
 }
 
-/// The closest point of a triangle to the origin, and the part of the triangle that it lies in.
+/// The closest point of a triangle to the origin, and the feature that it lies in.
 template <class T>
 struct closest_point {
   vec3<T> point;

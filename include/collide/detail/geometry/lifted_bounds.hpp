@@ -1,10 +1,10 @@
 /// \file
-/// Balls in a form in which it takes five operations to tell whether two come close.
+/// Lifted bounding spheres: an overlap test as one scalar product in five dimensions (the lifting map).
 ///
-/// |c - b| <= r + s holds if and only if c.b + r s + (s^2 - b^2) / 2 >= (c^2 - r^2) / 2. What belongs to one ball alone
-/// is computed once; what remains is a scalar product in five dimensions. Coordinates are taken relative to a common
+/// |c - b| <= r + s holds if and only if c.b + r s + (s^2 - b^2) / 2 >= (c^2 - r^2) / 2. Terms of one sphere alone
+/// are computed once; the rest is a scalar product in five dimensions. Coordinates are taken relative to a common
 /// origin next to the mesh. Where squares cancel, rounding shows: it is covered by a part of the squares themselves, so
-/// that a ball far from the origin reaches a bit too much, but never too little. Derivation in docs/numerics.md.
+/// that a sphere far from the origin overlaps a bit too much, but never too little. Derivation in docs/numerics.md.
 #pragma once
 
 #include <collide/detail/geometry/bounding_sphere.hpp>
@@ -21,7 +21,7 @@ inline constexpr S lifted_slack = 32 * format<S>::unit;
 template <class S>
 inline constexpr S lifted_radius_slack = 32 * S(format<float>::unit);
 
-/// Squares beyond this are not worked with: such a ball is taken to reach everything.
+/// The largest square that is computed with: a sphere beyond it is taken to overlap everything.
 template <class S>
 inline constexpr S lifted_limit = std::numeric_limits<S>::max() / 16;
 
@@ -33,7 +33,7 @@ struct alignas(4 * sizeof(S)) lifted_bounds {
 
   lifted_bounds() = default;
 
-  /// That of an invalid triangle is reached by nothing but what reaches everything.
+  /// The lifted form of `b`. Of an invalid triangle, nothing overlaps it but spheres that overlap everything.
   COLLIDE_HD_INLINE lifted_bounds(bounding_sphere<S> const& b, vec3<S> const& origin)
       : x{b.x - origin.x()}, y{b.y - origin.y()}, z{b.z - origin.z()}, radius{b.radius} {
     S const centre = x * x + y * y + z * z, square = radius * radius;
@@ -54,7 +54,7 @@ COLLIDE_HD_INLINE vec3<S> lifted_origin(mesh_view<S> const& mesh) {
   return finite(corner) ? corner : vec3<S>(0, 0, 0);
 }
 
-/// Consecutive spheres, or balls around those that move.
+/// Consecutive spheres in lifted form; of moving spheres, their swept bounding spheres.
 template <class S, int Items>
 struct lifted_batch {
   S x[Items], y[Items], z[Items], radius[Items];
@@ -74,13 +74,13 @@ struct lifted_batch {
                      32 * std::numeric_limits<S>::min();
       if (finite(centre + square) && centre + square <= lifted_limit<S> && valid_radius(radius[k])) continue;
       x[k] = y[k] = z[k] = radius[k] = 0;
-      // what is no ball reaches nothing, and what is too large everything
+      // an invalid sphere overlaps nothing, one that is too large everything
       bool const none = !valid_radius(batch.radius[k]) || !finite(vec3<S>(batch.x[k], batch.y[k], batch.z[k]));
       threshold[k] = none ? std::numeric_limits<S>::max() : -std::numeric_limits<S>::max();
     }
   }
 
-  /// True if any of the balls may come within reach of the bounding sphere. Without branches: few do.
+  /// True if any of the spheres may overlap the bounding sphere. Without branches: few do.
   COLLIDE_HD_INLINE bool any_reaches(lifted_bounds<S> const& b) const {
     using flag = std::conditional_t<(Items > 4), bits_of<S>, bool>;  // of many: as wide as a lane of the vector unit
     flag some = 0;

@@ -1,5 +1,5 @@
 /// \file
-/// A triangle and the way of a moving sphere's centre, in coordinates local to where the sphere begins.
+/// A triangle and the path of a moving sphere's centre, in coordinates local to the start of the path.
 #pragma once
 
 #include <collide/detail/geometry/closest_point.hpp>
@@ -19,13 +19,13 @@ COLLIDE_HD_INLINE local_sweep<W> relative(triangle<S> const& t, moving_sphere<S>
   return {relative<W>(t, static_cast<sphere<S> const&>(s)), s.displacement.template cast<W>()};
 }
 
-/// The largest number of all, without its sign.
+/// The largest absolute value of all coordinates, the radius and the displacement.
 template <class T>
 COLLIDE_HD_INLINE T size_of(local_sweep<T> const& l) {
   return larger(size_of(l.shape), magnitude(l.path));
 }
 
-/// All numbers times a power of two.
+/// The problem scaled by a power of two.
 template <class T>
 COLLIDE_HD_INLINE local_sweep<T> scaled(local_sweep<T> const& l, T s) {
   return {scaled(l.shape, s), scaled(l.path, s)};
@@ -51,7 +51,7 @@ COLLIDE_HD_INLINE local_sweep<T> rounded(local_sweep<W> const& l) {
   return {rounded<T>(l.shape), l.path.template cast<T>()};
 }
 
-/// False if, on some axis, the triangle's box is farther than `reach` from all of the way.
+/// False if, on some axis, the triangle's box is farther than `reach` from the whole path.
 template <class T>
 COLLIDE_HD_INLINE bool box_in_reach(local_sweep<T> const& l, T reach) {
   vec3<T> const still = vec3<T>(T(0), T(0), T(0));
@@ -60,7 +60,7 @@ COLLIDE_HD_INLINE bool box_in_reach(local_sweep<T> const& l, T reach) {
   return !(largest<T>(lower) > reach || largest<T>(-upper) > reach);
 }
 
-/// The triangle as seen from the centre at a time.
+/// The triangle relative to the centre at a time of the step.
 template <class T>
 COLLIDE_HD_INLINE local_triangle<T> seen_at(local_sweep<T> const& l, T time) {
   vec3<T> const gone = scaled(l.path, time);

@@ -1,5 +1,5 @@
 /// \file
-/// A triangle as seen from a sphere's centre.
+/// A triangle in coordinates relative to a sphere's centre.
 #pragma once
 
 #include <limits>
@@ -9,7 +9,7 @@
 
 namespace collide::detail {
 
-/// A triangle as seen from a sphere's centre: local coordinates times `scale`, a power of two.
+/// A triangle relative to a sphere's centre, all coordinates times `scale`, a power of two.
 template <class T>
 struct local_triangle {
   vec3<T> a, b, c;
@@ -33,13 +33,13 @@ COLLIDE_HD_INLINE local_triangle<W> relative(triangle<S> const& t, sphere<S> con
   return {from_centre(t.a), from_centre(t.b), from_centre(t.c), W(s.radius), W(1)};
 }
 
-/// The largest number of all, without its sign.
+/// The largest absolute value of all coordinates and the radius.
 template <class T>
 COLLIDE_HD_INLINE T size_of(local_triangle<T> const& t) {
   return larger(larger(magnitude(t.a), magnitude(t.b)), larger(magnitude(t.c), t.radius));
 }
 
-/// All numbers times a power of two.
+/// The problem scaled by a power of two.
 template <class T>
 COLLIDE_HD_INLINE local_triangle<T> scaled(local_triangle<T> const& t, T s) {
   return {scaled(t.a, s), scaled(t.b, s), scaled(t.c, s), mul(t.radius, s), mul(t.scale, s)};

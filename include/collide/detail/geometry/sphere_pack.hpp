@@ -1,5 +1,5 @@
 /// \file
-/// The spheres that a lane works on.
+/// Packs of spheres: those that one thread works on.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct sphere_batch {
     return {{far, far, far}, std::numeric_limits<S>::quiet_NaN()};
   }
 
-  /// A ball around the way of each.
+  /// Loads the swept bounding spheres of moving spheres.
   COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
     for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
@@ -48,7 +48,9 @@ struct sphere_batch {
     }
   }
 
-  /// Where the centres are, if on the device groups of four can be loaded at a time; else null.
+  COLLIDE_HD_INLINE sphere<S> ball(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
+
+  /// The packed centres if the device can load four at a time with 16-byte loads; else null.
   static COLLIDE_HD_INLINE S const* quads_of(sphere_view<S> const& spheres) {
 #if defined(__CUDA_ARCH__)
     return spheres.packed() ? quads_at(spheres.x(0)) : nullptr;
@@ -61,7 +63,7 @@ struct sphere_batch {
   /// Centres only, which are all there; `first` is a multiple of four, and `quads` is quads_of(spheres), not null.
   COLLIDE_HD_INLINE void load_quads(S const* quads, std::size_t first) { load_quads(quads, first, x, y, z); }
 
-  /// The same of any packed vectors.
+  /// Loads `Items` packed vectors from vector `first` on, a multiple of four; `quads` is aligned to 16 bytes.
   static COLLIDE_HD_INLINE void load_quads([[maybe_unused]] S const* quads, [[maybe_unused]] std::size_t first,
                                            [[maybe_unused]] S (&x)[Items], [[maybe_unused]] S (&y)[Items],
                                            [[maybe_unused]] S (&z)[Items]) {
@@ -85,7 +87,7 @@ struct sphere_batch {
   }
 
  private:
-  /// What there is of them.
+  /// Loads the spheres that exist of the last pack; the others are `none()`.
   COLLIDE_HD_INLINE void load_last(sphere_view<S> const& spheres, std::size_t first) {
     for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
@@ -119,7 +121,7 @@ struct sphere_batch {
   }
 };
 
-/// The same of spheres that move.
+/// `Items` consecutive moving spheres; those beyond the end of the set have a NaN radius.
 template <class S, int Items>
 struct moving_batch {
   S x[Items], y[Items], z[Items], dx[Items], dy[Items], dz[Items], radius[Items];

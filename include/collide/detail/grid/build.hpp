@@ -31,23 +31,15 @@ struct grid_insertion {
   template <class F>
   COLLIDE_HD_INLINE void each_cells(std::size_t thread, F const& f) const {
     auto const number = static_cast<id>(thread / Parts);
+    box<S> const around = box_at(number);
     for (int g = 0; g < grid_count; ++g) {
-      asked_for need{grids[g], grids[g].level[0], box_at(number)};
-      read_at_once(need);
       grids[g].template each_cells<together>(
-          need.frame, need.finest, need.own, static_cast<std::uint32_t>(thread % Parts), Parts,
+          around, static_cast<std::uint32_t>(thread % Parts), Parts,
           [&](covered_cell const(&cells)[together], std::uint32_t n) { f(cells, n, number); });
     }
   }
 
  private:
-  /// What a thread reads before it asks for cells: nothing of that depends on other parts of it.
-  struct asked_for {
-    grid_frame<S> frame;
-    grid_level<S> finest;
-    box<S> own;  ///< of the triangle
-  };
-
   COLLIDE_HD_INLINE box<S> box_at(std::size_t i) const {
     triangle_box<S> const b = boxes != nullptr ? boxes[i] : triangle_box_of(mesh[i]);
     return b;

@@ -114,6 +114,14 @@ struct grid_frame {
     return l.coordinate(x - lower[axis]);
   }
 
+  /// True if it serves spheres of this radius.
+  COLLIDE_HD_INLINE bool serves(S radius) const { return radius <= reach; }
+
+  /// True if a point is inside its box. Without branches, for the CPU's vector unit.
+  COLLIDE_HD_INLINE bool contains(S x, S y, S z) const {
+    return (x >= lower[0]) & (x <= upper[0]) & (y >= lower[1]) & (y <= upper[1]) & (z >= lower[2]) & (z <= upper[2]);
+  }
+
   /// The cells that a triangle with this box is put into, at most one whole turn of the level on each axis, and the
   /// steps in the first and the last of them from and up to which the dilated box reaches.
   COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b, std::uint32_t (&from)[3],
@@ -134,18 +142,13 @@ struct grid_frame {
 /// The grid for spheres up to one radius.
 template <class S>
 struct grid : grid_frame<S> {
-  using grid_frame<S>::levels, grid_frame<S>::dilation, grid_frame<S>::coordinate;
+  using grid_frame<S>::levels, grid_frame<S>::dilation, grid_frame<S>::coordinate, grid_frame<S>::cells_of;
 
   grid_level<S> level[max_levels];
 
-  /// The cell that holds a point inside the grid.
-  COLLIDE_HD_INLINE std::uint32_t cell_of(grid_level<S> const& l, vec3<S> const& p) const {
-    return l.row(coordinate(l, p.y(), 1), coordinate(l, p.z(), 2)) + (coordinate(l, p.x(), 0) & l.mask[0]);
-  }
-
   /// The level that a triangle with this box belongs to.
   COLLIDE_HD_INLINE grid_level<S> const& level_of(box<S> const& b) const {
-    if (levels == 1) return level[0];
+    if (levels <= 1) return level[0];
     S const size = S(bin_end(size_bin(b.extent()))) + 2 * dilation;  // as plan_grid has it
     int l = 0;
     while (l + 1 < levels && !(size <= level[l].largest)) ++l;
@@ -162,7 +165,7 @@ struct grid : grid_frame<S> {
     return r;
   }
 
-  /// The same, and the place of the point in it.
+  /// The cell that holds a point inside the grid, and the place of the point in it.
   COLLIDE_HD_INLINE covered_cell place_of(grid_level<S> const& l, vec3<S> const& p) const {
     return l.place_of(p, this->lower);
   }
@@ -175,21 +178,19 @@ struct grid : grid_frame<S> {
   }
 
   /// Calls f(cells, m) with m of at most N cells at a time and what the box covers of them, for every `parts`-th of the
-  /// cells that a triangle with this box is put into, from the `part`-th on. `frame` and `finest` are this grid's.
+  /// cells that a triangle with this box is put into, from the `part`-th on.
   template <int N, class F>
-  COLLIDE_HD_INLINE void each_cells(grid_frame<S> const& frame, grid_level<S> const& finest, box<S> const& b,
-                                    std::uint32_t part, std::uint32_t parts, F const& f) const {
-    grid_level<S> l = finest;
-    if (frame.levels > 1) l = level_of(b);
+  COLLIDE_HD_INLINE void each_cells(box<S> const& b, std::uint32_t part, std::uint32_t parts, F const& f) const {
+    grid_level<S> const l = level_of(b);
     std::uint32_t from[3], to[3];
-    cell_range const r = frame.cells_of(l, b, from, to);
+    cell_range const r = cells_of(l, b, from, to);
     std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
                         nz = r.upper[2] - r.lower[2] + 1;
     auto const covered = [&](std::uint32_t i, std::uint32_t cells, int axis) {
       return cell_part::covered(i == 0 ? from[axis] : cell_part::before, i + 1 == cells ? to[axis] : cell_part::last,
                                 axis);
     };
-    std::uint32_t const n = frame.levels == 0 || b.is_empty() ? 0 : nx * ny * nz;
+    std::uint32_t const n = levels == 0 || b.is_empty() ? 0 : nx * ny * nz;
     for (std::uint32_t i = part; i < n; i += N * parts) {
       covered_cell cells[N];
       std::uint32_t m = 0;

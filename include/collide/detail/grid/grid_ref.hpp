@@ -23,7 +23,7 @@ struct bucket_lookup : triangle_lookup<S> {
   cell_entry const* entries;
   std::size_t capacity;
 
-  static constexpr int nowhere = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
+  static constexpr std::int8_t nowhere = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
 
   COLLIDE_HD bucket_lookup opened() const {
     bucket_lookup open = *this;
@@ -33,21 +33,23 @@ struct bucket_lookup : triangle_lookup<S> {
 
   COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) != 0; }
 
+  /// Which grid serves each of the balls of a pack, if there may be triangles near it; `nowhere` if not, `everywhere`
+  /// if no grid serves it.
+  template <class Pack, int N>
+  COLLIDE_HD_INLINE void locate(Pack const& pack, std::int8_t (&number)[N]) const {
+    select_grids(pack, number);
+    for (int k = 0; k < N; ++k) {
+      if (number[k] >= 0 && empty_in(grids[number[k]], pack.ball(k))) number[k] = nowhere;
+    }
+  }
+
+  /// True if the ball can touch no triangle.
   template <class Ball>
   COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
     if (this->mesh.size() == 0) return true;
-    int const g = grid_of(ball);
-    return g < 0 ? g == nowhere : empty_in(grids[g], ball);
-  }
-
-  /// The same, of a ball that this grid serves.
-  template <class Ball>
-  COLLIDE_HD_INLINE bool empty_in(grid<S> const& g, Ball const& ball) const {
-    COLLIDE_ROLLED
-    for (int l = 0; l < g.levels; ++l) {
-      if (!empty_level(g, g.level[l], ball)) return false;
-    }
-    return true;
+    std::int8_t number[1];
+    locate(pack_of_one<Ball>{ball}, number);
+    return number[0] == nowhere;
   }
 
   /// True if a ball of this radius looks into one cell of one level, wherever it is, and into the few of its way if
@@ -70,7 +72,9 @@ struct bucket_lookup : triangle_lookup<S> {
 
   template <class Ball>
   COLLIDE_HD candidate_cursor begin(Ball const& ball) const {
-    return {this->mesh.size() == 0 ? nowhere : grid_of(ball), 0, 0, 0};
+    std::int8_t number[1] = {nowhere};
+    if (this->mesh.size() != 0) select_grids(pack_of_one<Ball>{ball}, number);
+    return {number[0], 0, 0, 0};
   }
 
   template <class Ball>
@@ -88,38 +92,41 @@ struct bucket_lookup : triangle_lookup<S> {
   }
 
  private:
-  /// The tightest grid that serves a ball; grids come by falling reach.
   template <class Ball>
-  COLLIDE_HD_INLINE int grid_of(Ball const& ball) const {
-    if (!valid_radius(ball.radius) || !finite_way(ball)) return nowhere;
-    int number = everywhere;
+  struct pack_of_one {
+    Ball const& only;
+    COLLIDE_HD_INLINE Ball const& ball(int) const { return only; }
+  };
+
+  /// The tightest grid that serves each ball; grids come by falling reach.
+  template <class Pack, int N>
+  COLLIDE_HD_INLINE void select_grids(Pack const& pack, std::int8_t (&number)[N]) const {
+    for (int k = 0; k < N; ++k) number[k] = is_sound(pack.ball(k)) ? everywhere : nowhere;
     COLLIDE_ROLLED
     for (int g = 0; g < grid_count; ++g) {
-      if (!serves(grids[g], ball)) continue;
-      number = meets(grids[g], ball) ? g : nowhere;
+      for (int k = 0; k < N; ++k) {
+        // a ball that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
+        bool const served = (number[k] != nowhere) & serves(grids[g], pack.ball(k));
+        std::int8_t const there = meets(grids[g], pack.ball(k)) ? static_cast<std::int8_t>(g) : nowhere;
+        number[k] = served ? there : number[k];
+      }
     }
-    return number;
   }
 
-  /// Of a ball at rest this is not asked: it is in no grid if its centre is NaN.
-  static COLLIDE_HD_INLINE bool finite_way(sphere<S> const&) { return true; }
-  static COLLIDE_HD_INLINE bool finite_way(moving_sphere<S> const& ball) {
-    return finite(ball.centre) && finite(ball.displacement);
+  /// The centre of a ball at rest is not looked at: it is in no grid if it is NaN.
+  static COLLIDE_HD_INLINE bool is_sound(sphere<S> const& ball) { return valid_radius(ball.radius); }
+  static COLLIDE_HD_INLINE bool is_sound(moving_sphere<S> const& ball) {
+    return valid_radius(ball.radius) && finite(ball.centre) && finite(ball.displacement);
   }
 
-  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& ball) { return ball.radius <= g.reach; }
+  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& ball) { return g.serves(ball.radius); }
   static COLLIDE_HD_INLINE bool meets(grid<S> const& g, sphere<S> const& ball) {
-    std::uint32_t inside = 1;  // without branches
-    for (int k = 0; k < 3; ++k) {
-      inside &= ball.centre[k] >= g.lower[k] ? 1u : 0u;
-      inside &= ball.centre[k] <= g.upper[k] ? 1u : 0u;
-    }
-    return inside != 0;
+    return g.contains(ball.centre.x(), ball.centre.y(), ball.centre.z());
   }
 
   static COLLIDE_HD_INLINE bool serves(grid<S> const& g, moving_sphere<S> const& ball) {
     S const inverse_width = g.levels > 0 ? g.level[0].inverse_width : S(0);
-    bool served = ball.radius <= g.reach;
+    bool served = g.serves(ball.radius);
     for (int k = 0; k < 3; ++k) {
       served = served && way<S>::can_walk(g.lower[k], g.upper[k], inverse_width, ball.centre[k], ball.displacement[k]);
     }
@@ -133,8 +140,17 @@ struct bucket_lookup : triangle_lookup<S> {
     return inside;
   }
 
+  /// True if no level has triangles near a ball that this grid serves.
+  template <class Ball>
+  COLLIDE_HD_INLINE bool empty_in(grid<S> const& g, Ball const& ball) const {
+    COLLIDE_ROLLED
+    for (int l = 0; l < g.levels; ++l) {
+      if (!empty_level(g, g.level[l], ball)) return false;
+    }
+    return true;
+  }
   COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball) const {
-    return !is_occupied(g.cell_of(l, ball.centre));
+    return !is_occupied(g.place_of(l, ball.centre).number);
   }
   COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball) const {
     cell_range const r = way<S>::cells_around(g, l, ball.centre, ball.displacement);

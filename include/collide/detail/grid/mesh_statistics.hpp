@@ -14,7 +14,7 @@ namespace collide::detail {
 /// What a mesh looks like, over its finite triangles. Memory of zeros is a summary of none: `lower` and `upper` are
 /// both updated by a maximum.
 template <class S>
-struct alignas(16) mesh_summary {
+struct mesh_summary {
   bits_of<S> lower[3];     ///< ~ordered(coordinate)
   bits_of<S> upper[3];     ///< ordered(coordinate)
   size_histogram extents;  ///< of the triangles' boxes

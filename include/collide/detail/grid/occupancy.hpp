@@ -19,9 +19,6 @@ struct cell_marks {
   grid_level<S> level;
   std::uint8_t const* occupied;
 
-  /// The cell of a centre that was marked, and the place of the centre in it.
-  COLLIDE_HD_INLINE covered_cell place_of(vec3<S> const& centre) const { return level.place_of(centre, lower); }
-
   /// The cells of several centres, and whether each is inside the grid at all.
   template <int N>
   struct places {
@@ -44,10 +41,19 @@ struct cell_marks {
     return p;
   }
 
-  /// Whether there may be triangles near each of the centres.
+  /// Whether there may be triangles near each of the centres, or spheres. False if that is not known.
   template <int N>
   COLLIDE_HD_INLINE void mark(places<N> const& p, bool (&near)[N]) const {
     for (int k = 0; k < N; ++k) near[k] = (p.inside[k] & occupied[p.cells[k] / 8] >> p.cells[k] % 8 & 1) != 0;
+  }
+  template <int N>
+  COLLIDE_HD_INLINE bool mark(sphere_batch<S, N> const& b, bool (&near)[N]) const {
+    mark(places_of(b.x, b.y, b.z), near);
+    return true;
+  }
+  template <int N>
+  COLLIDE_HD_INLINE bool mark(moving_batch<S, N> const& b, bool (&near)[N]) const {
+    return mark_ways(b, near);
   }
   COLLIDE_HD_INLINE bool is_marked(std::uint32_t cell) const { return (bit_of(cell) & 1) != 0; }
 

@@ -13,7 +13,7 @@ namespace collide::detail {
 
 /// Kernel body of a block per grid: chooses widths, levels and table sizes from the summary of the mesh. A single
 /// lane's work of some microseconds, so that a build on the device need not wait for the host; much of that is fetching
-/// instructions, so the fewer the better. Other blocks empty the lists of the cells meanwhile.
+/// instructions, so the fewer the better.
 template <class S>
 struct plan_grid {
   static constexpr int items = 1;
@@ -25,62 +25,66 @@ struct plan_grid {
   S usual_span;              ///< how many cells wide most triangles are at most, if the width is not asked for
   float entry_limit;         ///< how many entries a grid may have, if the width is asked for
   std::uint32_t table_bits;  ///< log2 of the number of cells per grid
-  int grid_count;
-  cell_list* lists;
-  std::size_t list_count;  ///< to be emptied
-
-  static constexpr std::size_t lists_of_lane = 16;
-
-  template <class Block>
-  std::size_t blocks() const {
-    constexpr std::size_t per_block = Block::lanes * lists_of_lane;
-    return static_cast<std::size_t>(grid_count) + (list_count + per_block - 1) / per_block;
-  }
 
   template <class Block>
   struct scratch {
-    typename Block::template single<mesh_summary<S>> seen;
+    typename Block::template staging<std::uint32_t, size_bins> counts;
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    if (block.index() >= static_cast<std::size_t>(grid_count)) {
-      constexpr std::size_t per_block = Block::lanes * lists_of_lane;
-      std::size_t const first = (block.index() - static_cast<std::size_t>(grid_count)) * per_block;
-      std::size_t const end = smaller(first + per_block, list_count);
-      block.each([&](int lane) {
-        COLLIDE_ROLLED
-        for (std::size_t i = first + static_cast<std::size_t>(lane); i < end; i += Block::lanes) lists[i] = {0, 0};
-      });
-      return;
-    }
-    mesh_summary<S> const& seen = block.near(s.seen, *summary);
+    std::uint32_t const* const counts = block.stage(s.counts, summary->extents.counts, size_bins);
     block.each([&](int lane) {
       if (lane != 0) return;
       auto& g = grids[block.index()];
-      grid_frame<S> const frame = plan(block.index(), seen, g.level);
-      static_cast<grid_frame<S>&>(g) = frame;
+      sizes const seen{counts, summary->extents.first(), summary->extents.last()};
+      static_cast<grid_frame<S>&>(g) = plan(block.index(), seen, g.level);
     });
   }
 
  private:
+  /// The histogram of the triangles' extents; the bins in use are first .. last.
+  struct sizes {
+    std::uint32_t const* counts;
+    int first, last;
+  };
+
   /// Sets the levels and returns the rest.
-  COLLIDE_HD grid_frame<S> plan(std::size_t i, mesh_summary<S> const& seen, grid_level<S>* levels) const {
-    size_histogram const& sizes = seen.extents;
+  COLLIDE_HD grid_frame<S> plan(std::size_t i, sizes const& seen, grid_level<S>* levels) const {
     grid_frame<S> g{};
     g.reach = reaches[i];
     levels[0] = {};       // is read before it is known whether there is one
-    if (sizes.empty()) {  // no finite triangle: a box that contains nothing
+    if (seen.last < 0) {  // no finite triangle: a box that contains nothing
       for (int k = 0; k < 3; ++k) {
         g.lower[k] = 1;
         g.upper[k] = -1;
       }
       return g;
     }
+    S extent = 0;
+    S const far = set_box(g, extent), tallest = margin * size(g, seen.last);
+    constexpr S end = std::numeric_limits<S>::max() / 16;
+    if (!(extent < end && far < end && tallest < end)) {  // the range of S does not suffice: it serves no sphere
+      g.reach = -1;
+      return g;
+    }
+    // from this width on, cell coordinates are exact enough for `margin`
+    S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
+    // the largest must fit also when the quotient is rounded down
+    S const usual = div(smaller(tallest, 2 * margin * size(g, median(seen))), usual_span) * (1 + 4 * format<S>::unit);
+    S const width = larger(narrowest, cell_width > 0 ? cell_width : usual);
+    S const span = cell_width > 0 ? span_for(g, width, seen) : usual_span;
+    set_levels(g, width, span, seen, static_cast<std::uint32_t>(i) << table_bits, levels);
+    return g;
+  }
+
+  /// Sets the dilation and the box of the dilated mesh, and `extent` to the longest edge of that. Returns the largest
+  /// coordinate of the mesh, or the reach if that is larger.
+  COLLIDE_HD S set_box(grid_frame<S>& g, S& extent) const {
     S far = g.reach;
     for (int k = 0; k < 3; ++k) {
-      g.lower[k] = seen.lower_of(k);
-      g.upper[k] = seen.upper_of(k);
+      g.lower[k] = summary->lower_of(k);
+      g.upper[k] = summary->upper_of(k);
       far = larger(far, larger(abs_of(g.lower[k]), abs_of(g.upper[k])));
     }
     g.dilation =
@@ -88,33 +92,23 @@ struct plan_grid {
     for (int k = 0; k < 3; ++k) {
       g.lower[k] -= g.dilation;
       g.upper[k] += g.dilation;
+      extent = larger(extent, g.upper[k] - g.lower[k]);
     }
+    return far;
+  }
 
-    S extent = 0;
-    for (int k = 0; k < 3; ++k) extent = larger(extent, g.upper[k] - g.lower[k]);
-    constexpr S end = std::numeric_limits<S>::max() / 16;
-    int const top = sizes.last();
-    S const tallest = margin * size(g, top);
-    if (!(extent < end && far < end &&
-          tallest < end)) {  // the range of S does not suffice: a grid that serves no sphere
-      g.reach = -1;
-      return g;
-    }
-    // from this width on, cell coordinates are exact enough for `margin`
-    S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
-    // the largest must fit also when the quotient is rounded down
-    S const usual = div(smaller(tallest, 2 * margin * size(g, median(sizes))), usual_span) * (1 + 4 * format<S>::unit);
-    S width = larger(narrowest, cell_width > 0 ? cell_width : usual);
-    S const span = cell_width > 0 ? span_for(g, width, sizes) : usual_span;
-    // half of the cells for the finest level, the rest for the others together; all if there are no others
-    std::uint32_t const first_cell = static_cast<std::uint32_t>(i) << table_bits;
-    int bin = sizes.first();
-    while (bin <= top) {
+  /// Makes levels, the finest with cells of this width, in which a triangle spans `span` cells at most. Half of the
+  /// cells are for the finest level, the rest for the others together; all if there are no others.
+  COLLIDE_HD void set_levels(grid_frame<S>& g, S width, S span, sizes const& seen, std::uint32_t first_cell,
+                             grid_level<S>* levels) const {
+    S const tallest = margin * size(g, seen.last);
+    int bin = seen.first;
+    while (bin <= seen.last) {
       if (g.levels + 1 == max_levels) width = larger(width, tallest / span);
       while (margin * size(g, bin) > width * span) width *= 2;
       int next = bin + 1;
-      while (next <= top && (sizes.counts[next] == 0 || margin * size(g, next) <= width * span)) ++next;
-      bool const last = next > top;
+      while (next <= seen.last && (seen.counts[next] == 0 || margin * size(g, next) <= width * span)) ++next;
+      bool const last = next > seen.last;
       grid_level<S>& l = levels[g.levels++];
       if (g.levels == 1) g.width = width;
       l.inverse_width = div(S(1), width);
@@ -130,10 +124,8 @@ struct plan_grid {
       width *= 2;
       bin = next;
     }
-    return g;
   }
 
- private:
   /// Cells are wider than the largest triangle of their level by this factor, so that rounding cannot make it touch
   /// more than `span` + 1 of them on an axis.
   static constexpr S margin = S(1.125);
@@ -145,25 +137,25 @@ struct plan_grid {
   static COLLIDE_HD S size(grid_frame<S> const& g, int bin) { return size(bin) + 2 * g.dilation; }
 
   /// The bin that half of the sizes do not exceed.
-  static COLLIDE_HD int median(size_histogram const& sizes) {
+  static COLLIDE_HD int median(sizes const& seen) {
     std::uint64_t total = 0;
     COLLIDE_ROLLED
-    for (int b = sizes.first(); b <= sizes.last(); ++b) total += sizes.counts[b];
-    int b = sizes.first();
+    for (int b = seen.first; b <= seen.last; ++b) total += seen.counts[b];
+    int b = seen.first;
     COLLIDE_ROLLED
-    for (std::uint64_t below = sizes.counts[b]; 2 * below < total; below += sizes.counts[++b]) {
+    for (std::uint64_t below = seen.counts[b]; 2 * below < total; below += seen.counts[++b]) {
     }
     return b;
   }
 
   /// How many cells of the width asked for a triangle may span before it goes to a wider level: as many as the limit on
   /// entries allows, at most 64.
-  COLLIDE_HD S span_for(grid_frame<S> const& g, S width, size_histogram const& sizes) const {
+  COLLIDE_HD S span_for(grid_frame<S> const& g, S width, sizes const& seen) const {
     for (S span = 64; span > 1; span /= 2) {
       float entries = 0;
-      for (int b = sizes.first(); b <= sizes.last(); ++b) {
+      for (int b = seen.first; b <= seen.last; ++b) {
         auto const cells = static_cast<float>(smaller(span, size(g, b) / width)) + 2;
-        entries += static_cast<float>(sizes.counts[b]) * cells * cells * cells;
+        entries += static_cast<float>(seen.counts[b]) * cells * cells * cells;
       }
       if (entries <= entry_limit) return span;
     }

@@ -24,7 +24,7 @@ COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
   return m.z() >= larger(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
 }
 
-/// A contact, but for its place.
+/// A contact without its point.
 struct measured_contact {
   gap measured;
   vec3<double> normal;
@@ -32,9 +32,9 @@ struct measured_contact {
   int index;
 };
 
-/// What exact arithmetic tells of a contact: distance and depth of the closest foot to nearly all digits, however small
-/// they are, and its direction. `l` is the triangle as seen from where the sphere is at the time, and
-/// `distance_squared` what doubles take for the square of its distance.
+/// Distance, depth and normal of a contact in exact arithmetic, to nearly all digits however small they are. `l` is the
+/// triangle as seen from where the sphere is at the time, and `distance_squared` what doubles take for the square of
+/// its distance.
 COLLIDE_HD_NOINLINE inline measured_contact measure_exactly(triangle<double> const& t, moving_sphere<double> const& s,
                                                             double time, local_triangle<double> const& l,
                                                             double distance_squared) {
@@ -54,7 +54,7 @@ COLLIDE_HD_NOINLINE inline measured_contact measure_exactly(triangle<double> con
   return {measured, normal, exact_triangle::kind_of(foot), exact_triangle::index_of(foot)};
 }
 
-/// Doubles are sure of a length from here on, in a problem of at most size 4: to within 2^-45; see docs/numerics.md.
+/// The smallest length that doubles give to within 2^-45, in a problem of at most size 4; see docs/numerics.md.
 inline constexpr double clear_length = 0x1p-20;
 
 /// The contact of a finite triangle, as seen from a sphere's centre, in doubles; `foot` is the point of the triangle.
@@ -76,7 +76,7 @@ COLLIDE_HD_INLINE bool measure_if_clear(local_triangle<double> const& l, double 
   return true;
 }
 
-/// The contact at a place, rounded once; the ids are left to the caller.
+/// The contact at the point `foot`, rounded once; the caller sets the ids.
 template <class S>
 COLLIDE_HD_INLINE contact<S> contact_at_foot(measured_contact const& m, vec3<double> const& foot, double scale,
                                              vec3<double> const& centre) {

@@ -1,5 +1,5 @@
 /// \file
-/// The contact of a moving sphere, when it touches.
+/// The contact of a moving sphere at a time of the step.
 #pragma once
 
 #include <collide/detail/geometry/local_sweep.hpp>
@@ -7,7 +7,8 @@
 
 namespace collide::detail {
 
-/// The contact at a time within the step; the depth, which is next to zero when the contact begins, is just that.
+/// The contact at a time within the step. At the time of impact its depth is next to zero, and accurate to absolute
+/// rounding only.
 COLLIDE_HD_NOINLINE inline contact<double> contact_at(triangle<double> const& t, moving_sphere<double> const& s,
                                                       double time, double enough) {
   if (time == 0) return contact_between(t, static_cast<sphere<double> const&>(s), enough, true);

@@ -1,5 +1,6 @@
 /// \file
-/// The exact verdict, in stages: each decides what it is sure of, and leaves the rest to the next.
+/// The exact predicate for a sphere and a triangle: floating-point filters of increasing precision, then integers. Each
+/// stage decides the pairs that its error bound allows, and leaves the others to the next one.
 #pragma once
 
 #include <type_traits>
@@ -10,22 +11,22 @@
 
 namespace collide::detail {
 
-/// What decided a verdict.
+/// The stage that decided a pair.
 enum class stage { box, single_certificate, double_certificate, integers };
 
-/// A verdict, and what decided it.
+/// A decided pair, and the stage that decided it.
 struct decision {
   bool hit;
   stage by;
 };
 
-/// A verdict that may be open.
+/// Result of a filter, which may be uncertain, and the stage that gave it.
 struct attempted {
   detail::verdict verdict;
   stage by;
 };
 
-/// The later stages, out of line, and once for all scalars: floats are widened.
+/// The stages after the first filter, out of line and once for all scalars: floats are widened.
 COLLIDE_HD_NOINLINE inline decision decide_closely(triangle<double> const& t, sphere<double> const& s) {
   if (!valid_radius(s.radius) || !finite(s.centre) || !finite(t)) return {false, stage::integers};
   if (infinite(s.radius)) return {true, stage::integers};
@@ -44,13 +45,13 @@ COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, sphere<S> cons
   return decide_closely(widened(t), widened(s));
 }
 
-/// False if the triangle's box is out of reach.
+/// False if the triangle's box is farther away than the radius.
 template <class S>
 COLLIDE_HD_INLINE bool box_is_near(local_triangle<S> const& l) {
   return box_in_reach(l, larger(l.radius, format<S>::unflushed));
 }
 
-/// The first stages: `unsure` is left to `finish`.
+/// The box test and the filter in float. What they leave `unsure` is for `finish`.
 template <class S>
 COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, sphere<S> const& s) {
   local_triangle<S> l = relative<S>(t, s);
@@ -60,8 +61,8 @@ COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, sphere<S> const& s) {
   return {certify(rounded<float>(l), static_cast<float>(size)), stage::single_certificate};
 }
 
-/// The same without branches, so that a compiler makes vector code of a loop over several pairs. Less certain: leaves
-/// also what would have to be scaled.
+/// `attempt` without branches, so that a compiler makes vector code of a loop over several pairs. Pairs whose
+/// coordinates would have to be rescaled are also left uncertain.
 template <class S>
 COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& s) {
   using bounds = certificate_bounds<float>;
@@ -74,7 +75,7 @@ COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const
   return static_cast<verdict>(then & -static_cast<int>(near));
 }
 
-/// The later stages, for any pair.
+/// The stages after the first filter, for any pair.
 template <class S>
 COLLIDE_HD_INLINE decision finish(triangle<S> const& t, sphere<S> const& s) {
   triangle<S> const far_triangle = t;  // copies, so that the call does not force the originals into memory
@@ -82,7 +83,7 @@ COLLIDE_HD_INLINE decision finish(triangle<S> const& t, sphere<S> const& s) {
   return decide_closely(far_triangle, far_sphere);
 }
 
-/// Whether the closed ball touches the closed triangle, in exact real arithmetic on the numbers as they are.
+/// True if sphere and triangle touch, in real arithmetic on the numbers as given.
 template <class S>
 COLLIDE_HD_INLINE decision decide(triangle<S> const& t, sphere<S> const& s) {
   attempted const quick = attempt(t, s);
@@ -90,10 +91,10 @@ COLLIDE_HD_INLINE decision decide(triangle<S> const& t, sphere<S> const& s) {
   return finish(t, s);
 }
 
-/// True for narrow phases that have a quick test which may leave a verdict open, and a slow one for these; then it has
-/// static members attempt(triangle, sphere), which returns a `verdict`, and finish(triangle, sphere), which returns
-/// bool. On the device `attempt` must have the same outcome wherever it is inlined. A class that derives from such a
-/// narrow phase is not one itself: it may have another `intersects`.
+/// A filtered predicate: true for narrow phases with a fast test that may be uncertain, and a slow one for those pairs.
+/// A specialisation has static members `attempt(triangle, sphere)`, which returns a `verdict`, and
+/// `finish(triangle, sphere)`, which returns bool. On the device `attempt` must give one result wherever it is inlined.
+/// A class that derives from such a narrow phase is not filtered itself: it may have another `intersects`.
 template <class NarrowPhase>
 struct in_stages : std::false_type {};
 

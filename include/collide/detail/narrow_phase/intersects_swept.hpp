@@ -1,5 +1,5 @@
 /// \file
-/// The exact verdict on a moving sphere, in stages as in decide.hpp.
+/// The exact predicate for a moving sphere and a triangle, in stages as in intersects.hpp.
 #pragma once
 
 #include <collide/detail/narrow_phase/intersects.hpp>
@@ -8,8 +8,8 @@
 
 namespace collide::detail {
 
-/// The later stages of `decide`, for the first part of a step, until `time`. Unless `finely`, what doubles leave open
-/// is a hit.
+/// The stages after the first filter, for the part of a step until `time`. Unless `finely`, a pair that the filter in
+/// double leaves uncertain is a hit.
 COLLIDE_HD_NOINLINE inline decision decide_closely(triangle<double> const& t, moving_sphere<double> const& s,
                                                    dyadic time, bool finely = true) {
   if (!valid_radius(s.radius) || !finite(s.centre) || !finite(s.displacement) || !finite(t)) {
@@ -31,7 +31,7 @@ COLLIDE_HD_NOINLINE decision decide_closely(triangle<S> const& t, moving_sphere<
   return decide_closely(widened(t), widened(s), time);
 }
 
-/// The first stages: `unsure` is left to `finish`.
+/// The filter in float. What it leaves `unsure` is for `finish`.
 template <class S>
 COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, moving_sphere<S> const& s) {
   local_sweep<S> l = relative<S>(t, s);
@@ -40,15 +40,15 @@ COLLIDE_HD_INLINE attempted attempt(triangle<S> const& t, moving_sphere<S> const
   return {certify(rounded<float>(l), static_cast<float>(size)), stage::single_certificate};
 }
 
-/// An attempt without branches, from a ball that contains all of the way, and one that the sphere contains at some
-/// time.
+/// A filter without branches, from two spheres: `around` contains the whole swept path, `midway` lies in the moving
+/// sphere at some time.
 template <class S>
 COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& around, sphere<S> const& midway) {
   bool const far = attempt_straight(t, around) == verdict::miss, met = attempt_straight(t, midway) == verdict::hit;
   return static_cast<verdict>((2 - static_cast<int>(met)) & -static_cast<int>(!far));
 }
 
-/// The later stages, for any pair.
+/// The stages after the first filter, for any pair.
 template <class S>
 COLLIDE_HD_INLINE decision finish(triangle<S> const& t, moving_sphere<S> const& s) {
   triangle<S> const far_triangle = t;  // copies, so that the call does not force the originals into memory
@@ -56,7 +56,7 @@ COLLIDE_HD_INLINE decision finish(triangle<S> const& t, moving_sphere<S> const& 
   return decide_closely(far_triangle, far_sphere, dyadic{1, 0});
 }
 
-/// Whether the closed ball touches the closed triangle on its way, in exact real arithmetic on the numbers as they are.
+/// True if the sphere touches the triangle at some time of the step, in real arithmetic on the numbers as given.
 template <class S>
 COLLIDE_HD_INLINE decision decide(triangle<S> const& t, moving_sphere<S> const& s) {
   attempted const quick = attempt(t, s);

@@ -7,8 +7,8 @@
 
 namespace collide::detail {
 
-/// In coordinates local to where the sphere begins and scaled by a power of two. A hit is only ever reported for a
-/// point of the triangle and a place on the way that were found within the radius of each other.
+/// The swept test in coordinates local to the start of the path and scaled by a power of two. A hit is reported only
+/// for a point of the triangle and a point of the path that were found within the radius of each other.
 template <class T, class S>
 COLLIDE_HD_INLINE bool swept_in_reach(triangle<S> const& of, moving_sphere<S> const& s) {
   using W = std::common_type_t<S, T>;

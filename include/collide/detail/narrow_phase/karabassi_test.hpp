@@ -1,5 +1,6 @@
 /// \file
-/// The four steps of Karabassi's test, in plain arithmetic: as the study has them, and in local coordinates.
+/// The four steps of Karabassi's test, in plain arithmetic: in world coordinates, and in coordinates local to the
+/// sphere.
 #pragma once
 
 #include <collide/detail/geometry/closest_point.hpp>
@@ -48,7 +49,7 @@ COLLIDE_HD_INLINE bool local_four_steps(triangle<S> const& of, sphere<S> const& 
   return edge_in_reach(t.a, t.b, rr) || edge_in_reach(t.b, t.c, rr) || edge_in_reach(t.c, t.a, rr);  // 4: the edges
 }
 
-/// The four steps in `T` and in the coordinates of the world, as the study has them.
+/// The four steps in `T` and in world coordinates, as in the literature.
 template <class T, class S>
 COLLIDE_HD_INLINE bool world_four_steps(triangle<S> const& of, sphere<S> const& s) {
   vec3<T> const a = of.a.template cast<T>(), b = of.b.template cast<T>(), c = of.c.template cast<T>();

@@ -1,5 +1,5 @@
 /// \file
-/// When a moving sphere first touches a triangle.
+/// Time of impact of a moving sphere and a triangle, by conservative advancement.
 ///
 /// The distance of the two is a convex function of time. From a time without contact, any direction in which all of the
 /// triangle is farther than the radius gives a later one: that at which the sphere could be there at the earliest. With
@@ -16,7 +16,7 @@ namespace collide::detail {
 template <class S>
 inline constexpr int time_bits = sizeof(S) == sizeof(float) ? 25 : 31;
 
-/// A time, from 0 to 1, before which there is certainly no contact.
+/// A lower bound of the time of impact, from 0 to 1, by conservative advancement.
 COLLIDE_HD_NOINLINE inline double earliest_time(triangle<double> const& t, moving_sphere<double> const& s) {
   constexpr int enough = 40;  // for a tangent way each step halves what is left; else a few do
   local_sweep<double> l = relative<double>(t, s);
@@ -65,7 +65,7 @@ COLLIDE_HD_NOINLINE inline double first_contact(triangle<double> const& t, movin
   return larger(time, missed * value_of({1, -bits}));
 }
 
-/// `time_of_impact`, but for its rounding.
+/// Time of impact in double, to within 2^-bits, before it is rounded to the scalar.
 COLLIDE_HD_NOINLINE inline double time_of_impact(triangle<double> const& t, moving_sphere<double> const& s, int bits) {
   if (decide_closely(t, static_cast<sphere<double> const&>(s)).hit) return 0;
   if (!decide_closely(t, s, dyadic{1, 0}).hit) return approach(normalised(relative<double>(t, s), t, s)).time;

@@ -1,6 +1,5 @@
 /// \file
-/// What a narrow phase has: which spheres it judges, those that rest or those that move, and whether it knows contacts
-/// and impacts.
+/// Properties of a narrow phase: discrete or continuous, and whether it computes contacts and impacts.
 #pragma once
 
 #include <type_traits>
@@ -23,7 +22,8 @@ struct judges<NarrowPhase, S, Ball,
 template <class NarrowPhase, class S>
 using spheres_of = std::conditional_t<judges<NarrowPhase, S, sphere<S>>::value, sphere_view<S>, moving_sphere_view<S>>;
 
-/// True if spheres rest.
+/// True if the narrow phase is discrete: it takes spheres at one time. False if it is continuous: it takes moving
+/// spheres.
 template <class NarrowPhase, class S>
 inline constexpr bool at_rest = std::is_same<spheres_of<NarrowPhase, S>, sphere_view<S>>::value;
 
@@ -36,7 +36,7 @@ struct has_contact<
     std::void_t<decltype(N::contact_of(std::declval<triangle<S> const&>(), std::declval<moving_sphere<S> const&>()))>>
     : std::true_type {};
 
-/// The same of a static member impact_of.
+/// True if the narrow phase has a static member impact_of(triangle<S>, moving_sphere<S>).
 template <class N, class S, class = void>
 struct has_impact : std::false_type {};
 template <class N, class S>

@@ -24,7 +24,7 @@ COLLIDE_HD inline int leading_zeros(std::uint64_t x) {  // x != 0
 #endif
 }
 
-/// As a double, also where a float is subnormal and the hardware takes such for zero.
+/// A float as a double, also if it is subnormal and the hardware flushes such to zero.
 COLLIDE_HD_RARE double widened(float x) {
   using f = format<float>;
   std::uint32_t const u = bits(x), magnitude = u & ~f::sign_mask;
@@ -61,7 +61,7 @@ struct dyadic {
   COLLIDE_HD int length() const { return 64 - leading_zeros(magnitude()); }
 };
 
-/// With an odd mantissa, or 0.
+/// The number mantissa * 2^exponent with an odd mantissa, or 0.
 COLLIDE_HD inline dyadic reduced(std::int64_t mantissa, int exponent) {
   if (mantissa == 0) return {0, 0};
   int const zeros = trailing_zeros(static_cast<std::uint64_t>(mantissa));
@@ -79,7 +79,7 @@ COLLIDE_HD inline dyadic decoded(double x) {
   return {(u & f::sign_mask) != 0 ? -d.mantissa : d.mantissa, d.exponent};
 }
 
-/// As a double. Of no more than 53 bits, which it has, and an exponent from -1022.
+/// A number as a double, exactly: of at most 53 bits, and with an exponent of at least -1022.
 COLLIDE_HD inline double value_of(dyadic const& x) {
   return mul(static_cast<double>(x.mantissa), from_bits<double>(static_cast<std::uint64_t>(x.exponent + 1023) << 52));
 }
@@ -156,7 +156,7 @@ class exact_numbers {
   int count_ = 0;
 };
 
-/// Memory for a table.
+/// Memory for a table of `Numbers` numbers of `Parts` parts in all.
 template <int Parts, int Numbers>
 class exact_memory {
  public:

@@ -11,7 +11,7 @@
 
 namespace collide::detail {
 
-/// A number of any size: value * 2^exponent, where |value| is 0 or between 2^63 and 2^64.
+/// A double with an exponent of its own: value * 2^exponent, where |value| is 0 or between 2^63 and 2^64.
 struct wide_number {
   double value = 0;
   int exponent = 0;

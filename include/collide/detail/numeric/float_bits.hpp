@@ -58,7 +58,7 @@ COLLIDE_HD_INLINE T select(bool condition, T a, T b) {
 #endif
 }
 
-/// Limited to 0 .. 1.
+/// x limited to 0 .. 1; NaN becomes 0.
 template <class T>
 COLLIDE_HD_INLINE T clamped(T x) {
   return select(x > T(0), select(x < T(1), x, T(1)), T(0));
@@ -100,7 +100,7 @@ COLLIDE_HD_INLINE bool infinite(T r) {
   return bits(r) == format<T>::exponent_mask;
 }
 
-/// Maps floats to unsigned integers that sort alike (-infinity first, +infinity last).
+/// Maps a float to an unsigned integer, preserving order (-infinity first, +infinity last).
 template <class T>
 COLLIDE_HD_INLINE bits_of<T> ordered(T x) {
   auto const u = bits(x);

@@ -62,7 +62,7 @@ COLLIDE_HD_INLINE double root(double a) {
 #endif
 }
 
-/// a * b + c: rounded once on the device, and on the host as the compiler likes.
+/// a * b + c: fused on the device; on the host the compiler chooses.
 COLLIDE_HD_INLINE float fused(float a, float b, float c) {
 #if defined(__CUDA_ARCH__)
   return __fmaf_rn(a, b, c);
@@ -104,19 +104,6 @@ COLLIDE_HD_INLINE T settled(T x) {
   return kept;
 #else
   return x;
-#endif
-}
-
-/// Makes the device read all of `x` now: else a compiler puts off what is used later, behind a branch, and that waits
-/// for the memory again.
-template <class T>
-COLLIDE_HD_INLINE void read_at_once([[maybe_unused]] T& x) {
-#if defined(__CUDA_ARCH__)
-  static_assert(sizeof(T) % sizeof(std::uint32_t) == 0, "collide: is kept in registers of 32 bits");
-  std::uint32_t words[sizeof(T) / sizeof(std::uint32_t)];
-  std::memcpy(words, static_cast<void const*>(&x), sizeof x);
-  for (auto& word : words) asm volatile("" : "+r"(word));
-  std::memcpy(static_cast<void*>(&x), words, sizeof x);
 #endif
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// A sphere and a triangle in exact arithmetic: the last stage of a verdict, and depths without cancellation.
+/// A sphere and a triangle in exact arithmetic: the last stage of the predicate, and depths without cancellation.
 ///
 /// The closest point of a triangle is a corner, or the foot of a perpendicular inside an edge or inside the face. The
 /// sphere touches the triangle if and only if one of these, where there is such a foot, is within the radius. With
@@ -78,7 +78,7 @@ class exact_triangle {
   /// Which corner or edge it is.
   static COLLIDE_HD int index_of(int foot) { return foot % 3; }
 
-  /// True if the ball touches the triangle.
+  /// True if the sphere touches the triangle.
   COLLIDE_HD bool in_reach() const {
     for (int foot = 0; foot < feet; ++foot) {
       if (exists(foot) && excess(foot, false).value >= 0) return true;
@@ -284,7 +284,7 @@ class exact_triangle {
   }
 };
 
-/// Whether the ball touches the triangle. Finite coordinates and a finite radius, not below 0.
+/// True if the sphere touches the triangle. Finite coordinates and a finite radius, not below 0.
 COLLIDE_HD_NOINLINE inline bool in_reach_exactly(triangle<double> const& t, sphere<double> const& s) {
   exact_place::memory memory;
   return exact_triangle(exact_numbers_of(memory.table(), t, {s, {0, 0, 0}}, {0, 0})).in_reach();

@@ -50,7 +50,7 @@ class exact_sweep {
  public:
   COLLIDE_HD explicit exact_sweep(exact_numbers const& numbers) : numbers_(numbers) {}
 
-  /// True if the ball touches the triangle on its way until the time that the table was made for.
+  /// True if the sphere touches the triangle until the time that the table was made for.
   COLLIDE_HD bool in_reach() const {
     int const seen_from[2] = {start(0), end(0)};
     for (int const corners : seen_from) {
@@ -136,7 +136,7 @@ class exact_sweep {
   }
 };
 
-/// Whether the ball touches the triangle on its way until a time of at most 53 bits. Finite coordinates and a finite
+/// True if the sphere touches the triangle until a time of at most 53 bits. Finite coordinates and a finite
 /// radius, not below 0.
 COLLIDE_HD_NOINLINE inline bool in_reach_exactly(triangle<double> const& t, moving_sphere<double> const& s,
                                                  dyadic time) {

@@ -1,10 +1,10 @@
 /// \file
-/// Verdicts that floating-point arithmetic can be sure of.
+/// The floating-point filter of the exact predicate: decides a pair in float or double where an error bound allows it.
 ///
-/// The closest point that is computed here may be wrong, and so may the region that it lies in: a verdict is only given
-/// where it holds all the same. Every line is proved in docs/numerics.md, for any order and any fusing of the sums,
-/// and with subnormal numbers or without. On the device each operation is spelled out all the same, so that a pair has
-/// the same outcome in every kernel; see undecided.hpp.
+/// The closest point computed here may be wrong, and so may the feature that it lies in: the filter decides only where
+/// its result holds nevertheless. Every line is proved in docs/numerics.md, for any order and any fusing of the sums,
+/// and with subnormal numbers or without. On the device each operation is spelled out, so that a pair has the
+/// same result in every kernel; see deferred_pairs.hpp.
 #pragma once
 
 #include <collide/detail/geometry/closest_point.hpp>
@@ -13,7 +13,7 @@ namespace collide::detail {
 
 enum class verdict { miss = 0, hit = 1, unsure = 2 };
 
-/// What a certificate in `T` relies on.
+/// Assumptions of the filter in `T`.
 template <class T>
 struct certificate_bounds {
   /// Every number stays between its limits if the size of the problem (`size_of`) is between these two.
@@ -39,8 +39,8 @@ COLLIDE_HD_INLINE bool brought_to_size(Problem& p, T& size) {
   return true;
 }
 
-/// Whether the triangle comes within `t.radius` of the origin, where that is certain. `size` is `size_of(t)`, between
-/// the bounds. Coordinates may be off by `format<T>::unit` times the size. Bad values are never certain.
+/// Filtered test whether the triangle comes within `t.radius` of the origin. `size` is `size_of(t)`, between
+/// the bounds. Coordinates may be off by `format<T>::unit` times the size. Invalid input is always uncertain.
 ///
 /// With `Straight` there are no branches, so that a compiler makes vector code of a loop over several pairs; else it
 /// stops as soon as the verdict is known.
@@ -91,7 +91,7 @@ COLLIDE_HD_INLINE verdict certify(local_triangle<T> const& t, T size) {
     return (gg >= bounds::shortest) & (least > 0) & (mul(least, least) > mul(mul(outer, outer), gg));
   };
   bool miss = beyond(q, s);
-  if (Straight || (face && !miss)) {  // the plane's own normal is more certain than the way to a near foot
+  if (Straight || (face && !miss)) {  // close to the plane, its normal has a smaller relative error than q
     vec3<T> n = cross(ab, ac);
     T const sign = select(fused_dot(t.a, n) < 0, T(-1), T(1));
     n = scaled(n, sign);

@@ -1,5 +1,5 @@
 /// \file
-/// Verdicts on moving spheres that floating-point arithmetic can be sure of: as filter.hpp, with a way to go.
+/// The floating-point filter for moving spheres; see filter.hpp.
 ///
 /// As seen from the sphere the triangle sweeps out a prism, whose corners are the triangle's and the same less the
 /// displacement. A witness in the prism makes a hit, a direction in which all six corners are far makes a miss. Every
@@ -15,8 +15,8 @@ namespace collide::detail {
 template <class T>
 inline constexpr T sweep_error = 2 * certificate_bounds<T>::error;
 
-/// Whether the triangle comes within the radius of the way, where that is certain. `size` is `size_of(l)`, between the
-/// bounds. Coordinates may be off by `format<T>::unit` times the size. Bad values are never certain hits.
+/// Filtered test whether the triangle comes within the radius of the centre's path. `size` is `size_of(l)`, between the
+/// bounds. Coordinates may be off by `format<T>::unit` times the size. Invalid input is never a certain hit.
 template <class T>
 COLLIDE_HD_INLINE verdict certify(local_sweep<T> const& l, T size) {
   local_triangle<T> const& t = l.shape;
@@ -28,7 +28,7 @@ COLLIDE_HD_INLINE verdict certify(local_sweep<T> const& l, T size) {
         smaller(smaller(fused_dot(t.a, g), fused_dot(t.b, g)), fused_dot(t.c, g)) - larger(fused_dot(l.path, g), T(0));
     return gg >= certificate_bounds<T>::shortest && least > 0 && mul(least, least) > mul(mul(outer, outer), gg);
   };
-  // for most, the way to the middle of the prism will do
+  // for most, the direction to the middle of the prism separates
   vec3<T> const middle = (t.a + t.b + t.c) - scaled(l.path, T(1.5));
   if (beyond(middle, fused_dot(middle, middle))) return verdict::miss;
 
@@ -44,7 +44,7 @@ COLLIDE_HD_INLINE verdict certify(local_sweep<T> const& l, T size) {
   if (inner > 0 && s <= mul(inner, inner)) return verdict::hit;
 
   if (beyond(q, s)) return verdict::miss;
-  vec3<T> n = near.normal;  // more certain than the way to a near point
+  vec3<T> n = near.normal;  // has a smaller relative error than a short q
   if (fused_dot(n, q) < 0) n = -n;
   return beyond(n, fused_dot(n, n)) ? verdict::miss : verdict::unsure;
 }

@@ -1,6 +1,6 @@
 /// \file
-/// A sphere and a triangle in integers of fixed width: the last stage of a verdict, for numbers whose exponents are not
-/// too far apart.
+/// A sphere and a triangle in integers of fixed width: the last stage of the predicate, for numbers whose exponents are
+/// not too far apart.
 ///
 /// With the corners v_i relative to the centre, and weights x_i that sum to 1, the point that has these weights is
 /// within the radius R if and only if the sum of all x_i x_k m_ik is not above 0, where
@@ -53,7 +53,7 @@ class fixed_triangle {
   /// 126 bits.
   COLLIDE_HD bool holds() const { return holds_; }
 
-  /// True if the ball touches the triangle; if this holds.
+  /// True if the sphere touches the triangle; call it only if `holds()`.
   COLLIDE_HD_NOINLINE bool in_reach() const {
     vector v[3] = {corner_[0], corner_[1], corner_[2]};
     wide<4> own[3] = {}, next[3] = {};  // m_ii, and m_ik for the next corner k, of each corner i

@@ -119,18 +119,15 @@ struct place_spheres {
       std::uint64_t open = of_radii([](S r) { return valid_radius(r); });
       for (int g = grid_count - 1; g >= 0 && open != 0; --g) {  // by rising reach: a sphere ends up in the tightest
         grid<S> const& box = grids[g];
-        std::uint64_t const served = open & of_radii([&](S r) { return r <= box.reach; });
-        std::uint64_t const inside = served & mask_of<n>([&](int k) {
-                                       return (batch.x[k] >= box.lower[0]) & (batch.x[k] <= box.upper[0]) &
-                                              (batch.y[k] >= box.lower[1]) & (batch.y[k] <= box.upper[1]) &
-                                              (batch.z[k] >= box.lower[2]) & (batch.z[k] <= box.upper[2]);
-                                     });
+        std::uint64_t const served = open & of_radii([&](S r) { return box.serves(r); });
+        std::uint64_t const inside =
+            served & mask_of<n>([&](int k) { return box.contains(batch.x[k], batch.y[k], batch.z[k]); });
         open &= ~served;
         for (int l = 0; l < box.levels && inside != 0; ++l) {
           make_room(s);
           for (std::uint64_t rest = inside; rest != 0; rest &= rest - 1) {
             int const k = __builtin_ctzll(rest);
-            std::uint32_t const cell = box.cell_of(box.level[l], {batch.x[k], batch.y[k], batch.z[k]});
+            std::uint32_t const cell = box.place_of(box.level[l], {batch.x[k], batch.y[k], batch.z[k]}).number;
             list(k, cell, (occupied[cell / 32] >> cell % 32 & 1) != 0);
           }
         }

@@ -62,11 +62,11 @@ struct candidate_batch {
     });
   }
 
-  /// Takes the hits to the tester and empties the batch.
-  template <class Tester, class Block>
-  void decide(Tester const& tests, Block& block, hit_buffer<Block>& hits) {
-    using stages = in_stages<typename Tester::narrow_phase>;
-    constexpr bool rest = at_rest<typename Tester::narrow_phase, S>;
+  /// Takes the hits to the pipeline and empties the batch.
+  template <class Pipeline, class Block>
+  void decide(Pipeline const& pipeline, Block& block, pipeline_storage<Block>& hits) {
+    using stages = in_stages<typename Pipeline::narrow_phase>;
+    constexpr bool rest = at_rest<typename Pipeline::narrow_phase, S>;
     if constexpr (rest) {
       attempt([&](int k) { return stages::attempt_straight(triangle_of(k), sphere_of(k)); });
     } else {
@@ -80,15 +80,15 @@ struct candidate_batch {
     for (int i = 0; i < n; ++i) {
       int const k = open[i];
       if (verdicts[k] == static_cast<std::int32_t>(verdict::hit)) {
-        tests.keep(block, hits, ids[k]);
+        pipeline.push_hit(block, hits, ids[k]);
       } else {
         if constexpr (rest) {
-          tests.test(block, hits, ids[k], sphere_of(k));
+          pipeline.push(block, hits, ids[k], sphere_of(k));
         } else {
-          tests.test(block, hits, ids[k], *moving[k]);
+          pipeline.push(block, hits, ids[k], *moving[k]);
         }
       }
-      tests.make_room(block, hits);
+      pipeline.drain_if_full(block, hits);
     }
     size = 0;
   }

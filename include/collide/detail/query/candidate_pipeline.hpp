@@ -6,9 +6,10 @@
 #include <type_traits>
 #include <utility>
 
+#include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/geometry/swept_bounds.hpp>
-#include <collide/detail/narrow_phase/intersects.hpp>
+#include <collide/detail/narrow_phase/two_stages.hpp>
 #include <collide/hit.hpp>
 
 namespace collide::detail {
@@ -37,17 +38,28 @@ struct finish_only {
   COLLIDE_HD void operator()(std::size_t) const { handle.finish(); }
 };
 
-/// What a pass over candidates does with them: decides each, and takes the hits to the handle of the caller's sink. A
-/// pass that puts some off is in detail/query/deferred_pairs.hpp.
-template <class Handle>
-struct deciding {
-  Handle handle;
+/// Pairs that the narrow phase's filter left open, for a kernel of their own; see deferred_pairs.hpp.
+struct deferred_pairs {
+  struct counters {
+    std::uint64_t total;  ///< counts also pairs that found no room
+    std::uint64_t ready;  ///< blocks of the second kernel that are done with it
+  };
 
-  /// True if the pair is a hit to be reported in this pass.
-  template <class NarrowPhase, class S, class Ball>
-  COLLIDE_HD_INLINE bool takes(pair, triangle<S> const& t, Ball const& s) const {
-    return NarrowPhase::intersects(t, s);
+  counters* count;
+  pair* pairs;
+  std::uint64_t capacity;
+
+  COLLIDE_HD_INLINE void add(pair p) const {
+    std::uint64_t const slot = fetch_add(&count->total, std::uint64_t{1});
+    if (slot < capacity) pairs[slot] = p;
   }
+};
+
+/// Where the hits of a pass go, and the pairs that are decided later.
+template <class Handle>
+struct deferring {
+  Handle handle;
+  deferred_pairs deferred;
 
   COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return handle.reserve(n); }
   template <class Hit>
@@ -56,15 +68,20 @@ struct deciding {
   }
 };
 
-/// The way of candidates to the sink, in the scratch memory of a block. Where lanes work together, each step is made
-/// for many pairs at once, so that no lane waits for another that has more to do: candidates are listed, then decided;
-/// hits are listed, then stored, so that the sink's atomic counter is touched once per batch. A single lane decides
-/// each candidate at once. `Ahead` is how many candidates a lane lists before there is room for as many again.
+template <class Output>
+inline constexpr bool defers_pairs = false;
+template <class Handle>
+inline constexpr bool defers_pairs<deferring<Handle>> = true;
+
+/// Scratch memory of a block for its candidates and hits. Where lanes work together, each step is made for many pairs
+/// at once, so that no lane waits for another that has more to do: candidates are gathered, then decided; hits are
+/// gathered, then written, so that the sink's atomic counter is touched once per batch. A single lane decides each
+/// candidate at once. `Ahead` is how many candidates a lane pushes before there is room for as many again.
 template <class Block, int Ahead = 1>
-struct hit_buffer {
+struct pipeline_storage {
   static constexpr std::uint32_t capacity = Block::pending;
-  static constexpr bool together = Block::lanes > 1;
-  static constexpr std::uint32_t candidate_capacity = together ? (Ahead + 1) * Block::lanes : 1;
+  static constexpr bool is_cooperative = Block::lanes > 1;
+  static constexpr std::uint32_t candidate_capacity = is_cooperative ? (Ahead + 1) * Block::lanes : 1;
 
   pair candidates[candidate_capacity];
   std::uint32_t candidate_count;
@@ -73,119 +90,141 @@ struct hit_buffer {
   std::uint64_t slot;  ///< the sink's, of the first hit
 };
 
-template <class S, class NarrowPhase, class Sink>
-struct tester {
+/// Decides candidates with the narrow phase, and writes the hits to `output`: the handle of a sink, or that of a pass
+/// which puts off what the narrow phase's filter leaves open.
+template <class S, class NarrowPhase, class Output>
+struct candidate_pipeline {
   using narrow_phase = NarrowPhase;
 
   mesh_view<S> mesh;
   spheres_of<NarrowPhase, S> spheres;
-  Sink sink;
+  Output output;
   triangle_box<S> const* boxes = nullptr;  ///< of candidates that may be out of reach; null if there are no such
 
   /// To be called first, by every lane; what follows may be done when the block has waited.
   template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void begin(hit_buffer<Block, Ahead>& b, int lane) const {
+  COLLIDE_HD_INLINE void reset(pipeline_storage<Block, Ahead>& b, int lane) const {
     if (lane == 0) b.candidate_count = b.hit_count = 0;
   }
 
   /// Takes a candidate. Called by any lane; where lanes work together, at most `Ahead` times between two calls of
-  /// `make_room`.
-  template <class Block, int Ahead, class Ball>
-  COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block, Ahead>& b, pair p, Ball const& s) const {
-    if constexpr (hit_buffer<Block, Ahead>::together) {
-      test(block, b, p);
+  /// `drain_if_full`.
+  template <class Block, int Ahead, class Sphere>
+  COLLIDE_HD_INLINE void push(Block& block, pipeline_storage<Block, Ahead>& b, pair p, Sphere const& s) const {
+    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
+      push(block, b, p);
     } else {
-      decide(block, b, p, s);
+      process_one(block, b, p, s);
     }
   }
 
-  /// The same where the sphere is not at hand.
+  /// Takes a candidate whose sphere is not at hand.
   template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void test(Block& block, hit_buffer<Block, Ahead>& b, pair p) const {
-    if constexpr (hit_buffer<Block, Ahead>::together) {
+  COLLIDE_HD_INLINE void push(Block& block, pipeline_storage<Block, Ahead>& b, pair p) const {
+    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
       b.candidates[block.add(b.candidate_count, 1)] = p;
     } else {
-      decide(block, b, p, spheres[p.sphere]);
+      process_one(block, b, p, spheres[p.sphere]);
     }
   }
 
   /// Makes room for `Ahead` more candidates per lane. Called by the whole block.
   template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void make_room(Block& block, hit_buffer<Block, Ahead>& b) const {
-    if constexpr (hit_buffer<Block, Ahead>::together) {
+  COLLIDE_HD_INLINE void drain_if_full(Block& block, pipeline_storage<Block, Ahead>& b) const {
+    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
       std::uint32_t const n = block.shared(b.candidate_count);
-      if (n + Ahead * Block::lanes > hit_buffer<Block, Ahead>::candidate_capacity) decide_all(block, b, n);
+      if (n + Ahead * Block::lanes > pipeline_storage<Block, Ahead>::candidate_capacity) process(block, b, n);
     } else {
-      if (b.hit_count == hit_buffer<Block, Ahead>::capacity) store_all(block, b, b.hit_count);
+      if (b.hit_count == pipeline_storage<Block, Ahead>::capacity) write_hits(block, b, b.hit_count);
     }
   }
 
-  /// Finishes everything. Called by the whole block, last.
+  /// Decides and writes everything. Called by the whole block, last.
   template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void flush(Block& block, hit_buffer<Block, Ahead>& b) const {
-    if constexpr (hit_buffer<Block, Ahead>::together) {
+  COLLIDE_HD_INLINE void drain(Block& block, pipeline_storage<Block, Ahead>& b) const {
+    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
       std::uint32_t const n = block.shared(b.candidate_count);
-      if (n != 0) decide_all(block, b, n);
+      if (n != 0) process(block, b, n);
     }
-    store_all(block, b, block.shared(b.hit_count));
+    write_hits(block, b, block.shared(b.hit_count));
   }
 
-  /// Takes a hit. Called by any lane; where lanes work together, once for each candidate at most.
+  /// Takes a hit. Called by any lane; where lanes work together, at most once between two calls of
+  /// `write_hits_if_full`.
   template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void keep(Block& block, hit_buffer<Block, Ahead>& b, pair p) const {
-    if constexpr (hit_buffer<Block, Ahead>::together) {
+  COLLIDE_HD_INLINE void push_hit(Block& block, pipeline_storage<Block, Ahead>& b, pair p) const {
+    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
       b.hits[block.add(b.hit_count, 1)] = p;
-    } else if (b.hit_count != hit_buffer<Block, Ahead>::capacity) {
+    } else if (b.hit_count != pipeline_storage<Block, Ahead>::capacity) {
       b.hits[b.hit_count++] = p;
     } else {
-      store(sink.reserve(1), p);
+      write(output.reserve(1), p);
     }
+  }
+
+  /// Makes room for a hit per lane. Called by the whole block.
+  template <class Block, int Ahead>
+  COLLIDE_HD_INLINE void write_hits_if_full(Block& block, pipeline_storage<Block, Ahead>& b) const {
+    std::uint32_t const hits = block.shared(b.hit_count);
+    if (hits + Block::lanes > pipeline_storage<Block, Ahead>::capacity) write_hits(block, b, hits);
   }
 
  private:
-  template <class Block, int Ahead, class Ball>
-  COLLIDE_HD_INLINE void decide(Block& block, hit_buffer<Block, Ahead>& b, pair p, Ball const& s) const {
-    if constexpr (!(Block::lanes > 1 && in_stages<NarrowPhase>::value)) {  // else its first stage asks the same
+  /// Decides a candidate. Where lanes work together, a narrow phase in stages asks whether the box is in reach itself.
+  template <class Block, int Ahead, class Sphere>
+  COLLIDE_HD_INLINE void process_one(Block& block, pipeline_storage<Block, Ahead>& b, pair p, Sphere const& s) const {
+    if constexpr (Block::lanes == 1 || !in_stages<NarrowPhase>::value) {
       sphere<S> const around = enclosing(s);
       if (boxes != nullptr && !boxes[p.triangle].reached(around.centre, around.radius)) return;
     }
-    if (sink.template takes<NarrowPhase>(p, mesh[p.triangle], s)) keep(block, b, p);
+    if (is_hit(p, mesh[p.triangle], s)) push_hit(block, b, p);
   }
 
-  /// Decides the `n` candidates that are listed.
+  /// What the narrow phase's filter leaves open is put off, or decided at once.
+  template <class Sphere>
+  COLLIDE_HD_INLINE bool is_hit([[maybe_unused]] pair p, triangle<S> const& t, Sphere const& s) const {
+    if constexpr (defers_pairs<Output>) {
+      verdict const quick = filter<NarrowPhase>(t, s);
+      if (quick == verdict::unsure) output.deferred.add(p);
+      return quick == verdict::hit;
+    } else {
+      return NarrowPhase::intersects(t, s);
+    }
+  }
+
+  /// Decides the `n` candidates that were gathered.
   template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void decide_all(Block& block, hit_buffer<Block, Ahead>& b, std::uint32_t n) const {
+  COLLIDE_HD_INLINE void process(Block& block, pipeline_storage<Block, Ahead>& b, std::uint32_t n) const {
     for (std::uint32_t base = 0; base < n; base += Block::lanes) {
       block.each([&](int lane) {
         std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
         if (lane == 0) b.candidate_count = 0;
         if (i >= n) return;
         pair const p = b.candidates[i];
-        decide(block, b, p, spheres[p.sphere]);
+        process_one(block, b, p, spheres[p.sphere]);
       });
-      std::uint32_t const hits = block.shared(b.hit_count);
-      if (hits + Block::lanes > hit_buffer<Block, Ahead>::capacity) store_all(block, b, hits);
+      write_hits_if_full(block, b);
     }
   }
 
-  /// Stores the `n` hits that are listed.
+  /// Writes the `n` hits that were gathered.
   template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void store_all(Block& block, hit_buffer<Block, Ahead>& b, std::uint32_t n) const {
-    if constexpr (hit_buffer<Block, Ahead>::capacity > 0) {
+  COLLIDE_HD_INLINE void write_hits(Block& block, pipeline_storage<Block, Ahead>& b, std::uint32_t n) const {
+    if constexpr (pipeline_storage<Block, Ahead>::capacity > 0) {
       if (n == 0) return;
       block.each([&](int lane) {
         if (lane != 0) return;
-        b.slot = sink.reserve(n);
+        b.slot = output.reserve(n);
         b.hit_count = 0;
       });
       block.each([&](int lane) {
-        for (std::uint32_t i = static_cast<std::uint32_t>(lane); i < n; i += Block::lanes) store(b.slot + i, b.hits[i]);
+        for (std::uint32_t i = static_cast<std::uint32_t>(lane); i < n; i += Block::lanes) write(b.slot + i, b.hits[i]);
       });
     }
   }
 
-  COLLIDE_HD_INLINE void store(std::uint64_t slot, pair p) const {
-    sink.store(slot, hit<NarrowPhase, S>(p, mesh, spheres));
+  COLLIDE_HD_INLINE void write(std::uint64_t slot, pair p) const {
+    output.store(slot, hit<NarrowPhase, S>(p, mesh, spheres));
   }
 };
 

@@ -8,39 +8,42 @@
 #include <type_traits>
 
 #include <collide/detail/geometry/sphere_pack.hpp>
-#include <collide/detail/grid/assign_grids.hpp>
+#include <collide/detail/grid/grid_ref.hpp>
 #include <collide/detail/grid/occupancy.hpp>
-#include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/narrow_phase/traits.hpp>
 
 namespace collide::detail {
 
-/// Lists the spheres that are inside a grid, or that no grid serves, in scratch memory.
+/// Gathers the spheres that may be near a triangle, and which grid serves each, in scratch memory.
 template <class S, class NarrowPhase>
 struct compact_spheres {
   static constexpr bool still = at_rest<NarrowPhase, S>;
-  /// Whether a lane loads its first spheres before it is known how they are to be asked. Narrow phases that are not in
-  /// stages have no registers left for that on CUDA.
-  static constexpr bool loads_early = in_stages<NarrowPhase>::value;
 
   spheres_of<NarrowPhase, S> const& spheres;
+  bucket_lookup<S> const& grids;
+  cell_marks<S> const& marks;
+  bool has_one_level;  ///< all spheres are in one grid of one level: `marks` knows of them
   std::size_t blocks;  ///< that share the spheres
 
-  /// How many spheres are placed, how many of them in no grid, because none serves them, and how many lanes have more.
-  struct placement {
-    std::uint32_t placed, unplaced, unfinished;
+  /// How many spheres are active, how many of them no grid serves, and how many lanes have more.
+  struct counts {
+    std::uint32_t active, ungridded, pending;
   };
 
   template <class Block>
   struct scratch {
     static constexpr std::uint32_t room = 2 * Block::lanes * Block::items;
-    id placed[room];            ///< spheres inside a grid
-    std::int8_t grid_of[room];  ///< and in which
-    placement found;
+    id active[room];            ///< spheres near triangles
+    std::int8_t grid_of[room];  ///< and which grid serves them
+    counts found;
   };
 
-  /// Lanes take spheres in turn, some in a row at a time, of which those of neighbours are next to each other: where a
-  /// lane begins, and how far it goes on in each turn.
+  /// Consecutive spheres of a lane.
+  template <class Block>
+  using pack = std::conditional_t<still, sphere_batch<S, Block::items>, moving_batch<S, Block::items>>;
+
+  /// Lanes take packs in turn, of which those of neighbours are next to each other: where a lane begins, and how far it
+  /// goes on each time.
   template <class Block>
   COLLIDE_HD_INLINE std::size_t first_of(Block const& block, int lane) const {
     constexpr auto beside = static_cast<std::size_t>(Block::row_lanes);
@@ -48,136 +51,103 @@ struct compact_spheres {
     return ((own / beside * blocks + block.index()) * beside + own % beside) * Block::items;
   }
   template <class Block>
-  COLLIDE_HD_INLINE std::size_t turn() const {
+  COLLIDE_HD_INLINE std::size_t stride() const {
     return blocks * Block::lanes * Block::items;
   }
 
-  /// How many groups a lane places at most before all look up what they have found: where lanes work together, one that
-  /// finds less than others would else go on alone.
+  /// Goes through a lane's spheres, from `next` on, as long as there is room.
   template <class Block>
-  static constexpr std::uint32_t most_groups = Block::lanes > 1 ? 12 : std::numeric_limits<std::uint32_t>::max();
+  COLLIDE_HD_INLINE void compact(Block& block, scratch<Block>& s, std::size_t& next) const {
+    auto const one_pack = [&](std::size_t first) {
+      pack<Block> own;
+      own.load(spheres, first);
+      std::int8_t grid_of[Block::items];
+      locate(own, first, grid_of);
+      return append(block, s, grid_of, first);
+    };
+    if constexpr (still) {
+      S const* const quads = quads_of<Block>();
+      if (quads != nullptr) return compact_ahead(block, s, next, quads, one_pack);
+    }
+    each_pack<Block>(next, one_pack);
+  }
 
-  /// Goes through a lane's spheres, from `next` on, as long as there is room; `place(first)` lists some and says how
-  /// many.
-  template <class Block, class Place>
-  COLLIDE_HD_INLINE void place_many(std::size_t& next, Place const& place) const {
+ private:
+  static constexpr std::int8_t nowhere = bucket_lookup<S>::nowhere, everywhere = bucket_lookup<S>::everywhere;
+
+  /// How many packs a lane goes through at most before all expand what they have found: where lanes work together, one
+  /// that finds less than others would else go on alone.
+  template <class Block>
+  static constexpr std::uint32_t most_packs = Block::lanes > 1 ? 12 : std::numeric_limits<std::uint32_t>::max();
+
+  /// Calls f(first) for a lane's packs, from `next` on, as long as there is room; f says how many spheres it has
+  /// appended.
+  template <class Block, class F>
+  COLLIDE_HD_INLINE void each_pack(std::size_t& next, F const& f) const {
     constexpr std::uint32_t n = Block::items, room = scratch<Block>::room / Block::lanes;
-    std::uint32_t placed = 0;
-    for (std::uint32_t k = 0; k < most_groups<Block> && next < spheres.size() && placed + n <= room; ++k) {
-      placed += place(next);
-      next += turn<Block>();
+    std::uint32_t appended = 0;
+    for (std::uint32_t k = 0; k < most_packs<Block> && next < spheres.size() && appended + n <= room; ++k) {
+      appended += f(next);
+      next += stride<Block>();
     }
   }
 
-  struct nothing {};
-  /// Spheres that a lane loads before it needs them, if they rest.
-  template <class Block>
-  using group = std::conditional_t<still, sphere_batch<S, Block::items>, nothing>;
-
-  /// The centres, where whole groups of them can be loaded at once; else null.
+  /// The centres, if `marks` knows of all and whole packs can be loaded at once; else null.
   template <class Block>
   COLLIDE_HD_INLINE S const* quads_of() const {
-    if constexpr (still) {
-      return spheres.size() < Block::items ? nullptr : group<Block>::quads_of(spheres);
-    } else {
-      return nullptr;
-    }
+    return has_one_level && spheres.size() >= Block::items ? pack<Block>::quads_of(spheres) : nullptr;
   }
 
-  /// Loads the group from `first` on; if not all of it is there, some others: ptxas 13.0 keeps in memory what it loads
-  /// under a condition.
-  template <class Block>
-  COLLIDE_HD_INLINE void load_ahead([[maybe_unused]] group<Block>& own, [[maybe_unused]] S const* quads,
-                                    [[maybe_unused]] std::size_t first) const {
-    if constexpr (still) {
-      if (quads != nullptr) own.load_quads(quads, first + Block::items <= spheres.size() ? first : 0);
-    }
-  }
-
-  /// Lists those of a lane's spheres, from `next` on, that are in marked cells, as long as there is room. Where whole
-  /// groups can be loaded at once, the next one is on its way while a group is marked. `own` is the first one if
-  /// `loads_early`.
-  template <class Block>
-  COLLIDE_HD_INLINE void mark_many(Block& block, scratch<Block>& s, cell_marks<S> const& marks,
-                                   bucket_lookup<S> const& near, std::size_t& next, [[maybe_unused]] S const* quads,
-                                   [[maybe_unused]] group<Block>& own) const {
-    if constexpr (still) {
-      auto const mark = [&](typename cell_marks<S>::template places<Block::items> const& places, std::size_t first) {
-        bool marked[Block::items];
-        marks.mark(places, marked);
-        return list_marked(block, s, marked, first);
-      };
-      auto const load_and_mark = [&](std::size_t first) {
-        group<Block> some;
-        some.load(spheres, first);
-        return mark(marks.places_of(some.x, some.y, some.z), first);
-      };
-      if (quads == nullptr) {
-        place_many<Block>(next, load_and_mark);
-        return;
-      }
-      if (!loads_early) load_ahead<Block>(own, quads, next);
-      place_many<Block>(next, [&](std::size_t first) {
-        if (first + Block::items > spheres.size()) return load_and_mark(first);
-        auto const places = marks.places_of(own.x, own.y, own.z);
-        load_ahead<Block>(own, quads, first + turn<Block>());
-        return mark(places, first);
-      });
-    } else {
-      place_many<Block>(next, [&](std::size_t first) {
-        if (first + Block::items > spheres.size()) return place_own(block, s, near, first);
-        moving_batch<S, Block::items> own;
-        own.load(spheres, first);
-        bool marked[Block::items];
-        bool const known = marks.mark_ways(own, marked);
-        return known ? list_marked(block, s, marked, first) : place_own(block, s, near, first);
-      });
-    }
-  }
-
-  /// Lists those of a lane's spheres, from `first` on, that are marked; returns how many.
-  template <class Block>
-  COLLIDE_HD_INLINE std::uint32_t list_marked(Block& block, scratch<Block>& s, bool const (&marked)[Block::items],
-                                              std::size_t first) const {
+  /// While the cells of a pack are asked whether they have triangles, the next pack is on its way: or, where not all of
+  /// that is there, some other, as ptxas 13.0 keeps in memory what it loads under a condition.
+  template <class Block, class OnePack>
+  COLLIDE_HD_INLINE void compact_ahead(Block& block, scratch<Block>& s, std::size_t& next, S const* quads,
+                                       OnePack const& one_pack) const {
     constexpr int n = Block::items;
-    std::uint32_t placed = 0;
-    for (int k = 0; k < n; ++k) placed += marked[k];
-    if (placed == 0) return 0;
-    std::uint32_t place = block.add(s.found.placed, placed);
-    for (int k = 0; k < n; ++k) {
-      if (!marked[k]) continue;
-      s.placed[place] = static_cast<id>(first) + static_cast<id>(k);
-      s.grid_of[place++] = 0;
-    }
-    return placed;
+    pack<Block> own;
+    auto const load_ahead = [&](std::size_t first) { own.load_quads(quads, first + n <= spheres.size() ? first : 0); };
+    load_ahead(next);
+    each_pack<Block>(next, [&](std::size_t first) {
+      if (first + n > spheres.size()) return one_pack(first);
+      auto const places = marks.places_of(own.x, own.y, own.z);
+      load_ahead(first + stride<Block>());
+      bool near[n];
+      marks.mark(places, near);
+      std::int8_t grid_of[n];
+      for (int k = 0; k < n; ++k) grid_of[k] = near[k] ? std::int8_t{0} : nowhere;
+      return append(block, s, grid_of, first);
+    });
   }
 
-  /// Lists those of a lane's spheres from `first` on that are inside a grid or that no grid serves; returns how many.
-  template <class Block>
-  COLLIDE_HD_INLINE std::uint32_t place_own(Block& block, scratch<Block>& s, bucket_lookup<S> const& near,
-                                            std::size_t first) const {
-    constexpr int n = Block::items;
-    lane_state<S, n, still> own;
-    own.load(spheres, first);
-    for (int g = 0; g < near.grid_count; ++g) own.place(near.grids[g], g);
-    std::uint32_t placed = 0, unplaced = 0;
-    for (int k = 0; k < n; ++k) {
-      if constexpr (!still) {
-        int const g = own.grid_number[k];
-        if (g >= 0 && near.empty_in(near.grids[g], own.batch.ball(k))) own.grid_number[k] = bucket_lookup<S>::nowhere;
-      }
-      placed += own.grid_number[k] != bucket_lookup<S>::nowhere;
-      unplaced += own.grid_number[k] == bucket_lookup<S>::everywhere;
+  /// The grids of a pack's spheres, if they may be near a triangle.
+  template <class Pack, int N>
+  COLLIDE_HD_INLINE void locate(Pack const& own, std::size_t first, std::int8_t (&grid_of)[N]) const {
+    bool near[N];
+    if (has_one_level && first + N <= spheres.size() && marks.mark(own, near)) {
+      for (int k = 0; k < N; ++k) grid_of[k] = near[k] ? std::int8_t{0} : nowhere;
+      return;
     }
-    if (placed == 0) return 0;
-    if (unplaced != 0) block.add(s.found.unplaced, unplaced);
-    std::uint32_t place = block.add(s.found.placed, placed);
-    for (int k = 0; k < n; ++k) {
-      if (own.grid_number[k] == bucket_lookup<S>::nowhere) continue;
-      s.placed[place] = static_cast<id>(first) + static_cast<id>(k);
-      s.grid_of[place++] = static_cast<std::int8_t>(own.grid_number[k]);
+    grids.locate(own, grid_of);
+  }
+
+  /// Appends those of a pack's spheres that may be near a triangle; returns how many.
+  template <class Block, int N>
+  COLLIDE_HD_INLINE std::uint32_t append(Block& block, scratch<Block>& s, std::int8_t const (&grid_of)[N],
+                                         std::size_t first) const {
+    std::uint32_t active = 0, ungridded = 0;
+    for (int k = 0; k < N; ++k) {
+      active += grid_of[k] != nowhere;
+      ungridded += grid_of[k] == everywhere;
     }
-    return placed;
+    if (active == 0) return 0;
+    if (ungridded != 0) block.add(s.found.ungridded, ungridded);
+    std::uint32_t slot = block.add(s.found.active, active);
+    for (int k = 0; k < N; ++k) {
+      if (grid_of[k] == nowhere) continue;
+      s.active[slot] = static_cast<id>(first) + static_cast<id>(k);
+      s.grid_of[slot++] = grid_of[k];
+    }
+    return active;
   }
 };
 

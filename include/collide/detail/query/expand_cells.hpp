@@ -7,87 +7,63 @@
 
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/grid_ref.hpp>
-#include <collide/detail/grid/occupancy.hpp>
 #include <collide/detail/grid/swept_cells.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
 #include <collide/detail/query/compact_spheres.hpp>
 
 namespace collide::detail {
 
-/// Spreads the entries of the spheres' cells over the lanes, and tests those that meet.
-template <class S, class NarrowPhase, class Sink>
+/// Spreads the entries of the spheres' cells over the lanes, and makes candidates of those that meet.
+template <class S, class NarrowPhase, class Output>
 struct expand_cells {
   static constexpr bool still = at_rest<NarrowPhase, S>;
   using compact = compact_spheres<S, NarrowPhase>;
-  using placement = typename compact::placement;
 
   /// Entries that a lane looks at together. With room for those of spheres that move, and for where these are on their
   /// ways, 48 KB of scratch memory must suffice; and less leaves more of it to the cache.
   static constexpr int ahead = still ? 3 : 2;
 
-  tester<S, NarrowPhase, Sink> const& tests;
-  bucket_lookup<S> const& near;
-  cell_marks<S> const& marks;
+  candidate_pipeline<S, NarrowPhase, Output> const& pipeline;
+  bucket_lookup<S> const& grids;
 
-  /// A sphere and its first entry.
-  struct alignas(8) numbered {
+  /// A sphere, and the first of the entries of a cell of its.
+  struct alignas(8) entry_span {
     id sphere;
     std::uint32_t first;
   };
 
-  /// How many lists of candidates there are, or would be with room for more, and how many spheres have more.
-  struct listing {
-    std::uint32_t lists, unfinished;
+  /// How many spans there are, or would be with room for more, and how many spheres have more.
+  struct counts {
+    std::uint32_t spans, pending;
   };
 
-  /// The most entries of a sphere at a time: the block numbers the candidates of all its spheres in 32 bits.
+  /// The most entries of a span: the block numbers the candidates of all its spans in 32 bits.
   template <class Block>
   static constexpr std::uint32_t longest = (1u << 30) / Block::lanes;
 
   template <class Block>
   struct scratch {
-    numbered numbers[Block::lanes];                           ///< spheres with candidates
-    std::uint32_t counts[Block::lanes];                       ///< how many they have
-    std::uint32_t at[Block::lanes];                           ///< where in their cells they are
+    entry_span spans[Block::lanes];
+    std::uint32_t sizes[Block::lanes];                        ///< of the spans
+    std::uint32_t parts[Block::lanes];                        ///< where in their cells the spheres are
     typename way<S>::place places[still ? 1 : Block::lanes];  ///< and, of those that move, where on their ways
-    listing listed;
+    counts found;
     typename Block::balance_scratch balance;
-    hit_buffer<Block, ahead> hits;
+    pipeline_storage<Block, ahead> hits;
   };
 
-  /// Tests the spheres that are listed; `one_level` says that this is all that the grids have.
+  /// Makes candidates of the active spheres: those of one level of one grid after the other, in the end those that no
+  /// grid serves.
   template <class Block>
-  COLLIDE_HD_INLINE void look_up(Block& block, scratch<Block>& s, typename compact::template scratch<Block> const& from,
-                                 placement const& found, bool one_level) const {
-    int const usable = near.grid_count;
-    // the spheres of one level of one grid after the other, in the end those that no grid serves
-    for (int g = 0; g <= usable; ++g) {
-      bool const all = g == usable;
-      if (all && found.unplaced == 0) break;
-      for (int l = 0; l < (all || one_level ? 1 : near.grids[g].levels); ++l) {
-        cells const here{all ? nullptr : &near.grids[g], all ? nullptr : &near.grids[g].level[l]};
-        for (std::uint32_t base = 0; base < found.placed; base += Block::lanes) {
-          typename Block::template per_lane<cursor> at;
-          bool more = false;
-          do {  // once, unless a list is very long, or spheres that move have more lists than there are lanes
-            block.each([&](int lane) {
-              if (!more) at[lane] = {0, 0};
-              std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
-              if (i >= found.placed || from.grid_of[i] != (all ? bucket_lookup<S>::everywhere : g)) return;
-              bool const all_listed = still && one_level ? list_marked_cell(block, s, from.placed[i], at[lane])
-                                                         : list_all(block, s, here, from.placed[i], at[lane]);
-              if (!all_listed) block.add(s.listed.unfinished, 1);
-            });
-            listing const listed = block.shared(s.listed);
-            more = listed.unfinished != 0;
-            if (listed.lists == 0) continue;
-            test_listed(block, s, here, smaller<std::uint32_t>(listed.lists, Block::lanes));
-            block.each([&](int lane) {
-              if (lane == 0) s.listed = {0, 0};
-            });
-          } while (more);
-        }
+  COLLIDE_HD_INLINE void expand(Block& block, scratch<Block>& s, typename compact::template scratch<Block> const& from,
+                                typename compact::counts const& active) const {
+    for (int g = 0; g < grids.grid_count; ++g) {
+      for (int l = 0; l < grids.grids[g].levels; ++l) {
+        expand_level(block, s, from, active.active, g, {&grids.grids[g], &grids.grids[g].level[l]});
       }
+    }
+    if (active.ungridded != 0) {
+      expand_level(block, s, from, active.active, bucket_lookup<S>::everywhere, {nullptr, nullptr});
     }
   }
 
@@ -103,84 +79,104 @@ struct expand_cells {
     std::uint32_t step, skip;
   };
 
-  /// Makes the candidates of the `n` lists: their entries, spread evenly over the lanes.
+  /// Makes candidates of those of the `n` active spheres that are in one grid, from the cells of one level.
   template <class Block>
-  COLLIDE_HD_INLINE void test_listed(Block& block, scratch<Block>& s, cells const& here, std::uint32_t n) const {
-    struct candidates {
-      numbered of;
-      std::uint32_t list;
+  COLLIDE_HD_INLINE void expand_level(Block& block, scratch<Block>& s,
+                                      typename compact::template scratch<Block> const& from, std::uint32_t n,
+                                      int grid_number, cells const& here) const {
+    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
+      typename Block::template per_lane<cursor> at;
+      bool more = false;
+      do {  // once, unless a span is very long, or spheres that move have more spans than there are lanes
+        block.each([&](int lane) {
+          if (!more) at[lane] = {0, 0};
+          std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
+          if (i >= n || from.grid_of[i] != grid_number) return;
+          if (!append_spans(block, s, here, from.active[i], at[lane])) block.add(s.found.pending, 1);
+        });
+        counts const found = block.shared(s.found);
+        more = found.pending != 0;
+        if (found.spans == 0) continue;
+        test_spans(block, s, here, smaller<std::uint32_t>(found.spans, Block::lanes));
+        block.each([&](int lane) {
+          if (lane == 0) s.found = {0, 0};
+        });
+      } while (more);
+    }
+  }
+
+  /// Spreads the entries of `n` spans evenly over the lanes, and makes candidates of those that meet.
+  template <class Block>
+  COLLIDE_HD_INLINE void test_spans(Block& block, scratch<Block>& s, cells const& here, std::uint32_t n) const {
+    struct numbered_span {
+      entry_span of;
+      std::uint32_t number;
     };
     bool const all = here.of == nullptr;
     block.template balanced<ahead>(
-        s.balance, s.counts, n,
+        s.balance, s.sizes, n,
         [&](std::uint32_t i) {
-          return candidates{s.numbers[i], i};
+          return numbered_span{s.spans[i], i};
         },
-        [&](candidates const& c, std::uint32_t k) {
-          return all ? cell_entry{c.of.first + k, cell_part::whole} : near.entries[c.of.first + k];
+        [&](numbered_span const& c, std::uint32_t k) {
+          return all ? cell_entry{c.of.first + k, cell_part::whole} : grids.entries[c.of.first + k];
         },
-        [&](candidates const& c, cell_entry const& e) { return cell_part::meets(e.part, s.at[c.list]); },
-        [&](candidates const& c, cell_entry const& e) {
+        [&](numbered_span const& c, cell_entry const& e) { return cell_part::meets(e.part, s.parts[c.number]); },
+        [&](numbered_span const& c, cell_entry const& e) {
           if constexpr (!still) {
-            if (!all && !counts_in(here, s.places[c.list], e)) return;
+            if (!all && !owns_pair(here, s.places[c.number], e)) return;
           }
-          tests.test(block, s.hits, {c.of.sphere, e.triangle});
+          pipeline.push(block, s.hits, {c.of.sphere, e.triangle});
         },
-        [&] { tests.make_room(block, s.hits); });
+        [&](bool) { pipeline.drain_if_full(block, s.hits); });
   }
 
-  /// True if an entry counts in this cell of a way, and not in another.
-  COLLIDE_HD_INLINE bool counts_in(cells const& here, typename way<S>::place const& place, cell_entry const& e) const {
+  /// True if the pair counts in this cell of a way, and not in another that has the entry too.
+  COLLIDE_HD_INLINE bool owns_pair(cells const& here, typename way<S>::place const& place, cell_entry const& e) const {
     if (place.later != way<S>::place::unknown) return !cell_part::begins_before(e.part, place.later);
-    return place.is_only || place.is_first_of(here.of->range_of(*here.level, near.box_at(e.triangle)));
+    return place.is_only || place.is_first_of(here.of->range_of(*here.level, grids.box_at(e.triangle)));
   }
 
-  /// Lists a sphere with the entries of its cells that are not empty, as far as there is room. True if that was all.
+  /// Appends spans for the cells of a sphere that are not empty, as far as there is room. True if that was all.
   template <class Block>
-  COLLIDE_HD_INLINE bool list_all(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
-    auto const ball = tests.spheres[number];
+  COLLIDE_HD_INLINE bool append_spans(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
     if (here.of == nullptr) {
-      auto const all = static_cast<std::uint32_t>(near.mesh.size());
-      return list(block, s, number, {all, all}, cell_part::anywhere, at);
-    } else if constexpr (still) {
+      auto const all = static_cast<std::uint32_t>(grids.mesh.size());
+      return append(block, s, number, {all, all}, cell_part::anywhere, at);
+    }
+    auto const ball = pipeline.spheres[number];
+    if constexpr (still) {
       covered_cell const cell = here.of->place_of(*here.level, ball.centre);
-      return list(block, s, number, near.lists[cell.number], cell.part, at);
+      return append(block, s, number, grids.lists[cell.number], cell.part, at);
     } else {
       way<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {
         auto const place = path.at(at.step);
         std::uint32_t const cell =
             here.level->row(place.cell[1], place.cell[2]) + (place.cell[0] & here.level->mask[0]);
-        if (!place.is_cell || !near.is_occupied(cell)) continue;
-        if (!list(block, s, number, near.lists[cell], place.part, at, &place)) return false;
+        if (!place.is_cell || !grids.is_occupied(cell)) continue;
+        if (!append(block, s, number, grids.lists[cell], place.part, at, &place)) return false;
       }
       return true;
     }
   }
 
-  /// Lists a sphere that was marked: from what is known of its cell, without asking the grid. True if that was all.
+  /// Appends a span for the entries of a cell from at.skip on. False if there was no room for all of them.
   template <class Block>
-  COLLIDE_HD_INLINE bool list_marked_cell(Block& block, scratch<Block>& s, id number, cursor& at) const {
-    covered_cell const cell = marks.place_of(tests.spheres[number].centre);
-    return list(block, s, number, near.lists[cell.number], cell.part, at);
-  }
-
-  /// Lists a sphere with the entries of a cell from at.skip on. False if there was no room for all of them.
-  template <class Block>
-  COLLIDE_HD_INLINE bool list(Block& block, scratch<Block>& s, id number, cell_list cell, std::uint32_t inside,
-                              cursor& at, typename way<S>::place const* place = nullptr) const {
-    std::uint32_t const left = cell.count - at.skip, listed = smaller(left, longest<Block>);
+  COLLIDE_HD_INLINE bool append(Block& block, scratch<Block>& s, id number, cell_list cell, std::uint32_t part,
+                                cursor& at, typename way<S>::place const* place = nullptr) const {
+    std::uint32_t const left = cell.count - at.skip, size = smaller(left, longest<Block>);
     if (left == 0) return true;
-    std::uint32_t const slot = block.add(s.listed.lists, 1);
+    std::uint32_t const slot = block.add(s.found.spans, 1);
     if (slot >= Block::lanes) return false;
-    s.numbers[slot] = {number, cell.end - left};
-    s.counts[slot] = listed;
-    s.at[slot] = inside;
+    s.spans[slot] = {number, cell.end - left};
+    s.sizes[slot] = size;
+    s.parts[slot] = part;
     if constexpr (!still) {
       if (place != nullptr) s.places[slot] = *place;
     }
-    at.skip += listed;
-    return left == listed;
+    at.skip += size;
+    return left == size;
   }
 };
 

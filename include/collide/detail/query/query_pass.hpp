@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include <collide/concepts.hpp>
+#include <collide/detail/execution/tuning.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
 #include <collide/detail/query/deferred_pairs.hpp>
 
@@ -16,11 +17,11 @@ struct query_pass {
   using narrow_phase = NarrowPhase;
   using scalar = S;
 
-  Index const& index;
+  Index& index;
   Space& space;
   mesh_view<S> mesh;
   spheres_of<NarrowPhase, S> spheres;
-  undecided_list& open;
+  deferred_pair_buffer& deferred;
 
   /// Not defined in the class, so not inline; see compiled.hpp.
   template <class Handle>
@@ -33,14 +34,14 @@ void query_pass<Index, NarrowPhase, Space, S>::operator()(Handle const& handle) 
   static_assert(
       is_handle<Handle>::value,
       "collide: what a sink passes to query has a const member reserve(n) and a const member store(slot, hit)");
-  static_assert(std::is_trivially_destructible<Handle>::value || Space::host_memory,
+  static_assert(std::is_trivially_destructible<Handle>::value || Space::host_accessible,
                 "collide: what a sink hands to the device must be a plain value");
   if (mesh.size() != 0 && spheres.size() != 0) {
-    if constexpr (Space::defers && in_stages<NarrowPhase>::value) {
-      query_in_steps<NarrowPhase>(space, index, mesh, spheres, handle, open);
+    if constexpr (query_tuning<Space>::defers_exact_tests && in_stages<NarrowPhase>::value) {
+      query_two_pass<NarrowPhase>(space, index, mesh, spheres, handle, deferred);
       return;
     } else {
-      index.template query<NarrowPhase>(space, spheres, deciding<Handle>{handle});
+      index.template query<NarrowPhase>(space, spheres, handle);
     }
   }
   if constexpr (finishes<Handle>::value) {

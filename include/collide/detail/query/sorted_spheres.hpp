@@ -18,6 +18,7 @@
 #include <limits>
 #include <type_traits>
 
+#include <collide/detail/execution/algorithms.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/execution/launch.hpp>
 #include <collide/detail/execution/multiversion.hpp>
@@ -143,6 +144,7 @@ class sorted_spheres {
   /// Sorts the spheres into the cells: of type sphere_view, or balls_around. O(spheres + cells).
   template <class Space, class Spheres>
   void sort(Space& space, Spheres const& spheres) {
+    clear();
     using place = place_spheres<S, Spheres>;
     auto* const total = total_.reserve(space.resource(), 1);
     std::size_t room = larger(placed_.capacity(), spheres.size() / 16 + 1024);
@@ -170,18 +172,24 @@ class sorted_spheres {
       for (std::size_t i = 0; i < n; ++i) f(i);
     };
     each_placed(count_placed<S>{placed_.data(), counts + 1});
-    space.exclusive_scan(counts + 1, table - 1, scratch_);
+    exclusive_scan(space, counts + 1, table - 1);
     auto* const order = order_.reserve(space.resource(), placed_.capacity());
     each_placed(number_placed<S>{placed_.data(), order, counts + 1});
     space.for_each(n, sort_placed<S, Spheres>{placed_.data(), order, columns_, spheres});
+    is_empty_ = false;
   }
 
+  /// Forgets the spheres.
+  void clear() { is_empty_ = true; }
+  /// True if no spheres have been sorted since.
+  bool empty() const { return is_empty_; }
+
   /// One pass: the triangles look for the spheres.
-  template <class NarrowPhase, class Space, class Sink>
-  void query(Space& space, tester<S, NarrowPhase, Sink> const& tests) const {
-    look_for_spheres<S, NarrowPhase, Sink> const body{tests,    boxes_,       grids_,      grid_count_,
-                                                      columns_, ends_.data(), everywhere()};
-    space.launch(blocks_for<Space>(tests.mesh.size(), body), body);
+  template <class NarrowPhase, class Space, class Output>
+  void query(Space& space, candidate_pipeline<S, NarrowPhase, Output> const& pipeline) const {
+    look_for_spheres<S, NarrowPhase, Output> const body{pipeline, boxes_,       grids_,      grid_count_,
+                                                        columns_, ends_.data(), everywhere()};
+    space.launch(grid_size<Space>(pipeline.mesh.size(), body), body);
   }
 
  private:
@@ -209,7 +217,7 @@ class sorted_spheres {
   buffer<S> numbers_;
   buffer<id> ids_;
   sphere_columns<S> columns_ = {};
-  buffer<unsigned char> scratch_;
+  bool is_empty_ = true;
 };
 
 }  // namespace collide::detail

@@ -12,65 +12,56 @@
 
 namespace collide::detail {
 
-/// Kernel body: each lane places some spheres; the few that are inside a grid are listed in scratch memory, so that
-/// lanes look up the cells of as many of them at a time as there are lanes; those whose cell is not empty are listed
-/// again, and their candidates are spread evenly over all lanes.
-template <class S, class NarrowPhase, class Sink>
+/// Kernel body: each lane locates some spheres; the few that may be near triangles are gathered in scratch memory, so
+/// that lanes expand the cells of as many of them at a time as there are lanes; the entries of these cells are spread
+/// evenly over all lanes.
+template <class S, class NarrowPhase, class Output>
 struct bucket_query {
   static constexpr int items = 4;
   template <class Block>
   static constexpr int residency = at_rest<NarrowPhase, S> ? 4 : 3;
 
-  using compact = compact_spheres<S, NarrowPhase>;
-  using expand = expand_cells<S, NarrowPhase, Sink>;
+  using compact_type = compact_spheres<S, NarrowPhase>;
+  using expand_type = expand_cells<S, NarrowPhase, Output>;
 
-  tester<S, NarrowPhase, Sink> tests;
+  candidate_pipeline<S, NarrowPhase, Output> pipeline;
   bucket_lookup<S> triangles;
   std::size_t blocks;  ///< that share the spheres
 
   template <class Block>
   struct scratch {
-    typename compact::template scratch<Block> spheres;
-    typename expand::template scratch<Block> cells;
+    typename compact_type::template scratch<Block> spheres;
+    typename expand_type::template scratch<Block> cells;
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     cell_marks<S> const marks = triangles.marks();
-    bool const simple = tests.spheres.one_radius() && triangles.is_simple(tests.spheres.common_radius());
-    bucket_lookup<S> const near = triangles.opened();
-    compact const spheres{tests.spheres, blocks};
-    expand const cells{tests, near, marks};
+    bool const has_one_level = pipeline.spheres.one_radius() && triangles.is_simple(pipeline.spheres.common_radius());
+    bucket_lookup<S> const grids = triangles.opened();
+    compact_type const spheres{pipeline.spheres, grids, marks, has_one_level, blocks};
+    expand_type const cells{pipeline, grids};
     typename Block::template per_lane<std::size_t> next;
-    typename Block::template per_lane<typename compact::template group<Block>> own;
-    S const* const quads = spheres.template quads_of<Block>();
     block.each([&](int lane) {
       next[lane] = spheres.first_of(block, lane);
-      if (compact::loads_early) spheres.template load_ahead<Block>(own[lane], quads, next[lane]);
-      tests.begin(s.cells.hits, lane);
+      pipeline.reset(s.cells.hits, lane);
       if (lane != 0) return;
       s.spheres.found = {0, 0, 0};
-      s.cells.listed = {0, 0};
+      s.cells.found = {0, 0};
     });
-    for (;;) {
+    for (bool more = true; more;) {
       block.each([&](int lane) {
-        if (simple) {
-          spheres.mark_many(block, s.spheres, marks, near, next[lane], quads, own[lane]);
-        } else {
-          spheres.template place_many<Block>(
-              next[lane], [&](std::size_t first) { return spheres.place_own(block, s.spheres, near, first); });
-        }
-        if (next[lane] < tests.spheres.size()) block.add(s.spheres.found.unfinished, 1);
+        spheres.compact(block, s.spheres, next[lane]);
+        if (next[lane] < pipeline.spheres.size()) block.add(s.spheres.found.pending, 1);
       });
-      typename compact::placement const found = block.shared(s.spheres.found);
-      if (found.placed != 0) cells.look_up(block, s.cells, s.spheres, found, simple);
-      if (found.unfinished == 0) break;
+      typename compact_type::counts const found = block.shared(s.spheres.found);
+      more = found.pending != 0;
+      if (found.active != 0) cells.expand(block, s.cells, s.spheres, found);
       block.each([&](int lane) {
         if (lane == 0) s.spheres.found = {0, 0, 0};
-        if (compact::loads_early) spheres.template load_ahead<Block>(own[lane], quads, next[lane]);
       });
     }
-    tests.flush(block, s.cells.hits);
+    pipeline.drain(block, s.cells.hits);
   }
 };
 

@@ -13,11 +13,11 @@
 namespace collide::detail {
 
 /// Kernel body of a block of one lane: triangles look for spheres in the cells that they touch.
-template <class S, class NarrowPhase, class Sink>
+template <class S, class NarrowPhase, class Output>
 struct look_for_spheres {
   static constexpr int items = 4;
 
-  tester<S, NarrowPhase, Sink> tests;
+  candidate_pipeline<S, NarrowPhase, Output> pipeline;
   triangle_box<S> const* boxes;
   grid<S> const* grids;
   int grid_count;
@@ -37,26 +37,26 @@ struct look_for_spheres {
     reached found[room];
     std::uint32_t count;
     candidate_batch<S> batch;
-    hit_buffer<Block> hits;
+    pipeline_storage<Block> hits;
   };
 
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::lanes == 1, "collide: triangles look for spheres in blocks of one lane");
-    tests.begin(s.hits, 0);
+    pipeline.reset(s.hits, 0);
     s.count = 0;
     s.batch.size = 0;
     vectorised([&] { look(block, s); });
     test(block, s);
-    if constexpr (in_batches<NarrowPhase, S>) s.batch.decide(tests, block, s.hits);
-    tests.flush(block, s.hits);
+    if constexpr (in_batches<NarrowPhase, S>) s.batch.decide(pipeline, block, s.hits);
+    pipeline.drain(block, s.hits);
   }
 
  private:
   /// Finds the spheres near the triangles of a block.
   template <class Block>
   void look(Block& block, scratch<Block>& s) const {
-    std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, tests.mesh.size());
+    std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, pipeline.mesh.size());
     for (std::size_t t = begin; t < end; ++t) {
       triangle_box<S> const around = boxes[t];
       if (around.is_empty()) continue;  // not finite
@@ -79,16 +79,16 @@ struct look_for_spheres {
   [[gnu::noinline]] void test(Block& block, scratch<Block>& s) const {
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
-      [[maybe_unused]] triangle<S> const t = tests.mesh[r.triangle];
+      [[maybe_unused]] triangle<S> const t = pipeline.mesh[r.triangle];
       for (std::uint32_t rest = r.mask; rest != 0; rest &= rest - 1) {
         std::uint32_t const place = r.first + static_cast<std::uint32_t>(__builtin_ctz(rest));
         pair const p{spheres.number[place], r.triangle};
         if constexpr (in_batches<NarrowPhase, S>) {
-          if (s.batch.size == s.batch.room) s.batch.decide(tests, block, s.hits);
+          if (s.batch.size == s.batch.room) s.batch.decide(pipeline, block, s.hits);
           s.batch.add(p, t, sphere_of(place));
         } else {
-          tests.test(block, s.hits, p, sphere_of(place));
-          tests.make_room(block, s.hits);
+          pipeline.push(block, s.hits, p, sphere_of(place));
+          pipeline.drain_if_full(block, s.hits);
         }
       }
     }

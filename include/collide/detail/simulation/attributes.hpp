@@ -32,31 +32,31 @@ struct joined<columns<C...>, columns<D, E...>, More...> {
 template <class... C, class... More>
 struct joined<columns<C...>, columns<>, More...> : joined<columns<C...>, More...> {};
 template <class... List>
-using joined_t = typename joined<List...>::type;
+using union_of = typename joined<List...>::type;
 
 /// The columns that are in both.
 template <class A, class B>
 struct common;
 template <class... C, class B>
 struct common<columns<C...>, B> {
-  using type = joined_t<std::conditional_t<contains<B, C>, columns<C>, columns<>>...>;
+  using type = union_of<std::conditional_t<contains<B, C>, columns<C>, columns<>>...>;
 };
 template <class B>
 struct common<columns<>, B> {
   using type = columns<>;
 };
 template <class A, class B>
-using common_t = typename common<A, B>::type;
+using intersection_of = typename common<A, B>::type;
 
 /// The columns of A that are not in B.
 template <class A, class B>
 struct remaining;
 template <class... C, class B>
 struct remaining<columns<C...>, B> {
-  using type = joined_t<columns<>, std::conditional_t<contains<B, C>, columns<>, columns<C>>...>;
+  using type = union_of<columns<>, std::conditional_t<contains<B, C>, columns<>, columns<C>>...>;
 };
 template <class A, class B>
-using remaining_t = typename remaining<A, B>::type;
+using difference_of = typename remaining<A, B>::type;
 
 /// A value of a column is `width` numbers of type `element`, one after the other.
 template <class V>

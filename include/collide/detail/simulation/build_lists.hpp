@@ -16,58 +16,58 @@ namespace collide::detail {
 
 /// Kernel body of `for_each` over particles, and places in the order: copies what particles must know of each other,
 /// and asks for new lists if these may lack something: where a particle has come, or has moved too far.
-template <class S, class Scene>
-struct refresh_order {
-  particle_state<S, typename Scene::all> state;
-  particle_order<S, Scene> order;
+template <class S, class Effects>
+struct update_and_check_skin {
+  particle_state<S, typename Effects::all> state;
+  sorted_particles<S, Effects> order;
   S most;  ///< that a particle may have moved
 
-  using ordered = particle_order<S, Scene>;
+  using ordered = sorted_particles<S, Effects>;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if constexpr (ordered::comes_and_goes) {
-      if (is_there(i) && order.known[i] == 0) order.ask_to_renew();
+    if constexpr (ordered::has_absent) {
+      if (is_there(i) && order.known[i] == 0) order.ask_to_rebuild();
     }
     if (i >= order.header->count) return;
     id const number = order.numbers[i];
-    if constexpr (ordered::comes_and_goes) {
-      if (!is_there(number)) return order.leave_out(i);
+    if constexpr (ordered::has_absent) {
+      if (!is_there(number)) return order.deactivate(i);
     }
-    typename ordered::meeting p;
+    typename ordered::interaction p;
     state.load(p, number);
-    if (!finite(p[position{}])) return order.leave_out(i);
-    near_sphere<S> const now = order.store(i, p);
+    if (!finite(p[position{}])) return order.deactivate(i);
+    packed_sphere<S> const now = order.store(i, p);
     auto const before = order.references[i];
     vec3<S> const moved(now.x - before.x, now.y - before.y, now.z - before.z);
-    S const left = most - before.resized(now);
+    S const left = most - before.growth(now);
     bool const stayed = dot(moved, moved) < mul(left, left) && left > 0;
-    if (!stayed) order.ask_to_renew();
+    if (!stayed) order.ask_to_rebuild();
   }
 
  private:
   COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(present{})[number] != 0; }
 };
 
-/// Kernel body of `for_each_if` over the table: empties it.
-template <class S, class Scene>
-struct empty_cells {
-  particle_order<S, Scene> order;
+/// Kernel body of `for_each_if_nonzero` over the table: empties it.
+template <class S, class Effects>
+struct clear_cells {
+  sorted_particles<S, Effects> order;
 
   COLLIDE_HD void operator()(std::size_t i) const {
     order.ends[i] = 0;
-    if (i == 0) order.header->crowded = order.header->count = 0;
+    if (i == 0) order.header->overflowed = order.header->count = 0;
   }
 };
 
-/// Kernel body of `for_each_if` over particles: counts them into cells, or, once blocks have their share of the order,
-/// fills in their numbers.
-template <class S, class Scene, bool Fill>
-struct sort_into_cells {
-  particle_state<S, typename Scene::all> state;
-  particle_order<S, Scene> order;
+/// Kernel body of `for_each_if_nonzero` over particles: counts them into cells, or, once blocks have their share of the
+/// order, fills in their numbers.
+template <class S, class Effects, bool Fill>
+struct count_or_scatter {
+  particle_state<S, typename Effects::all> state;
+  sorted_particles<S, Effects> order;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    using placing = joined_t<columns<position>, common_t<columns<present>, typename Scene::all>>;
+    using placing = union_of<columns<position>, intersection_of<columns<present>, typename Effects::all>>;
     particle<S, placing> p;
     state.load(p, i);
     if constexpr (contains<placing, present>) {
@@ -80,13 +80,13 @@ struct sort_into_cells {
   }
 };
 
-/// Kernel body of `for_each_if` over blocks: counts become where cells begin.
-template <class S, class Scene>
-struct allocate_cells {
-  particle_order<S, Scene> order;
+/// Kernel body of `for_each_if_nonzero` over blocks: counts become where cells begin.
+template <class S, class Effects>
+struct scan_cells {
+  sorted_particles<S, Effects> order;
 
   COLLIDE_HD void operator()(std::size_t b) const {
-    constexpr std::uint32_t n = particle_cells<S>::per_block;
+    constexpr std::uint32_t n = spatial_hash<S>::cells_per_brick;
     std::uint32_t* const ends = order.ends + b * order.cells.stride;
     std::uint32_t counts[n], sum = 0;  // all are on their way at once
     for (std::uint32_t c = 0; c < n; ++c) counts[c] = ends[c + 1];
@@ -101,24 +101,24 @@ struct allocate_cells {
   }
 };
 
-/// Kernel body of `for_each_if` over places in the order: copies particles there.
-template <class S, class Scene>
-struct copy_in_order {
-  particle_state<S, typename Scene::all> state;
-  particle_order<S, Scene> order;
+/// Kernel body of `for_each_if_nonzero` over places in the order: copies particles there.
+template <class S, class Effects>
+struct gather {
+  particle_state<S, typename Effects::all> state;
+  sorted_particles<S, Effects> order;
 
   COLLIDE_HD void operator()(std::size_t i) const {
     if (i >= order.header->count) return;
-    typename particle_order<S, Scene>::meeting p;
+    typename sorted_particles<S, Effects>::interaction p;
     state.load(p, order.numbers[i]);
     order.references[i].set(order.store(i, p));
   }
 };
 
-/// Kernel body of `for_each_if` over places in the order: lists what is near.
-template <class S, class Scene>
-struct list_neighbours {
-  particle_order<S, Scene> order;
+/// Kernel body of `for_each_if_nonzero` over places in the order: lists what is near.
+template <class S, class Effects>
+struct build_lists {
+  sorted_particles<S, Effects> order;
   S skin;
 
   COLLIDE_HD void operator()(std::size_t i) const {
@@ -126,7 +126,7 @@ struct list_neighbours {
   }
 
  private:
-  static constexpr std::uint32_t room = particle_order<S, Scene>::listed;
+  static constexpr std::uint32_t room = sorted_particles<S, Effects>::listed;
 
   COLLIDE_HD_INLINE void list(std::uint32_t i) const {
     std::uint32_t places[room], found = 0;
@@ -139,8 +139,8 @@ struct list_neighbours {
       ++found;
     });
     if (found > room) {
-      order.list(0, i) = order.too_many;
-      store_relaxed(&order.header->crowded, 1u);
+      order.list(0, i) = order.overflow_mark;
+      store_relaxed(&order.header->overflowed, 1u);
       return;
     }
     first_neighbours<room> near;

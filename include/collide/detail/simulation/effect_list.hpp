@@ -1,5 +1,5 @@
 /// \file
-/// A scene: the effects of a simulation, the columns that they need, and how they are called.
+/// The effects of a simulation, the columns that they need, and how they are called.
 #pragma once
 
 #include <collide/detail/simulation/particle.hpp>
@@ -45,11 +45,11 @@ struct follows_of<E, std::void_t<typename E::follows>> {
 
 /// A particle as an effect sees it: with the columns that it names and no others.
 template <class Effect, class Particle>
-class seen_by {
+class particle_access {
  public:
   using scalar = typename Particle::scalar;
 
-  COLLIDE_HD_INLINE explicit seen_by(Particle& p) : p_{p} {}
+  COLLIDE_HD_INLINE explicit particle_access(Particle& p) : p_{p} {}
 
   /// True if the scene has the column.
   template <class C>
@@ -78,54 +78,58 @@ class seen_by {
 
 /// Sees all that an effect names; only to ask what members the effect has.
 template <class E, class S>
-using probe =
-    particle<S, joined_t<typename reads_of<E>::type, typename writes_of<E>::type, typename shares_of<E>::type>>;
+using archetype =
+    particle<S, union_of<typename reads_of<E>::type, typename writes_of<E>::type, typename shares_of<E>::type>>;
 template <class E, class S>
-using probed = seen_by<E, probe<E, S>>;
+using archetype_access = particle_access<E, archetype<E, S>>;
 
 // ---- what an effect has
 
 template <class E, class S, class = void>
 struct skips_in : std::false_type {};
 template <class E, class S>
-struct skips_in<E, S, std::void_t<decltype(std::declval<E const&>().skips(std::declval<probed<E, S> const&>()))>>
+struct skips_in<E, S,
+                std::void_t<decltype(std::declval<E const&>().skips(std::declval<archetype_access<E, S> const&>()))>>
     : std::true_type {};
 template <class E, class S, class = void>
 struct accelerates_in : std::false_type {};
 template <class E, class S>
-struct accelerates_in<E, S,
-                      std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<probed<E, S>&>(), S{}))>>
+struct accelerates_in<
+    E, S, std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
 template <class E, class S, class = void>
 struct touches_in : std::false_type {};
 template <class E, class S>
 struct touches_in<E, S,
                   std::void_t<decltype(std::declval<E const&>().touch(
-                      std::declval<probed<E, S>&>(), std::declval<touching<S>&>(), S{}))>> : std::true_type {};
+                      std::declval<archetype_access<E, S>&>(), std::declval<touching<S>&>(), S{}))>> : std::true_type {
+};
 template <class E, class S, class = void>
 struct settles_in : std::false_type {};
 template <class E, class S>
 struct settles_in<E, S,
                   std::void_t<decltype(std::declval<E const&>().after_touch(
-                      std::declval<probed<E, S>&>(), std::declval<touching<S>&>(), S{}))>> : std::true_type {};
+                      std::declval<archetype_access<E, S>&>(), std::declval<touching<S>&>(), S{}))>> : std::true_type {
+};
 template <class E, class S, class = void>
 struct meets_in : std::false_type {};
 template <class E, class S>
-struct meets_in<
-    E, S,
-    std::void_t<decltype(std::declval<E const&>().meet(
-        std::declval<probed<E, S>&>(), std::declval<probed<E, S> const&>(), std::declval<probed<E, S> const&>(), S{}))>>
-    : std::true_type {};
+struct meets_in<E, S,
+                std::void_t<decltype(std::declval<E const&>().meet(
+                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+                    std::declval<archetype_access<E, S> const&>(), S{}))>> : std::true_type {};
 template <class E, class S, class = void>
 struct disturbs_in : std::false_type {};
 template <class E, class S>
 struct disturbs_in<E, S,
                    std::void_t<decltype(std::declval<E const&>().disturb(
-                       std::declval<probed<E, S>&>(), std::declval<probed<E, S> const&>()))>> : std::true_type {};
+                       std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>()))>>
+    : std::true_type {};
 template <class E, class S, class = void>
 struct finishes_in : std::false_type {};
 template <class E, class S>
-struct finishes_in<E, S, std::void_t<decltype(std::declval<E const&>().finish(std::declval<probed<E, S>&>(), S{}))>>
+struct finishes_in<E, S,
+                   std::void_t<decltype(std::declval<E const&>().finish(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
 template <class E, class Space, class State, class S, class = void>
 struct begins_in : std::false_type {};
@@ -145,16 +149,16 @@ struct is_integrator : std::false_type {};
 template <class E>
 struct is_integrator<E, std::void_t<decltype(E::before), decltype(E::after)>> : std::true_type {};
 
-/// True for what may be in a scene's list.
+/// True for what may be in a simulation's list.
 template <class E, class Space, class S>
 inline constexpr bool is_effect = [] {
   if constexpr (!std::is_class<E>::value || !std::is_copy_constructible<E>::value) {
     return false;
   } else {
-    using state = particle_state<S, typename probe<E, S>::list>;
+    using state = particle_state<S, typename archetype<E, S>::list>;
     return skips_in<E, S>::value || accelerates_in<E, S>::value || touches_mesh_in<E, S> || meets_in<E, S>::value ||
            finishes_in<E, S>::value || begins_in<E, Space, state, S>::value || is_integrator<E>::value ||
-           probe<E, S>::list::size != 0;
+           archetype<E, S>::list::size != 0;
   }
 }();
 
@@ -165,10 +169,10 @@ inline constexpr bool names<effects<F...>, E> = (std::is_same<F, E>::value || ..
 
 /// True if no effect of the list comes before one that it follows.
 template <class... E>
-inline constexpr bool well_ordered = true;
+inline constexpr bool respects_order = true;
 template <class E, class... Later>
-inline constexpr bool well_ordered<E, Later...> =
-    !(names<typename follows_of<E>::type, Later> || ...) && well_ordered<Later...>;
+inline constexpr bool respects_order<E, Later...> =
+    !(names<typename follows_of<E>::type, Later> || ...) && respects_order<Later...>;
 
 template <class... E>
 struct integrator_of {
@@ -180,17 +184,17 @@ struct integrator_of<E, Later...> {
       typename std::conditional_t<is_integrator<E>::value, std::enable_if<true, E>, integrator_of<Later...>>::type;
 };
 
-// ---- the scene
+// ---- the list of effects
 
 /// An effect's parameters, in a base class that is found by the effect's type.
 template <class E>
-struct held_effect {
+struct effect_slot {
   E effect;
 };
 
-/// The effects of a scene and what follows from their list at compile time.
+/// The effects of a simulation and what follows from their list at compile time.
 template <class S, class... E>
-struct scene : held_effect<E>... {
+struct effect_list : effect_slot<E>... {
   using integrator = typename integrator_of<E...>::type;
 
   static constexpr bool skips = (skips_in<E, S>::value || ...);
@@ -199,52 +203,53 @@ struct scene : held_effect<E>... {
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
 
   using base = columns<position, velocity>;
-  /// All columns of the scene.
-  using all = joined_t<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
+  /// All columns of the simulation.
+  using all = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
 
  private:
   /// What `E` reads or writes in members of which `Has` says whether there is one.
   template <class F, bool Has>
-  using reads_if = std::conditional_t<
-      Has,
-      joined_t<typename reads_of<F>::type, typename writes_of<F>::type, common_t<typename shares_of<F>::type, all>>,
-      columns<>>;
+  using reads_if = std::conditional_t<Has,
+                                      union_of<typename reads_of<F>::type, typename writes_of<F>::type,
+                                               intersection_of<typename shares_of<F>::type, all>>,
+                                      columns<>>;
   template <class F, bool Has>
   using writes_if =
-      std::conditional_t<Has, joined_t<typename writes_of<F>::type, common_t<typename shares_of<F>::type, all>>,
+      std::conditional_t<Has, union_of<typename writes_of<F>::type, intersection_of<typename shares_of<F>::type, all>>,
                          columns<>>;
   template <class F>
-  static constexpr bool flies = accelerates_in<F, S>::value || finishes_in<F, S>::value || skips_in<F, S>::value;
+  static constexpr bool is_integrated =
+      accelerates_in<F, S>::value || finishes_in<F, S>::value || skips_in<F, S>::value;
   template <class F>
-  static constexpr bool flies_and_writes = accelerates_in<F, S>::value || finishes_in<F, S>::value;
+  static constexpr bool writes_while_integrated = accelerates_in<F, S>::value || finishes_in<F, S>::value;
   template <class F>
-  static constexpr bool meets_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
+  static constexpr bool interacts_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
   using own_radius = std::conditional_t<contains<all, radius>, columns<radius>, columns<>>;
   template <bool Needed>
   using radius_if = std::conditional_t<Needed, own_radius, columns<>>;
 
  public:
   /// What is read to find out which particles are left out.
-  using skipping = joined_t<columns<>, reads_if<E, skips_in<E, S>::value>...>;
+  using skipping = union_of<columns<>, reads_if<E, skips_in<E, S>::value>...>;
   /// What is read and written for every particle, and what for those that may touch the mesh.
-  using flight = joined_t<base, reads_if<E, flies<E>>..., radius_if<touches>>;
-  using flight_writes = joined_t<columns<position>, writes_if<E, flies_and_writes<E>>...>;
-  using contact = joined_t<flight, reads_if<E, touches_mesh_in<E, S>>...>;
-  using contact_writes = joined_t<flight_writes, writes_if<E, touches_mesh_in<E, S>>...>;
+  using integration_reads = union_of<base, reads_if<E, is_integrated<E>>..., radius_if<touches>>;
+  using integration_writes = union_of<columns<position>, writes_if<E, writes_while_integrated<E>>...>;
+  using contact = union_of<integration_reads, reads_if<E, touches_mesh_in<E, S>>...>;
+  using contact_writes = union_of<integration_writes, writes_if<E, touches_mesh_in<E, S>>...>;
   /// The same for particles that meet; all of them are also copied.
-  using meeting = joined_t<columns<position>, reads_if<E, meets_or_skips<E>>..., radius_if<meets>>;
-  using meeting_copies = remaining_t<meeting, columns<position, radius>>;  ///< these two are kept together
-  using meeting_writes = joined_t<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>;
+  using interaction = union_of<columns<position>, reads_if<E, interacts_or_skips<E>>..., radius_if<meets>>;
+  using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
+  using interaction_writes = union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>;
 
-  explicit scene(E... e) : held_effect<E>{std::move(e)}... {}
+  explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
   template <class F>
   COLLIDE_HD_INLINE F const& of() const {
-    return static_cast<held_effect<F> const&>(*this).effect;
+    return static_cast<effect_slot<F> const&>(*this).effect;
   }
   template <class F>
   F& of() {
-    return static_cast<held_effect<F>&>(*this).effect;
+    return static_cast<effect_slot<F>&>(*this).effect;
   }
 
   /// Of two scenes' worth of reasons to leave a particle out, one suffices.
@@ -279,7 +284,7 @@ struct scene : held_effect<E>... {
   template <class F, class P>
   COLLIDE_HD_INLINE bool skipped_by([[maybe_unused]] P& p) const {
     if constexpr (skips_in<F, S>::value) {
-      seen_by<F, P> const seen(p);
+      particle_access<F, P> const seen(p);
       return of<F>().skips(seen);
     } else {
       return false;
@@ -288,14 +293,14 @@ struct scene : held_effect<E>... {
   template <class F, class P>
   COLLIDE_HD_INLINE void accelerate_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (accelerates_in<F, S>::value) {
-      seen_by<F, P> seen(p);
+      particle_access<F, P> seen(p);
       of<F>().accelerate(seen, dt);
     }
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void touch_by([[maybe_unused]] P& p, [[maybe_unused]] touching<S>& t, [[maybe_unused]] S dt) const {
     if constexpr (touches_in<F, S>::value) {
-      seen_by<F, P> seen(p);
+      particle_access<F, P> seen(p);
       of<F>().touch(seen, t, dt);
     }
   }
@@ -303,7 +308,7 @@ struct scene : held_effect<E>... {
   COLLIDE_HD_INLINE void settle_by([[maybe_unused]] P& p, [[maybe_unused]] touching<S>& t,
                                    [[maybe_unused]] S dt) const {
     if constexpr (settles_in<F, S>::value) {
-      seen_by<F, P> seen(p);
+      particle_access<F, P> seen(p);
       of<F>().after_touch(seen, t, dt);
     }
   }
@@ -311,23 +316,23 @@ struct scene : held_effect<E>... {
   COLLIDE_HD_INLINE void meet_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
                                  [[maybe_unused]] S dt) const {
     if constexpr (meets_in<F, S>::value) {
-      seen_by<F, P> seen(p);
-      seen_by<F, P> const seen_self(self), seen_other(other);
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_self(self), seen_other(other);
       of<F>().meet(seen, seen_self, seen_other, dt);
     }
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void disturb_by([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {
     if constexpr (disturbs_in<F, S>::value) {
-      seen_by<F, P> seen(p);
-      seen_by<F, P> const seen_other(other);
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_other(other);
       of<F>().disturb(seen, seen_other);
     }
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void finish_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (finishes_in<F, S>::value) {
-      seen_by<F, P> seen(p);
+      particle_access<F, P> seen(p);
       of<F>().finish(seen, dt);
     }
   }

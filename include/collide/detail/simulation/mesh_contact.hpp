@@ -1,5 +1,5 @@
 /// \file
-/// Contacts as a simulation needs them: where a ball that touches a triangle does so, and when one that moves does,
+/// Contacts as a simulation needs them: where a sphere that touches a triangle does so, and when one that moves does,
 /// without digits that nobody sees.
 #pragma once
 
@@ -14,17 +14,17 @@ struct karabassi_swept;
 
 namespace detail {
 
-/// The contact of a ball and a finite triangle. Unlike that of `contact_of`, the depth of a ball that just touches is
-/// known to within the rounding of doubles only: resting balls do just that, all the time.
+/// The contact of a sphere and a finite triangle. Unlike that of `contact_of`, the depth of a sphere that just touches
+/// is known to within the rounding of doubles only: resting spheres do just that, all the time.
 template <class S>
 COLLIDE_HD contact<S> contact_here(triangle<S> const& t, sphere<S> const& s) {
   return rounded<S>(contact_between(widened(t), widened(s), clear_length, false));
 }
 
-/// Whether a ball touches a finite triangle, and the contact that `contact_here` tells if so, where doubles suffice for
-/// both; `sure` says that they touch. Calls nothing. The foot that it finds is a point of the triangle, so a depth that
-/// is clear means a hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but not by much:
-/// docs/numerics.md.
+/// Whether a sphere touches a finite triangle, and the contact that `contact_here` tells if so, where doubles suffice
+/// for both; `sure` says that they touch. Calls nothing. The foot that it finds is a point of the triangle, so a depth
+/// that is clear means a hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but not by
+/// much: docs/numerics.md.
 template <class S>
 COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
   constexpr double clear_depth = 0x1p-40, clear_gap = 0x1p-32;
@@ -42,38 +42,48 @@ COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> con
   return apart ? verdict::miss : verdict::hit;
 }
 
-/// Where a moving ball is at a time within the step, rounded once: what comes from far away stops at the mesh as
+/// Where a moving sphere is at a time within the step, rounded once: what comes from far away stops at the mesh as
 /// accurately as what comes from near.
 template <class S>
-COLLIDE_HD_INLINE sphere<S> ball_at(moving_sphere<S> const& s, S time) {
+COLLIDE_HD_INLINE sphere<S> sphere_at(moving_sphere<S> const& s, S time) {
   vec3<S> at;
   for (int k = 0; k < 3; ++k) at[k] = multiply_add(s.displacement[k], time, s.centre[k]);
   return {at, s.radius};
 }
-
-/// When a moving ball stops that touches a finite triangle on its way. Like `time_of_impact` never late, but early also
-/// where doubles leave open whether the two touch: those that rest on the mesh have so short a way to go in a step that
-/// their times could not be told apart without exact arithmetic.
 template <class S>
-COLLIDE_HD_NOINLINE S time_here(triangle<S> const& t, moving_sphere<S> const& s) {
+COLLIDE_HD_INLINE sphere<S> const& sphere_at(sphere<S> const& s, S) {
+  return s;
+}
+
+/// When a moving sphere stops that touches a finite triangle on its way. Like `time_of_impact` never late, but early
+/// also where doubles leave open whether the two touch: those that rest on the mesh have so short a way to go in a step
+/// that their times could not be told apart without exact arithmetic.
+template <class S>
+COLLIDE_HD_NOINLINE S stopping_time_here(triangle<S> const& t, moving_sphere<S> const& s) {
   return rounded_down<S>(first_contact(widened(t), widened(s), time_bits<S>, false));
 }
 
-/// When a ball of a narrow phase stops: if that is not `karabassi_swept` itself, when it says.
+/// When a sphere of a narrow phase stops: of one other than `karabassi_swept`, when that says.
 template <class NarrowPhase>
-struct stop_of {
+struct stopping_time {
   template <class S>
-  static COLLIDE_HD_INLINE S time(triangle<S> const& t, moving_sphere<S> const& s) {
+  static COLLIDE_HD_INLINE S of(triangle<S> const& t, moving_sphere<S> const& s) {
     return NarrowPhase::time_of_impact(t, s);
   }
 };
 template <class Precision>
-struct stop_of<karabassi_swept<Precision>> {
+struct stopping_time<karabassi_swept<Precision>> {
   template <class S>
-  static COLLIDE_HD_INLINE S time(triangle<S> const& t, moving_sphere<S> const& s) {
-    return time_here(t, s);
+  static COLLIDE_HD_INLINE S of(triangle<S> const& t, moving_sphere<S> const& s) {
+    return stopping_time_here(t, s);
   }
 };
+
+/// A surface has two sides. Where the centre lies on it, the normal faces against the path.
+template <class S>
+COLLIDE_HD_INLINE void face_against(contact<S>& c, vec3<S> const& path) {
+  if (c.distance == 0 && dot(c.normal, path) > 0) c.normal = -c.normal;
+}
 
 }  // namespace detail
 

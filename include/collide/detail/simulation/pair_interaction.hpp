@@ -11,43 +11,43 @@
 namespace collide::detail {
 
 /// What happens where particles meet.
-template <class S, class Scene>
-struct meetings {
-  particle_state<S, typename Scene::all> state;
-  particle_order<S, Scene> order;
-  Scene scene;
+template <class S, class Effects>
+struct pair_interaction {
+  particle_state<S, typename Effects::all> state;
+  sorted_particles<S, Effects> order;
+  Effects effects;
   S dt;
 
  protected:
-  using meeting = typename particle_order<S, Scene>::meeting;
+  using interaction = typename sorted_particles<S, Effects>::interaction;
 
   /// A particle before and after.
-  struct participant {
-    meeting self, changed;
+  struct pair_state {
+    interaction self, changed;
     bool met = false;
-    COLLIDE_HD_INLINE explicit participant(meeting const& p) : self(p), changed(p) {}
+    COLLIDE_HD_INLINE explicit pair_state(interaction const& p) : self(p), changed(p) {}
   };
 
-  COLLIDE_HD_INLINE void meet(participant& p, std::uint32_t place) const {
-    meeting other = order.load(place);
+  COLLIDE_HD_INLINE void meet(pair_state& p, std::uint32_t place) const {
+    interaction other = order.load(place);
     if (!is_skipped(p.self)) {
-      scene.meet(p.changed, p.self, other, dt);
+      effects.meet(p.changed, p.self, other, dt);
     } else if (!is_skipped(other)) {
-      scene.disturb(p.changed, other);
+      effects.disturb(p.changed, other);
     } else {
       return;
     }
     p.met = true;
   }
 
-  COLLIDE_HD_INLINE void store(participant const& p) const {
-    if (p.met) state.store(p.changed, p.self.number, typename Scene::meeting_writes{});
+  COLLIDE_HD_INLINE void store(pair_state const& p) const {
+    if (p.met) state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
   }
 
  private:
-  COLLIDE_HD_INLINE bool is_skipped(meeting& p) const {
-    if constexpr (Scene::skips) {
-      return scene.is_skipped(p);
+  COLLIDE_HD_INLINE bool is_skipped(interaction& p) const {
+    if constexpr (Effects::skips) {
+      return effects.is_skipped(p);
     } else {
       return false;
     }
@@ -55,34 +55,54 @@ struct meetings {
 };
 
 /// Kernel body of `for_each` over places in the order: a particle meets those on its list that overlap it.
-template <class S, class Scene>
-struct meet_neighbours : meetings<S, Scene> {
+template <class S, class Effects>
+struct interact_listed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& order = this->order;
-    if (i == 0) order.header->renew = 0;  // not read again in this step
+    if (i == 0) order.header->rebuild = 0;  // not read again in this step
     if (i >= order.header->count) return;
     auto const self = static_cast<std::uint32_t>(i);
-    if (order.list(0, i) == order.too_many) return;
-    typename meetings<S, Scene>::participant p(order.load(i));
-    COLLIDE_ROLLED
-    for (std::uint32_t n = 0; n < particle_order<S, Scene>::listed; ++n) {
-      std::uint32_t const place = order.list(n, i);
-      if (place == self) break;
-      if (order.are_near(order.spheres[i], order.spheres[place], S(0))) this->meet(p, place);
-    }
+    if (order.list(0, i) == order.overflow_mark) return;
+    typename pair_interaction<S, Effects>::pair_state p(order.load(i));
+    packed_sphere<S> const own = order.spheres[i];
+    for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other) {
+      if (order.within_skin(own, other, S(0))) this->meet(p, place);
+    });
     this->store(p);
+  }
+
+ private:
+  /// f(place, sphere) for each on the list of a particle. While one is looked at, the next and the list's item behind
+  /// it are on their way (docs/performance.md).
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, F const& f) const {
+    auto const& order = this->order;
+    auto const item = [&](std::uint32_t before, std::uint32_t n) {
+      return before != self && n < sorted_particles<S, Effects>::listed ? order.list(n, self) : self;
+    };
+    std::uint32_t next = order.list(0, self), behind = item(next, 1);
+    packed_sphere<S> next_sphere = order.spheres[next];
+    COLLIDE_ROLLED
+    for (std::uint32_t n = 2; next != self; ++n) {
+      std::uint32_t const place = next;
+      packed_sphere<S> const sphere = next_sphere;
+      next = behind;
+      next_sphere = order.spheres[next];
+      behind = item(next, n);
+      f(place, sphere);
+    }
   }
 };
 
-/// Kernel body of `for_each_if` over places in the order: particles with more neighbours than lists have room for meet
-/// those that overlap them. As many as can be held at a time are found, by rising numbers.
-template <class S, class Scene>
-struct meet_crowds : meetings<S, Scene> {
+/// Kernel body of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have room
+/// for meet those that overlap them. As many as can be held at a time are found, by rising numbers.
+template <class S, class Effects>
+struct interact_overflowed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& order = this->order;
-    if (i >= order.header->count || order.list(0, i) != order.too_many) return;
+    if (i >= order.header->count || order.list(0, i) != order.overflow_mark) return;
     auto const self = static_cast<std::uint32_t>(i);
-    typename meetings<S, Scene>::participant p(order.load(i));
+    typename pair_interaction<S, Effects>::pair_state p(order.load(i));
     id last = 0;
     for (bool first = true, complete = false; !complete; first = false) {
       first_neighbours<16> near;

@@ -35,7 +35,7 @@ struct particle<S, columns<C...>> : register_of<C, S>... {
 
 /// A particle with the initial values of all columns.
 template <class S, class... C>
-COLLIDE_HD_INLINE void begin_particle(particle<S, columns<C...>>& p) {
+COLLIDE_HD_INLINE void set_initial_values(particle<S, columns<C...>>& p) {
   ((p[C{}] = initial_of<C, S>::value()), ...);
 }
 

@@ -11,14 +11,14 @@ namespace collide::detail {
 
 /// Kernel body of `for_each` over places of particles: what each begins with.
 template <class S, class All>
-struct place_particles {
+struct init_particles {
   particle_state<S, All> state;
   sphere_view<S> spheres;
   S const* velocities;  ///< null: they rest
 
   COLLIDE_HD void operator()(std::size_t i) const {
     particle<S, All> p;
-    begin_particle(p);
+    set_initial_values(p);
     bool const there = i < spheres.size();
     if (there) {
       p[position{}] = spheres.centre(i);

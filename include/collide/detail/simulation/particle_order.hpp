@@ -15,7 +15,7 @@ namespace collide::detail {
 
 /// What decides whether two particles overlap, to be read at once.
 template <class S>
-struct alignas(4 * sizeof(S)) near_sphere {
+struct alignas(4 * sizeof(S)) packed_sphere {
   S x, y, z, radius;
 };
 
@@ -23,67 +23,67 @@ struct alignas(4 * sizeof(S)) near_sphere {
 template <class S, bool HasRadius>
 struct reference {
   S x, y, z;
-  COLLIDE_HD_INLINE void set(near_sphere<S> const& s) { x = s.x, y = s.y, z = s.z; }
-  COLLIDE_HD_INLINE S resized(near_sphere<S> const&) const { return S(0); }
+  COLLIDE_HD_INLINE void set(packed_sphere<S> const& s) { x = s.x, y = s.y, z = s.z; }
+  COLLIDE_HD_INLINE S growth(packed_sphere<S> const&) const { return S(0); }
 };
 template <class S>
-struct reference<S, true> : near_sphere<S> {
-  COLLIDE_HD_INLINE void set(near_sphere<S> const& s) { static_cast<near_sphere<S>&>(*this) = s; }
+struct reference<S, true> : packed_sphere<S> {
+  COLLIDE_HD_INLINE void set(packed_sphere<S> const& s) { static_cast<packed_sphere<S>&>(*this) = s; }
   /// By how much it has grown; 0 if it has shrunk.
-  COLLIDE_HD_INLINE S resized(near_sphere<S> const& s) const { return larger(s.radius - this->radius, S(0)); }
+  COLLIDE_HD_INLINE S growth(packed_sphere<S> const& s) const { return larger(s.radius - this->radius, S(0)); }
 };
 
 /// What all particles in the order have in common.
-struct order_header {
-  std::uint32_t renew;    ///< not 0: the lists are to be made anew
-  std::uint32_t crowded;  ///< not 0: some particles have more neighbours than lists have room for
-  std::uint32_t count;    ///< how many particles are in the order
+struct list_state {
+  std::uint32_t rebuild;     ///< not 0: the lists are to be made anew
+  std::uint32_t overflowed;  ///< not 0: some particles have more neighbours than lists have room for
+  std::uint32_t count;       ///< how many particles are in the order
 };
 
 /// The particles in the order of the grid, with all that they must know of each other.
-template <class S, class Scene>
-struct particle_order {
-  using all = typename Scene::all;
-  using copied = typename Scene::meeting_copies;
-  using meeting = particle<S, typename Scene::meeting>;
-  using cell = typename particle_cells<S>::cell;
-  static constexpr bool comes_and_goes = contains<all, present>;
+template <class S, class Effects>
+struct sorted_particles {
+  using all = typename Effects::all;
+  using copied = typename Effects::interaction_copies;
+  using interaction = particle<S, typename Effects::interaction>;
+  using cell = typename spatial_hash<S>::cell;
+  static constexpr bool has_absent = contains<all, present>;
 
-  particle_cells<S> cells;
+  spatial_hash<S> cells;
   std::uint32_t* ends;  ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
-  order_header* header;
+  list_state* header;
   id* numbers;
-  near_sphere<S>* spheres;                          ///< as they are in this step
+  packed_sphere<S>* spheres;                        ///< as they are in this step
   reference<S, contains<all, radius>>* references;  ///< as they were when the lists were made
   column_element<present, S>* known;                ///< whether particles are in the order, by numbers
   particle_state<S, copied> copies;
 
   static constexpr std::uint32_t listed = 16;  ///< the most neighbours that a list has
-  static constexpr std::uint32_t too_many = 0xffffffffu;
+  static constexpr std::uint32_t overflow_mark = 0xffffffffu;
   std::uint32_t* lists;  ///< places, in the order of numbers; the particle's own behind the last; or too_many
   std::size_t capacity;  ///< of each of `listed` arrays
 
   COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
 
-  COLLIDE_HD_INLINE near_sphere<S> store(std::size_t i, meeting const& p) const {
+  COLLIDE_HD_INLINE packed_sphere<S> store(std::size_t i, interaction const& p) const {
     vec3<S> const& c = p[position{}];
     copies.store(p, i, copied{});
     return spheres[i] = {c.x(), c.y(), c.z(), p.the_radius};
   }
 
-  COLLIDE_HD_INLINE meeting load(std::size_t i) const {
-    meeting p;
+  COLLIDE_HD_INLINE interaction load(std::size_t i) const {
+    interaction p;
     p.number = numbers[i];
-    near_sphere<S> const s = spheres[i];
+    packed_sphere<S> const s = spheres[i];
     p[position{}] = vec3<S>(s.x, s.y, s.z);
     p.the_radius = s.radius;
-    if constexpr (contains<typename Scene::meeting, radius>) p[radius{}] = s.radius;
+    if constexpr (contains<typename Effects::interaction, radius>) p[radius{}] = s.radius;
     copies.load(p, i, copied{});
     return p;
   }
 
   /// True if the surfaces of two particles are less than `skin` apart.
-  static COLLIDE_HD_INLINE bool are_near(near_sphere<S> const& a, near_sphere<S> const& b, S skin) {
+  static COLLIDE_HD_INLINE bool within_skin(packed_sphere<S> const& a, packed_sphere<S> const& b, S skin) {
     vec3<S> const between(a.x - b.x, a.y - b.y, a.z - b.z);
     S const reach = a.radius + b.radius + skin;
     return dot(between, between) < mul(reach, reach);
@@ -91,18 +91,18 @@ struct particle_order {
 
   /// Puts a particle that is not there, or nowhere, so far away, and makes it so small, that it is near nothing, not
   /// even its like. When it is back it has moved far.
-  COLLIDE_HD_INLINE void leave_out(std::size_t i) const {
+  COLLIDE_HD_INLINE void deactivate(std::size_t i) const {
     constexpr S far = std::numeric_limits<S>::max();  // squares of distances overflow
     references[i].set(spheres[i] = {far, far, far, S(0)});
   }
 
-  COLLIDE_HD_INLINE void ask_to_renew() const { store_relaxed(&header->renew, 1u); }
+  COLLIDE_HD_INLINE void ask_to_rebuild() const { store_relaxed(&header->rebuild, 1u); }
 
   /// f(place, row) for those less than `skin` away from particle i, of which `is_in_row` must still be asked. That
   /// takes a while, in which threads that run together would wait for the one that has found something.
   template <class F>
   COLLIDE_HD_INLINE void each_near(std::uint32_t i, S skin, F const& f) const {
-    near_sphere<S> const self = spheres[i];
+    packed_sphere<S> const self = spheres[i];
     cell const here = cell_of(i);
     COLLIDE_ROLLED
     for (int row = 0; row < 9; ++row) {
@@ -120,7 +120,7 @@ struct particle_order {
       COLLIDE_ROLLED
       for (std::uint32_t n = 0; n < both; ++n) {
         std::uint32_t const k = n + (n < size ? begin : jump);
-        if (are_near(self, spheres[k], skin) && k != i) f(k, row);
+        if (within_skin(self, spheres[k], skin) && k != i) f(k, row);
       }
     }
   }

@@ -10,12 +10,12 @@ namespace collide::detail {
 
 /// The cells of a table.
 template <class S>
-struct particle_cells {
+struct spatial_hash {
   S inverse_width;
   std::uint32_t mask;  ///< number of blocks - 1
 
-  static constexpr std::uint32_t per_block = 64;
-  static constexpr std::uint32_t stride = per_block + 1;  ///< of blocks in the table: see `particle_order`
+  static constexpr std::uint32_t cells_per_brick = 64;
+  static constexpr std::uint32_t stride = cells_per_brick + 1;  ///< of blocks in the table: see `sorted_particles`
 
   struct cell {
     std::int32_t x, y, z;

@@ -1,141 +1,231 @@
 /// \file
-/// A simulation's step where lanes work together: each block moves its share of the particles, and then resolves the
-/// contacts of those that may touch the mesh.
+/// A simulation's step: each block moves its share of the particles, and then resolves the contacts of those that may
+/// touch the mesh.
 ///
-/// There are as many blocks as can be at work at the same time. Each has its particles from everywhere among their
-/// numbers, as those that are close to each other there may be close to the mesh together; so all have about as many
-/// contacts to resolve, and none waits for another.
+/// Particles are divided into tiles. Where lanes share a block and something touches the mesh, there are as many blocks
+/// as can be at work at the same time. Each has tiles from everywhere among the particles, as those that are close to
+/// each other there may be close to the mesh together; so all have about as many contacts to resolve, and none waits
+/// for another. Else a block has one tile.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+
 #include <collide/detail/simulation/contact_response.hpp>
+#include <collide/detail/simulation/integrate.hpp>
 
 namespace collide::detail {
 
 /// Kernel body: a step, in `blocks` blocks.
-template <class S, class NarrowPhase, class Lookup, class Scene>
-struct step_body : respond_body<S, NarrowPhase, Lookup, Scene> {
-  using respond_type = respond_body<S, NarrowPhase, Lookup, Scene>;
-  using fly_type = typename respond_type::fly_type;
-  using respond_type::backwards;
-  using respond_type::blocks;
-  using respond_type::list;
-  using respond_type::lookup;
-  using respond_type::moves;
-  using respond_type::state;
+template <class Context>
+struct step_kernel {
+  using S = typename Context::scalar;
+  using effects_type = typename Context::effects_type;
+  using integration_type = integration<Context>;
+  using response_type = contact_response<Context>;
 
   static constexpr int items = particles_per_group;
+  /// Waits for memory, mostly; a lane alone resolves contacts in many registers.
   template <class Block>
-  static constexpr int residency = 3;  ///< waits for memory, mostly
+  static constexpr int residency = !Context::touches ? 1 : (Block::lanes > 1 ? 3 : 2);
 
-  /// What neighbouring lanes have of the particles, as they read and write together: all particles are so many
-  /// stretches. A block has every `blocks`-th of them.
+  Context context;
+  std::size_t blocks;
+
+  /// True if a block has many tiles, and may have more particles near the mesh than its queue has room for: then it
+  /// needs `context.overflow`.
   template <class Block>
-  static constexpr std::uint32_t stretch = std::uint32_t{Block::row_lanes} * items;
+  static constexpr bool has_many_tiles = Context::touches&& Block::lanes > 1;
+
+  /// A tile: the particles of lanes that read and write together. One that is a block's only one is all of the block's.
   template <class Block>
-  static COLLIDE_HD_INLINE std::uint32_t stretches(std::size_t particles) {
-    return static_cast<std::uint32_t>((particles + stretch<Block> - 1) / stretch<Block>);
+  static constexpr std::uint32_t tile_lanes = has_many_tiles<Block> ? Block::row_lanes : Block::lanes;
+  template <class Block>
+  static constexpr std::uint32_t tile = tile_lanes<Block>* Block::items;
+  template <class Block>
+  static constexpr std::uint32_t tiles_together = Block::lanes / tile_lanes<Block>;  ///< of a block
+
+  template <class Block>
+  static COLLIDE_HD_INLINE std::uint32_t tile_count(std::size_t particles) {
+    return static_cast<std::uint32_t>((particles + tile<Block> - 1) / tile<Block>);
   }
 
-  /// True if the next particles are on their way while a lane moves some. To ask for the cells of ways takes too many
-  /// registers for that.
-  static constexpr bool reads_ahead = !moves && !Scene::skips;
-
-  /// For how many particles that may touch the mesh a block has room: as many as it resolves at a time.
+  /// How many blocks there are to be where `resident` can be at work at a time.
   template <class Block>
-  static constexpr std::uint32_t room = respond_type::template together<Block>;
+  static std::size_t blocks_for(std::size_t particles, std::size_t resident) {
+    std::size_t const tiles = tile_count<Block>(particles);
+    return has_many_tiles<Block> ? smaller(tiles, resident) : tiles;
+  }
 
+  template <class Block, bool Touches>
+  struct scratch_of {
+    typename integration_type::template scratch<Block> packs;
+  };
   template <class Block>
-  struct scratch {
+  struct scratch_of<Block, true> {
+    static constexpr std::uint32_t capacity = response_type::template scratch<Block>::batch_size;
+
     union {  // one after the other
-      typename fly_type::template group_scratch<Block> groups;
-      typename respond_type::template scratch<Block> contacts;
+      typename integration_type::template scratch<Block> packs;
+      typename response_type::template scratch<Block> contacts;
     };
     cell_marks<S> marks;
-    bool simple;  ///< all are asked `marks` whether they may touch the mesh
-    std::uint32_t count;
-    id listed[room<Block>];  ///< the first of those that may
+    bool single_cell;  ///< `marks` tell of all particles whether they may touch the mesh
+    std::uint32_t queue_size;
+    id queue[capacity];  ///< the first of those that may; the others are in `context.overflow`
   };
+  template <class Block>
+  using scratch = scratch_of<Block, Context::touches>;
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    static_assert(particle_padding % stretch<Block> == 0, "there is room for all that a block reads and writes");
-    move_share(block, s);
-    std::uint32_t const n = block.shared(s.count);
-    if (n == 0) return;
-    Lookup const near = lookup.opened();
-    std::uint32_t const share = (n - 1) / ((n - 1) / room<Block> + 1) + 1;
-    for (std::uint32_t base = 0; base < n; base += share) {
-      this->collide(block, s.contacts, near, smaller(n - base, share),
-                    [&](survivor<S, moves>& one, std::uint32_t j) { begin(block, s, one, base + j); });
+    static_assert(Block::row_lanes == 1 || particle_padding % tile<Block> == 0, "there is room for whole tiles");
+    if constexpr (Context::touches) {
+      advance_and_enqueue(block, s);
+      resolve_queue(block, s);
+    } else {
+      advance_tiles<pack>(block, s, no_filter{});
     }
   }
 
  private:
-  /// The number of a block's `k`-th stretch.
+  static constexpr int pack = particles_per_group;
+
+  /// How many particles a lane moves at a time: a pack, which compilers put into vector registers, or as many as are
+  /// asked together whether they are near the mesh.
   template <class Block>
-  COLLIDE_HD_INLINE std::uint32_t stretch_of(Block const& block, std::uint32_t k) const {
+  static constexpr int at_a_time = Block::items % 16 == 0 && Context::touches ? 16 : pack;
+  static_assert(particle_padding % 16 == 0, "the last ones are read and written with those that are not there");
+
+  /// On a CPU, where nothing happens to particles after they have moved, they are asked afterwards whether they may
+  /// touch the mesh, as many as fill its vector registers at a time.
+  template <class Block>
+  static constexpr bool filters_after_integration =
+      Block::items % 16 == 0 && !Context::is_swept && integration_type::has_one_radius && !effects_type::skips &&
+      !effects_type::finishes && Context::kick_after == 0;
+
+  /// The next particles are on their way while a lane moves some. To ask for the cells of motions takes too many
+  /// registers for that.
+  template <class Block>
+  static constexpr bool prefetches = has_many_tiles<Block> && !Context::is_swept && !effects_type::skips;
+
+  /// The number of a block's `k`-th tile.
+  template <class Block>
+  COLLIDE_HD_INLINE std::uint32_t tile_index(Block const& block, std::uint32_t k) const {
     return k * static_cast<std::uint32_t>(blocks) + static_cast<std::uint32_t>(block.index());
   }
 
-  /// Where in the list of all particles a block lists its `i`-th for which it has no room: where its own stretches
-  /// would be.
+  /// The first particle of a lane in a tile that exists.
   template <class Block>
-  COLLIDE_HD_INLINE std::size_t place_of(Block const& block, std::uint32_t i) const {
-    return std::size_t{stretch_of(block, i / stretch<Block>)} * stretch<Block> + i % stretch<Block>;
+  COLLIDE_HD_INLINE std::uint32_t first_of(int lane, std::uint32_t tile_number, std::uint32_t tiles) const {
+    return (context.reverse_order ? tiles - 1 - tile_number : tile_number) * tile<Block> +
+           static_cast<std::uint32_t>(lane) % tile_lanes<Block> * Block::items;
   }
 
-  /// What is known of the `i`-th particle that a block has listed.
+  /// Where a block has the number of its `i`-th particle for which its queue has no room: where its own tiles would be.
   template <class Block>
-  COLLIDE_HD_INLINE void begin(Block const& block, scratch<Block> const& s, survivor<S, moves>& one,
-                               std::uint32_t i) const {
-    respond_type::begin(one, i < room<Block> ? s.listed[i] : list.numbers[place_of(block, i - room<Block>)]);
+  COLLIDE_HD_INLINE std::size_t overflow_slot(Block const& block, std::uint32_t i) const {
+    return std::size_t{tile_index(block, i / tile<Block>)} * tile<Block> + i % tile<Block>;
   }
 
-  /// Moves the particles of a block, and lists those that may touch the mesh.
   template <class Block>
-  COLLIDE_HD_INLINE void move_share(Block& block, scratch<Block>& s) const {
-    constexpr std::uint32_t row = Block::row_lanes, rows = Block::lanes / row;
-    std::uint32_t const n = stretches<Block>(state.size);
-    auto const list_one = [&](id number) {
-      std::uint32_t const i = block.add(s.count, 1);
-      if (i < room<Block>) {
-        s.listed[i] = number;
-      } else {
-        list.numbers[place_of(block, i - room<Block>)] = number;
-      }
-    };
-    auto const list_some = this->lister(
-        s.simple, s.marks, [&] { return lookup.opened(); }, list_one);
-    // a lane's particles of a stretch; in place of one that does not exist, of the last
-    auto const first_of = [&](int lane, std::uint32_t i) {
-      std::uint32_t const in = smaller(i, n - 1);
-      return (backwards ? n - 1 - in : in) * stretch<Block> + static_cast<std::uint32_t>(lane) % row * items;
-    };
-    auto const begin_of = [&](int lane) { return stretch_of(block, static_cast<std::uint32_t>(lane) / row); };
+  COLLIDE_HD_INLINE void enqueue(Block& block, scratch<Block>& s, id number) const {
+    std::uint32_t const i = block.add(s.queue_size, 1);
+    if (!has_many_tiles<Block> || i < scratch<Block>::capacity) {
+      s.queue[i] = number;
+    } else {
+      context.overflow[overflow_slot(block, i - scratch<Block>::capacity)] = number;
+    }
+  }
+
+  /// Moves the particles of a block, and queues those that may touch the mesh.
+  template <class Block>
+  COLLIDE_HD_INLINE void advance_and_enqueue(Block& block, scratch<Block>& s) const {
+    integration_type const integrate{context};
     block.each([&](int lane) {
       if (lane != 0) return;
-      s.count = 0;
-      s.simple = this->marks_all();
-      s.marks = lookup.marks();
+      s.queue_size = 0;
+      s.single_cell = integrate.is_single_cell();
+      s.marks = context.triangles.marks();
     });
+    auto const enqueue_one = [&](id number) { enqueue(block, s, number); };
+    if constexpr (filters_after_integration<Block>) {
+      if (s.single_cell) {
+        advance_tiles<pack>(block, s, no_filter{});
+        auto const first = first_of<Block>(0, tile_index(block, 0), tile_count<Block>(context.state.size));
+        vectorised([&] { integrate.template enqueue_marked<Block::items>(first, s.marks, enqueue_one); });
+        return;
+      }
+    }
+    advance_tiles<at_a_time<Block>>(block, s,
+                                    [&, size = context.state.size](auto const& p, auto const& inactive, auto& near) {
+                                      constexpr int n = sizeof(near) / sizeof(near[0]);
+                                      integrate.test_occupancy(s.single_cell, s.marks, p, near);
+                                      for (int k = 0; k < n; ++k) {
+                                        near[k] = near[k] && !inactive[k] && p[k].number < size;
+                                        if (near[k]) enqueue_one(p[k].number);
+                                      }
+                                    });
+  }
+
+  /// Moves the particles of a block's tiles, a lane `N` at a time.
+  template <int N, class Block, class Filter>
+  COLLIDE_HD_INLINE void advance_tiles(Block& block, scratch<Block>& s, Filter const& filter) const {
+    integration_type const integrate{context};
+    std::uint32_t const tiles = tile_count<Block>(context.state.size);
     block.each([&](int lane) {
-      typename fly_type::state_type::template group_of<typename Scene::flight> read;
-      if constexpr (reads_ahead) state.begin_group(block, read, first_of(lane, begin_of(lane)));
-      COLLIDE_ROLLED
-      for (std::uint32_t i = begin_of(lane), next; i < n; i = next) {
-        next = i + rows * static_cast<std::uint32_t>(blocks);
-        if constexpr (Scene::skips) {
-          this->template fly_alone<items>(block.index(), first_of(lane, i), list_some);
-        } else {
-          typename fly_type::flying p[items];
-          bool const skipped[items] = {};
-          if constexpr (!reads_ahead) state.begin_group(block, read, first_of(lane, i));
-          state.end_group(block, s.groups, read, p, first_of(lane, i));
-          if constexpr (reads_ahead) state.begin_group(block, read, first_of(lane, next));
-          this->move_some(block, s.groups, first_of(lane, i), p, skipped, list_some);
+      std::uint32_t k = static_cast<std::uint32_t>(lane) / tile_lanes<Block>;
+      if constexpr (prefetches<Block>) {
+        advance_with_prefetch(block, s, lane, tile_index(block, k), tiles, filter);
+      } else if constexpr (has_many_tiles<Block>) {
+        COLLIDE_ROLLED
+        for (std::uint32_t i; (i = tile_index(block, k)) < tiles; k += tiles_together<Block>) {
+          integrate.template advance<N>(block, s.packs, first_of<Block>(lane, i, tiles), filter);
+        }
+      } else {
+        std::uint32_t const first = first_of<Block>(lane, tile_index(block, 0), tiles);
+        for (int n = 0; n < Block::items; n += N) {
+          integrate.template advance<N>(block, s.packs, first + static_cast<std::uint32_t>(n), filter);
         }
       }
     });
+  }
+
+  /// Moves a lane's particles of tiles from the `i`-th on; while it moves some, the next ones are on their way.
+  template <class Block, class Filter>
+  COLLIDE_HD_INLINE void advance_with_prefetch(Block& block, scratch<Block>& s, int lane, std::uint32_t i,
+                                               std::uint32_t tiles, Filter const& filter) const {
+    integration_type const integrate{context};
+    // in place of a tile that does not exist, the last one is read
+    auto const first = [&](std::uint32_t t) { return first_of<Block>(lane, smaller(t, tiles - 1), tiles); };
+    typename integration_type::loaded_pack loaded;
+    context.state.begin_group(block, loaded, first(i));
+    COLLIDE_ROLLED
+    for (std::uint32_t next; i < tiles; i = next) {
+      next = i + tiles_together<Block> * static_cast<std::uint32_t>(blocks);
+      typename integration_type::integrated p[pack];
+      bool const inactive[pack] = {};
+      context.state.end_group(block, s.packs, loaded, p, first(i));
+      context.state.begin_group(block, loaded, first(next));
+      integrate.integrate(block, s.packs, first(i), p, inactive, filter);
+    }
+  }
+
+  /// Resolves the contacts of the particles that are queued, as many at a time as there is room for.
+  template <class Block>
+  COLLIDE_HD_INLINE void resolve_queue(Block& block, scratch<Block>& s) const {
+    constexpr std::uint32_t capacity = scratch<Block>::capacity;
+    std::uint32_t const n = block.shared(s.queue_size);
+    if (n == 0) return;
+    response_type const response(context);
+    std::uint32_t const share = (n - 1) / ((n - 1) / capacity + 1) + 1;
+    for (std::uint32_t base = 0; base < n; base += share) {
+      response.resolve(block, s.contacts, smaller(n - base, share), [&](std::uint32_t j) {
+        std::uint32_t const i = base + j;
+        return !has_many_tiles<Block> || i < capacity ? s.queue[i]
+                                                      : context.overflow[overflow_slot(block, i - capacity)];
+      });
+    }
   }
 };
 

@@ -23,6 +23,7 @@
 #include <cstdint>
 #include <limits>
 
+#include <collide/detail/execution/algorithms.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/detail/simulation/attribute_buffers.hpp>
 #include <collide/detail/simulation/build_lists.hpp>
@@ -33,71 +34,71 @@
 namespace collide::detail {
 
 /// The lists, the grid and their memory.
-template <class S, class Scene>
-class neighbours {
+template <class S, class Effects>
+class verlet_list {
  public:
   /// Takes all memory that steps need, for `n` particles of radius up to `radius`.
   template <class Space>
   void reserve(Space& space, std::size_t n, S radius) {
     std::uint32_t bits = 0;
-    while (bits < 22 && (std::size_t{cells::per_block} << bits) < 2 * n) ++bits;
+    while (bits < 22 && (std::size_t{cells::cells_per_brick} << bits) < 2 * n) ++bits;
     blocks_ = std::size_t{1} << bits;
-    skin_ = skin_of_diameter * 2 * radius;
+    skin_ = skin_fraction * 2 * radius;
     // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
     // away from the origin
     S const width = larger((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
     cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
     auto* const resource = space.resource();
-    order_header* const header = header_.reserve(resource, 1);
+    list_state* const header = header_.reserve(resource, 1);
     space.fill(header, 0, sizeof *header);
-    space.fill(&header->renew, 1, sizeof header->renew);  // there are no lists yet
+    space.fill(&header->rebuild, 1, sizeof header->rebuild);  // there are no lists yet
     ends_.reserve(resource, blocks_ * cells::stride);
     numbers_.reserve(resource, n);
     memory_.reserve(resource, n);
     spheres_.reserve(resource, n);
     references_.reserve(resource, n);
-    if constexpr (order::comes_and_goes) space.fill(known_.reserve(resource, n), 0, n * sizeof(*known_.data()));
+    if constexpr (order::has_absent) space.fill(known_.reserve(resource, n), 0, n * sizeof(*known_.data()));
     lists_.reserve(resource, order::listed * n);
   }
 
   /// One pass of `meet` over all pairs.
   template <class Space>
-  void meet(Space& space, particle_state<S, typename Scene::all> const& state, Scene const& scene, S dt) {
+  void meet(Space& space, particle_state<S, typename Effects::all> const& state, Effects const& effects, S dt) {
     order const o{cells_,          ends_.data(),
                   header_.data(),  numbers_.data(),
                   spheres_.data(), references_.data(),
                   known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
                   lists_.data(),   state.size};
     std::size_t const n = state.size;
-    std::uint32_t const *const renew = &o.header->renew, *const crowded = &o.header->crowded;
+    std::uint32_t const *const rebuild = &o.header->rebuild, *const overflowed = &o.header->overflowed;
     // half of the skin, but for rounding
-    space.for_each(n, refresh_order<S, Scene>{state, o, S(0.495) * skin_});
-    space.for_each_if(renew, blocks_ * cells::stride, empty_cells<S, Scene>{o});
-    space.for_each_if(renew, n, sort_into_cells<S, Scene, false>{state, o});
-    space.for_each_if(renew, blocks_, allocate_cells<S, Scene>{o});
-    space.for_each_if(renew, n, sort_into_cells<S, Scene, true>{state, o});
-    space.for_each_if(renew, n, copy_in_order<S, Scene>{state, o});
-    space.for_each_if(renew, n, list_neighbours<S, Scene>{o, skin_});
-    space.for_each(n, meet_neighbours<S, Scene>{{state, o, scene, dt}});
-    space.for_each_if(crowded, n, meet_crowds<S, Scene>{{state, o, scene, dt}});
+    space.for_each(n, update_and_check_skin<S, Effects>{state, o, S(0.495) * skin_});
+    for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
+    for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
+    for_each_if_nonzero(space, rebuild, blocks_, scan_cells<S, Effects>{o});
+    for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
+    for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
+    for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
+    space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt}});
+    for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt}});
   }
 
  private:
-  using order = particle_order<S, Scene>;
-  using cells = particle_cells<S>;
+  using order = sorted_particles<S, Effects>;
+  using cells = spatial_hash<S>;
 
-  static constexpr S skin_of_diameter = S(0.1);
+  static constexpr S skin_fraction = S(0.1);
 
   cells cells_{};
   S skin_{};
   std::size_t blocks_ = 0;
-  buffer<order_header> header_;
+  buffer<list_state> header_;
   buffer<std::uint32_t> ends_, lists_;
   buffer<id> numbers_;
-  buffer<near_sphere<S>> spheres_;
-  buffer<reference<S, contains<typename Scene::all, radius>>> references_;
+  buffer<packed_sphere<S>> spheres_;
+  buffer<reference<S, contains<typename Effects::all, radius>>> references_;
   buffer<column_element<present, S>> known_;
-  column_buffers<S, typename Scene::meeting_copies> memory_;
+  column_buffers<S, typename Effects::interaction_copies> memory_;
 };
 
 }  // namespace collide::detail

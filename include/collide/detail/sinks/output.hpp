@@ -9,6 +9,7 @@
 #include <collide/contact.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/detail/sinks/sort_pairs.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
@@ -155,7 +156,7 @@ class collector {
   void sort(Space& space, Query const& query) {
     // room as for the whole array, so that a few pairs more than last time are no reason to allocate
     std::size_t const room = data_ == own_.data() ? own_.capacity() : size_;
-    space.sort(other_, data_, size_, room, query.spheres.size(), query.mesh.size(), scratch_);
+    sort_pairs(space, data_, size_, room, query.spheres.size(), query.mesh.size(), sort_memory_);
   }
 
   pair* data() const { return data_; }
@@ -164,8 +165,8 @@ class collector {
 
  private:
   tally_memory total_of_;
-  buffer<pair> own_, other_;
-  buffer<unsigned char> scratch_;
+  buffer<pair> own_;
+  sort_memory sort_memory_;
   pair* data_ = nullptr;
   std::size_t size_ = 0;
   std::uint64_t total_ = 0;

@@ -1,5 +1,5 @@
 /// \file
-/// Spheres in host memory, a chunk at a time where a space reads them.
+/// Streams spheres from host memory to a space, a chunk at a time.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace collide::detail {
 
 /// each(space, spheres, size, f) calls f(chunk, first) for all spheres, `size` of them at a time, the first of them
 /// being number `first`; `size` is from 1 to the number of spheres.
-template <class Space, class Spheres, bool HostMemory = Space::host_memory>
+template <class Space, class Spheres, bool HostMemory = Space::host_accessible>
 class chunks;
 
-/// For spaces that read host memory: chunks are where they are.
+/// The streamer for spaces that read host memory: chunks are views of it, nothing is copied.
 template <class Space, class Spheres>
 class chunks<Space, Spheres, true> {
  public:
@@ -44,8 +44,8 @@ struct cuda_destroy {
   }
 };
 
-/// For the CUDA spaces: chunks are copied to the device on a stream of their own. While one is queried, the next are on
-/// their way. The two streams wait for each other, and the host for neither.
+/// The streamer for the CUDA spaces: chunks are copied to the device on a stream of their own, while earlier ones are
+/// queried. The streams wait for each other by events; the host waits for neither.
 template <class Space, class Spheres>
 class chunks<Space, Spheres, false> {
  public:
@@ -85,7 +85,7 @@ class chunks<Space, Spheres, false> {
  private:
   using S = typename Spheres::scalar;
 
-  /// A point of a stream that others wait for.
+  /// A CUDA event: a point of a stream that other streams wait for.
   class event {
    public:
     event() {
@@ -100,7 +100,7 @@ class chunks<Space, Spheres, false> {
     std::unique_ptr<std::remove_pointer_t<cudaEvent_t>, cuda_destroy> event_;
   };
 
-  /// Room for a chunk on the device.
+  /// A staging buffer: device memory for a chunk, and its events.
   struct place {
     buffer<S> memory;
     Spheres spheres;
@@ -115,8 +115,8 @@ class chunks<Space, Spheres, false> {
     to.full.record(copies_.get());
   }
 
-  /// With two places, the host would have to be done with a chunk before the copy of the next one ends, or the copying
-  /// would stop; with three it may now and then be late by as long as a copy takes.
+  /// Three staging buffers: with two, copying stops whenever the host is not done with a chunk before the copy of the
+  /// next one ends; with three it may be late by as long as a copy takes.
   std::array<place, 3> places_;
   std::unique_ptr<std::remove_pointer_t<cudaStream_t>, cuda_destroy> copies_;
 };

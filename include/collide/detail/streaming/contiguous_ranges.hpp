@@ -1,5 +1,5 @@
 /// \file
-/// What has to be copied so that spheres can be read elsewhere.
+/// The contiguous memory ranges that a view of spheres reads: what has to be copied to read it elsewhere.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,10 @@
 
 namespace collide::detail {
 
-/// The memory that a view of spheres reads, as few contiguous pieces: one if the centres are packed or the spheres are
+/// The memory that a view of spheres reads, as few contiguous ranges: one if the centres are packed or the spheres are
 /// quadruples, and one more for radii in an array of their own, three if the coordinates are. Arrays of one stride that
-/// lie between each other's elements are one piece. It is copied as it lies, with whatever lies between them: the copy
-/// has the same strides.
+/// are interleaved form one range. It is copied with the gaps between its elements: the copy has the strides of the
+/// original.
 template <class Spheres>
 class pieces {
   using S = typename Spheres::scalar;
@@ -25,10 +25,10 @@ class pieces {
     }
   }
 
-  /// How many elements the copies take, each piece at a multiple of 64 elements.
+  /// Number of elements of all copies, each range at a multiple of 64 elements.
   std::size_t size() const { return size_; }
 
-  /// Calls copy(to, from, n) for each piece; returns the view of the copies.
+  /// Calls copy(to, from, n) for each range; returns a view of the copies.
   template <class Copy>
   Spheres copy(S* to, Copy const& copy) const {
     for (std::size_t k = 0; k < count_; ++k) copy(to + piece_[k].begin, piece_[k].from, length(piece_[k]));

@@ -1,0 +1,220 @@
+/// \file
+/// A particle that may touch the mesh in a step, and the contacts that it has had in it.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include <collide/contact.hpp>
+#include <collide/detail/grid/triangle_ref.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/effect.hpp>
+
+namespace collide::detail {
+
+/// Keys of contacts: the smaller comes first. That is the earlier contact, and of those at the beginning of the motion
+/// the deeper one. Ties go to the face, then to the edge, so that on a plane which is divided into triangles the normal
+/// is that of the face below the centre; then to the lower triangle number.
+inline constexpr std::uint64_t no_contact = ~std::uint64_t{0};
+/// Bits for the time or the depth in a key; one more tells which of them it is.
+inline constexpr int key_bits = 29;
+
+/// The next time at or below a time from 0 to 1 that keys tell from others: a multiple of 2^-29 below 1.
+template <class S>
+COLLIDE_HD_INLINE S key_time(S time) {
+  constexpr auto ticks = std::uint32_t{1} << key_bits, last = ticks - (sizeof(S) == sizeof(float) ? 32 : 1);
+  return S(smaller(static_cast<std::uint32_t>(time * S(ticks)), last)) * (S(1) / S(ticks));
+}
+
+/// `time` is a `key_time`.
+template <class S>
+COLLIDE_HD_INLINE std::uint64_t contact_key(S time, contact<S> const& c) {
+  constexpr auto ticks = std::uint32_t{1} << key_bits;
+  std::uint32_t const first = time > 0 ? static_cast<std::uint32_t>(time * S(ticks)) | ticks
+                                       : ~ordered(static_cast<float>(c.depth)) >> (32 - key_bits);
+  return std::uint64_t{first} << 34 | std::uint64_t{static_cast<std::uint32_t>(c.kind)} << 32 | c.triangle;
+}
+
+/// The time of a contact, from its key.
+template <class S>
+COLLIDE_HD_INLINE S time_of_key(std::uint64_t key) {
+  constexpr auto ticks = std::uint32_t{1} << key_bits;
+  auto const first = static_cast<std::uint32_t>(key >> 34);
+  return (first & ticks) != 0 ? S(first & (ticks - 1)) * (S(1) / S(ticks)) : S(0);
+}
+
+/// How many of the contacts that a particle has had are recorded: the last ones.
+inline constexpr int max_recorded_contacts = 3;
+
+/// What is known of a swept particle alone.
+template <class S, bool IsSwept>
+struct remaining_motion {};
+template <class S>
+struct remaining_motion<S, true> {
+  S displacement[3];
+  S remaining_time;                     ///< of the step, after the contacts so far
+  id triangles[max_recorded_contacts];  ///< of the recorded contacts
+
+  COLLIDE_HD_INLINE vec3<S> motion() const { return {displacement[0], displacement[1], displacement[2]}; }
+};
+
+/// A particle that may touch the mesh in this step, in scratch memory. Plain numbers: scratch memory is not
+/// constructed.
+template <class S, bool IsSwept>
+struct active_particle : remaining_motion<S, IsSwept> {
+  static constexpr int max_recorded = max_recorded_contacts;
+
+  S centre[3], radius;
+  id number;
+  bool is_active;
+  std::uint8_t contact_count;                         ///< contacts so far in this step
+  std::uint8_t contacts_here;                         ///< those of them at this place
+  std::uint32_t candidate_count;                      ///< how many contacts have been considered as the next one
+  std::uint64_t best_key;                             ///< of the next contact
+  candidate_cursor cursor;                            ///< which triangles have been looked at
+  alignas(S) unsigned char best[sizeof(contact<S>)];  ///< the next contact
+
+  // of the recorded contacts; not set before there is one
+  S normals[max_recorded][3], points[max_recorded][3];
+  S last_impulse;                   ///< with which the last one repelled the particle
+  S arrival_velocity[3], start[3];  ///< before the contacts at this place, and where it led from
+
+  COLLIDE_HD_INLINE auto shape() const {
+    if constexpr (IsSwept) {
+      return moving_sphere<S>{{{centre[0], centre[1], centre[2]}, radius}, this->motion()};
+    } else {
+      return sphere<S>{{centre[0], centre[1], centre[2]}, radius};
+    }
+  }
+
+  COLLIDE_HD_INLINE void place(vec3<S> const& at, [[maybe_unused]] vec3<S> const& motion) {
+    for (int k = 0; k < 3; ++k) {
+      centre[k] = at[k];
+      if constexpr (IsSwept) this->displacement[k] = motion[k];
+    }
+  }
+
+  COLLIDE_HD_INLINE void set_best(contact<S> const& c) { std::memcpy(best, static_cast<void const*>(&c), sizeof c); }
+  COLLIDE_HD_INLINE contact<S> best_contact() const {
+    contact<S> c;
+    std::memcpy(static_cast<void*>(&c), best, sizeof c);
+    return c;
+  }
+
+  COLLIDE_HD_INLINE void record_contact(touching<S> const& c) {
+    int const slot = contact_count % max_recorded;
+    for (int k = 0; k < 3; ++k) {
+      normals[slot][k] = c.normal[k];
+      points[slot][k] = c.point[k];
+    }
+    last_impulse = c.impulse;
+    if constexpr (IsSwept) this->triangles[slot] = c.triangle;
+    ++contact_count;
+    ++contacts_here;
+  }
+
+  /// Begins with the contacts at a place: all in a step, but those of a particle that moves on to the next one.
+  COLLIDE_HD_INLINE void arrive(S time, vec3<S> const& velocity, vec3<S> const& from) {
+    bool is_same_place = contact_count > 0;
+    if constexpr (IsSwept) {
+      vec3<S> const moved = scaled(this->motion(), time);
+      is_same_place = is_same_place && dot(moved, moved) <= S(1e-6) * radius * radius;
+    }
+    if (is_same_place) return;
+    contacts_here = 0;
+    for (int k = 0; k < 3; ++k) {
+      arrival_velocity[k] = velocity[k];
+      start[k] = from[k];
+    }
+  }
+
+  /// True of a swept particle's triangle that it has touched before and leaves: no part of that is above the tangent
+  /// plane. To judge it once more would take exact arithmetic, as the distance is the radius.
+  COLLIDE_HD_INLINE bool is_leaving([[maybe_unused]] id triangle) const {
+    bool leaves = false;
+    if constexpr (IsSwept) {
+      for (int i = 0; i < max_recorded && i < contact_count; ++i) {
+        leaves = leaves || (this->triangles[i] == triangle && !is_approaching(normal_of(i)));
+      }
+    }
+    return leaves;
+  }
+
+  /// True if a point of the mesh is part of the same surface as a recorded contact: not above its tangent plane. So
+  /// inner edges of a surface that is divided into triangles are not felt.
+  COLLIDE_HD_INLINE bool is_internal_contact(vec3<S> const& point) const {
+    bool is_internal = false;
+    for (int i = 0; i < max_recorded; ++i) {
+      if (i >= contact_count) break;
+      S above = 0;
+      for (int k = 0; k < 3; ++k) above += normals[i][k] * (point[k] - points[i][k]);
+      bool leaves = true;
+      if constexpr (IsSwept) leaves = !is_approaching(normal_of(i));
+      is_internal = is_internal || (leaves && above <= contact_tolerance<S> * radius);
+    }
+    return is_internal;
+  }
+
+  /// True if the motion leads towards a surface with this normal, and not only along it.
+  COLLIDE_HD_INLINE bool is_approaching(vec3<S> const& normal) const {
+    vec3<S> const d = this->motion();
+    S const into = -dot(d, normal);
+    constexpr S tolerance = contact_tolerance<S>;
+    return into > 0 && (into * into > tolerance * tolerance * dot(d, d) || into > radius / 4);
+  }
+
+  /// True if so deep an overlap with the mesh is more than rounding.
+  COLLIDE_HD_INLINE bool overlaps(S depth) const {
+    return depth > contact_tolerance<S> * radius + rounding_at(vec3<S>(centre[0], centre[1], centre[2]));
+  }
+
+  /// Finds how to leave a contact such that this leaves the particle on the surfaces of those before it at this place:
+  /// the projection of the normal onto what they leave free. They count where the normal leads into them, and a single
+  /// one also where it leads off it but pushed harder than that relieves it, as in the two sides of an open groove.
+  COLLIDE_HD_INLINE void find_lift(touching<S>& c, vec3<S> const& velocity) const {
+    vec3<S> const& n = c.normal;
+    c.lift = n;
+    c.free_change = std::numeric_limits<S>::max();
+    int const count = smaller(int{contacts_here}, max_recorded);
+    if (count == 0) return;
+    auto const last = [&](int i) { return normal_of((contact_count - 1 - i) % max_recorded); };
+    int opposed = -1;
+    S along = 0;
+    for (int i = 0; i < count; ++i) {
+      S const with = dot(n, last(i));
+      if (with >= along) continue;
+      along = with;
+      opposed = i;
+    }
+    vec3<S> out = n;
+    S free = 0;
+    if (opposed >= 0) {
+      vec3<S> const wall = last(opposed);
+      free = larger(dot(velocity, wall), S(0)) / -along;
+      out -= wall * along;
+      for (int i = 0; i < count; ++i) {
+        if (i == opposed || dot(out, last(i)) >= -contact_tolerance<S>) continue;
+        vec3<S> const edge = cross(wall, last(i));
+        out = edge * (dot(n, edge) / dot(edge, edge));
+        free = 0;
+      }
+    } else if (count == 1) {
+      vec3<S> const wall = last(0);
+      S const with = dot(n, wall), apart = 1 - with * with;  // the square of the sine of the angle between the two
+      S const relief = 2 * with * larger(-dot(velocity, n), S(0));
+      if (!(apart > S(1e-2) && relief <= last_impulse * apart)) return;
+      out -= wall * with;
+    } else {
+      return;
+    }
+    S const height = dot(out, n);
+    if (!(height > S(1e-4))) return;  // between two walls that are nearly parallel
+    c.lift = out * (1 / height);
+    c.free_change = free;
+  }
+
+ private:
+  COLLIDE_HD_INLINE vec3<S> normal_of(int slot) const { return {normals[slot][0], normals[slot][1], normals[slot][2]}; }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,76 @@
+/// \file
+/// Sorts pairs into canonical order on an NVIDIA GPU. Needs nvcc.
+#pragma once
+
+#if !defined(__CUDACC__)
+#error "collide/detail/sinks/sort_pairs_cuda.cuh needs nvcc; without CUDA include the headers of the host space alone"
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include <cub/device/device_merge_sort.cuh>
+#include <cub/device/device_radix_sort.cuh>
+#include <cuda_runtime.h>
+
+#include <collide/contact.hpp>
+#include <collide/cuda_memory.cuh>
+#include <collide/memory.hpp>
+
+namespace collide::detail {
+
+/// The canonical order of pairs that are one number each, with the sphere in its lower half.
+struct canonical_less {
+  __device__ __forceinline__ bool operator()(std::uint64_t a, std::uint64_t b) const {
+    return (a << 32 | a >> 32) < (b << 32 | b >> 32);
+  }
+};
+
+/// Up to so many pairs it is faster to merge (docs/performance.md).
+inline constexpr std::size_t merge_sort_limit = std::size_t{1} << 18;
+
+/// Bits that ids below `n` take; at least one.
+inline int bits_for(std::size_t n) {
+  int b = 1;
+  while (b < 32 && (std::size_t{1} << b) < n) ++b;
+  return b;
+}
+
+/// Sorts pairs into canonical order: not very many by merging; more by radix, by triangle, then (stably) by sphere,
+/// only the bits that ids below `spheres` and `triangles` have. Takes temporary memory for `capacity` pairs, at least
+/// `n`.
+inline void sort_pairs_on_device(cudaStream_t stream, std::pmr::memory_resource* resource, pair* pairs, std::size_t n,
+                                 std::size_t capacity, std::size_t spheres, std::size_t triangles, buffer<pair>& other,
+                                 buffer<unsigned char>& scratch) {
+  static_assert(sizeof(pair) == sizeof(std::uint64_t), "a pair is one 64-bit key");
+  if (n < 2) return;
+  auto* const keys = reinterpret_cast<std::uint64_t*>(pairs);
+  // where there is room for many, the memory for both ways is taken the first time
+  bool const uses_radix = n > merge_sort_limit,
+             reserves_both = capacity > merge_sort_limit && other.capacity() < capacity;
+  std::size_t merge_bytes = 0, radix_bytes = 0;
+  if (!uses_radix || reserves_both) {
+    std::size_t const most = capacity < merge_sort_limit ? capacity : merge_sort_limit;
+    cuda_check(cub::DeviceMergeSort::SortKeys(nullptr, merge_bytes, keys, most, canonical_less{}, stream),
+               "cub::DeviceMergeSort::SortKeys");
+  }
+  if (uses_radix || reserves_both) {
+    cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, radix_bytes, keys, keys, capacity, 0, 64, stream),
+               "cub::DeviceRadixSort::SortKeys");
+  }
+  void* const temporary = scratch.reserve(resource, merge_bytes > radix_bytes ? merge_bytes : radix_bytes);
+  auto* const sorted =
+      reinterpret_cast<std::uint64_t*>(reserves_both ? other.reserve(resource, capacity) : other.data());
+  if (!uses_radix) {
+    cuda_check(cub::DeviceMergeSort::SortKeys(temporary, merge_bytes, keys, n, canonical_less{}, stream),
+               "cub::DeviceMergeSort::SortKeys");
+    return;
+  }
+  cuda_check(
+      cub::DeviceRadixSort::SortKeys(temporary, radix_bytes, keys, sorted, n, 32, 32 + bits_for(triangles), stream),
+      "cub::DeviceRadixSort::SortKeys");
+  cuda_check(cub::DeviceRadixSort::SortKeys(temporary, radix_bytes, sorted, keys, n, 0, bits_for(spheres), stream),
+             "cub::DeviceRadixSort::SortKeys");
+}
+
+}  // namespace collide::detail
