@@ -1,5 +1,8 @@
-# collide_program(NAME SOURCE...): an executable of tests, examples or benchmarks. Its sources are .cpp files that are
-# compiled as CUDA where COLLIDE_CUDA is ON and as C++ otherwise. What all of them share is in collide_options.
+# What executables of tests, examples and benchmarks share is in collide_options.
+# collide_program(NAME SOURCE...): its sources are .cpp files that are compiled as CUDA where COLLIDE_CUDA is ON and as
+# C++ otherwise.
+# collide_host_program(NAME SOURCE...): nothing in it is for CUDA.
+# Both link collide::compiled, so that they compile what is theirs alone.
 
 set(COLLIDE_EXTRA_INCLUDE "" CACHE PATH "Folder of third-party headers that the system lacks")
 
@@ -27,9 +30,13 @@ if(COLLIDE_WERROR)
                                                    $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Werror=all-warnings>)
 endif()
 
-function(collide_program name)
+function(collide_host_program name)
   add_executable(${name} ${ARGN})
-  target_link_libraries(${name} PRIVATE collide_options)
+  target_link_libraries(${name} PRIVATE collide_options collide::compiled)
+endfunction()
+
+function(collide_program name)
+  collide_host_program(${name} ${ARGN})
   if(COLLIDE_CUDA)
     set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
   endif()

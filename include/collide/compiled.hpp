@@ -13,8 +13,10 @@
       detail::output const&) const;
 
 /// The detectors of a broad phase, in namespace collide.
-#define COLLIDE_DETECTORS(PREFIX, BROAD_PHASE, SPACE, SCALAR)            \
-  COLLIDE_DETECTOR(PREFIX, BROAD_PHASE, karabassi<exact>, SPACE, SCALAR) \
+#define COLLIDE_DETECTORS(PREFIX, BROAD_PHASE, SPACE, SCALAR)                       \
+  COLLIDE_DETECTOR(PREFIX, BROAD_PHASE, karabassi<exact>, SPACE, SCALAR)            \
+  COLLIDE_DETECTOR(PREFIX, BROAD_PHASE, karabassi<single_precision>, SPACE, SCALAR) \
+  COLLIDE_DETECTOR(PREFIX, BROAD_PHASE, karabassi<double_precision>, SPACE, SCALAR) \
   COLLIDE_DETECTOR(PREFIX, BROAD_PHASE, karabassi_swept<exact>, SPACE, SCALAR)
 
 #define COLLIDE_COMPILED_ELSEWHERE(BROAD_PHASE, SPACE)          \
