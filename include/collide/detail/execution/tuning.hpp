@@ -18,7 +18,7 @@ struct host_bucket_tuning {
 
 /// How `bucket` works on a device, with many threads.
 struct device_bucket_tuning {
-  static constexpr double triangle_span_in_cells = 1.75;
+  static constexpr double triangle_span_in_cells = 1.5;
   static constexpr int threads_per_triangle = 2;
   static constexpr bool bins_spheres = false;
 };

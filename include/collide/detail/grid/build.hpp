@@ -147,7 +147,7 @@ struct fill_entries {
   COLLIDE_HD void operator()(std::size_t thread) const {
     constexpr std::uint32_t together = grid_insertion<S, Parts>::together;
     insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id triangle) {
-      std::uint32_t slots[together];
+      std::uint32_t slots[together] = {};
       for (std::uint32_t k = 0; k < together; ++k) {
         if (k < n) slots[k] = fetch_add(&cells[some[k].number].end, 1u);
       }
