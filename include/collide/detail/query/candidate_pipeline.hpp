@@ -149,8 +149,7 @@ struct candidate_pipeline {
     write_hits(block, b, block.shared(b.hit_count));
   }
 
-  /// Takes a hit. Called by any lane; where lanes work together, at most once between two calls of
-  /// `write_hits_if_full`.
+  /// Takes a hit of a lane; see `push_hits`.
   template <class Block, int Ahead>
   COLLIDE_HD_INLINE void push_hit(Block& block, pipeline_storage<Block, Ahead>& b, pair p) const {
     if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
@@ -162,22 +161,35 @@ struct candidate_pipeline {
     }
   }
 
-  /// Makes room for a hit per lane. Called by the whole block.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void write_hits_if_full(Block& block, pipeline_storage<Block, Ahead>& b) const {
+  /// Takes the pairs of those lanes that have a hit. Called by the whole block. What decides a pair may call a
+  /// function, from which the threads of a warp come back one after another; ptxas 13.0 lets some of them run on past a
+  /// barrier that follows if there is an atomic operation in between. So they meet at a barrier before they push.
+  template <class Block, int Ahead, class Pairs, class Flags>
+  COLLIDE_HD_INLINE void push_hits(Block& block, pipeline_storage<Block, Ahead>& b, Pairs& pairs,
+                                   Flags& are_hits) const {
+    block.each([&](int lane) {
+      if (are_hits[lane]) push_hit(block, b, pairs[lane]);
+    });
     std::uint32_t const hits = block.shared(b.hit_count);
     if (hits + Block::lanes > pipeline_storage<Block, Ahead>::capacity) write_hits(block, b, hits);
   }
 
  private:
-  /// Decides a candidate. Where lanes work together, a narrow phase in stages asks whether the box is in reach itself.
+  /// Decides a candidate of a lane that works alone.
   template <class Block, int Ahead, class Sphere>
   COLLIDE_HD_INLINE void process_one(Block& block, pipeline_storage<Block, Ahead>& b, pair p, Sphere const& s) const {
+    if (decide<Block>(p, s)) push_hit(block, b, p);
+  }
+
+  /// Whether a candidate is a hit. Where lanes work together, a narrow phase in stages asks whether the box is in reach
+  /// itself.
+  template <class Block, class Sphere>
+  COLLIDE_HD_INLINE bool decide(pair p, Sphere const& s) const {
     if constexpr (Block::lanes == 1 || !in_stages<NarrowPhase>::value) {
       sphere<S> const around = enclosing(s);
-      if (boxes != nullptr && !boxes[p.triangle].reached(around.centre, around.radius)) return;
+      if (boxes != nullptr && !boxes[p.triangle].reached(around.centre, around.radius)) return false;
     }
-    if (is_hit(p, mesh[p.triangle], s)) push_hit(block, b, p);
+    return is_hit(p, mesh[p.triangle], s);
   }
 
   /// What the narrow phase's filter leaves open is put off, or decided at once.
@@ -195,15 +207,18 @@ struct candidate_pipeline {
   /// Decides the `n` candidates that were gathered.
   template <class Block, int Ahead>
   COLLIDE_HD_INLINE void process(Block& block, pipeline_storage<Block, Ahead>& b, std::uint32_t n) const {
+    typename Block::template per_lane<pair> own;
+    typename Block::template per_lane<bool> hits;
     for (std::uint32_t base = 0; base < n; base += Block::lanes) {
       block.each([&](int lane) {
         std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
         if (lane == 0) b.candidate_count = 0;
+        hits[lane] = false;
         if (i >= n) return;
-        pair const p = b.candidates[i];
-        process_one(block, b, p, spheres[p.sphere]);
+        own[lane] = b.candidates[i];
+        hits[lane] = decide<Block>(own[lane], spheres[own[lane].sphere]);
       });
-      write_hits_if_full(block, b);
+      push_hits(block, b, own, hits);
     }
   }
 

@@ -71,16 +71,19 @@ struct resolve_deferred {
     }
 
     block.each([&](int lane) { pipeline.reset(s.hits, lane); });
+    typename Block::template per_lane<pair> own;
+    typename Block::template per_lane<bool> hits;
     for (std::uint64_t base = block.index() * Block::lanes; base < work; base += blocks * Block::lanes) {
       block.each([&](int lane) {
         std::uint64_t const i = base + static_cast<std::uint64_t>(lane);
+        hits[lane] = false;
         if (i >= work) return;
-        pair const p = all_found_room
-                           ? deferred.pairs[i]
-                           : pair{static_cast<id>(i / pipeline.mesh.size()), static_cast<id>(i % pipeline.mesh.size())};
-        if (is_hit(p, all_found_room)) pipeline.push_hit(block, s.hits, p);
+        own[lane] = all_found_room
+                        ? deferred.pairs[i]
+                        : pair{static_cast<id>(i / pipeline.mesh.size()), static_cast<id>(i % pipeline.mesh.size())};
+        hits[lane] = is_hit(own[lane], all_found_room);
       });
-      pipeline.write_hits_if_full(block, s.hits);
+      pipeline.push_hits(block, s.hits, own, hits);
     }
     pipeline.drain(block, s.hits);
     // the last block that had something to do empties the list; those that come later find it so
