@@ -144,7 +144,7 @@ void test(benchmark::State& state, bench::scene_kind const& kind, Space space) {
     for (auto const* const stage : stages) counts[stage] = 0;
     for (auto const& t : truth) {
       counts["colliding"] += t.hit;
-      ++counts[stages[static_cast<int>(t.by)]];
+      ++counts[stages[static_cast<int>(t.decided_by)]];
     }
     for (auto const& c : each_precision([&](auto of) { return [=] { decide(of, n); }; })) {
       c.work();

@@ -147,7 +147,7 @@ struct test_list {
           last = number;
         }
         tests.push_back({static_cast<collide::id>(radii.size() - 1), triangle});
-        truth.push_back(collide::detail::decide(s.mesh()[triangle], ball));
+        truth.push_back(collide::detail::intersects_exact(s.mesh()[triangle], ball));
       }
     }
   }

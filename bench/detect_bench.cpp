@@ -122,7 +122,7 @@ void add_sinks(std::string const& method, Space space) {
   };
   with("canonical", [] { return collide::pairs(collide::order::canonical); });
   with("count", [] { return collide::count(); });
-  with("any", [] { return collide::any(); });
+  with("any", [] { return collide::any_hit(); });
   with("contacts", [] { return collide::contacts<float>(); });
   with("closest", [] { return collide::closest<float>(); });
 }

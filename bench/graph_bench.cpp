@@ -33,7 +33,7 @@ namespace {
 struct into_array {
   collide::pair* to;
   std::uint64_t capacity;
-  collide::detail::tally numbers;
+  collide::detail::hit_counter numbers;
 
   template <class Space, class Query>
   void run(Space&, Query const& query) {
@@ -83,9 +83,9 @@ struct test_told {
   collide::pair* to;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    using stages = collide::detail::in_stages<collide::karabassi<collide::exact>>;
+    using stages = collide::detail::filtered_predicate<collide::karabassi<collide::exact>>;
     collide::pair const p = told[i];
-    if (stages::attempt(mesh[p.triangle], spheres[p.sphere]) != collide::detail::verdict::miss) to[i] = p;
+    if (stages::filter(mesh[p.triangle], spheres[p.sphere]) != collide::detail::verdict::miss) to[i] = p;
   }
 };
 
@@ -97,8 +97,8 @@ struct scene {
   std::optional<collide::uploaded_spheres<float>> far;  ///< the same, but for those near the mesh, which are elsewhere
   collide::pairs told;                                  ///< all pairs, in canonical order
   collide::buffer<collide::pair> pairs;
-  collide::detail::tally_memory memory_of_total;
-  collide::detail::tally total;
+  collide::detail::hit_counter_buffer memory_of_total;
+  collide::detail::hit_counter total;
   float radius;
   double floor, floor_of_frame;
 
@@ -150,7 +150,7 @@ struct scene {
     // with cells as wide as here, each cell with triangles is within this of one of them
     auto const reach = static_cast<float>(radius + 4 * wide.cell_width());
     auto const around = collide::upload(space, collide::spheres_xyz(centres.data(), centres.size() / 3, reach));
-    std::vector<std::uint8_t> const near = wide.detect(mesh->view(), around.view(), collide::any()).to_host();
+    std::vector<std::uint8_t> const near = wide.detect(mesh->view(), around.view(), collide::any_hit()).to_host();
     auto const first = static_cast<std::size_t>(std::find(near.begin(), near.end(), 0) - near.begin());
     if (first == near.size()) throw collide::error("graph_bench: all spheres are near the mesh");
     for (std::size_t i = 0, last = first; i < near.size(); ++i) {

@@ -140,7 +140,9 @@ struct study {
     space.copy_from_host(made.displacements.reserve(space.resource(), 3 * n), ways.data(), 3 * n);
     return made;
   }
-  collide::moving_sphere_view<float> moving() const { return collide::moving(spheres.view(), displacements.data()); }
+  collide::moving_sphere_view<float> moving() const {
+    return collide::with_displacements(spheres.view(), displacements.data());
+  }
 };
 
 template <class Space>

@@ -20,6 +20,7 @@
 #include <benchmark/benchmark.h>
 
 #include <collide/absorb.hpp>
+#include <collide/adhesion.hpp>
 #include <collide/bounce.hpp>
 #include <collide/bounds.hpp>
 #include <collide/bucket.cuh>
@@ -33,7 +34,6 @@
 #include <collide/sleep.hpp>
 #include <collide/sphere_contact.hpp>
 #include <collide/spin.hpp>
-#include <collide/stick.hpp>
 #include <collide/upload.hpp>
 #include <collide/wind.hpp>
 
@@ -180,7 +180,7 @@ class suite {
   }
 
   /// A box around that lattice.
-  collide::bounds around_packed() const {
+  collide::box_walls around_packed() const {
     double const near = -radius_, far = 1.98 * radius_ * static_cast<double>(side());
     return {{near, near, near}, {far, far, far}, 0.5};
   }
@@ -257,17 +257,17 @@ void add_all(suite<Space> const& scene) {
   scene.template add<karabassi_swept<>>("swept: gravity, bounce", gravity{}, bounce{});
   scene.add("gravity, drag", gravity{}, drag{0.1, 0.01});
   scene.add("gravity, wind", gravity{}, wind<>{0.1, 0.01, {1, 0, 0}});
-  scene.add("gravity, bounds", gravity{}, bounds{});
-  scene.add("gravity, periodic", gravity{}, periodic{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}});
+  scene.add("gravity, bounds", gravity{}, box_walls{});
+  scene.add("gravity, periodic", gravity{}, periodic_box{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}});
   scene.add("gravity, bounce, polydisperse", gravity{}, bounce{}, polydisperse{});
   scene.add("gravity, bounce, friction", gravity{}, bounce{}, friction{});
   scene.add("gravity, bounce, friction, spin", gravity{}, bounce{}, friction{}, spin{});
-  scene.add("gravity, bounce, stick", gravity{}, bounce{}, stick{});
+  scene.add("gravity, bounce, stick", gravity{}, bounce{}, adhesion{});
   scene.add("sleep, gravity, bounce", collide::sleep{}, gravity{}, bounce{});
   scene.add("sleep, gravity, bounce: all asleep", collide::sleep{1e30, 5}, gravity{}, bounce{});
   scene.add("gravity, absorb", gravity{}, absorb{});
   scene.add("emit, gravity, bounce", emit{1e5, {}}, gravity{}, bounce{});
-  auto const contact = sphere_contact::of_collision(0.5, 2e-3, double(scene.radius()), 1);
+  auto const contact = sphere_contact::from_restitution(0.5, 2e-3, double(scene.radius()), 1);
   scene.add("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
   scene.add_packed("sphere_contact, gravity", contact, gravity{});
   scene.add_packed("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
@@ -310,28 +310,29 @@ class counting final : public std::pmr::memory_resource {
 /// sphere.
 template <class Space, class MakeSpace>
 void add_many(MakeSpace const& make, std::size_t n) {
-  benchmark::RegisterBenchmark((std::string("simulation/") + Space::name() + "/many/" + std::to_string(n)).c_str(),
-                               [=](benchmark::State& state) {
-                                 using namespace collide;
-                                 Space const plain = make(nullptr);
-                                 counting counted(plain.resource());
-                                 Space const space = make(&counted);
-                                 auto const contact = sphere_contact::of_collision(0.5, 2e-3, 0.01, 1000);
-                                 simulation<detector<bucket, karabassi<>, Space>, sphere_contact, gravity, bounds> made(
-                                     space, contact, gravity{}, bounds{});
-                                 {
-                                   buffer<float> centres;
-                                   auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
-                                   plain.for_each(n, fill_space{centres.reserve(plain.resource(), 3 * n), side});
-                                   made.set(spheres_xyz(static_cast<float const*>(centres.data()), n, 0.01f));
-                                   plain.synchronize();
-                                 }
-                                 made.steps(2, 1e-4f);
-                                 bench::stopwatch<Space> watch(space);
-                                 for (auto _ : state) state.SetIterationTime(watch([&] { made.step(1e-4f); }));
-                                 state.counters["spheres"] = static_cast<double>(n);
-                                 state.counters["bytes"] = static_cast<double>(counted.bytes) / static_cast<double>(n);
-                               })
+  benchmark::RegisterBenchmark(
+      (std::string("simulation/") + Space::name() + "/many/" + std::to_string(n)).c_str(),
+      [=](benchmark::State& state) {
+        using namespace collide;
+        Space const plain = make(nullptr);
+        counting counted(plain.resource());
+        Space const space = make(&counted);
+        auto const contact = sphere_contact::from_restitution(0.5, 2e-3, 0.01, 1000);
+        simulation<detector<bucket, karabassi<>, Space>, sphere_contact, gravity, box_walls> made(
+            space, contact, gravity{}, box_walls{});
+        {
+          buffer<float> centres;
+          auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
+          plain.for_each(n, fill_space{centres.reserve(plain.resource(), 3 * n), side});
+          made.set(spheres_xyz(static_cast<float const*>(centres.data()), n, 0.01f));
+          plain.synchronize();
+        }
+        made.steps(2, 1e-4f);
+        bench::stopwatch<Space> watch(space);
+        for (auto _ : state) state.SetIterationTime(watch([&] { made.step(1e-4f); }));
+        state.counters["spheres"] = static_cast<double>(n);
+        state.counters["bytes"] = static_cast<double>(counted.bytes) / static_cast<double>(n);
+      })
       ->UseManualTime()
       ->Iterations(3)
       ->Unit(benchmark::kMillisecond);

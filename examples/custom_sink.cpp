@@ -12,7 +12,7 @@ struct count_for_triangle {
   unsigned* counts;
 
   /// Called for each batch of n hits, for sinks that store them one after another. This one does not.
-  COLLIDE_HD std::uint64_t reserve(std::uint64_t) const { return 0; }
+  COLLIDE_HD std::uint64_t allocate(std::uint64_t) const { return 0; }
 
   /// Called for each hit.
   template <class Hit>

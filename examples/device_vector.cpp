@@ -32,7 +32,7 @@ int main() {
     auto const spheres = collide::spheres_xyz(thrust::raw_pointer_cast(centres.data()), touched.size(), 0.2f);
 
     // The flags are set on the stream, and Thrust goes on with them there: the host waits for the sum alone.
-    collide::any flags(thrust::raw_pointer_cast(touched.data()));
+    collide::any_hit flags(thrust::raw_pointer_cast(touched.data()));
     detector.query(spheres, flags);
     int const n = thrust::reduce(thrust::cuda::par.on(stream), touched.begin(), touched.end(), 0);
     std::printf("%d of %d spheres touch the mesh\n", n, static_cast<int>(touched.size()));

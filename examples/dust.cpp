@@ -53,7 +53,7 @@ struct plumes {
 
 template <class Space>
 using dust =
-    simulation<detector<bucket, karabassi<>, Space>, emit_from<plumes>, gravity, wind<breeze>, bounce, absorb_in>;
+    simulation<detector<bucket, karabassi<>, Space>, emit_from<plumes>, gravity, wind<breeze>, bounce, absorbing_box>;
 
 constexpr double speed = 2.5;
 constexpr boulder rocks[boulders] = {{-0.8, -0.5, 0.7}, {0.5, 0.9, 0.5}, {1.4, -0.6, 0.35}};
@@ -61,7 +61,7 @@ constexpr boulder rocks[boulders] = {{-0.8, -0.5, 0.7}, {0.5, 0.9, 0.5}, {1.4, -
 constexpr auto make = [](auto space, io::film const& film) {
   return dust<decltype(space)>(space, emit_from<plumes>{film.rate(), {speed}}, gravity{0, 0, -0.3},
                                wind<breeze>{3, 0, {speed, {rocks[0], rocks[1], rocks[2]}}}, bounce{0.1},
-                               absorb_in{{3, -10, -1}, {10, 10, 10}});
+                               absorbing_box{{3, -10, -1}, {10, 10, 10}});
 };
 
 /// The plain and the boulders.

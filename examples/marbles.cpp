@@ -22,7 +22,7 @@ constexpr double turns = 2.25, helix = 0.3, top = 0.7, bottom = 0.38, gutter = 0
 constexpr auto make = [](auto space, io::film const& film) {
   return marbles<decltype(space)>(
       space, emit{film.rate(), {{helix, 0.02, top - gutter + size}, 0, {0, 1.5, -0.1}, 0.02}}, gravity{},
-      sphere_contact::of_collision(0.7, duration, size, 2500, 0.2), bounce{0.4}, friction{0.4, 0.3}, spin{0.012});
+      sphere_contact::from_restitution(0.7, duration, size, 2500, 0.2), bounce{0.4}, friction{0.4, 0.3}, spin{0.012});
 };
 
 /// A gutter that winds down into a bowl.

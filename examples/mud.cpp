@@ -1,12 +1,12 @@
 /// \file
 /// Mud is thrown at a slope, splats, and slides down; what is left on it sticks.
 
+#include <collide/adhesion.hpp>
 #include <collide/bounce.hpp>
 #include <collide/bounds.hpp>
 #include <collide/friction.hpp>
 #include <collide/gravity.hpp>
 #include <collide/sphere_contact.hpp>
-#include <collide/stick.hpp>
 
 #include "io/cohesion.hpp"
 #include "io/film.hpp"
@@ -30,15 +30,16 @@ struct shovel {
 
 template <class Space>
 using mud = simulation<detector<bucket, karabassi<>, Space>, emit_from<shovel>, gravity, sphere_contact, cohesion,
-                       bounce, friction, stick, bounds>;
+                       bounce, friction, adhesion, box_walls>;
 
 constexpr double half = 0.7, size = 0.014, duration = 0.008;
 
 constexpr auto make = [](auto space, io::film const& film) {
-  return mud<decltype(space)>(space, emit_from<shovel>{film.rate(), {static_cast<double>(film.particles) / 6, 0.1}},
-                              gravity{}, sphere_contact::of_collision(0.15, duration, size, 1800, 0.1), cohesion{20},
-                              bounce{0}, friction{0.3, 0.2}, stick{60, 2},
-                              bounds{{-bounds::none, -half, -bounds::none}, {bounds::none, half, bounds::none}, 0});
+  return mud<decltype(space)>(
+      space, emit_from<shovel>{film.rate(), {static_cast<double>(film.particles) / 6, 0.1}}, gravity{},
+      sphere_contact::from_restitution(0.15, duration, size, 1800, 0.1), cohesion{20}, bounce{0}, friction{0.3, 0.2},
+      adhesion{60, 2},
+      box_walls{{-box_walls::none, -half, -box_walls::none}, {box_walls::none, half, box_walls::none}, 0});
 };
 
 /// Level ground, which rises to a slope that is steep and uneven.

@@ -1,13 +1,13 @@
 /// \file
 /// Snow falls on hilly ground and a statue, sticks to them and piles up.
 
+#include <collide/adhesion.hpp>
 #include <collide/bounce.hpp>
 #include <collide/bounds.hpp>
 #include <collide/drag.hpp>
 #include <collide/gravity.hpp>
 #include <collide/sleep.hpp>
 #include <collide/sphere_contact.hpp>
-#include <collide/stick.hpp>
 
 #include "io/cohesion.hpp"
 #include "io/film.hpp"
@@ -32,15 +32,15 @@ struct sky {
 
 template <class Space>
 using snow = simulation<detector<bucket, karabassi<>, Space>, emit_from<sky>, sleep, gravity, drag, sphere_contact,
-                        cohesion, bounce, stick, bounds>;
+                        cohesion, bounce, adhesion, box_walls>;
 
 constexpr double half = 0.7, size = 0.025, speed = 1.4, duration = 0.016;
 
 constexpr auto make = [](auto space, io::film const& film) {
-  return snow<decltype(space)>(space, emit_from<sky>{film.rate(), {half - size, 1.65, speed}}, sleep{0.05, 40},
-                               gravity{}, drag{0, 9.81 / (speed * speed)},
-                               sphere_contact::of_collision(0.2, duration, size, 100, 0.9), cohesion{60}, bounce{0},
-                               stick{200}, bounds{{-half, -half, -bounds::none}, {half, half, bounds::none}, 0});
+  return snow<decltype(space)>(
+      space, emit_from<sky>{film.rate(), {half - size, 1.65, speed}}, sleep{0.05, 40}, gravity{},
+      drag{0, 9.81 / (speed * speed)}, sphere_contact::from_restitution(0.2, duration, size, 100, 0.9), cohesion{60},
+      bounce{0}, adhesion{200}, box_walls{{-half, -half, -box_walls::none}, {half, half, box_walls::none}, 0});
 };
 
 /// Hills, and on them a bumpy ring on a pedestal.

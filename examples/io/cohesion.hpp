@@ -15,7 +15,7 @@ struct cohesion {
   double pull = 0;
 
   template <class Particle, class Seen, class S>
-  COLLIDE_HD_INLINE void meet(Particle& p, Seen const& self, Seen const& other, S dt) const {
+  COLLIDE_HD_INLINE void on_pair_contact(Particle& p, Seen const& self, Seen const& other, S dt) const {
     collide::vec3<S> const towards = other[collide::position{}] - self[collide::position{}];
     S const distance = towards.norm();
     if (distance > 0) p[collide::velocity{}] += towards * (S(pull) * dt / distance);

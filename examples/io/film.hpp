@@ -68,13 +68,13 @@ namespace detail {
 
 inline char const* name_of(collide::velocity) { return "velocity"; }
 inline char const* name_of(collide::angular_velocity) { return "angular_velocity"; }
-inline char const* name_of(collide::stuck) { return "stuck"; }
+inline char const* name_of(collide::adhered) { return "stuck"; }
 inline char const* name_of(collide::slow_steps) { return "slow_steps"; }
 
 /// A column's values of the particles that are there, and how many each has.
 template <class Column, class Simulation>
 auto of_present(Simulation const& simulation) {
-  auto const present = simulation.template to_host<collide::present>();
+  auto const present = simulation.template to_host<collide::alive>();
   auto values = simulation.template to_host<Column>();
   std::size_t const width = values.size() / present.size();  // not of those that are there: there may be none
   std::size_t kept = 0;
@@ -93,7 +93,7 @@ void write_particles(std::string const& path, Simulation const& simulation, coll
   std::vector<vtk_array> known{{"radius", std::vector<float>(n, simulation.spheres().common_radius())}};
   auto const add = [&](auto column) {
     using type = decltype(column);
-    if constexpr (!std::is_same<type, collide::position>::value && !std::is_same<type, collide::present>::value) {
+    if constexpr (!std::is_same<type, collide::position>::value && !std::is_same<type, collide::alive>::value) {
       auto const [values, width] = of_present<type>(simulation);
       known.emplace_back(name_of(column), values, width);
     }

@@ -37,7 +37,7 @@ void write_contacts(output_file& out, std::vector<collide::contact<S>> const& co
   write_table(out, "sphere,triangle,x,y,z,nx,ny,nz,depth,feature,index", contacts, [&](collide::contact<S> const& c) {
     out << c.sphere << "," << c.triangle;
     for (auto const* v : {&c.point, &c.normal}) out << "," << v->x() << "," << v->y() << "," << v->z();
-    out << "," << c.depth << "," << features[static_cast<int>(c.kind)] << "," << c.index;
+    out << "," << c.depth << "," << features[static_cast<int>(c.feature)] << "," << c.feature_index;
   });
 }
 

@@ -6,40 +6,40 @@
 
 namespace collide {
 
-/// Particles vanish where they touch the mesh. They keep their place in memory, with `present` 0, and cost next to
+/// Particles vanish where they touch the mesh. They keep their place in memory, with `alive` 0, and cost next to
 /// nothing.
 struct absorb {
-  using writes = columns<present>;
+  using writes = columns<alive>;
 
   template <class Particle>
-  COLLIDE_HD_INLINE bool skips(Particle const& p) const {
-    return p[present{}] == 0;
+  COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {
+    return p[alive{}] == 0;
   }
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void touch(Particle& p, touching<S>&, S) const {
-    p[present{}] = 0;
+  COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>&, S) const {
+    p[alive{}] = 0;
   }
 };
 
 /// Particles vanish where their centre is in a box at the end of a step.
-struct absorb_in {
+struct absorbing_box {
   using reads = columns<position>;
-  using writes = columns<present>;
+  using writes = columns<alive>;
 
   double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
 
   template <class Particle>
-  COLLIDE_HD_INLINE bool skips(Particle const& p) const {
-    return p[present{}] == 0;
+  COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {
+    return p[alive{}] == 0;
   }
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void finish(Particle& p, S) const {
+  COLLIDE_HD_INLINE void end_step(Particle& p, S) const {
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
       S const x = p[position{}][k];
       inside = inside && x >= S(lower[k]) && x <= S(upper[k]);
     }
-    if (inside) p[present{}] = 0;
+    if (inside) p[alive{}] = 0;
   }
 };
 

@@ -36,12 +36,12 @@ struct all_pairs_query {
 
   /// The spheres of a lane, and a triangle of the tile that some of them may touch.
   struct encounter {
-    std::uint16_t lane, triangle;
+    std::uint16_t thread_rank, triangle;
   };
 
   template <class Block>
   struct scratch {
-    static constexpr std::uint32_t capacity = Block::lanes > 1 ? 2 * Block::lanes : 32;
+    static constexpr std::uint32_t capacity = Block::num_threads > 1 ? 2 * Block::num_threads : 32;
     typename Block::template staging<lifted_bounds<S>, tile> staged;
     encounter encounters[capacity];
     std::uint32_t count;  ///< may be more than there is room for
@@ -51,30 +51,31 @@ struct all_pairs_query {
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
-    std::size_t const first = block.index() / splits * Block::lanes * n;
+    std::size_t const first = block.index() / splits * Block::num_threads * n;
     std::size_t const triangles = pipeline.mesh.size();
     std::size_t const share = (triangles + splits - 1) / splits;
     std::size_t const begin = block.index() % splits * share;
     std::size_t const end = smaller(begin + share, triangles);
 
-    typename Block::template per_lane<lifted_batch<S, n>> own;
+    typename Block::template thread_private<lifted_batch<S, n>> own;
     vec3<S> const origin = lifted_origin(pipeline.mesh);
-    block.each([&](int lane) {
-      pipeline.reset(s.hits, lane);
-      if (lane == 0) s.count = 0;
-      own[lane].load(pipeline.spheres, first + static_cast<std::size_t>(lane) * n, origin);
+    block.for_each_thread([&](int thread_rank) {
+      pipeline.reset(s.hits, thread_rank);
+      if (thread_rank == 0) s.count = 0;
+      own[thread_rank].load(pipeline.spheres, first + static_cast<std::size_t>(thread_rank) * n, origin);
     });
     for (std::size_t base = begin; base < end; base += tile) {
       int const m = static_cast<int>(smaller(static_cast<std::size_t>(tile), end - base));
       auto const* const staged = block.stage(s.staged, bounds + base, m);
-      typename Block::template per_lane<int> next;
+      typename Block::template thread_private<int> next;
       bool more = false;
       do {  // again if there were more encounters than go on the list
-        block.each([&](int lane) {
-          if (!more) next[lane] = 0;
-          vectorised([&] { next[lane] = find(block, s, own[lane], staged, next[lane], m, lane); });
+        block.for_each_thread([&](int thread_rank) {
+          if (!more) next[thread_rank] = 0;
+          multiversioned(
+              [&] { next[thread_rank] = find(block, s, own[thread_rank], staged, next[thread_rank], m, thread_rank); });
         });
-        std::uint32_t const found = block.shared(s.count);
+        std::uint32_t const found = block.broadcast(s.count);
         more = found > scratch<Block>::capacity;
         test(block, s, smaller(found, scratch<Block>::capacity), first, base);
       } while (more);
@@ -87,12 +88,12 @@ struct all_pairs_query {
   /// the first for which there was none.
   template <class Block, int N>
   COLLIDE_HD_INLINE static int find(Block& block, scratch<Block>& s, lifted_batch<S, N> const& own,
-                                    lifted_bounds<S> const* staged, int t, int m, int lane) {
+                                    lifted_bounds<S> const* staged, int t, int m, int thread_rank) {
     for (; t < m; ++t) {
-      if (!own.any_reaches(staged[t])) continue;
+      if (!own.any_overlaps(staged[t])) continue;
       std::uint32_t const slot = block.add(s.count, 1);
       if (slot >= scratch<Block>::capacity) break;
-      s.encounters[slot] = {static_cast<std::uint16_t>(lane), static_cast<std::uint16_t>(t)};
+      s.encounters[slot] = {static_cast<std::uint16_t>(thread_rank), static_cast<std::uint16_t>(t)};
     }
     return t;
   }
@@ -101,14 +102,15 @@ struct all_pairs_query {
   template <class Block>
   COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, std::uint32_t n, std::size_t first,
                               std::size_t base) const {
-    constexpr std::uint32_t per_lane = Block::items;
-    for (std::uint32_t i = 0; i < n * per_lane; i += Block::lanes) {
-      block.each([&](int lane) {
-        if (lane == 0) s.count = 0;
-        std::uint32_t const own = i + static_cast<std::uint32_t>(lane);
-        if (own >= n * per_lane) return;
-        encounter const e = s.encounters[own / per_lane];
-        test_one(block, s, first + std::size_t{e.lane} * per_lane + own % per_lane, base + e.triangle);
+    constexpr std::uint32_t thread_private = Block::items;
+    for (std::uint32_t i = 0; i < n * thread_private; i += Block::num_threads) {
+      block.for_each_thread([&](int thread_rank) {
+        if (thread_rank == 0) s.count = 0;
+        std::uint32_t const own = i + static_cast<std::uint32_t>(thread_rank);
+        if (own >= n * thread_private) return;
+        encounter const e = s.encounters[own / thread_private];
+        test_one(block, s, first + std::size_t{e.thread_rank} * thread_private + own % thread_private,
+                 base + e.triangle);
       });
       pipeline.drain_if_full(block, s.hits);
     }
@@ -118,8 +120,8 @@ struct all_pairs_query {
   COLLIDE_HD_INLINE void test_one(Block& block, scratch<Block>& s, std::size_t i, std::size_t triangle) const {
     if (i >= pipeline.spheres.size()) return;
     auto const ball = pipeline.spheres[i];
-    sphere<S> const around = enclosing(ball);
-    if (!bounds_of(pipeline.mesh[triangle]).reached(around.centre, around.radius)) return;
+    sphere<S> const around = swept_bounding_sphere(ball);
+    if (!bounding_sphere_of(pipeline.mesh[triangle]).overlaps(around.centre, around.radius)) return;
     pipeline.push(block, s.hits, {static_cast<id>(i), static_cast<id>(triangle)}, ball);
   }
 };
@@ -130,7 +132,7 @@ struct compute_lifted_bounds {
   mesh_view<S> mesh;
   lifted_bounds<S>* bounds;
   COLLIDE_HD void operator()(std::size_t i) const {
-    bounds[i] = lifted_bounds<S>(bounds_of(mesh[i]), lifted_origin(mesh));
+    bounds[i] = lifted_bounds<S>(bounding_sphere_of(mesh[i]), lifted_origin(mesh));
   }
 };
 
@@ -156,7 +158,7 @@ struct all_pairs {
     void prepare(Space&, all_pairs const&, sphere_view<S> const&) {}
 
     template <class NarrowPhase, class Space, class Output>
-    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) const {
+    void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) const {
       detail::all_pairs_query<S, NarrowPhase, Output> body{{mesh_, spheres, output}, bounds_.data(), 1};
       std::size_t const blocks = detail::grid_size<Space>(spheres.size(), body);
       std::size_t const tiles = (mesh_.size() + body.tile - 1) / body.tile;
@@ -166,7 +168,7 @@ struct all_pairs {
     }
 
     /// What a kernel asks for the triangles near a single sphere; valid until the next build.
-    detail::all_pairs_lookup<S> lookup() const { return {{mesh_, nullptr}}; }
+    detail::all_pairs_ref<S> lookup() const { return {{mesh_, nullptr}}; }
 
     template <class Space>
     double cell_width(Space&) const {

@@ -46,7 +46,7 @@ struct automatic {
     }
 
     template <class NarrowPhase, class Space, class Output>
-    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) {
+    void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
       if (uses_grid_) {
         grid_.template query<NarrowPhase>(space, spheres, output);
       } else {

@@ -20,14 +20,14 @@ struct bounce {
   double restitution = 0.5;
 
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void touch(Particle& p, touching<S>& t, S dt) const {
+  COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
     S const e = S(restitution), speed = -detail::dot(p[velocity{}], t.normal);
     S back = detail::larger(t.depth, S(0));
     if (speed > 0) {
-      S const rebound = e * detail::larger(t.approach, S(0));
-      t.rests = rebound <= 3 * -detail::dot(t.gain, t.normal);
-      t.repel(p[velocity{}], t.rests ? speed : speed + rebound);
-      if (!t.rests) back += rebound * detail::smaller(back / speed, dt);
+      S const rebound = e * detail::larger(t.approach_speed, S(0));
+      t.is_resting = rebound <= 3 * -detail::dot(t.force_dv, t.normal);
+      t.repel(p[velocity{}], t.is_resting ? speed : speed + rebound);
+      if (!t.is_resting) back += rebound * detail::smaller(back / speed, dt);
     }
     t.move_out(p[position{}], back);
   }

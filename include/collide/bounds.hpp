@@ -11,7 +11,7 @@ namespace collide {
 
 /// Walls of a box, which needs no mesh. A particle that is beyond a wall at the end of a step is put back to it, and
 /// its velocity turns around, times `restitution`. An infinite bound is no wall.
-struct bounds {
+struct box_walls {
   using writes = columns<position, velocity>;
 
   static constexpr double none = std::numeric_limits<double>::infinity();
@@ -19,7 +19,7 @@ struct bounds {
   double restitution = 0.5;
 
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void finish(Particle& p, S) const {
+  COLLIDE_HD_INLINE void end_step(Particle& p, S) const {
     for (int k = 0; k < 3; ++k) {
       S& x = p[position{}][k];
       S& v = p[velocity{}][k];
@@ -37,13 +37,13 @@ struct bounds {
 
 /// A box that repeats: a particle that leaves on one side comes in on the other. Neither the mesh nor contacts between
 /// spheres repeat.
-struct periodic {
+struct periodic_box {
   using writes = columns<position>;
 
   double lower[3] = {0, 0, 0}, upper[3] = {1, 1, 1};
 
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void finish(Particle& p, S) const {
+  COLLIDE_HD_INLINE void end_step(Particle& p, S) const {
     for (int k = 0; k < 3; ++k) {
       S& x = p[position{}][k];
       S const low = S(lower[k]), high = S(upper[k]);

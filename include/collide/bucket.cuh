@@ -62,15 +62,15 @@ class bucket::index {
     auto const affords = [&](std::size_t bytes) {
       return options.memory_budget == 0 || bytes <= options.memory_budget;
     };
-    if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_box<S>))) {
+    if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_aabb<S>))) {
       boxes_.reserve(space.resource(), mesh.size());
     } else {
       boxes_.release();
     }
     if (!affords(fixed_bytes)) return summary_.release();
     auto* const summary = summary_.reserve(space.resource(), 1);
-    detail::mesh_summary<S>::clear(space, summary);
-    detail::summarise_mesh<S> const body{mesh, summary, boxes_.data()};
+    detail::mesh_statistics<S>::clear(space, summary);
+    detail::compute_mesh_statistics<S> const body{mesh, summary, boxes_.data()};
     space.launch(detail::grid_size<Space>(mesh.size(), body), body);
   }
 
@@ -79,7 +79,7 @@ class bucket::index {
   template <class Space>
   void prepare(Space& space, bucket const& options, S radius) {
     origin_ = origin::radius;
-    if (summary_.data() == nullptr || !detail::valid_radius(radius) || !detail::finite(radius)) return;
+    if (summary_.data() == nullptr || !detail::is_valid_radius(radius) || !detail::is_finite(radius)) return;
     make_grids(space, options, &radius, 1);
     if (stage_ == stage::planned && !bins_spheres<Space>(options)) enter_triangles(space, options);
   }
@@ -104,7 +104,7 @@ class bucket::index {
       if (summary_.data() != nullptr && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
           can_bin<Space>(options, spheres.size())) {
         S const reach = bins_.reach_of(space, spheres);
-        if (detail::finite(reach) && reach <= 2 * spheres.common_radius()) {
+        if (detail::is_finite(reach) && reach <= 2 * spheres.common_radius()) {
           bool const kept = requested_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
           if (!kept) {
             S const wider = reach + reach / 16;  // so that a bit more next time fits too
@@ -121,7 +121,7 @@ class bucket::index {
 
   /// Puts one pass over the spheres on the space's stream; the last `prepare` was for these.
   template <class NarrowPhase, class Space, class Output>
-  void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) {
+  void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
     using pipeline = detail::candidate_pipeline<S, NarrowPhase, Output>;
     if constexpr (bucket_tuning<Space>::bins_spheres) {
       if (algorithm_ == algorithm::triangle_major) {
@@ -136,7 +136,7 @@ class bucket::index {
   }
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
-  detail::bucket_lookup<S> lookup() const {
+  detail::bucket_ref<S> lookup() const {
     return {{mesh_, boxes_.data()}, grids_.data(), grid_count_,     occupied(),
             lists_.data(),          lists_total(), entries_.data(), entries_.capacity()};
   }
@@ -159,7 +159,7 @@ class bucket::index {
   enum class algorithm { sphere_major, triangle_major };
 
   static constexpr std::size_t fixed_bytes =
-      sizeof(detail::mesh_summary<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
+      sizeof(detail::mesh_statistics<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
 
   /// How many cells a triangle may touch at most, on an axis and in all, unless a width is asked for.
   template <class Space>
@@ -194,7 +194,7 @@ class bucket::index {
   }
   template <class Space>
   void bin(Space& space, moving_sphere_view<S> const& spheres) {
-    bins_.sort(space, detail::balls_around<S>{spheres, reaches_[0]});
+    bins_.sort(space, detail::swept_bounding_spheres<S>{spheres, reaches_[0]});
   }
 
   /// Makes the grids for the radii of the spheres, unless they are there or a radius was given.
@@ -211,7 +211,7 @@ class bucket::index {
 
   /// The grid of one radius: the one that is there if it is not much too wide.
   int reach_of(S radius, S* reaches) const {
-    if (!detail::valid_radius(radius) || !detail::finite(radius)) return 0;
+    if (!detail::is_valid_radius(radius) || !detail::is_finite(radius)) return 0;
     bool const kept = requested_ == 1 && radius <= reaches_[0] && reaches_[0] <= 4 * radius;
     reaches[0] = kept ? reaches_[0] : radius;
     return 1;
@@ -222,7 +222,7 @@ class bucket::index {
   int reaches_of(Space& space, sphere_view<S> const& spheres, S* reaches) {
     auto* const radii = radii_.reserve(space.resource(), 1);
     detail::size_histogram::clear(space, radii);
-    detail::summarise_radii<S> const body{spheres, radii};
+    detail::radius_histogram_kernel<S> const body{spheres, radii};
     space.launch(detail::grid_size<Space>(spheres.size(), body), body);
     detail::size_histogram const seen = space.read(radii);
     if (seen.empty()) return 0;
@@ -278,7 +278,7 @@ class bucket::index {
     auto* const lists = lists_.reserve(space.resource(), detail::table_size(cells_));
     space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
     constexpr int parts = bucket_tuning<Space>::threads_per_triangle;
-    detail::grid_insertion<S, parts> const insertion{mesh_, boxes_.data(), grids_.data(), grid_count_};
+    detail::triangle_insertion<S, parts> const insertion{mesh_, boxes_.data(), grids_.data(), grid_count_};
     space.for_each(insertion.size(), detail::count_entries<S, parts>{insertion, lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
                                                  lists,         occupied(),  &lists[cells_].count};
@@ -318,12 +318,12 @@ class bucket::index {
   S reaches_[detail::max_grids] = {};  ///< of the grids that are wanted
   std::size_t cells_ = 0;
   std::uint32_t table_bits_ = 0;
-  buffer<detail::triangle_box<S>> boxes_;    ///< empty if the budget has no room for them
-  buffer<detail::mesh_summary<S>> summary_;  ///< empty if the budget has no room for it
+  buffer<detail::triangle_aabb<S>> boxes_;      ///< empty if the budget has no room for them
+  buffer<detail::mesh_statistics<S>> summary_;  ///< empty if the budget has no room for it
   buffer<detail::size_histogram> radii_;
   buffer<detail::grid<S>> grids_;
-  buffer<detail::cell_list> lists_;
-  buffer<detail::cell_entry> entries_;
+  buffer<detail::item_range> lists_;
+  buffer<detail::cell_item> entries_;
   detail::sorted_spheres<S> bins_;
 };
 

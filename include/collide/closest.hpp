@@ -18,12 +18,12 @@ namespace detail {
 struct distance_of_contact {
   template <class NarrowPhase, class S>
   static COLLIDE_HD S of(hit<NarrowPhase, S> const& h) {
-    static_assert(at_rest<NarrowPhase, S>,
+    static_assert(is_discrete<NarrowPhase, S>,
                   "collide: closest is for spheres that rest: of those that move, earliest finds the first impact");
     return h.contact().distance;
   }
   template <class S>
-  static COLLIDE_HD S& number_of(nearest<S>& entry) {
+  static COLLIDE_HD S& key_of(nearest<S>& entry) {
     return entry.distance;
   }
 };
@@ -32,8 +32,8 @@ struct distance_of_contact {
 
 /// The colliding triangle closest to each sphere's centre; of equally close ones that with the smallest id. Distances
 /// are those of `contact::distance`. `data()`, `size()`, `total()` and `to_host()` are those of
-/// `detail::best_of_sphere`.
+/// `detail::per_sphere_min`.
 template <class S = float>
-class closest : public detail::best_of_sphere<nearest<S>, S, detail::distance_of_contact> {};
+class closest : public detail::per_sphere_min<nearest<S>, S, detail::distance_of_contact> {};
 
 }  // namespace collide

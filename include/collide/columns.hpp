@@ -48,7 +48,7 @@ struct angular_velocity {
 };
 
 /// 1 if the particle is there, 0 if its place is free; see `emit` and `absorb`.
-struct present {
+struct alive {
   template <class S>
   using value = std::uint8_t;
   template <class S>
@@ -61,8 +61,8 @@ struct slow_steps {
   using value = std::uint8_t;
 };
 
-/// 1 if the particle sticks to the mesh; see `stick`.
-struct stuck {
+/// 1 if the particle sticks to the mesh; see `adhesion`.
+struct adhered {
   template <class S>
   using value = std::uint8_t;
 };

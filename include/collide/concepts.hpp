@@ -4,9 +4,9 @@
 /// A sink is a class with a member `template <class Space, class Query> void run(Space& space, Query const& query)`. It
 /// calls `query(handle)` as often as it needs to; each call puts one pass over the scene on the space's stream. The
 /// handle is trivially copyable, goes to the device, and has
-///   - `std::uint64_t reserve(std::uint64_t n) const`: called once per batch of n hits; returns the slot of the first;
+///   - `std::uint64_t allocate(std::uint64_t n) const`: called once per batch of n hits; returns the slot of the first;
 ///   - `void store(std::uint64_t slot, Hit const& hit) const`: called once per hit (see hit.hpp);
-///   - `void finish() const`, if it wants to: called once per pass, when all hits are stored.
+///   - `void end_pass() const`, if it wants to: called once per pass, when all hits are stored.
 /// `query.mesh` and `query.spheres` are the views, `Query::narrow_phase` and `Query::scalar` are types.
 #pragma once
 
@@ -124,7 +124,7 @@ struct broad_phase_member {
                                                                      std::declval<sphere_view<S> const&>()));
   template <class T>
   using query = decltype(std::declval<index<T>&>().template query<N>(
-      std::declval<E&>(), std::declval<spheres_of<N, S> const&>(), std::declval<any_output const&>()));
+      std::declval<E&>(), std::declval<sphere_view_for<N, S> const&>(), std::declval<any_output const&>()));
   template <class T>
   using cell_width = decltype(std::declval<index<T> const&>().cell_width(std::declval<E const&>()));
 };
@@ -158,7 +158,7 @@ struct is_detector<
 /// The members of what a sink passes to a query.
 template <class H>
 using handle_reserve = std::enable_if_t<
-    std::is_convertible<decltype(std::declval<H const&>().reserve(std::uint64_t{})), std::uint64_t>::value>;
+    std::is_convertible<decltype(std::declval<H const&>().allocate(std::uint64_t{})), std::uint64_t>::value>;
 template <class H, class Hit>
 using handle_store = decltype(std::declval<H const&>().store(std::uint64_t{}, std::declval<Hit const&>()));
 

@@ -34,9 +34,9 @@
 
 #if defined(__CUDA_ARCH__)
 /// Before a loop that the device does not unroll.
-#define COLLIDE_ROLLED _Pragma("unroll 1")
+#define COLLIDE_NO_UNROLL _Pragma("unroll 1")
 #else
-#define COLLIDE_ROLLED
+#define COLLIDE_NO_UNROLL
 #endif
 
 #define COLLIDE_VERSION_MAJOR 0

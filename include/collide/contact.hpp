@@ -38,8 +38,8 @@ struct contact {
   vec3<S> normal;  ///< unit vector from the triangle to the centre; a normal of the triangle if the centre is on it
   S distance;      ///< from the centre to the triangle
   S depth;         ///< radius - distance: how deep the triangle is in the sphere
-  feature kind;    ///< the feature of the triangle that `point` lies in
-  std::uint32_t index;  ///< edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
+  collide::feature feature;     ///< the feature of the triangle that `point` lies in
+  std::uint32_t feature_index;  ///< edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
 };
 
 }  // namespace collide

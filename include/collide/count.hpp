@@ -19,7 +19,7 @@ class count {
   }
 
  private:
-  detail::tally_memory total_of_;
+  detail::hit_counter_buffer total_of_;
   std::uint64_t total_ = 0;
 };
 

@@ -33,7 +33,7 @@ class cuda : public detail::cuda_space {
     launch_kernel("launch of run_threads", detail::run_threads<block<Body>, Body>, grid_of(blocks), blocks, body);
   }
 
-  std::size_t saturating_blocks() const { return static_cast<std::size_t>(processors_) * 2048; }
+  std::size_t saturating_blocks() const { return static_cast<std::size_t>(sm_count_) * 2048; }
 
   template <class Body>
   std::size_t max_resident_blocks() const {
@@ -66,12 +66,12 @@ class cuda_shared : public detail::cuda_space {
     launch_kernel("launch of run_blocks", detail::run_blocks<block<Body>, Body>, static_cast<unsigned>(blocks), body);
   }
 
-  std::size_t saturating_blocks() const { return static_cast<std::size_t>(processors_) * 8; }
+  std::size_t saturating_blocks() const { return static_cast<std::size_t>(sm_count_) * 8; }
 
   /// How many blocks of a body are at work at a time.
   template <class Body>
   std::size_t max_resident_blocks() const {
-    return static_cast<std::size_t>(processors_) * detail::residency<Body, block<Body>>;
+    return static_cast<std::size_t>(sm_count_) * detail::residency<Body, block<Body>>;
   }
 };
 

@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/any.hpp>
+#include <collide/any_hit.hpp>
 #include <collide/closest.hpp>
 #include <collide/concepts.hpp>
 #include <collide/contacts.hpp>
@@ -46,7 +46,7 @@ class detector {
       "collide: the first parameter of a detector is a broad phase, such as bucket or all_pairs: a class with a "
       "member template index<Scalar>");
   static_assert(
-      detail::judges<NarrowPhase, Scalar, moving_sphere<Scalar>>::value,
+      detail::has_intersects<NarrowPhase, Scalar, moving_sphere<Scalar>>::value,
       "collide: the second parameter of a detector is a narrow phase, such as karabassi<>: a class with a static "
       "member intersects(triangle, sphere) that returns bool");
   static_assert(detail::check_space<ExecutionSpace>());
@@ -58,7 +58,7 @@ class detector {
   using execution_space = ExecutionSpace;
   using scalar = Scalar;
   /// `sphere_view`, or `moving_sphere_view` if the narrow phase judges spheres that move.
-  using spheres_type = detail::spheres_of<NarrowPhase, Scalar>;
+  using spheres_type = detail::sphere_view_for<NarrowPhase, Scalar>;
 
   explicit detector(ExecutionSpace space = ExecutionSpace(), BroadPhase options = BroadPhase())
       : space_(std::move(space)), options_(std::move(options)) {}
@@ -67,21 +67,21 @@ class detector {
   /// is until the last query; before the first build nothing collides. O(triangles).
   void build(mesh_view<Scalar> mesh);
 
-  /// The same, and everything that spheres at rest of radius up to `radius` need, so that a query has nothing left to
-  /// prepare. Many spheres that move may still want a grid of their own on the host.
-  /// Spheres with a larger radius are served all the same, more slowly.
+  /// Prepares what depends on the mesh, and what spheres at rest of radius up to `radius` need, so that a query has
+  /// nothing left to prepare. Larger spheres are tested too, but more slowly. Many spheres that move may still want a
+  /// grid of their own on the host. O(triangles).
   void build(mesh_view<Scalar> mesh, Scalar radius);
 
-  /// Hands every colliding pair, exactly once, to the sink (`count`, `any`, `pairs`, `contacts`, `closest`, `visit`, or
-  /// one of your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used again),
-  /// else by value.
+  /// Hands every colliding pair, exactly once, to the sink (`count`, `any_hit`, `pairs`, `contacts`, `closest`,
+  /// `visit`, or one of your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used
+  /// again), else by value.
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {
     using pass = detail::query_pass<typename BroadPhase::template index<Scalar>, NarrowPhase, ExecutionSpace, Scalar>;
-    static_assert(
-        detail::is_valid<detail::sink_run, std::remove_reference_t<Sink>, ExecutionSpace, pass>,
-        "collide: the second argument of query is a sink, such as count, any, pairs, contacts, closest or visit: an "
-        "object with a member run(space, query)");
+    static_assert(detail::is_valid<detail::sink_run, std::remove_reference_t<Sink>, ExecutionSpace, pass>,
+                  "collide: the second argument of query is a sink, such as count, any_hit, pairs, contacts, closest "
+                  "or visit: an "
+                  "object with a member run(space, query)");
     prepare(spheres);
     sink.run(space_, pass{index_, space_, mesh_, spheres, deferred_});
     return std::forward<Sink>(sink);
@@ -105,14 +105,15 @@ class detector {
   template <class S, class Sink>
   Sink query(sphere_view<S> const&, Sink&&) {
     reject<S>();
-    static_assert(detail::at_rest<NarrowPhase, Scalar>,
-                  "collide: this narrow phase judges spheres that move: give query a moving_sphere_view, see `moving`");
+    static_assert(detail::is_discrete<NarrowPhase, Scalar>,
+                  "collide: this narrow phase judges spheres that move: give query a moving_sphere_view, see "
+                  "`with_displacements`");
   }
   template <class S, class Sink>
   Sink query(moving_sphere_view<S> const&, Sink&&) {
     reject<S>();
     static_assert(
-        !detail::at_rest<NarrowPhase, Scalar>,
+        !detail::is_discrete<NarrowPhase, Scalar>,
         "collide: this narrow phase judges spheres that rest: for spheres that move there is karabassi_swept");
   }
 

@@ -20,7 +20,7 @@ struct drag {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
     auto& v = p[velocity{}];
-    S const k = S(linear) + S(quadratic) * detail::root(detail::dot(v, v));
+    S const k = S(linear) + S(quadratic) * detail::sqrt_rn(detail::dot(v, v));
     v = v * (1 / (1 + k * dt));
   }
 };

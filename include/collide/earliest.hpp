@@ -21,7 +21,7 @@ struct time_of_hit {
     return h.impact().time;
   }
   template <class S>
-  static COLLIDE_HD S& number_of(first_impact<S>& entry) {
+  static COLLIDE_HD S& key_of(first_impact<S>& entry) {
     return entry.time;
   }
 };
@@ -31,6 +31,6 @@ struct time_of_hit {
 /// The triangle with the smallest time of impact of each moving sphere; of equal times that with the smallest id. Needs
 /// a narrow phase for spheres that move.
 template <class S = float>
-class earliest : public detail::best_of_sphere<first_impact<S>, S, detail::time_of_hit> {};
+class earliest : public detail::per_sphere_min<first_impact<S>, S, detail::time_of_hit> {};
 
 }  // namespace collide

@@ -12,20 +12,20 @@
 ///
 /// | member                            | called |
 /// |-----------------------------------|-------------------------------------------------------------------------------|
-/// | `skips(particle)`                 | first: true if nothing happens to the particle in this step | |
+/// | `is_inactive(particle)`                 | first: true if nothing happens to the particle in this step | |
 /// `accelerate(particle&, dt)`       | before positions move: change the velocity                                    |
-/// | `touch(particle&, touching&, dt)` | for each contact with the mesh, the deepest (swept: the earliest) first | |
-/// `after_touch(particle&, touching&, dt)` | after the `touch` of all effects, for the same contact | |
-/// `meet(particle&, self, other, dt)`| for each other particle that overlaps it; only then are neighbours listed     |
-/// | `disturb(particle&, other)`       | instead, if the particle is skipped and the other is not | |
-/// `finish(particle&, dt)`           | at the end of the step                                                        |
+/// | `on_mesh_contact(particle&, mesh_contact&, dt)` | for each contact with the mesh, the deepest (swept: the
+/// earliest) first | | `after_mesh_contact(particle&, mesh_contact&, dt)` | after the `on_mesh_contact` of all effects,
+/// for the same contact | | `on_pair_contact(particle&, self, other, dt)`| for each other particle that overlaps it;
+/// only then are neighbours listed     | | `try_wake(particle&, other)`       | instead, if the particle is skipped and
+/// the other is not | | `end_step(particle&, dt)`           | at the end of the step |
 ///
-/// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait. `meet` is
-/// called before the other members but `begin_step`: `self` and `other` are as they were when the step began, and what
-/// changes is `particle`, so that both of a pair see the same.
+/// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait.
+/// `on_pair_contact` is called before the other members but `begin_step`: `self` and `other` are as they were when the
+/// step began, and what changes is `particle`, so that both of a pair see the same.
 ///
 /// `accelerate` of every effect is called once more for each contact with the mesh, on a copy of the particle, to learn
-/// `touching::gain`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
+/// `touching::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
 ///
 /// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
 /// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. Members are
@@ -51,27 +51,27 @@ inline constexpr S contact_tolerance = sizeof(S) == sizeof(float) ? S(1e-5) : S(
 /// The rounding of a position: at least 1 unit in the last place of its largest coordinate.
 template <class S>
 COLLIDE_HD_INLINE S rounding_at(vec3<S> const& position) {
-  return std::numeric_limits<S>::epsilon() * largest<S>(position.cwiseAbs());
+  return std::numeric_limits<S>::epsilon() * max_component<S>(position.cwiseAbs());
 }
 
 }  // namespace detail
 
-/// A particle's contact with the mesh, as `touch` gets it. `depth` is how deep the triangle still is in the sphere,
-/// where the particle is now: an effect that pushes the particle out takes off what it pushed.
+/// A particle's contact with the mesh, as `on_mesh_contact` gets it. `depth` is how deep the triangle still is in the
+/// sphere, where the particle is now: an effect that pushes the particle out takes off what it pushed.
 ///
 /// Where a particle touches several triangles at the same place, each contact knows of those before it. In a groove
 /// the surface of the second can only be left along the first: `move_out` and `repel` do so.
 template <class S>
-struct touching : contact<S> {
-  vec3<S> gain;   ///< what a step's acceleration adds to the velocity
-  vec3<S> start;  ///< the centre when the step began; of a swept particle where it was stopped
-  S moved;        ///< for how long the particle has moved from there
-  S approach;     ///< speed towards the surface, before the contacts at this place changed it
-  vec3<S> lift;   ///< displacement that raises the particle above the surface by 1, and leaves it on those before
-  S free_change;  ///< change of speed along the normal up to which no contact before is pressed on
-  S impulse;      ///< what the effects have added to the velocity along the normal: 0, or what repels
-  S grip;         ///< impulse along the surface that static friction has in reserve; 0 where the particle slides
-  bool rests;     ///< an effect has found that the particle rests on the surface, or slides on it
+struct mesh_contact : contact<S> {
+  vec3<S> force_dv;    ///< what a step's acceleration adds to the velocity
+  vec3<S> start;       ///< the centre when the step began; of a swept particle where it was stopped
+  S elapsed;           ///< for how long the particle has moved from there
+  S approach_speed;    ///< speed towards the surface, before the contacts at this place changed it
+  vec3<S> lift;        ///< displacement that raises the particle above the surface by 1, and leaves it on those before
+  S free_change;       ///< change of speed along the normal up to which no contact before is pressed on
+  S normal_impulse;    ///< what the effects have added to the velocity along the normal: 0, or what repels
+  S friction_reserve;  ///< impulse along the surface that static friction has in reserve; 0 where the particle slides
+  bool is_resting;     ///< an effect has found that the particle rests on the surface, or slides on it
 
   /// Raises a particle above the surface by `height`.
   COLLIDE_HD_INLINE void move_out(vec3<S>& position, S height) {
@@ -83,7 +83,7 @@ struct touching : contact<S> {
   COLLIDE_HD_INLINE void repel(vec3<S>& velocity, S change) {
     S const direct = detail::smaller(change, free_change), wedged = change - direct;
     velocity += this->normal * direct + lift * wedged;
-    impulse += direct + wedged * detail::dot(lift, lift);
+    normal_impulse += direct + wedged * detail::dot(lift, lift);
   }
 
   /// Stops a particle that something holds: its velocity is 0, and it is where it was when the step began, raised or

@@ -11,16 +11,16 @@ namespace collide {
 
 /// A nozzle: particles begin in a cube around a place, with about the same velocity.
 struct nozzle {
-  double at[3] = {0, 0, 0};
-  double width = 0;  ///< half of the cube's
-  double along[3] = {0, 0, 0};
-  double spread = 0;  ///< how much the coordinates of the velocity differ at most
+  double position[3] = {0, 0, 0};
+  double half_width = 0;  ///< half of the cube's
+  double velocity[3] = {0, 0, 0};
+  double velocity_spread = 0;  ///< how much the coordinates of the velocity differ at most
 
   template <class S>
   COLLIDE_HD void operator()(std::uint64_t number, vec3<S>& x, vec3<S>& v) const {
     for (int k = 0; k < 3; ++k) {
-      x[k] = S(at[k] + width * random(6 * number + static_cast<std::uint64_t>(k)));
-      v[k] = S(along[k] + spread * random(6 * number + 3 + static_cast<std::uint64_t>(k)));
+      x[k] = S(position[k] + half_width * random(6 * number + static_cast<std::uint64_t>(k)));
+      v[k] = S(velocity[k] + velocity_spread * random(6 * number + 3 + static_cast<std::uint64_t>(k)));
     }
   }
 
@@ -63,14 +63,14 @@ struct emit_particles {
 /// COLLIDE_HD source(number, position&, velocity&) const says how particle number 0, 1, ... begins.
 template <class Source = nozzle>
 struct emit_from {
-  using writes = columns<position, velocity, present>;
+  using writes = columns<position, velocity, alive>;
 
   double rate = 0;
   Source source = Source();
 
   template <class Particle>
-  COLLIDE_HD_INLINE bool skips(Particle const& p) const {
-    return p[present{}] == 0;
+  COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {
+    return p[alive{}] == 0;
   }
   template <class Space, class State, class S>
   void begin_step(Space& space, State const& state, S dt) const {

@@ -41,10 +41,10 @@ template <class S>
 class bounding_sphere {
  public:
   bounding_sphere() = default;
-  COLLIDE_HD explicit bounding_sphere(triangle<S> const& t) : sphere_(detail::bounds_of(t)) {}
+  COLLIDE_HD explicit bounding_sphere(triangle<S> const& t) : sphere_(detail::bounding_sphere_of(t)) {}
 
   /// True if the sphere can touch the triangle. Rounding never makes it false.
-  COLLIDE_HD bool is_reached_by(sphere<S> const& s) const { return sphere_.reached(s.centre, s.radius); }
+  COLLIDE_HD bool is_reached_by(sphere<S> const& s) const { return sphere_.overlaps(s.centre, s.radius); }
 
  private:
   detail::bounding_sphere<S> sphere_;
@@ -55,22 +55,22 @@ template <class S>
 class mesh_bounds_ref {
  public:
   mesh_bounds_ref() = default;
-  explicit mesh_bounds_ref(detail::mesh_summary<S> const* summary) : summary_{summary} {}
+  explicit mesh_bounds_ref(detail::mesh_statistics<S> const* summary) : summary_{summary} {}
 
   /// True if the sphere can touch the box around the mesh. Rounding never makes it false.
   COLLIDE_HD bool is_reached_by(sphere<S> const& s) const {
     if (summary_ == nullptr || summary_->extents.empty()) return false;
-    detail::box<S> box;
+    detail::aabb<S> box;
     for (int k = 0; k < 3; ++k) {
       box.lower[k] = summary_->lower_of(k);
       box.upper[k] = summary_->upper_of(k);
     }
-    S const padding = 16 * S(detail::format<float>::unit) * box.extent();
-    return detail::triangle_box<S>{box, padding}.reached(s.centre, s.radius);
+    S const padding = 16 * S(detail::ieee_traits<float>::unit_roundoff) * box.max_extent();
+    return detail::triangle_aabb<S>{box, padding}.overlaps(s.centre, s.radius);
   }
 
  private:
-  detail::mesh_summary<S> const* summary_ = nullptr;
+  detail::mesh_statistics<S> const* summary_ = nullptr;
 };
 
 /// The box around a mesh, in memory of a space.
@@ -81,15 +81,15 @@ class mesh_bounds {
   template <class Space>
   void build(Space& space, mesh_view<S> mesh) {
     auto* const summary = summary_.reserve(space.resource(), 1);
-    detail::mesh_summary<S>::clear(space, summary);
-    detail::summarise_mesh<S> const kernel{mesh, summary, nullptr};
+    detail::mesh_statistics<S>::clear(space, summary);
+    detail::compute_mesh_statistics<S> const kernel{mesh, summary, nullptr};
     space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
   mesh_bounds_ref<S> ref() const { return mesh_bounds_ref<S>(summary_.data()); }
 
  private:
-  buffer<detail::mesh_summary<S>> summary_;
+  buffer<detail::mesh_statistics<S>> summary_;
 };
 
 /// Broad phase made of one that only enumerates: for all spaces, spheres at rest and moving ones, and simulations.
@@ -128,7 +128,7 @@ struct per_sphere {
     void prepare(Space&, per_sphere const&, RadiusOrSpheres const&) {}
 
     template <class NarrowPhase, class Space, class Output>
-    void query(Space& space, detail::spheres_of<NarrowPhase, S> const& spheres, Output const& output) const {
+    void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) const {
       detail::per_sphere_query<S, NarrowPhase, Output, decltype(index_.ref())> const kernel{{mesh_, spheres, output},
                                                                                             index_.ref()};
       space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);

@@ -16,7 +16,7 @@ class hit {
   id sphere;    ///< number of the sphere
   id triangle;  ///< number of the triangle
 
-  using spheres_type = detail::spheres_of<NarrowPhase, S>;
+  using spheres_type = detail::sphere_view_for<NarrowPhase, S>;
 
   COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres)
       : sphere{p.sphere}, triangle{p.triangle}, mesh_{mesh}, spheres_{spheres} {}

@@ -118,7 +118,7 @@ class host {
       std::exception_ptr failure;
 #pragma omp parallel for schedule(dynamic) num_threads(threads())
       for (std::ptrdiff_t r = 0; r < ranges; ++r) {
-        detail::work_alone const together(false);
+        detail::single_threaded_scope const together(false);
         try {
           auto const first = static_cast<std::size_t>(r) * range;
           work(first, std::min(n, first + range));
@@ -131,7 +131,7 @@ class host {
       return;
     }
 #endif
-    detail::work_alone const alone(true);
+    detail::single_threaded_scope const alone(true);
     work(0, n);
   }
 

@@ -31,36 +31,36 @@ struct karabassi {
   template <class S>
   static COLLIDE_HD_INLINE bool intersects(triangle<S> const& t, sphere<S> const& s) {
     if constexpr (std::is_same<Precision, exact>::value) {
-      return detail::decide(t, s).hit;
+      return detail::intersects_exact(t, s).hit;
     } else if constexpr (std::is_same<Precision, baseline>::value) {
-      return detail::world_four_steps<float>(t, s);
+      return detail::karabassi_world<float>(t, s);
     } else {
-      return detail::local_four_steps<typename Precision::scalar>(t, s);
+      return detail::karabassi_local<typename Precision::scalar>(t, s);
     }
   }
 
   /// Contact of a colliding pair; the caller sets the ids. O(1).
   template <class S>
   static COLLIDE_HD contact<S> contact_of(triangle<S> const& t, sphere<S> const& s) {
-    return detail::contact_between(t, s);
+    return detail::contact_of_pair(t, s);
   }
 };
 
 namespace detail {
 
 template <>
-struct in_stages<karabassi<exact>> : std::true_type {
+struct filtered_predicate<karabassi<exact>> : std::true_type {
   template <class S>
-  static COLLIDE_HD_INLINE verdict attempt(triangle<S> const& t, sphere<S> const& s) {
-    return detail::attempt(t, s).verdict;
+  static COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, sphere<S> const& s) {
+    return detail::filter_exact(t, s).verdict;
   }
   template <class S>
-  static COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& s) {
-    return detail::attempt_straight(t, s);
+  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s) {
+    return detail::filter_branchless(t, s);
   }
   template <class S>
-  static COLLIDE_HD_INLINE bool finish(triangle<S> const& t, sphere<S> const& s) {
-    return detail::finish(t, s).hit;
+  static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, sphere<S> const& s) {
+    return detail::resolve_exact(t, s).hit;
   }
 };
 

@@ -33,9 +33,9 @@ struct karabassi_swept {
   template <class S>
   static COLLIDE_HD_INLINE bool intersects(triangle<S> const& t, moving_sphere<S> const& s) {
     if constexpr (std::is_same<Precision, exact>::value) {
-      return detail::decide(t, s).hit;
+      return detail::intersects_exact(t, s).hit;
     } else {
-      return detail::swept_in_reach<typename Precision::scalar>(t, s);
+      return detail::karabassi_swept_local<typename Precision::scalar>(t, s);
     }
   }
 
@@ -49,7 +49,7 @@ struct karabassi_swept {
   /// Contact of a colliding pair at its time of impact; the caller sets the ids.
   template <class S>
   static COLLIDE_HD contact<S> contact_of(triangle<S> const& t, moving_sphere<S> const& s) {
-    return detail::contact_at(t, s, time_of_impact(t, s));
+    return detail::contact_at_time(t, s, time_of_impact(t, s));
   }
 
   /// Time of impact and contact of a colliding pair; the caller sets the ids. The depth is that of an overlap at the
@@ -57,26 +57,26 @@ struct karabassi_swept {
   template <class S>
   static COLLIDE_HD impact<S> impact_of(triangle<S> const& t, moving_sphere<S> const& s) {
     S const time = time_of_impact(t, s);
-    return {detail::contact_at(t, s, time), time};
+    return {detail::contact_at_time(t, s, time), time};
   }
 };
 
 namespace detail {
 
 template <>
-struct in_stages<karabassi_swept<exact>> : std::true_type {
+struct filtered_predicate<karabassi_swept<exact>> : std::true_type {
   template <class S>
-  static COLLIDE_HD_INLINE verdict attempt(triangle<S> const& t, moving_sphere<S> const& s) {
-    return detail::attempt(t, s).verdict;
+  static COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, moving_sphere<S> const& s) {
+    return detail::filter_exact(t, s).verdict;
   }
   template <class S>
-  static COLLIDE_HD_INLINE verdict attempt_straight(triangle<S> const& t, sphere<S> const& around,
-                                                    sphere<S> const& midway) {
-    return detail::attempt_straight(t, around, midway);
+  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& around,
+                                                     sphere<S> const& midpoint) {
+    return detail::filter_branchless(t, around, midpoint);
   }
   template <class S>
-  static COLLIDE_HD_INLINE bool finish(triangle<S> const& t, moving_sphere<S> const& s) {
-    return detail::finish(t, s).hit;
+  static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, moving_sphere<S> const& s) {
+    return detail::resolve_exact(t, s).hit;
   }
 };
 

@@ -24,7 +24,7 @@ struct lost_motion {
   using writes = columns<lost_steps>;
 
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void finish(Particle& p, S dt) const {
+  COLLIDE_HD_INLINE void end_step(Particle& p, S dt) const {
     bool wanted = false, moved = false;
     for (int k = 0; k < 3; ++k) {
       S const x = p[position{}][k], by = p[velocity{}][k] * dt;

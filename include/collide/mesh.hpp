@@ -23,8 +23,8 @@ class mesh_view {
   using scalar = S;
 
   mesh_view() = default;
-  COLLIDE_HD mesh_view(S const* vertices, std::size_t vertex_count, id const* corners, std::size_t size)
-      : vertices_{vertices}, corners_{corners}, vertex_count_{vertex_count}, size_{size} {}
+  COLLIDE_HD mesh_view(S const* vertices, std::size_t vertex_count, id const* indices, std::size_t size)
+      : vertices_{vertices}, indices_{indices}, vertex_count_{vertex_count}, size_{size} {}
 
   /// Number of triangles.
   COLLIDE_HD std::size_t size() const { return size_; }
@@ -32,9 +32,9 @@ class mesh_view {
   /// Triangle `i`, read from memory.
   COLLIDE_HD_INLINE triangle<S> operator[](std::size_t i) const {
     std::size_t a = 3 * i, b = a + 1, c = a + 2;
-    if (corners_ != nullptr) {
-      id const* const corners = corners_ + 3 * i;
-      a = corners[0], b = corners[1], c = corners[2];
+    if (indices_ != nullptr) {
+      id const* const indices = indices_ + 3 * i;
+      a = indices[0], b = indices[1], c = indices[2];
     }
     return {vertex(a), vertex(b), vertex(c)};
   }
@@ -50,27 +50,27 @@ class mesh_view {
   /// Number of vertices.
   COLLIDE_HD std::size_t vertex_count() const { return vertex_count_; }
   /// The index array, three vertex numbers per triangle; null for a triangle soup.
-  COLLIDE_HD id const* corners() const { return corners_; }
+  COLLIDE_HD id const* indices() const { return indices_; }
 
  private:
   S const* vertices_ = nullptr;
-  id const* corners_ = nullptr;
+  id const* indices_ = nullptr;
   std::size_t vertex_count_ = 0;
   std::size_t size_ = 0;
 };
 
-/// View of an indexed mesh: `vertices` holds 3 * `vertex_count` coordinates, `corners` 3 * `triangle_count` vertex
+/// View of an indexed mesh: `vertices` holds 3 * `vertex_count` coordinates, `indices` 3 * `triangle_count` vertex
 /// numbers from 0, of any 32-bit integer type. O(1). Throws `error` if there are more than 2^32 - 2 triangles, or
 /// triangles but no index array.
 template <class S, class Index>
-mesh_view<S> indexed_mesh(S const* vertices, std::size_t vertex_count, Index const* corners,
+mesh_view<S> indexed_mesh(S const* vertices, std::size_t vertex_count, Index const* indices,
                           std::size_t triangle_count) {
   static_assert(std::is_integral<Index>::value && sizeof(Index) == sizeof(id),
-                "collide: the corners of an indexed mesh are 32-bit integers");
+                "collide: the indices of an indexed mesh are 32-bit integers");
   if (triangle_count >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles");
-  if (corners == nullptr && triangle_count != 0)
-    throw error("collide: indexed_mesh: there are triangles but no corners");
-  return {vertices, vertex_count, reinterpret_cast<id const*>(corners), triangle_count};
+  if (indices == nullptr && triangle_count != 0)
+    throw error("collide: indexed_mesh: there are triangles but no indices");
+  return {vertices, vertex_count, reinterpret_cast<id const*>(indices), triangle_count};
 }
 
 /// View of a triangle soup: 9 coordinates per triangle, vertex by vertex. O(1). Throws `error` if there are more than

@@ -6,7 +6,7 @@
 
 namespace collide {
 
-/// A non-owning view of spheres and their displacements within a step. Made by `moving`.
+/// A non-owning view of spheres and their displacements within a step. Made by `with_displacements`.
 template <class S>
 class moving_sphere_view : public sphere_view<S> {
  public:
@@ -31,15 +31,15 @@ class moving_sphere_view : public sphere_view<S> {
   COLLIDE_HD bool packed_displacements() const { return stride_ == 3 && y_ == x_ + 1 && z_ == x_ + 2; }
 
   /// View of the `n` moving spheres from number `first` on. O(1); the range must exist.
-  moving_sphere_view part(std::size_t first, std::size_t n) const {
+  moving_sphere_view subview(std::size_t first, std::size_t n) const {
     std::size_t const skip = first * stride_;
-    return {sphere_view<S>::part(first, n), x_ + skip, y_ + skip, z_ + skip, stride_};
+    return {sphere_view<S>::subview(first, n), x_ + skip, y_ + skip, z_ + skip, stride_};
   }
 
   /// Calls f(array, stride) for each array that the view reads, displacements included; see `sphere_view`.
   template <class F>
-  void each_array(F const& f) {
-    sphere_view<S>::each_array(f);
+  void for_each_array(F const& f) {
+    sphere_view<S>::for_each_array(f);
     f(x_, stride_);
     f(y_, stride_);
     f(z_, stride_);
@@ -54,13 +54,13 @@ class moving_sphere_view : public sphere_view<S> {
 
 /// View of moving spheres with packed displacements: 3 n components. O(1).
 template <class S>
-moving_sphere_view<S> moving(sphere_view<S> const& spheres, S const* displacements) {
+moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, S const* displacements) {
   return {spheres, displacements, displacements + 1, displacements + 2, 3};
 }
 
 /// View of moving spheres with the components of their displacements in three arrays of n. O(1).
 template <class S>
-moving_sphere_view<S> moving(sphere_view<S> const& spheres, S const* x, S const* y, S const* z) {
+moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, S const* x, S const* y, S const* z) {
   return {spheres, x, y, z, 1};
 }
 

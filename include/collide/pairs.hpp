@@ -44,7 +44,7 @@ class pairs : public detail::kept_in_space<pair> {
 
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
-    download_ = detail::downloader<pair>(space);
+    download_ = detail::host_copier<pair>(space);
     if (fixed_ && order_ == order::unspecified) {
       collected_.fill(space, query, external_, capacity_);
     } else {
@@ -67,8 +67,8 @@ class pairs : public detail::kept_in_space<pair> {
   std::size_t capacity_ = 0;
   order order_;
   bool fixed_ = false;
-  detail::collector collected_;
-  detail::downloader<pair> download_;
+  detail::pair_collector collected_;
+  detail::host_copier<pair> download_;
 };
 
 }  // namespace collide

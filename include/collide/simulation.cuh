@@ -45,7 +45,7 @@ struct bucket_tuning<detail::lookup_tuning<Space>> : bucket_tuning<Space> {
 ///                   farther than its radius in a step may pass through. With `karabassi_swept` it stops at each impact
 ///                   on its way, and passes through nothing.
 /// \tparam Effect    what happens to a particle; see effect.hpp, and docs/effects.md for those of the library. They are
-///                   applied in the order of the list. An integrator may be in the list too (velocity_verlet.hpp).
+///                   applied in the order of the list. An integrator may be in the list too (integrators.hpp).
 ///
 /// The state is in memory of the execution space, in columns: an array for each thing that is known of a particle.
 /// There are exactly the columns that the effects name, and `position` and `velocity`. A simulation without effects
@@ -114,7 +114,7 @@ class simulation {
       throw error("collide: simulation: the radii differ: name the effect polydisperse in the scene");
     }
     std::size_t const n = particles.size(), room = detail::larger(n, capacity);
-    if (room > n && !detail::contains<columns, present>) {
+    if (room > n && !detail::contains<columns, alive>) {
       throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
     }
     if (room >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
@@ -157,18 +157,18 @@ class simulation {
     if (state_.size == 0) return;
     (begin<Effect>(dt), ...);
     if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
-    if constexpr (effects_type::meets) neighbours_.meet(space_, state_, effects_, dt);
+    if constexpr (effects_type::meets) neighbours_.interact(space_, state_, effects_, dt);
     auto const lookup = [&] {
       if constexpr (effects_type::touches) {
         return mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
       } else {
-        return detail::no_lookup{};
+        return detail::null_ref{};
       }
     }();
     using kernel = detail::step_kernel<step_context<std::decay_t<decltype(lookup)>>>;
     using block = typename execution_space::template block<kernel>;
     kernel const body{{state_, effects_, lookup, overflow_.data(), dt, reverse_order_, least_radius_},
-                      kernel::template blocks_for<block>(state_.size, resident_blocks<kernel>())};
+                      kernel::template grid_size<block>(state_.size, resident_blocks<kernel>())};
     reverse_order_ = !reverse_order_;
     space_.launch(body.blocks, body);
   }
@@ -178,7 +178,7 @@ class simulation {
     for (std::size_t i = 0; i < n; ++i) step(dt);
   }
 
-  /// Number of particles, or of places for them, if an effect makes or removes some; see `present`.
+  /// Number of particles, or of places for them, if an effect makes or removes some; see `alive`.
   std::size_t size() const { return state_.size; }
 
   /// A column in memory of the space: three coordinates a particle, or one number. Valid until the next `set`. Of a
@@ -227,7 +227,7 @@ class simulation {
   execution_space const& space() const { return space_; }
 
  private:
-  static constexpr bool sweeps = effects_type::touches && !detail::at_rest<narrow_phase, S>;
+  static constexpr bool sweeps = effects_type::touches && !detail::is_discrete<narrow_phase, S>;
   static constexpr bool has_begin_step = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
   template <class Triangles>
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
@@ -269,10 +269,10 @@ class simulation {
 
   /// 8 units in the last place of the largest coordinate of the mesh. Waits.
   S least_radius(mesh_view<S> mesh) {
-    using summary = detail::mesh_summary<S>;
+    using summary = detail::mesh_statistics<S>;
     summary* const seen = mesh_summary_.reserve(space_.resource(), 1);
     summary::clear(space_, seen);
-    detail::summarise_mesh<S> const body{mesh, seen, nullptr};
+    detail::compute_mesh_statistics<S> const body{mesh, seen, nullptr};
     space_.launch(detail::grid_size<execution_space>(mesh.size(), body), body);
     return 8 * std::numeric_limits<S>::epsilon() * space_.read(seen).largest_coordinate();
   }
@@ -299,7 +299,7 @@ class simulation {
   bool reverse_order_ = false;  ///< of the next step
   buffer<double> time_;
   S largest_radius_ = 0, least_radius_ = 0;
-  buffer<detail::mesh_summary<S>> mesh_summary_;
+  buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
   buffer<id> overflow_;
 };

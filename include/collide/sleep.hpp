@@ -18,15 +18,15 @@ struct sleep {
   int steps = 50;
 
   template <class Particle>
-  COLLIDE_HD_INLINE bool skips(Particle const& p) const {
+  COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {
     return p[slow_steps{}] >= steps;
   }
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void finish(Particle& p, S) const {
+  COLLIDE_HD_INLINE void end_step(Particle& p, S) const {
     p[slow_steps{}] = is_slow(p) ? static_cast<std::uint8_t>(p[slow_steps{}] + 1) : std::uint8_t{0};
   }
   template <class Particle, class Other>
-  COLLIDE_HD_INLINE void disturb(Particle& p, Other const& other) const {
+  COLLIDE_HD_INLINE void try_wake(Particle& p, Other const& other) const {
     if (!is_slow(other)) p[slow_steps{}] = 0;
   }
 

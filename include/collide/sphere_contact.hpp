@@ -16,25 +16,25 @@ namespace collide {
 /// need memory for each contact: a pile creeps instead of standing for ever.
 ///
 /// With `spin` in the scene, friction turns the spheres. Both of a pair feel the same force, so momentum is conserved
-/// to rounding. A step should be at most a twentieth of the time that a collision takes: see `of_collision`.
+/// to rounding. A step should be at most a twentieth of the time that a collision takes: see `from_restitution`.
 struct sphere_contact {
   using reads = columns<position>;
   using writes = columns<velocity>;
-  using shares = columns<angular_velocity>;
+  using optional_writes = columns<angular_velocity>;
 
-  double stiffness = 1000;  ///< force per overlap
-  double damping = 0;       ///< force per speed along the normal
-  double friction = 0;      ///< coefficient of Coulomb friction
-  double sliding = 0;       ///< force per speed along the tangent, up to that limit
-  double density = 1;       ///< mass per volume
+  double stiffness = 1000;        ///< force per overlap
+  double damping = 0;             ///< force per speed along the normal
+  double friction = 0;            ///< coefficient of Coulomb friction
+  double tangential_damping = 0;  ///< force per speed along the tangent, up to that limit
+  double density = 1;             ///< mass per volume
 
   /// Spheres of this radius and density that collide for `duration` and part with `restitution` times the speed (at
   /// least 0.14: what is less needs more damping than the model has). They part when they no longer push each other:
   /// T. Schwager and T. Poeschel, "Coefficient of restitution and linear-dashpot model revisited", Granular Matter 9,
   /// 2007, of whose formula sin(a) is the damping ratio.
-  static sphere_contact of_collision(double restitution, double duration, double radius, double density,
-                                     double friction = 0) {
-    double const pi = 3.14159265358979323846, reduced = density * pi * radius * radius * radius * 2 / 3;
+  static sphere_contact from_restitution(double restitution, double duration, double radius, double density,
+                                         double friction = 0) {
+    double const pi = 3.14159265358979323846, reduced_mass = density * pi * radius * radius * radius * 2 / 3;
     double a = 0, most = pi / 2;
     for (int i = 0; i < 60; ++i) {
       double const middle = (a + most) / 2;
@@ -42,35 +42,35 @@ struct sphere_contact {
     }
     if (restitution >= 1) a = 0;
     a = a < 1.5 ? a : 1.5;
-    double const own = (pi - 2 * a) / (duration * std::cos(a));  // frequency without damping
-    double const stiffness = reduced * own * own;
-    return {stiffness, 2 * reduced * own * std::sin(a), friction,
-            friction > 0 ? 0.5 * std::sqrt(stiffness * reduced) : 0, density};
+    double const natural_frequency = (pi - 2 * a) / (duration * std::cos(a));  // frequency without damping
+    double const stiffness = reduced_mass * natural_frequency * natural_frequency;
+    return {stiffness, 2 * reduced_mass * natural_frequency * std::sin(a), friction,
+            friction > 0 ? 0.5 * std::sqrt(stiffness * reduced_mass) : 0, density};
   }
 
   template <class Particle, class Seen, class S>
-  COLLIDE_HD_INLINE void meet(Particle& p, Seen const& self, Seen const& other, S dt) const {
+  COLLIDE_HD_INLINE void on_pair_contact(Particle& p, Seen const& self, Seen const& other, S dt) const {
     constexpr bool spins = Particle::template has<angular_velocity>;
     vec3<S> const between = self[position{}] - other[position{}];
-    S const distance = detail::root(detail::dot(between, between)), r = self.radius();
+    S const distance = detail::sqrt_rn(detail::dot(between, between)), r = self.radius();
     S const overlap = (self.radius() + other.radius()) - distance;
     vec3<S> const n = distance > 0 ? vec3<S>(between * (1 / distance))
                                    : vec3<S>(S(0), S(0), self.number() < other.number() ? S(-1) : S(1));
     vec3<S> approach = self[velocity{}] - other[velocity{}];
     S const along = detail::dot(approach, n);
-    S const push = detail::larger(S(stiffness) * overlap - S(damping) * along, S(0));
+    S const normal_force = detail::larger(S(stiffness) * overlap - S(damping) * along, S(0));
     S const inverse_mass = S(0.238732414637843) / (S(density) * r * r * r);  // 3 / (4 pi)
-    vec3<S> force = n * push;
+    vec3<S> force = n * normal_force;
     if (friction > 0) {
       if constexpr (spins) {
         approach -=
             detail::cross(vec3<S>(self[angular_velocity{}] * r + other[angular_velocity{}] * other.radius()), n);
       }
       vec3<S> const slip = approach - n * along;
-      S const speed = detail::root(detail::dot(slip, slip));
+      S const speed = detail::sqrt_rn(detail::dot(slip, slip));
       if (speed > 0) {
-        S const held = detail::smaller(S(sliding) * speed, S(friction) * push);
-        vec3<S> const drag = slip * (held / speed);
+        S const tangential_force = detail::smaller(S(tangential_damping) * speed, S(friction) * normal_force);
+        vec3<S> const drag = slip * (tangential_force / speed);
         force -= drag;
         if constexpr (spins) p[angular_velocity{}] += detail::cross(n, drag) * (S(2.5) * inverse_mass / r * dt);
       }

@@ -65,7 +65,7 @@ class sphere_view {
   COLLIDE_HD bool packed() const { return stride_ == 3 && y_ == x_ + 1 && z_ == x_ + 2; }
 
   /// View of the `n` spheres from number `first` on. O(1); the range must exist.
-  sphere_view part(std::size_t first, std::size_t n) const {
+  sphere_view subview(std::size_t first, std::size_t n) const {
     S const* const radii = radii_ == nullptr ? nullptr : radii_ + first * radius_stride_;
     return {x(first), y(first), z(first), stride_, radii, radius_stride_, radius_, n};
   }
@@ -73,7 +73,7 @@ class sphere_view {
   /// Calls f(array, stride) for each array that the view reads. f gets the pointer by reference: the view then reads
   /// where f points it.
   template <class F>
-  void each_array(F const& f) {
+  void for_each_array(F const& f) {
     f(x_, std::size_t{stride_});
     f(y_, std::size_t{stride_});
     f(z_, std::size_t{stride_});

@@ -44,17 +44,17 @@ class streamed {
   template <class Sink, class F>
   void query(spheres_type const& spheres, Sink&& sink, F&& f) {
     if (spheres.size() == 0) return;
-    chunks_.each(detector_->space(), spheres, std::min(chunk_, spheres.size()),
-                 [&](spheres_type const& chunk, std::size_t first) {
-                   detector_->query(chunk, sink);
-                   f(static_cast<id>(first), sink);
-                 });
+    chunks_.for_each_chunk(detector_->space(), spheres, std::min(chunk_, spheres.size()),
+                           [&](spheres_type const& chunk, std::size_t first) {
+                             detector_->query(chunk, sink);
+                             f(static_cast<id>(first), sink);
+                           });
   }
 
  private:
   Detector* detector_;
   std::size_t chunk_;
-  detail::chunks<typename Detector::execution_space, spheres_type> chunks_;
+  detail::chunk_streamer<typename Detector::execution_space, spheres_type> chunks_;
 };
 
 }  // namespace collide

@@ -22,9 +22,9 @@ class uploaded_mesh {
     std::size_t const coordinates = 3 * mesh.vertex_count();
     space.copy_from_host(vertices_.reserve(space.resource(), coordinates), mesh.vertices(), coordinates);
     id const* corners = nullptr;
-    if (mesh.corners() != nullptr) {
+    if (mesh.indices() != nullptr) {
       id* const to = corners_.reserve(space.resource(), 3 * mesh.size());
-      space.copy_from_host(to, mesh.corners(), 3 * mesh.size());
+      space.copy_from_host(to, mesh.indices(), 3 * mesh.size());
       corners = to;
     }
     view_ = mesh_view<S>(vertices_.data(), mesh.vertex_count(), corners, mesh.size());

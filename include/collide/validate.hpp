@@ -117,11 +117,11 @@ struct inspect_triangle : inspection {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     for (std::size_t k = 0; k < 3; ++k) {
-      std::size_t const corner = mesh.corners() != nullptr ? mesh.corners()[3 * i + k] : 3 * i + k;
+      std::size_t const corner = mesh.indices() != nullptr ? mesh.indices()[3 * i + k] : 3 * i + k;
       if (corner >= mesh.vertex_count()) return this->found(problem::corner_out_of_range, i);
     }
     triangle<S> const t = mesh[i];
-    if (!finite(t)) return this->found(problem::triangle_not_finite, i);
+    if (!is_finite(t)) return this->found(problem::triangle_not_finite, i);
     vec3<double> const a = t.a.template cast<double>(), b = t.b.template cast<double>(),
                        c = t.c.template cast<double>();
     vec3<double> const n = cross<double>(b - a, c - a);
@@ -139,11 +139,11 @@ struct inspect_sphere : inspection {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     sphere<S> const s = spheres[i];
-    if (!finite(s.centre)) this->found(problem::centre_not_finite, i);
-    if (infinite(s.radius)) {
+    if (!is_finite(s.centre)) this->found(problem::centre_not_finite, i);
+    if (is_infinite(s.radius)) {
       this->found(problem::radius_infinite, i);
-    } else if (!valid_radius(s.radius)) {
-      bool const nan = (bits(s.radius) & ~format<S>::sign_mask) > format<S>::exponent_mask;
+    } else if (!is_valid_radius(s.radius)) {
+      bool const nan = (to_bits(s.radius) & ~ieee_traits<S>::sign_mask) > ieee_traits<S>::exponent_mask;
       this->found(nan ? problem::radius_nan : problem::radius_negative, i);
     }
   }

@@ -11,7 +11,7 @@ namespace detail {
 template <class F>
 struct call {
   F f;
-  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t) const { return 0; }
+  COLLIDE_HD_INLINE std::uint64_t allocate(std::uint64_t) const { return 0; }
 #if defined(__CUDACC__)
 #pragma nv_exec_check_disable
 #endif

@@ -7,7 +7,7 @@
 
 namespace collide {
 
-/// The same velocity everywhere.
+/// A velocity field that is uniform: (x, y, z) everywhere, in units of length per time.
 struct uniform_field {
   double x = 0, y = 0, z = 0;
 
@@ -31,7 +31,7 @@ struct wind {
   COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
     vec3<S> const there = field(p[position{}]);
     vec3<S> const v = p[velocity{}] - there;
-    S const k = S(linear) + S(quadratic) * detail::root(detail::dot(v, v));
+    S const k = S(linear) + S(quadratic) * detail::sqrt_rn(detail::dot(v, v));
     p[velocity{}] = there + v * (1 / (1 + k * dt));
   }
 };

@@ -1,4 +1,4 @@
-// expect: collide: what a sink passes to query has a const member reserve(n) that returns the number of a slot
+// expect: collide: what a sink passes to query has a const member allocate(n) that returns the number of a slot
 #include <collide/all_pairs.cuh>
 
 struct handle {

@@ -2,7 +2,7 @@
 #include <collide/all_pairs.cuh>
 
 struct handle {
-  std::uint64_t reserve(std::uint64_t) const { return 0; }
+  std::uint64_t allocate(std::uint64_t) const { return 0; }
 };
 struct sink {
   template <class Space, class Query>

@@ -10,7 +10,7 @@ struct device : collide::host {
 using detector = collide::detector<collide::bucket, collide::karabassi<>, device>;
 
 void f(detector& detector, collide::sphere_view<float> spheres) {
-  for (auto touches : detector.query(spheres, collide::any())) {
+  for (auto touches : detector.query(spheres, collide::any_hit())) {
     if (touches != 0) return;
   }
 }

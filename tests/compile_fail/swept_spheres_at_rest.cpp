@@ -1,4 +1,5 @@
-// expect: collide: this narrow phase judges spheres that move: give query a moving_sphere_view, see `moving`
+// expect: collide: this narrow phase judges spheres that move: give query a moving_sphere_view, see
+// `with_displacements`
 #include <collide/all_pairs.cuh>
 #include <collide/karabassi_swept.hpp>
 

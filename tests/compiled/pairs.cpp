@@ -29,7 +29,7 @@ struct scene {
     return collide::spheres_xyz(centres.data(), centres.size() / 3, S(0.5));
   }
   collide::moving_sphere_view<S> spheres(collide::karabassi_swept<> const&) const {
-    return collide::moving(spheres(collide::karabassi<>()), displacements.data());
+    return collide::with_displacements(spheres(collide::karabassi<>()), displacements.data());
   }
 };
 
@@ -52,7 +52,7 @@ bool right() {
   return !expected.empty() && expected.size() < spheres.size() * 4 &&
          detector.query(spheres, collide::pairs(collide::order::canonical)).to_host() == expected &&
          detector.query(spheres, collide::count()).total() == expected.size() &&
-         detector.query(spheres, collide::any()).to_host() == flags;
+         detector.query(spheres, collide::any_hit()).to_host() == flags;
 }
 
 template <class Broad, class... Narrow>

@@ -76,9 +76,10 @@ struct numbers {
     require(c.point.allFinite(), "the point of contact is finite");
     require(std::abs(length - 1) <= 4 * double(std::numeric_limits<S>::epsilon()), "the normal is a unit vector");
     require(c.distance >= 0, "a distance is not below 0");
-    bool const face = c.kind == collide::feature::face;
-    require(face || c.kind == collide::feature::edge || c.kind == collide::feature::vertex, "there is such a feature");
-    require(c.index < (face ? 1 : 3), "the triangle has that many of them");
+    bool const face = c.feature == collide::feature::face;
+    require(face || c.feature == collide::feature::edge || c.feature == collide::feature::vertex,
+            "there is such a feature");
+    require(c.feature_index < (face ? 1 : 3), "the triangle has that many of them");
   }
 
   /// The same case as seen by one who names the corners in another order, and the axes, and looks from the other side.

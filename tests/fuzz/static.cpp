@@ -30,9 +30,9 @@ template <class S>
 void check_integers(pair<S> const& n, bool hit) {
   auto const shape = collide::detail::widened(n.shape());
   auto const ball = collide::detail::widened(n.ball());
-  collide::detail::fixed_triangle const fixed(shape, ball);
-  n.require(!fixed.holds() || fixed.in_reach() == hit, "integers of fixed width are right");
-  n.require(collide::detail::in_reach_exactly(shape, ball) == hit, "integers of any width are right");
+  collide::detail::fixed_width_predicate const fixed(shape, ball);
+  n.require(!fixed.fits() || fixed.intersects() == hit, "integers of fixed width are right");
+  n.require(collide::detail::intersects_in_integers(shape, ball) == hit, "integers of any width are right");
 }
 
 template <class S>
@@ -48,23 +48,24 @@ void check_contact(pair<S> const& n, bool asks) {
 
 template <class S>
 void check(pair<S> const& n) {
-  using stages = collide::detail::in_stages<collide::karabassi<>>;
+  using stages = collide::detail::filtered_predicate<collide::karabassi<>>;
   auto const hash = n.hash();
   bool const slowly = hash % asks_slowly == 0, asks = hash / asks_slowly % asks_oracle == 0;
-  auto const quick = stages::attempt(n.shape(), n.ball()), straight = stages::attempt_straight(n.shape(), n.ball());
-  n.require(straight == verdict::unsure || quick == verdict::unsure || straight == quick, "both certificates agree");
+  auto const quick = stages::filter(n.shape(), n.ball()), straight = stages::filter_branchless(n.shape(), n.ball());
+  n.require(straight == verdict::uncertain || quick == verdict::uncertain || straight == quick,
+            "both certificates agree");
   check_bad_values<collide::single_precision>(n);
   check_bad_values<collide::double_precision>(n);
   collide::karabassi<collide::baseline>::intersects(n.shape(), n.ball());  // promises nothing, but harms nothing
-  if (quick != verdict::unsure) {
-    n.require(stages::finish(n.shape(), n.ball()) == (quick == verdict::hit), "the later stages say the same");
+  if (quick != verdict::uncertain) {
+    n.require(stages::resolve(n.shape(), n.ball()) == (quick == verdict::hit), "the later stages say the same");
     n.require(exact_hit(n.turned(hash)) == (quick == verdict::hit), "the order of corners and axes does not matter");
   }
   if (!slowly) return;
 
   bool const hit = exact_hit(n);
   check_bad_values<collide::exact>(n);
-  n.require(straight == verdict::unsure || (straight == verdict::hit) == hit, "the quick verdict is right");
+  n.require(straight == verdict::uncertain || (straight == verdict::hit) == hit, "the quick verdict is right");
   n.require(exact_hit(n.turned(hash)) == hit, "the order of corners and axes does not matter");
   if (n.plain()) check_integers(n, hit);
   if (asks) n.require(oracle::hit(n.exact_shape(), n.exact_ball()) == hit, "the oracle says the same");

@@ -61,14 +61,14 @@ void check_impact(pair<S> const& n, bool at_rest, bool asks) {
 
 template <class S>
 void check(pair<S> const& n) {
-  using stages = collide::detail::in_stages<swept>;
+  using stages = collide::detail::filtered_predicate<swept>;
   auto const hash = n.hash();
   bool const slowly = hash % asks_slowly == 0, asks = hash / asks_slowly % asks_oracle == 0;
-  auto const quick = stages::attempt(n.shape(), n.moving());
+  auto const quick = stages::filter(n.shape(), n.moving());
   check_bad_values<collide::single_precision>(n);
   check_bad_values<collide::double_precision>(n);
-  if (quick != verdict::unsure) {
-    n.require(stages::finish(n.shape(), n.moving()) == (quick == verdict::hit), "the later stages say the same");
+  if (quick != verdict::uncertain) {
+    n.require(stages::resolve(n.shape(), n.moving()) == (quick == verdict::hit), "the later stages say the same");
     n.require(exact_hit(n.turned(hash)) == (quick == verdict::hit), "the order of corners and axes does not matter");
   }
   if (!slowly) return;
@@ -79,7 +79,7 @@ void check(pair<S> const& n) {
   check_backwards(n, hit);
   if (n.plain()) {
     using namespace collide::detail;
-    n.require(in_reach_exactly(widened(n.shape()), widened(n.moving()), {1, 0}) == hit, "integers are right");
+    n.require(intersects_in_integers(widened(n.shape()), widened(n.moving()), {1, 0}) == hit, "integers are right");
   }
   if (asks) {
     n.require(oracle::hit(n.exact_shape(), n.exact_ball(), n.exact_point(4)) == hit, "the oracle says the same");

@@ -24,8 +24,9 @@ int count_wrong(std::vector<tests::row<S>> const& rows) {
   for (auto const& r : rows) {
     auto const t = r.triangle();
     auto const s = r.sphere();
-    if (!(detail::finite(t) && detail::finite(s.centre) && detail::finite(s.radius) && s.radius >= 0)) continue;
-    auto const c = detail::contact_between(t, s);
+    if (!(detail::is_finite(t) && detail::is_finite(s.centre) && detail::is_finite(s.radius) && s.radius >= 0))
+      continue;
+    auto const c = detail::contact_of_pair(t, s);
     if (!within_4_ulp(c.distance, r.distance) || !within_4_ulp(c.depth, r.depth)) ++wrong;
   }
   return wrong;

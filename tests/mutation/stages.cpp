@@ -17,8 +17,8 @@ bool some_integers_are_wrong(collide::triangle<S> const& t, collide::sphere<S> c
   namespace detail = collide::detail;
   auto const shape = detail::widened(t);
   auto const ball = detail::widened(s);
-  detail::fixed_triangle const fixed(shape, ball);
-  return (fixed.holds() && fixed.in_reach() != hit) || detail::in_reach_exactly(shape, ball) != hit;
+  detail::fixed_width_predicate const fixed(shape, ball);
+  return (fixed.fits() && fixed.intersects() != hit) || detail::intersects_in_integers(shape, ball) != hit;
 }
 
 /// Of the quick tests: with branches and without.
@@ -26,7 +26,7 @@ template <class S>
 bool some_attempt_is_wrong(collide::triangle<S> const& t, collide::sphere<S> const& s, bool hit) {
   using collide::detail::verdict;
   verdict const no = hit ? verdict::miss : verdict::hit;
-  return collide::detail::attempt(t, s).verdict == no || collide::detail::attempt_straight(t, s) == no;
+  return collide::detail::filter_exact(t, s).verdict == no || collide::detail::filter_branchless(t, s) == no;
 }
 
 /// True if the lifted ball of the broad phase lets a sphere pass, relative to a corner or to the origin of the world.
@@ -37,7 +37,7 @@ bool passes(collide::triangle<S> const& t, collide::sphere<S> const& s) {
   for (collide::vec3<S> const& origin : {t.a, collide::vec3<S>(0, 0, 0)}) {
     detail::lifted_batch<S, 4> batch;
     batch.load(collide::spheres_xyzr(numbers, 1), 0, origin);
-    if (!batch.any_reaches(detail::lifted_bounds<S>(detail::bounds_of(t), origin))) return false;
+    if (!batch.any_overlaps(detail::lifted_bounds<S>(detail::bounding_sphere_of(t), origin))) return false;
   }
   return true;
 }
@@ -50,11 +50,11 @@ int count_wrong(std::vector<tests::row<S>> const& rows) {
     auto const t = r.triangle();
     auto const s = r.sphere();
     bool const hit = r.hit != 0;
-    bool const sound = detail::finite(t) && detail::finite(s.centre) && detail::valid_radius(s.radius);
-    if (detail::decide(t, s).hit != hit || detail::decide_closely(t, s).hit != hit ||
-        (sound && !detail::infinite(s.radius) && some_integers_are_wrong(t, s, hit)) ||
+    bool const sound = detail::is_finite(t) && detail::is_finite(s.centre) && detail::is_valid_radius(s.radius);
+    if (detail::intersects_exact(t, s).hit != hit || detail::intersects_exact_slow(t, s).hit != hit ||
+        (sound && !detail::is_infinite(s.radius) && some_integers_are_wrong(t, s, hit)) ||
         some_attempt_is_wrong(t, s, hit) ||
-        (hit && !(detail::bounds_of(t).reached(s.centre, s.radius) && passes(t, s))))
+        (hit && !(detail::bounding_sphere_of(t).overlaps(s.centre, s.radius) && passes(t, s))))
       ++wrong;
   }
   return wrong;

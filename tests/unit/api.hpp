@@ -19,7 +19,7 @@
 #include <collide/upload.hpp>
 #include <collide/validate.hpp>
 
-#include "subject.hpp"
+#include "type_erased_detector.hpp"
 
 namespace tests {
 
@@ -103,12 +103,12 @@ struct ending_sink {
     std::uint64_t* ended;
     std::uint64_t* stored_then;
 
-    COLLIDE_HD std::uint64_t reserve(std::uint64_t) const { return 0; }
+    COLLIDE_HD std::uint64_t allocate(std::uint64_t) const { return 0; }
     template <class Hit>
     COLLIDE_HD void store(std::uint64_t, Hit const&) const {
       collide::detail::fetch_add(stored, std::uint64_t{1});
     }
-    COLLIDE_HD void finish() const {
+    COLLIDE_HD void end_pass() const {
       collide::detail::fetch_add(ended, std::uint64_t{1});
       *stored_then = collide::detail::fetch_add(stored, std::uint64_t{0});
     }
@@ -179,12 +179,12 @@ void check_sink_interface(Space space) {
   CHECK((moved.to_host() == scene.hits()));
   CHECK((detector.query(spheres.view(), collide::pairs(collide::order::canonical)).to_host() == scene.hits()));
 
-  CHECK((detector.query(spheres.view(), collide::any()).to_host() == std::vector<std::uint8_t>{1, 1, 0, 1}));
+  CHECK((detector.query(spheres.view(), collide::any_hit()).to_host() == std::vector<std::uint8_t>{1, 1, 0, 1}));
   collide::buffer<std::uint8_t> flags;
   auto* const to = flags.reserve(detector.space().resource(), 5);
   std::uint8_t host_flags[5] = {9, 9, 9, 9, 9};
   space.copy_from_host(to, host_flags, 5);
-  auto const own = detector.query(spheres.view(), collide::any(to));
+  auto const own = detector.query(spheres.view(), collide::any_hit(to));
   CHECK(own.data() == to);
   CHECK(own.size() == 4);
   space.copy_to_host(host_flags, to, 5);
@@ -203,13 +203,13 @@ void check_sink_interface(Space space) {
   CHECK(contacts[0].point == collide::vec3<float>(1.5f, 0.5f, 0));
   CHECK(contacts[0].normal == collide::vec3<float>(0, 0, 1));
   CHECK(contacts[0].depth == 0.25f);
-  CHECK(contacts[0].kind == collide::feature::face);
+  CHECK(contacts[0].feature == collide::feature::face);
   CHECK(contacts[1].normal == collide::vec3<float>(0, 0, -1));
-  CHECK(contacts[1].kind == collide::feature::edge);  // ca of triangle 0, ab of triangle 1
-  CHECK(contacts[1].index == 2);
-  CHECK(contacts[2].index == 0);
-  CHECK(contacts[3].kind == collide::feature::vertex);
-  CHECK(contacts[3].index == 2);
+  CHECK(contacts[1].feature == collide::feature::edge);  // ca of triangle 0, ab of triangle 1
+  CHECK(contacts[1].feature_index == 2);
+  CHECK(contacts[2].feature_index == 0);
+  CHECK(contacts[3].feature == collide::feature::vertex);
+  CHECK(contacts[3].feature_index == 2);
   CHECK(contacts[3].depth == 0.125f);
 
   check_end_of_pass<collide::karabassi<>, Broad>(space);
@@ -399,7 +399,7 @@ void check_crowd(std::size_t n, std::size_t apart) {
     collide::buffer<float> memory;
     float* const ways = memory.reserve(space.resource(), still.size());
     space.copy_from_host(ways, still.data(), still.size());
-    auto const moving = collide::moving(spheres.view(), static_cast<float const*>(ways));
+    auto const moving = collide::with_displacements(spheres.view(), static_cast<float const*>(ways));
     found = detector.query(moving, collide::pairs(collide::order::canonical)).to_host();
   }
   REQUIRE(found.size() == expected.size());

@@ -78,7 +78,7 @@ void check_automatic_swept(Space space) {
   std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()), centres(s.centres.begin(), s.centres.end());
   std::vector<float> const moves(centres.size(), 5.0f);
   auto const mesh = collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count());
-  auto const balls = collide::moving(collide::spheres_xyz(centres.data(), 20000, 12), moves.data());
+  auto const balls = collide::with_displacements(collide::spheres_xyz(centres.data(), 20000, 12), moves.data());
   auto const found = [&](auto broad) {
     collide::detector<decltype(broad), collide::karabassi_swept<>, Space> detector(space);
     collide::pairs pairs(collide::order::canonical);

@@ -65,15 +65,15 @@ std::vector<nearest<S>> nearest_of(std::vector<collide::contact<S>> const& conta
 template <class S>
 oracle::triangle feature_of(collide::contact<S> const& c, oracle::triangle const& t) {
   oracle::point const corners[3] = {t.a, t.b, t.c};
-  auto const& from = corners[c.index % 3];
-  if (c.kind == collide::feature::face) return t;
-  return {from, from, c.kind == collide::feature::edge ? corners[(c.index + 1) % 3] : from};
+  auto const& from = corners[c.feature_index % 3];
+  if (c.feature == collide::feature::face) return t;
+  return {from, from, c.feature == collide::feature::edge ? corners[(c.feature_index + 1) % 3] : from};
 }
 
 template <class S>
 unsigned feature_bit(collide::contact<S> const& c) {
-  if (c.kind == collide::feature::face) return oracle::face;
-  return (c.kind == collide::feature::edge ? oracle::edge_ab : oracle::vertex_a) << c.index;
+  if (c.feature == collide::feature::face) return oracle::face;
+  return (c.feature == collide::feature::edge ? oracle::edge_ab : oracle::vertex_a) << c.feature_index;
 }
 
 /// True if `x` is at most 4 units in the last place (of S) off; a number beyond the range of S must have become
@@ -93,7 +93,7 @@ template <class S>
 bool same(collide::contact<S> const& a, collide::contact<S> const& b) {
   return a.sphere == b.sphere && a.triangle == b.triangle && same_bits(a.point, b.point) &&
          same_bits(a.normal, b.normal) && same_bits(a.distance, b.distance) && same_bits(a.depth, b.depth) &&
-         a.kind == b.kind && a.index == b.index;
+         a.feature == b.feature && a.feature_index == b.feature_index;
 }
 
 template <class S>
@@ -123,13 +123,13 @@ void check_contact(collide::contact<S> const& c, oracle::triangle const& t, orac
   if (nearest.distance > std::numeric_limits<double>::min())
     CHECK(std::abs(dot(normal, nearest.offset) / nearest.distance + 1) <= 8 * unit);
   // (several feet may be nearer than the smallest number, and then each may count as the closest)
-  if (nearest.distance == 0 && nearest.features == oracle::face && c.kind == collide::feature::face)
+  if (nearest.distance == 0 && nearest.features == oracle::face && c.feature == collide::feature::face)
     for (auto const& edge : {t.b - t.a, t.c - t.b, t.a - t.c}) {
       double const length = size(edge);
       if (std::isfinite(length)) CHECK(std::abs(dot(normal, edge)) <= (8 * unit + 0x1p-30) * length);
     }
 
-  CHECK(c.index < (c.kind == collide::feature::face ? 1 : 3));
+  CHECK(c.feature_index < (c.feature == collide::feature::face ? 1 : 3));
   if (strict)
     CHECK((nearest.features & feature_bit(c)) != 0);
   else

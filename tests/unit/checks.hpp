@@ -6,7 +6,7 @@
 
 #include <collide/contact.hpp>
 
-#include "subject.hpp"
+#include "type_erased_detector.hpp"
 
 namespace tests {
 

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include <collide/all_pairs.cuh>
-#include <collide/any.hpp>
+#include <collide/any_hit.hpp>
 #include <collide/bucket.cuh>
 #include <collide/closest.hpp>
 #include <collide/contacts.hpp>
@@ -14,7 +14,7 @@
 #include <collide/visit.hpp>
 
 #include "execution/lockstep.hpp"
-#include "subject.hpp"
+#include "type_erased_detector.hpp"
 
 namespace tests {
 
@@ -225,7 +225,7 @@ class typed_subject final : public subject<S> {
   collide::detector<Broad, collide::karabassi<Precision>, Space, S> detector_;
   collide::sphere_view<S> spheres_;
   collide::count count_;
-  collide::any any_;
+  collide::any_hit any_;
   collide::pairs pairs_, sorted_pairs_{collide::order::canonical};
   collide::contacts<S> contacts_, sorted_contacts_{collide::order::canonical};
   collide::closest<S> closest_;
@@ -254,8 +254,8 @@ void add_spaces(list<Spaces...>) {
    ...);
 }
 
-/// Appends one slice of the list: all broad phases in all of the spaces. A slice is a file of its own (slice.cpp.in),
-/// so that slices compile in parallel.
+/// Appends one slice of the list: all broad phases in all of the spaces. A slice is a file of its own
+/// (composition_slice.cpp.in), so that slices compile in parallel.
 template <class S, class Precision, class SpaceList, class... Broad>
 bool add_slice(list<Broad...>) {
   (add_spaces<S, Precision, Broad>(SpaceList{}), ...);

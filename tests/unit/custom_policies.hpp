@@ -93,7 +93,7 @@ void check_custom_broad_phase(Space const& space) {
   CHECK(expected.size() > 400);
   CHECK((pairs_of<custom, collide::karabassi<>, S>(space, mesh, spheres) == expected));
 
-  auto const moving = collide::moving(spheres, motions.data());
+  auto const moving = collide::with_displacements(spheres, motions.data());
   auto const swept = pairs_of<collide::all_pairs, collide::karabassi_swept<>, S>(space, mesh, moving);
   CHECK(swept.size() > expected.size());
   CHECK((pairs_of<custom, collide::karabassi_swept<>, S>(space, mesh, moving) == swept));

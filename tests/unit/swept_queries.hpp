@@ -31,7 +31,7 @@ struct moving_scene {
     return one_radius ? collide::spheres_xyz(centres.data(), radii.size(), radii[0])
                       : collide::spheres_xyz(centres.data(), radii.size(), radii.data());
   }
-  collide::moving_sphere_view<S> moving() const { return collide::moving(spheres(), displacements.data()); }
+  collide::moving_sphere_view<S> moving() const { return collide::with_displacements(spheres(), displacements.data()); }
 };
 
 /// How a random scene is made.
@@ -89,7 +89,7 @@ class placed_scene {
     auto const spheres = s.one_radius
                              ? collide::spheres_xyz(centres, s.radii.size(), s.radii[0])
                              : collide::spheres_xyz(centres, s.radii.size(), static_cast<S const*>(radii_.data()));
-    moving = collide::moving(spheres, static_cast<S const*>(displacements_.data()));
+    moving = collide::with_displacements(spheres, static_cast<S const*>(displacements_.data()));
   }
 
   collide::mesh_view<S> mesh;

@@ -23,7 +23,8 @@ TEST_CASE_TEMPLATE("extending: a pool of threads finds what the host finds", S, 
   tests::crowd<S> const made(3000, 20000);
   auto const mesh = collide::triangle_soup(made.triangles.data(), 3000);
   auto const spheres = collide::spheres_xyz(made.centres.data(), 20000, made.radii.data());
-  auto const moving = collide::moving(collide::spheres_xyz(made.centres.data(), 20000, S(0.05)), made.motions.data());
+  auto const moving =
+      collide::with_displacements(collide::spheres_xyz(made.centres.data(), 20000, S(0.05)), made.motions.data());
   using collide::bucket;
   using collide::host;
   using tests::pairs_of;

@@ -46,9 +46,10 @@ std::size_t count_tunnels(std::vector<S> const& corners, double flat, std::size_
     if (i % 64 == 0) radii[i] = 0;
   }
   collide::detector<collide::bucket, collide::karabassi_swept<>, collide::host, S> detector(collide::host(2));
-  auto const view = collide::moving(collide::spheres_xyz(centres.data(), n, radii.data()), displacements.data());
+  auto const view =
+      collide::with_displacements(collide::spheres_xyz(centres.data(), n, radii.data()), displacements.data());
   auto const touched =
-      detector.detect(collide::triangle_soup(corners.data(), corners.size() / 9), view, collide::any());
+      detector.detect(collide::triangle_soup(corners.data(), corners.size() / 9), view, collide::any_hit());
   auto const hit = touched.to_host();
   return static_cast<std::size_t>(std::count(hit.begin(), hit.end(), 0));
 }
@@ -191,9 +192,9 @@ TEST_CASE("swept queries: a grid for small spheres does not stay for large ones"
   collide::detector<collide::bucket, collide::karabassi_swept<>> detector(collide::host(1));
   auto const width_after = [&](auto const& of) {
     auto const& [centres, displacements, radius] = of;
-    detector.query(
-        collide::moving(collide::spheres_xyz(centres.data(), centres.size() / 3, radius), displacements.data()),
-        collide::count());
+    detector.query(collide::with_displacements(collide::spheres_xyz(centres.data(), centres.size() / 3, radius),
+                                               displacements.data()),
+                   collide::count());
     return detector.cell_width();
   };
   detector.build(collide::triangle_soup(corners.data(), corners.size() / 9), 1.f);

@@ -16,15 +16,15 @@ namespace tests {
 /// k < counts[i] evenly over the lanes, each of which finds its i by binary search.
 template <class Block>
 struct balancing {
-  typename Block::scan_scratch scan;
+  typename Block::scan_storage scan;
 
   template <class Item, class Find, class Look, class Take, class Round>
   void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find, Look const& look,
            Take const& take, Round const& after_round) {
     std::uint32_t const total = block.scan(scan, counts, n);
-    for (std::uint32_t base = 0; base < total; base += Block::lanes) {
-      block.each([&](int lane) {
-        std::uint32_t const work = base + static_cast<std::uint32_t>(lane);
+    for (std::uint32_t base = 0; base < total; base += Block::num_threads) {
+      block.for_each_thread([&](int thread_rank) {
+        std::uint32_t const work = base + static_cast<std::uint32_t>(thread_rank);
         if (work >= total) return;
         std::uint32_t i = 0, end = n;  // the last i whose work begins at or before this
         while (end - i > 1) {
@@ -39,7 +39,7 @@ struct balancing {
         auto const found = find(one, work - counts[i]);
         if (look(one, found)) take(one, found);
       });
-      after_round(base + Block::lanes >= total);
+      after_round(base + Block::num_threads >= total);
     }
   }
 };
@@ -49,35 +49,35 @@ struct balancing {
 template <int Lanes, int Items, bool Reversed>
 class lockstep_block {
  public:
-  static constexpr int lanes = Lanes, items = Items, pending = 2 * Lanes, row_lanes = 1;
+  static constexpr int num_threads = Lanes, items = Items, pending = 2 * Lanes, warp_size = 1;
 
   template <class T>
-  struct per_lane {
+  struct thread_private {
     T value[Lanes];
-    T& operator[](int lane) { return value[lane]; }
+    T& operator[](int thread_rank) { return value[thread_rank]; }
   };
   template <class T, int N>
   struct staging {
     T values[N];
   };
   template <class T, int N>
-  struct row_scratch {};
-  struct scan_scratch {};
-  using balance_scratch = balancing<lockstep_block>;
+  struct warp_exchange_storage {};
+  struct scan_storage {};
+  using balance_storage = balancing<lockstep_block>;
   template <class T>
-  struct reduce_scratch {};
+  struct reduce_storage {};
 
   explicit lockstep_block(std::size_t index) : index_{index} {}
 
   std::size_t index() const { return index_; }
 
   template <class F>
-  void each(F const& f) {
+  void for_each_thread(F const& f) {
     for (int i = 0; i < Lanes; ++i) f(Reversed ? Lanes - 1 - i : i);
   }
 
   template <class T>
-  T shared(T const& value) {
+  T broadcast(T const& value) {
     return value;
   }
 
@@ -94,19 +94,19 @@ class lockstep_block {
   }
 
   template <class T, int N>
-  void load_row(T const* from, std::uint32_t row, T (&to)[N]) {
+  void load_striped(T const* from, std::uint32_t row, T (&to)[N]) {
     for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
   }
 
   template <class Scratch, class T, int N>
-  void exchange_row(Scratch&, T (&)[N]) {}
+  void striped_to_blocked(Scratch&, T (&)[N]) {}
 
   template <class Scratch, class T, int N>
-  void store_row(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
+  void store_transposed(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
     for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
   }
 
-  std::uint32_t scan(scan_scratch&, std::uint32_t* values, std::uint32_t n) {
+  std::uint32_t scan(scan_storage&, std::uint32_t* values, std::uint32_t n) {
     std::uint32_t sum = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
       std::uint32_t const value = values[i];
@@ -117,15 +117,15 @@ class lockstep_block {
   }
 
   template <int Ahead, class Item, class Find, class Look, class Take, class Round>
-  void balanced(balance_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find,
-                Look const& look, Take const& take, Round const& after_round) {
+  void for_each_balanced(balance_storage& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find,
+                         Look const& look, Take const& take, Round const& after_round) {
     s.run(*this, counts, n, item, find, look, take, after_round);
   }
 
   template <class T, class Combine>
-  T reduce(reduce_scratch<T>&, per_lane<T>& values, Combine const& combine) {
+  T reduce(reduce_storage<T>&, thread_private<T>& values, Combine const& combine) {
     T result = values[0];
-    for (int lane = 1; lane < Lanes; ++lane) result = combine(result, values[lane]);
+    for (int thread_rank = 1; thread_rank < Lanes; ++thread_rank) result = combine(result, values[thread_rank]);
     return result;
   }
 

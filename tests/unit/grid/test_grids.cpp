@@ -127,7 +127,7 @@ TEST_CASE_TEMPLATE("grids: a way that leaves the grid comes through none but its
     auto const from = dice.in_cube(0.6), along = dice.in_cube(length);
     collide::vec3<S> const begin(S(from.x + 0.5), S(from.y + 0.5), S(from.z + 0.5)),
         step(S(along.x), S(along.y), S(along.z));
-    collide::detail::way<S> const way(grid, level, begin, step);
+    collide::detail::swept_cells<S> const way(grid, level, begin, step);
     for (std::uint32_t k = 0; k < way.steps(); ++k) {
       auto const place = way.at(k);
       if (!place.is_cell) continue;
@@ -141,7 +141,7 @@ TEST_CASE_TEMPLATE("grids: a way that leaves the grid comes through none but its
 }
 
 TEST_CASE_TEMPLATE("grids: of spheres that move, a few bits tell what walking their ways does", S, float, double) {
-  using collide::detail::way;
+  using collide::detail::swept_cells;
   collide::detail::grid<S> grid{};
   grid.levels = 1;
   auto& level = grid.level[0];
@@ -151,7 +151,7 @@ TEST_CASE_TEMPLATE("grids: of spheres that move, a few bits tell what walking th
   std::vector<std::uint8_t> occupied((3 + 8 * 11 * 4) / 8 + 1);
   for (auto& byte : occupied) byte = static_cast<std::uint8_t>(1u << dice.integer(0, 7));
   std::uint32_t const total = 0;
-  collide::detail::bucket_lookup<S> lookup{{{}, nullptr}, &grid, 1, occupied.data(), nullptr, &total, nullptr, 0};
+  collide::detail::bucket_ref<S> lookup{{{}, nullptr}, &grid, 1, occupied.data(), nullptr, &total, nullptr, 0};
   auto const marks = lookup.marks();
   S const bad[] = {std::numeric_limits<S>::infinity(), -std::numeric_limits<S>::infinity(),
                    std::numeric_limits<S>::quiet_NaN()};
@@ -167,14 +167,15 @@ TEST_CASE_TEMPLATE("grids: of spheres that move, a few bits tell what walking th
     bool const is_bad = i % 50 == 7;
     if (is_bad) (i % 4 < 2 ? batch.x : batch.dz)[i % 3] = bad[i / 50 % 3];
     bool near[4], all_short = true;
-    bool const known = marks.mark_ways(batch, near);
+    bool const known = marks.test_swept(batch, near);
     for (int k = 0; k < 4 && !is_bad; ++k) {
-      bool const inside = way<S>::enters(0, 1, batch.x[k], batch.dx[k]) &&
-                          way<S>::enters(0, 1, batch.y[k], batch.dy[k]) &&
-                          way<S>::enters(0, 1, batch.z[k], batch.dz[k]);
-      way<S> const path(grid, level, batch.centre(k), batch.displacement(k));
-      all_short = all_short &&
-                  (!inside || path.is_short(path.cells_around(grid, level, batch.centre(k), batch.displacement(k))));
+      bool const inside = swept_cells<S>::overlaps_slab(0, 1, batch.x[k], batch.dx[k]) &&
+                          swept_cells<S>::overlaps_slab(0, 1, batch.y[k], batch.dy[k]) &&
+                          swept_cells<S>::overlaps_slab(0, 1, batch.z[k], batch.dz[k]);
+      swept_cells<S> const path(grid, level, batch.centre(k), batch.displacement(k));
+      all_short =
+          all_short &&
+          (!inside || path.is_short(path.cell_box_of_path(grid, level, batch.centre(k), batch.displacement(k))));
       bool expected = false;
       for (std::uint32_t step = 0; inside && step < path.steps(); ++step) {
         auto const place = path.at(step);
@@ -246,28 +247,30 @@ TEST_CASE_TEMPLATE("grids: triangles of two sizes are of one level, and cells no
 }
 
 TEST_CASE("grids: a part of a cell and what may be in it meet on all axes or not at all") {
-  using collide::detail::cell_part;
-  constexpr std::uint32_t first = cell_part::first, last = cell_part::last, before = cell_part::before;
+  using collide::detail::cell_coverage;
+  constexpr std::uint32_t first = cell_coverage::first, last = cell_coverage::last, before = cell_coverage::before;
   auto const everywhere = [&](int axis) {
-    return cell_part::at(first, last, (axis + 1) % 3) | cell_part::at(first, last, (axis + 2) % 3);
+    return cell_coverage::encode_query(first, last, (axis + 1) % 3) |
+           cell_coverage::encode_query(first, last, (axis + 2) % 3);
   };
   auto const whole = [&](int axis) {
-    return cell_part::covered(before, last, (axis + 1) % 3) | cell_part::covered(before, last, (axis + 2) % 3);
+    return cell_coverage::encode_box(before, last, (axis + 1) % 3) |
+           cell_coverage::encode_box(before, last, (axis + 2) % 3);
   };
   for (int axis = 0; axis < 3; ++axis) {
-    CHECK((whole(axis) | cell_part::covered(before, last, axis)) == cell_part::whole);
-    CHECK((everywhere(axis) | cell_part::at(first, last, axis)) == cell_part::anywhere);
+    CHECK((whole(axis) | cell_coverage::encode_box(before, last, axis)) == cell_coverage::full_box);
+    CHECK((everywhere(axis) | cell_coverage::encode_query(first, last, axis)) == cell_coverage::full_query);
     for (std::uint32_t from = before; from <= last; ++from) {
       for (std::uint32_t to = std::max(from, first); to <= last; ++to) {
-        std::uint32_t const part = whole(axis) | cell_part::covered(from, to, axis);
-        CHECK(cell_part::meets(part, cell_part::anywhere));
-        CHECK(cell_part::begins_before(part, cell_part::axis(axis)) == (from == before));
-        CHECK_FALSE(cell_part::begins_before(part, 0));
+        std::uint32_t const part = whole(axis) | cell_coverage::encode_box(from, to, axis);
+        CHECK(cell_coverage::overlaps(part, cell_coverage::full_query));
+        CHECK(cell_coverage::starts_in_earlier_cell(part, cell_coverage::axis(axis)) == (from == before));
+        CHECK_FALSE(cell_coverage::starts_in_earlier_cell(part, 0));
         for (std::uint32_t a = first; a <= last; ++a) {
           for (std::uint32_t b = a; b <= last; ++b) {
-            std::uint32_t const place = everywhere(axis) | cell_part::at(a, b, axis);
-            CHECK(cell_part::meets(part, place) == (a <= to && b >= from));
-            CHECK(cell_part::meets(cell_part::whole, place));
+            std::uint32_t const place = everywhere(axis) | cell_coverage::encode_query(a, b, axis);
+            CHECK(cell_coverage::overlaps(part, place) == (a <= to && b >= from));
+            CHECK(cell_coverage::overlaps(cell_coverage::full_box, place));
           }
         }
       }
@@ -297,11 +300,11 @@ TEST_CASE_TEMPLATE("grids: entries contain what is in a triangle's dilated box, 
     REQUIRE(grid.levels > 0);
     std::size_t inside = 0, listed = 0, passed = 0, wrong = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      collide::detail::box<S> const b = collide::detail::triangle_box_of(mesh[i]);
+      collide::detail::aabb<S> const b = collide::detail::triangle_aabb_of(mesh[i]);
       auto const& level = grid.level_of(b);
       std::map<std::uint32_t, std::uint32_t> parts;
-      grid.template each_cells<1>(b, 0, 1, [&](collide::detail::covered_cell const(&c)[1], std::uint32_t m) {
-        if (m == 1) parts[c[0].number] = c[0].part;
+      grid.template each_cells<1>(b, 0, 1, [&](collide::detail::cell_ref const(&c)[1], std::uint32_t m) {
+        if (m == 1) parts[c[0].number] = c[0].coverage;
       });
       for (int j = 0; j < 2000; ++j) {
         collide::vec3<S> p;
@@ -319,7 +322,8 @@ TEST_CASE_TEMPLATE("grids: entries contain what is in a triangle's dilated box, 
         if (!in_grid) continue;
         auto const place = grid.place_of(level, p);
         auto const found = parts.find(place.number);
-        bool const meets = found != parts.end() && collide::detail::cell_part::meets(found->second, place.part);
+        bool const meets =
+            found != parts.end() && collide::detail::cell_coverage::overlaps(found->second, place.coverage);
         if (in_box) {
           ++inside;
           wrong += !meets;

@@ -46,7 +46,7 @@ struct sweep {
   }
   bool hit_in_integers() const {
     using namespace collide::detail;
-    return in_reach_exactly(widened(shape), widened(ball), {1, 0});
+    return intersects_in_integers(widened(shape), widened(ball), {1, 0});
   }
 };
 
@@ -107,7 +107,7 @@ void check_stopping_time(oracle::triangle const& t, oracle::sphere const& s, poi
   REQUIRE(time <= 1);
   if (oracle::hit(t, s)) REQUIRE(time == 0);
   REQUIRE_FALSE(oracle::hit_before(t, s, move, time));
-  double const size = collide::detail::size_of(collide::detail::relative<double>(made.shape, made.ball));
+  double const size = collide::detail::max_norm(collide::detail::to_local<double>(made.shape, made.ball));
   oracle::sphere const larger{s.centre, s.radius + most_close * size};
   REQUIRE(oracle::hit_by(t, larger, move, std::min(1.0, time + most_early<S>)));
 }
@@ -164,8 +164,8 @@ TEST_CASE_TEMPLATE("swept: precisions other than exact are right unless distance
                    float, double) {
   auto const check = [](auto const& c) {
     sweep<S> const made(c);
-    auto const l = collide::detail::relative<double>(made.shape, made.ball);
-    double const m = collide::detail::size_of(l);
+    auto const l = collide::detail::to_local<double>(made.shape, made.ball);
+    double const m = collide::detail::max_norm(l);
     auto const precise = [&](bool hit, double band) {
       bool const less = oracle::hit(c.shape, {c.ball.centre, c.ball.radius - band * m}, c.move),
                  more = oracle::hit(c.shape, {c.ball.centre, c.ball.radius + band * m}, c.move);
@@ -250,21 +250,21 @@ TEST_CASE_TEMPLATE("swept: ordinary pairs are decided at once, and their times a
   for (int i = 0; i < 20000; ++i) {
     oracle::triangle const t{roll.in_cube(1), roll.in_cube(1), roll.in_cube(1)};
     auto const drawn = sweep<S>(t, {roll.in_cube(3), roll.uniform(0.1, 1)}, roll.in_cube(2));
-    auto const decided = collide::detail::decide(drawn.shape, drawn.ball);
-    ++by[static_cast<int>(decided.by)];
+    auto const decided = collide::detail::intersects_exact(drawn.shape, drawn.ball);
+    ++by[static_cast<int>(decided.decided_by)];
     if (!decided.hit || i % 4 != 0) continue;
     auto const given = [](collide::vec3<S> const& p) { return point{p.x(), p.y(), p.z()}; };
     oracle::triangle const exact_t{given(drawn.shape.a), given(drawn.shape.b), given(drawn.shape.c)};
     oracle::sphere const exact_s{given(drawn.ball.centre), drawn.ball.radius};
-    double const late =
-        oracle::impact_time(exact_t, exact_s, given(drawn.ball.displacement)) -
-        collide::detail::earliest_time(collide::detail::widened(drawn.shape), collide::detail::widened(drawn.ball));
+    double const late = oracle::impact_time(exact_t, exact_s, given(drawn.ball.displacement)) -
+                        collide::detail::conservative_advancement(collide::detail::widened(drawn.shape),
+                                                                  collide::detail::widened(drawn.ball));
     ++hits;
     rough += late > 1e-12;
     CHECK(late >= 0);
   }
-  CHECK(by[static_cast<int>(collide::detail::stage::double_certificate)] < 10);
-  CHECK(by[static_cast<int>(collide::detail::stage::integers)] == 0);
+  CHECK(by[static_cast<int>(collide::detail::stage::double_filter)] < 10);
+  CHECK(by[static_cast<int>(collide::detail::stage::exact_integers)] == 0);
   CHECK(hits > 100);
   CHECK(rough < hits / 50);
 }

@@ -12,7 +12,7 @@ namespace {
 
 using namespace collide::detail;
 
-double value_of_parts(parts_view const& parts) {
+double value_of_parts(components_view const& parts) {
   double sum = 0;
   for (int i = 0; i < parts.count; ++i)
     sum += std::ldexp(static_cast<double>(parts[i].mantissa), static_cast<int>(parts[i].exponent));
@@ -102,7 +102,7 @@ TEST_CASE("exact sums: determinants of small integers, at scales that are far ap
     add_determinant_squared(square, -1, 0, 3, 6);
     CHECK(exact_sum::sign_of(table, sum) == (determinant > 0) - (determinant < 0));
     CHECK(exact_sum::sign_of(table, square) == -(determinant != 0));
-    wide_number const value = exact_sum::of(table, sum);
+    scaled_double const value = exact_sum::of(table, sum);
     int const scale = scales[0] + scales[1] + scales[2];
     CHECK(std::ldexp(value.value, value.exponent - scale) == static_cast<double>(determinant));
   }
@@ -121,7 +121,7 @@ TEST_CASE("exact sums: what is left where large products cancel") {
   CHECK(exact_sum::sign_of(table, sum) == 0);
   sum.add(-1, 1, 1);  // -2^-1800
   CHECK(exact_sum::sign_of(table, sum) == -1);
-  wide_number const left = exact_sum::of(table, sum);
+  scaled_double const left = exact_sum::of(table, sum);
   CHECK(left.value < 0);
   CHECK(std::ldexp(left.value, left.exponent + 1800) == -1);
   sum.add(2, 0, 2);

@@ -28,17 +28,17 @@ TEST_CASE_TEMPLATE("float bits: finite, infinite and valid radii", S, float, dou
   using namespace collide::detail;
   S const nan = std::numeric_limits<S>::quiet_NaN(), infinity = std::numeric_limits<S>::infinity();
   for (S const x : rising_numbers<S>()) {
-    CHECK(finite(x) == (std::fabs(x) != infinity));
-    CHECK(infinite(x) == (x == infinity));
-    CHECK(valid_radius(x) == (x >= 0));
+    CHECK(is_finite(x) == (std::fabs(x) != infinity));
+    CHECK(is_infinite(x) == (x == infinity));
+    CHECK(is_valid_radius(x) == (x >= 0));
   }
-  CHECK(valid_radius(-S(0)));
+  CHECK(is_valid_radius(-S(0)));
   for (S const x : {nan, -nan}) {
-    CHECK(!finite(x));
-    CHECK(!infinite(x));
-    CHECK(!valid_radius(x));
-    CHECK(!finite(collide::vec3<S>(0, x, 0)));
-    CHECK(!finite(collide::triangle<S>{{0, 0, 0}, {0, 0, 0}, {0, 0, x}}));
+    CHECK(!is_finite(x));
+    CHECK(!is_infinite(x));
+    CHECK(!is_valid_radius(x));
+    CHECK(!is_finite(collide::vec3<S>(0, x, 0)));
+    CHECK(!is_finite(collide::triangle<S>{{0, 0, 0}, {0, 0, 0}, {0, 0, x}}));
   }
 }
 
@@ -46,8 +46,8 @@ TEST_CASE_TEMPLATE("float bits: ordered integers sort as the numbers do, and lea
   using namespace collide::detail;
   std::vector<S> const numbers = rising_numbers<S>();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i > 0) CHECK(ordered(numbers[i - 1]) < ordered(numbers[i]));
-    CHECK(bits(from_ordered<S>(ordered(numbers[i]))) == bits(numbers[i]));
+    if (i > 0) CHECK(to_ordered_bits(numbers[i - 1]) < to_ordered_bits(numbers[i]));
+    CHECK(to_bits(from_ordered_bits<S>(to_ordered_bits(numbers[i]))) == to_bits(numbers[i]));
   }
 }
 
@@ -55,13 +55,13 @@ TEST_CASE_TEMPLATE("float bits: the reciprocal power of two brings a number to 1
   using namespace collide::detail;
   S const largest = std::numeric_limits<S>::max();
   for (S x = std::numeric_limits<S>::min() * S(1.75); x < largest / 8; x *= 8) {
-    CHECK(x * reciprocal_power(x) == S(1.75));
-    CHECK(-x * reciprocal_power(-x) == S(-1.75));
+    CHECK(x * inverse_power_of_two(x) == S(1.75));
+    CHECK(-x * inverse_power_of_two(-x) == S(-1.75));
   }
-  S const most = std::ldexp(S(1), format<S>::bias - 1);
-  CHECK(reciprocal_power(S(0)) == 2 * most);
-  CHECK(reciprocal_power(std::numeric_limits<S>::denorm_min()) == 2 * most);
-  CHECK(reciprocal_power(largest) > 0);
+  S const most = std::ldexp(S(1), ieee_traits<S>::bias - 1);
+  CHECK(inverse_power_of_two(S(0)) == 2 * most);
+  CHECK(inverse_power_of_two(std::numeric_limits<S>::denorm_min()) == 2 * most);
+  CHECK(inverse_power_of_two(largest) > 0);
 }
 
 TEST_CASE_TEMPLATE("float bits: select takes the number that it is told, whatever the other is", S, float, double) {
@@ -69,8 +69,8 @@ TEST_CASE_TEMPLATE("float bits: select takes the number that it is told, whateve
   S const nan = std::numeric_limits<S>::quiet_NaN();
   CHECK(select(true, S(2), nan) == S(2));
   CHECK(select(false, nan, S(-3)) == S(-3));
-  CHECK(clamped(S(-1)) == S(0));
-  CHECK(clamped(S(0.25)) == S(0.25));
-  CHECK(clamped(S(7)) == S(1));
-  CHECK(clamped(nan) == S(0));
+  CHECK(saturate(S(-1)) == S(0));
+  CHECK(saturate(S(0.25)) == S(0.25));
+  CHECK(saturate(S(7)) == S(1));
+  CHECK(saturate(nan) == S(0));
 }

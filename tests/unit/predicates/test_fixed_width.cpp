@@ -24,11 +24,11 @@ std::size_t check_held(std::vector<tests::near_case> const& cases) {
     tests::narrow_case<S> const made(c);
     auto const shape = collide::detail::widened(made.shape);
     auto const ball = collide::detail::widened(made.ball);
-    collide::detail::fixed_triangle const fixed(shape, ball);
-    if (!fixed.holds()) continue;
+    collide::detail::fixed_width_predicate const fixed(shape, ball);
+    if (!fixed.fits()) continue;
     ++held;
-    bool const hit = fixed.in_reach();
-    if (hit == c.hit && hit == collide::detail::in_reach_exactly(shape, ball)) continue;
+    bool const hit = fixed.intersects();
+    if (hit == c.hit && hit == collide::detail::intersects_in_integers(shape, ball)) continue;
     CAPTURE(tests::describe(c));
     CHECK(hit == c.hit);
   }
@@ -50,7 +50,7 @@ std::vector<tests::near_case> hard_cases(char const* file, bool single) {
 
 bool holds(oracle::triangle const& t, oracle::sphere const& s) {
   tests::narrow_case<double> const made({t, s, false});
-  return collide::detail::fixed_triangle(made.shape, made.ball).holds();
+  return collide::detail::fixed_width_predicate(made.shape, made.ball).fits();
 }
 
 /// True if these hold together: a coordinate of a corner and that of the centre on one axis, an odd number on another,

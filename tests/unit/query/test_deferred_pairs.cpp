@@ -34,7 +34,7 @@ struct counting_sink {
     int* count;
     static bool needed() { return false; }
     static bool takes() { return false; }
-    std::uint64_t reserve(std::uint64_t n) const { return *count += static_cast<int>(n), 0; }
+    std::uint64_t allocate(std::uint64_t n) const { return *count += static_cast<int>(n), 0; }
     template <class Hit>
     void store(std::uint64_t, Hit const&) const {}
   };

@@ -81,7 +81,7 @@ void check_sorted(io::scene const& scene) {
 template <class S>
 void check_several(std::vector<tests::near_case> const& cases) {
   namespace detail = collide::detail;
-  constexpr std::size_t lanes = detail::sphere_columns<S>::lanes;
+  constexpr std::size_t lanes = detail::sphere_soa<S>::simd_width;
   std::size_t wrong = 0, sure = 0, lost = 0;
   detail::candidate_batch<S> batch;
   for (std::size_t first = 0; first < cases.size(); first += batch.room) {
@@ -91,21 +91,21 @@ void check_several(std::vector<tests::near_case> const& cases) {
     for (std::size_t i = first; i < last; ++i) {
       tests::narrow_case<S> made(cases[i]);
       if (i % 3 != 0) made.ball.radius *= 1 + std::ldexp(i % 3 == 1 ? S(1) : S(-1), -4 - static_cast<int>(i % 20));
-      bool const hit = detail::decide(made.shape, made.ball).hit;
+      bool const hit = detail::intersects_exact(made.shape, made.ball).hit;
       hits[i - first] = hit;
       batch.add({}, made.shape, made.ball);
       S columns[5][lanes] = {};
       collide::id ids[lanes];
-      detail::sphere_columns<S> const near{columns[0], columns[1], columns[2], columns[3], columns[4], ids};
+      detail::sphere_soa<S> const near{columns[0], columns[1], columns[2], columns[3], columns[4], ids};
       for (std::size_t k = 0; k < lanes; ++k) near.set(k, made.ball, 0);
-      auto const box = detail::triangle_box_of(made.shape);
-      bool const passes = near.reaching(box, 0) == 0xff && box.reached(made.ball.centre, made.ball.radius);
+      auto const box = detail::triangle_aabb_of(made.shape);
+      bool const passes = near.reaching(box, 0) == 0xff && box.overlaps(made.ball.centre, made.ball.radius);
       lost += hit && !passes;
     }
-    batch.attempt([&](int k) { return detail::attempt_straight(batch.triangle_of(k), batch.sphere_of(k)); });
+    batch.filter_batch([&](int k) { return detail::filter_branchless(batch.triangle_of(k), batch.sphere_of(k)); });
     for (std::size_t i = 0; i < last - first; ++i) {
       auto const v = static_cast<detail::verdict>(batch.verdicts[i]);
-      sure += v != detail::verdict::unsure;
+      sure += v != detail::verdict::uncertain;
       wrong += v == (hits[i] ? detail::verdict::miss : detail::verdict::hit);
     }
   }
@@ -118,24 +118,25 @@ void check_several(std::vector<tests::near_case> const& cases) {
 template <class S>
 void check_several_ways(std::vector<tests::near_sweep> const& cases) {
   namespace detail = collide::detail;
-  constexpr std::size_t lanes = detail::sphere_columns<S>::lanes;
+  constexpr std::size_t lanes = detail::sphere_soa<S>::simd_width;
   std::size_t wrong = 0, lost = 0, sure[2] = {};
   for (std::size_t i = 0; i < cases.size(); ++i) {
     tests::narrow_case<S> const made(cases[i]);
     auto const& move = cases[i].move;
     collide::moving_sphere<S> ball{made.ball, {static_cast<S>(move.x), static_cast<S>(move.y), static_cast<S>(move.z)}};
     if (i % 3 != 0) ball.radius *= 1 + std::ldexp(i % 3 == 1 ? S(1) : S(-1), -4 - static_cast<int>(i % 20));
-    bool const hit = detail::decide(made.shape, ball).hit;
-    auto const v = detail::attempt_straight(made.shape, collide::detail::enclosing(ball), detail::midway(ball));
-    if (v != detail::verdict::unsure) ++sure[v == detail::verdict::hit];
+    bool const hit = detail::intersects_exact(made.shape, ball).hit;
+    auto const v = detail::filter_branchless(made.shape, collide::detail::swept_bounding_sphere(ball),
+                                             detail::midpoint_sphere(ball));
+    if (v != detail::verdict::uncertain) ++sure[v == detail::verdict::hit];
     wrong += v == (hit ? detail::verdict::miss : detail::verdict::hit);
     S columns[5][lanes] = {};
     collide::id ids[lanes];
-    detail::sphere_columns<S> const near{columns[0], columns[1], columns[2], columns[3], columns[4], ids};
-    auto const around = detail::enclosing(ball);
+    detail::sphere_soa<S> const near{columns[0], columns[1], columns[2], columns[3], columns[4], ids};
+    auto const around = detail::swept_bounding_sphere(ball);
     for (std::size_t k = 0; k < lanes; ++k) near.set(k, around, 0);
-    auto const box = detail::triangle_box_of(made.shape);
-    lost += hit && !(near.reaching(box, 0) == 0xff && box.reached(around.centre, around.radius));
+    auto const box = detail::triangle_aabb_of(made.shape);
+    lost += hit && !(near.reaching(box, 0) == 0xff && box.overlaps(around.centre, around.radius));
   }
   CHECK(wrong == 0);
   CHECK(lost == 0);
@@ -156,9 +157,10 @@ void check_midway(std::vector<tests::near_case> const& cases) {
     for (int k = 0; k < 3; ++k) ball.displacement[k] = static_cast<S>(uniform(engine)) * length;
     ball.centre -= ball.displacement / 2;
     ball.radius *= 1 + std::ldexp(S(i % 2 == 0 ? 1 : -1), -static_cast<int>(i / 30 % 30));
-    auto const v = detail::attempt_straight(made.shape, detail::enclosing(ball), detail::midway(ball));
+    auto const v =
+        detail::filter_branchless(made.shape, detail::swept_bounding_sphere(ball), detail::midpoint_sphere(ball));
     hits += v == detail::verdict::hit;
-    wrong += v == (detail::decide(made.shape, ball).hit ? detail::verdict::miss : detail::verdict::hit);
+    wrong += v == (detail::intersects_exact(made.shape, ball).hit ? detail::verdict::miss : detail::verdict::hit);
   }
   CHECK(wrong == 0);
   CHECK(hits > cases.size() / 20);

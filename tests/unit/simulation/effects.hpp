@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include <collide/absorb.hpp>
+#include <collide/adhesion.hpp>
 #include <collide/bounds.hpp>
 #include <collide/drag.hpp>
 #include <collide/emit.hpp>
@@ -11,22 +12,21 @@
 #include <collide/sleep.hpp>
 #include <collide/sphere_contact.hpp>
 #include <collide/spin.hpp>
-#include <collide/stick.hpp>
 #include <collide/wind.hpp>
 
 #include "simulation/simulation.hpp"
 
 namespace tests {
 
+using collide::adhered;
+using collide::alive;
 using collide::angular_velocity;
 using collide::bounce;
 using collide::drag;
 using collide::friction;
 using collide::gravity;
-using collide::present;
 using collide::slow_steps;
 using collide::sphere_contact;
-using collide::stuck;
 
 /// Falling with drag: on the way, and in the end.
 template <class Space>
@@ -182,7 +182,7 @@ void check_collisions(Space const& space) {
     w.radius = S(0.1);
     w.particle(0, 0, 0, 1, 0.5, 0);
     w.particle(0.3, 0, 0, -1, 0.5, 0);
-    running<simulation> pair(space, w, sphere_contact::of_collision(e, 0.01, 0.1, 1000));
+    running<simulation> pair(space, w, sphere_contact::from_restitution(e, 0.01, 0.1, 1000));
     pair.simulation.steps(10000, S(2e-5));
     auto const v = pair.velocities();
     CHECK(double(v[3] - v[0]) == doctest::Approx(2 * e).epsilon(0.01));
@@ -199,7 +199,7 @@ void check_collisions(Space const& space) {
         for (int k = 0; k < 5; ++k)
           w.particle(0.2 * (i - 2), 0.2 * (j - 2), 0.2 * (k - 2), -(i - 2) + 0.3 * uniform(engine),
                      -(j - 2) + 0.3 * uniform(engine), -(k - 2) + 0.3 * uniform(engine));
-    running<simulation> many(space, w, sphere_contact::of_collision(1, 0.005, 0.05, 1000, f));
+    running<simulation> many(space, w, sphere_contact::from_restitution(1, 0.005, 0.05, 1000, f));
     many.simulation.steps(20000, S(1e-4));
     auto const v = many.velocities();
     CHECK((v != w.velocities));
@@ -228,8 +228,8 @@ void check_pile(Space const& space, std::size_t steps, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i)
     w.particle(-0.8 + 0.22 * double(i % 8) + uniform(engine), -0.8 + 0.22 * double(i / 8 % 8) + uniform(engine),
                -0.8 + 0.22 * double(i / 64) + uniform(engine));
-  running<simulation> made(space, w, sphere_contact::of_collision(0.5, 0.02, radius, 1000, 0.5), gravity{}, bounce{0.3},
-                           friction{0.5, 0.5});
+  running<simulation> made(space, w, sphere_contact::from_restitution(0.5, 0.02, radius, 1000, 0.5), gravity{},
+                           bounce{0.3}, friction{0.5, 0.5});
   double worst = -1;
   for (int i = 0; i < 10; ++i) {
     made.simulation.steps(steps / 10, 1e-3f);
@@ -250,8 +250,8 @@ void check_meeting_determinism(Space const& space, Other const& other) {
     using simulation =
         collide::simulation<meets_mesh<space_type>, sphere_contact, gravity, bounce, friction, collide::spin>;
     auto const w = crowd<float>(600, 1, 0.08, 2, 11);
-    running<simulation> made(there, w, sphere_contact::of_collision(0.6, 0.02, 0.08, 1000, 0.5), gravity{}, bounce{0.5},
-                             friction{0.5, 0.5}, collide::spin{});
+    running<simulation> made(there, w, sphere_contact::from_restitution(0.6, 0.02, 0.08, 1000, 0.5), gravity{},
+                             bounce{0.5}, friction{0.5, 0.5}, collide::spin{});
     made.simulation.steps(200, 1e-3f);
     return std::make_pair(made.positions(), made.simulation.template to_host<angular_velocity>());
   };
@@ -270,7 +270,7 @@ void check_sleep(Space const& space) {
   w.radius = 0.1f;
   w.particle(0, 0, 0.15);
   w.particle(0.05, 0, 3);
-  running<simulation> made(space, w, collide::sleep{0.02, 100}, sphere_contact::of_collision(0.5, 0.01, 0.1, 1000),
+  running<simulation> made(space, w, collide::sleep{0.02, 100}, sphere_contact::from_restitution(0.5, 0.01, 0.1, 1000),
                            gravity{}, drag{2, 0}, bounce{0.3});
   auto const asleep = [&](std::size_t i) { return made.simulation.template to_host<slow_steps>()[i] >= 100; };
   made.simulation.steps(600, 5e-4f);
@@ -294,13 +294,13 @@ void check_sleep(Space const& space) {
 /// What sticks stays where it is until forces are too strong.
 template <class NarrowPhase, class Space>
 void check_stick(Space const& space) {
-  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, bounce, collide::stick>;
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, bounce, collide::adhesion>;
   world<float> w;
   add_floor(w, 4, 8);
   w.radius = 0.1f;
   w.particle(0.1, 0.2, 0.5, 0.3, 0, 2);
   auto const run = [&](double strength, gravity const& g, double capture = 100) {
-    running<simulation> made(space, w, gravity{0, 0, -9.81}, bounce{0.5}, collide::stick{strength, capture});
+    running<simulation> made(space, w, gravity{0, 0, -9.81}, bounce{0.5}, collide::adhesion{strength, capture});
     made.simulation.steps(2000, 1e-3f);
     auto const at = made.positions();
     made.simulation.template effect<gravity>() = g;
@@ -327,8 +327,8 @@ void check_bounds(Space const& space) {
   world<float> w;
   w.radius = 0.1f;
   w.particle(0, 0, 1, 3, 2, 0);
-  using simulation = collide::simulation<meets_mesh<Space>, gravity, collide::bounds>;
-  collide::bounds box;
+  using simulation = collide::simulation<meets_mesh<Space>, gravity, collide::box_walls>;
+  collide::box_walls box;
   box.lower[0] = box.lower[1] = -1, box.upper[0] = box.upper[1] = 1, box.lower[2] = 0;
   running<simulation> made(space, w, gravity{}, box);
   bool inside = true;
@@ -340,8 +340,8 @@ void check_bounds(Space const& space) {
   CHECK(inside);
   CHECK(made.positions()[2] == doctest::Approx(0.1).epsilon(0.01));
 
-  running<collide::simulation<meets_mesh<Space>, collide::periodic>> around(space, w,
-                                                                            collide::periodic{{-1, -1, 0}, {1, 1, 2}});
+  running<collide::simulation<meets_mesh<Space>, collide::periodic_box>> around(
+      space, w, collide::periodic_box{{-1, -1, 0}, {1, 1, 2}});
   around.simulation.steps(1000, 1e-3f);
   auto const x = around.positions();
   CHECK(x[0] == doctest::Approx(-1).epsilon(1e-3));  // 3 on, 4 and a half rounds... modulo 2 from 0 on
@@ -356,16 +356,17 @@ std::size_t count_present(std::vector<std::uint8_t> const& flags) {
 
 template <class NarrowPhase, class Space>
 void check_absorb(Space const& space) {
-  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, collide::absorb, collide::absorb_in>;
+  using simulation =
+      collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, collide::absorb, collide::absorbing_box>;
   static_assert(simulation::bytes_per_particle == 25, "a byte more");
   world<float> w;
   add_floor(w, 4, 8);
   w.radius = 0.1f;
   for (int i = 0; i < 30; ++i) w.particle(-2 + 0.1 * i, 0, i < 20 ? 1 : 100);
   w.particle(50, 0, 1);
-  running<simulation> made(space, w, gravity{}, collide::absorb{}, collide::absorb_in{{40, -1, -2}, {60, 1, -1}});
+  running<simulation> made(space, w, gravity{}, collide::absorb{}, collide::absorbing_box{{40, -1, -2}, {60, 1, -1}});
   made.simulation.steps(1000, 1e-3f);
-  auto const flags = made.simulation.template to_host<present>();
+  auto const flags = made.simulation.template to_host<alive>();
   for (std::size_t i = 0; i < flags.size(); ++i) CHECK(int(flags[i]) == (i < 20 || i == 30 ? 0 : 1));
   auto const x = made.positions();
   CHECK(x[2] == doctest::Approx(0.1).epsilon(0.1));  // where it touched
@@ -381,7 +382,7 @@ void check_emit(Space const& space) {
     placed<float> const centres(space, std::vector<float>{7, 7, 7, 8, 8, 8});
     made.set(collide::spheres_xyz(centres.data(), 2, 0.1f), nullptr, room);
     made.steps(steps, 0.00175f);
-    return std::make_tuple(made.template to_host<present>(), made.template to_host<position>(),
+    return std::make_tuple(made.template to_host<alive>(), made.template to_host<position>(),
                            made.template to_host<velocity>());
   };
   auto const few = run(40, 100);  // 0.07 time units

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <collide/friction.hpp>
+#include <collide/integrators.hpp>
 #include <collide/lost_motion.hpp>
 #include <collide/spin.hpp>
-#include <collide/velocity_verlet.hpp>
 
 #include "simulation/simulation.hpp"
 

@@ -24,18 +24,18 @@ struct greets {
   using writes = collide::columns<greeted>;
 
   template <class Particle, class Seen, class S>
-  COLLIDE_HD void meet(Particle& p, Seen const&, Seen const& other, S) const {
+  COLLIDE_HD void on_pair_contact(Particle& p, Seen const&, Seen const& other, S) const {
     p[greeted{}] = after_meeting(p[greeted{}], other.number());
   }
 };
 
 /// Particles that come and go as the test has it.
 struct ghosts {
-  using writes = collide::columns<collide::present>;
+  using writes = collide::columns<collide::alive>;
 
   template <class Particle>
-  COLLIDE_HD bool skips(Particle const& p) const {
-    return p[collide::present{}] == 0;
+  COLLIDE_HD bool is_inactive(Particle const& p) const {
+    return p[collide::alive{}] == 0;
   }
 };
 
@@ -45,7 +45,7 @@ struct grows {
   double rate = 0, most = 0;
 
   template <class Particle, class S>
-  COLLIDE_HD void finish(Particle& p, S dt) const {
+  COLLIDE_HD void end_step(Particle& p, S dt) const {
     S const larger = p[collide::radius{}] * (1 + S(rate) * dt);
     p[collide::radius{}] = larger < S(most) ? larger : S(most);
   }
@@ -56,7 +56,7 @@ struct grows {
 template <class S, class Simulation, class Change>
 void check_meetings(Simulation& simulation, S common_radius, int steps, S dt, Change const& change,
                     std::size_t least_met) {
-  using collide::present;
+  using collide::alive;
   using collide::radius;
   std::size_t const n = simulation.size();
   std::vector<std::uint32_t> expected(n);
@@ -69,8 +69,8 @@ void check_meetings(Simulation& simulation, S common_radius, int steps, S dt, Ch
       radii = simulation.template to_host<radius>();
     }
     std::vector<std::uint8_t> there(n, 1);
-    if constexpr (collide::detail::contains<typename Simulation::columns, present>) {
-      there = simulation.template to_host<present>();
+    if constexpr (collide::detail::contains<typename Simulation::columns, alive>) {
+      there = simulation.template to_host<alive>();
     }
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t k = 0; k < n; ++k) {
@@ -109,27 +109,27 @@ world<S> packed_cube(std::size_t n, double radius, double speed, double where = 
 
 template <class S, class Space>
 void check_neighbours(Space const& space) {
-  using collide::bounds;
+  using collide::box_walls;
   using collide::radius;
-  auto const in_cube = [](double at) { return bounds{{at - 1, at - 1, at - 1}, {at + 1, at + 1, at + 1}, 1}; };
+  auto const in_cube = [](double at) { return box_walls{{at - 1, at - 1, at - 1}, {at + 1, at + 1, at + 1}, 1}; };
   std::size_t const n = 700;
 
   SUBCASE("that stay near, move away now and then, or in each step, or leave several cells behind") {
     for (double const way : {0.0003, 0.004, 0.05, 1.5}) {
       CAPTURE(way);
-      running<collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, bounds>> made(
+      running<collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, box_walls>> made(
           space, packed_cube<S>(n, 0.1, way), greets{}, in_cube(0));
       check_meetings<S>(made.simulation, S(0.1), 60, S(1), no_change, 50000);
     }
   }
   SUBCASE("far away from the origin") {
-    running<collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, bounds>> made(
+    running<collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, box_walls>> made(
         space, packed_cube<S>(n, 0.1, 0.004, -5000), greets{}, in_cube(-5000));
     check_meetings<S>(made.simulation, S(0.1), 60, S(1), no_change, 50000);
   }
   SUBCASE("of many sizes, more than lists have room for, and growing") {
-    using simulation =
-        collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, grows, bounds>;
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets,
+                                           grows, box_walls>;
     auto w = packed_cube<S>(n, 0.05, 0.002);
     for (std::size_t i = 0; i < n; ++i) w.radii.push_back(i % 50 == 0 ? S(0.4) : i % 5 == 0 ? S(0.1) : S(0.02));
     running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{0.02, 0.4}, in_cube(0));
@@ -147,7 +147,7 @@ void check_neighbours(Space const& space) {
   }
   SUBCASE("that shrink and grow again, while others are put elsewhere") {
     using simulation =
-        collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, bounds>;
+        collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, box_walls>;
     std::size_t const many = 300;
     auto w = packed_cube<S>(many, 0.2, 0.0005);
     w.radii.assign(many, S(0.2));
@@ -178,26 +178,26 @@ void check_neighbours(Space const& space) {
     check_meetings<S>(made.simulation, w.radius, 45, S(1), no_change, 600);
   }
   SUBCASE("that come and go") {
-    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, box_walls>;
     running<simulation> made(space, packed_cube<S>(n, 0.1, 0.001), ghosts{}, greets{}, in_cube(0));
     auto const change = [&](auto& s, int step) {
       if (step % 3 != 1) return;
       auto const i = static_cast<std::size_t>(step * 11 % 700);
-      write_particle<collide::present>(s, i, {std::uint8_t(0)});
+      write_particle<collide::alive>(s, i, {std::uint8_t(0)});
       if (step > 20)
-        write_particle<collide::present>(s, static_cast<std::size_t>((step - 18) * 11 % 700), {std::uint8_t(1)});
+        write_particle<collide::alive>(s, static_cast<std::size_t>((step - 18) * 11 % 700), {std::uint8_t(1)});
     };
     check_meetings<S>(made.simulation, S(0.1), 60, S(1), change, 50000);
   }
   SUBCASE("that come one after the other, also where lists are full, while some are fast, and many at a time") {
-    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, box_walls>;
     auto w = packed_cube<S>(n, 0.15, 0.0005);
     for (std::size_t i = 0; i < 9; ++i) w.velocities[3 * 11 * i] = S(0.05 * (double(i) - 4));
     running<simulation> made(space, w, ghosts{}, greets{}, in_cube(0));
     auto const change = [&](auto& s, int step) {
       auto const several = [&](std::size_t from, std::size_t count, int there) {
         for (std::size_t i = from; i < from + count; ++i)
-          write_particle<collide::present>(s, i % 700, {std::uint8_t(there)});
+          write_particle<collide::alive>(s, i % 700, {std::uint8_t(there)});
       };
       auto const at = static_cast<std::size_t>(step);
       if (step == 0) several(300, 400, 0);
@@ -209,7 +209,7 @@ void check_neighbours(Space const& space) {
     check_meetings<S>(made.simulation, S(0.15), 60, S(1), change, 100000);
   }
   SUBCASE("that are placed anew, fewer of them, more, or larger") {
-    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, bounds>;
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, box_walls>;
     running<simulation> made(space, packed_cube<S>(n, 0.1, 0.004), greets{}, in_cube(0));
     check_meetings<S>(made.simulation, S(0.1), 10, S(1), no_change, 5000);
     made.place(packed_cube<S>(50, 0.4, 0.004));
@@ -242,15 +242,15 @@ void check_neighbours(Space const& space) {
     CHECK(met > 50);
   }
   SUBCASE("that come, go and come back at random") {
-    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, bounds>;
+    using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, ghosts, greets, box_walls>;
     for (unsigned seed = 0; seed < 8; ++seed) {
       running<simulation> made(space, packed_cube<S>(120, 0.3, 0.003), ghosts{}, greets{}, in_cube(0));
       std::mt19937 engine(seed);
       auto const change = [&](auto& s, int step) {
         for (int k = 0; k < (step == 0 ? 40 : 2); ++k) {
           std::size_t const i = engine() % 120;
-          std::uint8_t const there = s.template to_host<collide::present>()[i];
-          write_particle<collide::present>(s, i, {std::uint8_t(1 - there)});
+          std::uint8_t const there = s.template to_host<collide::alive>()[i];
+          write_particle<collide::alive>(s, i, {std::uint8_t(1 - there)});
         }
       };
       check_meetings<S>(made.simulation, S(0.3), 40, S(1), change, 10000);

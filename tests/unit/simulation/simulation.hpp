@@ -439,7 +439,7 @@ void check_memory_of_steps(MakeSpace make, std::pmr::memory_resource* upstream) 
   CHECK(bytes_of(none{}, n) == 24 * n);
   CHECK(bytes_of(falls{}, n) == 24 * n);
   CHECK(bytes_of(sizes{}, n) == 28 * n);
-  constexpr bool shares_blocks = Space::template block<any_body>::lanes > 1;
+  constexpr bool shares_blocks = Space::template block<any_body>::num_threads > 1;
   CHECK(bytes_of(bounces{}, n) == 24 * n + (shares_blocks ? 4 * n : 0));
   // for what meets: number, copies, reference, list; cells of at most four and at least two to a particle, by 65 in 64
   using meets = std::common_type<collide::simulation<detector, collide::sphere_contact>>;
@@ -460,11 +460,11 @@ struct warmth {
   double hot = 100, rate = 0.5;
 
   template <class Particle, class S>
-  COLLIDE_HD void touch(Particle& p, collide::touching<S>&, S) const {
+  COLLIDE_HD void on_mesh_contact(Particle& p, collide::mesh_contact<S>&, S) const {
     p[temperature{}] = S(hot);
   }
   template <class Particle, class S>
-  COLLIDE_HD void finish(Particle& p, S dt) const {
+  COLLIDE_HD void end_step(Particle& p, S dt) const {
     p[temperature{}] -= S(rate) * (p[temperature{}] - S(20)) * dt;
   }
 };
@@ -535,7 +535,7 @@ void check_tangent_balls(Space const& space) {
     bool touches = false;
     for (std::size_t k = 0; k < mesh.size(); ++k) {
       touches = touches || collide::karabassi<>::intersects(mesh[k], s);
-      open += collide::detail::attempt(mesh[k], s).verdict == collide::detail::verdict::unsure;
+      open += collide::detail::filter_exact(mesh[k], s).verdict == collide::detail::verdict::uncertain;
     }
     touching += touches;
     CHECK(t[i] == S(touches ? 80 : 20));

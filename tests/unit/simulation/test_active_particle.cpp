@@ -15,7 +15,7 @@ template <class S>
 contact<S> at_depth(S depth, collide::feature kind = collide::feature::face, collide::id triangle = 0) {
   contact<S> c{};
   c.depth = depth;
-  c.kind = kind;
+  c.feature = kind;
   c.triangle = triangle;
   return c;
 }
@@ -55,14 +55,14 @@ TEST_CASE_TEMPLATE("active particle: what lies on a recorded contact's surface i
   a.radius = 1;
   a.contact_count = a.contacts_here = 0;
   CHECK(!a.is_internal_contact({0, 0, 0}));
-  collide::touching<S> floor{};
+  collide::mesh_contact<S> floor{};
   floor.normal = vec3<S>(0, 0, 1);
   floor.point = vec3<S>(0, 0, 0);
   a.record_contact(floor);
   CHECK(a.is_internal_contact({S(0.3), 0, 0}));
   CHECK(!a.is_internal_contact({S(0.3), 0, S(0.1)}));
 
-  collide::touching<S> wall{};
+  collide::mesh_contact<S> wall{};
   wall.normal = vec3<S>(1, 0, S(-0.5)) / std::sqrt(S(1.25));  // leads into the floor
   a.find_lift(wall, {0, 0, -1});
   CHECK(std::abs(wall.lift.z()) <= S(1e-6));

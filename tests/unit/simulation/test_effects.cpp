@@ -24,7 +24,7 @@ class reversed : public host {
 template <class F>
 constexpr bool is_rebuild = false;
 template <class S, class Scene>
-constexpr bool is_rebuild<collide::detail::list_neighbours<S, Scene>> = true;
+constexpr bool is_rebuild<collide::detail::build_lists<S, Scene>> = true;
 
 /// Counts how often neighbour lists are made.
 class counting_space : public host {
@@ -83,7 +83,7 @@ TEST_CASE("effects: neighbour lists are kept while nothing has come or moved far
   using simulation = collide::simulation<meets_mesh<counting_space>, ghosts, greets>;
   auto w = packed_cube<float>(700, 0.1, 0.00001);
   running<simulation> made(counting_space(1), w, ghosts{}, greets{});
-  for (std::size_t i = 600; i < 700; ++i) write_particle<present>(made.simulation, i, {std::uint8_t(0)});
+  for (std::size_t i = 600; i < 700; ++i) write_particle<alive>(made.simulation, i, {std::uint8_t(0)});
   auto const after = [&](std::size_t steps) {
     counting_space::done = 0;
     made.simulation.steps(steps, 1);
@@ -92,9 +92,9 @@ TEST_CASE("effects: neighbour lists are kept while nothing has come or moved far
   int const made_anew = 1;
   CHECK(after(1) == made_anew);
   CHECK(after(40) == 0);
-  write_particle<present>(made.simulation, 3, {std::uint8_t(0)});
+  write_particle<alive>(made.simulation, 3, {std::uint8_t(0)});
   CHECK(after(1) == 0);  // what has gone is left out
-  write_particle<present>(made.simulation, 650, {std::uint8_t(1)});
+  write_particle<alive>(made.simulation, 650, {std::uint8_t(1)});
   CHECK(after(1) == made_anew);
   write_particle<position>(made.simulation, 5, {0.0f, 0.0f, 0.0f});
   CHECK(after(1) == made_anew);

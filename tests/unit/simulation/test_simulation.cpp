@@ -106,7 +106,7 @@ TEST_CASE("simulation: the same bits where a block has more particles near the m
   tests::check_crowded_blocks<karabassi<>, float>(one_block, host(2));
   tests::check_crowded_blocks<karabassi<>, double>(tests::lockstep<256, false>(), host(2));
   tests::check_crowded_blocks<karabassi_swept<>, float>(one_block, host(2));
-  tests::check_crowded_blocks<karabassi<>, float>(one_block, host(2), collide::absorb_in{{-1, -1, -1}, {0, 1, 1}});
+  tests::check_crowded_blocks<karabassi<>, float>(one_block, host(2), collide::absorbing_box{{-1, -1, -1}, {0, 1, 1}});
 }
 
 TEST_CASE("simulation: memory is that of the columns, and a step takes none") {

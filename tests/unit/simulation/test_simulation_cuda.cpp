@@ -103,7 +103,7 @@ TEST_CASE("simulation: on the GPU, the same bits where blocks have more near the
   tests::check_crowded_blocks<karabassi<>, double>(narrow<3>(), cuda_shared());
   tests::check_crowded_blocks<karabassi_swept<>, float>(narrow<1>(), cuda_shared());
   tests::check_crowded_blocks<karabassi<>, float>(narrow<2>(), cuda_shared(),
-                                                  collide::absorb_in{{-1, -1, -1}, {0, 1, 1}});
+                                                  collide::absorbing_box{{-1, -1, -1}, {0, 1, 1}});
 }
 
 TEST_CASE("simulation: on the GPU, memory is that of the columns, and a step takes none") {
@@ -121,6 +121,6 @@ TEST_CASE("simulation: on the GPU, steps can be captured in a graph, with the sa
   check_captured<falls_in<karabassi<>>>(tests::crowd<float>(5000, 1, 0.05, 3, 11), 2e-3f, 4, 20, 4);
   // spheres that meet: a graph that is replayed while lists of neighbours are kept, and when they are made anew
   using meets = simulation<tests::meets_mesh<cuda_shared>, gravity, collide::sphere_contact, bounce>;
-  auto const contact = collide::sphere_contact::of_collision(0.5, 4e-3, 0.06, 1000, 0.5);
+  auto const contact = collide::sphere_contact::from_restitution(0.5, 4e-3, 0.06, 1000, 0.5);
   check_captured<meets>(tests::crowd<float>(2000, 1, 0.06, 3, 12), 2e-4f, 2, 300, 20, gravity{}, contact, bounce{});
 }

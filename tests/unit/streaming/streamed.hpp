@@ -17,7 +17,7 @@
 #include <collide/upload.hpp>
 
 #include "io/scenes.hpp"
-#include "subject.hpp"
+#include "type_erased_detector.hpp"
 
 namespace tests {
 
@@ -166,14 +166,14 @@ void check_streamed_swept(Space const& space, std::pmr::memory_resource* memory)
     auto const& spheres = layout.spheres;
     CAPTURE(layout.name);
     auto const placed = collide::upload(space, spheres);
-    auto const moving = collide::moving(placed.view(), static_cast<S const*>(ways));
+    auto const moving = collide::with_displacements(placed.view(), static_cast<S const*>(ways));
     auto const pairs = detector.query(moving, collide::pairs(canonical)).to_host();
     auto const impacts = detector.query(moving, collide::impacts<S>(canonical)).to_host();
     CHECK(pairs.size() > 100);
     for (std::size_t const chunk : {64, 80, 1000}) {
       CAPTURE(chunk);
       collide::streamed streamed(detector, chunk);
-      auto const here = collide::moving(spheres, from.ways());
+      auto const here = collide::with_displacements(spheres, from.ways());
       CHECK((records_of<collide::pair>(streamed, here, collide::pairs(canonical)) == pairs));
       CHECK(same_bytes(records_of<collide::impact<S>>(streamed, here, collide::impacts<S>(canonical)), impacts));
     }

@@ -19,7 +19,7 @@ void check_broad_phases(tests::list<Broad...>) {
 /// Copies the pieces of a view, and returns how many there were, or 0 if the copy is not of the same spheres.
 template <class S, class Spheres, class Same>
 int copied_pieces(Spheres const& spheres, Same const& same) {
-  collide::detail::pieces<Spheres> const pieces(spheres);
+  collide::detail::contiguous_ranges<Spheres> const pieces(spheres);
   std::vector<S> to(pieces.size(), S(-1));
   int n = 0;
   Spheres const copied = pieces.copy(to.data(), [&](S* there, S const* from, std::size_t size) {
@@ -64,15 +64,15 @@ TEST_CASE("streamed: spheres in any layout are copied in as few pieces as there 
     auto const& spheres = layout.spheres;
     CAPTURE(layout.name);
     pieces.push_back(copied_pieces<float>(spheres, equal));
-    CHECK(copied_pieces<float>(spheres.part(11, 1), equal) == pieces.back());
+    CHECK(copied_pieces<float>(spheres.subview(11, 1), equal) == pieces.back());
   }
   CHECK(pieces == std::vector<int>{2, 1, 4, 3, 1, 1});
   auto const equally = [](collide::moving_sphere<float> const& a, collide::moving_sphere<float> const& b) {
     return equal(a, b) && a.displacement == b.displacement;
   };
-  auto const moving = collide::moving(from.xyz(), from.ways());
+  auto const moving = collide::with_displacements(from.xyz(), from.ways());
   CHECK(copied_pieces<float>(moving, equally) == 3);
-  CHECK(copied_pieces<float>(moving.part(7, 20), equally) == 3);
+  CHECK(copied_pieces<float>(moving.subview(7, 20), equally) == 3);
   // a record of everything, and all displacements alike
   float const* const xyz = from.xyz().x(0);
   CHECK(copied_pieces<float>(collide::moving_sphere_view<float>({xyz, xyz + 1, xyz + 2, 9, xyz + 3, 9, 0, 10}, xyz + 8,
@@ -86,13 +86,13 @@ TEST_CASE("streamed: parts of views") {
   for (auto const& layout : from.all()) {
     auto const& spheres = layout.spheres;
     CAPTURE(layout.name);
-    auto const moving = collide::moving(spheres, from.ways());
-    auto const part = moving.part(10, 5);
+    auto const moving = collide::with_displacements(spheres, from.ways());
+    auto const part = moving.subview(10, 5);
     CHECK(part.size() == 5);
     CHECK(part[4].centre == moving[14].centre);
     CHECK(part[4].radius == moving[14].radius);
     CHECK(part[4].displacement == moving[14].displacement);
-    CHECK(spheres.part(10, 5)[0].centre == moving[10].centre);
-    CHECK(spheres.part(30, 0).size() == 0);
+    CHECK(spheres.subview(10, 5)[0].centre == moving[10].centre);
+    CHECK(spheres.subview(30, 0).size() == 0);
   }
 }

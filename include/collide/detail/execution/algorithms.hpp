@@ -28,9 +28,9 @@ struct for_each_if_nonzero_kernel {
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>&) const {
     if (*condition == 0) return;
-    block.each([&](int lane) {
-      std::size_t const first = block.index() * Block::lanes + static_cast<std::size_t>(lane);
-      for (std::size_t i = first; i < n; i += blocks * Block::lanes) f(i);
+    block.for_each_thread([&](int thread_rank) {
+      std::size_t const first = block.index() * Block::num_threads + static_cast<std::size_t>(thread_rank);
+      for (std::size_t i = first; i < n; i += blocks * Block::num_threads) f(i);
     });
   }
 };
@@ -60,8 +60,8 @@ struct for_each_block_kernel {
 
   template <class Block>
   void operator()(Block& block, scratch<Block>&) const {
-    block.each([&](int lane) {
-      if (lane == 0) f(block.index());
+    block.for_each_thread([&](int thread_rank) {
+      if (thread_rank == 0) f(block.index());
     });
   }
 };

@@ -10,18 +10,18 @@ namespace collide::detail {
 
 /// True while this thread is the only one that works for a space. A locked instruction costs several times as much as a
 /// plain one.
-inline thread_local bool working_alone = false;
+inline thread_local bool single_threaded = false;
 
-/// Sets `working_alone` of this thread for a scope.
-class work_alone {
+/// Sets `single_threaded` of this thread for a scope.
+class single_threaded_scope {
  public:
-  explicit work_alone(bool alone) { working_alone = alone; }
-  work_alone(work_alone const&) = delete;
-  work_alone& operator=(work_alone const&) = delete;
-  ~work_alone() { working_alone = before_; }
+  explicit single_threaded_scope(bool alone) { single_threaded = alone; }
+  single_threaded_scope(single_threaded_scope const&) = delete;
+  single_threaded_scope& operator=(single_threaded_scope const&) = delete;
+  ~single_threaded_scope() { single_threaded = before_; }
 
  private:
-  bool before_ = working_alone;
+  bool before_ = single_threaded;
 };
 
 #if defined(__CUDA_ARCH__)
@@ -38,7 +38,7 @@ COLLIDE_HD_INLINE U fetch_add(U* target, U n) {
 #if defined(__CUDA_ARCH__)
   return atomicAdd(as_cuda(target), n);
 #else
-  if (!working_alone) return __atomic_fetch_add(target, n, __ATOMIC_RELAXED);
+  if (!single_threaded) return __atomic_fetch_add(target, n, __ATOMIC_RELAXED);
   U const before = *target;
   *target += n;
   return before;

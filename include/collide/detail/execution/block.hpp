@@ -2,16 +2,18 @@
 /// What a kernel body is written against: a block of lanes that work together.
 ///
 /// A body is a function object `body(block, scratch)`. It runs once per block, on any execution space:
-///   - `block.each(f)` calls f(lane) for every lane, then waits for all of them;
-///   - `Block::per_lane<T>` is a value per lane (a register on CUDA);
-///   - `block.shared(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
+///   - `block.for_each_thread(f)` calls f(lane) for every lane, then waits for all of them;
+///   - `Block::thread_private<T>` is a value per lane (a register on CUDA);
+///   - `block.broadcast(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
-///   - `block.load_row(from, row, to)`, `exchange_row(s, to)` and `store_row(s, to, row, from)` are for rows of a few
-///     values, one for each lane, that follow each other: `row_lanes` lanes call them at a time, and read and write
+///   - `block.load_striped(from, row, to)`, `striped_to_blocked(s, to)` and `store_transposed(s, to, row, from)` are
+///   for rows of a few
+///     values, one for each lane, that follow each other: `warp_size` lanes call them at a time, and read and write
 ///     what lies side by side together, so that all of these rows must exist; what a lane has read is its own row after
 ///     the exchange, and not before;
-///   - `block.balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at least 1, it
+///   - `block.for_each_balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at
+///   least 1, it
 ///     finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f); `find` and `look` only read, and a
 ///     lane does them up to `Ahead` times before it takes, so that it waits for all of them at once if they do not
 ///     branch; after each round the whole block calls `after_round(is_last)`;
@@ -33,33 +35,33 @@ namespace collide::detail {
 template <int Items, int Pending>
 class serial_block {
  public:
-  static constexpr int lanes = 1, items = Items, pending = Pending, row_lanes = 1;
+  static constexpr int num_threads = 1, items = Items, pending = Pending, warp_size = 1;
 
   template <class T>
-  struct per_lane {
+  struct thread_private {
     T value;
     COLLIDE_HD_INLINE T& operator[](int) { return value; }
   };
   template <class T, int N>
   struct staging {};
   template <class T, int N>
-  struct row_scratch {};
-  struct scan_scratch {};
-  struct balance_scratch {};
+  struct warp_exchange_storage {};
+  struct scan_storage {};
+  struct balance_storage {};
   template <class T>
-  struct reduce_scratch {};
+  struct reduce_storage {};
 
   COLLIDE_HD explicit serial_block(std::size_t index) : index_{index} {}
 
   COLLIDE_HD_INLINE std::size_t index() const { return index_; }
 
   template <class F>
-  COLLIDE_HD_INLINE void each(F const& f) {
+  COLLIDE_HD_INLINE void for_each_thread(F const& f) {
     f(0);
   }
 
   template <class T>
-  COLLIDE_HD_INLINE T shared(T const& value) {
+  COLLIDE_HD_INLINE T broadcast(T const& value) {
     return value;
   }
 
@@ -75,27 +77,28 @@ class serial_block {
   }
 
   template <class T, int N>
-  COLLIDE_HD_INLINE void load_row(T const* from, std::uint32_t row, T (&to)[N]) {
+  COLLIDE_HD_INLINE void load_striped(T const* from, std::uint32_t row, T (&to)[N]) {
     for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
   }
 
   template <class Scratch, class T, int N>
-  COLLIDE_HD_INLINE void exchange_row(Scratch&, T (&)[N]) {}
+  COLLIDE_HD_INLINE void striped_to_blocked(Scratch&, T (&)[N]) {}
 
   template <class Scratch, class T, int N>
-  COLLIDE_HD_INLINE void store_row(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
+  COLLIDE_HD_INLINE void store_transposed(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
     for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
   }
 
-  COLLIDE_HD_INLINE std::uint32_t scan(scan_scratch&, std::uint32_t* values, std::uint32_t) {
+  COLLIDE_HD_INLINE std::uint32_t scan(scan_storage&, std::uint32_t* values, std::uint32_t) {
     std::uint32_t const sum = values[0];
     values[0] = 0;
     return sum;
   }
 
   template <int Ahead, class Item, class Find, class Look, class Take, class Round>
-  COLLIDE_HD_INLINE void balanced(balance_scratch&, std::uint32_t const* counts, std::uint32_t n, Item const& item,
-                                  Find const& find, Look const& look, Take const& take, Round const& after_round) {
+  COLLIDE_HD_INLINE void for_each_balanced(balance_storage&, std::uint32_t const* counts, std::uint32_t n,
+                                           Item const& item, Find const& find, Look const& look, Take const& take,
+                                           Round const& after_round) {
     for (std::uint32_t i = 0; i < n; ++i) {
       auto const one = item(i);
       for (std::uint32_t k = 0; k < counts[i]; ++k) {
@@ -107,7 +110,7 @@ class serial_block {
   }
 
   template <class T, class Combine>
-  COLLIDE_HD_INLINE T reduce(reduce_scratch<T>&, per_lane<T>& values, Combine const&) {
+  COLLIDE_HD_INLINE T reduce(reduce_storage<T>&, thread_private<T>& values, Combine const&) {
     return values.value;
   }
 

@@ -11,20 +11,20 @@
 namespace collide::detail {
 
 template <class S, class F>
-void each_array(mesh_view<S> const& mesh, F const& f) {
+void for_each_array(mesh_view<S> const& mesh, F const& f) {
   f(mesh.vertices());
-  if (mesh.corners() != nullptr) f(mesh.corners());
+  if (mesh.indices() != nullptr) f(mesh.indices());
 }
 template <class S, class F>
-void each_array(sphere_view<S> spheres, F const& f) {
-  spheres.each_array([&](S const* from, std::size_t) { f(from); });
+void for_each_array(sphere_view<S> spheres, F const& f) {
+  spheres.for_each_array([&](S const* from, std::size_t) { f(from); });
 }
 
 /// Throws `error` if a `Space` cannot read what a view points to. The message says so between `what` and `advice`.
 template <class Space, class View>
 void check_memory(View const& view, char const* what, char const* advice) {
   if (view.size() == 0) return;
-  each_array(view, [&](void const* p) {
+  for_each_array(view, [&](void const* p) {
     if (Space::reads(p)) return;
     throw error(std::string("collide: ") + what + " in " + (Space::host_accessible ? "device" : "host") +
                 " memory, which the space `" + Space::name() + "` cannot read: " + advice);

@@ -16,18 +16,18 @@
 
 namespace collide::detail {
 
-inline constexpr int cuda_lanes = 256;  ///< threads of a block, in every kernel
-inline constexpr int cuda_warp = 32;    ///< threads that run together
+inline constexpr int threads_per_block = 256;  ///< threads of a block, in every kernel
+inline constexpr int cuda_warp = 32;           ///< threads that run together
 
 /// A block of CUDA threads that share memory.
 template <int Items>
 class cuda_block {
  public:
-  static constexpr int lanes = cuda_lanes, items = Items;
-  static constexpr int pending = 2 * cuda_lanes, row_lanes = cuda_warp;
+  static constexpr int num_threads = threads_per_block, items = Items;
+  static constexpr int pending = 2 * threads_per_block, warp_size = cuda_warp;
 
   template <class T>
-  struct per_lane {
+  struct thread_private {
     T value;
     __device__ __forceinline__ T& operator[](int) { return value; }
   };
@@ -36,27 +36,27 @@ class cuda_block {
     T values[N];
   };
   template <class T, int N>
-  struct row_scratch {
-    T values[lanes * N];
+  struct warp_exchange_storage {
+    T values[num_threads * N];
   };
-  using block_scan = cub::BlockScan<std::uint32_t, lanes, cub::BLOCK_SCAN_WARP_SCANS>;  // waits least
-  using scan_scratch = typename block_scan::TempStorage;
-  using balance_scratch = scan_scratch;
+  using block_scan = cub::BlockScan<std::uint32_t, num_threads, cub::BLOCK_SCAN_WARP_SCANS>;  // waits least
+  using scan_storage = typename block_scan::TempStorage;
+  using balance_storage = scan_storage;
   template <class T>
-  using reduce_scratch = typename cub::BlockReduce<T, lanes>::TempStorage;
+  using reduce_storage = typename cub::BlockReduce<T, num_threads>::TempStorage;
 
   __device__ explicit cuda_block(std::size_t index) : index_{index} {}
 
   __device__ __forceinline__ std::size_t index() const { return index_; }
 
   template <class F>
-  __device__ __forceinline__ void each(F const& f) {
-    f(lane());
+  __device__ __forceinline__ void for_each_thread(F const& f) {
+    f(thread_rank());
     sync();
   }
 
   template <class T>
-  __device__ __forceinline__ T shared(T const& value) {
+  __device__ __forceinline__ T broadcast(T const& value) {
     T const copy = value;
     sync();
     return copy;
@@ -68,21 +68,21 @@ class cuda_block {
 
   template <class T, int N>
   __device__ __forceinline__ T const* stage(staging<T, N>& to, T const* from, int n) {
-    for (int i = lane(); i < n; i += lanes) to.values[i] = from[i];
+    for (int i = thread_rank(); i < n; i += num_threads) to.values[i] = from[i];
     sync();
     return to.values;
   }
 
   /// A warp reads what lies side by side,
   template <class T, int N>
-  __device__ __forceinline__ void load_row(T const* from, std::uint32_t row, T (&side)[N]) {
+  __device__ __forceinline__ void load_striped(T const* from, std::uint32_t row, T (&side)[N]) {
     from += first_beside<N>(row);
     for (int k = 0; k < N; ++k) side[k] = from[k * cuda_warp];
   }
 
   /// and its lanes exchange it.
   template <class Scratch, class T, int N>
-  __device__ __forceinline__ void exchange_row(Scratch& s, T (&values)[N]) {
+  __device__ __forceinline__ void striped_to_blocked(Scratch& s, T (&values)[N]) {
     if constexpr (N > 1) {
       T* const line = line_of_warp<N>(s.values);
       std::uint32_t const own = threadIdx.x % cuda_warp;
@@ -94,7 +94,7 @@ class cuda_block {
   }
 
   template <class Scratch, class T, int N>
-  __device__ __forceinline__ void store_row(Scratch& s, T* to, std::uint32_t row, T const (&from)[N]) {
+  __device__ __forceinline__ void store_transposed(Scratch& s, T* to, std::uint32_t row, T const (&from)[N]) {
     if constexpr (N == 1) {
       to[row] = from[0];
     } else {
@@ -109,8 +109,8 @@ class cuda_block {
   }
 
   /// Exclusive scan of at most as many values in shared memory as there are lanes; returns their sum.
-  __device__ std::uint32_t scan(scan_scratch& s, std::uint32_t* values, std::uint32_t n) {
-    auto const i = static_cast<std::uint32_t>(lane());
+  __device__ std::uint32_t scan(scan_storage& s, std::uint32_t* values, std::uint32_t n) {
+    auto const i = static_cast<std::uint32_t>(thread_rank());
     std::uint32_t own = i < n ? values[i] : 0, sum;
     block_scan(s).ExclusiveSum(own, own, sum);
     if (i < n) values[i] = own;
@@ -123,14 +123,14 @@ class cuda_block {
   /// all its pieces without a branch between them, so that what it reads for them comes together; where there is no
   /// more work, at the last piece again.
   template <int Ahead, class Item, class Find, class Look, class Take, class Round>
-  __device__ __forceinline__ void balanced(scan_scratch& s, std::uint32_t* counts, std::uint32_t n, Item const& item,
-                                           Find const& find, Look const& look, Take const& take,
-                                           Round const& after_round) {
+  __device__ __forceinline__ void for_each_balanced(scan_storage& s, std::uint32_t* counts, std::uint32_t n,
+                                                    Item const& item, Find const& find, Look const& look,
+                                                    Take const& take, Round const& after_round) {
     constexpr std::uint32_t stretch = Ahead * cuda_warp;
     std::uint32_t const total = scan(s, counts, n);  // `counts` are begins now
     auto const own = static_cast<std::uint32_t>(threadIdx.x) % cuda_warp;
-    for (std::uint32_t base = 0; base < total; base += Ahead * lanes) {
-      std::uint32_t const first = base + static_cast<std::uint32_t>(lane()) / cuda_warp * stretch;
+    for (std::uint32_t base = 0; base < total; base += Ahead * num_threads) {
+      std::uint32_t const first = base + static_cast<std::uint32_t>(thread_rank()) / cuda_warp * stretch;
       if (first < total) {
         std::uint32_t before = last_begun(counts, n, first), i[Ahead], k[Ahead];
         for (std::uint32_t a = 0; a < Ahead; ++a) {
@@ -150,14 +150,14 @@ class cuda_block {
         }
       }
       sync();
-      after_round(base + Ahead * lanes >= total);
+      after_round(base + Ahead * num_threads >= total);
     }
   }
 
   /// The combination of all lanes' values; valid in lane 0.
   template <class T, class Combine>
-  __device__ __forceinline__ T reduce(reduce_scratch<T>& s, per_lane<T>& values, Combine const& combine) {
-    T const result = cub::BlockReduce<T, lanes>(s).Reduce(values.value, combine);
+  __device__ __forceinline__ T reduce(reduce_storage<T>& s, thread_private<T>& values, Combine const& combine) {
+    T const result = cub::BlockReduce<T, num_threads>(s).Reduce(values.value, combine);
     sync();
     return result;
   }
@@ -166,8 +166,8 @@ class cuda_block {
   /// The last of `n` rising numbers that is not above `x`, as the first is not; asked by a whole warp.
   static __device__ __forceinline__ std::uint32_t last_begun(std::uint32_t const* begins, std::uint32_t n,
                                                              std::uint32_t x) {
-    static_assert(lanes <= cuda_warp * cuda_warp);
-    constexpr std::uint32_t apart = lanes / cuda_warp;
+    static_assert(num_threads <= cuda_warp * cuda_warp);
+    constexpr std::uint32_t apart = num_threads / cuda_warp;
     std::uint32_t const own = threadIdx.x % cuda_warp;
     auto const not_above = [&](std::uint32_t i) { return __ballot_sync(~0u, i < n && begins[i] <= x); };
     std::uint32_t const i = static_cast<std::uint32_t>(__popc(not_above(own * apart)) - 1) * apart;
@@ -197,7 +197,7 @@ class cuda_block {
     return (row - own) * N + own;
   }
 
-  static __device__ __forceinline__ int lane() { return static_cast<int>(threadIdx.x); }
+  static __device__ __forceinline__ int thread_rank() { return static_cast<int>(threadIdx.x); }
 
   /// Waits for all lanes. A warp comes together first: ptxas 13.0 keeps loop counters in registers of the warp, but
   /// lets its threads reach the barrier one after another where what was before it has called a function.

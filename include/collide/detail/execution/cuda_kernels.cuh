@@ -25,12 +25,12 @@ inline constexpr int residency<Body, Block, std::enable_if_t<(Body::template res
 /// A kernel begins with these two. It lets the next kernel of the stream start, which then waits for its turn: so a
 /// launch takes its time while the kernel before is at work. Where it was compiled for compute capability 9.0 or more,
 /// and with `cuda_space::launch_kernel`.
-__device__ __forceinline__ void let_next_start() {
+__device__ __forceinline__ void pdl_launch_dependents() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
   cudaTriggerProgrammaticLaunchCompletion();
 #endif
 }
-__device__ __forceinline__ void wait_for_turn() {
+__device__ __forceinline__ void pdl_wait() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
   cudaGridDependencySynchronize();
 #endif
@@ -38,10 +38,11 @@ __device__ __forceinline__ void wait_for_turn() {
 
 /// Runs a body in one thread per block.
 template <class Block, class Body>
-__global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_threads(std::size_t blocks, Body body) {
-  let_next_start();
-  wait_for_turn();
-  std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
+__global__ void __launch_bounds__(threads_per_block, (residency<Body, Block>))
+    run_threads(std::size_t blocks, Body body) {
+  pdl_launch_dependents();
+  pdl_wait();
+  std::size_t const i = std::size_t{blockIdx.x} * threads_per_block + threadIdx.x;
   if (i >= blocks) return;
   typename Body::template scratch<Block> scratch;
   Block here(i);
@@ -50,19 +51,19 @@ __global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_thre
 
 /// Runs a body in one CUDA block per block.
 template <class Block, class Body>
-__global__ void __launch_bounds__(cuda_lanes, (residency<Body, Block>)) run_blocks(Body body) {
-  let_next_start();
-  wait_for_turn();
+__global__ void __launch_bounds__(threads_per_block, (residency<Body, Block>)) run_blocks(Body body) {
+  pdl_launch_dependents();
+  pdl_wait();
   __shared__ typename Body::template scratch<Block> scratch;
   Block here(blockIdx.x);
   body(here, scratch);
 }
 
 template <class F>
-__global__ void __launch_bounds__(cuda_lanes) run_for_each(std::size_t n, F f) {
-  wait_for_turn();  // first: blocks of the next kernel would take the room of those that it waits for
-  let_next_start();
-  std::size_t const i = std::size_t{blockIdx.x} * cuda_lanes + threadIdx.x;
+__global__ void __launch_bounds__(threads_per_block) run_for_each(std::size_t n, F f) {
+  pdl_wait();  // first: blocks of the next kernel would take the room of those that it waits for
+  pdl_launch_dependents();
+  std::size_t const i = std::size_t{blockIdx.x} * threads_per_block + threadIdx.x;
   if (i < n) f(i);
 }
 

@@ -25,10 +25,10 @@ class cuda_space {
       : stream_{stream}, resource_{resource != nullptr ? resource : cuda_memory::get()} {
     int device = 0;
     cuda_check(cudaGetDevice(&device), "cudaGetDevice");
-    cuda_check(cudaDeviceGetAttribute(&processors_, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
+    cuda_check(cudaDeviceGetAttribute(&sm_count_, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
     cudaFuncAttributes compiled{};
     cuda_check(cudaFuncGetAttributes(&compiled, run_for_each<fill_bytes>), "cudaFuncGetAttributes");
-    takes_turns_ = compiled.ptxVersion >= 90;
+    has_pdl_ = compiled.ptxVersion >= 90;
   }
 
   cudaStream_t stream() const { return stream_; }
@@ -93,7 +93,7 @@ class cuda_space {
   }
 
  protected:
-  /// Launches a kernel that begins with `wait_for_turn`.
+  /// Launches a kernel that begins with `pdl_wait`.
   template <class... Parameters>
   void launch_kernel(char const* call, void (*kernel)(Parameters...), unsigned blocks,
                      Parameters const&... arguments) const {
@@ -102,15 +102,15 @@ class cuda_space {
     early.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
     config.gridDim = dim3(blocks);
-    config.blockDim = dim3(cuda_lanes);
+    config.blockDim = dim3(threads_per_block);
     config.stream = stream_;
     config.attrs = &early;
-    config.numAttrs = takes_turns_ ? 1 : 0;
+    config.numAttrs = has_pdl_ ? 1 : 0;
     cuda_check(cudaLaunchKernelEx(&config, kernel, arguments...), call);
   }
 
   static unsigned grid_of(std::size_t n) {
-    std::size_t const blocks = (n + cuda_lanes - 1) / cuda_lanes;
+    std::size_t const blocks = (n + threads_per_block - 1) / threads_per_block;
     if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
       throw error("collide: too much work for one CUDA launch");
     }
@@ -119,8 +119,8 @@ class cuda_space {
 
   cudaStream_t stream_;
   std::pmr::memory_resource* resource_;
-  int processors_ = 1;
-  bool takes_turns_ = false;  ///< see `wait_for_turn`
+  int sm_count_ = 1;
+  bool has_pdl_ = false;  ///< see `pdl_wait`
 };
 
 }  // namespace collide::detail

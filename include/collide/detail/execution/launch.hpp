@@ -10,7 +10,7 @@ namespace collide::detail {
 template <class Space, class Body>
 std::size_t grid_size(std::size_t n, Body const&) {
   using block = typename Space::template block<Body>;
-  constexpr std::size_t per_block = static_cast<std::size_t>(block::lanes) * block::items;
+  constexpr std::size_t per_block = static_cast<std::size_t>(block::num_threads) * block::items;
   return (n + per_block - 1) / per_block;
 }
 

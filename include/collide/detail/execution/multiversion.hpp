@@ -18,14 +18,14 @@ __attribute__((target("avx2"), flatten)) void run_with_avx2(F const& f) {
 /// that are not inlined: what is not a tight loop had better be one of those. Elsewhere, or compiled with -march, it is
 /// just a call. The results are the same bits: no product is fused with a sum.
 template <class F>
-void vectorised(F const& f) {
+void multiversioned(F const& f) {
   __builtin_cpu_supports("avx2") ? run_with_avx2(f) : f();
 }
 
 #else
 
 template <class F>
-COLLIDE_HD_INLINE void vectorised(F const& f) {
+COLLIDE_HD_INLINE void multiversioned(F const& f) {
   f();
 }
 

@@ -14,12 +14,12 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
   S x, y, z, radius;
 
   /// Covers the rounding here and that of the coarsest narrow phase, which computes in float.
-  static constexpr S slack = 1 + 32 * S(format<float>::unit);
+  static constexpr S slack = 1 + 32 * S(ieee_traits<float>::unit_roundoff);
 
   /// The squared distance within which a centre can reach the triangle with a sphere of radius `r`: rounded up so far
-  /// that `distance_squared(c) <= reach(r)` holds, in floating-point numbers, whenever |c - centre| <= radius + r in
-  /// real ones. Derivation in docs/numerics.md; NaN for an invalid triangle.
-  COLLIDE_HD_INLINE S reach(S r) const {
+  /// that `distance_squared(c) <= squared_reach(r)` holds, in floating-point numbers, whenever |c - centre| <= radius +
+  /// r in real ones. Derivation in docs/numerics.md; NaN for an invalid triangle.
+  COLLIDE_HD_INLINE S squared_reach(S r) const {
     S const sum = radius + r;
     return sum * sum * slack;
   }
@@ -29,15 +29,15 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
     return dx * dx + dy * dy + dz * dz;
   }
 
-  COLLIDE_HD_INLINE bool reached(vec3<S> const& c, S r) const {
-    return distance_squared(c.x(), c.y(), c.z()) <= reach(r);
+  COLLIDE_HD_INLINE bool overlaps(vec3<S> const& c, S r) const {
+    return distance_squared(c.x(), c.y(), c.z()) <= squared_reach(r);
   }
 };
 
 /// A bounding sphere around the centre of the triangle's box.
 template <class S>
-COLLIDE_HD_INLINE bounding_sphere<S> bounds_of(triangle<S> const& t) {
-  if (!finite(t)) return {S(0), S(0), S(0), std::numeric_limits<S>::quiet_NaN()};
+COLLIDE_HD_INLINE bounding_sphere<S> bounding_sphere_of(triangle<S> const& t) {
+  if (!is_finite(t)) return {S(0), S(0), S(0), std::numeric_limits<S>::quiet_NaN()};
   vec3<S> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
   vec3<S> const m = lower * S(0.5) + upper * S(0.5);
   bounding_sphere<S> const at{m.x(), m.y(), m.z(), S(0)};
@@ -45,9 +45,9 @@ COLLIDE_HD_INLINE bounding_sphere<S> bounds_of(triangle<S> const& t) {
       larger(larger(at.distance_squared(t.a.x(), t.a.y(), t.a.z()), at.distance_squared(t.b.x(), t.b.y(), t.b.z())),
              at.distance_squared(t.c.x(), t.c.y(), t.c.z()));
   // -ffast-math makes a NaN of the root of infinity
-  if (!finite(far_squared)) return {m.x(), m.y(), m.z(), std::numeric_limits<S>::infinity()};
+  if (!is_finite(far_squared)) return {m.x(), m.y(), m.z(), std::numeric_limits<S>::infinity()};
   // the root of the smallest normal number covers squares that underflow
-  S const radius = root(far_squared) * bounding_sphere<S>::slack + 2 * root(std::numeric_limits<S>::min());
+  S const radius = sqrt_rn(far_squared) * bounding_sphere<S>::slack + 2 * sqrt_rn(std::numeric_limits<S>::min());
   return {m.x(), m.y(), m.z(), radius};
 }
 

@@ -10,7 +10,7 @@ namespace collide::detail {
 /// True if the origin projects strictly inside the triangle along its normal `n`; then `foot` is where, as a convex
 /// combination of the corners, and so a point of the triangle even where `n` is inaccurate.
 template <class T>
-COLLIDE_HD_INLINE bool foot_inside(local_triangle<T> const& t, vec3<T> const& n, vec3<T>& foot) {
+COLLIDE_HD_INLINE bool project_onto_face(local_triangle<T> const& t, vec3<T> const& n, vec3<T>& foot) {
   T const wa = dot(cross(t.b, t.c), n), wb = dot(cross(t.c, t.a), n), wc = dot(cross(t.a, t.b), n);
   if (!(wa > 0 && wb > 0 && wc > 0)) return false;
   T const sum = wa + wb + wc;
@@ -32,22 +32,22 @@ struct closest_point {
 template <class T>
 COLLIDE_HD inline closest_point<T> closest_to_origin(local_triangle<T> const& t, vec3<T> const& n) {
   closest_point<T> best{t.a, dot(t.a, t.a), feature::vertex, 0};
-  auto const offer = [&](vec3<T> const& p, feature kind, int index) {
+  auto const consider = [&](vec3<T> const& p, feature kind, int index) {
     T const d = dot(p, p);
     if (d < best.distance_squared) best = {p, d, kind, index};
   };
-  offer(t.b, feature::vertex, 1);
-  offer(t.c, feature::vertex, 2);
+  consider(t.b, feature::vertex, 1);
+  consider(t.c, feature::vertex, 2);
   auto const edge = [&](vec3<T> const& a, vec3<T> const& b, int index) {
     vec3<T> const e = b - a;
     T const along = -dot(a, e), ee = dot(e, e);
-    if (along > 0 && along < ee) offer(a + scaled(e, div(along, ee)), feature::edge, index);
+    if (along > 0 && along < ee) consider(a + scaled(e, div(along, ee)), feature::edge, index);
   };
   edge(t.a, t.b, 0);
   edge(t.b, t.c, 1);
   edge(t.c, t.a, 2);
   vec3<T> foot;
-  if (foot_inside(t, n, foot) && dot(foot, foot) <= best.distance_squared) {
+  if (project_onto_face(t, n, foot) && dot(foot, foot) <= best.distance_squared) {
     best = {foot, dot(foot, foot), feature::face, 0};
   }
   return best;

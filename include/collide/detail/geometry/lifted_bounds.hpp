@@ -14,16 +14,16 @@ namespace collide::detail {
 
 /// How far computed squares may be off, as a part of them.
 template <class S>
-inline constexpr S lifted_slack = 32 * format<S>::unit;
+inline constexpr S lifted_slack = 32 * ieee_traits<S>::unit_roundoff;
 
 /// How far a radius may be off so that the coarsest narrow phase, which computes in float, loses nothing; see
 /// `bounding_sphere::slack`.
 template <class S>
-inline constexpr S lifted_radius_slack = 32 * S(format<float>::unit);
+inline constexpr S lifted_radius_slack = 32 * S(ieee_traits<float>::unit_roundoff);
 
 /// The largest square that is computed with: a sphere beyond it is taken to overlap everything.
 template <class S>
-inline constexpr S lifted_limit = std::numeric_limits<S>::max() / 16;
+inline constexpr S max_lifted_square = std::numeric_limits<S>::max() / 16;
 
 /// The bounding sphere of a triangle.
 template <class S>
@@ -39,8 +39,8 @@ struct alignas(4 * sizeof(S)) lifted_bounds {
     S const centre = x * x + y * y + z * z, square = radius * radius;
     height = (square - centre) / 2 + lifted_slack<S> * (centre + square) + lifted_radius_slack<S> * square +
              32 * std::numeric_limits<S>::min();
-    bool const valid = valid_radius(radius);
-    if (finite(centre + square) && centre + square <= lifted_limit<S>) return;
+    bool const valid = is_valid_radius(radius);
+    if (is_finite(centre + square) && centre + square <= max_lifted_square<S>) return;
     x = y = z = radius = 0;
     height = valid ? std::numeric_limits<S>::max() / 2 : -std::numeric_limits<S>::max() / 2;
   }
@@ -51,7 +51,7 @@ struct alignas(4 * sizeof(S)) lifted_bounds {
 template <class S>
 COLLIDE_HD_INLINE vec3<S> lifted_origin(mesh_view<S> const& mesh) {
   vec3<S> const corner = mesh[0].a;
-  return finite(corner) ? corner : vec3<S>(0, 0, 0);
+  return is_finite(corner) ? corner : vec3<S>(0, 0, 0);
 }
 
 /// Consecutive spheres in lifted form; of moving spheres, their swept bounding spheres.
@@ -72,17 +72,17 @@ struct lifted_batch {
       S const centre = x[k] * x[k] + y[k] * y[k] + z[k] * z[k], square = radius[k] * radius[k];
       threshold[k] = (centre - square) / 2 - lifted_slack<S> * (centre + square) - lifted_radius_slack<S> * square -
                      32 * std::numeric_limits<S>::min();
-      if (finite(centre + square) && centre + square <= lifted_limit<S> && valid_radius(radius[k])) continue;
+      if (is_finite(centre + square) && centre + square <= max_lifted_square<S> && is_valid_radius(radius[k])) continue;
       x[k] = y[k] = z[k] = radius[k] = 0;
       // an invalid sphere overlaps nothing, one that is too large everything
-      bool const none = !valid_radius(batch.radius[k]) || !finite(vec3<S>(batch.x[k], batch.y[k], batch.z[k]));
+      bool const none = !is_valid_radius(batch.radius[k]) || !is_finite(vec3<S>(batch.x[k], batch.y[k], batch.z[k]));
       threshold[k] = none ? std::numeric_limits<S>::max() : -std::numeric_limits<S>::max();
     }
   }
 
   /// True if any of the spheres may overlap the bounding sphere. Without branches: few do.
-  COLLIDE_HD_INLINE bool any_reaches(lifted_bounds<S> const& b) const {
-    using flag = std::conditional_t<(Items > 4), bits_of<S>, bool>;  // of many: as wide as a lane of the vector unit
+  COLLIDE_HD_INLINE bool any_overlaps(lifted_bounds<S> const& b) const {
+    using flag = std::conditional_t<(Items > 4), uint_for<S>, bool>;  // of many: as wide as a lane of the vector unit
     flag some = 0;
     for (int k = 0; k < Items; ++k) {
       some |= static_cast<flag>(x[k] * b.x + (y[k] * b.y + (z[k] * b.z + (radius[k] * b.radius + b.height))) >=

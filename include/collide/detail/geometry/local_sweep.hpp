@@ -15,14 +15,14 @@ struct local_sweep {
 
 /// Subtracts the centre. `W` holds all values of `S`.
 template <class W, class S>
-COLLIDE_HD_INLINE local_sweep<W> relative(triangle<S> const& t, moving_sphere<S> const& s) {
-  return {relative<W>(t, static_cast<sphere<S> const&>(s)), s.displacement.template cast<W>()};
+COLLIDE_HD_INLINE local_sweep<W> to_local(triangle<S> const& t, moving_sphere<S> const& s) {
+  return {to_local<W>(t, static_cast<sphere<S> const&>(s)), s.displacement.template cast<W>()};
 }
 
 /// The largest absolute value of all coordinates, the radius and the displacement.
 template <class T>
-COLLIDE_HD_INLINE T size_of(local_sweep<T> const& l) {
-  return larger(size_of(l.shape), magnitude(l.path));
+COLLIDE_HD_INLINE T max_norm(local_sweep<T> const& l) {
+  return larger(max_norm(l.shape), max_norm(l.path));
 }
 
 /// The problem scaled by a power of two.
@@ -33,36 +33,36 @@ COLLIDE_HD_INLINE local_sweep<T> scaled(local_sweep<T> const& l, T s) {
 
 /// `relative` scaled so that its largest number is below 4 and at least 1, unless all are tiny. Finite input only.
 template <class W, class S>
-COLLIDE_HD_INLINE local_sweep<W> normalised(local_sweep<W> l, triangle<S> const& t, moving_sphere<S> const& s) {
+COLLIDE_HD_INLINE local_sweep<W> to_unit_range(local_sweep<W> l, triangle<S> const& t, moving_sphere<S> const& s) {
   if constexpr (sizeof(W) == sizeof(S)) {
-    if (!finite(size_of(l))) {  // a difference was beyond the range
+    if (!is_finite(max_norm(l))) {  // a difference was beyond the range
       constexpr W tiny = std::numeric_limits<W>::min();
-      l = relative<W>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
+      l = to_local<W>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
                       moving_sphere<S>{{scaled(s.centre, tiny), mul(s.radius, tiny)}, scaled(s.displacement, tiny)});
       l.shape.scale = tiny;
     }
   }
-  return scaled(l, reciprocal_power(size_of(l)));
+  return scaled(l, inverse_power_of_two(max_norm(l)));
 }
 
 /// Rounds scaled local coordinates to `T`, whose range they fit.
 template <class T, class W>
-COLLIDE_HD_INLINE local_sweep<T> rounded(local_sweep<W> const& l) {
-  return {rounded<T>(l.shape), l.path.template cast<T>()};
+COLLIDE_HD_INLINE local_sweep<T> narrow_to(local_sweep<W> const& l) {
+  return {narrow_to<T>(l.shape), l.path.template cast<T>()};
 }
 
 /// False if, on some axis, the triangle's box is farther than `reach` from the whole path.
 template <class T>
-COLLIDE_HD_INLINE bool box_in_reach(local_sweep<T> const& l, T reach) {
+COLLIDE_HD_INLINE bool aabb_within(local_sweep<T> const& l, T reach) {
   vec3<T> const still = vec3<T>(T(0), T(0), T(0));
   vec3<T> const lower = smaller(smaller(l.shape.a, l.shape.b), l.shape.c) - larger(l.path, still);
   vec3<T> const upper = larger(larger(l.shape.a, l.shape.b), l.shape.c) - smaller(l.path, still);
-  return !(largest<T>(lower) > reach || largest<T>(-upper) > reach);
+  return !(max_component<T>(lower) > reach || max_component<T>(-upper) > reach);
 }
 
 /// The triangle relative to the centre at a time of the step.
 template <class T>
-COLLIDE_HD_INLINE local_triangle<T> seen_at(local_sweep<T> const& l, T time) {
+COLLIDE_HD_INLINE local_triangle<T> at_time(local_sweep<T> const& l, T time) {
   vec3<T> const gone = scaled(l.path, time);
   return {l.shape.a - gone, l.shape.b - gone, l.shape.c - gone, l.shape.radius, l.shape.scale};
 }

@@ -19,24 +19,24 @@ struct local_triangle {
 
 /// The largest of |x|, |y| and |z|.
 template <class T>
-COLLIDE_HD_INLINE T magnitude(vec3<T> const& v) {
-  return largest<T>(v.cwiseAbs());
+COLLIDE_HD_INLINE T max_norm(vec3<T> const& v) {
+  return max_component<T>(v.cwiseAbs());
 }
 
 /// Subtracts the centre. `W` holds all values of `S`.
 template <class W, class S>
-COLLIDE_HD_INLINE local_triangle<W> relative(triangle<S> const& t, sphere<S> const& s) {
+COLLIDE_HD_INLINE local_triangle<W> to_local(triangle<S> const& t, sphere<S> const& s) {
   vec3<S> const& c = s.centre;
   auto const from_centre = [&](vec3<S> const& v) -> vec3<W> {
-    return {settled(W(v.x()) - W(c.x())), settled(W(v.y()) - W(c.y())), settled(W(v.z()) - W(c.z()))};
+    return {opaque_value(W(v.x()) - W(c.x())), opaque_value(W(v.y()) - W(c.y())), opaque_value(W(v.z()) - W(c.z()))};
   };
   return {from_centre(t.a), from_centre(t.b), from_centre(t.c), W(s.radius), W(1)};
 }
 
 /// The largest absolute value of all coordinates and the radius.
 template <class T>
-COLLIDE_HD_INLINE T size_of(local_triangle<T> const& t) {
-  return larger(larger(magnitude(t.a), magnitude(t.b)), larger(magnitude(t.c), t.radius));
+COLLIDE_HD_INLINE T max_norm(local_triangle<T> const& t) {
+  return larger(larger(max_norm(t.a), max_norm(t.b)), larger(max_norm(t.c), t.radius));
 }
 
 /// The problem scaled by a power of two.
@@ -48,29 +48,29 @@ COLLIDE_HD_INLINE local_triangle<T> scaled(local_triangle<T> const& t, T s) {
 /// `relative` scaled so that its largest coordinate and the radius are below 4 and the larger of them is at least 1,
 /// unless they are tiny. Finite input only.
 template <class W, class S>
-COLLIDE_HD_INLINE local_triangle<W> normalised(local_triangle<W> l, triangle<S> const& t, sphere<S> const& s) {
+COLLIDE_HD_INLINE local_triangle<W> to_unit_range(local_triangle<W> l, triangle<S> const& t, sphere<S> const& s) {
   if constexpr (sizeof(W) == sizeof(S)) {
-    if (!finite(size_of(l))) {  // a difference was beyond the range
+    if (!is_finite(max_norm(l))) {  // a difference was beyond the range
       constexpr W tiny = std::numeric_limits<W>::min();
-      l = relative<W>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
+      l = to_local<W>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
                       sphere<S>{scaled(s.centre, tiny), mul(s.radius, tiny)});
       l.scale = tiny;
     }
   }
-  return scaled(l, reciprocal_power(size_of(l)));
+  return scaled(l, inverse_power_of_two(max_norm(l)));
 }
 
 /// Rounds scaled local coordinates to `T`, whose range they fit.
 template <class T, class W>
-COLLIDE_HD_INLINE local_triangle<T> rounded(local_triangle<W> const& l) {
+COLLIDE_HD_INLINE local_triangle<T> narrow_to(local_triangle<W> const& l) {
   return {l.a.template cast<T>(), l.b.template cast<T>(), l.c.template cast<T>(), static_cast<T>(l.radius), T(0)};
 }
 
 /// False if the triangle's box is farther from the origin than `reach` along some axis. Exact: rounding is monotone.
 template <class T>
-COLLIDE_HD_INLINE bool box_in_reach(local_triangle<T> const& t, T reach) {
+COLLIDE_HD_INLINE bool aabb_within(local_triangle<T> const& t, T reach) {
   vec3<T> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
-  bool const below = largest<T>(lower) <= reach, above = largest<T>(-upper) <= reach;
+  bool const below = max_component<T>(lower) <= reach, above = max_component<T>(-upper) <= reach;
   return below & above;
 }
 

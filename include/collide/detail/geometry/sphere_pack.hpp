@@ -27,7 +27,7 @@ struct sphere_batch {
     for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
       bool const there = i < spheres.size();
-      sphere<S> const s = there ? enclosing(spheres[i]) : none();
+      sphere<S> const s = there ? swept_bounding_sphere(spheres[i]) : none();
       x[k] = s.centre.x();
       y[k] = s.centre.y();
       z[k] = s.centre.z();
@@ -44,29 +44,30 @@ struct sphere_batch {
         for (int k = 0; k < Items; ++k) radius[k] = spheres.radius(first + static_cast<std::size_t>(k));
       }
     } else {
-      load_last(spheres, first);
+      load_tail(spheres, first);
     }
   }
 
   COLLIDE_HD_INLINE sphere<S> ball(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 
   /// The packed centres if the device can load four at a time with 16-byte loads; else null.
-  static COLLIDE_HD_INLINE S const* quads_of(sphere_view<S> const& spheres) {
+  static COLLIDE_HD_INLINE S const* aligned_centres(sphere_view<S> const& spheres) {
 #if defined(__CUDA_ARCH__)
-    return spheres.packed() ? quads_at(spheres.x(0)) : nullptr;
+    return spheres.packed() ? aligned_or_null(spheres.x(0)) : nullptr;
 #else
     static_cast<void>(spheres);
     return nullptr;
 #endif
   }
 
-  /// Centres only, which are all there; `first` is a multiple of four, and `quads` is quads_of(spheres), not null.
-  COLLIDE_HD_INLINE void load_quads(S const* quads, std::size_t first) { load_quads(quads, first, x, y, z); }
+  /// Centres only, which are all there; `first` is a multiple of four, and `quads` is aligned_centres(spheres), not
+  /// null.
+  COLLIDE_HD_INLINE void load_xyz4(S const* quads, std::size_t first) { load_xyz4(quads, first, x, y, z); }
 
   /// Loads `Items` packed vectors from vector `first` on, a multiple of four; `quads` is aligned to 16 bytes.
-  static COLLIDE_HD_INLINE void load_quads([[maybe_unused]] S const* quads, [[maybe_unused]] std::size_t first,
-                                           [[maybe_unused]] S (&x)[Items], [[maybe_unused]] S (&y)[Items],
-                                           [[maybe_unused]] S (&z)[Items]) {
+  static COLLIDE_HD_INLINE void load_xyz4([[maybe_unused]] S const* quads, [[maybe_unused]] std::size_t first,
+                                          [[maybe_unused]] S (&x)[Items], [[maybe_unused]] S (&y)[Items],
+                                          [[maybe_unused]] S (&z)[Items]) {
 #if defined(__CUDA_ARCH__)
     if constexpr (sizeof(S) == 4) {  // four packed vectors are three 16-byte loads
       auto const* const from = reinterpret_cast<float4 const*>(quads + 3 * first);
@@ -82,13 +83,13 @@ struct sphere_batch {
   }
 
   /// `packed`, if groups of four can be loaded from there at a time; else null.
-  static COLLIDE_HD_INLINE S const* quads_at(S const* packed) {
+  static COLLIDE_HD_INLINE S const* aligned_or_null(S const* packed) {
     return sizeof(S) == 4 && reinterpret_cast<std::uintptr_t>(packed) % 16 == 0 ? packed : nullptr;
   }
 
  private:
   /// Loads the spheres that exist of the last pack; the others are `none()`.
-  COLLIDE_HD_INLINE void load_last(sphere_view<S> const& spheres, std::size_t first) {
+  COLLIDE_HD_INLINE void load_tail(sphere_view<S> const& spheres, std::size_t first) {
     for (int k = 0; k < Items; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
       bool const there = i < spheres.size();
@@ -101,8 +102,8 @@ struct sphere_batch {
   }
 
   COLLIDE_HD_INLINE void load_centres(sphere_view<S> const& spheres, std::size_t first) {
-    if (S const* const quads = quads_of(spheres)) {
-      load_quads(quads, first);
+    if (S const* const quads = aligned_centres(spheres)) {
+      load_xyz4(quads, first);
     } else if (spheres.packed()) {  // a stride that the compiler knows
       S const* const from = spheres.x(first);
       for (int k = 0; k < Items; ++k) {
@@ -151,10 +152,11 @@ struct moving_batch {
   COLLIDE_HD_INLINE void load_packed(moving_sphere_view<S> const& spheres, std::size_t first) {
 #if defined(__CUDA_ARCH__)
     using still = sphere_batch<S, Items>;
-    S const *const centres = still::quads_at(spheres.x(0)), *const ways = still::quads_at(spheres.displacements(0));
+    S const *const centres = still::aligned_or_null(spheres.x(0)), *const ways =
+                                                                       still::aligned_or_null(spheres.displacements(0));
     if (centres != nullptr && ways != nullptr) {
-      still::load_quads(centres, first, x, y, z);
-      still::load_quads(ways, first, dx, dy, dz);
+      still::load_xyz4(centres, first, x, y, z);
+      still::load_xyz4(ways, first, dx, dy, dz);
       return;
     }
 #endif

@@ -11,21 +11,21 @@ namespace collide::detail {
 
 /// The lookup of `all_pairs`.
 template <class S>
-struct all_pairs_lookup : triangle_lookup<S> {
-  COLLIDE_HD all_pairs_lookup const& opened() const { return *this; }
+struct all_pairs_ref : triangle_ref<S> {
+  COLLIDE_HD all_pairs_ref const& opened() const { return *this; }
 
-  template <class Ball>
-  COLLIDE_HD bool empty(Ball const&) const {
+  template <class Sphere>
+  COLLIDE_HD bool empty(Sphere const&) const {
     return this->mesh.size() == 0;
   }
-  COLLIDE_HD bool is_simple(S) const { return false; }
-  COLLIDE_HD cell_marks<S> marks() const { return {}; }
-  template <class Ball>
-  COLLIDE_HD candidate_cursor begin(Ball const&) const {
+  COLLIDE_HD bool has_single_cell_lookup(S) const { return false; }
+  COLLIDE_HD occupancy_view<S> marks() const { return {}; }
+  template <class Sphere>
+  COLLIDE_HD candidate_cursor begin(Sphere const&) const {
     return {0, 0, 0, 0};
   }
-  template <class Ball>
-  COLLIDE_HD bool next(Ball const&, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+  template <class Sphere>
+  COLLIDE_HD bool next(Sphere const&, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
     return this->next_of_all(c, most, range);
   }
 };

@@ -16,9 +16,9 @@ namespace collide::detail {
 /// other, share the cells of a triangle, because each cell's counter takes its time to answer, and counters next to
 /// each other answer together.
 template <class S, int Parts>
-struct grid_insertion {
+struct triangle_insertion {
   mesh_view<S> mesh;
-  triangle_box<S> const* boxes;  ///< null if there was no room for them
+  triangle_aabb<S> const* boxes;  ///< null if there was no room for them
   grid<S> const* grids;
   int grid_count;
 
@@ -31,17 +31,17 @@ struct grid_insertion {
   template <class F>
   COLLIDE_HD_INLINE void each_cells(std::size_t thread, F const& f) const {
     auto const number = static_cast<id>(thread / Parts);
-    box<S> const around = box_at(number);
+    aabb<S> const around = box_at(number);
     for (int g = 0; g < grid_count; ++g) {
       grids[g].template each_cells<together>(
           around, static_cast<std::uint32_t>(thread % Parts), Parts,
-          [&](covered_cell const(&cells)[together], std::uint32_t n) { f(cells, n, number); });
+          [&](cell_ref const(&cells)[together], std::uint32_t n) { f(cells, n, number); });
     }
   }
 
  private:
-  COLLIDE_HD_INLINE box<S> box_at(std::size_t i) const {
-    triangle_box<S> const b = boxes != nullptr ? boxes[i] : triangle_box_of(mesh[i]);
+  COLLIDE_HD_INLINE aabb<S> box_at(std::size_t i) const {
+    triangle_aabb<S> const b = boxes != nullptr ? boxes[i] : triangle_aabb_of(mesh[i]);
     return b;
   }
 };
@@ -49,10 +49,10 @@ struct grid_insertion {
 /// Kernel body of `for_each` over an insertion's threads: counts the entries of each cell.
 template <class S, int Parts>
 struct count_entries {
-  grid_insertion<S, Parts> insertion;
-  cell_list* cells;
+  triangle_insertion<S, Parts> insertion;
+  item_range* cells;
   COLLIDE_HD void operator()(std::size_t thread) const {
-    constexpr std::uint32_t together = grid_insertion<S, Parts>::together;
+    constexpr std::uint32_t together = triangle_insertion<S, Parts>::together;
     insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id) {
       for (std::uint32_t k = 0; k < together; ++k) {
         if (k < n) fetch_add(&cells[some[k].number].count, 1u);
@@ -70,51 +70,51 @@ struct allocate_entries {
   grid<S> const* grids;
   std::uint32_t table_bits;
   std::size_t cell_count;  ///< of all grids
-  cell_list* cells;        ///< aligned to 16 bytes
+  item_range* cells;       ///< aligned to 16 bytes
   std::uint8_t* occupied;
   std::uint32_t* total;  ///< 0 at first
 
   template <class Block>
   struct scratch {
-    std::uint32_t sums[Block::lanes];
+    std::uint32_t sums[Block::num_threads];
     std::uint32_t begin;
-    typename Block::scan_scratch scan;
+    typename Block::scan_storage scan;
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::items % items == 0, "collide: bits of cells are written byte by byte");
     constexpr auto n = static_cast<std::size_t>(Block::items);
-    std::size_t const first = block.index() * Block::lanes * n;
+    std::size_t const first = block.index() * Block::num_threads * n;
     std::size_t const table = std::size_t{1} << table_bits;
     // a part of the table that the grid does not need; its lists are read all the same, to wait for both at once
-    bool const needless = table >= Block::lanes * n && (first & (table - 1)) >= grids[first >> table_bits].cells;
-    typename Block::template per_lane<counts_of<Block>> own;
-    auto const first_of = [&](int lane) { return first + static_cast<std::size_t>(lane) * n; };
-    block.each([&](int lane) {
+    bool const needless = table >= Block::num_threads * n && (first & (table - 1)) >= grids[first >> table_bits].cells;
+    typename Block::template thread_private<counts_of<Block>> own;
+    auto const first_of = [&](int thread_rank) { return first + static_cast<std::size_t>(thread_rank) * n; };
+    block.for_each_thread([&](int thread_rank) {
       std::uint32_t sum = 0;
       for (std::size_t k = 0; k < n; k += 2) {
-        std::size_t const c = first_of(lane) + k;
+        std::size_t const c = first_of(thread_rank) + k;
         auto const [a, b] = c < cell_count ? two_at(c) : two_lists{};
-        own[lane].counts[k] = a.count;
-        own[lane].counts[k + 1] = b.count;
+        own[thread_rank].counts[k] = a.count;
+        own[thread_rank].counts[k + 1] = b.count;
         sum += a.count + b.count;
       }
-      s.sums[lane] = sum;
+      s.sums[thread_rank] = sum;
     });
     if (needless) return;
-    std::uint32_t const sum = block.scan(s.scan, s.sums, Block::lanes);
-    block.each([&](int lane) {
-      if (lane == 0) s.begin = fetch_add(total, sum);
+    std::uint32_t const sum = block.scan(s.scan, s.sums, Block::num_threads);
+    block.for_each_thread([&](int thread_rank) {
+      if (thread_rank == 0) s.begin = fetch_add(total, sum);
     });
-    block.each([&](int lane) {
-      std::uint32_t begin = s.begin + s.sums[lane];
+    block.for_each_thread([&](int thread_rank) {
+      std::uint32_t begin = s.begin + s.sums[thread_rank];
       for (std::size_t k = 0; k < n; k += items) {
-        std::size_t const c = first_of(lane) + k;
+        std::size_t const c = first_of(thread_rank) + k;
         if (c >= cell_count) break;
         std::uint32_t bits = 0;
         for (std::uint32_t i = 0; i < items; i += 2) {
-          std::uint32_t const a = own[lane].counts[k + i], b = own[lane].counts[k + i + 1];
+          std::uint32_t const a = own[thread_rank].counts[k + i], b = own[thread_rank].counts[k + i + 1];
           two_at(c + i) = {{a, begin}, {b, begin + a}};
           begin += a + b;
           bits |= ((a != 0 ? 1u : 0u) | (b != 0 ? 2u : 0u)) << i;
@@ -127,7 +127,7 @@ struct allocate_entries {
  private:
   /// What a lane reads and writes at once.
   struct alignas(16) two_lists {
-    cell_list a, b;
+    item_range a, b;
   };
   COLLIDE_HD_INLINE two_lists& two_at(std::size_t cell) const { return reinterpret_cast<two_lists*>(cells)[cell / 2]; }
 
@@ -140,19 +140,19 @@ struct allocate_entries {
 /// Kernel body of `for_each` over an insertion's threads: writes the entries.
 template <class S, int Parts>
 struct fill_entries {
-  grid_insertion<S, Parts> insertion;
-  cell_list* cells;
-  cell_entry* entries;
+  triangle_insertion<S, Parts> insertion;
+  item_range* cells;
+  cell_item* entries;
   std::size_t capacity;
   COLLIDE_HD void operator()(std::size_t thread) const {
-    constexpr std::uint32_t together = grid_insertion<S, Parts>::together;
+    constexpr std::uint32_t together = triangle_insertion<S, Parts>::together;
     insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id triangle) {
       std::uint32_t slots[together] = {};
       for (std::uint32_t k = 0; k < together; ++k) {
         if (k < n) slots[k] = fetch_add(&cells[some[k].number].end, 1u);
       }
       for (std::uint32_t k = 0; k < together; ++k) {
-        if (k < n && slots[k] < capacity) entries[slots[k]] = {triangle, some[k].part};
+        if (k < n && slots[k] < capacity) entries[slots[k]] = {triangle, some[k].coverage};
       }
     });
   }

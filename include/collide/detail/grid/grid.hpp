@@ -37,7 +37,7 @@ inline constexpr int max_levels = 16;
 inline constexpr int max_grids = 8;
 
 /// A range of cell coordinates per axis.
-struct cell_range {
+struct cell_box {
   std::uint32_t lower[3], upper[3];
 };
 
@@ -53,15 +53,15 @@ struct grid_level {
   /// How many cells fit below an offset from the grid's lower end; from 0 to 2^30.
   COLLIDE_HD_INLINE std::uint32_t coordinate(S offset) const { return whole(cells_below(offset)); }
 
-  /// The same, and the step of the next cell that it ends in.
+  /// How many cells fit below an offset, and in which of the 15 slabs of the next cell it ends (`step`).
   COLLIDE_HD_INLINE std::uint32_t coordinate(S offset, std::uint32_t& step) const {
     S const cells = cells_below(offset);
     std::uint32_t const full = whole(cells);
-    step = cell_part::step_at(cells - static_cast<S>(full));
+    step = cell_coverage::subcell_of(cells - static_cast<S>(full));
     return full;
   }
 
-  /// The same of an offset that is not above the grid's upper end; of others, any number.
+  /// How many cells fit below an offset that is not above the grid's upper end; any number for other offsets.
   COLLIDE_HD_INLINE std::uint32_t coordinate_inside(S offset) const {
 #if defined(__CUDA_ARCH__)
     if constexpr (sizeof(S) == 4) return __float2uint_rz(mul(offset, inverse_width));  // 0 of what is less
@@ -70,12 +70,12 @@ struct grid_level {
   }
 
   /// The cell that holds a point inside the grid, whose lower end this is, and the place of the point in it.
-  COLLIDE_HD_INLINE covered_cell place_of(vec3<S> const& p, S const (&lower)[3]) const {
+  COLLIDE_HD_INLINE cell_ref place_of(vec3<S> const& p, S const (&lower)[3]) const {
     std::uint32_t cell[3], place = 0;
     for (int k = 0; k < 3; ++k) {
       std::uint32_t step;
       cell[k] = coordinate(p[k] - lower[k], step);
-      place |= cell_part::at(step, step, k);
+      place |= cell_coverage::encode_query(step, step, k);
     }
     return {row(cell[1], cell[2]) + (cell[0] & mask[0]), place};
   }
@@ -100,7 +100,7 @@ struct grid_level {
 
 /// What a grid is, but for its levels.
 template <class S>
-struct grid_frame {
+struct grid_header {
   S reach;     ///< serves spheres of radius up to this
   S dilation;  ///< reach and slack: how far a triangle's box is dilated
   S width;     ///< of the cells of the finest level
@@ -124,15 +124,15 @@ struct grid_frame {
 
   /// The cells that a triangle with this box is put into, at most one whole turn of the level on each axis, and the
   /// steps in the first and the last of them from and up to which the dilated box reaches.
-  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b, std::uint32_t (&from)[3],
-                                        std::uint32_t (&to)[3]) const {
-    cell_range r;
+  COLLIDE_HD_INLINE cell_box cells_of(grid_level<S> const& l, aabb<S> const& b, std::uint32_t (&from)[3],
+                                      std::uint32_t (&to)[3]) const {
+    cell_box r;
     for (int k = 0; k < 3; ++k) {
       r.lower[k] = l.coordinate(b.lower[k] - dilation - lower[k], from[k]);
       r.upper[k] = l.coordinate(b.upper[k] + dilation - lower[k], to[k]);
       bool const turns = r.upper[k] - r.lower[k] > l.mask[k];  // then a cell may be the first and a later one, too
-      from[k] = turns ? cell_part::before : from[k];
-      to[k] = turns ? cell_part::last : to[k];
+      from[k] = turns ? cell_coverage::before : from[k];
+      to[k] = turns ? cell_coverage::last : to[k];
       r.upper[k] = turns ? r.lower[k] + l.mask[k] : r.upper[k];
     }
     return r;
@@ -141,23 +141,23 @@ struct grid_frame {
 
 /// The grid for spheres up to one radius.
 template <class S>
-struct grid : grid_frame<S> {
-  using grid_frame<S>::levels, grid_frame<S>::dilation, grid_frame<S>::coordinate, grid_frame<S>::cells_of;
+struct grid : grid_header<S> {
+  using grid_header<S>::levels, grid_header<S>::dilation, grid_header<S>::coordinate, grid_header<S>::cells_of;
 
   grid_level<S> level[max_levels];
 
   /// The level that a triangle with this box belongs to.
-  COLLIDE_HD_INLINE grid_level<S> const& level_of(box<S> const& b) const {
+  COLLIDE_HD_INLINE grid_level<S> const& level_of(aabb<S> const& b) const {
     if (levels <= 1) return level[0];
-    S const size = S(bin_end(size_bin(b.extent()))) + 2 * dilation;  // as plan_grid has it
+    S const size = S(bin_end(size_bin(b.max_extent()))) + 2 * dilation;  // as plan_grid has it
     int l = 0;
     while (l + 1 < levels && !(size <= level[l].largest)) ++l;
     return level[l];
   }
 
   /// The cells that a triangle's dilated box touches.
-  COLLIDE_HD_INLINE cell_range range_of(grid_level<S> const& l, box<S> const& b) const {
-    cell_range r;
+  COLLIDE_HD_INLINE cell_box range_of(grid_level<S> const& l, aabb<S> const& b) const {
+    cell_box r;
     for (int k = 0; k < 3; ++k) {
       r.lower[k] = coordinate(l, b.lower[k] - dilation, k);
       r.upper[k] = coordinate(l, b.upper[k] + dilation, k);
@@ -166,39 +166,39 @@ struct grid : grid_frame<S> {
   }
 
   /// The cell that holds a point inside the grid, and the place of the point in it.
-  COLLIDE_HD_INLINE covered_cell place_of(grid_level<S> const& l, vec3<S> const& p) const {
+  COLLIDE_HD_INLINE cell_ref place_of(grid_level<S> const& l, vec3<S> const& p) const {
     return l.place_of(p, this->lower);
   }
 
   /// The cells that a triangle is put into: at most one whole turn of the level on each axis.
-  COLLIDE_HD_INLINE cell_range cells_of(grid_level<S> const& l, box<S> const& b) const {
-    cell_range r = range_of(l, b);
+  COLLIDE_HD_INLINE cell_box cells_of(grid_level<S> const& l, aabb<S> const& b) const {
+    cell_box r = range_of(l, b);
     for (int k = 0; k < 3; ++k) r.upper[k] = smaller(r.upper[k], r.lower[k] + l.mask[k]);
     return r;
   }
 
   /// Calls f(cells, m) with m of at most N cells at a time and what the box covers of them, for every `parts`-th of the
-  /// cells that a triangle with this box is put into, from the `part`-th on.
+  /// cells that a triangle with this box is put into, from the `coverage`-th on.
   template <int N, class F>
-  COLLIDE_HD_INLINE void each_cells(box<S> const& b, std::uint32_t part, std::uint32_t parts, F const& f) const {
+  COLLIDE_HD_INLINE void each_cells(aabb<S> const& b, std::uint32_t coverage, std::uint32_t parts, F const& f) const {
     grid_level<S> const l = level_of(b);
     std::uint32_t from[3], to[3];
-    cell_range const r = cells_of(l, b, from, to);
+    cell_box const r = cells_of(l, b, from, to);
     std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
                         nz = r.upper[2] - r.lower[2] + 1;
     auto const covered = [&](std::uint32_t i, std::uint32_t cells, int axis) {
-      return cell_part::covered(i == 0 ? from[axis] : cell_part::before, i + 1 == cells ? to[axis] : cell_part::last,
-                                axis);
+      return cell_coverage::encode_box(i == 0 ? from[axis] : cell_coverage::before,
+                                       i + 1 == cells ? to[axis] : cell_coverage::last, axis);
     };
     std::uint32_t const n = levels == 0 || b.is_empty() ? 0 : nx * ny * nz;
-    for (std::uint32_t i = part; i < n; i += N * parts) {
-      covered_cell cells[N];
+    for (std::uint32_t i = coverage; i < n; i += N * parts) {
+      cell_ref cells[N];
       std::uint32_t m = 0;
       for (std::uint32_t k = 0; k < N; ++k) {
         std::uint32_t const number = i + k * parts, rows = number / nx;
         std::uint32_t const x = number % nx, y = rows % ny, z = rows / ny;
         cells[k].number = l.row(r.lower[1] + y, r.lower[2] + z) + ((r.lower[0] + x) & l.mask[0]);
-        cells[k].part = covered(x, nx, 0) | covered(y, ny, 1) | covered(z, nz, 2);
+        cells[k].coverage = covered(x, nx, 0) | covered(y, ny, 1) | covered(z, nz, 2);
         m += number < n ? 1u : 0u;
       }
       f(cells, m);
@@ -207,10 +207,10 @@ struct grid : grid_frame<S> {
 
   /// Calls f(first, n) for runs of cells, first .. first + n, which are all that a triangle with this box is put into.
   template <class F>
-  COLLIDE_HD_INLINE void each_row(box<S> const& b, F const& f) const {
+  COLLIDE_HD_INLINE void each_row(aabb<S> const& b, F const& f) const {
     if (levels == 0 || b.is_empty()) return;
     grid_level<S> const& l = level_of(b);
-    cell_range const r = cells_of(l, b);
+    cell_box const r = cells_of(l, b);
     std::uint32_t const from = r.lower[0] & l.mask[0], n = r.upper[0] - r.lower[0] + 1;
     std::uint32_t const to_end = l.mask[0] + 1 - from;
     for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
@@ -224,7 +224,7 @@ struct grid : grid_frame<S> {
 };
 
 /// The triangles of a cell.
-struct alignas(8) cell_list {
+struct alignas(8) item_range {
   std::uint32_t count;
   std::uint32_t end;  ///< of its entries; while they are written, of those that are
 };

@@ -14,109 +14,109 @@ namespace collide::detail {
 
 /// The lookup of `bucket`: the grids, as bucket.cuh has them.
 template <class S>
-struct bucket_lookup : triangle_lookup<S> {
+struct bucket_ref : triangle_ref<S> {
   grid<S> const* grids;
   int grid_count;
   std::uint8_t const* occupied;
-  cell_list const* lists;
+  item_range const* lists;
   std::uint32_t const* total;
-  cell_entry const* entries;
+  cell_item const* entries;
   std::size_t capacity;
 
-  static constexpr std::int8_t nowhere = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
+  static constexpr std::int8_t no_cell = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
 
-  COLLIDE_HD bucket_lookup opened() const {
-    bucket_lookup open = *this;
+  COLLIDE_HD bucket_ref opened() const {
+    bucket_ref open = *this;
     if (grid_count > 0 && *total > capacity) open.grid_count = 0;
     return open;
   }
 
   COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) != 0; }
 
-  /// Which grid serves each of the balls of a pack, if there may be triangles near it; `nowhere` if not, `everywhere`
+  /// Which grid serves each of the balls of a pack, if there may be triangles near it; `no_cell` if not, `everywhere`
   /// if no grid serves it.
   template <class Pack, int N>
   COLLIDE_HD_INLINE void locate(Pack const& pack, std::int8_t (&number)[N]) const {
     select_grids(pack, number);
     for (int k = 0; k < N; ++k) {
-      if (number[k] >= 0 && empty_in(grids[number[k]], pack.ball(k))) number[k] = nowhere;
+      if (number[k] >= 0 && has_no_candidates_in(grids[number[k]], pack.ball(k))) number[k] = no_cell;
     }
   }
 
   /// True if the ball can touch no triangle.
-  template <class Ball>
-  COLLIDE_HD_INLINE bool empty(Ball const& ball) const {
+  template <class Sphere>
+  COLLIDE_HD_INLINE bool empty(Sphere const& ball) const {
     if (this->mesh.size() == 0) return true;
     std::int8_t number[1];
-    locate(pack_of_one<Ball>{ball}, number);
-    return number[0] == nowhere;
+    locate(pack_of_one<Sphere>{ball}, number);
+    return number[0] == no_cell;
   }
 
-  /// True if a ball of this radius looks into one cell of one level, wherever it is, and into the few of its way if
-  /// that is short. All that this depends on is read at once.
-  COLLIDE_HD_INLINE bool is_simple(S radius) const {
+  /// True if a sphere of this radius looks into one cell of one level, wherever it is, or into the few cells of its
+  /// path if that is short. All that this depends on is read at once.
+  COLLIDE_HD_INLINE bool has_single_cell_lookup(S radius) const {
     if (grid_count != 1) return false;
     bool const complete = *total <= capacity, one_level = grids[0].levels == 1, served = radius <= grids[0].reach;
-    return complete & one_level & served & valid_radius(radius);
+    return complete & one_level & served & is_valid_radius(radius);
   }
 
-  /// Then, what tells it; may be asked before that is known.
-  COLLIDE_HD_INLINE cell_marks<S> marks() const {
+  /// The occupancy of the cells, for spheres with `has_single_cell_lookup`. May be read before that is checked.
+  COLLIDE_HD_INLINE occupancy_view<S> marks() const {
     if (grid_count != 1) return {};
     grid<S> const& g = grids[0];
     return {{g.lower[0], g.lower[1], g.lower[2]},
-            {bits(g.upper[0] - g.lower[0]), bits(g.upper[1] - g.lower[1]), bits(g.upper[2] - g.lower[2])},
+            {to_bits(g.upper[0] - g.lower[0]), to_bits(g.upper[1] - g.lower[1]), to_bits(g.upper[2] - g.lower[2])},
             g.level[0],
             occupied};
   }
 
-  template <class Ball>
-  COLLIDE_HD candidate_cursor begin(Ball const& ball) const {
-    std::int8_t number[1] = {nowhere};
-    if (this->mesh.size() != 0) select_grids(pack_of_one<Ball>{ball}, number);
+  template <class Sphere>
+  COLLIDE_HD candidate_cursor begin(Sphere const& ball) const {
+    std::int8_t number[1] = {no_cell};
+    if (this->mesh.size() != 0) select_grids(pack_of_one<Sphere>{ball}, number);
     return {number[0], 0, 0, 0};
   }
 
-  template <class Ball>
-  COLLIDE_HD bool next(Ball const& ball, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
-    if (c.grid == nowhere) return false;
+  template <class Sphere>
+  COLLIDE_HD bool next(Sphere const& ball, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    if (c.grid == no_cell) return false;
     if (c.grid == everywhere) return this->next_of_all(c, most, range);
     grid<S> const& g = grids[c.grid];
     for (; c.level < g.levels; ++c.level, c.step = 0) {
       if (!next_of_level(g, g.level[c.level], ball, c, most, range)) continue;
-      if (c.level + 1 == g.levels && was_last(ball, c)) c.grid = nowhere;
+      if (c.level + 1 == g.levels && was_last(ball, c)) c.grid = no_cell;
       return true;
     }
-    c.grid = nowhere;
+    c.grid = no_cell;
     return false;
   }
 
  private:
-  template <class Ball>
+  template <class Sphere>
   struct pack_of_one {
-    Ball const& only;
-    COLLIDE_HD_INLINE Ball const& ball(int) const { return only; }
+    Sphere const& only;
+    COLLIDE_HD_INLINE Sphere const& ball(int) const { return only; }
   };
 
   /// The tightest grid that serves each ball; grids come by falling reach.
   template <class Pack, int N>
   COLLIDE_HD_INLINE void select_grids(Pack const& pack, std::int8_t (&number)[N]) const {
-    for (int k = 0; k < N; ++k) number[k] = is_sound(pack.ball(k)) ? everywhere : nowhere;
-    COLLIDE_ROLLED
+    for (int k = 0; k < N; ++k) number[k] = is_sound(pack.ball(k)) ? everywhere : no_cell;
+    COLLIDE_NO_UNROLL
     for (int g = 0; g < grid_count; ++g) {
       for (int k = 0; k < N; ++k) {
         // a ball that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
-        bool const served = (number[k] != nowhere) & serves(grids[g], pack.ball(k));
-        std::int8_t const there = meets(grids[g], pack.ball(k)) ? static_cast<std::int8_t>(g) : nowhere;
+        bool const served = (number[k] != no_cell) & serves(grids[g], pack.ball(k));
+        std::int8_t const there = meets(grids[g], pack.ball(k)) ? static_cast<std::int8_t>(g) : no_cell;
         number[k] = served ? there : number[k];
       }
     }
   }
 
   /// The centre of a ball at rest is not looked at: it is in no grid if it is NaN.
-  static COLLIDE_HD_INLINE bool is_sound(sphere<S> const& ball) { return valid_radius(ball.radius); }
+  static COLLIDE_HD_INLINE bool is_sound(sphere<S> const& ball) { return is_valid_radius(ball.radius); }
   static COLLIDE_HD_INLINE bool is_sound(moving_sphere<S> const& ball) {
-    return valid_radius(ball.radius) && finite(ball.centre) && finite(ball.displacement);
+    return is_valid_radius(ball.radius) && is_finite(ball.centre) && is_finite(ball.displacement);
   }
 
   static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& ball) { return g.serves(ball.radius); }
@@ -128,22 +128,23 @@ struct bucket_lookup : triangle_lookup<S> {
     S const inverse_width = g.levels > 0 ? g.level[0].inverse_width : S(0);
     bool served = g.serves(ball.radius);
     for (int k = 0; k < 3; ++k) {
-      served = served && way<S>::can_walk(g.lower[k], g.upper[k], inverse_width, ball.centre[k], ball.displacement[k]);
+      served = served && swept_cells<S>::is_traversable(g.lower[k], g.upper[k], inverse_width, ball.centre[k],
+                                                        ball.displacement[k]);
     }
     return served;
   }
   static COLLIDE_HD_INLINE bool meets(grid<S> const& g, moving_sphere<S> const& ball) {
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
-      inside = inside && way<S>::enters(g.lower[k], g.upper[k], ball.centre[k], ball.displacement[k]);
+      inside = inside && swept_cells<S>::overlaps_slab(g.lower[k], g.upper[k], ball.centre[k], ball.displacement[k]);
     }
     return inside;
   }
 
   /// True if no level has triangles near a ball that this grid serves.
-  template <class Ball>
-  COLLIDE_HD_INLINE bool empty_in(grid<S> const& g, Ball const& ball) const {
-    COLLIDE_ROLLED
+  template <class Sphere>
+  COLLIDE_HD_INLINE bool has_no_candidates_in(grid<S> const& g, Sphere const& ball) const {
+    COLLIDE_NO_UNROLL
     for (int l = 0; l < g.levels; ++l) {
       if (!empty_level(g, g.level[l], ball)) return false;
     }
@@ -153,8 +154,8 @@ struct bucket_lookup : triangle_lookup<S> {
     return !is_occupied(g.place_of(l, ball.centre).number);
   }
   COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball) const {
-    cell_range const r = way<S>::cells_around(g, l, ball.centre, ball.displacement);
-    if (!way<S>::is_short(r)) return false;  // is looked at more closely when it is walked
+    cell_box const r = swept_cells<S>::cell_box_of_path(g, l, ball.centre, ball.displacement);
+    if (!swept_cells<S>::is_short(r)) return false;  // is looked at more closely when it is walked
     bool occupied = false;
     for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
       for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) {
@@ -170,7 +171,7 @@ struct bucket_lookup : triangle_lookup<S> {
   /// The entries of a cell that have not been gone through; then the cursor is at the next step.
   COLLIDE_HD bool next_of_cell(std::uint32_t cell, std::uint32_t place, candidate_cursor& c, std::uint32_t most,
                                candidate_range& range) const {
-    cell_list const list = lists[cell];
+    item_range const list = lists[cell];
     std::uint32_t const left = list.count - c.skip, some = smaller(left, most);
     if (left != 0) range = {entries + (list.end - left), 0, some, place};
     c.skip += some;
@@ -188,13 +189,13 @@ struct bucket_lookup : triangle_lookup<S> {
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball, candidate_cursor& c,
                                 std::uint32_t most, candidate_range& range) const {
     if (c.step != 0) return false;
-    covered_cell const at = g.place_of(l, ball.centre);
-    return next_of_cell(at.number, at.part, c, most, range);
+    cell_ref const at = g.place_of(l, ball.centre);
+    return next_of_cell(at.number, at.coverage, c, most, range);
   }
 
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball,
                                 candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
-    way<S> const path(g, l, ball.centre, ball.displacement);
+    swept_cells<S> const path(g, l, ball.centre, ball.displacement);
     while (c.step < path.steps()) {
       auto const here = path.at(c.step);
       std::uint32_t const cell = l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]);
@@ -203,7 +204,7 @@ struct bucket_lookup : triangle_lookup<S> {
         c.skip = 0;
         continue;
       }
-      if (next_of_cell(cell, here.part, c, most, range)) return true;
+      if (next_of_cell(cell, here.coverage, c, most, range)) return true;
     }
     return false;
   }

@@ -32,11 +32,11 @@ struct memory_plan {
       std::size_t const entries = cells_per_triangle * triangles * grids;
       if (entries > id_limit) continue;
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
-        std::size_t const base = fixed + table_size(grids << bits) * sizeof(cell_list);
+        std::size_t const base = fixed + table_size(grids << bits) * sizeof(item_range);
         std::size_t most_entries = std::min(512 * triangles + (std::size_t{1} << 20), id_limit / grids);
         if (budget != 0) {
-          if (base + entries * sizeof(cell_entry) > budget) continue;
-          most_entries = std::min(most_entries, (budget - base) / (grids * sizeof(cell_entry)));
+          if (base + entries * sizeof(cell_item) > budget) continue;
+          most_entries = std::min(most_entries, (budget - base) / (grids * sizeof(cell_item)));
         }
         return {g, bits, 0.99f * static_cast<float>(most_entries)};
       }

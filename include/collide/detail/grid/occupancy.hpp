@@ -13,9 +13,9 @@ namespace collide::detail {
 /// Which cells have triangles, of the one level of the one grid that serves balls of one radius: all that most balls
 /// are asked, small enough to be kept in registers.
 template <class S>
-struct cell_marks {
+struct occupancy_view {
   S lower[3];
-  bits_of<S> extent[3];  ///< as bits, which are in the order of the numbers from 0 on; all others are larger
+  uint_for<S> extent[3];  ///< as bits, which are in the order of the numbers from 0 on; all others are larger
   grid_level<S> level;
   std::uint8_t const* occupied;
 
@@ -31,9 +31,9 @@ struct cell_marks {
     places<N> p;
     for (int k = 0; k < N; ++k) {
       S const dx = x[k] - lower[0], dy = y[k] - lower[1], dz = z[k] - lower[2];
-      p.inside[k] = bits(dx) <= extent[0] ? 1u : 0u;
-      p.inside[k] &= bits(dy) <= extent[1] ? 1u : 0u;
-      p.inside[k] &= bits(dz) <= extent[2] ? 1u : 0u;
+      p.inside[k] = to_bits(dx) <= extent[0] ? 1u : 0u;
+      p.inside[k] &= to_bits(dy) <= extent[1] ? 1u : 0u;
+      p.inside[k] &= to_bits(dz) <= extent[2] ? 1u : 0u;
       std::uint32_t const cell = level.row(level.coordinate_inside(dy), level.coordinate_inside(dz)) +
                                  (level.coordinate_inside(dx) & level.mask[0]);
       p.cells[k] = p.inside[k] != 0 ? cell : level.first;  // outside there are no cells
@@ -53,14 +53,14 @@ struct cell_marks {
   }
   template <int N>
   COLLIDE_HD_INLINE bool mark(moving_batch<S, N> const& b, bool (&near)[N]) const {
-    return mark_ways(b, near);
+    return test_swept(b, near);
   }
-  COLLIDE_HD_INLINE bool is_marked(std::uint32_t cell) const { return (bit_of(cell) & 1) != 0; }
+  COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (bit_of(cell) & 1) != 0; }
 
-  /// The same of spheres that move. False if it is not known: one of them is not finite, or goes a long way in the
-  /// grid.
+  /// Which of some moving spheres may be near a triangle: sets near[k]. Returns false if that is not known, since one
+  /// of them is not finite or moves through many cells.
   template <int N>
-  COLLIDE_HD_INLINE bool mark_ways(moving_batch<S, N> const& b, bool (&near)[N]) const {
+  COLLIDE_HD_INLINE bool test_swept(moving_batch<S, N> const& b, bool (&near)[N]) const {
     bool known = true;
     std::uint32_t first[N], apart[N][3];  // the first cell, and how far from it the second on each axis is
     for (int k = 0; k < N; ++k) {
@@ -69,7 +69,7 @@ struct cell_marks {
       bool const inside = (on[0].inside & on[1].inside & on[2].inside) != 0;
       bool const is_short = on[0].more <= 1 && on[1].more <= 1 && on[2].more <= 1;
       // what is not finite is not in the cells that it seems to be in
-      known = known && finite(on[0].extent + (on[1].extent + on[2].extent)) && (is_short || !inside);
+      known = known && is_finite(on[0].extent + (on[1].extent + on[2].extent)) && (is_short || !inside);
       near[k] = inside;
       first[k] = level.first + (inside ? on[0].begin + (on[1].begin + on[2].begin) : 0);
       for (int axis = 0; axis < 3; ++axis) apart[k][axis] = inside ? on[axis].end - on[axis].begin : 0;
@@ -97,7 +97,7 @@ struct cell_marks {
   };
 
   COLLIDE_HD_INLINE cells_on_axis cells_on(int axis, S from, S along) const {
-    S const to = from + along, slack = way<S>::slack_of(from, along), most = from_bits<S>(extent[axis]);
+    S const to = from + along, slack = swept_cells<S>::rounding_slack(from, along), most = from_bits<S>(extent[axis]);
     S const least = smaller(from, to) - slack - lower[axis], last = larger(from, to) + slack - lower[axis];
     std::uint32_t const begin = level.coordinate_inside(smaller(least, most)),
                         end = level.coordinate_inside(smaller(last, most));

@@ -18,11 +18,11 @@ template <class S>
 struct plan_grid {
   static constexpr int items = 1;
 
-  mesh_summary<S> const* summary;
+  mesh_statistics<S> const* summary;
   grid<S>* grids;
   S reaches[max_grids];
   S cell_width;              ///< asked for; 0 = choose
-  S usual_span;              ///< how many cells wide most triangles are at most, if the width is not asked for
+  S target_span;             ///< how many cells wide most triangles are at most, if the width is not asked for
   float entry_limit;         ///< how many entries a grid may have, if the width is asked for
   std::uint32_t table_bits;  ///< log2 of the number of cells per grid
 
@@ -34,11 +34,11 @@ struct plan_grid {
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     std::uint32_t const* const counts = block.stage(s.counts, summary->extents.counts, size_bins);
-    block.each([&](int lane) {
-      if (lane != 0) return;
+    block.for_each_thread([&](int thread_rank) {
+      if (thread_rank != 0) return;
       auto& g = grids[block.index()];
       sizes const seen{counts, summary->extents.first(), summary->extents.last()};
-      static_cast<grid_frame<S>&>(g) = plan(block.index(), seen, g.level);
+      static_cast<grid_header<S>&>(g) = plan(block.index(), seen, g.level);
     });
   }
 
@@ -50,8 +50,8 @@ struct plan_grid {
   };
 
   /// Sets the levels and returns the rest.
-  COLLIDE_HD grid_frame<S> plan(std::size_t i, sizes const& seen, grid_level<S>* levels) const {
-    grid_frame<S> g{};
+  COLLIDE_HD grid_header<S> plan(std::size_t i, sizes const& seen, grid_level<S>* levels) const {
+    grid_header<S> g{};
     g.reach = reaches[i];
     levels[0] = {};       // is read before it is known whether there is one
     if (seen.last < 0) {  // no finite triangle: a box that contains nothing
@@ -69,26 +69,27 @@ struct plan_grid {
       return g;
     }
     // from this width on, cell coordinates are exact enough for `margin`
-    S const narrowest = larger(96 * format<S>::unit * extent, 64 * std::numeric_limits<S>::min());
+    S const narrowest = larger(96 * ieee_traits<S>::unit_roundoff * extent, 64 * std::numeric_limits<S>::min());
     // the largest must fit also when the quotient is rounded down
-    S const usual = div(smaller(tallest, 2 * margin * size(g, median(seen))), usual_span) * (1 + 4 * format<S>::unit);
+    S const usual = div(smaller(tallest, 2 * margin * size(g, median(seen))), target_span) *
+                    (1 + 4 * ieee_traits<S>::unit_roundoff);
     S const width = larger(narrowest, cell_width > 0 ? cell_width : usual);
-    S const span = cell_width > 0 ? span_for(g, width, seen) : usual_span;
+    S const span = cell_width > 0 ? span_for(g, width, seen) : target_span;
     set_levels(g, width, span, seen, static_cast<std::uint32_t>(i) << table_bits, levels);
     return g;
   }
 
   /// Sets the dilation and the box of the dilated mesh, and `extent` to the longest edge of that. Returns the largest
   /// coordinate of the mesh, or the reach if that is larger.
-  COLLIDE_HD S set_box(grid_frame<S>& g, S& extent) const {
+  COLLIDE_HD S set_box(grid_header<S>& g, S& extent) const {
     S far = g.reach;
     for (int k = 0; k < 3; ++k) {
       g.lower[k] = summary->lower_of(k);
       g.upper[k] = summary->upper_of(k);
       far = larger(far, larger(abs_of(g.lower[k]), abs_of(g.upper[k])));
     }
-    g.dilation =
-        g.reach * (1 + 4 * S(format<float>::unit)) + 64 * format<S>::unit * far + 64 * std::numeric_limits<S>::min();
+    g.dilation = g.reach * (1 + 4 * S(ieee_traits<float>::unit_roundoff)) + 64 * ieee_traits<S>::unit_roundoff * far +
+                 64 * std::numeric_limits<S>::min();
     for (int k = 0; k < 3; ++k) {
       g.lower[k] -= g.dilation;
       g.upper[k] += g.dilation;
@@ -99,7 +100,7 @@ struct plan_grid {
 
   /// Makes levels, the finest with cells of this width, in which a triangle spans `span` cells at most. Half of the
   /// cells are for the finest level, the rest for the others together; all if there are no others.
-  COLLIDE_HD void set_levels(grid_frame<S>& g, S width, S span, sizes const& seen, std::uint32_t first_cell,
+  COLLIDE_HD void set_levels(grid_header<S>& g, S width, S span, sizes const& seen, std::uint32_t first_cell,
                              grid_level<S>* levels) const {
     S const tallest = margin * size(g, seen.last);
     int bin = seen.first;
@@ -134,15 +135,15 @@ struct plan_grid {
 
   /// The largest extent in a bin of the histogram, and the largest dilated one.
   static COLLIDE_HD S size(int bin) { return S(bin_end(static_cast<std::uint32_t>(bin))); }
-  static COLLIDE_HD S size(grid_frame<S> const& g, int bin) { return size(bin) + 2 * g.dilation; }
+  static COLLIDE_HD S size(grid_header<S> const& g, int bin) { return size(bin) + 2 * g.dilation; }
 
   /// The bin that half of the sizes do not exceed.
   static COLLIDE_HD int median(sizes const& seen) {
     std::uint64_t total = 0;
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     for (int b = seen.first; b <= seen.last; ++b) total += seen.counts[b];
     int b = seen.first;
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     for (std::uint64_t below = seen.counts[b]; 2 * below < total; below += seen.counts[++b]) {
     }
     return b;
@@ -150,7 +151,7 @@ struct plan_grid {
 
   /// How many cells of the width asked for a triangle may span before it goes to a wider level: as many as the limit on
   /// entries allows, at most 64.
-  COLLIDE_HD S span_for(grid_frame<S> const& g, S width, sizes const& seen) const {
+  COLLIDE_HD S span_for(grid_header<S> const& g, S width, sizes const& seen) const {
     for (S span = 64; span > 1; span /= 2) {
       float entries = 0;
       for (int b = seen.first; b <= seen.last; ++b) {
@@ -164,7 +165,7 @@ struct plan_grid {
 
   /// Gives each axis of the level as many cells as the grid has, and if that is more than `most` in all, cuts the
   /// longest axes down to powers of two, where coordinates wrap. Returns the number of cells.
-  static COLLIDE_HD std::uint32_t dimension(grid_frame<S> const& g, grid_level<S>& l, std::uint64_t most) {
+  static COLLIDE_HD std::uint32_t dimension(grid_header<S> const& g, grid_level<S>& l, std::uint64_t most) {
     std::uint64_t cells[3];
     for (int k = 0; k < 3; ++k) {
       cells[k] = std::uint64_t{g.coordinate(l, g.upper[k], k)} + 1;

@@ -15,13 +15,13 @@ template <class S>
 COLLIDE_HD_INLINE std::uint32_t size_bin(S size) {
   float const x =
       size < S(std::numeric_limits<float>::max()) ? static_cast<float>(size) : std::numeric_limits<float>::max();
-  return bits(x) >> 21;
+  return to_bits(x) >> 21;
 }
 
 /// A size that no size in the bin exceeds; +infinity for the last bin, which holds all sizes beyond float.
 COLLIDE_HD_INLINE float bin_end(std::uint32_t bin) {
   std::uint32_t const end = (bin + 1) << 21;
-  return from_bits<float>(end < format<float>::exponent_mask ? end : format<float>::exponent_mask);
+  return from_bits<float>(end < ieee_traits<float>::exponent_mask ? end : ieee_traits<float>::exponent_mask);
 }
 
 /// A histogram in memory; memory of zeros is an empty one.
@@ -51,19 +51,19 @@ struct size_histogram {
 /// sizes, and most of them alike, that it counts the last ones only.
 template <class Block>
 struct block_histogram {
-  static constexpr int kept = Block::lanes > 1 ? size_bins : 8;  ///< a power of two
+  static constexpr int kept = Block::num_threads > 1 ? size_bins : 8;  ///< a power of two
 
   std::uint32_t counts[kept];
-  std::uint32_t bins[Block::lanes > 1 ? 1 : kept];  ///< of one lane: whose counts they are
+  std::uint32_t bins[Block::num_threads > 1 ? 1 : kept];  ///< of one lane: whose counts they are
 
   COLLIDE_HD_INLINE void clear(Block& block) {
-    block.each([&](int lane) {
-      for (int b = lane; b < kept; b += Block::lanes) counts[b] = 0;
+    block.for_each_thread([&](int thread_rank) {
+      for (int b = thread_rank; b < kept; b += Block::num_threads) counts[b] = 0;
     });
   }
 
   COLLIDE_HD_INLINE void add(Block& block, size_histogram* to, std::uint32_t bin) {
-    if constexpr (Block::lanes > 1) {
+    if constexpr (Block::num_threads > 1) {
       block.add(counts[bin], 1);
     } else {
       std::uint32_t const place = bin % kept;
@@ -77,10 +77,10 @@ struct block_histogram {
   }
 
   COLLIDE_HD_INLINE void flush(Block& block, size_histogram* to) {
-    block.each([&](int lane) {
-      for (int b = lane; b < kept; b += Block::lanes) {
+    block.for_each_thread([&](int thread_rank) {
+      for (int b = thread_rank; b < kept; b += Block::num_threads) {
         if (counts[b] == 0) continue;
-        if constexpr (Block::lanes > 1) {
+        if constexpr (Block::num_threads > 1) {
           to->add(static_cast<std::uint32_t>(b), counts[b]);
         } else {
           to->add(bins[b], counts[b]);

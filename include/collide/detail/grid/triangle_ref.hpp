@@ -1,15 +1,16 @@
 /// \file
 /// Which triangles a single sphere could touch, asked from inside a kernel: what a broad phase gives a simulation.
 ///
-/// An index gives a trivially copyable `lookup()`. Of that, `is_simple(radius)` is true if balls of this radius are
-/// best asked several at a time whether they can touch a triangle: `marks().mark(marks().places_of(x, y, z), near)`, or
-/// `marks().mark_ways(batch, near)` of those that move.
-/// In a kernel, `opened()` is that lookup for use, and then
+/// An index gives a trivially copyable `lookup()`. Of that, `has_single_cell_lookup(radius)` is true if balls of this
+/// radius are best asked several at a time whether they can touch a triangle: `marks().mark(marks().places_of(x, y, z),
+/// near)`, or `marks().test_swept(batch, near)` of those that move. In a kernel, `opened()` is that lookup for use, and
+/// then
 ///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
 ///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
 ///     entries, until it returns false; one may appear more than once if the ball moves; `cursor.at_end()` is true if
 ///     it is known to return false the next time;
-///   - `range.at(k)` is an entry, which is a triangle, `range.may_touch(entry)` a quick test whether the ball could
+///   - `range.at(k)` is an entry, which is a triangle, `range.passes_coverage(entry)` a quick test whether the ball
+///   could
 ///     touch it, and `near(around, triangle)` one whether a ball could all of whose way is in the ball `around`.
 #pragma once
 
@@ -25,15 +26,17 @@ namespace collide::detail {
 
 /// Entries that follow each other in memory, or in number.
 struct candidate_range {
-  cell_entry const* listed;  ///< those of a cell; null: there are all, numbered from `first`
+  cell_item const* listed;  ///< those of a cell; null: there are all, numbered from `first`
   id first;
   std::uint32_t count;
   std::uint32_t place;  ///< of the ball, or of its way, in the cell
 
-  COLLIDE_HD_INLINE cell_entry at(std::uint32_t k) const {
-    return listed != nullptr ? listed[k] : cell_entry{first + k, cell_part::whole};
+  COLLIDE_HD_INLINE cell_item at(std::uint32_t k) const {
+    return listed != nullptr ? listed[k] : cell_item{first + k, cell_coverage::full_box};
   }
-  COLLIDE_HD_INLINE bool may_touch(cell_entry const& e) const { return cell_part::meets(e.part, place); }
+  COLLIDE_HD_INLINE bool passes_coverage(cell_item const& e) const {
+    return cell_coverage::overlaps(e.coverage, place);
+  }
 };
 
 /// How far the candidates of a ball have been gone through.
@@ -49,34 +52,34 @@ struct candidate_cursor {
 
 /// What both lookups share: the triangles, and a cheap test for each.
 template <class S>
-struct triangle_lookup {
+struct triangle_ref {
   mesh_view<S> mesh;
-  triangle_box<S> const* boxes;  ///< may be null
+  triangle_aabb<S> const* boxes;  ///< may be null
 
   COLLIDE_HD_INLINE bool near(sphere<S> const& around, id triangle) const {
-    return boxes == nullptr || boxes[triangle].reached(around.centre, around.radius);
+    return boxes == nullptr || boxes[triangle].overlaps(around.centre, around.radius);
   }
 
   /// Whether a triangle that has passed the quick tests is near, unless the narrow phase asks that itself before
   /// anything else.
-  template <class NarrowPhase, class Ball>
-  COLLIDE_HD_INLINE bool may_touch(Ball const& ball, id triangle) const {
-    if constexpr (in_stages<NarrowPhase>::value) {
+  template <class NarrowPhase, class Sphere>
+  COLLIDE_HD_INLINE bool passes_coverage(Sphere const& ball, id triangle) const {
+    if constexpr (filtered_predicate<NarrowPhase>::value) {
       return true;
     } else {
-      return near(enclosing(ball), triangle);
+      return near(swept_bounding_sphere(ball), triangle);
     }
   }
 
-  COLLIDE_HD_INLINE box<S> box_at(id triangle) const {
-    return boxes != nullptr ? boxes[triangle] : triangle_box_of(mesh[triangle]);
+  COLLIDE_HD_INLINE aabb<S> box_at(id triangle) const {
+    return boxes != nullptr ? boxes[triangle] : triangle_aabb_of(mesh[triangle]);
   }
 
   /// All triangles, one range after the other.
   COLLIDE_HD bool next_of_all(candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
     auto const n = static_cast<std::uint32_t>(mesh.size());
     if (c.skip >= n) return false;
-    range = {nullptr, c.skip, smaller(n - c.skip, most), cell_part::anywhere};
+    range = {nullptr, c.skip, smaller(n - c.skip, most), cell_coverage::full_query};
     c.skip += range.count;
     if (c.skip == n) c.grid = candidate_cursor::ended;
     return true;
@@ -84,6 +87,6 @@ struct triangle_lookup {
 };
 
 /// In place of a lookup, if nothing asks.
-struct no_lookup {};
+struct null_ref {};
 
 }  // namespace collide::detail

@@ -12,8 +12,8 @@ namespace collide::detail {
 /// Unit vector along `v`, which is not zero.
 template <class T>
 COLLIDE_HD inline vec3<T> unit(vec3<T> const& v) {
-  vec3<T> const w = scaled(v, reciprocal_power(magnitude(v)));
-  return scaled(w, div(T(1), root(dot(w, w))));
+  vec3<T> const w = scaled(v, inverse_power_of_two(max_norm(v)));
+  return scaled(w, div(T(1), sqrt_rn(dot(w, w))));
 }
 
 /// A unit vector perpendicular to `v`, or (0, 0, 1) if `v` is zero.
@@ -26,7 +26,7 @@ COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
 
 /// A contact without its point.
 struct measured_contact {
-  gap measured;
+  separation measured;
   vec3<double> normal;
   feature kind;
   int index;
@@ -35,38 +35,39 @@ struct measured_contact {
 /// Distance, depth and normal of a contact in exact arithmetic, to nearly all digits however small they are. `l` is the
 /// triangle as seen from where the sphere is at the time, and `distance_squared` what doubles take for the square of
 /// its distance.
-COLLIDE_HD_NOINLINE inline measured_contact measure_exactly(triangle<double> const& t, moving_sphere<double> const& s,
-                                                            double time, local_triangle<double> const& l,
-                                                            double distance_squared) {
-  exact_place::memory memory;
+COLLIDE_HD_NOINLINE inline measured_contact measure_exact(triangle<double> const& t, moving_sphere<double> const& s,
+                                                          double time, local_triangle<double> const& l,
+                                                          double distance_squared) {
+  exact_slot::memory memory;
   exact_triangle const e(exact_numbers_of(memory.table(), t, s, decoded(time)));
-  gap measured{0, 0};
+  separation measured{0, 0};
   int const foot = e.nearest(l, distance_squared, measured);
-  vec3<double> normal = e.towards_centre(foot);
-  if (magnitude(normal) == 0) normal = e.normal();
-  if (magnitude(normal) == 0) {  // a segment or a point, and the centre lies on it
+  vec3<double> normal = e.direction_to_centre(foot);
+  if (max_norm(normal) == 0) normal = e.normal();
+  if (max_norm(normal) == 0) {  // a segment or a point, and the centre lies on it
     vec3<double> const ab = l.b - l.a, bc = l.c - l.b, ca = l.a - l.c;
     double const x = dot(ab, ab), y = dot(bc, bc), z = dot(ca, ca);
     normal = perpendicular(x >= y && x >= z ? ab : (y >= z ? bc : ca));
   } else {
     normal = unit(normal);
   }
-  return {measured, normal, exact_triangle::kind_of(foot), exact_triangle::index_of(foot)};
+  return {measured, normal, exact_triangle::feature_of(foot), exact_triangle::feature_index_of(foot)};
 }
 
 /// The smallest length that doubles give to within 2^-45, in a problem of at most size 4; see docs/numerics.md.
-inline constexpr double clear_length = 0x1p-20;
+inline constexpr double well_conditioned_length = 0x1p-20;
 
 /// The contact of a finite triangle, as seen from a sphere's centre, in doubles; `foot` is the point of the triangle.
-/// False if their digits do not suffice: `clear(distance, depth)`, both local, tells whether they do.
-template <class Clear>
-COLLIDE_HD_INLINE bool measure_if_clear(local_triangle<double> const& l, double radius, Clear const& clear,
-                                        closest_point<double>& foot, measured_contact& found) {
+/// False if their digits do not suffice: `well_conditioned(distance, depth)`, both local, tells whether they do.
+template <class WellConditioned>
+COLLIDE_HD_INLINE bool measure_if_well_conditioned(local_triangle<double> const& l, double radius,
+                                                   WellConditioned const& well_conditioned, closest_point<double>& foot,
+                                                   measured_contact& found) {
   vec3<double> const normal = cross<double>(l.b - l.a, l.c - l.a);
   foot = closest_to_origin(l, normal);
-  double const local_distance = root(foot.distance_squared), distance = div(local_distance, l.scale);
+  double const local_distance = sqrt_rn(foot.distance_squared), distance = div(local_distance, l.scale);
   found = {{distance, radius - distance}, normal, foot.kind, foot.index};
-  if (!clear(local_distance, mul(found.measured.depth, l.scale))) return false;
+  if (!well_conditioned(local_distance, mul(found.measured.depth, l.scale))) return false;
   if (foot.kind == feature::face) {
     found.normal = unit(found.normal);
     if (dot(l.a, found.normal) > 0) found.normal = -found.normal;
@@ -78,10 +79,10 @@ COLLIDE_HD_INLINE bool measure_if_clear(local_triangle<double> const& l, double 
 
 /// The contact at the point `foot`, rounded once; the caller sets the ids.
 template <class S>
-COLLIDE_HD_INLINE contact<S> contact_at_foot(measured_contact const& m, vec3<double> const& foot, double scale,
-                                             vec3<double> const& centre) {
+COLLIDE_HD_INLINE contact<S> contact_at_point(measured_contact const& m, vec3<double> const& foot, double scale,
+                                              vec3<double> const& centre) {
   vec3<double> point = centre + scaled(foot, div(1.0, scale));
-  if (!finite(point)) {  // the way there is longer than the largest number, or rounded up to more than that
+  if (!is_finite(point)) {  // the way there is longer than the largest number, or rounded up to more than that
     constexpr double most = std::numeric_limits<double>::max() / 4;
     point = scaled(centre, 0.25) + scaled(foot, div(0.25, scale));
     for (int k = 0; k < 3; ++k) point[k] = mul(4.0, smaller(larger(point[k], -most), most));
@@ -97,50 +98,52 @@ COLLIDE_HD_INLINE contact<S> contact_at_foot(measured_contact const& m, vec3<dou
 }
 
 template <class S>
-COLLIDE_HD contact<S> rounded(contact<double> const& c) {
+COLLIDE_HD contact<S> narrow_to(contact<double> const& c) {
   return {c.sphere,
           c.triangle,
           c.point.template cast<S>(),
           c.normal.template cast<S>(),
           static_cast<S>(c.distance),
           static_cast<S>(c.depth),
-          c.kind,
-          c.index};
+          c.feature,
+          c.feature_index};
 }
 
 /// From what local length on doubles tell a contact with all digits of `S`.
 template <class S>
-inline constexpr double enough_for = sizeof(S) == sizeof(float) ? clear_length : std::numeric_limits<double>::max();
+inline constexpr double min_well_conditioned = sizeof(S) == sizeof(float) ? well_conditioned_length
+                                                                          : std::numeric_limits<double>::max();
 
 /// The contact of a finite triangle and a sphere where that is at a time, when its centre is where `l` is seen from.
-/// Computed exactly where the distance, or with `deeply` the depth too, is below `enough`.
-COLLIDE_HD_NOINLINE inline contact<double> contact_from(local_triangle<double> const& l, vec3<double> const& centre,
-                                                        triangle<double> const& t, moving_sphere<double> const& s,
-                                                        double time, double enough, bool deeply) {
-  auto const clear = [&](double distance, double depth) {
-    return distance >= enough && (!deeply || depth >= enough || depth <= -enough);
+/// Computed exactly where the distance, or with `exact_depth` the depth too, is below `enough`.
+COLLIDE_HD_NOINLINE inline contact<double> contact_with_fallback(local_triangle<double> const& l,
+                                                                 vec3<double> const& centre, triangle<double> const& t,
+                                                                 moving_sphere<double> const& s, double time,
+                                                                 double enough, bool exact_depth) {
+  auto const well_conditioned = [&](double distance, double depth) {
+    return distance >= enough && (!exact_depth || depth >= enough || depth <= -enough);
   };
   closest_point<double> foot;
   measured_contact found;
-  if (!measure_if_clear(l, s.radius, clear, foot, found)) {
-    bool const all = infinite(s.radius);
-    found = measure_exactly(t, {{s.centre, all ? 0 : s.radius}, s.displacement}, time, l, foot.distance_squared);
+  if (!measure_if_well_conditioned(l, s.radius, well_conditioned, foot, found)) {
+    bool const all = is_infinite(s.radius);
+    found = measure_exact(t, {{s.centre, all ? 0 : s.radius}, s.displacement}, time, l, foot.distance_squared);
     if (all) found.measured.depth = s.radius;
   }
-  return contact_at_foot<double>(found, foot.point, l.scale, centre);
+  return contact_at_point<double>(found, foot.point, l.scale, centre);
 }
 
 /// The contact of a finite triangle and a sphere at rest.
-COLLIDE_HD_NOINLINE inline contact<double> contact_between(triangle<double> const& t, sphere<double> const& s,
-                                                           double enough, bool deeply) {
+COLLIDE_HD_NOINLINE inline contact<double> contact_of_pair(triangle<double> const& t, sphere<double> const& s,
+                                                           double enough, bool exact_depth) {
   sphere<double> const centre{s.centre, 0};
-  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
-  return contact_from(l, s.centre, t, {s, {0, 0, 0}}, 0, enough, deeply);
+  local_triangle<double> const l = to_unit_range(to_local<double>(t, centre), t, centre);
+  return contact_with_fallback(l, s.centre, t, {s, {0, 0, 0}}, 0, enough, exact_depth);
 }
 
 template <class S>
-COLLIDE_HD contact<S> contact_between(triangle<S> const& t, sphere<S> const& s) {
-  return rounded<S>(contact_between(widened(t), widened(s), enough_for<S>, true));
+COLLIDE_HD contact<S> contact_of_pair(triangle<S> const& t, sphere<S> const& s) {
+  return narrow_to<S>(contact_of_pair(widened(t), widened(s), min_well_conditioned<S>, true));
 }
 
 }  // namespace collide::detail

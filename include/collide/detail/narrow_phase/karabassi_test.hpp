@@ -12,15 +12,15 @@ namespace collide::detail {
 /// True if the distance |n.a| / |n| of the plane is beyond the radius by more than an eighth and the rounding of n,
 /// which is relative to `uuvv`, the product of the squared sides, and so overwhelms the normal of a sliver.
 template <class T>
-COLLIDE_HD_INLINE bool plane_out_of_reach(vec3<T> const& a, vec3<T> const& n, T uuvv, T rr) {
-  constexpr T error = 512 * format<T>::unit * format<T>::unit;
+COLLIDE_HD_INLINE bool plane_separates(vec3<T> const& a, vec3<T> const& n, T uuvv, T rr) {
+  constexpr T error = 512 * ieee_traits<T>::unit_roundoff * ieee_traits<T>::unit_roundoff;
   T const d = dot(n, a);
   return mul(mul(d, d), T(0.875)) > mul(rr, dot(n, n)) + mul(mul(error, uuvv), dot(a, a));
 }
 
 /// True if a point strictly between a and b is within the root of `rr` of the origin.
 template <class T>
-COLLIDE_HD_INLINE bool edge_in_reach(vec3<T> const& a, vec3<T> const& b, T rr) {
+COLLIDE_HD_INLINE bool edge_intersects(vec3<T> const& a, vec3<T> const& b, T rr) {
   vec3<T> const e = b - a;
   T const along = -dot(a, e);
   T const ee = dot(e, e);
@@ -33,31 +33,32 @@ COLLIDE_HD_INLINE bool edge_in_reach(vec3<T> const& a, vec3<T> const& b, T rr) {
 /// triangle as seen from the sphere and nothing overflows. A hit is only ever reported for a point of the triangle that
 /// was found within the radius, and the plane rejects only where its distance is certain.
 template <class T, class S>
-COLLIDE_HD_INLINE bool local_four_steps(triangle<S> const& of, sphere<S> const& s) {
+COLLIDE_HD_INLINE bool karabassi_local(triangle<S> const& of, sphere<S> const& s) {
   using W = std::common_type_t<S, T>;
-  local_triangle<W> const l = relative<W>(of, s);
-  if (!box_in_reach(l, l.radius)) return false;
-  if (!valid_radius(s.radius) || !finite(s.centre) || !finite(of)) return false;
-  if (infinite(s.radius)) return true;
-  local_triangle<T> const t = rounded<T>(normalised(l, of, s));
+  local_triangle<W> const l = to_local<W>(of, s);
+  if (!aabb_within(l, l.radius)) return false;
+  if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(of)) return false;
+  if (is_infinite(s.radius)) return true;
+  local_triangle<T> const t = narrow_to<T>(to_unit_range(l, of, s));
   T const rr = mul(t.radius, t.radius);
   vec3<T> const u = t.b - t.a, v = t.c - t.a, n = cross(u, v);
-  if (plane_out_of_reach(t.a, n, mul(dot(u, u), dot(v, v)), rr)) return false;           // 1: the plane
+  if (plane_separates(t.a, n, mul(dot(u, u), dot(v, v)), rr)) return false;              // 1: the plane
   if (smaller(smaller(dot(t.a, t.a), dot(t.b, t.b)), dot(t.c, t.c)) <= rr) return true;  // 2: the vertices
   vec3<T> foot;
-  if (foot_inside(t, n, foot) && dot(foot, foot) <= rr) return true;                                 // 3: the face
-  return edge_in_reach(t.a, t.b, rr) || edge_in_reach(t.b, t.c, rr) || edge_in_reach(t.c, t.a, rr);  // 4: the edges
+  if (project_onto_face(t, n, foot) && dot(foot, foot) <= rr) return true;  // 3: the face
+  return edge_intersects(t.a, t.b, rr) || edge_intersects(t.b, t.c, rr) ||
+         edge_intersects(t.c, t.a, rr);  // 4: the edges
 }
 
 /// The four steps in `T` and in world coordinates, as in the literature.
 template <class T, class S>
-COLLIDE_HD_INLINE bool world_four_steps(triangle<S> const& of, sphere<S> const& s) {
+COLLIDE_HD_INLINE bool karabassi_world(triangle<S> const& of, sphere<S> const& s) {
   vec3<T> const a = of.a.template cast<T>(), b = of.b.template cast<T>(), c = of.c.template cast<T>();
   vec3<T> const p = s.centre.template cast<T>();
   T const r = static_cast<T>(s.radius);
   auto const within = [&](vec3<T> const& q) { return (q - p).dot(q - p) <= r * r; };
   vec3<T> n = cross<T>(b - a, c - a);
-  n = n / root(n.dot(n));
+  n = n / sqrt_rn(n.dot(n));
   T const d = n.dot(p - a);
   if (d > r || d < -r) return false;                     // 1: the plane
   if (within(a) || within(b) || within(c)) return true;  // 2: the vertices

@@ -17,18 +17,18 @@ template <class S>
 inline constexpr int time_bits = sizeof(S) == sizeof(float) ? 25 : 31;
 
 /// A lower bound of the time of impact, from 0 to 1, by conservative advancement.
-COLLIDE_HD_NOINLINE inline double earliest_time(triangle<double> const& t, moving_sphere<double> const& s) {
+COLLIDE_HD_NOINLINE inline double conservative_advancement(triangle<double> const& t, moving_sphere<double> const& s) {
   constexpr int enough = 40;  // for a tangent way each step halves what is left; else a few do
-  local_sweep<double> l = relative<double>(t, s);
+  local_sweep<double> l = to_local<double>(t, s);
   double size;
-  if (!brought_to_size<double>(l, size)) return 0;
-  double const outer = l.shape.radius + sweep_error<double> * size;
+  if (!rescale_to_filter_range<double>(l, size)) return 0;
+  double const outer = l.shape.radius + swept_error<double> * size;
   vec3<double> const n = cross<double>(l.shape.b - l.shape.a, l.shape.c - l.shape.a);
   double time = 0;
   for (int i = 0; i < enough; ++i) {
-    vec3<double> const g = closest_to_origin(seen_at(l, time), n).point;
+    vec3<double> const g = closest_to_origin(at_time(l, time), n).point;
     double const least = smaller(smaller(dot(l.shape.a, g), dot(l.shape.b, g)), dot(l.shape.c, g));
-    double const away = least - mul(outer, root(dot(g, g))), nearer = dot(l.path, g);
+    double const away = least - mul(outer, sqrt_rn(dot(g, g))), nearer = dot(l.path, g);
     if (!(away > 0 && nearer > 0)) return time;
     double const next = div(away, nearer);
     if (!(next > time)) return time;
@@ -42,34 +42,34 @@ COLLIDE_HD_NOINLINE inline double earliest_time(triangle<double> const& t, movin
 template <class S>
 COLLIDE_HD S rounded_down(double x) {
   S const nearest = static_cast<S>(x);
-  return static_cast<double>(nearest) > x ? from_bits<S>(bits(nearest) - 1) : nearest;
+  return static_cast<double>(nearest) > x ? from_bits<S>(to_bits(nearest) - 1) : nearest;
 }
 
-/// Never later than the first contact, and earlier by at most 2^-bits. Unless `finely`, contact is also what doubles
-/// leave open, next to tangency.
-COLLIDE_HD_NOINLINE inline double first_contact(triangle<double> const& t, moving_sphere<double> const& s, int bits,
-                                                bool finely) {
-  double const time = earliest_time(t, s);
+/// Never later than the first contact, and earlier by at most 2^-bits. Unless `exact_near_tangency`, contact is also
+/// what doubles leave open, next to tangency.
+COLLIDE_HD_NOINLINE inline double refine_time_of_impact(triangle<double> const& t, moving_sphere<double> const& s,
+                                                        int bits, bool exact_near_tangency) {
+  double const time = conservative_advancement(t, s);
   std::uint32_t const steps = std::uint32_t{1} << bits;
-  // no contact until `missed` steps, or just then; contact until `hit` steps
-  auto missed = smaller(static_cast<std::uint32_t>(time * steps), steps - 1), hit = steps;
-  for (std::uint32_t ahead = 1; hit - missed > 1;) {
-    std::uint32_t const middle = missed + smaller(ahead, (hit - missed) / 2);
-    if (decide_closely(t, s, reduced(middle, -bits), finely).hit) {
+  // no contact until `lower` steps, or just then; contact until `hit` steps
+  auto lower = smaller(static_cast<std::uint32_t>(time * steps), steps - 1), hit = steps;
+  for (std::uint32_t step = 1; hit - lower > 1;) {
+    std::uint32_t const middle = lower + smaller(step, (hit - lower) / 2);
+    if (intersects_exact_slow(t, s, reduced(middle, -bits), exact_near_tangency).hit) {
       hit = middle;
     } else {
-      missed = middle;
-      if (ahead < steps) ahead *= 2;
+      lower = middle;
+      if (step < steps) step *= 2;
     }
   }
-  return larger(time, missed * value_of({1, -bits}));
+  return larger(time, lower * value_of({1, -bits}));
 }
 
 /// Time of impact in double, to within 2^-bits, before it is rounded to the scalar.
 COLLIDE_HD_NOINLINE inline double time_of_impact(triangle<double> const& t, moving_sphere<double> const& s, int bits) {
-  if (decide_closely(t, static_cast<sphere<double> const&>(s)).hit) return 0;
-  if (!decide_closely(t, s, dyadic{1, 0}).hit) return approach(normalised(relative<double>(t, s), t, s)).time;
-  return first_contact(t, s, bits, true);
+  if (intersects_exact_slow(t, static_cast<sphere<double> const&>(s)).hit) return 0;
+  if (!intersects_exact_slow(t, s, dyadic{1, 0}).hit) return approach(to_unit_range(to_local<double>(t, s), t, s)).time;
+  return refine_time_of_impact(t, s, bits, true);
 }
 
 /// Never later than the first contact, and earlier by at most 2^-23 for floats and 2^-30 for doubles. 0 if the two

@@ -10,24 +10,26 @@
 namespace collide::detail {
 
 /// True if the narrow phase has a static member intersects(triangle<S>, Ball) that returns bool.
-template <class NarrowPhase, class S, class Ball, class = void>
-struct judges : std::false_type {};
-template <class NarrowPhase, class S, class Ball>
-struct judges<NarrowPhase, S, Ball,
-              std::enable_if_t<std::is_convertible<decltype(NarrowPhase::intersects(std::declval<triangle<S> const&>(),
-                                                                                    std::declval<Ball const&>())),
-                                                   bool>::value>> : std::true_type {};
+template <class NarrowPhase, class S, class Sphere, class = void>
+struct has_intersects : std::false_type {};
+template <class NarrowPhase, class S, class Sphere>
+struct has_intersects<
+    NarrowPhase, S, Sphere,
+    std::enable_if_t<std::is_convertible<decltype(NarrowPhase::intersects(std::declval<triangle<S> const&>(),
+                                                                          std::declval<Sphere const&>())),
+                                         bool>::value>> : std::true_type {};
 
 /// The view of spheres that a query with the narrow phase takes.
 template <class NarrowPhase, class S>
-using spheres_of = std::conditional_t<judges<NarrowPhase, S, sphere<S>>::value, sphere_view<S>, moving_sphere_view<S>>;
+using sphere_view_for =
+    std::conditional_t<has_intersects<NarrowPhase, S, sphere<S>>::value, sphere_view<S>, moving_sphere_view<S>>;
 
 /// True if the narrow phase is discrete: it takes spheres at one time. False if it is continuous: it takes moving
 /// spheres.
 template <class NarrowPhase, class S>
-inline constexpr bool at_rest = std::is_same<spheres_of<NarrowPhase, S>, sphere_view<S>>::value;
+inline constexpr bool is_discrete = std::is_same<sphere_view_for<NarrowPhase, S>, sphere_view<S>>::value;
 
-/// True if the narrow phase has a static member contact_of(triangle<S>, Ball), Ball as `spheres_of` has it.
+/// True if the narrow phase has a static member contact_of(triangle<S>, Ball), Ball as `sphere_view_for` has it.
 template <class N, class S, class = void>
 struct has_contact : std::false_type {};
 template <class N, class S>

@@ -26,8 +26,8 @@ COLLIDE_HD inline int leading_zeros(std::uint64_t x) {  // x != 0
 
 /// A float as a double, also if it is subnormal and the hardware flushes such to zero.
 COLLIDE_HD_RARE double widened(float x) {
-  using f = format<float>;
-  std::uint32_t const u = bits(x), magnitude = u & ~f::sign_mask;
+  using f = ieee_traits<float>;
+  std::uint32_t const u = to_bits(x), magnitude = u & ~f::sign_mask;
   if (magnitude >> f::mantissa_bits != 0) return static_cast<double>(x);
   double const subnormal = mul(static_cast<double>(magnitude), 0x1p-149);
   return (u & f::sign_mask) != 0 ? -subnormal : subnormal;
@@ -70,8 +70,8 @@ COLLIDE_HD inline dyadic reduced(std::int64_t mantissa, int exponent) {
 
 /// The finite number `x`, from its bits: subnormal numbers are as good as others.
 COLLIDE_HD inline dyadic decoded(double x) {
-  using f = format<double>;
-  std::uint64_t const u = bits(x);
+  using f = ieee_traits<double>;
+  std::uint64_t const u = to_bits(x);
   auto const biased = static_cast<int>((u & f::exponent_mask) >> f::mantissa_bits);
   auto const fraction = static_cast<std::int64_t>(u & ((std::uint64_t{1} << f::mantissa_bits) - 1));
   std::int64_t const m = biased == 0 ? fraction : fraction | std::int64_t{1} << f::mantissa_bits;
@@ -84,8 +84,8 @@ COLLIDE_HD inline double value_of(dyadic const& x) {
   return mul(static_cast<double>(x.mantissa), from_bits<double>(static_cast<std::uint64_t>(x.exponent + 1023) << 52));
 }
 
-/// The parts whose sum a number is, wherever they are stored. No parts are the number zero.
-struct parts_view {
+/// The components whose sum a number is, wherever they are stored. No components are the number zero.
+struct components_view {
   std::int64_t const* mantissas;
   std::int16_t const* exponents;
   int count;
@@ -93,8 +93,8 @@ struct parts_view {
   COLLIDE_HD dyadic operator[](int i) const { return {mantissas[i], exponents[i]}; }
 };
 
-/// A table of numbers, each the exact sum of a few floating-point numbers: one part if that has room for it, else as
-/// many as it takes. It is filled from the first number to the last, and kept in `exact_memory`.
+/// A table of numbers, each the exact sum of a few floating-point numbers: one component if that has room for it, else
+/// as many as it takes. It is filled from the first number to the last, and kept in `exact_memory`.
 class exact_numbers {
  public:
   COLLIDE_HD exact_numbers(std::int64_t* mantissas, std::int16_t* exponents, std::uint8_t* ends)
@@ -133,18 +133,18 @@ class exact_numbers {
 
   COLLIDE_HD void subtract(dyadic const& x) { add({-x.mantissa, x.exponent}); }
 
-  /// Adds x * y, where neither has more than 53 bits: in two parts if need be.
+  /// Adds x * y, where neither has more than 53 bits: in two components if need be.
   COLLIDE_HD void add_product(dyadic const& x, dyadic const& y) {
-    two_words const product = two_words{x.magnitude()} * y.magnitude();
+    uint128 const product = uint128{x.magnitude()} * y.magnitude();
     constexpr int half = 61;
-    auto const low = static_cast<std::int64_t>(product & ((two_words{1} << half) - 1));
+    auto const low = static_cast<std::int64_t>(product & ((uint128{1} << half) - 1));
     auto const high = static_cast<std::int64_t>(product >> half);
     std::int64_t const sign = (x.mantissa < 0) != (y.mantissa < 0) ? -1 : 1;
     add(reduced(sign * low, x.exponent + y.exponent));
     add(reduced(sign * high, x.exponent + y.exponent + half));
   }
 
-  COLLIDE_HD parts_view operator[](int number) const {
+  COLLIDE_HD components_view operator[](int number) const {
     int const begin = ends_[number];
     return {mantissas_ + begin, exponents_ + begin, ends_[number + 1] - begin};
   }
@@ -152,19 +152,19 @@ class exact_numbers {
  private:
   std::int64_t* mantissas_;
   std::int16_t* exponents_;
-  std::uint8_t* ends_;  ///< number i has the parts from ends_[i] until ends_[i + 1]
+  std::uint8_t* ends_;  ///< number i has the components from ends_[i] until ends_[i + 1]
   int count_ = 0;
 };
 
-/// Memory for a table of `Numbers` numbers of `Parts` parts in all.
-template <int Parts, int Numbers>
+/// Memory for a table of `Numbers` numbers of `Components` components in all.
+template <int Components, int Numbers>
 class exact_memory {
  public:
   COLLIDE_HD exact_numbers table() { return {mantissas_, exponents_, ends_}; }
 
  private:
-  std::int64_t mantissas_[Parts];
-  std::int16_t exponents_[Parts];
+  std::int64_t mantissas_[Components];
+  std::int16_t exponents_[Components];
   std::uint8_t ends_[Numbers + 1];
 };
 

@@ -12,7 +12,7 @@
 namespace collide::detail {
 
 /// A double with an exponent of its own: value * 2^exponent, where |value| is 0 or between 2^63 and 2^64.
-struct wide_number {
+struct scaled_double {
   double value = 0;
   int exponent = 0;
 };
@@ -20,14 +20,14 @@ struct wide_number {
 /// Sums products into a window of the digits of the sum.
 class exact_sum {
  public:
-  /// The sum; -1 for one that is negative, if only the sign is wanted. With all combinations of the parts of factors,
-  /// at most 2^20 products.
-  COLLIDE_HD_NOINLINE static wide_number of(exact_numbers const& numbers, exact_products const& products,
-                                            bool with_value = true) {
+  /// The sum; -1 for one that is negative, if only the sign is wanted. With all combinations of the components of
+  /// factors, at most 2^20 products.
+  COLLIDE_HD_NOINLINE static scaled_double of(exact_numbers const& numbers, exact_products const& products,
+                                              bool with_value = true) {
     exact_sum sum(numbers, products);
-    for (exact_product const& product : products) sum.extend(product);
+    for (exact_product const& product : products) sum.extend_exponent_range(product);
     bool negative = false;
-    while (sum.add_up(negative ? -1 : 1)) {
+    while (sum.accumulate(negative ? -1 : 1)) {
       if (!with_value) return {-1, 0};
       negative = true;
     }
@@ -46,24 +46,24 @@ class exact_sum {
   }
 
  private:
-  static constexpr int window = 24;  ///< digits of 32 bits
-  static constexpr int spare = 24;   ///< bits for the sum of many products, and its sign
+  static constexpr int window_digits = 24;  ///< digits of 32 bits
+  static constexpr int carry_bits = 24;     ///< bits for the sum of many products, and its sign
 
   exact_numbers const& numbers_;
   exact_products const& products_;
   int lowest_ = 1 << 30, highest_ = -(1 << 30);  ///< exponents of the lowest bit, and above the highest, of any product
   int begin_;                                    ///< number of the window's first digit
-  std::int64_t digits_[window];                  ///< not yet carried: may be negative, or longer than 32 bits
+  std::int64_t digits_[window_digits];           ///< not yet carried: may be negative, or longer than 32 bits
   std::uint32_t top_, below_top_[2];             ///< the highest digit that is not 0, and the two below it
   int top_exponent_;
 
   COLLIDE_HD exact_sum(exact_numbers const& numbers, exact_products const& products)
       : numbers_(numbers), products_(products) {}
 
-  COLLIDE_HD void extend(exact_product const& product) {
+  COLLIDE_HD void extend_exponent_range(exact_product const& product) {
     int low = 0, high = 1;  // for a weight of 2
     for (int i = 0; i < product.count; ++i) {
-      parts_view const f = numbers_[product.factors[i]];
+      components_view const f = numbers_[product.factors[i]];
       if (f.count == 0) return;
       int from = f[0].exponent, to = from + f[0].length();
       for (int k = 1; k < f.count; ++k) {
@@ -78,15 +78,15 @@ class exact_sum {
   }
 
   /// Adds all up, times `sign`. Returns true if the sum is negative; if not, its highest digits are known.
-  COLLIDE_HD bool add_up(int sign) {
-    int const count = highest_ < lowest_ ? 0 : (highest_ - lowest_ + spare) / 32 + 1;
+  COLLIDE_HD bool accumulate(int sign) {
+    int const count = highest_ < lowest_ ? 0 : (highest_ - lowest_ + carry_bits) / 32 + 1;
     std::int64_t carry = 0;
     std::uint32_t below[2] = {0, 0};
     top_ = 0;
-    for (begin_ = 0; begin_ < count; begin_ += window) {
-      for (int i = 0; i < window; ++i) digits_[i] = 0;
+    for (begin_ = 0; begin_ < count; begin_ += window_digits) {
+      for (int i = 0; i < window_digits; ++i) digits_[i] = 0;
       for (exact_product const& product : products_) add(product, sign * product.weight);
-      for (int i = 0; i < window; ++i) {
+      for (int i = 0; i < window_digits; ++i) {
         std::int64_t const sum = digits_[i] + carry;
         carry = sum >> 32;
         auto const digit = static_cast<std::uint32_t>(sum);
@@ -103,7 +103,7 @@ class exact_sum {
     return carry < 0;
   }
 
-  /// Adds the products of all combinations of the parts of the factors.
+  /// Adds the products of all combinations of the components of the factors.
   COLLIDE_HD void add(exact_product const& of, int weight) {
     int combinations = 1;
     for (int i = 0; i < of.count; ++i) combinations *= numbers_[of.factors[i]].count;
@@ -112,14 +112,14 @@ class exact_sum {
       bool negative = weight < 0;
       std::uint32_t product[2 * exact_product::most_factors + 1] = {1};
       for (int i = 0; i < of.count; ++i) {
-        parts_view const parts = numbers_[of.factors[i]];
-        dyadic const f = parts[rest % parts.count];
-        rest /= parts.count;
+        components_view const components = numbers_[of.factors[i]];
+        dyadic const f = components[rest % components.count];
+        rest /= components.count;
         exponent += f.exponent;
         negative = negative != (f.mantissa < 0);
         words = multiply(product, words, f.magnitude());
       }
-      put(product, words, exponent, negative);
+      add_shifted(product, words, exponent, negative);
     }
   }
 
@@ -145,15 +145,15 @@ class exact_sum {
   }
 
   /// Adds a number, shifted by `exponent` bits from the lowest, as far as the window shows it.
-  COLLIDE_HD void put(std::uint32_t const* x, int words, int exponent, bool negative) {
+  COLLIDE_HD void add_shifted(std::uint32_t const* x, int words, int exponent, bool negative) {
     int const first = exponent / 32 - begin_, shift = exponent % 32;
-    if (first >= window || first + words < 0) return;
+    if (first >= window_digits || first + words < 0) return;
     std::uint32_t below = 0;
     for (int i = 0; i <= words; ++i) {
       std::uint32_t const word = i < words ? x[i] : 0;
       auto const digit = static_cast<std::uint32_t>((std::uint64_t{word} << 32 | below) >> (32 - shift));
       below = word;
-      if (first + i >= 0 && first + i < window) digits_[first + i] += negative ? -std::int64_t{digit} : digit;
+      if (first + i >= 0 && first + i < window_digits) digits_[first + i] += negative ? -std::int64_t{digit} : digit;
     }
   }
 };

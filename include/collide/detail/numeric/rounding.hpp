@@ -46,7 +46,7 @@ COLLIDE_HD_INLINE double div(double a, double b) {
 #endif
 }
 
-COLLIDE_HD_INLINE float root(float a) {
+COLLIDE_HD_INLINE float sqrt_rn(float a) {
 #if defined(__CUDA_ARCH__)
   return __fsqrt_rn(a);
 #else
@@ -54,7 +54,7 @@ COLLIDE_HD_INLINE float root(float a) {
 #endif
 }
 
-COLLIDE_HD_INLINE double root(double a) {
+COLLIDE_HD_INLINE double sqrt_rn(double a) {
 #if defined(__CUDA_ARCH__)
   return __dsqrt_rn(a);
 #else
@@ -80,7 +80,7 @@ COLLIDE_HD_INLINE double fused(double a, double b, double c) {
 }
 
 /// a * b + c, rounded once everywhere.
-COLLIDE_HD_INLINE float multiply_add(float a, float b, float c) {
+COLLIDE_HD_INLINE float fma_rn(float a, float b, float c) {
 #if defined(__CUDA_ARCH__)
   return __fmaf_rn(a, b, c);
 #else
@@ -88,7 +88,7 @@ COLLIDE_HD_INLINE float multiply_add(float a, float b, float c) {
 #endif
 }
 
-COLLIDE_HD_INLINE double multiply_add(double a, double b, double c) {
+COLLIDE_HD_INLINE double fma_rn(double a, double b, double c) {
 #if defined(__CUDA_ARCH__)
   return __fma_rn(a, b, c);
 #else
@@ -98,7 +98,7 @@ COLLIDE_HD_INLINE double multiply_add(double a, double b, double c) {
 
 /// The value as it was computed: a compiler that may reassociate sums (-ffast-math) cannot look through it.
 template <class T>
-COLLIDE_HD_INLINE T settled(T x) {
+COLLIDE_HD_INLINE T opaque_value(T x) {
 #if !defined(__CUDA_ARCH__) && (defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__))
   T volatile const kept = x;
   return kept;
@@ -129,14 +129,14 @@ COLLIDE_HD_INLINE vec3<T> scaled(vec3<T> const& a, T s) {
 }
 
 /// 1 / x to within two units in the last place, for x between 2^-126 and 2^126.
-COLLIDE_HD_INLINE float quick_reciprocal(float x) {
+COLLIDE_HD_INLINE float approx_reciprocal(float x) {
 #if defined(__CUDA_ARCH__)
   return __fdividef(1.0f, x);
 #else
   return 1 / x;
 #endif
 }
-COLLIDE_HD_INLINE double quick_reciprocal(double x) { return 1 / x; }
+COLLIDE_HD_INLINE double approx_reciprocal(double x) { return 1 / x; }
 
 template <class T>
 COLLIDE_HD_INLINE T smaller(T a, T b) {
@@ -159,7 +159,7 @@ COLLIDE_HD_INLINE vec3<T> larger(vec3<T> const& a, vec3<T> const& b) {
 }
 
 template <class T>
-COLLIDE_HD_INLINE T largest(vec3<T> const& a) {
+COLLIDE_HD_INLINE T max_component(vec3<T> const& a) {
   return larger(larger(a.x(), a.y()), a.z());
 }
 

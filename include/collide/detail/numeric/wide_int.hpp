@@ -8,11 +8,11 @@
 
 namespace collide::detail {
 
-__extension__ typedef unsigned __int128 two_words;
+__extension__ typedef unsigned __int128 uint128;
 
 /// An integer of `N` words, in two's complement: sums are modulo 2^(64 N), and products have room for all bits.
 template <int N>
-struct wide {
+struct int_words {
   std::uint64_t word[N];  ///< the lowest first
 
   COLLIDE_HD bool negative() const { return word[N - 1] >> 63 != 0; }
@@ -27,7 +27,7 @@ struct wide {
 COLLIDE_HD_RARE void add_words(std::uint64_t* x, std::uint64_t const* y, int n) {
   std::uint64_t carry = 0;
   for (int i = 0; i < n; ++i) {
-    two_words const s = two_words{x[i]} + y[i] + carry;
+    uint128 const s = uint128{x[i]} + y[i] + carry;
     x[i] = static_cast<std::uint64_t>(s);
     carry = static_cast<std::uint64_t>(s >> 64);
   }
@@ -38,7 +38,7 @@ COLLIDE_HD_RARE void subtract_words(std::uint64_t* x, std::uint64_t const* y, in
   std::uint64_t const mask = wanted ? ~std::uint64_t{0} : 0;
   std::uint64_t borrow = 0;
   for (int i = 0; i < n; ++i) {
-    two_words const d = two_words{x[i]} - (y[i] & mask) - borrow;
+    uint128 const d = uint128{x[i]} - (y[i] & mask) - borrow;
     x[i] = static_cast<std::uint64_t>(d);
     borrow = static_cast<std::uint64_t>(d >> 127);
   }
@@ -51,7 +51,7 @@ COLLIDE_HD_RARE void multiply_words(std::uint64_t* product, std::uint64_t const*
   for (int i = 0; i < n; ++i) {
     std::uint64_t carry = 0;
     for (int k = 0; k < m; ++k) {
-      two_words const p = two_words{x[i]} * y[k] + product[i + k] + carry;
+      uint128 const p = uint128{x[i]} * y[k] + product[i + k] + carry;
       product[i + k] = static_cast<std::uint64_t>(p);
       carry = static_cast<std::uint64_t>(p >> 64);
     }
@@ -60,20 +60,20 @@ COLLIDE_HD_RARE void multiply_words(std::uint64_t* product, std::uint64_t const*
 }
 
 template <int N>
-COLLIDE_HD_RARE wide<N> operator+(wide<N> x, wide<N> const& y) {
+COLLIDE_HD_RARE int_words<N> operator+(int_words<N> x, int_words<N> const& y) {
   add_words(x.word, y.word, N);
   return x;
 }
 
 template <int N>
-COLLIDE_HD_RARE wide<N> operator-(wide<N> x, wide<N> const& y) {
+COLLIDE_HD_RARE int_words<N> operator-(int_words<N> x, int_words<N> const& y) {
   subtract_words(x.word, y.word, N, true);
   return x;
 }
 
 template <int N, int M>
-COLLIDE_HD_RARE wide<N + M> operator*(wide<N> const& x, wide<M> const& y) {
-  wide<N + M> product;
+COLLIDE_HD_RARE int_words<N + M> operator*(int_words<N> const& x, int_words<M> const& y) {
+  int_words<N + M> product;
   multiply_words(product.word, x.word, N, y.word, M);
   // a negative x has been taken for x + 2^(64 N), a negative y for y + 2^(64 M)
   subtract_words(product.word + N, y.word, M, x.negative());

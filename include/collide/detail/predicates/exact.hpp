@@ -22,7 +22,7 @@ namespace collide::detail {
 
 /// Where the numbers of a triangle and a sphere stand in their table. Vectors have three numbers; there are three
 /// corners and three edges.
-struct exact_place {
+struct exact_slot {
   enum : int {
     corner = 0,  ///< relative to the centre
     edge = 9,    ///< from each corner to the next
@@ -60,7 +60,7 @@ COLLIDE_HD_NOINLINE inline exact_numbers exact_numbers_of(exact_numbers table, t
 }
 
 /// How a point lies to a sphere: the distance from the centre, and how deep that is inside.
-struct gap {
+struct separation {
   double distance, depth;
 };
 
@@ -69,17 +69,17 @@ struct gap {
 class exact_triangle {
  public:
   /// `corners` is the place of the first one.
-  COLLIDE_HD explicit exact_triangle(exact_numbers const& numbers, int corners = exact_place::corner)
+  COLLIDE_HD explicit exact_triangle(exact_numbers const& numbers, int corners = exact_slot::corner)
       : numbers_(numbers), corners_(corners) {}
 
-  static COLLIDE_HD feature kind_of(int foot) {
+  static COLLIDE_HD feature feature_of(int foot) {
     return foot < 3 ? feature::vertex : (foot < 6 ? feature::edge : feature::face);
   }
   /// Which corner or edge it is.
-  static COLLIDE_HD int index_of(int foot) { return foot % 3; }
+  static COLLIDE_HD int feature_index_of(int foot) { return foot % 3; }
 
   /// True if the sphere touches the triangle.
-  COLLIDE_HD bool in_reach() const {
+  COLLIDE_HD bool intersects() const {
     for (int foot = 0; foot < feet; ++foot) {
       if (exists(foot) && excess(foot, false).value >= 0) return true;
     }
@@ -88,12 +88,12 @@ class exact_triangle {
 
   /// The foot that is the closest point, and how it lies to the sphere. `l` is the same triangle in doubles,
   /// `normalised`, and `around` the square of its distance.
-  COLLIDE_HD int nearest(local_triangle<double> const& l, double around, gap& to_nearest) const {
+  COLLIDE_HD int nearest(local_triangle<double> const& l, double around, separation& to_nearest) const {
     int best = 0, found = 0;
-    for (unsigned wanted = near_feet(l, around); found == 0; wanted = all_feet) {
+    for (unsigned wanted = candidate_feet(l, around); found == 0; wanted = all_feet) {
       for (int foot = 0; foot < feet; ++foot) {
         if ((wanted >> foot & 1) == 0 || !exists(foot)) continue;
-        gap const there = measured(foot);
+        separation const there = measured(foot);
         // each of the two has all its digits where it is the smaller one
         bool const nearer =
             there.depth > there.distance ? there.distance < to_nearest.distance : there.depth > to_nearest.depth;
@@ -107,7 +107,7 @@ class exact_triangle {
   }
 
   /// From the foot to the centre, but for the length; 0 if the centre is there.
-  COLLIDE_HD vec3<double> towards_centre(int foot) const {
+  COLLIDE_HD vec3<double> direction_to_centre(int foot) const {
     if (foot != face) return direction(foot);
     double const height = sign_of_height();
     return normal() * -height;
@@ -124,7 +124,7 @@ class exact_triangle {
   int corners_;
 
   COLLIDE_HD int corner(int i) const { return corners_ + 3 * i; }
-  COLLIDE_HD int edge(int i) const { return exact_place::edge + 3 * i; }
+  COLLIDE_HD int edge(int i) const { return exact_slot::edge + 3 * i; }
 
   // Each formula has its list of products in a function of its own, out of line, so that there is memory for one.
 
@@ -140,9 +140,9 @@ class exact_triangle {
 
   /// The sign of a corner's place along an edge.
   COLLIDE_HD_NOINLINE int along(int i, int from, int weight) const {
-    exact_products place;
-    add_dot(place, weight, corner(from), edge(i));
-    return exact_sum::sign_of(numbers_, place);
+    exact_products distance_along;
+    add_dot(distance_along, weight, corner(from), edge(i));
+    return exact_sum::sign_of(numbers_, distance_along);
   }
 
   /// On which side of the edge the centre projects: above 0 if on that of the face.
@@ -161,7 +161,7 @@ class exact_triangle {
 
   /// The squared length of the edge or of the normal, or 1.
   COLLIDE_HD void add_length(exact_products& sum, int foot) const {
-    int const e = edge(index_of(foot));
+    int const e = edge(feature_index_of(foot));
     if (foot < 3) {
       sum.add(1);
     } else if (foot < face) {
@@ -173,7 +173,7 @@ class exact_triangle {
 
   /// The squared distance, multiplied by `add_length`.
   COLLIDE_HD void add_distance_squared(exact_products& sum, int weight, int foot) const {
-    int const v = corner(index_of(foot)), e = edge(index_of(foot));
+    int const v = corner(feature_index_of(foot)), e = edge(feature_index_of(foot));
     if (foot < 3) {
       add_dot(sum, weight, v, v);
     } else if (foot < face) {
@@ -183,36 +183,36 @@ class exact_triangle {
     }
   }
 
-  COLLIDE_HD_NOINLINE wide_number length(int foot) const {
+  COLLIDE_HD_NOINLINE scaled_double length(int foot) const {
     exact_products sum;
     add_length(sum, foot);
     return exact_sum::of(numbers_, sum);
   }
 
-  COLLIDE_HD_NOINLINE wide_number distance_squared(int foot) const {
+  COLLIDE_HD_NOINLINE scaled_double distance_squared(int foot) const {
     exact_products sum;
     add_distance_squared(sum, 1, foot);
     return exact_sum::of(numbers_, sum);
   }
 
   /// What the square of the radius is above that of the distance, multiplied by `length`; or only a number of its sign.
-  COLLIDE_HD_NOINLINE wide_number excess(int foot, bool with_value) const {
+  COLLIDE_HD_NOINLINE scaled_double excess(int foot, bool with_value) const {
     exact_products sum;
     add_length(sum, foot);
-    sum.multiply_by(exact_place::radius);
-    sum.multiply_by(exact_place::radius);
+    sum.multiply_by(exact_slot::radius);
+    sum.multiply_by(exact_slot::radius);
     add_distance_squared(sum, -1, foot);
     return exact_sum::of(numbers_, sum, with_value);
   }
 
   /// The errors are a few units in the last place, however small the numbers are.
-  COLLIDE_HD gap measured(int foot) const {
-    wide_number const by = length(foot), d = root_of_distance_squared(foot, by);
+  COLLIDE_HD separation measured(int foot) const {
+    scaled_double const by = length(foot), d = root_of_distance_squared(foot, by);
     double const distance = times_power(d.value, d.exponent);
-    wide_number const above = excess(foot, true);
+    scaled_double const above = excess(foot, true);
     if (above.value == 0) return {distance, 0};
     // R - d = (R^2 - d^2) / (R + d), where R and d are divided by a power of two as large as the larger one
-    parts_view const radius = numbers_[exact_place::radius];
+    components_view const radius = numbers_[exact_slot::radius];
     dyadic const r = radius.count == 0 ? dyadic{0, 0} : radius[0];
     int const top = r.mantissa == 0 ? d.exponent : larger(d.exponent, r.exponent + r.length());
     double const sum =
@@ -224,30 +224,30 @@ class exact_triangle {
 
   /// The distance, if `by` is the denominator: a value between 1/2 and 2, or 0, times a power of two; that of 0 is
   /// below all others.
-  COLLIDE_HD wide_number root_of_distance_squared(int foot, wide_number const& by) const {
-    wide_number const square = distance_squared(foot);
+  COLLIDE_HD scaled_double root_of_distance_squared(int foot, scaled_double const& by) const {
+    scaled_double const square = distance_squared(foot);
     if (square.value == 0) return {0, -4000};
     int const exponent = square.exponent - by.exponent, half = exponent / 2;
-    return {root(times_power(div(square.value, by.value), exponent - 2 * half)), half};
+    return {sqrt_rn(times_power(div(square.value, by.value), exponent - 2 * half)), half};
   }
 
   /// The feet that are not certainly farther than the root of `around`, as far as doubles can tell.
-  static COLLIDE_HD unsigned near_feet(local_triangle<double> const& l, double around) {
-    double const reach = root(around) + 0x1p-40, limit = mul(mul(reach, reach), 1 + 0x1p-40);  // l is below 4
+  static COLLIDE_HD unsigned candidate_feet(local_triangle<double> const& l, double around) {
+    double const reach = sqrt_rn(around) + 0x1p-40, limit = mul(mul(reach, reach), 1 + 0x1p-40);  // l is below 4
     vec3<double> const v[3] = {l.a, l.b, l.c};
-    unsigned near = 1u << face;
+    unsigned candidates = 1u << face;
     for (int i = 0; i < 3; ++i) {
       vec3<double> const e = v[(i + 1) % 3] - v[i], c = detail::cross(v[i], e);
       double const ee = dot(e, e);
-      if (dot(v[i], v[i]) <= limit) near |= 1u << i;
-      if (dot(c, c) <= mul(limit, ee)) near |= 8u << i;
+      if (dot(v[i], v[i]) <= limit) candidates |= 1u << i;
+      if (dot(c, c) <= mul(limit, ee)) candidates |= 8u << i;
     }
-    return near;
+    return candidates;
   }
 
   /// From a corner or an edge to the centre, or the normal of the face; but for the length.
   COLLIDE_HD vec3<double> direction(int foot) const {
-    wide_number w[3];
+    scaled_double w[3];
     int top = -(1 << 30);
     for (int k = 0; k < 3; ++k) {
       w[k] = component_of_direction(foot, k);
@@ -260,9 +260,9 @@ class exact_triangle {
     return d;
   }
 
-  COLLIDE_HD_NOINLINE wide_number component_of_direction(int foot, int k) const {
+  COLLIDE_HD_NOINLINE scaled_double component_of_direction(int foot, int k) const {
     exact_products sum;
-    int const v = corner(index_of(foot)), e = edge(index_of(foot));
+    int const v = corner(feature_index_of(foot)), e = edge(feature_index_of(foot));
     if (foot < 3) {
       sum.add(-1, v + k);
     } else if (foot < face) {
@@ -285,9 +285,9 @@ class exact_triangle {
 };
 
 /// True if the sphere touches the triangle. Finite coordinates and a finite radius, not below 0.
-COLLIDE_HD_NOINLINE inline bool in_reach_exactly(triangle<double> const& t, sphere<double> const& s) {
-  exact_place::memory memory;
-  return exact_triangle(exact_numbers_of(memory.table(), t, {s, {0, 0, 0}}, {0, 0})).in_reach();
+COLLIDE_HD_NOINLINE inline bool intersects_in_integers(triangle<double> const& t, sphere<double> const& s) {
+  exact_slot::memory memory;
+  return exact_triangle(exact_numbers_of(memory.table(), t, {s, {0, 0, 0}}, {0, 0})).intersects();
 }
 
 }  // namespace collide::detail

@@ -23,10 +23,10 @@
 
 namespace collide::detail {
 
-/// Where the further numbers of a sweep stand in the table. Those of `exact_place` are as seen from the end of the way.
-struct exact_sweep_place {
+/// Where the further numbers of a sweep stand in the table. Those of `exact_slot` are as seen from the end of the way.
+struct exact_sweep_slot {
   enum : int {
-    path = exact_place::end,  ///< from the beginning of the way to its end
+    path = exact_slot::end,   ///< from the beginning of the way to its end
     first_corner = path + 3,  ///< relative to the beginning
     end = first_corner + 9
   };
@@ -51,27 +51,27 @@ class exact_sweep {
   COLLIDE_HD explicit exact_sweep(exact_numbers const& numbers) : numbers_(numbers) {}
 
   /// True if the sphere touches the triangle until the time that the table was made for.
-  COLLIDE_HD bool in_reach() const {
+  COLLIDE_HD bool intersects() const {
     int const seen_from[2] = {start(0), end(0)};
     for (int const corners : seen_from) {
-      if (exact_triangle(numbers_, corners).in_reach()) return true;
+      if (exact_triangle(numbers_, corners).intersects()) return true;
     }
-    if (through_face()) return true;
+    if (crosses_face()) return true;
     for (int i = 0; i < 3; ++i) {
-      if ((beside_corner(i) && corner_within(i)) || (across_edge(i) && edge_within(i))) return true;
+      if ((passes_vertex(i) && vertex_within_radius(i)) || (passes_edge(i) && edge_within_radius(i))) return true;
     }
     return false;
   }
 
  private:
-  static constexpr int path = exact_sweep_place::path;
+  static constexpr int path = exact_sweep_slot::path;
 
   exact_numbers numbers_;
 
   /// A corner as seen from the beginning, and from the end.
-  static COLLIDE_HD int start(int i) { return exact_sweep_place::first_corner + 3 * i; }
-  static COLLIDE_HD int end(int i) { return exact_place::corner + 3 * i; }
-  static COLLIDE_HD int edge(int i) { return exact_place::edge + 3 * i; }
+  static COLLIDE_HD int start(int i) { return exact_sweep_slot::first_corner + 3 * i; }
+  static COLLIDE_HD int end(int i) { return exact_slot::corner + 3 * i; }
+  static COLLIDE_HD int edge(int i) { return exact_slot::edge + 3 * i; }
 
   COLLIDE_HD int sign(exact_products const& sum) const { return exact_sum::sign_of(numbers_, sum); }
 
@@ -83,17 +83,17 @@ class exact_sweep {
     return sign(sum);
   }
 
-  COLLIDE_HD bool through_face() const {
+  COLLIDE_HD bool crosses_face() const {
     int const before = sign_of_determinant(start(0), edge(0), edge(1));
     if (before == 0 || sign_of_determinant(end(0), edge(0), edge(1)) != -before) return false;
-    int const side = passes(0);
-    return side != 0 && passes(1) == side && passes(2) == side;
+    int const side = edge_side(0);
+    return side != 0 && edge_side(1) == side && edge_side(2) == side;
   }
 
   /// On which side the line of the way passes the edge.
-  COLLIDE_HD int passes(int i) const { return sign_of_determinant(path, start(i), edge(i)); }
+  COLLIDE_HD int edge_side(int i) const { return sign_of_determinant(path, start(i), edge(i)); }
 
-  COLLIDE_HD bool beside_corner(int i) const { return along_path(start(i)) > 0 && along_path(end(i)) < 0; }
+  COLLIDE_HD bool passes_vertex(int i) const { return along_path(start(i)) > 0 && along_path(end(i)) < 0; }
 
   COLLIDE_HD_NOINLINE int along_path(int v) const {
     exact_products sum;
@@ -101,7 +101,7 @@ class exact_sweep {
     return sign(sum);
   }
 
-  COLLIDE_HD_NOINLINE bool corner_within(int i) const {
+  COLLIDE_HD_NOINLINE bool vertex_within_radius(int i) const {
     exact_products excess;
     add_dot(excess, 1, path, path);
     times_square_of_radius(excess);
@@ -109,7 +109,7 @@ class exact_sweep {
     return sign(excess) >= 0;
   }
 
-  COLLIDE_HD bool across_edge(int i) const {
+  COLLIDE_HD bool passes_edge(int i) const {
     int const e = edge(i);
     return side(start(i), e, e) > 0 && side(end(i), e, e) < 0 && side(start(i), path, e) > 0 &&
            side(start((i + 1) % 3), path, e) < 0;
@@ -122,7 +122,7 @@ class exact_sweep {
     return sign(sum);
   }
 
-  COLLIDE_HD_NOINLINE bool edge_within(int i) const {
+  COLLIDE_HD_NOINLINE bool edge_within_radius(int i) const {
     exact_products excess;
     add_cross_squared(excess, 1, path, edge(i));
     times_square_of_radius(excess);
@@ -131,17 +131,17 @@ class exact_sweep {
   }
 
   static COLLIDE_HD void times_square_of_radius(exact_products& sum) {
-    sum.multiply_by(exact_place::radius);
-    sum.multiply_by(exact_place::radius);
+    sum.multiply_by(exact_slot::radius);
+    sum.multiply_by(exact_slot::radius);
   }
 };
 
 /// True if the sphere touches the triangle until a time of at most 53 bits. Finite coordinates and a finite
 /// radius, not below 0.
-COLLIDE_HD_NOINLINE inline bool in_reach_exactly(triangle<double> const& t, moving_sphere<double> const& s,
-                                                 dyadic time) {
-  exact_sweep_place::memory memory;
-  return exact_sweep(exact_sweep_of(memory.table(), t, s, time)).in_reach();
+COLLIDE_HD_NOINLINE inline bool intersects_in_integers(triangle<double> const& t, moving_sphere<double> const& s,
+                                                       dyadic time) {
+  exact_sweep_slot::memory memory;
+  return exact_sweep(exact_sweep_of(memory.table(), t, s, time)).intersects();
 }
 
 }  // namespace collide::detail

@@ -30,7 +30,7 @@ inline std::uint64_t bits_of_flags(unsigned char const* flags) {
 
 /// Spheres that move as spheres at rest, all of one radius, that contain their ways: as far as placing them goes.
 template <class S>
-struct balls_around {
+struct swept_bounding_spheres {
   moving_sphere_view<S> spheres;
   S reach;
 
@@ -45,9 +45,9 @@ void load(sphere_batch<S, Items>& batch, sphere_view<S> const& spheres, std::siz
   batch.load(spheres, first);
 }
 
-/// The same. A centre that is not finite is in no cell.
+/// The bounding spheres of consecutive moving spheres. A centre that is not finite is in no cell.
 template <class S, int Items>
-void load(sphere_batch<S, Items>& batch, balls_around<S> const& balls, std::size_t first) {
+void load(sphere_batch<S, Items>& batch, swept_bounding_spheres<S> const& balls, std::size_t first) {
   moving_batch<S, Items> ways;
   ways.load(balls.spheres, first);
   for (int k = 0; k < Items; ++k) {
@@ -60,7 +60,7 @@ void load(sphere_batch<S, Items>& batch, balls_around<S> const& balls, std::size
 
 /// A sphere in a cell with triangles.
 template <class S>
-struct placed_sphere {
+struct binned_sphere {
   sphere<S> ball;  ///< a copy: in the order of the cells the caller's memory would be read all over the place
   id number;
   std::uint32_t cell;
@@ -78,22 +78,22 @@ struct place_spheres {
   int grid_count;
   std::uint32_t const* occupied;
   std::uint32_t everywhere;  ///< number of the cell behind the last
-  placed_sphere<S>* to;
+  binned_sphere<S>* to;
   std::uint64_t* total;  ///< counts also those that find no room
   std::uint64_t capacity;
 
   template <class Block>
   struct scratch {
     static constexpr std::size_t room = 16 * Block::items;
-    placed_sphere<S> found[room];
+    binned_sphere<S> found[room];
     std::size_t count;
   };
 
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
-    static_assert(Block::lanes == 1 && Block::items == 64,
+    static_assert(Block::num_threads == 1 && Block::items == 64,
                   "collide: spheres are sorted by blocks of one lane with 64 items");
-    vectorised([&] { place(block, s); });
+    multiversioned([&] { place(block, s); });
   }
 
  private:
@@ -116,7 +116,7 @@ struct place_spheres {
         if (!one_radius) return mask_of<n>([&](int k) { return holds(batch.radius[k]); });
         return holds(spheres.common_radius()) ? first_bits(spheres.size() - first) : 0;
       };
-      std::uint64_t open = of_radii([](S r) { return valid_radius(r); });
+      std::uint64_t open = of_radii([](S r) { return is_valid_radius(r); });
       for (int g = grid_count - 1; g >= 0 && open != 0; --g) {  // by rising reach: a sphere ends up in the tightest
         grid<S> const& box = grids[g];
         std::uint64_t const served = open & of_radii([&](S r) { return box.serves(r); });
@@ -163,19 +163,19 @@ struct place_spheres {
 
 /// Kernel body of `for_each` over placed spheres: counts those of each cell.
 template <class S>
-struct count_placed {
-  placed_sphere<S> const* from;
+struct count_bins {
+  binned_sphere<S> const* from;
   std::uint32_t* counts;
   void operator()(std::size_t i) const { fetch_add(counts + from[i].cell, 1u); }
 };
 
 /// Spheres in the order of the cells, number by number in arrays of their own.
 template <class S>
-struct sphere_columns {
-  static constexpr std::size_t lanes = 8;  ///< how many are compared with a box at a time, also beyond the end
+struct sphere_soa {
+  static constexpr std::size_t simd_width = 8;  ///< how many are compared with a box at a time, also beyond the end
 
   S *x, *y, *z, *radius;
-  S* reach;  ///< as `triangle_box` has it
+  S* reach;  ///< as `triangle_aabb` has it
   id* number;
   moving_sphere<S>* moving = nullptr;  ///< null if they rest; else the others are of the balls around their ways
 
@@ -186,19 +186,21 @@ struct sphere_columns {
     y[i] = s.centre.y();
     z[i] = s.centre.z();
     radius[i] = s.radius;
-    reach[i] = triangle_box<S>::reach(s.radius);
+    reach[i] = triangle_aabb<S>::padded_radius(s.radius);
     number[i] = n;
   }
 
   /// Bit k is whether sphere first + k can reach what is in the box, for k < lanes. Without branches, for the
   /// processor's vector unit.
-  std::uint32_t reaching(triangle_box<S> const& b, std::uint32_t first) const {
-    bits_of<S> constexpr bit[lanes] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
-    bits_of<S> mask = 0;
-    for (std::size_t k = 0; k < lanes; ++k) {
+  std::uint32_t reaching(triangle_aabb<S> const& b, std::uint32_t first) const {
+    uint_for<S> constexpr bit[simd_width] = {1,  2,  4,  8,
+                                             16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
+    uint_for<S> mask = 0;
+    for (std::size_t k = 0; k < simd_width; ++k) {
       S const px = x[first + k], py = y[first + k], pz = z[first + k];
-      S const gx = b.gap(0, px), gy = b.gap(1, py), gz = b.gap(2, pz), most = reach[first + k] + b.slack;
-      mask |= gx * gx + (gy * gy + gz * gz) <= most * most ? bit[k] : bits_of<S>(0);
+      S const gx = b.axis_distance(0, px), gy = b.axis_distance(1, py), gz = b.axis_distance(2, pz),
+              most = reach[first + k] + b.padding;
+      mask |= gx * gx + (gy * gy + gz * gz) <= most * most ? bit[k] : uint_for<S>(0);
     }
     return static_cast<std::uint32_t>(mask);
   }
@@ -206,8 +208,8 @@ struct sphere_columns {
 
 /// Kernel body of `for_each` over placed spheres: gives each its place in the order of the cells.
 template <class S>
-struct number_placed {
-  placed_sphere<S> const* from;
+struct rank_spheres {
+  binned_sphere<S> const* from;
   std::uint32_t* order;
   std::uint32_t* begins;
   void operator()(std::size_t i) const { order[fetch_add(begins + from[i].cell, 1u)] = static_cast<std::uint32_t>(i); }
@@ -215,17 +217,17 @@ struct number_placed {
 
 /// Kernel body of `for_each` over places: brings the spheres there. Threads write next to themselves only.
 template <class S, class Spheres>
-struct sort_placed {
-  placed_sphere<S> const* from;
+struct scatter_spheres {
+  binned_sphere<S> const* from;
   std::uint32_t const* order;
-  sphere_columns<S> to;
+  sphere_soa<S> to;
   Spheres spheres;
   void operator()(std::size_t i) const {
-    placed_sphere<S> const& p = from[order[i]];
-    if constexpr (std::is_same<Spheres, balls_around<S>>::value) {
+    binned_sphere<S> const& p = from[order[i]];
+    if constexpr (std::is_same<Spheres, swept_bounding_spheres<S>>::value) {
       moving_sphere<S> const s = spheres.spheres[p.number];
       to.moving[i] = s;
-      to.set(i, enclosing(s), p.number);
+      to.set(i, swept_bounding_sphere(s), p.number);
     } else {
       to.set(i, p.ball, p.number);
     }

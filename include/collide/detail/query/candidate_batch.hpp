@@ -20,10 +20,10 @@ struct candidate_batch {
   S corners[9][room];
   S centre[3][room];
   S radius[room];
-  S radius_midway[room];                 ///< of spheres that move
-  moving_sphere<S> const* moving[room];  ///< the same
+  S midpoint_radius[room];               ///< of spheres that move
+  moving_sphere<S> const* moving[room];  ///< the sphere itself, if it moves
   std::int32_t verdicts[room];
-  std::uint8_t open[room];
+  std::uint8_t uncertain[room];
 
   void add(pair p, triangle<S> const& t, sphere<S> const& s) {
     int const k = size++;
@@ -39,9 +39,9 @@ struct candidate_batch {
 
   /// The sphere must stay where it is until the pair is decided.
   void add(pair p, triangle<S> const& t, moving_sphere<S> const& s) {
-    radius_midway[size] = midway(s).radius;
+    midpoint_radius[size] = midpoint_sphere(s).radius;
     moving[size] = &s;
-    add(p, t, enclosing(s));
+    add(p, t, swept_bounding_sphere(s));
   }
 
   triangle<S> triangle_of(int k) const {
@@ -52,12 +52,12 @@ struct candidate_batch {
 
   sphere<S> sphere_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius[k]}; }
 
-  sphere<S> midway_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, radius_midway[k]}; }
+  sphere<S> midpoint_sphere_of(int k) const { return {{centre[0][k], centre[1][k], centre[2][k]}, midpoint_radius[k]}; }
 
   /// Sets the verdicts to what a quick test without branches says.
   template <class Test>
-  void attempt(Test const& test) {
-    vectorised([&] {
+  void filter_batch(Test const& test) {
+    multiversioned([&] {
       for (int k = 0; k < size; ++k) verdicts[k] = static_cast<std::int32_t>(test(k));
     });
   }
@@ -65,20 +65,21 @@ struct candidate_batch {
   /// Takes the hits to the pipeline and empties the batch.
   template <class Pipeline, class Block>
   void decide(Pipeline const& pipeline, Block& block, pipeline_storage<Block>& hits) {
-    using stages = in_stages<typename Pipeline::narrow_phase>;
-    constexpr bool rest = at_rest<typename Pipeline::narrow_phase, S>;
+    using stages = filtered_predicate<typename Pipeline::narrow_phase>;
+    constexpr bool rest = is_discrete<typename Pipeline::narrow_phase, S>;
     if constexpr (rest) {
-      attempt([&](int k) { return stages::attempt_straight(triangle_of(k), sphere_of(k)); });
+      filter_batch([&](int k) { return stages::filter_branchless(triangle_of(k), sphere_of(k)); });
     } else {
-      attempt([&](int k) { return stages::attempt_straight(triangle_of(k), sphere_of(k), midway_of(k)); });
+      filter_batch(
+          [&](int k) { return stages::filter_branchless(triangle_of(k), sphere_of(k), midpoint_sphere_of(k)); });
     }
     int n = 0;  // no branch per pair: it would often be mispredicted
     for (int k = 0; k < size; ++k) {
-      open[n] = static_cast<std::uint8_t>(k);
+      uncertain[n] = static_cast<std::uint8_t>(k);
       n += verdicts[k] != static_cast<std::int32_t>(verdict::miss);
     }
     for (int i = 0; i < n; ++i) {
-      int const k = open[i];
+      int const k = uncertain[i];
       if (verdicts[k] == static_cast<std::int32_t>(verdict::hit)) {
         pipeline.push_hit(block, hits, ids[k]);
       } else {
@@ -97,6 +98,6 @@ struct candidate_batch {
 /// True if candidates are decided several at a time: with a narrow phase that has a quick test without branches, and
 /// coordinates of the type that it works in.
 template <class NarrowPhase, class S>
-inline constexpr bool in_batches = in_stages<NarrowPhase>::value&& std::is_same<S, float>::value;
+inline constexpr bool in_batches = filtered_predicate<NarrowPhase>::value&& std::is_same<S, float>::value;
 
 }  // namespace collide::detail

@@ -18,16 +18,16 @@ namespace collide::detail {
 template <class Handle, class = void>
 struct finishes : std::false_type {};
 template <class Handle>
-struct finishes<Handle, std::void_t<decltype(std::declval<Handle const&>().finish())>> : std::true_type {};
+struct finishes<Handle, std::void_t<decltype(std::declval<Handle const&>().end_pass())>> : std::true_type {};
 
 template <class Handle>
 COLLIDE_HD_INLINE void finish_pass([[maybe_unused]] Handle const& handle) {
-  if constexpr (finishes<Handle>::value) handle.finish();
+  if constexpr (finishes<Handle>::value) handle.end_pass();
 }
 
 /// False if the handle has no use for `finish` in this pass, though its type has one.
 template <class Handle>
-bool wants_finish(Handle const&) {
+bool has_end_pass(Handle const&) {
   return finishes<Handle>::value;
 }
 
@@ -35,7 +35,7 @@ bool wants_finish(Handle const&) {
 template <class Handle>
 struct finish_only {
   Handle handle;
-  COLLIDE_HD void operator()(std::size_t) const { handle.finish(); }
+  COLLIDE_HD void operator()(std::size_t) const { handle.end_pass(); }
 };
 
 /// Pairs that the narrow phase's filter left open, for a kernel of their own; see deferred_pairs.hpp.
@@ -61,7 +61,7 @@ struct deferring {
   Handle handle;
   deferred_pairs deferred;
 
-  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const { return handle.reserve(n); }
+  COLLIDE_HD_INLINE std::uint64_t allocate(std::uint64_t n) const { return handle.allocate(n); }
   template <class Hit>
   COLLIDE_HD_INLINE void store(std::uint64_t slot, Hit const& hit) const {
     handle.store(slot, hit);
@@ -80,8 +80,8 @@ inline constexpr bool defers_pairs<deferring<Handle>> = true;
 template <class Block, int Ahead = 1>
 struct pipeline_storage {
   static constexpr std::uint32_t capacity = Block::pending;
-  static constexpr bool is_cooperative = Block::lanes > 1;
-  static constexpr std::uint32_t candidate_capacity = is_cooperative ? (Ahead + 1) * Block::lanes : 1;
+  static constexpr bool is_cooperative = Block::num_threads > 1;
+  static constexpr std::uint32_t candidate_capacity = is_cooperative ? (Ahead + 1) * Block::num_threads : 1;
 
   pair candidates[candidate_capacity];
   std::uint32_t candidate_count;
@@ -97,14 +97,14 @@ struct candidate_pipeline {
   using narrow_phase = NarrowPhase;
 
   mesh_view<S> mesh;
-  spheres_of<NarrowPhase, S> spheres;
+  sphere_view_for<NarrowPhase, S> spheres;
   Output output;
-  triangle_box<S> const* boxes = nullptr;  ///< of candidates that may be out of reach; null if there are no such
+  triangle_aabb<S> const* boxes = nullptr;  ///< of candidates that may be out of reach; null if there are no such
 
   /// To be called first, by every lane; what follows may be done when the block has waited.
   template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void reset(pipeline_storage<Block, Ahead>& b, int lane) const {
-    if (lane == 0) b.candidate_count = b.hit_count = 0;
+  COLLIDE_HD_INLINE void reset(pipeline_storage<Block, Ahead>& b, int thread_rank) const {
+    if (thread_rank == 0) b.candidate_count = b.hit_count = 0;
   }
 
   /// Takes a candidate. Called by any lane; where lanes work together, at most `Ahead` times between two calls of
@@ -132,8 +132,8 @@ struct candidate_pipeline {
   template <class Block, int Ahead>
   COLLIDE_HD_INLINE void drain_if_full(Block& block, pipeline_storage<Block, Ahead>& b) const {
     if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
-      std::uint32_t const n = block.shared(b.candidate_count);
-      if (n + Ahead * Block::lanes > pipeline_storage<Block, Ahead>::candidate_capacity) process(block, b, n);
+      std::uint32_t const n = block.broadcast(b.candidate_count);
+      if (n + Ahead * Block::num_threads > pipeline_storage<Block, Ahead>::candidate_capacity) process(block, b, n);
     } else {
       if (b.hit_count == pipeline_storage<Block, Ahead>::capacity) write_hits(block, b, b.hit_count);
     }
@@ -143,10 +143,10 @@ struct candidate_pipeline {
   template <class Block, int Ahead>
   COLLIDE_HD_INLINE void drain(Block& block, pipeline_storage<Block, Ahead>& b) const {
     if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
-      std::uint32_t const n = block.shared(b.candidate_count);
+      std::uint32_t const n = block.broadcast(b.candidate_count);
       if (n != 0) process(block, b, n);
     }
-    write_hits(block, b, block.shared(b.hit_count));
+    write_hits(block, b, block.broadcast(b.hit_count));
   }
 
   /// Takes a hit of a lane; see `push_hits`.
@@ -157,7 +157,7 @@ struct candidate_pipeline {
     } else if (b.hit_count != pipeline_storage<Block, Ahead>::capacity) {
       b.hits[b.hit_count++] = p;
     } else {
-      write(output.reserve(1), p);
+      write(output.allocate(1), p);
     }
   }
 
@@ -167,11 +167,11 @@ struct candidate_pipeline {
   template <class Block, int Ahead, class Pairs, class Flags>
   COLLIDE_HD_INLINE void push_hits(Block& block, pipeline_storage<Block, Ahead>& b, Pairs& pairs,
                                    Flags& are_hits) const {
-    block.each([&](int lane) {
-      if (are_hits[lane]) push_hit(block, b, pairs[lane]);
+    block.for_each_thread([&](int thread_rank) {
+      if (are_hits[thread_rank]) push_hit(block, b, pairs[thread_rank]);
     });
-    std::uint32_t const hits = block.shared(b.hit_count);
-    if (hits + Block::lanes > pipeline_storage<Block, Ahead>::capacity) write_hits(block, b, hits);
+    std::uint32_t const hits = block.broadcast(b.hit_count);
+    if (hits + Block::num_threads > pipeline_storage<Block, Ahead>::capacity) write_hits(block, b, hits);
   }
 
  private:
@@ -185,9 +185,9 @@ struct candidate_pipeline {
   /// itself.
   template <class Block, class Sphere>
   COLLIDE_HD_INLINE bool decide(pair p, Sphere const& s) const {
-    if constexpr (Block::lanes == 1 || !in_stages<NarrowPhase>::value) {
-      sphere<S> const around = enclosing(s);
-      if (boxes != nullptr && !boxes[p.triangle].reached(around.centre, around.radius)) return false;
+    if constexpr (Block::num_threads == 1 || !filtered_predicate<NarrowPhase>::value) {
+      sphere<S> const around = swept_bounding_sphere(s);
+      if (boxes != nullptr && !boxes[p.triangle].overlaps(around.centre, around.radius)) return false;
     }
     return is_hit(p, mesh[p.triangle], s);
   }
@@ -197,7 +197,7 @@ struct candidate_pipeline {
   COLLIDE_HD_INLINE bool is_hit([[maybe_unused]] pair p, triangle<S> const& t, Sphere const& s) const {
     if constexpr (defers_pairs<Output>) {
       verdict const quick = filter<NarrowPhase>(t, s);
-      if (quick == verdict::unsure) output.deferred.add(p);
+      if (quick == verdict::uncertain) output.deferred.add(p);
       return quick == verdict::hit;
     } else {
       return NarrowPhase::intersects(t, s);
@@ -207,16 +207,16 @@ struct candidate_pipeline {
   /// Decides the `n` candidates that were gathered.
   template <class Block, int Ahead>
   COLLIDE_HD_INLINE void process(Block& block, pipeline_storage<Block, Ahead>& b, std::uint32_t n) const {
-    typename Block::template per_lane<pair> own;
-    typename Block::template per_lane<bool> hits;
-    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
-      block.each([&](int lane) {
-        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
-        if (lane == 0) b.candidate_count = 0;
-        hits[lane] = false;
+    typename Block::template thread_private<pair> own;
+    typename Block::template thread_private<bool> hits;
+    for (std::uint32_t base = 0; base < n; base += Block::num_threads) {
+      block.for_each_thread([&](int thread_rank) {
+        std::uint32_t const i = base + static_cast<std::uint32_t>(thread_rank);
+        if (thread_rank == 0) b.candidate_count = 0;
+        hits[thread_rank] = false;
         if (i >= n) return;
-        own[lane] = b.candidates[i];
-        hits[lane] = decide<Block>(own[lane], spheres[own[lane].sphere]);
+        own[thread_rank] = b.candidates[i];
+        hits[thread_rank] = decide<Block>(own[thread_rank], spheres[own[thread_rank].sphere]);
       });
       push_hits(block, b, own, hits);
     }
@@ -227,13 +227,14 @@ struct candidate_pipeline {
   COLLIDE_HD_INLINE void write_hits(Block& block, pipeline_storage<Block, Ahead>& b, std::uint32_t n) const {
     if constexpr (pipeline_storage<Block, Ahead>::capacity > 0) {
       if (n == 0) return;
-      block.each([&](int lane) {
-        if (lane != 0) return;
-        b.slot = output.reserve(n);
+      block.for_each_thread([&](int thread_rank) {
+        if (thread_rank != 0) return;
+        b.slot = output.allocate(n);
         b.hit_count = 0;
       });
-      block.each([&](int lane) {
-        for (std::uint32_t i = static_cast<std::uint32_t>(lane); i < n; i += Block::lanes) write(b.slot + i, b.hits[i]);
+      block.for_each_thread([&](int thread_rank) {
+        for (std::uint32_t i = static_cast<std::uint32_t>(thread_rank); i < n; i += Block::num_threads)
+          write(b.slot + i, b.hits[i]);
       });
     }
   }

@@ -17,11 +17,11 @@ namespace collide::detail {
 /// Gathers the spheres that may be near a triangle, and which grid serves each, in scratch memory.
 template <class S, class NarrowPhase>
 struct compact_spheres {
-  static constexpr bool still = at_rest<NarrowPhase, S>;
+  static constexpr bool still = is_discrete<NarrowPhase, S>;
 
-  spheres_of<NarrowPhase, S> const& spheres;
-  bucket_lookup<S> const& grids;
-  cell_marks<S> const& marks;
+  sphere_view_for<NarrowPhase, S> const& spheres;
+  bucket_ref<S> const& grids;
+  occupancy_view<S> const& marks;
   bool has_one_level;  ///< all spheres are in one grid of one level: `marks` knows of them
   std::size_t blocks;  ///< that share the spheres
 
@@ -32,9 +32,9 @@ struct compact_spheres {
 
   template <class Block>
   struct scratch {
-    static constexpr std::uint32_t room = 2 * Block::lanes * Block::items;
+    static constexpr std::uint32_t room = 2 * Block::num_threads * Block::items;
     id active[room];            ///< spheres near triangles
-    std::int8_t grid_of[room];  ///< and which grid serves them
+    std::int8_t grid_of[room];  ///< which grid serves each of them
     counts found;
   };
 
@@ -45,14 +45,14 @@ struct compact_spheres {
   /// Lanes take packs in turn, of which those of neighbours are next to each other: where a lane begins, and how far it
   /// goes on each time.
   template <class Block>
-  COLLIDE_HD_INLINE std::size_t first_of(Block const& block, int lane) const {
-    constexpr auto beside = static_cast<std::size_t>(Block::row_lanes);
-    auto const own = static_cast<std::size_t>(lane);
+  COLLIDE_HD_INLINE std::size_t first_of(Block const& block, int thread_rank) const {
+    constexpr auto beside = static_cast<std::size_t>(Block::warp_size);
+    auto const own = static_cast<std::size_t>(thread_rank);
     return ((own / beside * blocks + block.index()) * beside + own % beside) * Block::items;
   }
   template <class Block>
   COLLIDE_HD_INLINE std::size_t stride() const {
-    return blocks * Block::lanes * Block::items;
+    return blocks * Block::num_threads * Block::items;
   }
 
   /// Goes through a lane's spheres, from `next` on, as long as there is room.
@@ -66,25 +66,25 @@ struct compact_spheres {
       return append(block, s, grid_of, first);
     };
     if constexpr (still) {
-      S const* const quads = quads_of<Block>();
+      S const* const quads = aligned_centres<Block>();
       if (quads != nullptr) return compact_ahead(block, s, next, quads, one_pack);
     }
     each_pack<Block>(next, one_pack);
   }
 
  private:
-  static constexpr std::int8_t nowhere = bucket_lookup<S>::nowhere, everywhere = bucket_lookup<S>::everywhere;
+  static constexpr std::int8_t no_cell = bucket_ref<S>::no_cell, everywhere = bucket_ref<S>::everywhere;
 
   /// How many packs a lane goes through at most before all expand what they have found: where lanes work together, one
   /// that finds less than others would else go on alone.
   template <class Block>
-  static constexpr std::uint32_t most_packs = Block::lanes > 1 ? 12 : std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t most_packs = Block::num_threads > 1 ? 12 : std::numeric_limits<std::uint32_t>::max();
 
   /// Calls f(first) for a lane's packs, from `next` on, as long as there is room; f says how many spheres it has
   /// appended.
   template <class Block, class F>
   COLLIDE_HD_INLINE void each_pack(std::size_t& next, F const& f) const {
-    constexpr std::uint32_t n = Block::items, room = scratch<Block>::room / Block::lanes;
+    constexpr std::uint32_t n = Block::items, room = scratch<Block>::room / Block::num_threads;
     std::uint32_t appended = 0;
     for (std::uint32_t k = 0; k < most_packs<Block> && next < spheres.size() && appended + n <= room; ++k) {
       appended += f(next);
@@ -94,8 +94,8 @@ struct compact_spheres {
 
   /// The centres, if `marks` knows of all and whole packs can be loaded at once; else null.
   template <class Block>
-  COLLIDE_HD_INLINE S const* quads_of() const {
-    return has_one_level && spheres.size() >= Block::items ? pack<Block>::quads_of(spheres) : nullptr;
+  COLLIDE_HD_INLINE S const* aligned_centres() const {
+    return has_one_level && spheres.size() >= Block::items ? pack<Block>::aligned_centres(spheres) : nullptr;
   }
 
   /// While the cells of a pack are asked whether they have triangles, the next pack is on its way: or, where not all of
@@ -105,7 +105,7 @@ struct compact_spheres {
                                        OnePack const& one_pack) const {
     constexpr int n = Block::items;
     pack<Block> own;
-    auto const load_ahead = [&](std::size_t first) { own.load_quads(quads, first + n <= spheres.size() ? first : 0); };
+    auto const load_ahead = [&](std::size_t first) { own.load_xyz4(quads, first + n <= spheres.size() ? first : 0); };
     load_ahead(next);
     each_pack<Block>(next, [&](std::size_t first) {
       if (first + n > spheres.size()) return one_pack(first);
@@ -114,7 +114,7 @@ struct compact_spheres {
       bool near[n];
       marks.mark(places, near);
       std::int8_t grid_of[n];
-      for (int k = 0; k < n; ++k) grid_of[k] = near[k] ? std::int8_t{0} : nowhere;
+      for (int k = 0; k < n; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_cell;
       return append(block, s, grid_of, first);
     });
   }
@@ -124,7 +124,7 @@ struct compact_spheres {
   COLLIDE_HD_INLINE void locate(Pack const& own, std::size_t first, std::int8_t (&grid_of)[N]) const {
     bool near[N];
     if (has_one_level && first + N <= spheres.size() && marks.mark(own, near)) {
-      for (int k = 0; k < N; ++k) grid_of[k] = near[k] ? std::int8_t{0} : nowhere;
+      for (int k = 0; k < N; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_cell;
       return;
     }
     grids.locate(own, grid_of);
@@ -136,14 +136,14 @@ struct compact_spheres {
                                          std::size_t first) const {
     std::uint32_t active = 0, ungridded = 0;
     for (int k = 0; k < N; ++k) {
-      active += grid_of[k] != nowhere;
+      active += grid_of[k] != no_cell;
       ungridded += grid_of[k] == everywhere;
     }
     if (active == 0) return 0;
     if (ungridded != 0) block.add(s.found.ungridded, ungridded);
     std::uint32_t slot = block.add(s.found.active, active);
     for (int k = 0; k < N; ++k) {
-      if (grid_of[k] == nowhere) continue;
+      if (grid_of[k] == no_cell) continue;
       s.active[slot] = static_cast<id>(first) + static_cast<id>(k);
       s.grid_of[slot++] = grid_of[k];
     }

@@ -60,35 +60,35 @@ struct resolve_deferred {
     std::uint64_t const total = deferred.count->total;
     bool const all_found_room = total <= deferred.capacity;
     std::uint64_t const work = all_found_room ? total : std::uint64_t{pipeline.spheres.size()} * pipeline.mesh.size();
-    std::uint64_t const busy = smaller<std::uint64_t>(blocks, (work + Block::lanes - 1) / Block::lanes);
+    std::uint64_t const busy = smaller<std::uint64_t>(blocks, (work + Block::num_threads - 1) / Block::num_threads);
     if (block.index() >= busy) {
       if (work == 0 && block.index() == 0) {
-        block.each([&](int lane) {
-          if (lane == 0) finish_pass(pipeline.output);
+        block.for_each_thread([&](int thread_rank) {
+          if (thread_rank == 0) finish_pass(pipeline.output);
         });
       }
       return;
     }
 
-    block.each([&](int lane) { pipeline.reset(s.hits, lane); });
-    typename Block::template per_lane<pair> own;
-    typename Block::template per_lane<bool> hits;
-    for (std::uint64_t base = block.index() * Block::lanes; base < work; base += blocks * Block::lanes) {
-      block.each([&](int lane) {
-        std::uint64_t const i = base + static_cast<std::uint64_t>(lane);
-        hits[lane] = false;
+    block.for_each_thread([&](int thread_rank) { pipeline.reset(s.hits, thread_rank); });
+    typename Block::template thread_private<pair> own;
+    typename Block::template thread_private<bool> hits;
+    for (std::uint64_t base = block.index() * Block::num_threads; base < work; base += blocks * Block::num_threads) {
+      block.for_each_thread([&](int thread_rank) {
+        std::uint64_t const i = base + static_cast<std::uint64_t>(thread_rank);
+        hits[thread_rank] = false;
         if (i >= work) return;
-        own[lane] = all_found_room
-                        ? deferred.pairs[i]
-                        : pair{static_cast<id>(i / pipeline.mesh.size()), static_cast<id>(i % pipeline.mesh.size())};
-        hits[lane] = is_hit(own[lane], all_found_room);
+        own[thread_rank] =
+            all_found_room ? deferred.pairs[i]
+                           : pair{static_cast<id>(i / pipeline.mesh.size()), static_cast<id>(i % pipeline.mesh.size())};
+        hits[thread_rank] = is_hit(own[thread_rank], all_found_room);
       });
       pipeline.push_hits(block, s.hits, own, hits);
     }
     pipeline.drain(block, s.hits);
     // the last block that had something to do empties the list; those that come later find it so
-    block.each([&](int lane) {
-      if (lane != 0 || fetch_add(&deferred.count->ready, std::uint64_t{1}) + 1 != busy) return;
+    block.for_each_thread([&](int thread_rank) {
+      if (thread_rank != 0 || fetch_add(&deferred.count->ready, std::uint64_t{1}) + 1 != busy) return;
       deferred.count->total = deferred.count->ready = 0;
       finish_pass(pipeline.output);
     });
@@ -100,9 +100,9 @@ struct resolve_deferred {
     triangle<S> const t = pipeline.mesh[p.triangle];
     auto const ball = pipeline.spheres[p.sphere];
     if (!is_deferred) {
-      sphere<S> const around = enclosing(ball);
-      if (!bounds_of(t).reached(around.centre, around.radius)) return false;
-      if (filter<NarrowPhase>(t, ball) != verdict::unsure) return false;
+      sphere<S> const around = swept_bounding_sphere(ball);
+      if (!bounding_sphere_of(t).overlaps(around.centre, around.radius)) return false;
+      if (filter<NarrowPhase>(t, ball) != verdict::uncertain) return false;
     }
     return resolve<NarrowPhase>(t, ball);
   }
@@ -110,8 +110,9 @@ struct resolve_deferred {
 
 /// Runs both passes.
 template <class NarrowPhase, class Space, class Index, class S, class Handle>
-void query_two_pass(Space& space, Index& index, mesh_view<S> const& mesh, spheres_of<NarrowPhase, S> const& spheres,
-                    Handle const& handle, deferred_pair_buffer& buffer) {
+void query_two_pass(Space& space, Index& index, mesh_view<S> const& mesh,
+                    sphere_view_for<NarrowPhase, S> const& spheres, Handle const& handle,
+                    deferred_pair_buffer& buffer) {
   deferred_pairs const deferred = buffer.acquire(space, spheres.size());
   index.template query<NarrowPhase>(space, spheres, deferring<Handle>{handle, deferred});
   resolve_deferred<S, NarrowPhase, Handle> body{{mesh, spheres, handle}, deferred, 0};

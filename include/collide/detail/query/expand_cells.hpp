@@ -16,7 +16,7 @@ namespace collide::detail {
 /// Spreads the entries of the spheres' cells over the lanes, and makes candidates of those that meet.
 template <class S, class NarrowPhase, class Output>
 struct expand_cells {
-  static constexpr bool still = at_rest<NarrowPhase, S>;
+  static constexpr bool still = is_discrete<NarrowPhase, S>;
   using compact = compact_spheres<S, NarrowPhase>;
 
   /// Entries that a lane looks at together. With room for those of spheres that move, and for where these are on their
@@ -24,7 +24,7 @@ struct expand_cells {
   static constexpr int ahead = still ? 3 : 2;
 
   candidate_pipeline<S, NarrowPhase, Output> const& pipeline;
-  bucket_lookup<S> const& grids;
+  bucket_ref<S> const& grids;
 
   /// A sphere, and the first of the entries of a cell of its.
   struct alignas(8) entry_span {
@@ -39,16 +39,17 @@ struct expand_cells {
 
   /// The most entries of a span: the block numbers the candidates of all its spans in 32 bits.
   template <class Block>
-  static constexpr std::uint32_t longest = (1u << 30) / Block::lanes;
+  static constexpr std::uint32_t longest = (1u << 30) / Block::num_threads;
 
   template <class Block>
   struct scratch {
-    entry_span spans[Block::lanes];
-    std::uint32_t sizes[Block::lanes];                        ///< of the spans
-    std::uint32_t parts[Block::lanes];                        ///< where in their cells the spheres are
-    typename way<S>::place places[still ? 1 : Block::lanes];  ///< and, of those that move, where on their ways
+    entry_span spans[Block::num_threads];
+    std::uint32_t sizes[Block::num_threads];  ///< of the spans
+    std::uint32_t parts[Block::num_threads];  ///< where in their cells the spheres are
+    typename swept_cells<S>::cell_visit
+        places[still ? 1 : Block::num_threads];  ///< where on its path a moving sphere is
     counts found;
-    typename Block::balance_scratch balance;
+    typename Block::balance_storage balance;
     pipeline_storage<Block, ahead> hits;
   };
 
@@ -63,7 +64,7 @@ struct expand_cells {
       }
     }
     if (active.ungridded != 0) {
-      expand_level(block, s, from, active.active, bucket_lookup<S>::everywhere, {nullptr, nullptr});
+      expand_level(block, s, from, active.active, bucket_ref<S>::everywhere, {nullptr, nullptr});
     }
   }
 
@@ -84,22 +85,22 @@ struct expand_cells {
   COLLIDE_HD_INLINE void expand_level(Block& block, scratch<Block>& s,
                                       typename compact::template scratch<Block> const& from, std::uint32_t n,
                                       int grid_number, cells const& here) const {
-    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
-      typename Block::template per_lane<cursor> at;
+    for (std::uint32_t base = 0; base < n; base += Block::num_threads) {
+      typename Block::template thread_private<cursor> at;
       bool more = false;
       do {  // once, unless a span is very long, or spheres that move have more spans than there are lanes
-        block.each([&](int lane) {
-          if (!more) at[lane] = {0, 0};
-          std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
+        block.for_each_thread([&](int thread_rank) {
+          if (!more) at[thread_rank] = {0, 0};
+          std::uint32_t const i = base + static_cast<std::uint32_t>(thread_rank);
           if (i >= n || from.grid_of[i] != grid_number) return;
-          if (!append_spans(block, s, here, from.active[i], at[lane])) block.add(s.found.pending, 1);
+          if (!append_spans(block, s, here, from.active[i], at[thread_rank])) block.add(s.found.pending, 1);
         });
-        counts const found = block.shared(s.found);
+        counts const found = block.broadcast(s.found);
         more = found.pending != 0;
         if (found.spans == 0) continue;
-        test_spans(block, s, here, smaller<std::uint32_t>(found.spans, Block::lanes));
-        block.each([&](int lane) {
-          if (lane == 0) s.found = {0, 0};
+        test_spans(block, s, here, smaller<std::uint32_t>(found.spans, Block::num_threads));
+        block.for_each_thread([&](int thread_rank) {
+          if (thread_rank == 0) s.found = {0, 0};
         });
       } while (more);
     }
@@ -113,16 +114,18 @@ struct expand_cells {
       std::uint32_t number;
     };
     bool const all = here.of == nullptr;
-    block.template balanced<ahead>(
+    block.template for_each_balanced<ahead>(
         s.balance, s.sizes, n,
         [&](std::uint32_t i) {
           return numbered_span{s.spans[i], i};
         },
         [&](numbered_span const& c, std::uint32_t k) {
-          return all ? cell_entry{c.of.first + k, cell_part::whole} : grids.entries[c.of.first + k];
+          return all ? cell_item{c.of.first + k, cell_coverage::full_box} : grids.entries[c.of.first + k];
         },
-        [&](numbered_span const& c, cell_entry const& e) { return cell_part::meets(e.part, s.parts[c.number]); },
-        [&](numbered_span const& c, cell_entry const& e) {
+        [&](numbered_span const& c, cell_item const& e) {
+          return cell_coverage::overlaps(e.coverage, s.parts[c.number]);
+        },
+        [&](numbered_span const& c, cell_item const& e) {
           if constexpr (!still) {
             if (!all && !owns_pair(here, s.places[c.number], e)) return;
           }
@@ -132,9 +135,11 @@ struct expand_cells {
   }
 
   /// True if the pair counts in this cell of a way, and not in another that has the entry too.
-  COLLIDE_HD_INLINE bool owns_pair(cells const& here, typename way<S>::place const& place, cell_entry const& e) const {
-    if (place.later != way<S>::place::unknown) return !cell_part::begins_before(e.part, place.later);
-    return place.is_only || place.is_first_of(here.of->range_of(*here.level, grids.box_at(e.triangle)));
+  COLLIDE_HD_INLINE bool owns_pair(cells const& here, typename swept_cells<S>::cell_visit const& place,
+                                   cell_item const& e) const {
+    if (place.later != swept_cells<S>::cell_visit::unknown)
+      return !cell_coverage::starts_in_earlier_cell(e.coverage, place.later);
+    return place.is_single || place.owns_pair(here.of->range_of(*here.level, grids.box_at(e.triangle)));
   }
 
   /// Appends spans for the cells of a sphere that are not empty, as far as there is room. True if that was all.
@@ -142,20 +147,20 @@ struct expand_cells {
   COLLIDE_HD_INLINE bool append_spans(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
     if (here.of == nullptr) {
       auto const all = static_cast<std::uint32_t>(grids.mesh.size());
-      return append(block, s, number, {all, all}, cell_part::anywhere, at);
+      return append(block, s, number, {all, all}, cell_coverage::full_query, at);
     }
     auto const ball = pipeline.spheres[number];
     if constexpr (still) {
-      covered_cell const cell = here.of->place_of(*here.level, ball.centre);
-      return append(block, s, number, grids.lists[cell.number], cell.part, at);
+      cell_ref const cell = here.of->place_of(*here.level, ball.centre);
+      return append(block, s, number, grids.lists[cell.number], cell.coverage, at);
     } else {
-      way<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
+      swept_cells<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {
         auto const place = path.at(at.step);
         std::uint32_t const cell =
             here.level->row(place.cell[1], place.cell[2]) + (place.cell[0] & here.level->mask[0]);
         if (!place.is_cell || !grids.is_occupied(cell)) continue;
-        if (!append(block, s, number, grids.lists[cell], place.part, at, &place)) return false;
+        if (!append(block, s, number, grids.lists[cell], place.coverage, at, &place)) return false;
       }
       return true;
     }
@@ -163,12 +168,12 @@ struct expand_cells {
 
   /// Appends a span for the entries of a cell from at.skip on. False if there was no room for all of them.
   template <class Block>
-  COLLIDE_HD_INLINE bool append(Block& block, scratch<Block>& s, id number, cell_list cell, std::uint32_t part,
-                                cursor& at, typename way<S>::place const* place = nullptr) const {
+  COLLIDE_HD_INLINE bool append(Block& block, scratch<Block>& s, id number, item_range cell, std::uint32_t part,
+                                cursor& at, typename swept_cells<S>::cell_visit const* place = nullptr) const {
     std::uint32_t const left = cell.count - at.skip, size = smaller(left, longest<Block>);
     if (left == 0) return true;
     std::uint32_t const slot = block.add(s.found.spans, 1);
-    if (slot >= Block::lanes) return false;
+    if (slot >= Block::num_threads) return false;
     s.spans[slot] = {number, cell.end - left};
     s.sizes[slot] = size;
     s.parts[slot] = part;

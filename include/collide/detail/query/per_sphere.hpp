@@ -40,7 +40,7 @@ COLLIDE_HD_INLINE void for_each_candidate(Ref const& ref, Sphere const& s, F con
   if constexpr (enumerates_candidates_of<Ref, Sphere>::value) {
     ref.for_each_candidate(s, f);
   } else {
-    ref.for_each_candidate(enclosing(s), f);
+    ref.for_each_candidate(swept_bounding_sphere(s), f);
   }
 }
 
@@ -62,25 +62,25 @@ struct per_sphere_query {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    block.each([&](int lane) {
-      pipeline.reset(s.hits, lane);
-      if (lane == 0) s.unfinished = 0;
+    block.for_each_thread([&](int thread_rank) {
+      pipeline.reset(s.hits, thread_rank);
+      if (thread_rank == 0) s.unfinished = 0;
     });
-    std::size_t const base = block.index() * Block::lanes * Block::items;
+    std::size_t const base = block.index() * Block::num_threads * Block::items;
     std::uint32_t seen = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(Block::items); ++k) {
-      std::size_t const first = base + k * Block::lanes;
-      if constexpr (Block::lanes == 1) {
+      std::size_t const first = base + k * Block::num_threads;
+      if constexpr (Block::num_threads == 1) {
         if (first < pipeline.spheres.size()) test_all(block, s, first);
         pipeline.drain_if_full(block, s.hits);
       } else {
         for (std::uint32_t skip = 0;; skip += items_per_thread) {
-          block.each([&](int lane) {
-            std::size_t const i = first + static_cast<std::size_t>(lane);
+          block.for_each_thread([&](int thread_rank) {
+            std::size_t const i = first + static_cast<std::size_t>(thread_rank);
             if (i < pipeline.spheres.size()) test_some(block, s, i, skip);
           });
           pipeline.drain_if_full(block, s.hits);
-          std::uint32_t const unfinished = block.shared(s.unfinished);
+          std::uint32_t const unfinished = block.broadcast(s.unfinished);
           if (unfinished == seen) break;
           seen = unfinished;
         }
@@ -112,7 +112,7 @@ struct per_sphere_query {
 /// the number of a triangle: the next candidate is that of the least number from there on, for which all are
 /// enumerated.
 template <class S, class Ref>
-struct per_sphere_lookup : triangle_lookup<S> {
+struct per_sphere_lookup : triangle_ref<S> {
   Ref ref;
 
   COLLIDE_HD per_sphere_lookup const& opened() const { return *this; }
@@ -120,8 +120,8 @@ struct per_sphere_lookup : triangle_lookup<S> {
   COLLIDE_HD bool empty(Sphere const&) const {
     return this->mesh.size() == 0;
   }
-  COLLIDE_HD bool is_simple(S) const { return false; }
-  COLLIDE_HD cell_marks<S> marks() const { return {}; }
+  COLLIDE_HD bool has_single_cell_lookup(S) const { return false; }
+  COLLIDE_HD occupancy_view<S> marks() const { return {}; }
   template <class Sphere>
   COLLIDE_HD candidate_cursor begin(Sphere const&) const {
     return {0, 0, 0, 0};
@@ -137,7 +137,7 @@ struct per_sphere_lookup : triangle_lookup<S> {
       c.grid = candidate_cursor::ended;
       return false;
     }
-    range = {nullptr, least, 1, cell_part::anywhere};
+    range = {nullptr, least, 1, cell_coverage::full_query};
     c.skip = least + 1;
     return true;
   }

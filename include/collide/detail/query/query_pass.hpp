@@ -20,7 +20,7 @@ struct query_pass {
   Index& index;
   Space& space;
   mesh_view<S> mesh;
-  spheres_of<NarrowPhase, S> spheres;
+  sphere_view_for<NarrowPhase, S> spheres;
   deferred_pair_buffer& deferred;
 
   /// Not defined in the class, so not inline; see compiled.hpp.
@@ -31,14 +31,15 @@ struct query_pass {
 template <class Index, class NarrowPhase, class Space, class S>
 template <class Handle>
 void query_pass<Index, NarrowPhase, Space, S>::operator()(Handle const& handle) const {
-  static_assert(is_valid<handle_reserve, Handle>,
-                "collide: what a sink passes to query has a const member reserve(n) that returns the number of a slot");
+  static_assert(
+      is_valid<handle_reserve, Handle>,
+      "collide: what a sink passes to query has a const member allocate(n) that returns the number of a slot");
   static_assert(is_valid<handle_store, Handle, hit<NarrowPhase, S>>,
                 "collide: what a sink passes to query has a const member store(slot, hit)");
   static_assert(std::is_trivially_destructible<Handle>::value || Space::host_accessible,
                 "collide: what a sink hands to the device must be a plain value");
   if (mesh.size() != 0 && spheres.size() != 0) {
-    if constexpr (query_tuning<Space>::defers_exact_tests && in_stages<NarrowPhase>::value) {
+    if constexpr (query_tuning<Space>::defers_exact_tests && filtered_predicate<NarrowPhase>::value) {
       query_two_pass<NarrowPhase>(space, index, mesh, spheres, handle, deferred);
       return;
     } else {
@@ -46,7 +47,7 @@ void query_pass<Index, NarrowPhase, Space, S>::operator()(Handle const& handle) 
     }
   }
   if constexpr (finishes<Handle>::value) {
-    if (wants_finish(handle)) space.for_each(1, finish_only<Handle>{handle});
+    if (has_end_pass(handle)) space.for_each(1, finish_only<Handle>{handle});
   }
 }
 

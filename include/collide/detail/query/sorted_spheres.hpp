@@ -32,8 +32,8 @@ namespace collide::detail {
 
 /// Kernel body of `for_each` over triangles: sets a bit for every cell that a triangle looks into.
 template <class S>
-struct mark_cells {
-  triangle_box<S> const* boxes;
+struct mark_occupied_cells {
+  triangle_aabb<S> const* boxes;
   grid<S> const* grids;
   int grid_count;
   std::uint32_t* occupied;
@@ -56,13 +56,13 @@ struct mark_cells {
 /// which the larger are those of the larger number. What is NaN does not count, also where the compiler takes it that
 /// there is none.
 template <class S>
-struct measure_ways {
+struct measure_displacements {
   static constexpr int items = 4;
   static constexpr std::size_t batches = 64;  ///< of `Block::items` spheres
 
   moving_sphere_view<S> spheres;
-  bits_of<S>* squared_length;  ///< 0 at first
-  bits_of<S>* farthest;        ///< the same
+  uint_for<S>* squared_length;  ///< 0 at first
+  uint_for<S>* farthest;        ///< of a coordinate; 0 at first
 
   struct nothing {};
   template <class>
@@ -72,8 +72,8 @@ struct measure_ways {
   void operator()(Block& block, nothing&) const {
     constexpr std::size_t share = batches * Block::items;
     std::size_t const begin = block.index() * share, end = smaller(begin + share, spheres.size());
-    bits_of<S> lengths[Block::items] = {}, fars[Block::items] = {};  // one would be compared one after the other
-    vectorised([&] { measure(begin, end, lengths, fars); });
+    uint_for<S> lengths[Block::items] = {}, fars[Block::items] = {};  // one would be compared one after the other
+    multiversioned([&] { measure(begin, end, lengths, fars); });
     for (int k = 1; k < Block::items; ++k) {
       lengths[0] = larger(lengths[0], lengths[k]);
       fars[0] = larger(fars[0], fars[k]);
@@ -84,23 +84,23 @@ struct measure_ways {
 
  private:
   template <std::size_t n>
-  void measure(std::size_t begin, std::size_t end, bits_of<S> (&lengths)[n], bits_of<S> (&fars)[n]) const {
+  void measure(std::size_t begin, std::size_t end, uint_for<S> (&lengths)[n], uint_for<S> (&fars)[n]) const {
     for (std::size_t first = begin; first < end; first += n) {
       moving_batch<S, n> batch;
       batch.load(spheres, first);
       for (std::size_t k = 0; k < n; ++k) {
         S const dx = batch.dx[k], dy = batch.dy[k], dz = batch.dz[k];
         lengths[k] = larger(lengths[k], magnitude_bits(dx * dx + (dy * dy + dz * dz)));
-        bits_of<S> const xy = larger(magnitude_bits(batch.x[k]), magnitude_bits(batch.y[k]));
+        uint_for<S> const xy = larger(magnitude_bits(batch.x[k]), magnitude_bits(batch.y[k]));
         fars[k] = larger(fars[k], larger(xy, magnitude_bits(batch.z[k])));
       }
     }
   }
 
   /// Bits of |x|; 0 if that is NaN.
-  static bits_of<S> magnitude_bits(S x) {
-    bits_of<S> const b = bits(x) & ~bits(-S(0));
-    return b > bits(std::numeric_limits<S>::infinity()) ? 0 : b;
+  static uint_for<S> magnitude_bits(S x) {
+    uint_for<S> const b = to_bits(x) & ~to_bits(-S(0));
+    return b > to_bits(std::numeric_limits<S>::infinity()) ? 0 : b;
   }
 };
 
@@ -109,12 +109,12 @@ template <class S>
 class sorted_spheres {
  public:
   /// The most spheres that can be sorted: places have 32 bits, and a sphere may be in a cell of each level.
-  static constexpr std::size_t most = std::size_t{0xffffffffu} / max_levels - sphere_columns<S>::lanes;
+  static constexpr std::size_t most = std::size_t{0xffffffffu} / max_levels - sphere_soa<S>::simd_width;
 
   /// Marks the cells that triangles touch. To be called for new grids, the cells of each of which begin at a multiple
   /// of 2^table_bits.
   template <class Space>
-  void mark(Space& space, triangle_box<S> const* boxes, std::size_t triangles, grid<S> const* grids, int grid_count,
+  void mark(Space& space, triangle_aabb<S> const* boxes, std::size_t triangles, grid<S> const* grids, int grid_count,
             std::uint32_t table_bits) {
     boxes_ = boxes;
     grids_ = grids;
@@ -124,7 +124,7 @@ class sorted_spheres {
     std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
-    space.for_each(triangles, mark_cells<S>{boxes, grids, grid_count, occupied});
+    space.for_each(triangles, mark_occupied_cells<S>{boxes, grids, grid_count, occupied});
   }
 
   /// How far the grid must reach for spheres of one radius that move: the radius of a ball around the way of each.
@@ -132,16 +132,17 @@ class sorted_spheres {
   S reach_of(Space& space, moving_sphere_view<S> const& spheres) {
     auto* const found = measures_.reserve(space.resource(), 2);
     space.fill(found, 0, 2 * sizeof *found);
-    measure_ways<S> const body{spheres, found, found + 1};
-    constexpr std::size_t share = measure_ways<S>::batches * 64;
+    measure_displacements<S> const body{spheres, found, found + 1};
+    constexpr std::size_t share = measure_displacements<S>::batches * 64;
     space.launch((spheres.size() + share - 1) / share, body);
-    S const length = root(from_bits<S>(space.read(found))), far = from_bits<S>(space.read(found + 1));
+    S const length = sqrt_rn(from_bits<S>(space.read(found))), far = from_bits<S>(space.read(found + 1));
     // of none is it larger, but for some rounding
-    return enclosing(moving_sphere<S>{{{far, far, far}, spheres.common_radius()}, {length, S(0), S(0)}}).radius *
-           (1 + 32 * S(format<float>::unit));
+    return swept_bounding_sphere(moving_sphere<S>{{{far, far, far}, spheres.common_radius()}, {length, S(0), S(0)}})
+               .radius *
+           (1 + 32 * S(ieee_traits<float>::unit_roundoff));
   }
 
-  /// Sorts the spheres into the cells: of type sphere_view, or balls_around. O(spheres + cells).
+  /// Sorts the spheres into the cells: of type sphere_view, or swept_bounding_spheres. O(spheres + cells).
   template <class Space, class Spheres>
   void sort(Space& space, Spheres const& spheres) {
     clear();
@@ -158,7 +159,7 @@ class sorted_spheres {
     }
     auto const n = static_cast<std::size_t>(*total);
     columns_ = columns(space, placed_.capacity());
-    if constexpr (std::is_same<Spheres, balls_around<S>>::value) {
+    if constexpr (std::is_same<Spheres, swept_bounding_spheres<S>>::value) {
       columns_.moving = moving_.reserve(space.resource(), placed_.capacity());
     }
     // counts[c + 1] becomes the begin of cell c, and once it is filled its end, which is the begin of the next
@@ -168,14 +169,14 @@ class sorted_spheres {
     // counters all over a table: few are counted sooner than threads have passed them to each other
     auto const each_placed = [&](auto const& f) {
       if (n > (std::size_t{1} << 17)) return space.for_each(n, f);
-      work_alone const alone(true);
+      single_threaded_scope const alone(true);
       for (std::size_t i = 0; i < n; ++i) f(i);
     };
-    each_placed(count_placed<S>{placed_.data(), counts + 1});
+    each_placed(count_bins<S>{placed_.data(), counts + 1});
     exclusive_scan(space, counts + 1, table - 1);
     auto* const order = order_.reserve(space.resource(), placed_.capacity());
-    each_placed(number_placed<S>{placed_.data(), order, counts + 1});
-    space.for_each(n, sort_placed<S, Spheres>{placed_.data(), order, columns_, spheres});
+    each_placed(rank_spheres<S>{placed_.data(), order, counts + 1});
+    space.for_each(n, scatter_spheres<S, Spheres>{placed_.data(), order, columns_, spheres});
     is_empty_ = false;
   }
 
@@ -187,15 +188,15 @@ class sorted_spheres {
   /// One pass: the triangles look for the spheres.
   template <class NarrowPhase, class Space, class Output>
   void query(Space& space, candidate_pipeline<S, NarrowPhase, Output> const& pipeline) const {
-    look_for_spheres<S, NarrowPhase, Output> const body{pipeline, boxes_,       grids_,      grid_count_,
-                                                        columns_, ends_.data(), everywhere()};
+    query_triangle_major<S, NarrowPhase, Output> const body{pipeline, boxes_,       grids_,      grid_count_,
+                                                            columns_, ends_.data(), everywhere()};
     space.launch(grid_size<Space>(pipeline.mesh.size(), body), body);
   }
 
  private:
   template <class Space>
-  sphere_columns<S> columns(Space& space, std::size_t n) {
-    std::size_t const room = n + sphere_columns<S>::lanes;
+  sphere_soa<S> columns(Space& space, std::size_t n) {
+    std::size_t const room = n + sphere_soa<S>::simd_width;
     bool const same = numbers_.capacity() == 5 * room;
     S* const to = numbers_.reserve(space.resource(), 5 * room);
     id* const ids = ids_.reserve(space.resource(), room);
@@ -205,18 +206,18 @@ class sorted_spheres {
 
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
 
-  triangle_box<S> const* boxes_ = nullptr;
+  triangle_aabb<S> const* boxes_ = nullptr;
   grid<S> const* grids_ = nullptr;
   int grid_count_ = 0;
   std::size_t cells_ = 0;
   buffer<std::uint32_t> occupied_, ends_, order_;
   buffer<std::uint64_t> total_;
-  buffer<bits_of<S>> measures_;
+  buffer<uint_for<S>> measures_;
   buffer<moving_sphere<S>> moving_;
-  buffer<placed_sphere<S>> placed_;
+  buffer<binned_sphere<S>> placed_;
   buffer<S> numbers_;
   buffer<id> ids_;
-  sphere_columns<S> columns_ = {};
+  sphere_soa<S> columns_ = {};
   bool is_empty_ = true;
 };
 

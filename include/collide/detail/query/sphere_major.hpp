@@ -19,13 +19,13 @@ template <class S, class NarrowPhase, class Output>
 struct bucket_query {
   static constexpr int items = 4;
   template <class Block>
-  static constexpr int residency = at_rest<NarrowPhase, S> ? 4 : 3;
+  static constexpr int residency = is_discrete<NarrowPhase, S> ? 4 : 3;
 
   using compact_type = compact_spheres<S, NarrowPhase>;
   using expand_type = expand_cells<S, NarrowPhase, Output>;
 
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
-  bucket_lookup<S> triangles;
+  bucket_ref<S> triangles;
   std::size_t blocks;  ///< that share the spheres
 
   template <class Block>
@@ -36,29 +36,30 @@ struct bucket_query {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    cell_marks<S> const marks = triangles.marks();
-    bool const has_one_level = pipeline.spheres.one_radius() && triangles.is_simple(pipeline.spheres.common_radius());
-    bucket_lookup<S> const grids = triangles.opened();
+    occupancy_view<S> const marks = triangles.marks();
+    bool const has_one_level =
+        pipeline.spheres.one_radius() && triangles.has_single_cell_lookup(pipeline.spheres.common_radius());
+    bucket_ref<S> const grids = triangles.opened();
     compact_type const spheres{pipeline.spheres, grids, marks, has_one_level, blocks};
     expand_type const cells{pipeline, grids};
-    typename Block::template per_lane<std::size_t> next;
-    block.each([&](int lane) {
-      next[lane] = spheres.first_of(block, lane);
-      pipeline.reset(s.cells.hits, lane);
-      if (lane != 0) return;
+    typename Block::template thread_private<std::size_t> next;
+    block.for_each_thread([&](int thread_rank) {
+      next[thread_rank] = spheres.first_of(block, thread_rank);
+      pipeline.reset(s.cells.hits, thread_rank);
+      if (thread_rank != 0) return;
       s.spheres.found = {0, 0, 0};
       s.cells.found = {0, 0};
     });
     for (bool more = true; more;) {
-      block.each([&](int lane) {
-        spheres.compact(block, s.spheres, next[lane]);
-        if (next[lane] < pipeline.spheres.size()) block.add(s.spheres.found.pending, 1);
+      block.for_each_thread([&](int thread_rank) {
+        spheres.compact(block, s.spheres, next[thread_rank]);
+        if (next[thread_rank] < pipeline.spheres.size()) block.add(s.spheres.found.pending, 1);
       });
-      typename compact_type::counts const found = block.shared(s.spheres.found);
+      typename compact_type::counts const found = block.broadcast(s.spheres.found);
       more = found.pending != 0;
       if (found.active != 0) cells.expand(block, s.cells, s.spheres, found);
-      block.each([&](int lane) {
-        if (lane == 0) s.spheres.found = {0, 0, 0};
+      block.for_each_thread([&](int thread_rank) {
+        if (thread_rank == 0) s.spheres.found = {0, 0, 0};
       });
     }
     pipeline.drain(block, s.cells.hits);

@@ -14,14 +14,14 @@ namespace collide::detail {
 
 /// Kernel body of a block of one lane: triangles look for spheres in the cells that they touch.
 template <class S, class NarrowPhase, class Output>
-struct look_for_spheres {
+struct query_triangle_major {
   static constexpr int items = 4;
 
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
-  triangle_box<S> const* boxes;
+  triangle_aabb<S> const* boxes;
   grid<S> const* grids;
   int grid_count;
-  sphere_columns<S> spheres;
+  sphere_soa<S> spheres;
   std::uint32_t const* ends;  ///< the spheres of cell c: ends[c] .. ends[c + 1]
   std::uint32_t everywhere;   ///< number of the cell behind the last
 
@@ -42,11 +42,11 @@ struct look_for_spheres {
 
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
-    static_assert(Block::lanes == 1, "collide: triangles look for spheres in blocks of one lane");
+    static_assert(Block::num_threads == 1, "collide: triangles look for spheres in blocks of one lane");
     pipeline.reset(s.hits, 0);
     s.count = 0;
     s.batch.size = 0;
-    vectorised([&] { look(block, s); });
+    multiversioned([&] { look(block, s); });
     test(block, s);
     if constexpr (in_batches<NarrowPhase, S>) s.batch.decide(pipeline, block, s.hits);
     pipeline.drain(block, s.hits);
@@ -58,11 +58,11 @@ struct look_for_spheres {
   void look(Block& block, scratch<Block>& s) const {
     std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, pipeline.mesh.size());
     for (std::size_t t = begin; t < end; ++t) {
-      triangle_box<S> const around = boxes[t];
+      triangle_aabb<S> const around = boxes[t];
       if (around.is_empty()) continue;  // not finite
       auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
         std::uint32_t const last = ends[cell + n];
-        for (std::uint32_t i = ends[cell]; i < last; i += spheres.lanes) {
+        for (std::uint32_t i = ends[cell]; i < last; i += spheres.simd_width) {
           std::uint32_t const here = spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
           s.found[s.count] = {i, here, static_cast<id>(t)};
           s.count += here != 0;  // no branch: it would often be mispredicted
@@ -97,7 +97,7 @@ struct look_for_spheres {
 
   /// What the narrow phase judges.
   decltype(auto) sphere_of(std::uint32_t place) const {
-    if constexpr (at_rest<NarrowPhase, S>) {
+    if constexpr (is_discrete<NarrowPhase, S>) {
       return spheres[place];
     } else {
       return static_cast<moving_sphere<S> const&>(spheres.moving[place]);

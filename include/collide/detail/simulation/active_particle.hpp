@@ -31,8 +31,8 @@ template <class S>
 COLLIDE_HD_INLINE std::uint64_t contact_key(S time, contact<S> const& c) {
   constexpr auto ticks = std::uint32_t{1} << key_bits;
   std::uint32_t const first = time > 0 ? static_cast<std::uint32_t>(time * S(ticks)) | ticks
-                                       : ~ordered(static_cast<float>(c.depth)) >> (32 - key_bits);
-  return std::uint64_t{first} << 34 | std::uint64_t{static_cast<std::uint32_t>(c.kind)} << 32 | c.triangle;
+                                       : ~to_ordered_bits(static_cast<float>(c.depth)) >> (32 - key_bits);
+  return std::uint64_t{first} << 34 | std::uint64_t{static_cast<std::uint32_t>(c.feature)} << 32 | c.triangle;
 }
 
 /// The time of a contact, from its key.
@@ -101,13 +101,13 @@ struct active_particle : remaining_motion<S, IsSwept> {
     return c;
   }
 
-  COLLIDE_HD_INLINE void record_contact(touching<S> const& c) {
+  COLLIDE_HD_INLINE void record_contact(mesh_contact<S> const& c) {
     int const slot = contact_count % max_recorded;
     for (int k = 0; k < 3; ++k) {
       normals[slot][k] = c.normal[k];
       points[slot][k] = c.point[k];
     }
-    last_impulse = c.impulse;
+    last_impulse = c.normal_impulse;
     if constexpr (IsSwept) this->triangles[slot] = c.triangle;
     ++contact_count;
     ++contacts_here;
@@ -171,7 +171,7 @@ struct active_particle : remaining_motion<S, IsSwept> {
   /// Finds how to leave a contact such that this leaves the particle on the surfaces of those before it at this place:
   /// the projection of the normal onto what they leave free. They count where the normal leads into them, and a single
   /// one also where it leads off it but pushed harder than that relieves it, as in the two sides of an open groove.
-  COLLIDE_HD_INLINE void find_lift(touching<S>& c, vec3<S> const& velocity) const {
+  COLLIDE_HD_INLINE void find_lift(mesh_contact<S>& c, vec3<S> const& velocity) const {
     vec3<S> const& n = c.normal;
     c.lift = n;
     c.free_change = std::numeric_limits<S>::max();

@@ -35,7 +35,7 @@ struct update_and_check_skin {
     }
     typename ordered::interaction p;
     state.load(p, number);
-    if (!finite(p[position{}])) return order.deactivate(i);
+    if (!is_finite(p[position{}])) return order.deactivate(i);
     packed_sphere<S> const now = order.store(i, p);
     auto const before = order.references[i];
     vec3<S> const moved(now.x - before.x, now.y - before.y, now.z - before.z);
@@ -45,7 +45,7 @@ struct update_and_check_skin {
   }
 
  private:
-  COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(present{})[number] != 0; }
+  COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(alive{})[number] != 0; }
 };
 
 /// Kernel body of `for_each_if_nonzero` over the table: empties it.
@@ -67,12 +67,12 @@ struct count_or_scatter {
   sorted_particles<S, Effects> order;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    using placing = union_of<columns<position>, intersection_of<columns<present>, typename Effects::all>>;
+    using placing = union_of<columns<position>, intersection_of<columns<alive>, typename Effects::all>>;
     particle<S, placing> p;
     state.load(p, i);
-    if constexpr (contains<placing, present>) {
-      if constexpr (Fill) order.known[i] = p[present{}];
-      if (p[present{}] == 0) return;
+    if constexpr (contains<placing, alive>) {
+      if constexpr (Fill) order.known[i] = p[alive{}];
+      if (p[alive{}] == 0) return;
     }
     vec3<S> const& c = p[position{}];
     std::uint32_t const slot = fetch_add(order.ends + order.cells.number(order.cells.of(c.x(), c.y(), c.z())) + 1, 1u);
@@ -131,7 +131,7 @@ struct build_lists {
   COLLIDE_HD_INLINE void list(std::uint32_t i) const {
     std::uint32_t places[room], found = 0;
     std::uint8_t rows[room];
-    order.each_near(i, skin, [&](std::uint32_t k, int row) {
+    order.for_each_overlapping(i, skin, [&](std::uint32_t k, int row) {
       if (found < room) {
         places[found] = k;
         rows[found] = static_cast<std::uint8_t>(row);
@@ -144,11 +144,11 @@ struct build_lists {
       return;
     }
     first_neighbours<room> near;
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     for (std::uint32_t n = 0; n < found; ++n) {
       if (order.is_in_row(places[n], i, rows[n])) near.add(order.numbers[places[n]], places[n]);
     }
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];
     if (near.size < room) order.list(near.size, i) = i;
   }

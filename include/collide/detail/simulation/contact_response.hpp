@@ -19,7 +19,8 @@ namespace collide::detail {
 /// prepared.
 template <class S>
 COLLIDE_HD_INLINE S swept_radius(S r, vec3<S> const& centre, vec3<S> const& displacement, S largest) {
-  S const reach = collide::detail::largest<S>(centre.cwiseAbs()) + collide::detail::largest<S>(displacement.cwiseAbs());
+  S const reach =
+      collide::detail::max_component<S>(centre.cwiseAbs()) + collide::detail::max_component<S>(displacement.cwiseAbs());
   S const least = 4 * std::numeric_limits<S>::epsilon() * reach;
   return r >= 0 && r < largest ? larger(r, smaller(least, largest)) : r;
 }
@@ -43,17 +44,17 @@ struct contact_response {
   /// `context` must outlive this.
   COLLIDE_HD_INLINE explicit contact_response(Context const& c) : context{c}, search{c.triangles.opened()} {}
 
-  /// Resolves the contacts of `n` particles, at most the scratch memory's `batch_size`: number_of(j) for all j < n says
+  /// Resolves the contacts of `n` particles, at most the scratch memory's `batch_size`: key_of(j) for all j < n says
   /// which they are.
   template <class Block, class NumberOf>
-  COLLIDE_HD void resolve(Block& block, scratch<Block>& s, std::uint32_t n, NumberOf const& number_of) const {
+  COLLIDE_HD void resolve(Block& block, scratch<Block>& s, std::uint32_t n, NumberOf const& key_of) const {
     auto const for_each_particle = [&](auto const& f) {
-      block.each([&](int lane) {
-        for (auto j = static_cast<std::uint32_t>(lane); j < n; j += Block::lanes) f(s.particles[j], j);
+      block.for_each_thread([&](int thread_rank) {
+        for (auto j = static_cast<std::uint32_t>(thread_rank); j < n; j += Block::num_threads) f(s.particles[j], j);
       });
     };
     for_each_particle([&](active& a, std::uint32_t j) {
-      begin(a, number_of(j));
+      begin(a, key_of(j));
       if (j != 0) return;
       search.reset(s);
       s.active_count = 0;
@@ -68,7 +69,7 @@ struct contact_response {
         search.start(a);
         block.add(s.active_count, 1);
       });
-      std::uint32_t const active_now = block.shared(s.active_count);
+      std::uint32_t const active_now = block.broadcast(s.active_count);
       if (active_now == active_before) break;
       active_before = active_now;
     }
@@ -123,11 +124,11 @@ struct contact_response {
       p[position{}] = here.centre;
       a.remaining_time -= a.remaining_time * time;
     }
-    touching<S> c = contact_for_effects(p, a);
+    mesh_contact<S> c = contact_for_effects(p, a);
     // how deep when the step began: what is pushed out farther than it came in may then touch what it did not before
     [[maybe_unused]] S const depth_at_start = c.depth + dot(c.normal, vec3<S>(here.centre - c.start));
     a.find_lift(c, velocity_before);
-    context.effects.touch(p, c, context.dt);
+    context.effects.on_mesh_contact(p, c, context.dt);
     a.record_contact(c);
     a.is_active = a.contact_count < max_contacts_per_step;
     if constexpr (is_swept) {
@@ -145,20 +146,20 @@ struct contact_response {
   }
 
   /// A particle's next contact as effects see it.
-  COLLIDE_HD_INLINE touching<S> contact_for_effects(colliding const& p, active const& a) const {
+  COLLIDE_HD_INLINE mesh_contact<S> contact_for_effects(colliding const& p, active const& a) const {
     vec3<S> const arrival(a.arrival_velocity[0], a.arrival_velocity[1], a.arrival_velocity[2]);
-    touching<S> c{};
+    mesh_contact<S> c{};
     static_cast<contact<S>&>(c) = a.best_contact();
     c.sphere = a.number;
     c.start = vec3<S>(a.start[0], a.start[1], a.start[2]);
     if constexpr (!is_swept) {
-      c.moved = context.dt;
+      c.elapsed = context.dt;
       face_against(c, arrival);
     }
-    c.approach = -dot(arrival, c.normal);
+    c.approach_speed = -dot(arrival, c.normal);
     colliding next = p;
     context.effects.accelerate(next, context.dt);
-    c.gain = next[velocity{}] - p[velocity{}];
+    c.force_dv = next[velocity{}] - p[velocity{}];
     return c;
   }
 
@@ -167,7 +168,7 @@ struct contact_response {
       bool const is_held = a.contact_count > 0 && p[velocity{}] == vec3<S>(S(0), S(0), S(0));
       if (!is_held) context.effects.accelerate(p, Context::kick_after * context.dt);
     }
-    context.effects.finish(p, context.dt);
+    context.effects.end_step(p, context.dt);
   }
 };
 

@@ -44,13 +44,13 @@ COLLIDE_HD_INLINE verdict_byte packed(verdict v) { return static_cast<verdict_by
 /// The queues of a block; a lane alone has none.
 template <class Block>
 struct contact_queues {
-  static constexpr bool used = Block::lanes > 1;
-  static_assert(Block::lanes <= 256, "a byte counts the particles of a batch");
+  static constexpr bool used = Block::num_threads > 1;
+  static_assert(Block::num_threads <= 256, "a byte counts the particles of a batch");
   static constexpr std::uint32_t ahead = 5;  ///< cell items that a lane looks at together
 
-  pair_queue<used ? (ahead + 1) * Block::lanes : 1> candidates;
-  pair_queue<used ? 2 * Block::lanes : 1> contacts;    ///< pairs that touch, or may do so
-  verdict_byte verdicts[used ? 2 * Block::lanes : 1];  ///< on the latter; `miss` once the contact is known
+  pair_queue<used ? (ahead + 1) * Block::num_threads : 1> candidates;
+  pair_queue<used ? 2 * Block::num_threads : 1> contacts;    ///< pairs that touch, or may do so
+  verdict_byte verdicts[used ? 2 * Block::num_threads : 1];  ///< on the latter; `miss` once the contact is known
   std::uint32_t unsure_count;
 };
 
@@ -64,32 +64,32 @@ struct span_counts {
 template <class S, bool IsSwept, class Block>
 struct contact_scratch {
   using particle_type = active_particle<S, IsSwept>;
-  static constexpr std::size_t bytes_per_particle = sizeof(particle_type) + sizeof(cell_entry const*) +
+  static constexpr std::size_t bytes_per_particle = sizeof(particle_type) + sizeof(cell_item const*) +
                                                     2 * sizeof(std::uint32_t) + sizeof(std::uint8_t) + 2 * sizeof(id);
 
   /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block, but fewer than lanes, and
   /// than bytes can count. The rest is for what else a step keeps there.
   static constexpr std::uint32_t room =
       static_cast<std::uint32_t>((47 * 1024 - sizeof(contact_queues<Block>)) / bytes_per_particle);
-  static constexpr std::uint32_t batch_size = Block::lanes == 1     ? Block::items
-                                              : room < Block::lanes ? room
-                                                                    : Block::lanes - 1;
+  static constexpr std::uint32_t batch_size = Block::num_threads == 1     ? Block::items
+                                              : room < Block::num_threads ? room
+                                                                          : Block::num_threads - 1;
 
   particle_type particles[batch_size];
   std::uint8_t particle_of_span[batch_size];
   std::uint32_t span_sizes[batch_size], span_coverage[batch_size];
-  cell_entry const* span_items[batch_size];
+  cell_item const* span_items[batch_size];
   id span_first[batch_size];
   contact_queues<Block> queues;
   span_counts spans;
   std::uint32_t active_count;  ///< how often a particle was to be looked at again; only rises
-  typename Block::balance_scratch balance;
+  typename Block::balance_storage balance;
 };
 
 /// The search, which knows neither effects nor the integrator. `Triangles` is a lookup that is opened.
 template <class S, class NarrowPhase, class Triangles>
 struct contact_search {
-  static constexpr bool is_swept = !at_rest<NarrowPhase, S>;
+  static constexpr bool is_swept = !is_discrete<NarrowPhase, S>;
   using active = active_particle<S, is_swept>;
   using shape = std::conditional_t<is_swept, moving_sphere<S>, sphere<S>>;
   template <class Block>
@@ -118,15 +118,15 @@ struct contact_search {
     for (bool more = true; more;) {
       span_counts const before = seen;
       list_spans(block, s, n, before);
-      seen = block.shared(s.spans);
+      seen = block.broadcast(s.spans);
       more = seen.unfinished != before.unfinished;
       std::uint32_t const spans = seen.spans - before.spans;
       if (spans == 0) break;
-      block.template balanced<queues::ahead>(
+      block.template for_each_balanced<queues::ahead>(
           s.balance, s.span_sizes, spans, [&](std::uint32_t i) { return span_of<Block>(s, i); },
           [](span const& c, std::uint32_t k) { return c.range.at(k); },
-          [](span const& c, cell_entry const& e) { return c.range.may_touch(e); },
-          [&](span const& c, cell_entry const& e) {
+          [](span const& c, cell_item const& e) { return c.range.passes_coverage(e); },
+          [&](span const& c, cell_item const& e) {
             if constexpr (queues::used) {
               s.queues.candidates.push(block, c.particle, e.triangle);
             } else {
@@ -135,14 +135,14 @@ struct contact_search {
           },
           [&](bool is_last) {
             if constexpr (queues::used) {
-              std::uint32_t const candidates = block.shared(s.queues.candidates.size);
-              bool const is_full = candidates + queues::ahead * Block::lanes > s.queues.candidates.capacity;
+              std::uint32_t const candidates = block.broadcast(s.queues.candidates.size);
+              bool const is_full = candidates + queues::ahead * Block::num_threads > s.queues.candidates.capacity;
               if (is_full || (is_last && !is_swept)) drain(block, s, candidates);
             }
           });
     }
     // candidates of a swept particle come a cell at a time
-    if constexpr (queues::used && is_swept) drain(block, s, block.shared(s.queues.candidates.size));
+    if constexpr (queues::used && is_swept) drain(block, s, block.broadcast(s.queues.candidates.size));
   }
 
  private:
@@ -159,8 +159,8 @@ struct contact_search {
   template <class Block>
   COLLIDE_HD_INLINE void list_spans(Block& block, scratch<Block>& s, std::uint32_t n, span_counts const& before) const {
     constexpr std::uint32_t most = (1u << 31) / scratch<Block>::batch_size;
-    block.each([&](int lane) {
-      for (auto j = static_cast<std::uint32_t>(lane); j < n; j += Block::lanes) {
+    block.for_each_thread([&](int thread_rank) {
+      for (auto j = static_cast<std::uint32_t>(thread_rank); j < n; j += Block::num_threads) {
         active& a = s.particles[j];
         candidate_range range{};
         if (!a.is_active || !triangles.next(a.shape(), a.cursor, most, range)) continue;
@@ -180,9 +180,12 @@ struct contact_search {
     active& a = s.particles[s.particle_of_span[i]];
     shape const whole = a.shape();
     shape part = whole;
-    if constexpr (is_swept && Block::lanes == 1) clip_to_best(a, part);
-    return {
-        s.particle_of_span[i], a, whole, enclosing(part), {s.span_items[i], s.span_first[i], 0, s.span_coverage[i]}};
+    if constexpr (is_swept && Block::num_threads == 1) clip_to_best(a, part);
+    return {s.particle_of_span[i],
+            a,
+            whole,
+            swept_bounding_sphere(part),
+            {s.span_items[i], s.span_first[i], 0, s.span_coverage[i]}};
   }
 
   /// A lane alone finds the first contacts first, as it goes along the motion, and hardly looks at what comes later.
@@ -197,21 +200,22 @@ struct contact_search {
   template <class Block>
   COLLIDE_HD_INLINE void drain(Block& block, scratch<Block>& s, std::uint32_t n) const {
     auto& q = s.queues;
-    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
-      block.each([&](int lane) {
-        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
-        if (lane == 0) q.candidates.size = q.unsure_count = 0;
+    for (std::uint32_t base = 0; base < n; base += Block::num_threads) {
+      block.for_each_thread([&](int thread_rank) {
+        std::uint32_t const i = base + static_cast<std::uint32_t>(thread_rank);
+        if (thread_rank == 0) q.candidates.size = q.unsure_count = 0;
         if (i >= n) return;
         id const number = q.candidates.triangles[i];
         active const& a = s.particles[q.candidates.particles[i]];
         shape const whole = a.shape();
-        if (!triangles.template may_touch<NarrowPhase>(whole, number) || a.is_leaving(number)) return;
+        if (!triangles.template passes_coverage<NarrowPhase>(whole, number) || a.is_leaving(number)) return;
         verdict const quick = filter<NarrowPhase>(triangles.mesh[number], whole);
         if (quick == verdict::miss) return;
         q.verdicts[q.contacts.push(block, q.candidates.particles[i], number)] = packed(quick);
       });
-      std::uint32_t const found = block.shared(q.contacts.size);
-      if (found + Block::lanes > q.contacts.capacity || base + Block::lanes >= n) compute_contacts(block, s, found);
+      std::uint32_t const found = block.broadcast(q.contacts.size);
+      if (found + Block::num_threads > q.contacts.capacity || base + Block::num_threads >= n)
+        compute_contacts(block, s, found);
     }
   }
 
@@ -224,8 +228,8 @@ struct contact_search {
     if constexpr (!is_swept) {
       consider_all(block, s, n, [&](active& a, id number, std::uint32_t i, contact<S>& found) {
         bool const is_sure = q.verdicts[i] == packed(verdict::hit);
-        verdict const quick = quick_contact_here(triangles.mesh[number], a.shape(), is_sure, found);
-        if (quick == verdict::unsure) {
+        verdict const quick = relaxed_contact_fast(triangles.mesh[number], a.shape(), is_sure, found);
+        if (quick == verdict::uncertain) {
           block.add(q.unsure_count, 1);
           return no_contact;
         }
@@ -234,7 +238,7 @@ struct contact_search {
         found.triangle = number;
         return consider<Block>(a, S(0), found);
       });
-      if (block.shared(q.unsure_count) == 0) return;
+      if (block.broadcast(q.unsure_count) == 0) return;
     }
     consider_all(block, s, n, [&](active& a, id number, std::uint32_t i, contact<S>& found) {
       if (q.verdicts[i] == packed(verdict::miss)) return no_contact;
@@ -247,19 +251,20 @@ struct contact_search {
   template <class Block, class Compute>
   COLLIDE_HD_INLINE void consider_all(Block& block, scratch<Block>& s, std::uint32_t n, Compute const& compute) const {
     auto& queue = s.queues.contacts;
-    for (std::uint32_t base = 0; base < n; base += Block::lanes) {
-      typename Block::template per_lane<contact<S>> found;
-      typename Block::template per_lane<std::uint64_t> key;
-      block.each([&](int lane) {
-        std::uint32_t const i = base + static_cast<std::uint32_t>(lane);
-        if (lane == 0) queue.size = 0;
-        key[lane] = no_contact;
-        if (i < n) key[lane] = compute(s.particles[queue.particles[i]], queue.triangles[i], i, found[lane]);
+    for (std::uint32_t base = 0; base < n; base += Block::num_threads) {
+      typename Block::template thread_private<contact<S>> found;
+      typename Block::template thread_private<std::uint64_t> key;
+      block.for_each_thread([&](int thread_rank) {
+        std::uint32_t const i = base + static_cast<std::uint32_t>(thread_rank);
+        if (thread_rank == 0) queue.size = 0;
+        key[thread_rank] = no_contact;
+        if (i < n)
+          key[thread_rank] = compute(s.particles[queue.particles[i]], queue.triangles[i], i, found[thread_rank]);
       });
-      block.each([&](int lane) {
-        if (key[lane] == no_contact) return;
-        active& a = s.particles[queue.particles[base + static_cast<std::uint32_t>(lane)]];
-        if (key[lane] == a.best_key) a.set_best(found[lane]);
+      block.for_each_thread([&](int thread_rank) {
+        if (key[thread_rank] == no_contact) return;
+        active& a = s.particles[queue.particles[base + static_cast<std::uint32_t>(thread_rank)]];
+        if (key[thread_rank] == a.best_key) a.set_best(found[thread_rank]);
       });
     }
   }
@@ -293,7 +298,7 @@ struct contact_search {
     if (!is_sure && !resolve<NarrowPhase>(t, s)) return no_contact;
     S time = 0;
     if constexpr (is_swept) time = key_time(stopping_time<NarrowPhase>::of(t, s));
-    found = contact_here(t, sphere_at(s, time));
+    found = relaxed_contact(t, sphere_at(s, time));
     found.triangle = number;
     if constexpr (is_swept) face_against(found, s.displacement);
     return consider<Block>(a, time, found);
@@ -308,7 +313,7 @@ struct contact_search {
       if (!a.is_approaching(c.normal) && !(time == 0 && a.overlaps(c.depth))) return no_contact;
     }
     std::uint64_t const key = contact_key(time, c);
-    if constexpr (Block::lanes > 1) {
+    if constexpr (Block::num_threads > 1) {
       fetch_add(&a.candidate_count, 1u);
       fetch_min(&a.best_key, key);
     } else {

@@ -4,7 +4,7 @@
 
 #include <collide/detail/simulation/particle.hpp>
 #include <collide/effect.hpp>
-#include <collide/velocity_verlet.hpp>
+#include <collide/integrators.hpp>
 
 namespace collide::detail {
 
@@ -31,16 +31,16 @@ struct shares_of {
   using type = columns<>;
 };
 template <class E>
-struct shares_of<E, std::void_t<typename E::shares>> {
-  using type = typename E::shares;
+struct shares_of<E, std::void_t<typename E::optional_writes>> {
+  using type = typename E::optional_writes;
 };
 template <class E, class = void>
 struct follows_of {
   using type = effects<>;
 };
 template <class E>
-struct follows_of<E, std::void_t<typename E::follows>> {
-  using type = typename E::follows;
+struct follows_of<E, std::void_t<typename E::runs_after>> {
+  using type = typename E::runs_after;
 };
 
 /// A particle as an effect sees it: with the columns that it names and no others.
@@ -59,9 +59,10 @@ class particle_access {
   COLLIDE_HD_INLINE decltype(auto) operator[](C) const {
     constexpr bool writes =
         contains<typename writes_of<Effect>::type, C> || (contains<typename shares_of<Effect>::type, C> && has<C>);
-    static_assert(writes || contains<typename reads_of<Effect>::type, C>,
-                  "collide: an effect may use a column only if it names it in its reads or writes, or in its shares "
-                  "and the scene has it");
+    static_assert(
+        writes || contains<typename reads_of<Effect>::type, C>,
+        "collide: an effect may use a column only if it names it in its reads or writes, or in its optional_writes "
+        "and the scene has it");
     if constexpr (writes) {
       return static_cast<column_value<C, scalar>&>(p_[C{}]);
     } else {
@@ -88,8 +89,8 @@ using archetype_access = particle_access<E, archetype<E, S>>;
 template <class E, class S, class = void>
 struct skips_in : std::false_type {};
 template <class E, class S>
-struct skips_in<E, S,
-                std::void_t<decltype(std::declval<E const&>().skips(std::declval<archetype_access<E, S> const&>()))>>
+struct skips_in<
+    E, S, std::void_t<decltype(std::declval<E const&>().is_inactive(std::declval<archetype_access<E, S> const&>()))>>
     : std::true_type {};
 template <class E, class S, class = void>
 struct accelerates_in : std::false_type {};
@@ -101,35 +102,35 @@ template <class E, class S, class = void>
 struct touches_in : std::false_type {};
 template <class E, class S>
 struct touches_in<E, S,
-                  std::void_t<decltype(std::declval<E const&>().touch(
-                      std::declval<archetype_access<E, S>&>(), std::declval<touching<S>&>(), S{}))>> : std::true_type {
-};
+                  std::void_t<decltype(std::declval<E const&>().on_mesh_contact(
+                      std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
+    : std::true_type {};
 template <class E, class S, class = void>
 struct settles_in : std::false_type {};
 template <class E, class S>
 struct settles_in<E, S,
-                  std::void_t<decltype(std::declval<E const&>().after_touch(
-                      std::declval<archetype_access<E, S>&>(), std::declval<touching<S>&>(), S{}))>> : std::true_type {
-};
+                  std::void_t<decltype(std::declval<E const&>().after_mesh_contact(
+                      std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
+    : std::true_type {};
 template <class E, class S, class = void>
 struct meets_in : std::false_type {};
 template <class E, class S>
 struct meets_in<E, S,
-                std::void_t<decltype(std::declval<E const&>().meet(
+                std::void_t<decltype(std::declval<E const&>().on_pair_contact(
                     std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
                     std::declval<archetype_access<E, S> const&>(), S{}))>> : std::true_type {};
 template <class E, class S, class = void>
 struct disturbs_in : std::false_type {};
 template <class E, class S>
 struct disturbs_in<E, S,
-                   std::void_t<decltype(std::declval<E const&>().disturb(
+                   std::void_t<decltype(std::declval<E const&>().try_wake(
                        std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>()))>>
     : std::true_type {};
 template <class E, class S, class = void>
 struct finishes_in : std::false_type {};
 template <class E, class S>
-struct finishes_in<E, S,
-                   std::void_t<decltype(std::declval<E const&>().finish(std::declval<archetype_access<E, S>&>(), S{}))>>
+struct finishes_in<
+    E, S, std::void_t<decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
 template <class E, class Space, class State, class S, class = void>
 struct begins_in : std::false_type {};
@@ -143,11 +144,11 @@ struct begins_in<
 template <class E, class S>
 inline constexpr bool touches_mesh_in = touches_in<E, S>::value || settles_in<E, S>::value;
 
-/// An integrator is named in the same list; see velocity_verlet.hpp.
+/// An integrator is named in the same list; see integrators.hpp.
 template <class E, class = void>
 struct is_integrator : std::false_type {};
 template <class E>
-struct is_integrator<E, std::void_t<decltype(E::before), decltype(E::after)>> : std::true_type {};
+struct is_integrator<E, std::void_t<decltype(E::kick_before), decltype(E::kick_after)>> : std::true_type {};
 
 /// True for what may be in a simulation's list.
 template <class E, class Space, class S>
@@ -264,20 +265,20 @@ struct effect_list : effect_slot<E>... {
     (accelerate_by<E>(p, dt), ...);
   }
   template <class P>
-  COLLIDE_HD_INLINE void touch(P& p, touching<S>& t, S dt) const {
+  COLLIDE_HD_INLINE void on_mesh_contact(P& p, mesh_contact<S>& t, S dt) const {
     (touch_by<E>(p, t, dt), ...);
     (settle_by<E>(p, t, dt), ...);
   }
   template <class P>
-  COLLIDE_HD_INLINE void meet(P& p, P& self, P& other, S dt) const {
+  COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
     (meet_by<E>(p, self, other, dt), ...);
   }
   template <class P>
-  COLLIDE_HD_INLINE void disturb(P& p, P& other) const {
+  COLLIDE_HD_INLINE void try_wake(P& p, P& other) const {
     (disturb_by<E>(p, other), ...);
   }
   template <class P>
-  COLLIDE_HD_INLINE void finish([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+  COLLIDE_HD_INLINE void end_step([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     (finish_by<E>(p, dt), ...);
   }
 
@@ -286,7 +287,7 @@ struct effect_list : effect_slot<E>... {
   COLLIDE_HD_INLINE bool skipped_by([[maybe_unused]] P& p) const {
     if constexpr (skips_in<F, S>::value) {
       particle_access<F, P> const seen(p);
-      return of<F>().skips(seen);
+      return of<F>().is_inactive(seen);
     } else {
       return false;
     }
@@ -299,18 +300,19 @@ struct effect_list : effect_slot<E>... {
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void touch_by([[maybe_unused]] P& p, [[maybe_unused]] touching<S>& t, [[maybe_unused]] S dt) const {
+  COLLIDE_HD_INLINE void touch_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
+                                  [[maybe_unused]] S dt) const {
     if constexpr (touches_in<F, S>::value) {
       particle_access<F, P> seen(p);
-      of<F>().touch(seen, t, dt);
+      of<F>().on_mesh_contact(seen, t, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void settle_by([[maybe_unused]] P& p, [[maybe_unused]] touching<S>& t,
+  COLLIDE_HD_INLINE void settle_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
                                    [[maybe_unused]] S dt) const {
     if constexpr (settles_in<F, S>::value) {
       particle_access<F, P> seen(p);
-      of<F>().after_touch(seen, t, dt);
+      of<F>().after_mesh_contact(seen, t, dt);
     }
   }
   template <class F, class P>
@@ -319,7 +321,7 @@ struct effect_list : effect_slot<E>... {
     if constexpr (meets_in<F, S>::value) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_self(self), seen_other(other);
-      of<F>().meet(seen, seen_self, seen_other, dt);
+      of<F>().on_pair_contact(seen, seen_self, seen_other, dt);
     }
   }
   template <class F, class P>
@@ -327,14 +329,14 @@ struct effect_list : effect_slot<E>... {
     if constexpr (disturbs_in<F, S>::value) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_other(other);
-      of<F>().disturb(seen, seen_other);
+      of<F>().try_wake(seen, seen_other);
     }
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void finish_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (finishes_in<F, S>::value) {
       particle_access<F, P> seen(p);
-      of<F>().finish(seen, dt);
+      of<F>().end_step(seen, dt);
     }
   }
 };

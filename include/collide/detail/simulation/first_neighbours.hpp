@@ -23,14 +23,14 @@ struct first_neighbours {
       return;
     }
     std::uint32_t at = size;
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     while (at > 0 && numbers[at - 1] > number) --at;
     if (at > 0 && numbers[at - 1] == number) return;
     if (size == Room) {
       complete = false;
       --size;
     }
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     for (std::uint32_t k = size++; k > at; --k) {
       numbers[k] = numbers[k - 1];
       places[k] = places[k - 1];

@@ -44,7 +44,7 @@ struct integration {
       serial_block<N, 0> alone(block.index());
       scratch<serial_block<N, 0>> none;
       if (first < context.state.size) advance_active<N>(alone, none, first, filter);
-    } else if (Block::row_lanes > 1 || first < context.state.size) {
+    } else if (Block::warp_size > 1 || first < context.state.size) {
       bool const inactive[N] = {};
       integrated p[N];
       load(block, s, p, first);
@@ -70,7 +70,7 @@ struct integration {
       if (inactive[k] || near[k]) continue;
       if constexpr (is_swept) p[k][position{}] += p[k][velocity{}] * dt;
       if constexpr (Context::kick_after != 0) effects.accelerate(p[k], Context::kick_after * dt);
-      effects.finish(p[k], dt);
+      effects.end_step(p[k], dt);
     }
     for (int k = 0; k < N; k += pack) {
       state.store_group(block, s, p + k, first + static_cast<std::size_t>(k),
@@ -80,12 +80,13 @@ struct integration {
 
   /// True if `marks` alone tell whether a particle can touch a triangle.
   COLLIDE_HD_INLINE bool is_single_cell() const {
-    return has_one_radius && context.triangles.is_simple(larger(context.state.common_radius, context.least_radius));
+    return has_one_radius &&
+           context.triangles.has_single_cell_lookup(larger(context.state.common_radius, context.least_radius));
   }
 
   /// Sets near[k] for those of some particles that may touch the mesh.
   template <int N>
-  COLLIDE_HD_INLINE void test_occupancy(bool single_cell, cell_marks<S> const& marks, integrated const (&p)[N],
+  COLLIDE_HD_INLINE void test_occupancy(bool single_cell, occupancy_view<S> const& marks, integrated const (&p)[N],
                                         bool (&near)[N]) const {
     if (!single_cell || !test_marks(marks, p, near)) test_each(p, near);
   }
@@ -93,7 +94,7 @@ struct integration {
   /// Calls enqueue(number) for those of `N` particles in memory from number `first` on that may touch the mesh, from
   /// where they are now.
   template <int N, class Enqueue>
-  void enqueue_marked(std::size_t first, cell_marks<S> const& marks, Enqueue const& enqueue) const {
+  void enqueue_marked(std::size_t first, occupancy_view<S> const& marks, Enqueue const& enqueue) const {
     auto const& state = context.state;
     sphere_batch<S, N> batch;
     batch.load(
@@ -101,7 +102,7 @@ struct integration {
         first);
     auto const places = marks.places_of(batch.x, batch.y, batch.z);
     for (int k = 0; k < N; ++k) {
-      if (places.inside[k] == 0 || !marks.is_marked(places.cells[k])) continue;
+      if (places.inside[k] == 0 || !marks.is_occupied(places.cells[k])) continue;
       enqueue(static_cast<id>(first) + static_cast<id>(k));
     }
   }
@@ -134,7 +135,7 @@ struct integration {
   /// Of one radius and in one grid of one level: without branches, for the CPU's vector unit, as which particles are
   /// near the mesh is not to be foreseen. False if it is not known: one of them goes a long way.
   template <int N>
-  COLLIDE_HD_INLINE bool test_marks(cell_marks<S> const& marks, integrated const (&p)[N], bool (&near)[N]) const {
+  COLLIDE_HD_INLINE bool test_marks(occupancy_view<S> const& marks, integrated const (&p)[N], bool (&near)[N]) const {
     moving_batch<S, N> batch;
     for (int k = 0; k < N; ++k) {
       vec3<S> const& c = p[k][position{}];
@@ -145,7 +146,7 @@ struct integration {
       }
     }
     if constexpr (is_swept) {
-      return marks.mark_ways(batch, near);
+      return marks.test_swept(batch, near);
     } else {
       marks.mark(marks.places_of(batch.x, batch.y, batch.z), near);
       return true;
@@ -159,7 +160,7 @@ struct integration {
     decltype(shape_of(p[0])) shapes[N];
     for (int k = 0; k < N; ++k) shapes[k] = shape_of(p[k]);
     std::uint32_t found = 0;
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     for (int k = 0; k < N; ++k) found |= triangles.empty(shapes[k]) ? 0u : 1u << k;
     for (int k = 0; k < N; ++k) near[k] = (found >> k & 1) != 0;
   }

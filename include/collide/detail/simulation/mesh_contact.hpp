@@ -17,28 +17,28 @@ namespace detail {
 /// The contact of a sphere and a finite triangle. Unlike that of `contact_of`, the depth of a sphere that just touches
 /// is known to within the rounding of doubles only: resting spheres do just that, all the time.
 template <class S>
-COLLIDE_HD contact<S> contact_here(triangle<S> const& t, sphere<S> const& s) {
-  return rounded<S>(contact_between(widened(t), widened(s), clear_length, false));
+COLLIDE_HD contact<S> relaxed_contact(triangle<S> const& t, sphere<S> const& s) {
+  return narrow_to<S>(contact_of_pair(widened(t), widened(s), well_conditioned_length, false));
 }
 
-/// Whether a sphere touches a finite triangle, and the contact that `contact_here` tells if so, where doubles suffice
-/// for both; `sure` says that they touch. Calls nothing. The foot that it finds is a point of the triangle, so a depth
-/// that is clear means a hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but not by
-/// much: docs/numerics.md.
+/// Whether a sphere touches a finite triangle, and the contact that `relaxed_contact` tells if so, where doubles
+/// suffice for both; `sure` says that they touch. Calls nothing. The foot that it finds is a point of the triangle, so
+/// a depth that is clear means a hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but
+/// not by much: docs/numerics.md.
 template <class S>
-COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
+COLLIDE_HD_INLINE verdict relaxed_contact_fast(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
   constexpr double clear_depth = 0x1p-40, clear_gap = 0x1p-32;
   sphere<S> const centre{s.centre, S(0)};
-  local_triangle<double> const l = normalised(relative<double>(t, centre), t, centre);
+  local_triangle<double> const l = to_unit_range(to_local<double>(t, centre), t, centre);
   bool apart = false;
   auto const clear = [&](double distance, double depth) {
     apart = !sure && depth < 0;
-    return distance >= clear_length && (sure || depth >= clear_depth || -depth * distance >= clear_gap);
+    return distance >= well_conditioned_length && (sure || depth >= clear_depth || -depth * distance >= clear_gap);
   };
   closest_point<double> foot;
   measured_contact m;
-  if (!measure_if_clear(l, static_cast<double>(s.radius), clear, foot, m)) return verdict::unsure;
-  found = contact_at_foot<S>(m, foot.point, l.scale, s.centre.template cast<double>());
+  if (!measure_if_well_conditioned(l, static_cast<double>(s.radius), clear, foot, m)) return verdict::uncertain;
+  found = contact_at_point<S>(m, foot.point, l.scale, s.centre.template cast<double>());
   return apart ? verdict::miss : verdict::hit;
 }
 
@@ -47,7 +47,7 @@ COLLIDE_HD_INLINE verdict quick_contact_here(triangle<S> const& t, sphere<S> con
 template <class S>
 COLLIDE_HD_INLINE sphere<S> sphere_at(moving_sphere<S> const& s, S time) {
   vec3<S> at;
-  for (int k = 0; k < 3; ++k) at[k] = multiply_add(s.displacement[k], time, s.centre[k]);
+  for (int k = 0; k < 3; ++k) at[k] = fma_rn(s.displacement[k], time, s.centre[k]);
   return {at, s.radius};
 }
 template <class S>
@@ -60,7 +60,7 @@ COLLIDE_HD_INLINE sphere<S> const& sphere_at(sphere<S> const& s, S) {
 /// that their times could not be told apart without exact arithmetic.
 template <class S>
 COLLIDE_HD_NOINLINE S stopping_time_here(triangle<S> const& t, moving_sphere<S> const& s) {
-  return rounded_down<S>(first_contact(widened(t), widened(s), time_bits<S>, false));
+  return rounded_down<S>(refine_time_of_impact(widened(t), widened(s), time_bits<S>, false));
 }
 
 /// When a sphere of a narrow phase stops: of one other than `karabassi_swept`, when that says.

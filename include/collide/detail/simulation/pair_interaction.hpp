@@ -28,12 +28,12 @@ struct pair_interaction {
     COLLIDE_HD_INLINE explicit pair_state(interaction const& p) : self(p), changed(p) {}
   };
 
-  COLLIDE_HD_INLINE void meet(pair_state& p, std::uint32_t place) const {
+  COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     if (!is_skipped(p.self)) {
-      effects.meet(p.changed, p.self, other, dt);
+      effects.on_pair_contact(p.changed, p.self, other, dt);
     } else if (!is_skipped(other)) {
-      effects.disturb(p.changed, other);
+      effects.try_wake(p.changed, other);
     } else {
       return;
     }
@@ -66,7 +66,7 @@ struct interact_listed : pair_interaction<S, Effects> {
     typename pair_interaction<S, Effects>::pair_state p(order.load(i));
     packed_sphere<S> const own = order.spheres[i];
     for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other) {
-      if (order.within_skin(own, other, S(0))) this->meet(p, place);
+      if (order.within_skin(own, other, S(0))) this->interact(p, place);
     });
     this->store(p);
   }
@@ -82,7 +82,7 @@ struct interact_listed : pair_interaction<S, Effects> {
     };
     std::uint32_t next = order.list(0, self), behind = item(next, 1);
     packed_sphere<S> next_sphere = order.spheres[next];
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     for (std::uint32_t n = 2; next != self; ++n) {
       std::uint32_t const place = next;
       packed_sphere<S> const sphere = next_sphere;
@@ -106,12 +106,12 @@ struct interact_overflowed : pair_interaction<S, Effects> {
     id last = 0;
     for (bool first = true, complete = false; !complete; first = false) {
       first_neighbours<16> near;
-      order.each_near(self, S(0), [&](std::uint32_t k, int row) {
+      order.for_each_overlapping(self, S(0), [&](std::uint32_t k, int row) {
         id const number = order.numbers[k];
         if ((first || number > last) && order.is_in_row(k, self, row)) near.add(number, k);
       });
-      COLLIDE_ROLLED
-      for (std::uint32_t k = 0; k < near.size; ++k) this->meet(p, near.places[k]);
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t k = 0; k < near.size; ++k) this->interact(p, near.places[k]);
       complete = near.complete;
       if (!complete) last = near.numbers[near.size - 1];
     }

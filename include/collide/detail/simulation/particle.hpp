@@ -103,7 +103,7 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
 
   /// Scratch memory of a block that reads and writes groups. Of all columns, vectors take the most.
   template <class Block>
-  using group_scratch = typename Block::template row_scratch<four<S>, 3>;
+  using group_scratch = typename Block::template warp_exchange_storage<four<S>, 3>;
 
   /// A group's values of a column, and of all columns of a list, as they are read.
   template <class D>
@@ -115,7 +115,7 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   template <class... D>
   struct group_of<columns<D...>> : quads<D>... {};
 
-  /// A group of particles from `first` on, which is a multiple of their number; see `load_row` in block.hpp.
+  /// A group of particles from `first` on, which is a multiple of their number; see `load_striped` in block.hpp.
   template <class Block, class... D>
   COLLIDE_HD_INLINE void load_group(Block& block, group_scratch<Block>& s, particle<S, columns<D...>>* p,
                                     std::size_t first) const {
@@ -173,12 +173,13 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
 
   template <class Block, class D, class Q, int N>
   COLLIDE_HD_INLINE void load_values(Block& block, D, Q (&read)[N], std::size_t first) const {
-    block.load_row(reinterpret_cast<Q const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group), read);
+    block.load_striped(reinterpret_cast<Q const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
+                       read);
   }
 
   template <class Block, class D, class Q, int N, class P>
   COLLIDE_HD_INLINE void take_values(Block& block, group_scratch<Block>& s, D, Q (&read)[N], P* p) const {
-    block.exchange_row(s, read);
+    block.striped_to_blocked(s, read);
     for (int k = 0; k < particles_per_group; ++k) {
       for (int c = 0; c < N; ++c) column_layout<D, S>::at(p[k][D{}], c) = read[(k * N + c) / 4].v[(k * N + c) % 4];
     }
@@ -193,8 +194,8 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
     for (int k = 0; k < particles_per_group; ++k) {
       for (int c = 0; c < width; ++c) write[(k * width + c) / 4].v[(k * width + c) % 4] = layout::at(p[k][D{}], c);
     }
-    block.store_row(s, reinterpret_cast<quad*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
-                    write);
+    block.store_transposed(s, reinterpret_cast<quad*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
+                           write);
   }
 };
 

@@ -27,7 +27,7 @@ struct init_particles {
       }
     }
     if constexpr (contains<All, radius>) p[radius{}] = there ? spheres.radius(i) : spheres.common_radius();
-    if constexpr (contains<All, present>) p[present{}] = there;
+    if constexpr (contains<All, alive>) p[alive{}] = there;
     state.store(p, i, All{});
   }
 };

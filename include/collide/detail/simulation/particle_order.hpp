@@ -47,7 +47,7 @@ struct sorted_particles {
   using copied = typename Effects::interaction_copies;
   using interaction = particle<S, typename Effects::interaction>;
   using cell = typename spatial_hash<S>::cell;
-  static constexpr bool has_absent = contains<all, present>;
+  static constexpr bool has_absent = contains<all, alive>;
 
   spatial_hash<S> cells;
   std::uint32_t* ends;  ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
@@ -55,7 +55,7 @@ struct sorted_particles {
   id* numbers;
   packed_sphere<S>* spheres;                        ///< as they are in this step
   reference<S, contains<all, radius>>* references;  ///< as they were when the lists were made
-  column_element<present, S>* known;                ///< whether particles are in the order, by numbers
+  column_element<alive, S>* known;                  ///< whether particles are in the order, by numbers
   particle_state<S, copied> copies;
 
   static constexpr std::uint32_t listed = 16;  ///< the most neighbours that a list has
@@ -101,10 +101,10 @@ struct sorted_particles {
   /// f(place, row) for those less than `skin` away from particle i, of which `is_in_row` must still be asked. That
   /// takes a while, in which threads that run together would wait for the one that has found something.
   template <class F>
-  COLLIDE_HD_INLINE void each_near(std::uint32_t i, S skin, F const& f) const {
+  COLLIDE_HD_INLINE void for_each_overlapping(std::uint32_t i, S skin, F const& f) const {
     packed_sphere<S> const self = spheres[i];
     cell const here = cell_of(i);
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     for (int row = 0; row < 9; ++row) {
       cell const from = first_of(here, row);
       std::int32_t const together = smaller(3, 16 - (from.x & 15));  // those in the same block follow each other
@@ -117,7 +117,7 @@ struct sorted_particles {
         both += ends[rest + static_cast<std::uint32_t>(3 - together)] - jump;
         jump -= size;
       }
-      COLLIDE_ROLLED
+      COLLIDE_NO_UNROLL
       for (std::uint32_t n = 0; n < both; ++n) {
         std::uint32_t const k = n + (n < size ? begin : jump);
         if (within_skin(self, spheres[k], skin) && k != i) f(k, row);

@@ -27,7 +27,7 @@ struct step_kernel {
   static constexpr int items = particles_per_group;
   /// Waits for memory, mostly; a lane alone resolves contacts in many registers.
   template <class Block>
-  static constexpr int residency = !Context::touches ? 1 : (Block::lanes > 1 ? 3 : 2);
+  static constexpr int residency = !Context::touches ? 1 : (Block::num_threads > 1 ? 3 : 2);
 
   Context context;
   std::size_t blocks;
@@ -35,15 +35,15 @@ struct step_kernel {
   /// True if a block has many tiles. It may have more particles near the mesh than its queue has room for, which need
   /// `context.overflow`.
   template <class Block>
-  static constexpr bool has_many_tiles = Context::touches&& Block::lanes > 1;
+  static constexpr bool has_many_tiles = Context::touches&& Block::num_threads > 1;
 
   /// A tile: the particles of lanes that read and write together. One that is a block's only one is all of the block's.
   template <class Block>
-  static constexpr std::uint32_t tile_lanes = has_many_tiles<Block> ? Block::row_lanes : Block::lanes;
+  static constexpr std::uint32_t tile_lanes = has_many_tiles<Block> ? Block::warp_size : Block::num_threads;
   template <class Block>
   static constexpr std::uint32_t tile = tile_lanes<Block>* Block::items;
   template <class Block>
-  static constexpr std::uint32_t tiles_together = Block::lanes / tile_lanes<Block>;  ///< of a block
+  static constexpr std::uint32_t tiles_together = Block::num_threads / tile_lanes<Block>;  ///< of a block
 
   template <class Block>
   static COLLIDE_HD_INLINE std::uint32_t tile_count(std::size_t particles) {
@@ -52,7 +52,7 @@ struct step_kernel {
 
   /// How many blocks there are to be where `resident` can be at work at a time.
   template <class Block>
-  static std::size_t blocks_for(std::size_t particles, std::size_t resident) {
+  static std::size_t grid_size(std::size_t particles, std::size_t resident) {
     std::size_t const tiles = tile_count<Block>(particles);
     return has_many_tiles<Block> ? smaller(tiles, resident) : tiles;
   }
@@ -69,7 +69,7 @@ struct step_kernel {
       typename integration_type::template scratch<Block> packs;
       typename response_type::template scratch<Block> contacts;
     };
-    cell_marks<S> marks;
+    occupancy_view<S> marks;
     bool single_cell;  ///< `marks` tell of all particles whether they may touch the mesh
     std::uint32_t queue_size;
     id queue[capacity];  ///< the first of those that may; the others are in `context.overflow`
@@ -79,7 +79,7 @@ struct step_kernel {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    static_assert(Block::row_lanes == 1 || particle_padding % tile<Block> == 0, "there is room for whole tiles");
+    static_assert(Block::warp_size == 1 || particle_padding % tile<Block> == 0, "there is room for whole tiles");
     if constexpr (Context::touches) {
       advance_and_enqueue(block, s);
       resolve_queue(block, s);
@@ -117,9 +117,9 @@ struct step_kernel {
 
   /// The first particle of a lane in a tile that exists.
   template <class Block>
-  COLLIDE_HD_INLINE std::uint32_t first_of(int lane, std::uint32_t tile_number, std::uint32_t tiles) const {
+  COLLIDE_HD_INLINE std::uint32_t first_of(int thread_rank, std::uint32_t tile_number, std::uint32_t tiles) const {
     return (context.reverse_order ? tiles - 1 - tile_number : tile_number) * tile<Block> +
-           static_cast<std::uint32_t>(lane) % tile_lanes<Block> * Block::items;
+           static_cast<std::uint32_t>(thread_rank) % tile_lanes<Block> * Block::items;
   }
 
   /// Where a block has the number of its `i`-th particle for which its queue has no room: where its own tiles would be.
@@ -142,8 +142,8 @@ struct step_kernel {
   template <class Block>
   COLLIDE_HD_INLINE void advance_and_enqueue(Block& block, scratch<Block>& s) const {
     integration_type const integrate{context};
-    block.each([&](int lane) {
-      if (lane != 0) return;
+    block.for_each_thread([&](int thread_rank) {
+      if (thread_rank != 0) return;
       s.queue_size = 0;
       s.single_cell = integrate.is_single_cell();
       s.marks = context.triangles.marks();
@@ -153,7 +153,7 @@ struct step_kernel {
       if (s.single_cell) {
         advance_tiles<pack>(block, s, no_filter{});
         auto const first = first_of<Block>(0, tile_index(block, 0), tile_count<Block>(context.state.size));
-        vectorised([&] { integrate.template enqueue_marked<Block::items>(first, s.marks, enqueue_one); });
+        multiversioned([&] { integrate.template enqueue_marked<Block::items>(first, s.marks, enqueue_one); });
         return;
       }
     }
@@ -173,17 +173,17 @@ struct step_kernel {
   COLLIDE_HD_INLINE void advance_tiles(Block& block, scratch<Block>& s, Filter const& filter) const {
     integration_type const integrate{context};
     std::uint32_t const tiles = tile_count<Block>(context.state.size);
-    block.each([&](int lane) {
-      std::uint32_t k = static_cast<std::uint32_t>(lane) / tile_lanes<Block>;
+    block.for_each_thread([&](int thread_rank) {
+      std::uint32_t k = static_cast<std::uint32_t>(thread_rank) / tile_lanes<Block>;
       if constexpr (prefetches<Block>) {
-        advance_with_prefetch(block, s, lane, tile_index(block, k), tiles, filter);
+        advance_with_prefetch(block, s, thread_rank, tile_index(block, k), tiles, filter);
       } else if constexpr (has_many_tiles<Block>) {
-        COLLIDE_ROLLED
+        COLLIDE_NO_UNROLL
         for (std::uint32_t i; (i = tile_index(block, k)) < tiles; k += tiles_together<Block>) {
-          integrate.template advance<N>(block, s.packs, first_of<Block>(lane, i, tiles), filter);
+          integrate.template advance<N>(block, s.packs, first_of<Block>(thread_rank, i, tiles), filter);
         }
       } else {
-        std::uint32_t const first = first_of<Block>(lane, tile_index(block, 0), tiles);
+        std::uint32_t const first = first_of<Block>(thread_rank, tile_index(block, 0), tiles);
         for (int n = 0; n < Block::items; n += N) {
           integrate.template advance<N>(block, s.packs, first + static_cast<std::uint32_t>(n), filter);
         }
@@ -193,14 +193,14 @@ struct step_kernel {
 
   /// Moves a lane's particles of tiles from the `i`-th on; while it moves some, the next ones are on their way.
   template <class Block, class Filter>
-  COLLIDE_HD_INLINE void advance_with_prefetch(Block& block, scratch<Block>& s, int lane, std::uint32_t i,
+  COLLIDE_HD_INLINE void advance_with_prefetch(Block& block, scratch<Block>& s, int thread_rank, std::uint32_t i,
                                                std::uint32_t tiles, Filter const& filter) const {
     integration_type const integrate{context};
     // in place of a tile that does not exist, the last one is read
-    auto const first = [&](std::uint32_t t) { return first_of<Block>(lane, smaller(t, tiles - 1), tiles); };
+    auto const first = [&](std::uint32_t t) { return first_of<Block>(thread_rank, smaller(t, tiles - 1), tiles); };
     typename integration_type::loaded_pack loaded;
     context.state.begin_group(block, loaded, first(i));
-    COLLIDE_ROLLED
+    COLLIDE_NO_UNROLL
     for (std::uint32_t next; i < tiles; i = next) {
       next = i + tiles_together<Block> * static_cast<std::uint32_t>(blocks);
       typename integration_type::integrated p[pack];
@@ -215,7 +215,7 @@ struct step_kernel {
   template <class Block>
   COLLIDE_HD_INLINE void resolve_queue(Block& block, scratch<Block>& s) const {
     constexpr std::uint32_t capacity = scratch<Block>::capacity;
-    std::uint32_t const n = block.shared(s.queue_size);
+    std::uint32_t const n = block.broadcast(s.queue_size);
     if (n == 0) return;
     response_type const response(context);
     std::uint32_t const share = (n - 1) / ((n - 1) / capacity + 1) + 1;

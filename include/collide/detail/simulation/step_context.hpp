@@ -20,10 +20,10 @@ struct step_context {
   using effects_type = Effects;
   using state_type = particle_state<S, typename Effects::all>;
 
-  static constexpr bool is_swept = !at_rest<NarrowPhase, S>;
+  static constexpr bool is_swept = !is_discrete<NarrowPhase, S>;
   static constexpr bool touches = Effects::touches;
   /// The parts of a step's acceleration that come before positions change, and at the end of the step.
-  static constexpr S kick_before = S(Effects::integrator::before), kick_after = S(Effects::integrator::after);
+  static constexpr S kick_before = S(Effects::integrator::kick_before), kick_after = S(Effects::integrator::kick_after);
 
   state_type state;
   Effects effects;

@@ -63,7 +63,7 @@ class verlet_list {
 
   /// One pass of `meet` over all pairs.
   template <class Space>
-  void meet(Space& space, particle_state<S, typename Effects::all> const& state, Effects const& effects, S dt) {
+  void interact(Space& space, particle_state<S, typename Effects::all> const& state, Effects const& effects, S dt) {
     order const o{cells_,          ends_.data(),
                   header_.data(),  numbers_.data(),
                   spheres_.data(), references_.data(),
@@ -97,7 +97,7 @@ class verlet_list {
   buffer<id> numbers_;
   buffer<packed_sphere<S>> spheres_;
   buffer<reference<S, contains<typename Effects::all, radius>>> references_;
-  buffer<column_element<present, S>> known_;
+  buffer<column_element<alive, S>> known_;
   column_buffers<S, typename Effects::interaction_copies> memory_;
 };
 

@@ -16,11 +16,11 @@ namespace collide::detail {
 
 /// Remembers the space that an array lives in, whatever its type, to copy the array to the host later.
 template <class T>
-class downloader {
+class host_copier {
  public:
-  downloader() = default;
+  host_copier() = default;
   template <class Space>
-  explicit downloader(Space const& space) {
+  explicit host_copier(Space const& space) {
     static_assert(std::is_trivially_copyable<Space>::value && sizeof(Space) <= sizeof(space_),
                   "collide: an execution space is a small trivially copyable value");
     new (space_) Space(space);
@@ -70,7 +70,7 @@ class kept_in_space {
 
 /// Numbers the hits of a pass. `sum` is 0 before and after it, so that nothing need set it to 0 first; `total` is how
 /// many there were.
-struct tally {
+struct hit_counter {
   std::uint64_t* sum;
   std::uint64_t* total;
 };
@@ -78,12 +78,12 @@ struct tally {
 /// What a query writes of its hits, and all that it knows of a built-in sink: so a kernel is compiled once for all of
 /// them. What a sink does not want is null, or no room.
 struct output {
-  tally count;             ///< of all hits, also of those that find no room
+  hit_counter count;       ///< of all hits, also of those that find no room
   pair* pairs;             ///< hits, one after the other
   std::uint64_t capacity;  ///< how many pairs there is room for
   std::uint8_t* flags;     ///< one per sphere, set to 1 where it touches anything
 
-  COLLIDE_HD_INLINE std::uint64_t reserve(std::uint64_t n) const {
+  COLLIDE_HD_INLINE std::uint64_t allocate(std::uint64_t n) const {
     return count.sum != nullptr ? fetch_add(count.sum, n) : 0;
   }
   template <class Hit>
@@ -91,7 +91,7 @@ struct output {
     if (slot < capacity) pairs[slot] = {h.sphere, h.triangle};
     if (flags != nullptr) store_relaxed(flags + h.sphere, std::uint8_t{1});
   }
-  COLLIDE_HD_INLINE void finish() const {
+  COLLIDE_HD_INLINE void end_pass() const {
     if (count.sum == nullptr) return;
     *count.total = fetch_add(count.sum, std::uint64_t{0});
     *count.sum = 0;
@@ -99,14 +99,14 @@ struct output {
 };
 
 /// Flags are complete as they are.
-inline bool wants_finish(output const& o) { return o.count.sum != nullptr; }
+inline bool has_end_pass(output const& o) { return o.count.sum != nullptr; }
 
 /// The memory of a tally.
-class tally_memory {
+class hit_counter_buffer {
  public:
   /// For a pass that is put on the space's stream next.
   template <class Space>
-  tally begin(Space& space) {
+  hit_counter begin(Space& space) {
     bool const is_zero = numbers_.data() != nullptr && zero_in_ == space.resource();
     std::uint64_t* const numbers = numbers_.reserve(space.resource(), 2);
     if (!is_zero) space.fill(numbers, 0, 2 * sizeof *numbers);
@@ -128,7 +128,7 @@ class tally_memory {
 };
 
 /// Collects all colliding pairs, in an array of its own that grows until they fit or in the caller's of fixed size.
-class collector {
+class pair_collector {
  public:
   /// Runs the query into `to[0 .. capacity)`.
   template <class Space, class Query>
@@ -164,7 +164,7 @@ class collector {
   std::uint64_t total() const { return total_; }
 
  private:
-  tally_memory total_of_;
+  hit_counter_buffer total_of_;
   buffer<pair> own_;
   sort_memory sort_memory_;
   pair* data_ = nullptr;

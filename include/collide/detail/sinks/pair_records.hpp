@@ -14,7 +14,7 @@ struct compute_records {
   pair const* pairs;
   Record* to;
   mesh_view<S> mesh;
-  spheres_of<NarrowPhase, S> spheres;
+  sphere_view_for<NarrowPhase, S> spheres;
   COLLIDE_HD void operator()(std::size_t i) const {
     hit<NarrowPhase, S> const h(pairs[i], mesh, spheres);
     if constexpr (std::is_same<Record, contact<S>>::value) {
@@ -54,7 +54,7 @@ class records : public kept_in_space<Record> {
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: contacts<S> and impacts<S> must have the scalar type of the detector");
-    download_ = downloader<Record>(space);
+    download_ = host_copier<Record>(space);
     collected_.fill(space, query);
     if (order_ == order::canonical) collected_.sort(space, query);
     size_ = collected_.size();
@@ -73,9 +73,9 @@ class records : public kept_in_space<Record> {
   std::size_t size_ = 0;
   order order_;
   bool fixed_ = false;
-  collector collected_;
+  pair_collector collected_;
   buffer<Record> own_;
-  downloader<Record> download_;
+  host_copier<Record> download_;
 };
 
 }  // namespace collide::detail

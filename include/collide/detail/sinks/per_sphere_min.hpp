@@ -11,44 +11,44 @@ namespace collide::detail {
 
 /// Kernel body of `for_each` over spheres: nothing is there yet. Memory of all ones has `no_id` for the triangle
 /// already.
-template <class Entry, class Measure>
+template <class Entry, class Key>
 struct reset_best {
   Entry* to;
   COLLIDE_HD void operator()(std::size_t i) const {
-    auto& number = Measure::number_of(to[i]);
+    auto& number = Key::key_of(to[i]);
     number = std::numeric_limits<std::decay_t<decltype(number)>>::infinity();
   }
 };
 
 /// Kernel body of `for_each` over pairs: the smallest number of each sphere. Numbers are not negative, so they sort
 /// like their bits.
-template <class NarrowPhase, class S, class Entry, class Measure>
-struct find_number {
+template <class NarrowPhase, class S, class Entry, class Key>
+struct reduce_key {
   pair const* pairs;
   Entry* to;
   mesh_view<S> mesh;
-  spheres_of<NarrowPhase, S> spheres;
-  COLLIDE_HD bits_of<S> number(pair p) const { return bits(Measure::of(hit<NarrowPhase, S>(p, mesh, spheres))); }
+  sphere_view_for<NarrowPhase, S> spheres;
+  COLLIDE_HD uint_for<S> number(pair p) const { return to_bits(Key::of(hit<NarrowPhase, S>(p, mesh, spheres))); }
   COLLIDE_HD void operator()(std::size_t i) const {
     pair const p = pairs[i];
-    fetch_min(reinterpret_cast<bits_of<S>*>(&Measure::number_of(to[p.sphere])), number(p));
+    fetch_min(reinterpret_cast<uint_for<S>*>(&Key::key_of(to[p.sphere])), number(p));
   }
 };
 
 /// Kernel body of `for_each` over pairs: the smallest id among the triangles with that number.
-template <class NarrowPhase, class S, class Entry, class Measure>
+template <class NarrowPhase, class S, class Entry, class Key>
 struct find_best {
-  find_number<NarrowPhase, S, Entry, Measure> found;
+  reduce_key<NarrowPhase, S, Entry, Key> found;
   COLLIDE_HD void operator()(std::size_t i) const {
     pair const p = found.pairs[i];
     Entry& best = found.to[p.sphere];
-    if (found.number(p) == bits(Measure::number_of(best))) fetch_min(&best.triangle, p.triangle);
+    if (found.number(p) == to_bits(Key::key_of(best))) fetch_min(&best.triangle, p.triangle);
   }
 };
 
-/// One entry per sphere. `Measure::of(hit)` is the number of a pair, `Measure::number_of(entry)` that of an entry.
-template <class Entry, class S, class Measure>
-class best_of_sphere : public kept_in_space<Entry> {
+/// One entry per sphere. `Key::of(hit)` is the number of a pair, `Key::key_of(entry)` that of an entry.
+template <class Entry, class S, class Key>
+class per_sphere_min : public kept_in_space<Entry> {
  public:
   /// One entry per sphere, in memory of the space.
   Entry const* data() const { return own_.data(); }
@@ -64,22 +64,22 @@ class best_of_sphere : public kept_in_space<Entry> {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: closest<S> and earliest<S> must have the scalar type of the detector");
     using narrow_phase = typename Query::narrow_phase;
-    download_ = downloader<Entry>(space);
+    download_ = host_copier<Entry>(space);
     size_ = query.spheres.size();
     collected_.fill(space, query);
     auto* const to = own_.reserve(space.resource(), size_);
     space.fill(to, 0xff, size_ * sizeof *to);
-    space.for_each(size_, reset_best<Entry, Measure>{to});
-    find_number<narrow_phase, S, Entry, Measure> const step{collected_.data(), to, query.mesh, query.spheres};
+    space.for_each(size_, reset_best<Entry, Key>{to});
+    reduce_key<narrow_phase, S, Entry, Key> const step{collected_.data(), to, query.mesh, query.spheres};
     space.for_each(collected_.size(), step);
-    space.for_each(collected_.size(), find_best<narrow_phase, S, Entry, Measure>{step});
+    space.for_each(collected_.size(), find_best<narrow_phase, S, Entry, Key>{step});
   }
 
  private:
   std::size_t size_ = 0;
-  collector collected_;
+  pair_collector collected_;
   buffer<Entry> own_;
-  downloader<Entry> download_;
+  host_copier<Entry> download_;
 };
 
 }  // namespace collide::detail

@@ -19,16 +19,16 @@ namespace collide::detail {
 /// each(space, spheres, size, f) calls f(chunk, first) for all spheres, `size` of them at a time, the first of them
 /// being number `first`; `size` is from 1 to the number of spheres.
 template <class Space, class Spheres, bool HostMemory = Space::host_accessible>
-class chunks;
+class chunk_streamer;
 
 /// The streamer for spaces that read host memory: chunks are views of it, nothing is copied.
 template <class Space, class Spheres>
-class chunks<Space, Spheres, true> {
+class chunk_streamer<Space, Spheres, true> {
  public:
   template <class F>
-  void each(Space const&, Spheres const& spheres, std::size_t size, F const& f) {
+  void for_each_chunk(Space const&, Spheres const& spheres, std::size_t size, F const& f) {
     for (std::size_t first = 0; first < spheres.size(); first += size) {
-      f(spheres.part(first, std::min(size, spheres.size() - first)), first);
+      f(spheres.subview(first, std::min(size, spheres.size() - first)), first);
     }
   }
 };
@@ -47,32 +47,34 @@ struct cuda_destroy {
 /// The streamer for the CUDA spaces: chunks are copied to the device on a stream of their own, while earlier ones are
 /// queried. The streams wait for each other by events; the host waits for neither.
 template <class Space, class Spheres>
-class chunks<Space, Spheres, false> {
+class chunk_streamer<Space, Spheres, false> {
  public:
-  chunks() {
+  chunk_streamer() {
     cudaStream_t stream = nullptr;  // not blocked by the default stream, which the space's may be
     cuda_check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
     copies_.reset(stream);
   }
 
   template <class F>
-  void each(Space const& space, Spheres const& spheres, std::size_t size, F const& f) {
+  void for_each_chunk(Space const& space, Spheres const& spheres, std::size_t size, F const& f) {
     std::size_t const n = (spheres.size() - 1) / size + 1;
-    std::size_t const room = pieces<Spheres>(spheres.part(0, size)).size();
-    for (std::size_t k = 0; k < std::min(n, places_.size()); ++k) {
-      places_[k].memory.reserve(space.resource(), room);
-      places_[k].free.record(space.stream());  // an earlier query may still read it; memory may come in stream order
+    std::size_t const room = contiguous_ranges<Spheres>(spheres.subview(0, size)).size();
+    for (std::size_t k = 0; k < std::min(n, staging_.size()); ++k) {
+      staging_[k].memory.reserve(space.resource(), room);
+      staging_[k].reusable.record(
+          space.stream());  // an earlier query may still read it; memory may come in stream order
     }
     try {
-      for (std::size_t k = 0, sent = 0; k < n; ++k) {
-        for (; sent < std::min(n, k + places_.size()); ++sent) {
-          std::size_t const first = sent * size;
-          send(places_[sent % places_.size()], spheres.part(first, std::min(size, spheres.size() - first)));
+      for (std::size_t k = 0, submitted = 0; k < n; ++k) {
+        for (; submitted < std::min(n, k + staging_.size()); ++submitted) {
+          std::size_t const first = submitted * size;
+          copy_async(staging_[submitted % staging_.size()],
+                     spheres.subview(first, std::min(size, spheres.size() - first)));
         }
-        place& here = places_[k % places_.size()];
-        here.full.wait(space.stream());
+        staging_buffer& here = staging_[k % staging_.size()];
+        here.copied.wait(space.stream());
         f(here.spheres, k * size);
-        here.free.record(space.stream());
+        here.reusable.record(space.stream());
       }
     } catch (...) {
       if (cudaStreamSynchronize(copies_.get()) != cudaSuccess) cudaGetLastError();
@@ -101,23 +103,24 @@ class chunks<Space, Spheres, false> {
   };
 
   /// A staging buffer: device memory for a chunk, and its events.
-  struct place {
+  struct staging_buffer {
     buffer<S> memory;
     Spheres spheres;
-    event full, free;
+    event copied, reusable;
   };
 
-  void send(place& to, Spheres const& chunk) {
-    to.free.wait(copies_.get());
-    to.spheres = pieces<Spheres>(chunk).copy(to.memory.data(), [this](S* there, S const* from, std::size_t n) {
+  void copy_async(staging_buffer& to, Spheres const& chunk) {
+    to.reusable.wait(copies_.get());
+    to.spheres = contiguous_ranges<Spheres>(chunk).copy(to.memory.data(), [this](S* there, S const* from,
+                                                                                 std::size_t n) {
       cuda_check(cudaMemcpyAsync(there, from, n * sizeof(S), cudaMemcpyHostToDevice, copies_.get()), "cudaMemcpyAsync");
     });
-    to.full.record(copies_.get());
+    to.copied.record(copies_.get());
   }
 
   /// Three staging buffers: with two, copying stops whenever the host is not done with a chunk before the copy of the
   /// next one ends; with three it may be late by as long as a copy takes.
-  std::array<place, 3> places_;
+  std::array<staging_buffer, 3> staging_;
   std::unique_ptr<std::remove_pointer_t<cudaStream_t>, cuda_destroy> copies_;
 };
 

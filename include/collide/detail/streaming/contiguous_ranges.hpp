@@ -13,15 +13,15 @@ namespace collide::detail {
 /// are interleaved form one range. It is copied with the gaps between its elements: the copy has the strides of the
 /// original.
 template <class Spheres>
-class pieces {
+class contiguous_ranges {
   using S = typename Spheres::scalar;
 
  public:
-  explicit pieces(Spheres const& spheres) : spheres_{spheres} {
-    spheres_.each_array([this](S const* array, std::size_t stride) { add(array, stride); });
+  explicit contiguous_ranges(Spheres const& spheres) : spheres_{spheres} {
+    spheres_.for_each_array([this](S const* array, std::size_t stride) { add(array, stride); });
     for (std::size_t k = 0; k < count_; ++k) {
-      piece_[k].begin = size_;
-      size_ += (length(piece_[k]) + aligned - 1) / aligned * aligned;
+      ranges_[k].begin = size_;
+      size_ += (length(ranges_[k]) + alignment - 1) / alignment * alignment;
     }
   }
 
@@ -31,24 +31,24 @@ class pieces {
   /// Calls copy(to, from, n) for each range; returns a view of the copies.
   template <class Copy>
   Spheres copy(S* to, Copy const& copy) const {
-    for (std::size_t k = 0; k < count_; ++k) copy(to + piece_[k].begin, piece_[k].from, length(piece_[k]));
+    for (std::size_t k = 0; k < count_; ++k) copy(to + ranges_[k].begin, ranges_[k].from, length(ranges_[k]));
     Spheres copied = spheres_;
-    copied.each_array([&](S const*& array, std::size_t stride) {
-      auto const holds = [&](piece const& p) {
+    copied.for_each_array([&](S const*& array, std::size_t stride) {
+      auto const holds = [&](range const& p) {
         return p.stride == stride && !std::less<>{}(array, p.from) && std::less<>{}(array, p.from + p.width);
       };
-      piece const& p = *std::find_if(piece_, piece_ + count_, holds);
+      range const& p = *std::find_if(ranges_, ranges_ + count_, holds);
       array = to + p.begin + (array - p.from);
     });
     return copied;
   }
 
  private:
-  static constexpr std::size_t most = 7;  ///< three coordinates, a radius and a displacement
-  static constexpr std::size_t aligned = 64;
+  static constexpr std::size_t max_ranges = 7;  ///< three coordinates, a radius and a displacement
+  static constexpr std::size_t alignment = 64;
 
   /// `width` elements from `from` on, and again after every `stride`.
-  struct piece {
+  struct range {
     S const* from;
     std::size_t width, stride;
     std::size_t begin;  ///< of the copy
@@ -56,7 +56,7 @@ class pieces {
 
   void add(S const* array, std::size_t stride) {
     for (std::size_t k = 0; k < count_; ++k) {
-      piece& p = piece_[k];
+      range& p = ranges_[k];
       S const* const from = std::min(p.from, array, std::less<>{});
       S const* const end = std::max(p.from + p.width, array + 1, std::less<>{});
       auto const width = static_cast<std::size_t>(end - from);
@@ -65,15 +65,15 @@ class pieces {
       p.width = width;
       return;
     }
-    piece_[count_++] = {array, 1, stride, 0};
+    ranges_[count_++] = {array, 1, stride, 0};
   }
 
-  std::size_t length(piece const& p) const {
+  std::size_t length(range const& p) const {
     return spheres_.size() == 0 ? 0 : (spheres_.size() - 1) * p.stride + p.width;
   }
 
   Spheres spheres_;
-  piece piece_[most] = {};
+  range ranges_[max_ranges] = {};
   std::size_t count_ = 0;
   std::size_t size_ = 0;
 };

@@ -10,12 +10,12 @@ namespace collide {
 
 /// A flag per sphere: 1 if it touches any triangle, else 0. `query` does not wait for the flags. Memory: one byte per
 /// sphere.
-class any : public detail::kept_in_space<std::uint8_t> {
+class any_hit : public detail::kept_in_space<std::uint8_t> {
  public:
   /// The flags are kept in memory of the space.
-  any() = default;
+  any_hit() = default;
   /// The flags are written to the caller's memory (of the space), one byte per sphere.
-  explicit any(std::uint8_t* flags) : external_{flags} {}
+  explicit any_hit(std::uint8_t* flags) : external_{flags} {}
 
   /// The flags, in memory of the space.
   std::uint8_t const* data() const { return flags_; }
@@ -28,7 +28,7 @@ class any : public detail::kept_in_space<std::uint8_t> {
   void run(Space& space, Query const& query) {
     size_ = query.spheres.size();
     flags_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), size_);
-    download_ = detail::downloader<std::uint8_t>(space);
+    download_ = detail::host_copier<std::uint8_t>(space);
     space.fill(flags_, 0, size_);
     query(detail::output{{nullptr, nullptr}, nullptr, 0, flags_});
   }
@@ -38,7 +38,7 @@ class any : public detail::kept_in_space<std::uint8_t> {
   std::uint8_t* flags_ = nullptr;
   std::size_t size_ = 0;
   buffer<std::uint8_t> own_;
-  detail::downloader<std::uint8_t> download_;
+  detail::host_copier<std::uint8_t> download_;
 };
 
 }  // namespace collide

@@ -1,4 +1,4 @@
-// expect: collide: the corners of an indexed mesh are 32-bit integers
+// expect: collide: the indices of an indexed mesh are 32-bit integers
 #include <collide/mesh.hpp>
 
 float const vertices[9] = {};

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "subject.hpp"
+#include "type_erased_detector.hpp"
 
 namespace tests {
 

@@ -1,0 +1,46 @@
+/// \file
+/// Effect: particles stick to the mesh.
+#pragma once
+
+#include <limits>
+
+#include <collide/bounce.hpp>
+
+namespace collide {
+
+/// Adhesion, as of snow and mud: a particle that touches the mesh no faster than `capture_speed` stays where it is,
+/// until forces of more than `max_acceleration`, per unit of mass, pull it off. Forces are what changes the velocity of
+/// effects that come before it in the list, so it comes after those.
+struct adhesion {
+  using writes = columns<position, velocity, adhered>;
+  using runs_after = effects<bounce>;
+
+  double max_acceleration = 20;
+  double capture_speed = std::numeric_limits<double>::infinity();
+
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
+    if (p[adhered{}] == 0) return;
+    auto& v = p[velocity{}];
+    S const most = S(max_acceleration) * dt;
+    if (detail::dot(v, v) <= most * most) {
+      v = vec3<S>(S(0), S(0), S(0));
+    } else {
+      p[adhered{}] = 0;
+    }
+  }
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
+    auto& v = p[velocity{}];
+    S const pressed = detail::smaller(detail::dot(t.force_dv, t.normal), S(0)), most = S(max_acceleration) * dt;
+    vec3<S> const pull = t.force_dv - t.normal * pressed;
+    if (!(detail::dot(v, v) <= S(capture_speed) * S(capture_speed) && detail::dot(pull, pull) <= most * most)) return;
+    if (t.is_resting) p[position{}] -= v * t.elapsed;  // it was held all the time
+    v = vec3<S>(S(0), S(0), S(0));
+    if (t.depth > 0) p[position{}] += t.normal * t.depth;
+    t.depth = detail::smaller(t.depth, S(0));
+    p[adhered{}] = 1;
+  }
+};
+
+}  // namespace collide
