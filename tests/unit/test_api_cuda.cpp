@@ -15,7 +15,7 @@ __global__ void set_heights_late(float* vertices, float* centres, std::size_t n,
 
 /// Counts in memory of the device, and waits for nothing.
 struct count_there {
-  collide::detail::tally numbers;
+  collide::detail::hit_counter numbers;
 
   template <class Space, class Query>
   void run(Space&, Query const& query) {

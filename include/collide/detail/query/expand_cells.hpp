@@ -21,7 +21,7 @@ struct expand_cells {
 
   /// Entries that a lane looks at together. With room for those of spheres that move, and for where these are on their
   /// ways, 48 KB of scratch memory must suffice; and less leaves more of it to the cache.
-  static constexpr int ahead = still ? 3 : 2;
+  static constexpr int ahead = still ? 5 : 2;
 
   candidate_pipeline<S, NarrowPhase, Output> const& pipeline;
   bucket_ref<S> const& grids;

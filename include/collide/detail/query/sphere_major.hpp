@@ -19,7 +19,7 @@ template <class S, class NarrowPhase, class Output>
 struct bucket_query {
   static constexpr int items = 4;
   template <class Block>
-  static constexpr int residency = is_discrete<NarrowPhase, S> ? 4 : 3;
+  static constexpr int residency = is_discrete<NarrowPhase, S>&& filtered_predicate<NarrowPhase>::value ? 4 : 3;
 
   using compact_type = compact_spheres<S, NarrowPhase>;
   using expand_type = expand_cells<S, NarrowPhase, Output>;

@@ -101,7 +101,7 @@ struct output {
 /// Flags are complete as they are.
 inline bool has_end_pass(output const& o) { return o.count.sum != nullptr; }
 
-/// The memory of a tally.
+/// The memory of a hit counter.
 class hit_counter_buffer {
  public:
   /// For a pass that is put on the space's stream next.
