@@ -8,6 +8,7 @@
 
 #include <collide/contact.hpp>
 #include <collide/detail/execution/algorithms.hpp>
+#include <collide/error.hpp>
 #include <collide/memory.hpp>
 #if defined(__CUDACC__)
 #include <collide/detail/sinks/sort_pairs_cuda.cuh>
@@ -45,7 +46,7 @@ void sort_pairs_on_host(Space const& space, pair* pairs, std::size_t n, std::siz
 }
 
 /// Sorts n pairs of `spheres` spheres and `triangles` triangles. Takes temporary memory for `capacity` pairs, at least
-/// n. A space whose memory the host cannot access has a member `stream()`.
+/// n. A space whose memory the host cannot access has a member `stream()`, and needs nvcc: throws `error` without.
 template <class Space>
 void sort_pairs(Space const& space, pair* pairs, std::size_t n, std::size_t capacity, std::size_t spheres,
                 [[maybe_unused]] std::size_t triangles, sort_memory& memory) {
@@ -56,7 +57,7 @@ void sort_pairs(Space const& space, pair* pairs, std::size_t n, std::size_t capa
     sort_pairs_on_device(space.stream(), space.resource(), pairs, n, capacity, spheres, triangles, memory.pairs,
                          memory.bytes);
 #else
-    static_assert(Space::host_accessible, "collide: pairs of a device are sorted by nvcc's CUB");
+    throw error("collide: the canonical order: pairs in memory of a device are sorted where nvcc compiles the program");
 #endif
   }
 }
