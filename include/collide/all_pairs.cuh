@@ -132,7 +132,8 @@ struct compute_lifted_bounds {
   mesh_view<S> mesh;
   lifted_bounds<S>* bounds;
   COLLIDE_HD void operator()(std::size_t i) const {
-    bounds[i] = lifted_bounds<S>(bounding_sphere_of(mesh[i]), lifted_origin(mesh));
+    vec3<S> const origin = lifted_origin(mesh);  // all is read before the roots, which are calls
+    bounds[i] = lifted_bounds<S>(bounding_sphere_of(mesh[i]), origin);
   }
 };
 
