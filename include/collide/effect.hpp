@@ -3,29 +3,30 @@
 ///
 /// An effect is a small copyable struct with its parameters. It names the columns that it works on,
 ///
-///     using reads = columns<...>;    // optional: columns that it looks at
-///     using writes = columns<...>;   // optional: columns that it changes (and may look at)
-///     using shares = columns<...>;   // optional: columns that it changes only if another effect of the scene has them
-///     using follows = effects<...>;  // optional: effects that must come before it in the scene's list, if they do
+///     using reads = columns<...>;            // optional: columns that it looks at
+///     using writes = columns<...>;           // optional: columns that it changes (and may look at)
+///     using optional_writes = columns<...>;  // optional: columns that it changes where other effects name them
+///     using runs_after = effects<...>;       // optional: effects that must come before it in the scene's list
 ///
 /// and has one or more of these members, each `COLLIDE_HD`, const, and a template over the type of the particle:
 ///
-/// | member                            | called |
-/// |-----------------------------------|-------------------------------------------------------------------------------|
-/// | `is_inactive(particle)`                 | first: true if nothing happens to the particle in this step | |
-/// `accelerate(particle&, dt)`       | before positions move: change the velocity                                    |
-/// | `on_mesh_contact(particle&, mesh_contact&, dt)` | for each contact with the mesh, the deepest (swept: the
-/// earliest) first | | `after_mesh_contact(particle&, mesh_contact&, dt)` | after the `on_mesh_contact` of all effects,
-/// for the same contact | | `on_pair_contact(particle&, self, other, dt)`| for each other particle that overlaps it;
-/// only then are neighbours listed     | | `try_wake(particle&, other)`       | instead, if the particle is skipped and
-/// the other is not | | `end_step(particle&, dt)`           | at the end of the step |
+/// - `is_inactive(particle)`, called first: true if nothing happens to the particle in this step.
+/// - `accelerate(particle&, dt)`, before positions move: changes the velocity.
+/// - `on_mesh_contact(particle&, mesh_contact&, dt)`, for each contact with the mesh: the deepest first, of swept
+///   particles the earliest.
+/// - `after_mesh_contact(particle&, mesh_contact&, dt)`, for the same contact, after the `on_mesh_contact` of all
+///   effects.
+/// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it. Only with such an effect
+///   are neighbours listed.
+/// - `try_wake(particle&, other)`, in place of `on_pair_contact` if the particle is inactive and the other is not.
+/// - `end_step(particle&, dt)`, at the end of the step.
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait.
 /// `on_pair_contact` is called before the other members but `begin_step`: `self` and `other` are as they were when the
 /// step began, and what changes is `particle`, so that both of a pair see the same.
 ///
 /// `accelerate` of every effect is called once more for each contact with the mesh, on a copy of the particle, to learn
-/// `touching::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
+/// `mesh_contact::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
 ///
 /// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
 /// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. Members are

@@ -51,10 +51,10 @@ struct bucket_tuning<detail::lookup_tuning<Space>> : bucket_tuning<Space> {
 /// There are exactly the columns that the effects name, and `position` and `velocity`. A simulation without effects
 /// moves particles in straight lines, and nothing else.
 ///
-/// `step` allocates nothing and never waits: it puts one kernel on the stream of a CUDA space (more with `meet` or
-/// `begin_step`), and can be captured in a CUDA graph, which is good until the next `set` or `set_mesh`. The same steps
-/// give the same bits on every run in the same space. O(particles + candidates) per step. A simulation is for one
-/// thread at a time.
+/// `step` allocates nothing and never waits: it puts one kernel on the stream of a CUDA space (more with
+/// `on_pair_contact` or `begin_step`), and can be captured in a CUDA graph, which is good until the next `set` or
+/// `set_mesh`. The same steps give the same bits on every run in the same space. O(particles + candidates) per step. A
+/// simulation is for one thread at a time.
 template <class Detector, class... Effect>
 class simulation {
   static_assert(detail::is_detector<Detector>::value,

@@ -25,7 +25,7 @@ COLLIDE_HD_INLINE void finish_pass([[maybe_unused]] Handle const& handle) {
   if constexpr (finishes<Handle>::value) handle.end_pass();
 }
 
-/// False if the handle has no use for `finish` in this pass, though its type has one.
+/// False if the handle has no use for `end_pass` in this pass, though its type has one.
 template <class Handle>
 bool has_end_pass(Handle const&) {
   return finishes<Handle>::value;

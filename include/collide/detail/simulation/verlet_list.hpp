@@ -61,7 +61,7 @@ class verlet_list {
     lists_.reserve(resource, order::listed * n);
   }
 
-  /// One pass of `meet` over all pairs.
+  /// One pass of `on_pair_contact` over all pairs.
   template <class Space>
   void interact(Space& space, particle_state<S, typename Effects::all> const& state, Effects const& effects, S dt) {
     order const o{cells_,          ends_.data(),
