@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/execution/block.hpp>
 #include <collide/detail/narrow_phase/traits.hpp>
 #include <collide/detail/narrow_phase/two_stages.hpp>
 #include <collide/detail/simulation/active_particle.hpp>
