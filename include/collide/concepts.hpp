@@ -2,8 +2,8 @@
 /// What the parts of a detector must have; docs/extending.md shows each with an example.
 ///
 /// A sink is a class with a member `template <class Space, class Query> void run(Space& space, Query const& query)`. It
-/// calls `query(handle)` as often as it needs to; each call puts one pass over the scene on the space's stream. The
-/// handle is trivially copyable, goes to the device, and has
+/// calls `query(output)` as often as it needs to; each call puts one pass over the scene on the space's stream. The
+/// output is trivially copyable, goes to the device, and has
 ///   - `std::uint64_t allocate(std::uint64_t n) const`: called once per batch of n hits; returns the slot of the first;
 ///   - `void store(std::uint64_t slot, Hit const& hit) const`: called once per hit (see hit.hpp);
 ///   - `void end_pass() const`, if it wants to: called once per pass, when all hits are stored.
