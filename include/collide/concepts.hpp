@@ -157,10 +157,10 @@ struct is_detector<
 
 /// The members of what a sink passes to a query.
 template <class H>
-using handle_reserve = std::enable_if_t<
+using output_allocate = std::enable_if_t<
     std::is_convertible<decltype(std::declval<H const&>().allocate(std::uint64_t{})), std::uint64_t>::value>;
 template <class H, class Hit>
-using handle_store = decltype(std::declval<H const&>().store(std::uint64_t{}, std::declval<Hit const&>()));
+using output_store = decltype(std::declval<H const&>().store(std::uint64_t{}, std::declval<Hit const&>()));
 
 /// The member of a sink.
 template <class Sink, class Space, class Query>

@@ -32,9 +32,9 @@ template <class Index, class NarrowPhase, class Space, class S>
 template <class Handle>
 void query_pass<Index, NarrowPhase, Space, S>::operator()(Handle const& handle) const {
   static_assert(
-      is_valid<handle_reserve, Handle>,
+      is_valid<output_allocate, Handle>,
       "collide: what a sink passes to query has a const member allocate(n) that returns the number of a slot");
-  static_assert(is_valid<handle_store, Handle, hit<NarrowPhase, S>>,
+  static_assert(is_valid<output_store, Handle, hit<NarrowPhase, S>>,
                 "collide: what a sink passes to query has a const member store(slot, hit)");
   static_assert(std::is_trivially_destructible<Handle>::value || Space::host_accessible,
                 "collide: what a sink hands to the device must be a plain value");

@@ -27,19 +27,19 @@ struct writes_of<E, std::void_t<typename E::writes>> {
   using type = typename E::writes;
 };
 template <class E, class = void>
-struct shares_of {
+struct optional_writes_of {
   using type = columns<>;
 };
 template <class E>
-struct shares_of<E, std::void_t<typename E::optional_writes>> {
+struct optional_writes_of<E, std::void_t<typename E::optional_writes>> {
   using type = typename E::optional_writes;
 };
 template <class E, class = void>
-struct follows_of {
+struct runs_after_of {
   using type = effects<>;
 };
 template <class E>
-struct follows_of<E, std::void_t<typename E::runs_after>> {
+struct runs_after_of<E, std::void_t<typename E::runs_after>> {
   using type = typename E::runs_after;
 };
 
@@ -57,8 +57,8 @@ class particle_access {
 
   template <class C>
   COLLIDE_HD_INLINE decltype(auto) operator[](C) const {
-    constexpr bool writes =
-        contains<typename writes_of<Effect>::type, C> || (contains<typename shares_of<Effect>::type, C> && has<C>);
+    constexpr bool writes = contains<typename writes_of<Effect>::type, C> ||
+                            (contains<typename optional_writes_of<Effect>::type, C> && has<C>);
     static_assert(
         writes || contains<typename reads_of<Effect>::type, C>,
         "collide: an effect may use a column only if it names it in its reads or writes, or in its optional_writes "
@@ -80,7 +80,8 @@ class particle_access {
 /// Sees all that an effect names; only to ask what members the effect has.
 template <class E, class S>
 using archetype =
-    particle<S, union_of<typename reads_of<E>::type, typename writes_of<E>::type, typename shares_of<E>::type>>;
+    particle<S,
+             union_of<typename reads_of<E>::type, typename writes_of<E>::type, typename optional_writes_of<E>::type>>;
 template <class E, class S>
 using archetype_access = particle_access<E, archetype<E, S>>;
 
@@ -173,7 +174,7 @@ template <class... E>
 inline constexpr bool respects_order = true;
 template <class E, class... Later>
 inline constexpr bool respects_order<E, Later...> =
-    !(names<typename follows_of<E>::type, Later> || ...) && respects_order<Later...>;
+    !(names<typename runs_after_of<E>::type, Later> || ...) && respects_order<Later...>;
 
 template <class... E>
 struct integrator_of {
@@ -212,12 +213,12 @@ struct effect_list : effect_slot<E>... {
   template <class F, bool Has>
   using reads_if = std::conditional_t<Has,
                                       union_of<typename reads_of<F>::type, typename writes_of<F>::type,
-                                               intersection_of<typename shares_of<F>::type, all>>,
+                                               intersection_of<typename optional_writes_of<F>::type, all>>,
                                       columns<>>;
   template <class F, bool Has>
-  using writes_if =
-      std::conditional_t<Has, union_of<typename writes_of<F>::type, intersection_of<typename shares_of<F>::type, all>>,
-                         columns<>>;
+  using writes_if = std::conditional_t<
+      Has, union_of<typename writes_of<F>::type, intersection_of<typename optional_writes_of<F>::type, all>>,
+      columns<>>;
   template <class F>
   static constexpr bool is_integrated =
       accelerates_in<F, S>::value || finishes_in<F, S>::value || skips_in<F, S>::value;
