@@ -78,13 +78,7 @@ void run(benchmark::State& state, io::scene_kind const& kind, std::size_t part, 
   auto const spheres = scene.spheres.view();
   auto detector = std::make_unique<detector_type>(space);
   auto pairs = std::make_unique<collide::pairs>();
-  auto const build = [&] {
-    if (spheres.one_radius()) {
-      detector->build(mesh, spheres.common_radius());
-    } else {
-      detector->build(mesh);
-    }
-  };
+  auto const build = [&] { detector->build(mesh); };
   auto const query = [&] { detector->query(spheres, *pairs); };
   auto const renew = [&] {
     detector = std::make_unique<detector_type>(space);

@@ -27,14 +27,15 @@
 namespace collide {
 
 /// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid/grid.hpp explains how.
-/// Build O(triangles), query O(spheres + candidates). Memory per triangle and grid: 8 scalars, at most 27 entries of 8
-/// bytes in the CUDA spaces and 8 on the host, and up to 8 cells of 8 bytes; several grids only where radii differ by
-/// more than a factor of 4. The host sorts the spheres instead where there are many (detail/query/sorted_spheres.hpp):
-/// that takes O(triangles + spheres) for a query, 8 scalars per triangle, 4 bytes per cell, and about 12 scalars for
-/// each sphere in a cell with triangles, 19 if it moves; no entries.
+/// Build O(triangles + entries), query O(spheres + candidates). Memory: 8 scalars for each triangle; for each grid at
+/// most 16 entries of 8 bytes for each triangle and one for each two spheres, and a cell of 8 bytes for each four of
+/// these; several grids only where radii differ by more than a factor of 4. The host sorts the spheres instead where
+/// there are many (detail/query/sorted_spheres.hpp): that takes O(triangles + spheres) for a query, 8 scalars per
+/// triangle, 4 bytes per cell, and about 12 scalars for each sphere in a cell with triangles, 19 if it moves; no
+/// entries.
 struct bucket {
-  /// Width of the finest cells; 0 lets the library choose. The study's was 4 R. Triangles that would touch too many
-  /// such cells go to levels of wider ones.
+  /// Width of the cells; 0 lets the library choose. The study's was 4 R. They are wider where triangles would meet too
+  /// many of them.
   double cell_width = 0;
 
   /// Bytes that the grids may take at most; 0 is no limit. Where the budget does not suffice for a grid, the spheres
@@ -80,7 +81,7 @@ class bucket::index {
   void prepare(Space& space, bucket const& options, S radius) {
     origin_ = origin::radius;
     if (summary_.data() == nullptr || !detail::is_valid_radius(radius) || !detail::is_finite(radius)) return;
-    make_grids(space, options, &radius, 1);
+    make_grids(space, options, &radius, 1, detail::vertices_as_spheres<S>{mesh_, radius});
     if (stage_ == stage::planned && !bins_spheres<Space>(options)) enter_triangles(space, options);
   }
 
@@ -89,9 +90,8 @@ class bucket::index {
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     request_grids(space, options, spheres);
-    // The first time that is faster than entering triangles; later only if there are many spheres
-    // (docs/performance.md).
-    bool const pays = queries_ == 0 || spheres.size() / 3 >= mesh_.size() / 2;
+    // entering the triangles pays where few spheres come again and again (docs/performance.md)
+    bool const pays = queries_ == 0 || spheres.size() >= mesh_.size() / 8;
     choose(space, options, pays && stage_ != stage::none && can_bin<Space>(options, spheres.size()));
   }
 
@@ -108,14 +108,23 @@ class bucket::index {
           bool const kept = requested_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
           if (!kept) {
             S const wider = reach + reach / 16;  // so that a bit more next time fits too
-            make_grids(space, options, &wider, 1);
+            make_grids(space, options, &wider, 1, spheres);
             origin_ = origin::spheres;
           }
           bins = stage_ != stage::none;
         }
       }
     }
-    if (!bins) request_grids(space, options, spheres);
+    if (!bins) {
+      if (!whole_boxes_ && stage_ != stage::none) {  // made for a radius, before it was known that spheres move
+        whole_boxes_ = true;
+        S reaches[detail::max_grids];
+        std::copy(reaches_, reaches_ + requested_, reaches);
+        make_grids(space, options, reaches, requested_, spheres);
+      }
+      whole_boxes_ = true;
+      request_grids(space, options, spheres);
+    }
     choose(space, options, bins);
   }
 
@@ -130,8 +139,8 @@ class bucket::index {
         return;
       }
     }
-    detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes_.data()}, lookup(), 0};
-    body.blocks = detail::persistent_grid_size<Space>(space, spheres.size(), body);
+    detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes_.data()}, lookup(), 0, 0};
+    body.share(space, spheres.size());
     space.launch(body.blocks, body);
   }
 
@@ -161,13 +170,9 @@ class bucket::index {
   static constexpr std::size_t fixed_bytes =
       sizeof(detail::mesh_statistics<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
 
-  /// How many cells a triangle may touch at most, on an axis and in all, unless a width is asked for.
-  template <class Space>
-  static constexpr std::size_t cells_per_axis =
-      std::size_t(bucket_tuning<Space>::triangle_span_in_cells) +
-      (bucket_tuning<Space>::triangle_span_in_cells > int(bucket_tuning<Space>::triangle_span_in_cells) ? 2 : 1);
-  template <class Space>
-  static constexpr std::size_t cells_per_triangle = cells_per_axis<Space>* cells_per_axis<Space>* cells_per_axis<Space>;
+  /// Up to so many triangles entries have memory for as many as there may be; the device is asked how many there are if
+  /// there are more triangles, or several grids.
+  static constexpr std::size_t most_unasked = std::size_t{1} << 18;
 
   /// True if spheres can be binned into the cells: what that takes is not part of a budget.
   template <class Space>
@@ -198,15 +203,15 @@ class bucket::index {
   }
 
   /// Makes the grids for the radii of the spheres, unless they are there or a radius was given.
-  template <class Space>
-  void request_grids(Space& space, bucket const& options, sphere_view<S> const& spheres) {
+  template <class Space, class Spheres>
+  void request_grids(Space& space, bucket const& options, Spheres const& spheres) {
     if (origin_ == origin::radius || summary_.data() == nullptr) return;
     S reaches[detail::max_grids];
     int const n =
         spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
     if (n == 0 || (n == requested_ && std::equal(reaches, reaches + n, reaches_))) return;
     origin_ = origin::spheres;
-    make_grids(space, options, reaches, n);
+    make_grids(space, options, reaches, n, spheres);
   }
 
   /// The grid of one radius: the one that is there if it is not much too wide.
@@ -236,33 +241,34 @@ class bucket::index {
     return n;
   }
 
-  /// Chooses the cells of grids up to these radii, as many of `requested` as the budget allows.
-  template <class Space>
-  void make_grids(Space& space, bucket const& options, S const* reaches, int requested) {
+  /// Chooses the cells of grids up to these radii, as many of `requested` as the budget allows, for these spheres.
+  template <class Space, class Spheres>
+  void make_grids(Space& space, bucket const& options, S const* reaches, int requested, Spheres const& spheres) {
     stage_ = stage::none;  // until all is done: an exception leaves no half-made grid behind
     grid_count_ = requested_ = 0;
     std::size_t const taken = fixed_bytes + (boxes_.data() != nullptr ? mesh_.size() * sizeof *boxes_.data() : 0);
-    auto const plan =
-        detail::memory_plan::make(mesh_.size(), requested, cells_per_triangle<Space>, taken, options.memory_budget);
-    std::copy(reaches, reaches + requested, reaches_);
+    auto const plan = detail::memory_plan::make(mesh_.size(), spheres.size(), requested, taken, options.memory_budget);
+    for (int i = 0; i < detail::max_grids && i < requested; ++i) reaches_[i] = reaches[i];
     if (plan.grids != 0) {
       auto const count = static_cast<std::size_t>(plan.grids);
       if (options.memory_budget != 0 && cells_ != count << plan.table_bits) release_cells();
       cells_ = count << plan.table_bits;
+      entry_limit_ = plan.entries;
       table_bits_ = plan.table_bits;
       auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
-      detail::plan_grid<S> body{summary_.data(),
-                                grids,
-                                {},
-                                static_cast<S>(options.cell_width),
-                                static_cast<S>(bucket_tuning<Space>::triangle_span_in_cells),
-                                plan.entry_limit,
-                                plan.table_bits};
-      std::copy(reaches, reaches + count, body.reaches);
-      space.launch(count, body);
+      detail::grid_request<S> request{{},
+                                      plan.grids,
+                                      static_cast<S>(options.cell_width),
+                                      whole_boxes_,
+                                      0.5f * static_cast<float>(plan.entries) / static_cast<float>(plan.grids),
+                                      plan.table_bits,
+                                      bucket_tuning<Space>::costs};
+      std::copy(reaches_, reaches_ + plan.grids, request.reaches);
+      space.launch(count,
+                   detail::plan_grid<S, Spheres>{mesh_, boxes_.data(), spheres, summary_.data(), grids, request});
       if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) {
-          bins_.mark(space, boxes_.data(), mesh_.size(), grids, plan.grids, plan.table_bits);
+          bins_.mark(space, mesh_, boxes_.data(), grids, plan.grids, plan.table_bits);
         }
       }
       grid_count_ = plan.grids;
@@ -277,19 +283,19 @@ class bucket::index {
     std::size_t const n = mesh_.size();
     auto* const lists = lists_.reserve(space.resource(), detail::table_size(cells_));
     space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
-    constexpr int parts = bucket_tuning<Space>::threads_per_triangle;
-    detail::triangle_insertion<S, parts> const insertion{mesh_, boxes_.data(), grids_.data(), grid_count_};
-    space.for_each(insertion.size(), detail::count_entries<S, parts>{insertion, lists});
+    auto const enter = [&](auto const& pass) {
+      using kernel = detail::enter_triangles<S, std::decay_t<decltype(pass)>>;
+      std::size_t const share = kernel::triangles_of_block(n, Space::template block<kernel>::num_threads);
+      space.launch((n + share - 1) / share, kernel{mesh_, boxes_.data(), grids_.data(), grid_count_, pass, share});
+    };
+    enter(detail::count_entries{lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
                                                  lists,         occupied(),  &lists[cells_].count};
     space.launch(detail::grid_size<Space>(cells_, allocation), allocation);
-    // only a width that was asked for leaves open how many entries there are: then the device must be asked
-    std::size_t const capacity = options.cell_width > 0
-                                     ? space.read(lists_total())
-                                     : cells_per_triangle<Space> * n * static_cast<std::size_t>(grid_count_);
+    bool const asks = Space::host_accessible || n > most_unasked || grid_count_ > 1 || options.cell_width > 0;
+    std::size_t const capacity = asks ? std::min<std::size_t>(space.read(lists_total()), entry_limit_) : entry_limit_;
     entries_.reserve(space.resource(), capacity);
-    space.for_each(insertion.size(),
-                   detail::fill_entries<S, parts>{insertion, lists, entries_.data(), entries_.capacity()});
+    enter(detail::fill_entries{lists, entries_.data(), entries_.capacity()});
     stage_ = stage::entered;
   }
 
@@ -316,7 +322,8 @@ class bucket::index {
   int requested_ = 0;        ///< how many grids are wanted: the budget may have allowed fewer
   int grid_count_ = 0;
   S reaches_[detail::max_grids] = {};  ///< of the grids that are wanted
-  std::size_t cells_ = 0;
+  bool whole_boxes_ = false;           ///< spheres that move look for triangles along their ways
+  std::size_t cells_ = 0, entry_limit_ = 0;
   std::uint32_t table_bits_ = 0;
   buffer<detail::triangle_aabb<S>> boxes_;      ///< empty if the budget has no room for them
   buffer<detail::mesh_statistics<S>> summary_;  ///< empty if the budget has no room for it

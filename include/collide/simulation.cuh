@@ -35,7 +35,9 @@ struct has_lookup<Index, std::void_t<decltype(std::declval<Index const&>().looku
 template <class Space>
 struct bucket_tuning<detail::lookup_tuning<Space>> : bucket_tuning<Space> {
   static constexpr bool bins_spheres = false;
-  static constexpr double triangle_span_in_cells = 2;
+  /// The grid serves many steps.
+  static constexpr bucket_costs costs{bucket_tuning<Space>::costs.entry_ns / 16,
+                                      bucket_tuning<Space>::costs.candidate_ns, bucket_tuning<Space>::costs.level_ns};
 };
 
 /// Particles, a mesh, and what happens to the particles in a step: only what the scene names.

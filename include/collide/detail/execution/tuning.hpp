@@ -5,12 +5,16 @@
 
 namespace collide {
 
+/// What the cells of `bucket` cost, in nanoseconds; only the ratios count.
+struct bucket_costs {
+  float entry_ns;      ///< to enter a triangle into a cell
+  float candidate_ns;  ///< to look at a triangle that is in a sphere's cell
+  float level_ns;      ///< to look into another cell, of another level, for each sphere
+};
+
 /// How `bucket` works on a host: one core after the other waits for the memory.
 struct host_bucket_tuning {
-  /// How many cells wide most triangles are. Narrow cells have fewer candidates and more entries.
-  static constexpr double triangle_span_in_cells = 1;
-  /// How many threads put a triangle into its cells: 1 or 2.
-  static constexpr int threads_per_triangle = 1;
+  static constexpr bucket_costs costs{30, 1.5f, 10};
   /// True if many spheres are sorted into the cells, and triangles look for them, rather than the other way round.
   /// Needs memory that the host can access, and blocks of one thread with 64 items.
   static constexpr bool bins_spheres = true;
@@ -18,8 +22,7 @@ struct host_bucket_tuning {
 
 /// How `bucket` works on a device, with many threads.
 struct device_bucket_tuning {
-  static constexpr double triangle_span_in_cells = 1.5;
-  static constexpr int threads_per_triangle = 2;
+  static constexpr bucket_costs costs{0.12f, 0.004f, 0.06f};
   static constexpr bool bins_spheres = false;
 };
 

@@ -8,56 +8,210 @@
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/grid/grid.hpp>
+#include <collide/detail/grid/triangle_cells.hpp>
 #include <collide/mesh.hpp>
 
 namespace collide::detail {
 
-/// Visits the cells of triangles in all grids: the common part of counting and filling. `Parts` threads, next to each
-/// other, share the cells of a triangle, because each cell's counter takes its time to answer, and counters next to
-/// each other answer together.
-template <class S, int Parts>
-struct triangle_insertion {
+/// Adds 1 to the counters of several cells. Threads of a warp that meet in a cell, as those of neighbouring triangles
+/// do, add together: a counter takes its time for each that asks it.
+template <int N>
+class counted_together {
+ public:
+  /// The cells whose bit in the mask is set.
+  COLLIDE_HD_INLINE void match(cell_ref const (&some)[N], std::uint32_t mask) {
+    for (std::uint32_t k = 0; k < N; ++k) {
+      bool const counts = (mask >> k & 1) != 0;
+      cells_[k] = some[k].number;
+#if defined(__CUDA_ARCH__)
+      unsigned const with = __match_any_sync(__activemask(), counts ? cells_[k] : none);
+      with_[k] = counts ? with : 0;
+#else
+      with_[k] = counts ? 1 : 0;
+#endif
+    }
+  }
+
+  /// `counter(cell)` is the address of a cell's counter.
+  template <class Counter>
+  COLLIDE_HD_INLINE void add(Counter const& counter) {
+    for (std::uint32_t k = 0; k < N; ++k) {
+      std::uint32_t const n = count_of_bits(with_[k]), earlier = count_of_bits(with_[k] & lanes_before());
+      before_[k] = n != 0 && earlier == 0 ? fetch_add(counter(cells_[k]), n) : 0;
+    }
+  }
+
+  /// What the counter of cell `k` was before this thread's 1 came to it.
+  COLLIDE_HD_INLINE std::uint32_t before(std::uint32_t k) const {
+#if defined(__CUDA_ARCH__)
+    if (with_[k] == 0) return 0;
+    return __shfl_sync(with_[k], before_[k], __ffs(static_cast<int>(with_[k])) - 1) +
+           count_of_bits(with_[k] & lanes_before());
+#else
+    return before_[k];
+#endif
+  }
+
+ private:
+  static constexpr std::uint32_t none = ~std::uint32_t{0};  ///< no cell has this number
+
+  static COLLIDE_HD_INLINE std::uint32_t count_of_bits(std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+    return static_cast<std::uint32_t>(__popc(bits));
+#else
+    return bits;  // 0 or 1: a thread is alone
+#endif
+  }
+  static COLLIDE_HD_INLINE std::uint32_t lanes_before() {
+#if defined(__CUDA_ARCH__)
+    return (1u << threadIdx.x % 32) - 1;
+#else
+    return 0;
+#endif
+  }
+
+  std::uint32_t cells_[N], with_[N], before_[N];
+};
+
+/// Counts the entries of cells.
+struct count_entries {
+  item_range* cells;
+
+  /// Of the cells whose bit is set.
+  template <int N>
+  COLLIDE_HD_INLINE void operator()(cell_ref const (&some)[N], std::uint32_t mask, id) const {
+    counted_together<N> counters;
+    counters.match(some, mask);
+    counters.add([&](std::uint32_t cell) { return &cells[cell].count; });
+  }
+};
+
+/// Writes the entries of cells.
+struct fill_entries {
+  item_range* cells;
+  cell_item* entries;
+  std::size_t capacity;
+
+  /// First all counters are asked, then all entries written: so their answers come together.
+  template <int N>
+  COLLIDE_HD_INLINE void operator()(cell_ref const (&some)[N], std::uint32_t mask, id triangle) const {
+    counted_together<N> counters;
+    counters.match(some, mask);
+    counters.add([&](std::uint32_t cell) { return &cells[cell].end; });
+    for (std::uint32_t k = 0; k < N; ++k) {
+      std::uint32_t const slot = counters.before(k);
+      if ((mask >> k & 1) != 0 && slot < capacity) entries[slot] = {triangle, some[k].coverage};
+    }
+  }
+};
+
+/// Kernel body: counts or fills, with `Pass`, the cells of triangles. A lane enters a triangle that meets few cells at
+/// once; the slabs of the others are spread evenly over the lanes.
+template <class S, class Pass>
+struct enter_triangles {
+  static constexpr int items = 1;
+  static constexpr std::size_t many_blocks =
+      512;                            ///< a large triangle keeps its block busy: the others must be elsewhere
+  static constexpr int together = 4;  ///< cells that a lane asks at a time
+
   mesh_view<S> mesh;
   triangle_aabb<S> const* boxes;  ///< null if there was no room for them
   grid<S> const* grids;
   int grid_count;
+  Pass pass;
+  std::size_t per_block;  ///< triangles: at most `Block::num_threads`
 
-  /// How many threads there are.
-  std::size_t size() const { return mesh.size() * Parts; }
+  template <class Block>
+  struct scratch {
+    id large[Block::num_threads];
+    std::uint32_t slabs[Block::num_threads];
+    std::uint32_t count;
+    typename Block::balance_storage balance;
+  };
 
-  static constexpr int together = Parts > 1 ? 4 : 1;  ///< cells that a thread asks at a time
+  /// How many triangles a block takes, of which no more than `threads`.
+  static std::size_t triangles_of_block(std::size_t triangles, std::size_t threads) {
+    std::size_t n = threads;
+    while (n > 32 && triangles < n * many_blocks) n /= 2;
+    return n;
+  }
 
-  /// Calls f(cells, n, triangle) for all cells that are this thread's, n of at most `together` at a time.
-  template <class F>
-  COLLIDE_HD_INLINE void each_cells(std::size_t thread, F const& f) const {
-    auto const number = static_cast<id>(thread / Parts);
-    aabb<S> const around = box_at(number);
+  template <class Block>
+  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     for (int g = 0; g < grid_count; ++g) {
-      grids[g].template each_cells<together>(
-          around, static_cast<std::uint32_t>(thread % Parts), Parts,
-          [&](cell_ref const(&cells)[together], std::uint32_t n) { f(cells, n, number); });
+      if (grids[g].levels == 0) continue;
+      block.for_each_thread([&](int thread_rank) {
+        if (thread_rank == 0) s.count = 0;
+      });
+      block.for_each_thread([&](int thread_rank) {
+        auto const k = static_cast<std::size_t>(thread_rank);
+        std::size_t const i = block.index() * per_block + k;
+        if (k < per_block && i < mesh.size()) enter_if_small(block, s, grids[g], static_cast<id>(i));
+      });
+      std::uint32_t const large = block.broadcast(s.count);
+      if (large != 0) enter_slabs(block, s, grids[g], large);
     }
   }
 
  private:
-  COLLIDE_HD_INLINE aabb<S> box_at(std::size_t i) const {
-    triangle_aabb<S> const b = boxes != nullptr ? boxes[i] : triangle_aabb_of(mesh[i]);
-    return b;
+  template <class Block>
+  COLLIDE_HD_INLINE void enter_if_small(Block& block, scratch<Block>& s, grid<S> const& g, id triangle) const {
+    aabb<S> const b = box_at(triangle);
+    if (b.is_empty()) return;
+    triangle_cells<S> const cells(g, g.level_of(b), b);
+    if (cells.is_small()) return enter_box(cells, triangle);
+    std::uint32_t const slot = block.add(s.count, 1);
+    s.large[slot] = triangle;
+    s.slabs[slot] = cells.slabs();
   }
-};
 
-/// Kernel body of `for_each` over an insertion's threads: counts the entries of each cell.
-template <class S, int Parts>
-struct count_entries {
-  triangle_insertion<S, Parts> insertion;
-  item_range* cells;
-  COLLIDE_HD void operator()(std::size_t thread) const {
-    constexpr std::uint32_t together = triangle_insertion<S, Parts>::together;
-    insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id) {
+  /// Enters a triangle into all cells that its box meets.
+  COLLIDE_HD_INLINE void enter_box(triangle_cells<S> const& cells, id triangle) const {
+    cell_box const& r = cells.range();
+    std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
+                        n = nx * ny * (r.upper[2] - r.lower[2] + 1);
+    // a quotient by 1, 2 or 3 of a number below 16
+    auto const factor = [](std::uint32_t divisor) { return divisor == 1 ? 256u : (divisor == 2 ? 128u : 86u); };
+    std::uint32_t const of_x = factor(nx), of_y = factor(ny);
+    for (std::uint32_t i = 0; i < n; i += together) {
+      cell_ref some[together];
       for (std::uint32_t k = 0; k < together; ++k) {
-        if (k < n) fetch_add(&cells[some[k].number].count, 1u);
+        std::uint32_t const row = ((i + k) * of_x) >> 8, z = (row * of_y) >> 8;
+        some[k] = cells.at(r.lower[0] + (i + k - row * nx), r.lower[1] + (row - z * ny), r.lower[2] + z);
       }
+      pass(some, (1u << smaller(n - i, std::uint32_t{together})) - 1, triangle);
+    }
+  }
+
+  COLLIDE_HD_INLINE void enter_run(triangle_cells<S> const& cells, id triangle, std::uint32_t y, std::uint32_t z,
+                                   std::uint32_t first, std::uint32_t last) const {
+    for (std::uint32_t x = first; x <= last; x += together) {
+      cell_ref some[together];
+      for (std::uint32_t k = 0; k < together; ++k) some[k] = cells.at(x + k, y, z);
+      pass(some, (1u << smaller(last - x + 1, std::uint32_t{together})) - 1, triangle);
+    }
+  }
+
+  template <class Block>
+  COLLIDE_HD_INLINE void enter_slabs(Block& block, scratch<Block>& s, grid<S> const& g, std::uint32_t n) const {
+    block.template for_each_balanced<1>(
+        s.balance, s.slabs, n, [&](std::uint32_t i) { return s.large[i]; }, [](id, std::uint32_t k) { return k; },
+        [](id, std::uint32_t) { return true; }, [&](id triangle, std::uint32_t slab) { enter_slab(g, triangle, slab); },
+        [](bool) {});
+  }
+
+  COLLIDE_HD_INLINE void enter_slab(grid<S> const& g, id number, std::uint32_t slab) const {
+    triangle<S> const t = mesh[number];
+    aabb<S> const b = aabb_of(t);
+    triangle_cells<S> const cells(g, g.level_of(b), b);
+    cells.each_run(slab, t, [&](std::uint32_t y, std::uint32_t z, std::uint32_t first, std::uint32_t last) {
+      enter_run(cells, number, y, z, first, last);
     });
+  }
+
+  COLLIDE_HD_INLINE aabb<S> box_at(std::size_t i) const {
+    if (boxes != nullptr) return boxes[i];
+    return aabb_of(mesh[i]);
   }
 };
 
@@ -135,27 +289,6 @@ struct allocate_entries {
   struct counts_of {
     std::uint32_t counts[Block::items];
   };
-};
-
-/// Kernel body of `for_each` over an insertion's threads: writes the entries.
-template <class S, int Parts>
-struct fill_entries {
-  triangle_insertion<S, Parts> insertion;
-  item_range* cells;
-  cell_item* entries;
-  std::size_t capacity;
-  COLLIDE_HD void operator()(std::size_t thread) const {
-    constexpr std::uint32_t together = triangle_insertion<S, Parts>::together;
-    insertion.each_cells(thread, [&](auto const& some, std::uint32_t n, id triangle) {
-      std::uint32_t slots[together] = {};
-      for (std::uint32_t k = 0; k < together; ++k) {
-        if (k < n) slots[k] = fetch_add(&cells[some[k].number].end, 1u);
-      }
-      for (std::uint32_t k = 0; k < together; ++k) {
-        if (k < n && slots[k] < capacity) entries[slots[k]] = {triangle, some[k].coverage};
-      }
-    });
-  }
 };
 
 }  // namespace collide::detail

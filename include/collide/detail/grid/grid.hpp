@@ -1,14 +1,15 @@
 /// \file
 /// The uniform grids of the `bucket` broad phase.
 ///
-/// Every triangle, dilated by the reach (the largest radius asked for) and a slack for rounding, is put into every cell
-/// that its box touches; a sphere then looks into the one cell that holds its centre. No pair can appear twice, and the
+/// Every triangle, dilated by the reach (the largest radius asked for) and a slack for rounding, is put into the cells
+/// that it meets; a sphere then looks into the one cell that holds its centre. No pair can appear twice, and the
 /// spheres need no sorting.
 ///
 /// What keeps the grid from collapsing:
-///   - Levels. Triangles much larger than the rest go to a level of wider cells (each twice as wide as the one before),
-///   so
-///     that a triangle never touches more than a few cells; a sphere looks into one cell per level that is in use.
+///   - A cost model. The width is the one where entering the triangles and testing the candidates cost least together;
+///     plan.hpp. Triangles are entered only into cells that they meet themselves; triangle_cells.hpp.
+///   - Two levels, where that costs less: triangles much larger than the rest go to wider cells; a sphere looks into
+///     one cell per level.
 ///   - Wrapping. A level has a fixed number of cells; where the scene has more, cell coordinates wrap around (modulo a
 ///   power
 ///     of two). Triangles from far away then share a cell: more candidates, no wrong answer.
@@ -33,7 +34,7 @@
 
 namespace collide::detail {
 
-inline constexpr int max_levels = 16;
+inline constexpr int max_levels = 2;
 inline constexpr int max_grids = 8;
 
 /// A range of cell coordinates per axis.
@@ -44,8 +45,8 @@ struct cell_box {
 /// Cells of one width.
 template <class S>
 struct grid_level {
-  S inverse_width;
-  S largest;                ///< the largest dilated extent of a triangle of this level
+  S width, inverse_width;
+  S largest;                ///< the largest extent of a triangle of this level
   std::uint32_t mask[3];    ///< where cell coordinates wrap: a power of two - 1
   std::uint32_t stride[2];  ///< how far the cells of neighbours in y and in z are apart
   std::uint32_t first;      ///< number of the first cell
@@ -101,10 +102,12 @@ struct grid_level {
 /// What a grid is, but for its levels.
 template <class S>
 struct grid_header {
-  S reach;     ///< serves spheres of radius up to this
-  S dilation;  ///< reach and slack: how far a triangle's box is dilated
-  S width;     ///< of the cells of the finest level
-  S lower[3];  ///< of the dilated mesh
+  S reach;           ///< serves spheres of radius up to this
+  S dilation;        ///< reach and slack: how far a triangle's box is dilated
+  S width;           ///< of the cells of the finest level
+  S padded_reach;    ///< what is within this of a triangle is in its cells: dilation, and slack for cutting it
+  bool whole_boxes;  ///< triangles are in all cells that their dilated boxes meet, as swept queries need it
+  S lower[3];        ///< of the dilated mesh
   S upper[3];
   int levels;           ///< 0 if no triangle is in the grid
   std::uint32_t cells;  ///< how many there are, of all levels
@@ -142,17 +145,14 @@ struct grid_header {
 /// The grid for spheres up to one radius.
 template <class S>
 struct grid : grid_header<S> {
-  using grid_header<S>::levels, grid_header<S>::dilation, grid_header<S>::coordinate, grid_header<S>::cells_of;
+  using grid_header<S>::levels, grid_header<S>::dilation, grid_header<S>::coordinate;
 
   grid_level<S> level[max_levels];
 
   /// The level that a triangle with this box belongs to.
   COLLIDE_HD_INLINE grid_level<S> const& level_of(aabb<S> const& b) const {
     if (levels <= 1) return level[0];
-    S const size = S(bin_end(size_bin(b.max_extent()))) + 2 * dilation;  // as plan_grid has it
-    int l = 0;
-    while (l + 1 < levels && !(size <= level[l].largest)) ++l;
-    return level[l];
+    return S(bin_end(size_bin(b.max_extent()))) <= level[0].largest ? level[0] : level[1];
   }
 
   /// The cells that a triangle's dilated box touches.
@@ -168,58 +168,6 @@ struct grid : grid_header<S> {
   /// The cell that holds a point inside the grid, and the place of the point in it.
   COLLIDE_HD_INLINE cell_ref place_of(grid_level<S> const& l, vec3<S> const& p) const {
     return l.place_of(p, this->lower);
-  }
-
-  /// The cells that a triangle is put into: at most one whole turn of the level on each axis.
-  COLLIDE_HD_INLINE cell_box cells_of(grid_level<S> const& l, aabb<S> const& b) const {
-    cell_box r = range_of(l, b);
-    for (int k = 0; k < 3; ++k) r.upper[k] = smaller(r.upper[k], r.lower[k] + l.mask[k]);
-    return r;
-  }
-
-  /// Calls f(cells, m) with m of at most N cells at a time and what the box covers of them, for every `parts`-th of the
-  /// cells that a triangle with this box is put into, from the `coverage`-th on.
-  template <int N, class F>
-  COLLIDE_HD_INLINE void each_cells(aabb<S> const& b, std::uint32_t coverage, std::uint32_t parts, F const& f) const {
-    grid_level<S> const l = level_of(b);
-    std::uint32_t from[3], to[3];
-    cell_box const r = cells_of(l, b, from, to);
-    std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
-                        nz = r.upper[2] - r.lower[2] + 1;
-    auto const covered = [&](std::uint32_t i, std::uint32_t cells, int axis) {
-      return cell_coverage::encode_box(i == 0 ? from[axis] : cell_coverage::before,
-                                       i + 1 == cells ? to[axis] : cell_coverage::last, axis);
-    };
-    std::uint32_t const n = levels == 0 || b.is_empty() ? 0 : nx * ny * nz;
-    for (std::uint32_t i = coverage; i < n; i += N * parts) {
-      cell_ref cells[N];
-      std::uint32_t m = 0;
-      for (std::uint32_t k = 0; k < N; ++k) {
-        std::uint32_t const number = i + k * parts, rows = number / nx;
-        std::uint32_t const x = number % nx, y = rows % ny, z = rows / ny;
-        cells[k].number = l.row(r.lower[1] + y, r.lower[2] + z) + ((r.lower[0] + x) & l.mask[0]);
-        cells[k].coverage = covered(x, nx, 0) | covered(y, ny, 1) | covered(z, nz, 2);
-        m += number < n ? 1u : 0u;
-      }
-      f(cells, m);
-    }
-  }
-
-  /// Calls f(first, n) for runs of cells, first .. first + n, which are all that a triangle with this box is put into.
-  template <class F>
-  COLLIDE_HD_INLINE void each_row(aabb<S> const& b, F const& f) const {
-    if (levels == 0 || b.is_empty()) return;
-    grid_level<S> const& l = level_of(b);
-    cell_box const r = cells_of(l, b);
-    std::uint32_t const from = r.lower[0] & l.mask[0], n = r.upper[0] - r.lower[0] + 1;
-    std::uint32_t const to_end = l.mask[0] + 1 - from;
-    for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
-      for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) {
-        std::uint32_t const row = l.row(y, z);
-        f(row + from, smaller(n, to_end));
-        if (n > to_end) f(row, n - to_end);
-      }
-    }
   }
 };
 

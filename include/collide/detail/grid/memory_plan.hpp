@@ -18,27 +18,30 @@ inline std::size_t table_size(std::size_t cells) { return cells + 1 + cells / 64
 struct memory_plan {
   int grids = 0;
   std::uint32_t table_bits = 0;  ///< log2 of the number of cells per grid
-  float entry_limit = 0;         ///< per grid
+  std::size_t entries = 0;       ///< of all grids, at most
 
   /// As many of `wanted` grids as fit into `budget` bytes, of which `fixed` are taken, and then as many cells. No grids
-  /// if none fits. A budget of 0 is no limit. A triangle is in at most `cells_per_triangle` cells of a grid.
-  static memory_plan make(std::size_t triangles, int wanted, std::size_t cells_per_triangle, std::size_t fixed,
+  /// if none fits. A budget of 0 is no limit.
+  static memory_plan make(std::size_t triangles, std::size_t spheres, int wanted, std::size_t fixed,
                           std::size_t budget) {
     constexpr std::size_t id_limit = std::numeric_limits<std::uint32_t>::max();
     std::uint32_t most_bits = 12;
-    while (most_bits < 28 && (std::size_t{1} << most_bits) < 4 * triangles) ++most_bits;
+    std::size_t const cells =
+        std::max({triangles, std::min(4 * triangles, std::size_t{1} << 18), std::min(spheres / 16, 16 * triangles)});
+    while (most_bits < 28 && (std::size_t{1} << most_bits) < cells) ++most_bits;
     for (int g = wanted; g > 0; --g) {
       auto const grids = static_cast<std::size_t>(g);
-      std::size_t const entries = cells_per_triangle * triangles * grids;
-      if (entries > id_limit) continue;
+      // a triangle that is small against the cells is in at most eight
+      std::size_t const least = 8 * triangles * grids;
+      if (least > id_limit) continue;
+      // the few spheres that use many triangles have, in the end, many pairs
+      std::size_t const most =
+          std::min(((spheres < triangles ? 48 : 16) * triangles + spheres / 2 + 4096) * grids, id_limit);
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
         std::size_t const base = fixed + table_size(grids << bits) * sizeof(item_range);
-        std::size_t most_entries = std::min(512 * triangles + (std::size_t{1} << 20), id_limit / grids);
-        if (budget != 0) {
-          if (base + entries * sizeof(cell_item) > budget) continue;
-          most_entries = std::min(most_entries, (budget - base) / (grids * sizeof(cell_item)));
-        }
-        return {g, bits, 0.99f * static_cast<float>(most_entries)};
+        if (budget == 0) return {g, bits, most};
+        if (base + least * sizeof(cell_item) > budget) continue;
+        return {g, bits, std::min(most, (budget - base) / sizeof(cell_item))};
       }
     }
     return {};

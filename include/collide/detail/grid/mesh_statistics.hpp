@@ -17,7 +17,7 @@ template <class S>
 struct mesh_statistics {
   uint_for<S> lower[3];    ///< ~ordered(coordinate)
   uint_for<S> upper[3];    ///< ordered(coordinate)
-  size_histogram extents;  ///< of the triangles' boxes
+  size_histogram extents;  ///< of the triangles' boxes; its sums are of areas, 256 the square of the bin's end
 
   /// Makes a summary in memory of the space that of no triangles.
   template <class Space>
@@ -61,17 +61,19 @@ struct compute_mesh_statistics {
       constexpr auto n = static_cast<std::size_t>(Block::items);
       std::size_t const first = (block.index() * Block::num_threads + static_cast<std::size_t>(thread_rank)) * n;
       all[thread_rank] = aabb<S>::empty();
-      auto const add = [&](std::size_t i, triangle_aabb<S> const& b) {
+      auto const add = [&](std::size_t i, triangle<S> const& t) {
+        triangle_aabb<S> const b = triangle_aabb_of(t);
         if (boxes != nullptr) boxes[i] = b;
         if (b.is_empty()) return;
         all[thread_rank] = typename aabb<S>::merge{}(all[thread_rank], b);
-        s.extents.add(block, &summary->extents, size_bin(b.max_extent()));
+        std::uint32_t const bin = size_bin(b.max_extent());
+        s.extents.add(block, &summary->extents, bin, relative_area(t, bin));
       };
       for (std::size_t i = first; i < first + n && i < mesh.size(); i += 2) {
         bool const two = i + 1 < mesh.size();
         triangle<S> const a = mesh[i], b = mesh[two ? i + 1 : i];  // both before anything is written
-        add(i, triangle_aabb_of(a));
-        if (two) add(i + 1, triangle_aabb_of(b));
+        add(i, a);
+        if (two) add(i + 1, b);
       }
     });
     s.extents.flush(block, &summary->extents);
@@ -83,6 +85,20 @@ struct compute_mesh_statistics {
         fetch_max(&summary->upper[k], to_ordered_bits(extent.upper[k]));
       }
     });
+  }
+
+ private:
+  /// The area of a triangle whose extent is in a bin, as the histogram's sums have it: from 0 to 256.
+  static COLLIDE_HD_INLINE std::uint32_t relative_area(triangle<S> const& t, std::uint32_t bin) {
+    float const scale = 1 / bin_end(bin);
+    float u[3], v[3];
+    for (int k = 0; k < 3; ++k) {
+      u[k] = static_cast<float>(t.b[k] - t.a[k]) * scale;
+      v[k] = static_cast<float>(t.c[k] - t.a[k]) * scale;
+    }
+    float const x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+    float const area = 0.5f * sqrt_rn(x * x + (y * y + z * z));
+    return area <= 1 ? static_cast<std::uint32_t>(static_cast<std::int32_t>(area * 0x1p8f + 0.5f)) : 0;
   }
 };
 
@@ -109,7 +125,7 @@ struct radius_histogram_kernel {
             first + static_cast<std::size_t>(k) * Block::num_threads + static_cast<std::size_t>(thread_rank);
         if (i >= spheres.size()) break;
         S const r = spheres.radius(i);
-        if (is_valid_radius(r) && is_finite(r)) s.histogram.add(block, histogram, size_bin(r > 0 ? r : S(0)));
+        if (is_valid_radius(r) && is_finite(r)) s.histogram.add(block, histogram, size_bin(r > 0 ? r : S(0)), 0);
       }
     });
     s.histogram.flush(block, histogram);

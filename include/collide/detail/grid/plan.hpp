@@ -1,82 +1,305 @@
 /// \file
-/// How wide the cells of a grid are, how many levels it has and how large its table is.
+/// How wide the cells of a grid are, whether it has two levels, and how large its table is.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 
+#include <collide/detail/grid/cell_cost.hpp>
 #include <collide/detail/grid/grid.hpp>
 #include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/detail/grid/pair_distances.hpp>
 
 namespace collide::detail {
 
-/// Kernel body of a block per grid: chooses widths, levels and table sizes from the summary of the mesh. A single
-/// lane's work of some microseconds, so that a build on the device need not wait for the host; much of that is fetching
-/// instructions, so the fewer the better.
+/// What is asked of the grids.
 template <class S>
+struct grid_request {
+  S reaches[max_grids];  ///< falling
+  int count;
+  S cell_width;              ///< asked for; 0 = choose
+  bool whole_boxes;          ///< as `grid` has it
+  float entry_limit;         ///< how many entries a grid may have, about
+  std::uint32_t table_bits;  ///< log2 of the number of cells per grid
+  bucket_costs costs;
+};
+
+/// Cells, in units of the grid's extent.
+struct cell_choice {
+  float cost;
+  float width;
+  float coarse_width;  ///< of a second level; 0 if there is none
+  float small_end;     ///< the largest extent of triangles of the first level then
+
+  struct cheaper {
+    COLLIDE_HD cell_choice operator()(cell_choice const& a, cell_choice const& b) const {
+      return b.cost < a.cost || (b.cost == a.cost && b.width > a.width) ? b : a;
+    }
+  };
+};
+
+/// Kernel body of a block per grid: chooses widths, levels and table sizes such that entering the triangles and testing
+/// the candidates cost least together, from the summary of the mesh and from the distances of some triangles and some
+/// spheres. Some microseconds' work, so that a build on the device need not wait for the host.
+template <class S, class Spheres>
 struct plan_grid {
   static constexpr int items = 1;
 
+  mesh_view<S> mesh;
+  triangle_aabb<S> const* boxes;  ///< may be null
+  Spheres spheres;
   mesh_statistics<S> const* summary;
   grid<S>* grids;
-  S reaches[max_grids];
-  S cell_width;              ///< asked for; 0 = choose
-  S target_span;             ///< how many cells wide most triangles are at most, if the width is not asked for
-  float entry_limit;         ///< how many entries a grid may have, if the width is asked for
-  std::uint32_t table_bits;  ///< log2 of the number of cells per grid
+  grid_request<S> request;
+
+  static constexpr int size_classes = 32, widths = 64;
+  static constexpr float width_step = 0.45f;  ///< of the logarithm of the width, to the base of 2
 
   template <class Block>
   struct scratch {
-    typename Block::template staging<std::uint32_t, size_bins> counts;
+    pair_distances distances;
+    triangle_aabb<S> boxes[pair_distances::triangles];
+    triangle_sums classes[size_classes];  ///< of triangles of rising sizes
+    float class_end[size_classes];
+    typename Block::template reduce_storage<cell_choice> reduction;
+    cell_choice chosen;
+    grid_header<S> planned;
+    S extent;
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    std::uint32_t const* const counts = block.stage(s.counts, summary->extents.counts, size_bins);
+    auto& g = grids[block.index()];
     block.for_each_thread([&](int thread_rank) {
-      if (thread_rank != 0) return;
-      auto& g = grids[block.index()];
-      sizes const seen{counts, summary->extents.first(), summary->extents.last()};
-      static_cast<grid_header<S>&>(g) = plan(block.index(), seen, g.level);
+      if (thread_rank == 0) s.planned = frame(block.index(), s.extent);
+      for (auto b = static_cast<std::uint32_t>(thread_rank); b < pair_distances::bins; b += Block::num_threads) {
+        s.distances.counts[b] = 0;
+      }
+      for (auto i = static_cast<std::uint32_t>(thread_rank); i < pair_distances::triangles; i += Block::num_threads) {
+        s.boxes[i] = sampled_box(i);
+      }
+      if (thread_rank == 0) s.distances.sampled = 0;
+    });
+    bool const sound = block.broadcast(s.planned.levels) != 0;
+    if (!sound) {
+      block.for_each_thread([&](int thread_rank) {
+        if (thread_rank != 0) return;
+        static_cast<grid_header<S>&>(g) = s.planned;
+        g.levels = 0;
+        g.level[0] = {};  // is read before it is known whether there is one
+      });
+      return;
+    }
+    measure_distances(block, s);
+    weigh(block, s);
+    block.for_each_thread([&](int thread_rank) {
+      if (thread_rank == 0) set_levels(g, s.planned, s.chosen, s.extent, block.index());
     });
   }
 
  private:
-  /// The histogram of the triangles' extents; the bins in use are first .. last.
-  struct sizes {
-    std::uint32_t const* counts;
-    int first, last;
-  };
+  static constexpr float unlimited = std::numeric_limits<float>::max();
 
-  /// Sets the levels and returns the rest.
-  COLLIDE_HD grid_header<S> plan(std::size_t i, sizes const& seen, grid_level<S>* levels) const {
+  /// The grid but for its levels: of these there are none if it can hold no triangle, or serve no sphere.
+  COLLIDE_HD grid_header<S> frame(std::size_t i, S& extent) const {
     grid_header<S> g{};
-    g.reach = reaches[i];
-    levels[0] = {};       // is read before it is known whether there is one
-    if (seen.last < 0) {  // no finite triangle: a box that contains nothing
+    extent = 0;
+    g.reach = request.reaches[i];
+    if (summary->extents.empty()) {  // no finite triangle: a box that contains nothing
       for (int k = 0; k < 3; ++k) {
         g.lower[k] = 1;
         g.upper[k] = -1;
       }
       return g;
     }
-    S extent = 0;
-    S const far = set_box(g, extent), tallest = margin * size(g, seen.last);
+    S const far = set_box(g, extent);
     constexpr S end = std::numeric_limits<S>::max() / 16;
-    if (!(extent < end && far < end && tallest < end)) {  // the range of S does not suffice: it serves no sphere
+    if (!(extent < end && far < end)) {  // the range of S does not suffice: it serves no sphere
       g.reach = -1;
       return g;
     }
-    // from this width on, cell coordinates are exact enough for `margin`
-    S const narrowest = larger(96 * ieee_traits<S>::unit_roundoff * extent, 64 * std::numeric_limits<S>::min());
-    // the largest must fit also when the quotient is rounded down
-    S const usual = div(smaller(tallest, 2 * margin * size(g, median(seen))), target_span) *
-                    (1 + 4 * ieee_traits<S>::unit_roundoff);
-    S const width = larger(narrowest, cell_width > 0 ? cell_width : usual);
-    S const span = cell_width > 0 ? span_for(g, width, seen) : target_span;
-    set_levels(g, width, span, seen, static_cast<std::uint32_t>(i) << table_bits, levels);
+    g.padded_reach =
+        g.dilation + 256 * ieee_traits<S>::unit_roundoff * (far + g.dilation) + 64 * std::numeric_limits<S>::min();
+    // where squares overflow or vanish, triangles are not cut
+    bool const has_squares = g.padded_reach < sqrt_rn(std::numeric_limits<S>::max()) / 256 &&
+                             g.dilation > sqrt_rn(std::numeric_limits<S>::min()) / ieee_traits<S>::unit_roundoff;
+    g.whole_boxes = request.whole_boxes || !has_squares;
+    g.levels = 1;
     return g;
+  }
+
+  COLLIDE_HD triangle_aabb<S> sampled_box(std::uint32_t i) const {
+    std::size_t const t = mesh.size() * i / pair_distances::triangles;
+    return boxes != nullptr ? boxes[t] : triangle_aabb_of(mesh[t]);
+  }
+
+  template <class Block, class Scratch>
+  COLLIDE_HD_INLINE void measure_distances(Block& block, Scratch& s) const {
+    std::size_t const i = block.index();
+    S const reach = request.reaches[i],
+            least = i + 1 < static_cast<std::size_t>(request.count) ? request.reaches[i + 1] : S(-1);
+    S const scale = S(1) / s.extent;
+    constexpr std::uint32_t pairs_of_sphere =
+        Block::num_threads > 1 ? pair_distances::triangles / 4 : pair_distances::triangles;
+    constexpr std::uint32_t parts = pair_distances::triangles / pairs_of_sphere;
+    block.for_each_thread([&](int thread_rank) {
+      for (auto j = static_cast<std::uint32_t>(thread_rank); j < parts * pair_distances::spheres;
+           j += Block::num_threads) {
+        if (spheres.size() == 0) break;
+        sphere<S> const ball = place_of(spheres[spheres.size() * (j / parts) / pair_distances::spheres]);
+        if (!(ball.radius <= reach && ball.radius > least) || !is_finite(ball.centre)) continue;
+        if (j % parts == 0) block.add(s.distances.sampled, 1);
+        COLLIDE_NO_UNROLL
+        for (std::uint32_t k = 0; k < pairs_of_sphere; ++k) {
+          triangle_aabb<S> const& b = s.boxes[j % parts * pairs_of_sphere + k];
+          if (b.is_empty()) continue;
+          S const distance = larger(b.axis_distance(0, ball.centre.x()),
+                                    larger(b.axis_distance(1, ball.centre.y()), b.axis_distance(2, ball.centre.z())));
+          block.add(s.distances.counts[pair_distances::bin_of(static_cast<float>(distance * scale))], 1);
+        }
+      }
+      for (int c = thread_rank; c < size_classes; c += Block::num_threads) sum_class(s, c);
+    });
+  }
+
+  /// The triangles of a class, in units of the grid's extent.
+  template <class Scratch>
+  COLLIDE_HD_INLINE void sum_class(Scratch& s, int c) const {
+    int const first = summary->extents.first(), per_class = (summary->extents.last() - first) / size_classes + 1;
+    triangle_sums sum{0, 0, 0};
+    float end = 0;
+    COLLIDE_NO_UNROLL
+    for (int b = first + c * per_class; b < first + (c + 1) * per_class && b < size_bins; ++b) {
+      float const count = static_cast<float>(summary->extents.counts[b]);
+      end = bin_end(static_cast<std::uint32_t>(b));
+      float const extent = static_cast<float>(S(end) / s.extent);
+      if (count == 0) continue;
+      sum += {count, static_cast<float>(summary->extents.sums[b]) * 0x1p-8f * (extent * extent),
+              triangle_sums::perimeter_of_extent * extent * count};
+    }
+    s.classes[c] = sum;
+    s.class_end[c] = end;
+  }
+
+  /// The width number `i`, in units of the grid's extent.
+  static COLLIDE_HD_INLINE float width_at(int i) { return 1.01f * exp2f(-width_step * static_cast<float>(i)); }
+
+  /// The cells may be no narrower, in units of the grid's extent: cell coordinates are exact enough then.
+  static constexpr float narrowest = 96 * static_cast<float>(ieee_traits<S>::unit_roundoff);
+
+  /// Chooses the cells that cost least, with one level or two.
+  template <class Block, class Scratch>
+  COLLIDE_HD_INLINE void weigh(Block& block, Scratch& s) const {
+    typename Block::template thread_private<cell_choice> best;
+    block.for_each_thread([&](int thread_rank) {
+      triangle_sums all{0, 0, 0};
+      for (int c = 0; c < size_classes; ++c) all += s.classes[c];
+      share_of_pairs const share(s.distances, all.mean_extent());
+      level_cost const cost{request.costs, spheres_served(s), reach_of(s), share};
+      best[thread_rank] = {unlimited, width_at(0), 0, 0};
+      if (request.cell_width > 0) {
+        float const asked = larger(narrowest, static_cast<float>(request.cell_width / s.extent));
+        best[thread_rank].width = wide_enough(all, asked, cost.reach);
+        return;
+      }
+      for (int i = thread_rank; i < widths + size_classes; i += Block::num_threads) {
+        cell_choice const next =
+            i < widths ? of_width(all, width_at(i), request.entry_limit, cost) : of_split(s, i - widths, cost);
+        best[thread_rank] = cell_choice::cheaper{}(best[thread_rank], next);
+      }
+    });
+    cell_choice const chosen = block.reduce(s.reduction, best, cell_choice::cheaper{});
+    block.for_each_thread([&](int thread_rank) {
+      if (thread_rank == 0) s.chosen = chosen;
+    });
+  }
+
+  static COLLIDE_HD_INLINE cell_choice of_width(triangle_sums const& all, float width, float entry_limit,
+                                                level_cost const& cost) {
+    bool const allowed = width >= narrowest && all.entries(width, cost.reach) <= entry_limit;
+    return {allowed ? cost(all, width) : unlimited, width, 0, 0};
+  }
+
+  /// With the triangles of the larger classes, from the one after `c` on, in cells of their own. That must save more
+  /// than a fifth.
+  template <class Scratch>
+  COLLIDE_HD_INLINE cell_choice of_split(Scratch const& s, int c, level_cost const& cost) const {
+    bool const splits = c % 4 == 3 && c + 1 < size_classes && summary->extents.last() - summary->extents.first() >= 16;
+    triangle_sums const small = sum_of(s, 0, splits ? c + 1 : 0), large = sum_of(s, c + 1, splits ? size_classes : 0);
+    cell_choice best{unlimited, 0, 0, 0}, best_large = best;
+    if (small.count > 0 && large.count > 0) {
+      best = cheapest(small, cost);
+      best_large = cheapest(large, cost);
+    }
+    bool const useful = best.cost < unlimited && best_large.cost < unlimited && best.width < best_large.width;
+    float const both = 1.25f * (best.cost + best_large.cost + request.costs.level_ns * cost.spheres);
+    return {useful ? both : unlimited, best.width, best_large.width, s.class_end[c]};
+  }
+
+  /// One of two levels: what is best of every fourth width, and near that.
+  COLLIDE_HD_INLINE cell_choice cheapest(triangle_sums const& some, level_cost const& cost) const {
+    cell_choice best{unlimited, 0, 0, 0};
+    int begin = 0, end = widths, around = 0;
+    COLLIDE_NO_UNROLL
+    for (int step = 4; step > 0; step -= 3) {
+      COLLIDE_NO_UNROLL
+      for (int i = begin; i < end; i += step) {
+        cell_choice const next = of_width(some, width_at(i), request.entry_limit / 2, cost);
+        if (next.cost < best.cost) best = next, around = i;
+      }
+      begin = larger(around - 3, 0), end = smaller(around + 4, widths);
+    }
+    return best;
+  }
+
+  template <class Scratch>
+  COLLIDE_HD_INLINE triangle_sums sum_of(Scratch const& s, int first, int end) const {
+    triangle_sums sum{0, 0, 0};
+    COLLIDE_NO_UNROLL
+    for (int c = first; c < end; ++c) sum += s.classes[c];
+    return sum;
+  }
+
+  /// About how many spheres the grid serves.
+  template <class Scratch>
+  COLLIDE_HD_INLINE float spheres_served(Scratch const& s) const {
+    return static_cast<float>(spheres.size()) * static_cast<float>(larger(s.distances.sampled, 1u)) /
+           pair_distances::spheres;
+  }
+
+  template <class Scratch>
+  COLLIDE_HD_INLINE float reach_of(Scratch const& s) const {
+    return static_cast<float>(s.planned.dilation / s.extent);
+  }
+
+  COLLIDE_HD void set_levels(grid<S>& g, grid_header<S> planned, cell_choice const& chosen, S extent,
+                             std::size_t number) const {
+    bool const two = chosen.coarse_width > 0;
+    auto const first_cell = static_cast<std::uint32_t>(number) << request.table_bits;
+    std::uint32_t const bits = request.table_bits - (two ? 1 : 0);
+    planned.width = larger(static_cast<S>(chosen.width) * extent, request.cell_width);
+    constexpr S all = std::numeric_limits<S>::infinity();
+    set_level(planned, g.level[0], planned.width, two ? S(chosen.small_end) : all, first_cell, bits);
+    if (two) set_level(planned, g.level[1], static_cast<S>(chosen.coarse_width) * extent, all, first_cell, bits);
+    planned.levels = two ? 2 : 1;
+    static_cast<grid_header<S>&>(g) = planned;
+  }
+
+  /// A width, or one that is so much larger that there are not too many entries.
+  COLLIDE_HD float wide_enough(triangle_sums const& all, float width, float reach) const {
+    COLLIDE_NO_UNROLL
+    while (width < 1.01f && !(all.entries(width, reach) <= request.entry_limit)) width *= 1.1f;
+    return width;
+  }
+
+  COLLIDE_HD void set_level(grid_header<S>& g, grid_level<S>& l, S width, S largest, std::uint32_t first_cell,
+                            std::uint32_t bits) const {
+    l.width = width;
+    l.inverse_width = div(S(1), width);
+    l.largest = largest;
+    l.first = first_cell + g.cells;
+    g.cells += dimension(g, l, std::uint64_t{1} << bits);
   }
 
   /// Sets the dilation and the box of the dilated mesh, and `extent` to the longest edge of that. Returns the largest
@@ -98,70 +321,7 @@ struct plan_grid {
     return far;
   }
 
-  /// Makes levels, the finest with cells of this width, in which a triangle spans `span` cells at most. Half of the
-  /// cells are for the finest level, the rest for the others together; all if there are no others.
-  COLLIDE_HD void set_levels(grid_header<S>& g, S width, S span, sizes const& seen, std::uint32_t first_cell,
-                             grid_level<S>* levels) const {
-    S const tallest = margin * size(g, seen.last);
-    int bin = seen.first;
-    while (bin <= seen.last) {
-      if (g.levels + 1 == max_levels) width = larger(width, tallest / span);
-      while (margin * size(g, bin) > width * span) width *= 2;
-      int next = bin + 1;
-      while (next <= seen.last && (seen.counts[next] == 0 || margin * size(g, next) <= width * span)) ++next;
-      bool const last = next > seen.last;
-      grid_level<S>& l = levels[g.levels++];
-      if (g.levels == 1) g.width = width;
-      l.inverse_width = div(S(1), width);
-      l.largest = last ? std::numeric_limits<S>::infinity() : size(g, next - 1);
-      l.first = first_cell + g.cells;
-      std::uint32_t bits = table_bits;
-      if (g.levels > 1) {
-        bits = table_bits - 5;
-      } else if (!last) {
-        bits = table_bits - 1;
-      }
-      g.cells += dimension(g, l, std::uint32_t{1} << bits);
-      width *= 2;
-      bin = next;
-    }
-  }
-
-  /// Cells are wider than the largest triangle of their level by this factor, so that rounding cannot make it touch
-  /// more than `span` + 1 of them on an axis.
-  static constexpr S margin = S(1.125);
-
   static COLLIDE_HD S abs_of(S x) { return x < 0 ? -x : x; }
-
-  /// The largest extent in a bin of the histogram, and the largest dilated one.
-  static COLLIDE_HD S size(int bin) { return S(bin_end(static_cast<std::uint32_t>(bin))); }
-  static COLLIDE_HD S size(grid_header<S> const& g, int bin) { return size(bin) + 2 * g.dilation; }
-
-  /// The bin that half of the sizes do not exceed.
-  static COLLIDE_HD int median(sizes const& seen) {
-    std::uint64_t total = 0;
-    COLLIDE_NO_UNROLL
-    for (int b = seen.first; b <= seen.last; ++b) total += seen.counts[b];
-    int b = seen.first;
-    COLLIDE_NO_UNROLL
-    for (std::uint64_t below = seen.counts[b]; 2 * below < total; below += seen.counts[++b]) {
-    }
-    return b;
-  }
-
-  /// How many cells of the width asked for a triangle may span before it goes to a wider level: as many as the limit on
-  /// entries allows, at most 64.
-  COLLIDE_HD S span_for(grid_header<S> const& g, S width, sizes const& seen) const {
-    for (S span = 64; span > 1; span /= 2) {
-      float entries = 0;
-      for (int b = seen.first; b <= seen.last; ++b) {
-        auto const cells = static_cast<float>(smaller(span, size(g, b) / width)) + 2;
-        entries += static_cast<float>(seen.counts[b]) * cells * cells * cells;
-      }
-      if (entries <= entry_limit) return span;
-    }
-    return 1;
-  }
 
   /// Gives each axis of the level as many cells as the grid has, and if that is more than `most` in all, cuts the
   /// longest axes down to powers of two, where coordinates wrap. Returns the number of cells.

@@ -1,5 +1,5 @@
 /// \file
-/// Histograms of sizes over quarter octaves: what the grid is planned from.
+/// Histograms of sizes over quarter octaves, with a sum of something else for each bin: what the grid is planned from.
 #pragma once
 
 #include <collide/detail/execution/atomic.hpp>
@@ -29,6 +29,7 @@ struct size_histogram {
   std::uint32_t lowest;   ///< ~bin, of the lowest in use
   std::uint32_t highest;  ///< bin + 1
   std::uint32_t counts[size_bins];
+  std::uint64_t sums[size_bins];
 
   /// Empties a histogram in memory of the space.
   template <class Space>
@@ -36,8 +37,9 @@ struct size_histogram {
     space.fill(h, 0, sizeof *h);
   }
 
-  COLLIDE_HD_INLINE void add(std::uint32_t bin, std::uint32_t n) {
+  COLLIDE_HD_INLINE void add(std::uint32_t bin, std::uint32_t n, std::uint32_t sum) {
     fetch_add(counts + bin, n);
+    if (sum != 0) fetch_add(sums + bin, std::uint64_t{sum});
     fetch_max(&lowest, ~bin);
     fetch_max(&highest, bin + 1);
   }
@@ -53,26 +55,29 @@ template <class Block>
 struct block_histogram {
   static constexpr int kept = Block::num_threads > 1 ? size_bins : 8;  ///< a power of two
 
-  std::uint32_t counts[kept];
+  std::uint32_t counts[kept], sums[kept];
   std::uint32_t bins[Block::num_threads > 1 ? 1 : kept];  ///< of one lane: whose counts they are
 
   COLLIDE_HD_INLINE void clear(Block& block) {
     block.for_each_thread([&](int thread_rank) {
-      for (int b = thread_rank; b < kept; b += Block::num_threads) counts[b] = 0;
+      for (int b = thread_rank; b < kept; b += Block::num_threads) counts[b] = sums[b] = 0;
     });
   }
 
-  COLLIDE_HD_INLINE void add(Block& block, size_histogram* to, std::uint32_t bin) {
+  /// The sums of 2^16 sizes must fit into 32 bits.
+  COLLIDE_HD_INLINE void add(Block& block, size_histogram* to, std::uint32_t bin, std::uint32_t value) {
     if constexpr (Block::num_threads > 1) {
       block.add(counts[bin], 1);
+      if (value != 0) block.add(sums[bin], value);
     } else {
       std::uint32_t const place = bin % kept;
       if (counts[place] != 0 && bins[place] != bin) {
-        to->add(bins[place], counts[place]);
-        counts[place] = 0;
+        to->add(bins[place], counts[place], sums[place]);
+        counts[place] = sums[place] = 0;
       }
       bins[place] = bin;
       ++counts[place];
+      sums[place] += value;
     }
   }
 
@@ -81,9 +86,9 @@ struct block_histogram {
       for (int b = thread_rank; b < kept; b += Block::num_threads) {
         if (counts[b] == 0) continue;
         if constexpr (Block::num_threads > 1) {
-          to->add(static_cast<std::uint32_t>(b), counts[b]);
+          to->add(static_cast<std::uint32_t>(b), counts[b], sums[b]);
         } else {
-          to->add(bins[b], counts[b]);
+          to->add(bins[b], counts[b], sums[b]);
         }
       }
     });

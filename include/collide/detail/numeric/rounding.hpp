@@ -46,6 +46,16 @@ COLLIDE_HD_INLINE double div(double a, double b) {
 #endif
 }
 
+/// A quotient to within a few units in the last place, of numbers in the middle of the range; faster on a device.
+COLLIDE_HD_INLINE float div_approximately(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return __fdividef(a, b);
+#else
+  return a / b;
+#endif
+}
+COLLIDE_HD_INLINE double div_approximately(double a, double b) { return a / b; }
+
 COLLIDE_HD_INLINE float sqrt_rn(float a) {
 #if defined(__CUDA_ARCH__)
   return __fsqrt_rn(a);

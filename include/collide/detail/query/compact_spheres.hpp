@@ -24,6 +24,7 @@ struct compact_spheres {
   occupancy_view<S> const& marks;
   bool has_one_level;  ///< all spheres are in one grid of one level: `marks` knows of them
   std::size_t blocks;  ///< that share the spheres
+  std::size_t beside;  ///< so many lanes of a block take packs next to each other
 
   /// How many spheres are active, how many of them no grid serves, and how many lanes have more.
   struct counts {
@@ -46,7 +47,6 @@ struct compact_spheres {
   /// goes on each time.
   template <class Block>
   COLLIDE_HD_INLINE std::size_t first_of(Block const& block, int thread_rank) const {
-    constexpr auto beside = static_cast<std::size_t>(Block::warp_size);
     auto const own = static_cast<std::size_t>(thread_rank);
     return ((own / beside * blocks + block.index()) * beside + own % beside) * Block::items;
   }

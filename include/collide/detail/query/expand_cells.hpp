@@ -47,32 +47,32 @@ struct expand_cells {
     std::uint32_t sizes[Block::num_threads];  ///< of the spans
     std::uint32_t parts[Block::num_threads];  ///< where in their cells the spheres are
     typename swept_cells<S>::cell_visit
-        places[still ? 1 : Block::num_threads];  ///< where on its path a moving sphere is
+        places[still ? 1 : Block::num_threads];           ///< where on its path a moving sphere is,
+    std::int8_t grid_of[still ? 1 : Block::num_threads];  ///< and in which grid
     counts found;
     typename Block::balance_storage balance;
     pipeline_storage<Block, ahead> hits;
   };
 
-  /// Makes candidates of the active spheres: those of one level of one grid after the other, in the end those that no
+  /// Makes candidates of the active spheres: from one level of their grids after the other, in the end of those that no
   /// grid serves.
   template <class Block>
   COLLIDE_HD_INLINE void expand(Block& block, scratch<Block>& s, typename compact::template scratch<Block> const& from,
                                 typename compact::counts const& active) const {
-    for (int g = 0; g < grids.grid_count; ++g) {
-      for (int l = 0; l < grids.grids[g].levels; ++l) {
-        expand_level(block, s, from, active.active, g, {&grids.grids[g], &grids.grids[g].level[l]});
-      }
-    }
-    if (active.ungridded != 0) {
-      expand_level(block, s, from, active.active, bucket_ref<S>::everywhere, {nullptr, nullptr});
-    }
+    int levels = 0;
+    for (int g = 0; g < grids.grid_count; ++g) levels = larger(levels, grids.grids[g].levels);
+    for (int l = 0; l < levels; ++l) expand_level(block, s, from, active.active, l);
+    if (active.ungridded != 0) expand_level(block, s, from, active.active, all);
   }
 
  private:
+  static constexpr int all = -1;  ///< in place of a level's number: one cell that lists all triangles
+
   /// The cells of a level of a grid; without a grid, one cell that lists all triangles.
   struct cells {
     grid<S> const* of;
     grid_level<S> const* level;
+    std::int8_t number;  ///< of the grid
   };
 
   /// How far a sphere has come: steps of its way, and entries of its cell.
@@ -80,11 +80,22 @@ struct expand_cells {
     std::uint32_t step, skip;
   };
 
-  /// Makes candidates of those of the `n` active spheres that are in one grid, from the cells of one level.
+  /// A level of a grid, if a sphere of this grid looks into it.
+  COLLIDE_HD_INLINE bool find_cells(std::int8_t grid_number, int level, cells& here) const {
+    if (level == all || grid_number < 0) {
+      here = {nullptr, nullptr, grid_number};
+      return level == all && grid_number == bucket_ref<S>::everywhere;
+    }
+    grid<S> const& g = grids.grids[grid_number];
+    here = {&g, &g.level[level], grid_number};
+    return level < g.levels;
+  }
+
+  /// Makes candidates of those of the `n` active spheres that are in grids, from the cells of one level.
   template <class Block>
   COLLIDE_HD_INLINE void expand_level(Block& block, scratch<Block>& s,
                                       typename compact::template scratch<Block> const& from, std::uint32_t n,
-                                      int grid_number, cells const& here) const {
+                                      int level) const {
     for (std::uint32_t base = 0; base < n; base += Block::num_threads) {
       typename Block::template thread_private<cursor> at;
       bool more = false;
@@ -92,13 +103,14 @@ struct expand_cells {
         block.for_each_thread([&](int thread_rank) {
           if (!more) at[thread_rank] = {0, 0};
           std::uint32_t const i = base + static_cast<std::uint32_t>(thread_rank);
-          if (i >= n || from.grid_of[i] != grid_number) return;
+          cells here;
+          if (i >= n || !find_cells(from.grid_of[i], level, here)) return;
           if (!append_spans(block, s, here, from.active[i], at[thread_rank])) block.add(s.found.pending, 1);
         });
         counts const found = block.broadcast(s.found);
         more = found.pending != 0;
         if (found.spans == 0) continue;
-        test_spans(block, s, here, smaller<std::uint32_t>(found.spans, Block::num_threads));
+        test_spans(block, s, level, smaller<std::uint32_t>(found.spans, Block::num_threads));
         block.for_each_thread([&](int thread_rank) {
           if (thread_rank == 0) s.found = {0, 0};
         });
@@ -108,26 +120,26 @@ struct expand_cells {
 
   /// Spreads the entries of `n` spans evenly over the lanes, and makes candidates of those that meet.
   template <class Block>
-  COLLIDE_HD_INLINE void test_spans(Block& block, scratch<Block>& s, cells const& here, std::uint32_t n) const {
+  COLLIDE_HD_INLINE void test_spans(Block& block, scratch<Block>& s, int level, std::uint32_t n) const {
     struct numbered_span {
       entry_span of;
       std::uint32_t number;
     };
-    bool const all = here.of == nullptr;
+    bool const is_all = level == all;
     block.template for_each_balanced<ahead>(
         s.balance, s.sizes, n,
         [&](std::uint32_t i) {
           return numbered_span{s.spans[i], i};
         },
         [&](numbered_span const& c, std::uint32_t k) {
-          return all ? cell_item{c.of.first + k, cell_coverage::full_box} : grids.entries[c.of.first + k];
+          return is_all ? cell_item{c.of.first + k, cell_coverage::full_box} : grids.entries[c.of.first + k];
         },
         [&](numbered_span const& c, cell_item const& e) {
           return cell_coverage::overlaps(e.coverage, s.parts[c.number]);
         },
         [&](numbered_span const& c, cell_item const& e) {
           if constexpr (!still) {
-            if (!all && !owns_pair(here, s.places[c.number], e)) return;
+            if (!is_all && !owns_pair(grids.grids[s.grid_of[c.number]], level, s.places[c.number], e)) return;
           }
           pipeline.push(block, s.hits, {c.of.sphere, e.triangle});
         },
@@ -135,24 +147,24 @@ struct expand_cells {
   }
 
   /// True if the pair counts in this cell of a way, and not in another that has the entry too.
-  COLLIDE_HD_INLINE bool owns_pair(cells const& here, typename swept_cells<S>::cell_visit const& place,
+  COLLIDE_HD_INLINE bool owns_pair(grid<S> const& g, int level, typename swept_cells<S>::cell_visit const& place,
                                    cell_item const& e) const {
     if (place.later != swept_cells<S>::cell_visit::unknown)
       return !cell_coverage::starts_in_earlier_cell(e.coverage, place.later);
-    return place.is_single || place.owns_pair(here.of->range_of(*here.level, grids.box_at(e.triangle)));
+    return place.is_single || place.owns_pair(g.range_of(g.level[level], grids.box_at(e.triangle)));
   }
 
   /// Appends spans for the cells of a sphere that are not empty, as far as there is room. True if that was all.
   template <class Block>
   COLLIDE_HD_INLINE bool append_spans(Block& block, scratch<Block>& s, cells const& here, id number, cursor& at) const {
     if (here.of == nullptr) {
-      auto const all = static_cast<std::uint32_t>(grids.mesh.size());
-      return append(block, s, number, {all, all}, cell_coverage::full_query, at);
+      auto const triangles = static_cast<std::uint32_t>(grids.mesh.size());
+      return append(block, s, here, number, {triangles, triangles}, cell_coverage::full_query, at);
     }
     auto const ball = pipeline.spheres[number];
     if constexpr (still) {
       cell_ref const cell = here.of->place_of(*here.level, ball.centre);
-      return append(block, s, number, grids.lists[cell.number], cell.coverage, at);
+      return append(block, s, here, number, grids.lists[cell.number], cell.coverage, at);
     } else {
       swept_cells<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {
@@ -160,7 +172,7 @@ struct expand_cells {
         std::uint32_t const cell =
             here.level->row(place.cell[1], place.cell[2]) + (place.cell[0] & here.level->mask[0]);
         if (!place.is_cell || !grids.is_occupied(cell)) continue;
-        if (!append(block, s, number, grids.lists[cell], place.coverage, at, &place)) return false;
+        if (!append(block, s, here, number, grids.lists[cell], place.coverage, at, &place)) return false;
       }
       return true;
     }
@@ -168,8 +180,9 @@ struct expand_cells {
 
   /// Appends a span for the entries of a cell from at.skip on. False if there was no room for all of them.
   template <class Block>
-  COLLIDE_HD_INLINE bool append(Block& block, scratch<Block>& s, id number, item_range cell, std::uint32_t part,
-                                cursor& at, typename swept_cells<S>::cell_visit const* place = nullptr) const {
+  COLLIDE_HD_INLINE bool append(Block& block, scratch<Block>& s, [[maybe_unused]] cells const& here, id number,
+                                item_range cell, std::uint32_t part, cursor& at,
+                                typename swept_cells<S>::cell_visit const* place = nullptr) const {
     std::uint32_t const left = cell.count - at.skip, size = smaller(left, longest<Block>);
     if (left == 0) return true;
     std::uint32_t const slot = block.add(s.found.spans, 1);
@@ -178,6 +191,7 @@ struct expand_cells {
     s.sizes[slot] = size;
     s.parts[slot] = part;
     if constexpr (!still) {
+      s.grid_of[slot] = here.number;
       if (place != nullptr) s.places[slot] = *place;
     }
     at.skip += size;

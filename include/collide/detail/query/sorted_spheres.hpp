@@ -33,6 +33,7 @@ namespace collide::detail {
 /// Kernel body of `for_each` over triangles: sets a bit for every cell that a triangle looks into.
 template <class S>
 struct mark_occupied_cells {
+  mesh_view<S> mesh;
   triangle_aabb<S> const* boxes;
   grid<S> const* grids;
   int grid_count;
@@ -40,14 +41,16 @@ struct mark_occupied_cells {
 
   void operator()(std::size_t i) const {
     for (int g = 0; g < grid_count; ++g) {
-      grids[g].each_row(boxes[i], [&](std::uint32_t first, std::uint32_t n) {
-        for (std::uint32_t const end = first + n; first < end;) {
-          std::uint32_t const next = smaller((first / 32 + 1) * 32, end);
-          std::uint32_t const bits = 0xffffffffu >> (32 - (next - first)) << first % 32;
-          if ((load_relaxed(occupied + first / 32) & bits) != bits) fetch_or(occupied + first / 32, bits);
-          first = next;
-        }
-      });
+      each_range(
+          grids[g], boxes[i], [&] { return mesh[i]; },
+          [&](std::uint32_t first, std::uint32_t n) {
+            for (std::uint32_t const end = first + n; first < end;) {
+              std::uint32_t const next = smaller((first / 32 + 1) * 32, end);
+              std::uint32_t const bits = 0xffffffffu >> (32 - (next - first)) << first % 32;
+              if ((load_relaxed(occupied + first / 32) & bits) != bits) fetch_or(occupied + first / 32, bits);
+              first = next;
+            }
+          });
     }
   }
 };
@@ -114,7 +117,7 @@ class sorted_spheres {
   /// Marks the cells that triangles touch. To be called for new grids, the cells of each of which begin at a multiple
   /// of 2^table_bits.
   template <class Space>
-  void mark(Space& space, triangle_aabb<S> const* boxes, std::size_t triangles, grid<S> const* grids, int grid_count,
+  void mark(Space& space, mesh_view<S> const& mesh, triangle_aabb<S> const* boxes, grid<S> const* grids, int grid_count,
             std::uint32_t table_bits) {
     boxes_ = boxes;
     grids_ = grids;
@@ -124,7 +127,7 @@ class sorted_spheres {
     std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
-    space.for_each(triangles, mark_occupied_cells<S>{boxes, grids, grid_count, occupied});
+    space.for_each(mesh.size(), mark_occupied_cells<S>{mesh, boxes, grids, grid_count, occupied});
   }
 
   /// How far the grid must reach for spheres of one radius that move: the radius of a ball around the way of each.

@@ -27,6 +27,17 @@ struct bucket_query {
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
   bucket_ref<S> triangles;
   std::size_t blocks;  ///< that share the spheres
+  std::size_t beside;  ///< so many lanes of a block take spheres next to each other
+
+  /// Shares `n` spheres among as many blocks as are at work at a time, if there are enough.
+  template <class Space>
+  void share(Space const& space, std::size_t n) {
+    using block = typename Space::template block<bucket_query>;
+    constexpr auto warp = static_cast<std::size_t>(block::warp_size), of_lane = static_cast<std::size_t>(block::items);
+    std::size_t const wave = space.template max_resident_blocks<bucket_query>();
+    for (beside = warp; beside > 4 && n < 2 * wave * beside * of_lane;) beside /= 2;
+    blocks = smaller(wave, (n + beside * of_lane - 1) / (beside * of_lane));
+  }
 
   template <class Block>
   struct scratch {
@@ -40,7 +51,7 @@ struct bucket_query {
     bool const has_one_level =
         pipeline.spheres.one_radius() && triangles.has_single_cell_lookup(pipeline.spheres.common_radius());
     bucket_ref<S> const grids = triangles.opened();
-    compact_type const spheres{pipeline.spheres, grids, marks, has_one_level, blocks};
+    compact_type const spheres{pipeline.spheres, grids, marks, has_one_level, blocks, beside};
     expand_type const cells{pipeline, grids};
     typename Block::template thread_private<std::size_t> next;
     block.for_each_thread([&](int thread_rank) {

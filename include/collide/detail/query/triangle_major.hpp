@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/grid/triangle_cells.hpp>
 #include <collide/detail/query/bin_spheres.hpp>
 #include <collide/detail/query/candidate_batch.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
@@ -69,7 +70,10 @@ struct query_triangle_major {
           if (s.count == s.room) test(block, s);
         }
       };
-      for (int g = 0; g < grid_count; ++g) grids[g].each_row(around, look_into);
+      for (int g = 0; g < grid_count; ++g) {
+        each_range(
+            grids[g], around, [&] { return pipeline.mesh[t]; }, look_into);
+      }
       look_into(everywhere, 1);
     }
   }

@@ -1,0 +1,86 @@
+/// \file
+/// How far spheres and triangles are apart: of how many pairs a grid with cells of some width makes candidates.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/geometry/aabb.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/mesh.hpp>
+#include <collide/moving_spheres.hpp>
+#include <collide/spheres.hpp>
+
+namespace collide::detail {
+
+/// In place of spheres, if none are known yet: one for each triangle, at its first vertex.
+template <class S>
+struct vertices_as_spheres {
+  mesh_view<S> mesh;
+  S common;
+
+  COLLIDE_HD std::size_t size() const { return mesh.size(); }
+  COLLIDE_HD sphere<S> operator[](std::size_t i) const { return {mesh[i].a, common}; }
+};
+
+/// The sphere, or that around the way of a moving one, as far as its place goes.
+template <class S>
+COLLIDE_HD_INLINE sphere<S> place_of(sphere<S> const& s) {
+  return s;
+}
+template <class S>
+COLLIDE_HD_INLINE sphere<S> place_of(moving_sphere<S> const& s) {
+  return {s.centre, s.radius};
+}
+
+/// The distances, on the axis where they are farther apart, of sampled spheres from the boxes of sampled triangles, in
+/// units of the grid's extent: a histogram over octaves. Memory of a block, not constructed.
+struct pair_distances {
+  static constexpr std::uint32_t spheres = 64, triangles = 64, bins = 32;
+
+  std::uint32_t counts[bins];
+  std::uint32_t sampled;  ///< spheres
+
+  /// Bin k is of distances below 2^(k - 28); those of 8 and more are in the last.
+  COLLIDE_HD_INLINE static std::uint32_t bin_of(float distance) {
+    std::uint32_t const octave = to_bits(distance) >> 23;
+    return smaller(larger(octave, 127u - 29) - (127u - 29), bins - 1);
+  }
+  COLLIDE_HD_INLINE static float end_of(std::uint32_t bin) { return from_bits<float>((bin + 127 - 28) << 23); }
+};
+
+/// What share of all pairs is not farther apart than a distance, as far as some thousand pairs tell: a power of the
+/// distance where there are few.
+class share_of_pairs {
+ public:
+  /// Of triangles with this mean extent.
+  COLLIDE_HD share_of_pairs(pair_distances const& seen, float mean_extent) : extent_{mean_extent} {
+    constexpr std::uint32_t few = 12;
+    std::uint32_t const all = seen.sampled * pair_distances::triangles;
+    std::uint32_t below = 0, bin = 0, sum = 0, farther = 0;
+    for (std::uint32_t k = 0; k < pair_distances::bins; ++k) {
+      if (sum < few) bin = k;
+      sum += seen.counts[k];
+      if (bin == k) below = sum;
+      if (k <= bin + 2) farther = sum;
+    }
+    distance_ = pair_distances::end_of(bin);
+    if (all == 0 || below == 0) return;
+    share_ = static_cast<float>(below) / static_cast<float>(all);
+    // by what power the share grows: 3 where spheres fill a volume, 2 where they lie on the surface
+    float const ratio = log2f((extent_ + 8 * distance_) / (extent_ + 2 * distance_));
+    power_ = ratio > 0.01f ? log2f(static_cast<float>(farther) / static_cast<float>(below)) / ratio : 3;
+    power_ = smaller(larger(power_, 1.f), 3.f);
+  }
+
+  COLLIDE_HD float operator()(float distance) const {
+    float const x = (extent_ + 2 * distance) / (extent_ + 2 * distance_);
+    return x > 0 ? smaller(1.f, share_ * exp2f(power_ * log2f(x))) : 0.f;
+  }
+
+ private:
+  float extent_, distance_ = 1, share_ = 0, power_ = 3;
+};
+
+}  // namespace collide::detail
