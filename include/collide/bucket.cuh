@@ -119,7 +119,7 @@ class bucket::index {
       if (!whole_boxes_ && stage_ != stage::none) {  // made for a radius, before it was known that spheres move
         whole_boxes_ = true;
         S reaches[detail::max_grids];
-        std::copy(reaches_, reaches_ + requested_, reaches);
+        for (int i = 0; i < detail::max_grids; ++i) reaches[i] = reaches_[i];
         make_grids(space, options, reaches, requested_, spheres);
       }
       whole_boxes_ = true;
@@ -263,7 +263,7 @@ class bucket::index {
                                       0.5f * static_cast<float>(plan.entries) / static_cast<float>(plan.grids),
                                       plan.table_bits,
                                       bucket_tuning<Space>::costs};
-      std::copy(reaches_, reaches_ + plan.grids, request.reaches);
+      for (int i = 0; i < detail::max_grids; ++i) request.reaches[i] = reaches_[i];
       space.launch(count,
                    detail::plan_grid<S, Spheres>{mesh_, boxes_.data(), spheres, summary_.data(), grids, request});
       if constexpr (bucket_tuning<Space>::bins_spheres) {
@@ -292,7 +292,7 @@ class bucket::index {
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
                                                  lists,         occupied(),  &lists[cells_].count};
     space.launch(detail::grid_size<Space>(cells_, allocation), allocation);
-    bool const asks = Space::host_accessible || n > most_unasked || grid_count_ > 1 || options.cell_width > 0;
+    bool const asks = n > most_unasked || grid_count_ > 1 || options.cell_width > 0;
     std::size_t const capacity = asks ? std::min<std::size_t>(space.read(lists_total()), entry_limit_) : entry_limit_;
     entries_.reserve(space.resource(), capacity);
     enter(detail::fill_entries{lists, entries_.data(), entries_.capacity()});

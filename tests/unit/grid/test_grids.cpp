@@ -402,7 +402,7 @@ TEST_CASE_TEMPLATE("grids: triangles with bad values do not count", S, float, do
   made.mesh.add({{0, 0, 0}, {1, infinity, 0}, {0, 1, 0}});
   made.mesh.add({{0, 0, -infinity}, {1, nan, 0}, {0, 1, 0}});
   check_with(made, made.expect(0), {});
-  check_width(made, everything);
+  check_width(made, 1.02 * everything);
 }
 
 TEST_CASE_TEMPLATE("grids: a soup with one triangle 1e6 times as large as the rest", S, float, double) {

@@ -110,8 +110,8 @@ struct fill_entries {
 template <class S, class Pass>
 struct enter_triangles {
   static constexpr int items = 1;
-  static constexpr std::size_t many_blocks =
-      512;                            ///< a large triangle keeps its block busy: the others must be elsewhere
+  /// A large triangle keeps its block busy: where there are few blocks, the others' triangles are elsewhere.
+  static constexpr std::size_t many_blocks = 240;
   static constexpr int together = 4;  ///< cells that a lane asks at a time
 
   mesh_view<S> mesh;

@@ -38,7 +38,7 @@ struct level_cost {
   share_of_pairs const& share;
 
   COLLIDE_HD_INLINE float operator()(triangle_sums const& t, float width) const {
-    float const pairs = spheres * t.count * share(reach + 0.5f * width);
+    float const pairs = spheres * t.count * share(reach + 0.5f * width, t.mean_extent());
     return costs.entry_ns * t.entries(width, reach) + costs.candidate_ns * pairs;
   }
 };

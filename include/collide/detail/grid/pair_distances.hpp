@@ -54,8 +54,7 @@ struct pair_distances {
 /// distance where there are few.
 class share_of_pairs {
  public:
-  /// Of triangles with this mean extent.
-  COLLIDE_HD share_of_pairs(pair_distances const& seen, float mean_extent) : extent_{mean_extent} {
+  COLLIDE_HD explicit share_of_pairs(pair_distances const& seen) {
     constexpr std::uint32_t few = 12;
     std::uint32_t const all = seen.sampled * pair_distances::triangles;
     std::uint32_t below = 0, bin = 0, sum = 0, farther = 0;
@@ -69,18 +68,18 @@ class share_of_pairs {
     if (all == 0 || below == 0) return;
     share_ = static_cast<float>(below) / static_cast<float>(all);
     // by what power the share grows: 3 where spheres fill a volume, 2 where they lie on the surface
-    float const ratio = log2f((extent_ + 8 * distance_) / (extent_ + 2 * distance_));
-    power_ = ratio > 0.01f ? log2f(static_cast<float>(farther) / static_cast<float>(below)) / ratio : 3;
+    power_ = 0.5f * log2f(static_cast<float>(farther) / static_cast<float>(below));
     power_ = smaller(larger(power_, 1.f), 3.f);
   }
 
-  COLLIDE_HD float operator()(float distance) const {
-    float const x = (extent_ + 2 * distance) / (extent_ + 2 * distance_);
+  /// Of triangles with this mean extent.
+  COLLIDE_HD float operator()(float distance, float extent) const {
+    float const x = (extent + 2 * distance) / (extent + 2 * distance_);
     return x > 0 ? smaller(1.f, share_ * exp2f(power_ * log2f(x))) : 0.f;
   }
 
  private:
-  float extent_, distance_ = 1, share_ = 0, power_ = 3;
+  float distance_ = 1, share_ = 0, power_ = 3;
 };
 
 }  // namespace collide::detail

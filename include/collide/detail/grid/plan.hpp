@@ -195,7 +195,7 @@ struct plan_grid {
     block.for_each_thread([&](int thread_rank) {
       triangle_sums all{0, 0, 0};
       for (int c = 0; c < size_classes; ++c) all += s.classes[c];
-      share_of_pairs const share(s.distances, all.mean_extent());
+      share_of_pairs const share(s.distances);
       level_cost const cost{request.costs, spheres_served(s), reach_of(s), share};
       best[thread_rank] = {unlimited, width_at(0), 0, 0};
       if (request.cell_width > 0) {
