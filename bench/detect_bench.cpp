@@ -39,7 +39,7 @@ struct scene_in {
     auto const mesh = collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count());
     auto const spheres = collide::spheres_xyz(centres.data(), n, static_cast<S>(s.radius));
     scene_in in{space, collide::upload(space, mesh), collide::upload(space, spheres), static_cast<S>(s.radius), 0};
-    in.floor = bench::floor_of(space, in.spheres.view().x(0), n);
+    in.floor = bench::floor_of(space, in.spheres.view().centres().address(0), n);
     return made.emplace(n, std::move(in)).first->second;
   }
 };
