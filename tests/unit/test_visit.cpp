@@ -7,11 +7,10 @@ TEST_CASE("visit: sums of many threads are whole and do not depend on the order 
 
 TEST_CASE("visit: a lambda, and one that names the type of a hit") {
   tests::crowded_scene<collide::host> scene(collide::host(3));
-  auto const expected = scene.visit([](tests::sums* to) { return tests::add_up{to}; }).hits;
-  auto const generic = [](tests::sums* to) { return [to](auto const&) { collide::atomic_add(&to->hits, 1); }; };
-  auto const plain = [](tests::sums* to) {
-    return [to](collide::hit<collide::karabassi<>, float> const&) { collide::atomic_add(&to->hits, 1); };
-  };
-  CHECK(scene.visit(generic).hits == expected);
-  CHECK(scene.visit(plain).hits == expected);
+  auto const expected = scene.end(tests::add_up{scene.begin()}).hits;
+  tests::sums* to = scene.begin();
+  CHECK(scene.end([to](auto const&) { collide::atomic_add(&to->hits, 1); }).hits == expected);
+  to = scene.begin();
+  using hit_type = collide::hit<collide::karabassi<>, float>;
+  CHECK(scene.end([to](hit_type const&) { collide::atomic_add(&to->hits, 1); }).hits == expected);
 }

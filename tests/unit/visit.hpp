@@ -57,14 +57,19 @@ class crowded_scene {
   collide::mesh_view<float> mesh;
   collide::sphere_view<float> spheres;
 
-  /// What `visit(add_up)`, or what make(sums*) makes, adds up.
-  template <class Make>
-  sums visit(Make const& make) {
-    sums found{};
-    sums* const to = sums_.assign(space_, &found, 1);
+  /// Sums of nothing yet, in memory of the space.
+  sums* begin() {
+    sums const none{};
+    return sums_ = memory_.assign(space_, &none, 1);
+  }
+
+  /// Those sums when f has been called for each hit.
+  template <class F>
+  sums end(F const& f) {
     collide::detector<collide::bucket, collide::karabassi<>, Space> detector(space_);
-    detector.detect(mesh, spheres, collide::visit(make(to)));
-    space_.copy_to_host(&found, to, 1);
+    detector.detect(mesh, spheres, collide::visit(f));
+    sums found;
+    space_.copy_to_host(&found, sums_, 1);
     return found;
   }
 
@@ -72,7 +77,8 @@ class crowded_scene {
   Space space_;
   array<float> vertices_, centres_, radii_;
   array<std::uint32_t> corners_;
-  array<sums> sums_;
+  array<sums> memory_;
+  sums* sums_ = nullptr;
 };
 
 /// The sums are those of the pairs, whatever the number of threads.
@@ -89,7 +95,7 @@ void check_sums(Space const& space) {
   }
   std::uint64_t const n = contacts.size();
   REQUIRE(n > 20000);
-  sums const found = scene.visit([](sums* to) { return add_up{to}; });
+  sums const found = scene.end(add_up{scene.begin()});
   CHECK(found.hits == n);
   CHECK(found.spheres == expected.spheres);
   CHECK(found.below == -static_cast<std::int32_t>(n));
