@@ -140,13 +140,13 @@ void check_layouts(Space const& space) {
   auto const expected = contacts_of<Broad>(space, mesh, spheres);
   REQUIRE(expected.size() > n);
 
-  for (auto const& [name, view] : vertices) {
-    CAPTURE(name);
-    CHECK(same_records(contacts_of<Broad>(space, collide::indexed_mesh(view, corners, faces), spheres), expected));
+  for (auto const& form : vertices) {
+    CAPTURE(form.name);
+    CHECK(same_records(contacts_of<Broad>(space, collide::indexed_mesh(form.view, corners, faces), spheres), expected));
   }
-  for (auto const& [name, view] : centres) {
-    CAPTURE(name);
-    CHECK(same_records(contacts_of<Broad>(space, mesh, collide::spheres_at(view, radii)), expected));
+  for (auto const& form : centres) {
+    CAPTURE(form.name);
+    CHECK(same_records(contacts_of<Broad>(space, mesh, collide::spheres_at(form.view, radii)), expected));
   }
   CHECK(same_records(contacts_of<Broad>(space, mesh, collide::spheres_at(centres[1].view, copy(two_radii) + 1, 2)),
                      expected));
