@@ -63,6 +63,7 @@ class detector {
   /// `sphere_view`, or `moving_sphere_view` if the narrow phase judges spheres that move.
   using spheres_type = detail::sphere_view_for<NarrowPhase, Scalar>;
 
+  /// Throws what making the space throws: `cuda_error` if a CUDA space finds no usable device.
   explicit detector(ExecutionSpace space = ExecutionSpace(), BroadPhase options = BroadPhase())
       : space_(std::move(space)), options_(std::move(options)) {}
 

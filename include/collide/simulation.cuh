@@ -71,6 +71,7 @@ class simulation {
   /// Pointers to all columns, for kernels; see detail/simulation/particle.hpp.
   using state_type = detail::particle_state<S, columns>;
 
+  /// Throws what making the space throws: `cuda_error` if a CUDA space finds no usable device.
   explicit simulation(execution_space space = execution_space(), broad_phase options = broad_phase())
       : space_(std::move(space)), options_(std::move(options)), effects_(Effect()...) {}
 
