@@ -75,7 +75,7 @@ inline io::scene contact(std::size_t spheres, std::uint64_t seed) {
   }
   auto const mesh =
       collide::indexed_mesh(s.vertices.data(), s.vertices.size() / 3, s.corners.data(), s.triangle_count());
-  std::vector<vec> normals(mesh.vertex_count(), vec(0, 0, 0));
+  std::vector<vec> normals(mesh.vertices().size(), vec(0, 0, 0));
   for (std::size_t t = 0; t < mesh.size(); ++t) {
     auto const [a, b, c] = mesh[t];
     for (std::size_t k = 0; k < 3; ++k) normals[s.corners[3 * t + k]] += (b - a).cross(c - a);
@@ -91,7 +91,7 @@ inline io::scene contact(std::size_t spheres, std::uint64_t seed) {
     for (std::size_t k = 0; k < corners; ++k) {
       std::uint32_t const v = s.corners[3 * t + (first + k) % 3];
       double const weight = random.between(0.1, 1);
-      point += weight * mesh.vertex(v);
+      point += weight * mesh.vertices()[v];
       normal += weight * normals[v].normalized();
       sum += weight;
     }

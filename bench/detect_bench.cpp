@@ -1,17 +1,20 @@
 /// \file
 /// The six methods of the study on the study's scene and on its scaling series.
 ///
-/// Names are METHOD/BROAD_x_SPACE/PRECISION/SINK/PHASE/SPHERES. Counters: pairs; tests_per_second (pairs of sphere and
+/// Names are METHOD/BROAD_x_SPACE/PRECISION/SINK/PHASE/SPHERES, at the end with /LAYOUT unless mesh and spheres are
+/// packed. Counters: pairs; tests_per_second (pairs of sphere and
 /// triangle that were decided, whether or not the broad phase had to look at them); spheres_per_second; over_floor
 /// (time over that of reading every centre once, measured in the same process).
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
-#include <collide/upload.hpp>
+#include <collide/memory.hpp>
 
 #include "io/scenes.hpp"
 #include "program.hpp"
@@ -21,26 +24,59 @@ namespace {
 
 constexpr std::size_t full = io::study_spheres;
 
+/// How vertices and centres lie in memory.
+enum class layout { packed, stride_4, three_arrays };
+char const* const layout_names[] = {"", "/stride_4", "/three_arrays"};
+
+/// Points in memory of a space.
+template <class S>
+class points_in {
+ public:
+  template <class Space>
+  points_in(Space const& space, std::vector<double> const& xyz, layout how) {
+    std::size_t const n = xyz.size() / 3, width = how == layout::stride_4 ? 4 : 3;
+    std::vector<S> arranged(width * n);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = 0; k < 3; ++k)
+        arranged[how == layout::three_arrays ? k * n + i : width * i + k] = static_cast<S>(xyz[3 * i + k]);
+    }
+    S* const to = memory_.reserve(space.resource(), arranged.size());
+    space.copy_from_host(to, arranged.data(), arranged.size());
+    view_ =
+        how == layout::three_arrays ? collide::points<S>(to, to + n, to + 2 * n, n) : collide::points<S>(to, n, width);
+  }
+
+  collide::point_view<S> view() const { return view_; }
+
+ private:
+  collide::buffer<S> memory_;
+  collide::point_view<S> view_;
+};
+
 /// The study's scene in memory of a space.
 template <class Space, class S>
 struct scene_in {
-  Space space;
-  collide::uploaded_mesh<S> mesh;
-  collide::uploaded_spheres<S> spheres;
+  points_in<S> vertices, centres;
+  collide::buffer<collide::id> corners;
+  collide::mesh_view<S> mesh;
+  collide::sphere_view<S> spheres;
   S radius;
-  double floor;
+  double floor = 0;
 
-  static scene_in& get(std::size_t n, Space const& space) {
-    static std::map<std::size_t, scene_in> made;
-    auto const found = made.find(n);
+  scene_in(Space const& space, io::scene const& s, layout how)
+      : vertices(space, s.vertices, how), centres(space, s.centres, how), radius{static_cast<S>(s.radius)} {
+    collide::id* const to = corners.reserve(space.resource(), s.corners.size());
+    space.copy_from_host(to, s.corners.data(), s.corners.size());
+    mesh = collide::indexed_mesh(vertices.view(), to, s.triangle_count());
+    spheres = collide::spheres_at(centres.view(), radius);
+    if (how == layout::packed) floor = bench::floor_of(space, centres.view().address(0), centres.view().size());
+  }
+
+  static scene_in& get(std::size_t n, layout how, Space const& space) {
+    static std::map<std::pair<std::size_t, layout>, scene_in> made;
+    auto const found = made.find({n, how});
     if (found != made.end()) return found->second;
-    io::scene const s = io::study_scene(n);
-    std::vector<S> const vertices(s.vertices.begin(), s.vertices.end()), centres(s.centres.begin(), s.centres.end());
-    auto const mesh = collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count());
-    auto const spheres = collide::spheres_xyz(centres.data(), n, static_cast<S>(s.radius));
-    scene_in in{space, collide::upload(space, mesh), collide::upload(space, spheres), static_cast<S>(s.radius), 0};
-    in.floor = bench::floor_of(space, in.spheres.view().x(0), n);
-    return made.emplace(n, std::move(in)).first->second;
+    return made.emplace(std::pair(n, how), scene_in(space, io::study_scene(n), how)).first->second;
   }
 };
 
@@ -51,11 +87,11 @@ char const* name_of(collide::single_precision) { return "single"; }
 char const* name_of(collide::double_precision) { return "double"; }
 
 template <class Broad, class Precision, class Space, class S, class Sink>
-void run(benchmark::State& state, phase what, std::size_t n, Sink sink, Space space) {
-  auto& scene = scene_in<Space, S>::get(n, space);
+void run(benchmark::State& state, phase what, std::size_t n, layout how, Sink sink, Space space) {
+  auto& scene = scene_in<Space, S>::get(n, how, space);
   collide::detector<Broad, collide::karabassi<Precision>, Space, S> detector(space);
-  auto const mesh = scene.mesh.view();
-  auto const spheres = scene.spheres.view();
+  auto const mesh = scene.mesh;
+  auto const spheres = scene.spheres;
   bench::stopwatch<Space> watch(space);
   auto const build = [&] { detector.build(mesh, scene.radius); };
   auto const query = [&] { detector.query(spheres, sink); };
@@ -77,21 +113,22 @@ void run(benchmark::State& state, phase what, std::size_t n, Sink sink, Space sp
   if (what != phase::build) {
     state.counters["tests_per_second"] = static_cast<double>(n) * static_cast<double>(mesh.size()) / each;
     state.counters["spheres_per_second"] = static_cast<double>(n) / each;
-    state.counters["over_floor"] = each / scene.floor;
+    if (scene.floor > 0) state.counters["over_floor"] = each / scene.floor;
   }
-  state.counters["floor_us"] = scene.floor * 1e6;
+  if (scene.floor > 0) state.counters["floor_us"] = scene.floor * 1e6;
   state.counters["cell_width"] = detector.cell_width();
 }
 
 template <class Broad, class Precision, class Space, class S, class Sink>
 void add(std::string const& method, phase what, std::size_t n, std::string const& sink_name, Sink const& make_sink,
-         Space space) {
+         Space space, layout how = layout::packed) {
   static char const* const phases[] = {"build", "query", "both"};
   std::string const name = method + "/" + name_of(Precision{}) + "/" + sink_name + "/" +
-                           phases[static_cast<int>(what)] + "/" + std::to_string(n);
+                           phases[static_cast<int>(what)] + "/" + std::to_string(n) +
+                           layout_names[static_cast<int>(how)];
   benchmark::RegisterBenchmark(
       name.c_str(),
-      [=](benchmark::State& state) { run<Broad, Precision, Space, S>(state, what, n, make_sink(), space); })
+      [=](benchmark::State& state) { run<Broad, Precision, Space, S>(state, what, n, how, make_sink(), space); })
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);
 }
@@ -112,6 +149,17 @@ void add_series(std::string const& method, std::size_t largest, Space space) {
   }
   add<Broad, collide::single_precision, Space, float>(method, phase::both, full, "pairs", pairs, space);
   add<Broad, collide::double_precision, Space, float>(method, phase::both, full, "pairs", pairs, space);
+}
+
+/// What layouts of mesh and spheres cost: few spheres, for a test, and the whole scene.
+template <class Broad, class Space>
+void add_layouts(std::string const& method, Space space) {
+  for (std::size_t const n : {std::size_t{1} << 10, full}) {
+    for (layout const how : {layout::stride_4, layout::three_arrays}) {
+      for (phase const p : {phase::build, phase::query})
+        add<Broad, collide::exact, Space, float>(method, p, n, "pairs", pairs, space, how);
+    }
+  }
 }
 
 /// What each sink costs, on the whole scene.
@@ -135,6 +183,7 @@ int main(int argc, char** argv) {
   collide::host const one(1), all;
   add_series<collide::bucket>("bucket_seq/bucket_x_host", full, one);
   add_sinks<collide::bucket>("bucket_seq/bucket_x_host", one);
+  add_layouts<collide::bucket>("bucket_seq/bucket_x_host", one);
   if (all.threads() > 1) {
     std::string const name = "bucket_seq/bucket_x_host_" + std::to_string(all.threads()) + "_threads";
     add<collide::bucket, collide::exact, collide::host, float>(name, phase::both, full, "pairs", pairs, all);
@@ -148,6 +197,7 @@ int main(int argc, char** argv) {
     add_series<collide::bucket>("bucket/bucket_x_cuda", full, threads);
     add_series<collide::bucket>("bucket_shamem/bucket_x_cuda_shared", full, blocks);
     add_sinks<collide::bucket>("bucket_shamem/bucket_x_cuda_shared", blocks);
+    add_layouts<collide::bucket>("bucket_shamem/bucket_x_cuda_shared", blocks);
     add_series<collide::all_pairs>("brute_force/all_pairs_x_cuda", full, threads);
     add_series<collide::all_pairs>("brute_force_shamem/all_pairs_x_cuda_shared", full, blocks);
   }

@@ -125,7 +125,7 @@ struct scene {
     pairs.reserve(space.resource(), capacity);
     total = memory_of_total.begin(space);
     std::size_t const threads = centres.size() / 12;
-    auto const* const from = reinterpret_cast<float4 const*>(spheres->view().x(0));
+    auto const* const from = reinterpret_cast<float4 const*>(spheres->view().centres().address(0));
     auto const time_of = [&](int frames) {
       graph const reading(stream, [&] {
         for (int i = 0; i < frames; ++i) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <collide/atomic_add.hpp>
 #include <collide/bucket.cuh>
 
 /// What goes into the query: it is copied to where the query runs, and called there from many threads at once.
@@ -17,11 +18,7 @@ struct count_for_triangle {
   /// Called for each hit.
   template <class Hit>
   COLLIDE_HD void store(std::uint64_t, Hit const& hit) const {
-#if defined(__CUDA_ARCH__)
-    atomicAdd(&counts[hit.triangle], 1u);
-#else
-    __atomic_fetch_add(&counts[hit.triangle], 1u, __ATOMIC_RELAXED);
-#endif
+    collide::atomic_add(&counts[hit.triangle], 1);
   }
 };
 

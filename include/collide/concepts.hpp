@@ -171,6 +171,10 @@ using output_allocate = std::enable_if_t<
 template <class H, class Hit>
 using output_store = decltype(std::declval<H const&>().store(std::uint64_t{}, std::declval<Hit const&>()));
 
+/// True if what a sink passes to a query can be handed to the device.
+template <class H>
+inline constexpr bool is_plain = std::is_trivially_destructible<H>::value;
+
 /// The member of a sink.
 template <class Sink, class Space, class Query>
 using sink_run = decltype(std::declval<Sink&>().run(std::declval<Space&>(), std::declval<Query const&>()));

@@ -144,7 +144,8 @@ class detector {
     static_assert(
         std::is_same<S, Scalar>::value,
         "collide: mesh and spheres must have the scalar type of the detector, its fourth parameter: nothing is "
-        "narrowed silently");
+        "narrowed silently. For float centres and a double mesh take a detector of double and copy the centres to "
+        "double, which is exact");
   }
 
   /// Prepares what depends on the spheres.

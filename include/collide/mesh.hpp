@@ -1,13 +1,13 @@
 /// \file
-/// Views of a triangle mesh in the caller's memory: indexed, or a triangle soup.
+/// Views of a triangle mesh in the caller's memory: indexed, or a triangle soup; in any layout of points.hpp.
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <type_traits>
+#include <utility>
 
 #include <collide/error.hpp>
-#include <collide/geometry.hpp>
+#include <collide/points.hpp>
 
 namespace collide {
 
@@ -23,62 +23,102 @@ class mesh_view {
   using scalar = S;
 
   mesh_view() = default;
-  COLLIDE_HD mesh_view(S const* vertices, std::size_t vertex_count, id const* indices, std::size_t size)
-      : vertices_{vertices}, indices_{indices}, vertex_count_{vertex_count}, size_{size} {}
+  /// `size` triangles. The number of corner k of triangle i is at indices[i * triangle_stride + k * corner_stride], or
+  /// 3 i + k if `indices` is null. Throws `error` if there are more than 2^32 - 2 triangles, or a stride is 2^32 or
+  /// more.
+  mesh_view(point_view<S> const& vertices, id const* indices, std::size_t size, std::size_t triangle_stride = 3,
+            std::size_t corner_stride = 1)
+      : vertices_{vertices},
+        indices_{indices},
+        size_{size},
+        triangle_stride_{detail::checked_stride(triangle_stride)},
+        corner_stride_{detail::checked_stride(corner_stride)} {
+    if (size >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles");
+  }
 
   /// Number of triangles.
   COLLIDE_HD std::size_t size() const { return size_; }
 
   /// Triangle `i`, read from memory.
   COLLIDE_HD_INLINE triangle<S> operator[](std::size_t i) const {
-    std::size_t a = 3 * i, b = a + 1, c = a + 2;
-    if (indices_ != nullptr) {
-      id const* const indices = indices_ + 3 * i;
-      a = indices[0], b = indices[1], c = indices[2];
-    }
-    return {vertex(a), vertex(b), vertex(c)};
+    return {vertices_[corner(i, 0)], vertices_[corner(i, 1)], vertices_[corner(i, 2)]};
   }
 
-  /// Vertex `i`, read from memory.
-  COLLIDE_HD_INLINE vec3<S> vertex(std::size_t i) const {
-    S const* const from = vertices_ + 3 * i;
-    return {from[0], from[1], from[2]};
+  /// Number of the vertex that is corner `k` = 0, 1, 2 of triangle `i`, read from memory.
+  COLLIDE_HD_INLINE std::size_t corner(std::size_t i, unsigned k) const {
+    return indices_ == nullptr ? 3 * i + k : indices_[i * triangle_stride_ + std::size_t{corner_stride_} * k];
   }
 
-  /// The coordinates, three per vertex.
-  COLLIDE_HD S const* vertices() const { return vertices_; }
-  /// Number of vertices.
-  COLLIDE_HD std::size_t vertex_count() const { return vertex_count_; }
-  /// The index array, three vertex numbers per triangle; null for a triangle soup.
+  /// The vertices; of a triangle soup the corners, three per triangle.
+  COLLIDE_HD point_view<S> const& vertices() const { return vertices_; }
+  /// The vertex numbers of the corners; null for a triangle soup.
   COLLIDE_HD id const* indices() const { return indices_; }
+  /// True if the vertex numbers are packed, three per triangle.
+  COLLIDE_HD bool packed_indices() const { return triangle_stride_ == 3 && corner_stride_ == 1; }
 
  private:
-  S const* vertices_ = nullptr;
+  point_view<S> vertices_;
   id const* indices_ = nullptr;
-  std::size_t vertex_count_ = 0;
   std::size_t size_ = 0;
+  unsigned triangle_stride_ = 3;
+  unsigned corner_stride_ = 1;
 };
 
-/// View of an indexed mesh: `vertices` holds 3 * `vertex_count` coordinates, `indices` 3 * `triangle_count` vertex
-/// numbers from 0, of any 32-bit integer type. O(1). Throws `error` if there are more than 2^32 - 2 triangles, or
-/// triangles but no index array.
+namespace detail {
+
+/// A pointer to vertex numbers as `mesh_view` keeps it.
+template <class Index>
+id const* as_ids(Index const* indices, std::size_t triangle_count) {
+  static_assert(std::is_integral<Index>::value && sizeof(Index) == sizeof(id),
+                "collide: the indices of an indexed mesh are 32-bit integers");
+  if (indices == nullptr && triangle_count != 0)
+    throw error("collide: indexed_mesh: there are triangles but no indices");
+  return reinterpret_cast<id const*>(indices);
+}
+
+}  // namespace detail
+
+/// View of an indexed mesh: `vertices` as `points` gives them, `indices` 3 * `triangle_count` vertex numbers from 0, of
+/// any 32-bit integer type. O(1). Throws `error` if there are more than 2^32 - 2 triangles, or triangles but no index
+/// array.
+template <class S, class Index>
+mesh_view<S> indexed_mesh(point_view<S> const& vertices, Index const* indices, std::size_t triangle_count) {
+  return {vertices, detail::as_ids(indices, triangle_count), triangle_count};
+}
+
+/// View of an indexed mesh with packed vertices: `vertices` holds 3 * `vertex_count` coordinates, `indices` 3 *
+/// `triangle_count` vertex numbers from 0, of any 32-bit integer type. O(1). Throws `error` if there are more than
+/// 2^32 - 2 triangles, or triangles but no index array.
 template <class S, class Index>
 mesh_view<S> indexed_mesh(S const* vertices, std::size_t vertex_count, Index const* indices,
                           std::size_t triangle_count) {
-  static_assert(std::is_integral<Index>::value && sizeof(Index) == sizeof(id),
-                "collide: the indices of an indexed mesh are 32-bit integers");
-  if (triangle_count >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles");
-  if (indices == nullptr && triangle_count != 0)
-    throw error("collide: indexed_mesh: there are triangles but no indices");
-  return {vertices, vertex_count, reinterpret_cast<id const*>(indices), triangle_count};
+  return {points(vertices, vertex_count), detail::as_ids(indices, triangle_count), triangle_count};
+}
+
+/// View of an indexed mesh in Eigen matrices of either storage order, such as libigl's V and F: a row of F holds three
+/// row numbers of V, of any 32-bit integer type. Where the type of a matrix has 3 rows, its columns take the place of
+/// rows; see `points`. O(1). Throws `error` if a matrix has another shape, or there are more than 2^32 - 2 triangles.
+template <class V, class F, class = std::enable_if_t<detail::is_eigen<V> && detail::is_eigen<F>>>
+mesh_view<typename std::decay_t<V>::Scalar> indexed_mesh(V&& vertices, F&& faces) {
+  static_assert(detail::check_matrix<F>());
+  detail::matrix_layout const layout(faces, "a matrix of faces");
+  return {points(std::forward<V>(vertices)), detail::as_ids(faces.data(), layout.size), layout.size, layout.stride,
+          layout.side};
 }
 
 /// View of a triangle soup: 9 coordinates per triangle, vertex by vertex. O(1). Throws `error` if there are more than
 /// 2^32 - 2 triangles.
 template <class S>
 mesh_view<S> triangle_soup(S const* coordinates, std::size_t triangle_count) {
-  if (triangle_count >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles");
-  return {coordinates, 3 * triangle_count, nullptr, triangle_count};
+  return {points(coordinates, 3 * triangle_count), nullptr, triangle_count};
+}
+
+/// View of a triangle soup of corners as `points` gives them, three per triangle. O(1). Throws `error` if their number
+/// is no multiple of three, or there are more than 2^32 - 2 triangles.
+template <class S>
+mesh_view<S> triangle_soup(point_view<S> const& corners) {
+  if (corners.size() % 3 != 0) throw error("collide: triangle_soup: there are not three corners for each triangle");
+  return {corners, nullptr, corners.size() / 3};
 }
 
 }  // namespace collide

@@ -12,28 +12,60 @@
 
 namespace collide {
 
-/// An owning copy of a mesh in memory of a space, made by `upload`.
+namespace detail {
+
+/// Copies points from host memory into memory of the space, packed. O(n); may wait.
+template <class Space, class S>
+point_view<S> upload_packed(Space const& space, point_view<S> const& from, buffer<S>& to) {
+  S* const copy = to.reserve(space.resource(), 3 * from.size());
+  if (from.packed()) {
+    space.copy_from_host(copy, from.address(0), 3 * from.size());
+  } else {
+    std::vector<S> packed;
+    packed.reserve(3 * from.size());
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      vec3<S> const p = from[i];
+      packed.insert(packed.end(), {p.x(), p.y(), p.z()});
+    }
+    space.copy_from_host(copy, packed.data(), packed.size());
+  }
+  return points<S>(copy, from.size());
+}
+
+}  // namespace detail
+
+/// An owning, packed copy of a mesh in memory of a space, made by `upload`.
 template <class S>
 class uploaded_mesh {
  public:
   template <class Space>
   uploaded_mesh(Space const& space, mesh_view<S> mesh) {
     detail::check_memory<host>(mesh, "upload: the mesh is", "upload copies from host memory");
-    std::size_t const coordinates = 3 * mesh.vertex_count();
-    space.copy_from_host(vertices_.reserve(space.resource(), coordinates), mesh.vertices(), coordinates);
-    id const* corners = nullptr;
-    if (mesh.indices() != nullptr) {
-      id* const to = corners_.reserve(space.resource(), 3 * mesh.size());
-      space.copy_from_host(to, mesh.indices(), 3 * mesh.size());
-      corners = to;
-    }
-    view_ = mesh_view<S>(vertices_.data(), mesh.vertex_count(), corners, mesh.size());
+    view_ =
+        mesh_view<S>(detail::upload_packed(space, mesh.vertices(), vertices_), copy_indices(space, mesh), mesh.size());
   }
 
   /// The copy, valid as long as this object.
   mesh_view<S> view() const { return view_; }
 
  private:
+  template <class Space>
+  id const* copy_indices(Space const& space, mesh_view<S> const& mesh) {
+    if (mesh.indices() == nullptr) return nullptr;
+    id* const copy = corners_.reserve(space.resource(), 3 * mesh.size());
+    if (mesh.packed_indices()) {
+      space.copy_from_host(copy, mesh.indices(), 3 * mesh.size());
+    } else {
+      std::vector<id> packed;
+      packed.reserve(3 * mesh.size());
+      for (std::size_t i = 0; i < mesh.size(); ++i) {
+        for (unsigned k = 0; k < 3; ++k) packed.push_back(static_cast<id>(mesh.corner(i, k)));
+      }
+      space.copy_from_host(copy, packed.data(), packed.size());
+    }
+    return copy;
+  }
+
   buffer<S> vertices_;
   buffer<id> corners_;
   mesh_view<S> view_;
@@ -46,21 +78,15 @@ class uploaded_spheres {
   template <class Space>
   uploaded_spheres(Space const& space, sphere_view<S> spheres) {
     detail::check_memory<host>(spheres, "upload: the spheres are", "upload copies from host memory");
-    std::size_t const n = spheres.size();
-    std::vector<S> packed(3 * n), radii(spheres.one_radius() ? 0 : n);
-    for (std::size_t i = 0; i < n; ++i) {
-      vec3<S> const c = spheres.centre(i);
-      for (std::size_t k = 0; k < 3; ++k) packed[3 * i + k] = c[static_cast<int>(k)];
-      if (!radii.empty()) radii[i] = spheres.radius(i);
-    }
-    S* const centres = centres_.reserve(space.resource(), packed.size());
-    space.copy_from_host(centres, packed.data(), packed.size());
+    point_view<S> const centres = detail::upload_packed(space, spheres.centres(), centres_);
     if (spheres.one_radius()) {
-      view_ = spheres_xyz(centres, n, spheres.common_radius());
+      view_ = spheres_at(centres, spheres.common_radius());
     } else {
-      S* const to = radii_.reserve(space.resource(), n);
-      space.copy_from_host(to, radii.data(), n);
-      view_ = spheres_xyz(centres, n, static_cast<S const*>(to));
+      std::vector<S> radii(spheres.size());
+      for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = spheres.radius(i);
+      S* const to = radii_.reserve(space.resource(), radii.size());
+      space.copy_from_host(to, radii.data(), radii.size());
+      view_ = spheres_at(centres, static_cast<S const*>(to));
     }
   }
 
@@ -73,8 +99,8 @@ class uploaded_spheres {
   sphere_view<S> view_;
 };
 
-/// Copies a mesh from host memory into memory of the space. O(vertices + triangles); may wait. Throws `error` if CUDA
-/// knows the mesh's memory as device memory.
+/// Copies a mesh of any layout from host memory into memory of the space, packed. O(vertices + triangles); may wait.
+/// Throws `error` if CUDA knows the mesh's memory as device memory.
 template <class Space, class S>
 uploaded_mesh<S> upload(Space const& space, mesh_view<S> mesh) {
   return uploaded_mesh<S>(space, mesh);

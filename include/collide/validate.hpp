@@ -116,9 +116,8 @@ struct inspect_triangle : inspection {
   inspect_triangle(report::finding* to, mesh_view<S> const& m) : inspection{to}, mesh{m} {}
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::size_t const corner = mesh.indices() != nullptr ? mesh.indices()[3 * i + k] : 3 * i + k;
-      if (corner >= mesh.vertex_count()) return this->found(problem::corner_out_of_range, i);
+    for (unsigned k = 0; k < 3; ++k) {
+      if (mesh.corner(i, k) >= mesh.vertices().size()) return this->found(problem::corner_out_of_range, i);
     }
     triangle<S> const t = mesh[i];
     if (!is_finite(t)) return this->found(problem::triangle_not_finite, i);

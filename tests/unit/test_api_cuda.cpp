@@ -110,7 +110,7 @@ TEST_CASE("api: memory that a space cannot read is refused where the host would 
   auto const mesh = collide::upload(device, scene.mesh());
   auto const spheres = collide::upload(device, scene.spheres());
   float const* const radii_there = radii_of(spheres.view());
-  collide::mesh_view<float> const mixed_mesh(scene.vertices.data(), 4, mesh.view().indices(), 2);
+  collide::mesh_view<float> const mixed_mesh(scene.mesh().vertices(), mesh.view().indices(), 2);
   auto const mixed_spheres = collide::spheres_xyz(scene.xyz.data(), 4, radii_there);
   check_refused("device memory", [&] { collide::validate(mesh.view()); });
   check_refused("device memory", [&] { collide::validate(mixed_mesh); });

@@ -74,11 +74,13 @@ TEST_CASE("streamed: spheres in any layout are copied in as few pieces as there 
   CHECK(copied_pieces<float>(moving, equally) == 3);
   CHECK(copied_pieces<float>(moving.subview(7, 20), equally) == 3);
   // a record of everything, and all displacements alike
-  float const* const xyz = from.xyz().x(0);
-  CHECK(copied_pieces<float>(collide::moving_sphere_view<float>({xyz, xyz + 1, xyz + 2, 9, xyz + 3, 9, 0, 10}, xyz + 8,
-                                                                xyz + 6, xyz + 7, 9),
-                             equally) == 1);
-  CHECK(copied_pieces<float>(collide::moving_sphere_view<float>(from.all()[1].spheres, xyz, xyz, xyz, 0), equally) > 0);
+  float const* const xyz = from.xyz().centres().address(0);
+  auto const records = collide::spheres_at(collide::points(xyz, 10, 9), xyz + 3, 9);
+  auto const ways = collide::points(xyz + 8, xyz + 6, xyz + 7, 10, 9);
+  CHECK(copied_pieces<float>(collide::with_displacements(records, ways), equally) == 1);
+  auto const& spheres = from.all()[1].spheres;
+  auto const alike = collide::points(xyz, xyz, xyz, spheres.size(), 0);
+  CHECK(copied_pieces<float>(collide::with_displacements(spheres, alike), equally) > 0);
 }
 
 TEST_CASE("streamed: parts of views") {

@@ -12,7 +12,8 @@ namespace collide::detail {
 
 template <class S, class F>
 void for_each_array(mesh_view<S> const& mesh, F const& f) {
-  f(mesh.vertices());
+  point_view<S> vertices = mesh.vertices();
+  vertices.for_each_array([&](S const* from, std::size_t) { f(from); });
   if (mesh.indices() != nullptr) f(mesh.indices());
 }
 template <class S, class F>

@@ -53,7 +53,7 @@ struct sphere_batch {
   /// The packed centres if the device can load four at a time with 16-byte loads; else null.
   static COLLIDE_HD_INLINE S const* aligned_centres(sphere_view<S> const& spheres) {
 #if defined(__CUDA_ARCH__)
-    return spheres.packed() ? aligned_or_null(spheres.x(0)) : nullptr;
+    return spheres.centres().packed() ? aligned_or_null(spheres.centres().address(0)) : nullptr;
 #else
     static_cast<void>(spheres);
     return nullptr;
@@ -104,8 +104,8 @@ struct sphere_batch {
   COLLIDE_HD_INLINE void load_centres(sphere_view<S> const& spheres, std::size_t first) {
     if (S const* const quads = aligned_centres(spheres)) {
       load_xyz4(quads, first);
-    } else if (spheres.packed()) {  // a stride that the compiler knows
-      S const* const from = spheres.x(first);
+    } else if (spheres.centres().packed()) {  // a stride that the compiler knows
+      S const* const from = spheres.centres().address(first);
       for (int k = 0; k < Items; ++k) {
         x[k] = from[3 * k];
         y[k] = from[3 * k + 1];
@@ -114,9 +114,8 @@ struct sphere_batch {
     } else {
       for (int k = 0; k < Items; ++k) {
         std::size_t const i = first + static_cast<std::size_t>(k);
-        x[k] = *spheres.x(i);
-        y[k] = *spheres.y(i);
-        z[k] = *spheres.z(i);
+        vec3<S> const c = spheres.centre(i);
+        x[k] = c.x(), y[k] = c.y(), z[k] = c.z();
       }
     }
   }
@@ -128,7 +127,8 @@ struct moving_batch {
   S x[Items], y[Items], z[Items], dx[Items], dy[Items], dz[Items], radius[Items];
 
   COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
-    if (first + Items <= spheres.size() && spheres.packed() && spheres.packed_displacements() && spheres.one_radius()) {
+    if (first + Items <= spheres.size() && spheres.centres().packed() && spheres.displacements().packed() &&
+        spheres.one_radius()) {
       load_packed(spheres, first);
       for (int k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
       return;
@@ -152,15 +152,16 @@ struct moving_batch {
   COLLIDE_HD_INLINE void load_packed(moving_sphere_view<S> const& spheres, std::size_t first) {
 #if defined(__CUDA_ARCH__)
     using still = sphere_batch<S, Items>;
-    S const *const centres = still::aligned_or_null(spheres.x(0)), *const ways =
-                                                                       still::aligned_or_null(spheres.displacements(0));
+    S const *const centres = still::aligned_or_null(spheres.centres().address(0)), *const ways = still::aligned_or_null(
+                                                                                       spheres.displacements().address(
+                                                                                           0));
     if (centres != nullptr && ways != nullptr) {
       still::load_xyz4(centres, first, x, y, z);
       still::load_xyz4(ways, first, dx, dy, dz);
       return;
     }
 #endif
-    S const *const from = spheres.x(first), *const along = spheres.displacements(first);
+    S const *const from = spheres.centres().address(first), *const along = spheres.displacements().address(first);
     for (int k = 0; k < Items; ++k) {  // strides that the compiler knows
       x[k] = from[3 * k], y[k] = from[3 * k + 1], z[k] = from[3 * k + 2];
       dx[k] = along[3 * k], dy[k] = along[3 * k + 1], dz[k] = along[3 * k + 2];

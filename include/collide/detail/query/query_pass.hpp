@@ -36,7 +36,7 @@ void query_pass<Index, NarrowPhase, Space, S>::operator()(Handle const& handle) 
       "collide: what a sink passes to query has a const member allocate(n) that returns the number of a slot");
   static_assert(is_valid<output_store, Handle, hit<NarrowPhase, S>>,
                 "collide: what a sink passes to query has a const member store(slot, hit)");
-  static_assert(std::is_trivially_destructible<Handle>::value || Space::host_accessible,
+  static_assert(is_plain<Handle> || Space::host_accessible,
                 "collide: what a sink hands to the device must be a plain value");
   if (mesh.size() != 0 && spheres.size() != 0) {
     if constexpr (query_tuning<Space>::defers_exact_tests && filtered_predicate<NarrowPhase>::value) {
