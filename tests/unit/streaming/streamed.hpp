@@ -71,7 +71,7 @@ class layouts {
             {"soa", collide::spheres_soa(s, s + n, s + 2 * n, n, radii_.data())},
             {"soa, one radius", collide::spheres_soa(s, s + n, s + 2 * n, n, 40)},
             {"xyzr", collide::spheres_xyzr(xyzr_.data(), n)},
-            {"records", {r + 4, r + 5, r + 2, 7, r + 1, 7, 0, n}}};
+            {"records", collide::spheres_at(collide::points(r + 4, r + 5, r + 2, n, 7), r + 1, 7)}};
   }
 
   S const* ways() const { return ways_.data(); }
