@@ -10,6 +10,10 @@
 #include <collide/detail/grid/grid.hpp>
 #include <collide/mesh.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// Visits the cells of triangles in all grids: the common part of counting and filling. `Parts` threads, next to each
@@ -159,3 +163,5 @@ struct fill_entries {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -31,6 +31,10 @@
 #include <collide/detail/grid/cell_coverage.hpp>
 #include <collide/detail/grid/size_histogram.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 inline constexpr int max_levels = 16;
@@ -186,22 +190,22 @@ struct grid : grid_header<S> {
     cell_box const r = cells_of(l, b, from, to);
     std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
                         nz = r.upper[2] - r.lower[2] + 1;
-    auto const covered = [&](std::uint32_t i, std::uint32_t cells, int axis) {
+    auto const covered = [&](std::uint32_t i, std::uint32_t count, int axis) {
       return cell_coverage::encode_box(i == 0 ? from[axis] : cell_coverage::before,
-                                       i + 1 == cells ? to[axis] : cell_coverage::last, axis);
+                                       i + 1 == count ? to[axis] : cell_coverage::last, axis);
     };
     std::uint32_t const n = levels == 0 || b.is_empty() ? 0 : nx * ny * nz;
     for (std::uint32_t i = coverage; i < n; i += N * parts) {
-      cell_ref cells[N];
+      cell_ref batch[N];
       std::uint32_t m = 0;
       for (std::uint32_t k = 0; k < N; ++k) {
         std::uint32_t const number = i + k * parts, rows = number / nx;
         std::uint32_t const x = number % nx, y = rows % ny, z = rows / ny;
-        cells[k].number = l.row(r.lower[1] + y, r.lower[2] + z) + ((r.lower[0] + x) & l.mask[0]);
-        cells[k].coverage = covered(x, nx, 0) | covered(y, ny, 1) | covered(z, nz, 2);
+        batch[k].number = l.row(r.lower[1] + y, r.lower[2] + z) + ((r.lower[0] + x) & l.mask[0]);
+        batch[k].coverage = covered(x, nx, 0) | covered(y, ny, 1) | covered(z, nz, 2);
         m += number < n ? 1u : 0u;
       }
-      f(cells, m);
+      f(batch, m);
     }
   }
 
@@ -230,3 +234,5 @@ struct alignas(8) item_range {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop
