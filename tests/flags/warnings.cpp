@@ -51,9 +51,9 @@ void ask(mesh_view<S> mesh, typename detector<BroadPhase, NarrowPhase, host, S>:
 
 template <class NarrowPhase, class S>
 void move(mesh_view<S> mesh, sphere_view<S> const& spheres) {
-  using scene = simulation<detector<bucket, NarrowPhase, host, S>, velocity_verlet, sleep, sphere_contact, gravity,
-                           drag, wind<>, bounce, friction, spin, adhesion, emit, absorb, absorbing_box, box_walls,
-                           periodic_box, polydisperse, lost_motion>;
+  using scene = simulation<detector<bucket, NarrowPhase, host, S>, velocity_verlet, collide::sleep, sphere_contact,
+                           gravity, drag, wind<>, bounce, friction, spin, adhesion, emit, absorb, absorbing_box,
+                           box_walls, periodic_box, polydisperse, lost_motion>;
   scene one;
   one.set(spheres, static_cast<S const*>(nullptr), 100);
   one.set_mesh(mesh);
