@@ -6,16 +6,11 @@
 
 set(COLLIDE_EXTRA_INCLUDE "" CACHE PATH "Folder of third-party headers that the system lacks")
 
-find_package(OpenMP COMPONENTS CXX)
 find_package(Threads REQUIRED)
 
 add_library(collide_options INTERFACE)
 target_include_directories(collide_options SYSTEM INTERFACE ${COLLIDE_EXTRA_INCLUDE})
 target_link_libraries(collide_options INTERFACE collide::collide Threads::Threads)
-if(OpenMP_CXX_FOUND)
-  target_link_libraries(collide_options INTERFACE OpenMP::OpenMP_CXX)
-  target_compile_options(collide_options INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${OpenMP_CXX_FLAGS}>)
-endif()
 if(COLLIDE_CUDA)
   target_link_libraries(collide_options INTERFACE collide::cuda)
 endif()

@@ -28,6 +28,11 @@ struct absorbing_box {
 
   double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
 
+  void check_parameters() const {
+    detail::check_parameter(lower[0] <= upper[0] && lower[1] <= upper[1] && lower[2] <= upper[2],
+                            "absorbing_box: no lower bound is above its upper bound");
+  }
+
   template <class Particle>
   COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {
     return p[alive{}] == 0;

@@ -18,6 +18,11 @@ struct adhesion {
   double max_acceleration = 20;
   double capture_speed = std::numeric_limits<double>::infinity();
 
+  void check_parameters() const {
+    detail::check_parameter(max_acceleration >= 0 && capture_speed >= 0,
+                            "adhesion: max_acceleration and capture_speed are not negative");
+  }
+
   template <class Particle, class S>
   COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
     if (p[adhered{}] == 0) return;

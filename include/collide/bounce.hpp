@@ -19,6 +19,10 @@ struct bounce {
 
   double restitution = 0.5;
 
+  void check_parameters() const {
+    detail::check_parameter(restitution >= 0 && restitution <= 1, "bounce: restitution is from 0 to 1");
+  }
+
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
     S const e = S(restitution), speed = -detail::dot(p[velocity{}], t.normal);

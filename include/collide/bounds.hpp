@@ -18,6 +18,12 @@ struct box_walls {
   double lower[3] = {-none, -none, -none}, upper[3] = {none, none, none};
   double restitution = 0.5;
 
+  void check_parameters() const {
+    for (int k = 0; k < 3; ++k)
+      detail::check_parameter(lower[k] <= upper[k], "box_walls: no lower bound is above its upper bound");
+    detail::check_parameter(restitution >= 0 && restitution <= 1, "box_walls: restitution is from 0 to 1");
+  }
+
   template <class Particle, class S>
   COLLIDE_HD_INLINE void end_step(Particle& p, S) const {
     for (int k = 0; k < 3; ++k) {
@@ -41,6 +47,11 @@ struct periodic_box {
   using writes = columns<position>;
 
   double lower[3] = {0, 0, 0}, upper[3] = {1, 1, 1};
+
+  void check_parameters() const {
+    for (int k = 0; k < 3; ++k)
+      detail::check_parameter(lower[k] < upper[k], "periodic_box: each lower bound is below its upper bound");
+  }
 
   template <class Particle, class S>
   COLLIDE_HD_INLINE void end_step(Particle& p, S) const {

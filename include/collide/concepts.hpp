@@ -30,6 +30,15 @@ struct is_valid_expression<std::void_t<Expression<T...>>, Expression, T...> : st
 template <template <class...> class Expression, class... T>
 inline constexpr bool is_valid = is_valid_expression<void, Expression, T...>::value;
 
+template <template <class> class View, class T>
+inline constexpr bool is_made_of = false;
+template <template <class> class View, class S>
+inline constexpr bool is_made_of<View, View<S>> = true;
+
+/// For overloads that take what is neither a `View` of any scalar nor can become `Wanted`, to say so.
+template <template <class> class View, class T, class Wanted>
+using if_not_made_of = std::enable_if_t<!is_made_of<View, T> && !std::is_convertible<T const&, Wanted const&>::value>;
+
 /// In place of a function, a kernel functor and an output, where only signatures are asked for.
 struct any_function {
   void operator()(std::size_t) const {}

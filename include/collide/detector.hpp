@@ -11,6 +11,7 @@
 #include <collide/contacts.hpp>
 #include <collide/count.hpp>
 #include <collide/detail/query/query_pass.hpp>
+#include <collide/error.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/mesh.hpp>
@@ -19,6 +20,8 @@
 #include <collide/visit.hpp>
 #if defined(__CUDACC__)
 #include <collide/cuda.cuh>
+#else
+#include <collide/detail/execution/cuda_without_nvcc.hpp>
 #endif
 
 namespace collide {
@@ -60,21 +63,22 @@ class detector {
   /// `sphere_view`, or `moving_sphere_view` if the narrow phase judges spheres that move.
   using spheres_type = detail::sphere_view_for<NarrowPhase, Scalar>;
 
+  /// Throws what making the space throws: `cuda_error` if a CUDA space finds no usable device.
   explicit detector(ExecutionSpace space = ExecutionSpace(), BroadPhase options = BroadPhase())
       : space_(std::move(space)), options_(std::move(options)) {}
 
-  /// Prepares what depends on the mesh only. Call it again when the mesh has moved. The mesh's memory must stay as it
-  /// is until the last query; before the first build nothing collides. O(triangles).
+  /// Prepares what depends on the mesh only. Call it before the first query, and again when the mesh has moved. The
+  /// mesh's memory must stay as it is until the last query. O(triangles).
   void build(mesh_view<Scalar> mesh);
 
   /// Prepares what depends on the mesh, and what spheres at rest of radius up to `radius` need, so that a query has
   /// nothing left to prepare. Larger spheres are tested too, but more slowly. Many spheres that move may still want a
-  /// grid of their own on the host. O(triangles).
+  /// grid of their own on the host. Throws `error` if `radius` is negative or NaN. O(triangles).
   void build(mesh_view<Scalar> mesh, Scalar radius);
 
   /// Hands every colliding pair, exactly once, to the sink (`count`, `any_hit`, `pairs`, `contacts`, `closest`,
   /// `visit`, or one of your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used
-  /// again), else by value.
+  /// again), else by value. Throws `error` if there was no `build`, or the last one failed.
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {
     using pass = detail::query_pass<typename BroadPhase::template index<Scalar>, NarrowPhase, ExecutionSpace, Scalar>;
@@ -87,9 +91,9 @@ class detector {
     return std::forward<Sink>(sink);
   }
 
-  /// `build` and `query` in one call.
-  template <class Sink>
-  Sink detect(mesh_view<Scalar> mesh, spheres_type const& spheres, Sink&& sink) {
+  /// `build(mesh)` and `query(spheres, sink)` in one call.
+  template <class Mesh, class Spheres, class Sink>
+  Sink detect(Mesh const& mesh, Spheres const& spheres, Sink&& sink) {
     build(mesh);
     return query(spheres, std::forward<Sink>(sink));
   }
@@ -97,8 +101,8 @@ class detector {
   /// The width of the finest cells in use; 0 if there are none. In the CUDA spaces it waits for the device.
   double cell_width() const;
 
-  // A mesh or spheres of another scalar type end here, with a sentence instead of a list of candidates.
-  template <class S>
+  // What makes no sense ends here, with a sentence instead of a list of candidates: another scalar type,
+  template <class S, class = std::enable_if_t<!std::is_same<S, Scalar>::value>>
   void build(mesh_view<S>, double = 0) {
     reject<S>();
   }
@@ -115,6 +119,20 @@ class detector {
     static_assert(
         !detail::is_discrete<NarrowPhase, Scalar>,
         "collide: this narrow phase judges spheres that rest: for spheres that move there is karabassi_swept");
+  }
+
+  // and arguments of another kind, or in another order.
+  template <class T, class... Radius, class = detail::if_not_made_of<mesh_view, T, mesh_view<Scalar>>>
+  void build(T const&, Radius const&...) {
+    static_assert(sizeof(T) == 0,
+                  "collide: the first argument of build is a mesh, such as indexed_mesh or triangle_soup gives");
+  }
+  template <class T, class Sink, class = detail::if_not_made_of<sphere_view, T, spheres_type>,
+            class = detail::if_not_made_of<moving_sphere_view, T, spheres_type>>
+  Sink query(T const&, Sink&&) {
+    static_assert(sizeof(T) == 0,
+                  "collide: the first argument of query is spheres, such as spheres_xyz gives, and the second a sink; "
+                  "a mesh goes to build");
   }
 
   ExecutionSpace& space() { return space_; }
@@ -136,6 +154,7 @@ class detector {
   ExecutionSpace space_;
   BroadPhase options_;
   mesh_view<Scalar> mesh_;
+  bool is_built_ = false;
   typename BroadPhase::template index<Scalar> index_;
   detail::deferred_pair_buffer deferred_;
 };
@@ -146,18 +165,22 @@ class detector {
 template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
 void detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::build(mesh_view<Scalar> mesh) {
   mesh_ = {};
+  is_built_ = false;
   if (mesh.size() != 0) index_.build(space_, options_, mesh);
   mesh_ = mesh;
+  is_built_ = true;
 }
 
 template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
 void detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::build(mesh_view<Scalar> mesh, Scalar radius) {
+  if (!(radius >= 0)) throw error("collide: detector: the radius passed to build is negative or NaN");
   build(mesh);
   if (mesh.size() != 0) index_.prepare(space_, options_, radius);
 }
 
 template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
 void detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::prepare(spheres_type const& spheres) {
+  if (!is_built_) throw error("collide: detector: query needs a mesh: call build before it");
   if (mesh_.size() != 0 && spheres.size() != 0) index_.prepare(space_, options_, spheres);
 }
 
@@ -165,5 +188,16 @@ template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scala
 double detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::cell_width() const {
   return mesh_.size() == 0 ? 0.0 : index_.cell_width(space_);
 }
+
+#if !defined(__CUDACC__)
+/// Ends with a sentence; that it is a detector keeps the compiler from saying more.
+template <class BroadPhase, class NarrowPhase, class Scalar>
+class detector<BroadPhase, NarrowPhase, detail::cuda_without_nvcc, Scalar>
+    : public detector<BroadPhase, NarrowPhase, host, Scalar> {
+  static_assert(sizeof(BroadPhase) == 0,
+                "collide: the spaces cuda and cuda_shared need nvcc: compile this source as CUDA, as name.cu or with "
+                "nvcc -x cu; with CMake, as LANGUAGE CUDA");
+};
+#endif
 
 }  // namespace collide

@@ -17,6 +17,10 @@ struct drag {
 
   double linear = 0, quadratic = 0;
 
+  void check_parameters() const {
+    detail::check_parameter(linear >= 0 && quadratic >= 0, "drag: linear and quadratic are not negative");
+  }
+
   template <class Particle, class S>
   COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
     auto& v = p[velocity{}];

@@ -21,7 +21,8 @@
 /// - `try_wake(particle&, other)`, in place of `on_pair_contact` if the particle is inactive and the other is not.
 /// - `end_step(particle&, dt)`, at the end of the step.
 ///
-/// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait.
+/// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
+/// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense.
 /// `on_pair_contact` is called before the other members but `begin_step`: `self` and `other` are as they were when the
 /// step began, and what changes is `particle`, so that both of a pair see the same.
 ///
@@ -33,9 +34,12 @@
 /// called in the order of the scene's list. What a scene does not name costs nothing: neither memory nor instructions.
 #pragma once
 
+#include <string>
+
 #include <collide/columns.hpp>
 #include <collide/contact.hpp>
 #include <collide/detail/numeric/rounding.hpp>
+#include <collide/error.hpp>
 
 namespace collide {
 
@@ -53,6 +57,11 @@ inline constexpr S contact_tolerance = sizeof(S) == sizeof(float) ? S(1e-5) : S(
 template <class S>
 COLLIDE_HD_INLINE S rounding_at(vec3<S> const& position) {
   return std::numeric_limits<S>::epsilon() * max_component<S>(position.cwiseAbs());
+}
+
+/// Throws `error`, which says what a parameter must be, unless it is that.
+inline void check_parameter(bool is_right, char const* must) {
+  if (!is_right) throw error(std::string("collide: ") + must);
 }
 
 }  // namespace detail

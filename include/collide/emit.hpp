@@ -68,6 +68,8 @@ struct emit_from {
   double rate = 0;
   Source source = Source();
 
+  void check_parameters() const { detail::check_parameter(rate >= 0, "emit: rate is not negative"); }
+
   template <class Particle>
   COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {
     return p[alive{}] == 0;

@@ -16,6 +16,11 @@ struct friction {
 
   double static_coefficient = 0.5, kinetic_coefficient = 0.5;
 
+  void check_parameters() const {
+    detail::check_parameter(static_coefficient >= 0 && kinetic_coefficient >= 0,
+                            "friction: coefficients are not negative");
+  }
+
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S) const {
     constexpr bool spins = Particle::template has<angular_velocity>;

@@ -2,6 +2,7 @@
 /// Effect: a constant acceleration.
 #pragma once
 
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/effect.hpp>
 
 namespace collide {
@@ -11,6 +12,11 @@ struct gravity {
   using writes = columns<velocity>;
 
   double x = 0, y = 0, z = -9.81;
+
+  void check_parameters() const {
+    detail::check_parameter(detail::is_finite(x) && detail::is_finite(y) && detail::is_finite(z),
+                            "gravity: the acceleration is finite");
+  }
 
   template <class Particle, class S>
   COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {

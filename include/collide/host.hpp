@@ -25,10 +25,18 @@ class host {
  public:
   /// `threads`: how many; 0 is as many as OpenMP offers. `resource`: where the library's memory comes from; null is
   /// std::pmr::get_default_resource(). The resource must outlive everything that was made with the space.
-  /// Throws `error` if `threads` is negative.
+  /// Throws `error` if `threads` is negative, or above 1 where the program is compiled without OpenMP.
   explicit host(int threads = 0, std::pmr::memory_resource* resource = nullptr)
       : threads_{threads}, resource_{resource != nullptr ? resource : std::pmr::get_default_resource()} {
     if (threads < 0) throw error("collide: host: the number of threads must not be negative");
+#if !defined(_OPENMP)
+    if (threads > 1) {
+      throw error(
+          "collide: host: several threads need OpenMP: compile and link with -fopenmp (nvcc: -Xcompiler -fopenmp); "
+          "with "
+          "CMake, collide::collide does so where OpenMP is found, unless COLLIDE_OPENMP is OFF");
+    }
+#endif
   }
 
   /// How many threads work.

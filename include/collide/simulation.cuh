@@ -9,36 +9,14 @@
 #include <vector>
 
 #include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/detail/simulation/arguments.hpp>
+#include <collide/detail/simulation/lookup_tuning.hpp>
 #include <collide/detail/simulation/particle_kernels.hpp>
 #include <collide/detail/simulation/step.hpp>
 #include <collide/detail/simulation/verlet_list.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
-
-namespace detail {
-
-/// A space as a broad phase sees it that is asked for the triangles near single spheres: they are sorted, not the
-/// spheres, and into narrow cells, as a look-up is cheap and a candidate is not.
-template <class Space>
-struct lookup_tuning : Space {
-  explicit lookup_tuning(Space const& space) : Space(space) {}
-};
-
-template <class Index, class = void>
-struct has_lookup : std::false_type {};
-template <class Index>
-struct has_lookup<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
-
-}  // namespace detail
-
-template <class Space>
-struct bucket_tuning<detail::lookup_tuning<Space>> : bucket_tuning<Space> {
-  static constexpr bool bins_spheres = false;
-  /// The grid serves many steps.
-  static constexpr bucket_costs costs{bucket_tuning<Space>::costs.entry_ns / 16,
-                                      bucket_tuning<Space>::costs.candidate_ns, bucket_tuning<Space>::costs.level_ns};
-};
 
 /// Particles, a mesh, and what happens to the particles in a step: only what the scene names.
 ///
@@ -93,6 +71,7 @@ class simulation {
   /// Pointers to all columns, for kernels; see detail/simulation/particle.hpp.
   using state_type = detail::particle_state<S, columns>;
 
+  /// Throws what making the space throws: `cuda_error` if a CUDA space finds no usable device.
   explicit simulation(execution_space space = execution_space(), broad_phase options = broad_phase())
       : space_(std::move(space)), options_(std::move(options)), effects_(Effect()...) {}
 
@@ -105,6 +84,17 @@ class simulation {
                                                  std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
   simulation(execution_space space, broad_phase options, E... effects)
       : space_(std::move(space)), options_(std::move(options)), effects_(std::move(effects)...) {}
+
+  // Other arguments end here, with a sentence instead of a list of candidates.
+  template <class First, class... Argument,
+            class = std::enable_if_t<
+                !std::is_base_of<simulation, std::decay_t<First>>::value &&
+                !detail::makes_simulation<execution_space, broad_phase, std::tuple<Effect...>, First, Argument...>>>
+  explicit simulation(First&&, Argument&&...) : simulation() {
+    static_assert(sizeof(First) == 0,
+                  "collide: a simulation is made of a space, the options of the broad phase if there are any, and the "
+                  "parameters of all effects, in the order of its list");
+  }
 
   /// Copies particles from memory of the space: centres, radii, and three packed coordinates of velocity each, or null
   /// for particles that rest. The other columns get their initial values. `capacity` is for how many there is room, if
@@ -135,18 +125,21 @@ class simulation {
       }
     }
     space_.for_each(padded, detail::init_particles<S, columns>{state_, particles, velocities});
+    is_set_ = true;
     if constexpr (effects_type::meets || sweeps) largest_radius_ = largest_radius(particles);
     if constexpr (effects_type::meets) neighbours_.reserve(space_, room, largest_radius_);
     prepare();
   }
 
   /// The mesh that particles touch, which must stay as it is while it is used; call it again when the mesh has moved.
-  /// Allocates unless there was a mesh of this size before; may wait. O(triangles).
+  /// An empty one is a mesh, too. Allocates unless there was a mesh of this size before; may wait. O(triangles).
   void set_mesh(mesh_view<S> mesh) {
     mesh_ = {};
+    has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
     if (mesh.size() != 0) index_.build(there, options_, mesh);
     mesh_ = mesh;
+    has_mesh_ = true;
     if constexpr (sweeps) least_radius_ = least_radius(mesh);
     if constexpr (detail::contains<columns, slow_steps>) {  // what slept may have lost its support
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
@@ -154,8 +147,24 @@ class simulation {
     prepare();
   }
 
-  /// Advances by `dt`.
+  // Other scalar types end here.
+  template <class T, class = std::enable_if_t<!std::is_same<T, S>::value>>
+  void set(sphere_view<T> const&) {
+    reject<T>();
+  }
+  template <class T, class V, class = std::enable_if_t<!(std::is_same<T, S>::value && std::is_same<V, S>::value)>>
+  void set(sphere_view<T> const&, V const*, std::size_t = 0) {
+    reject<T>();
+  }
+  template <class T, class = std::enable_if_t<!std::is_same<T, S>::value>>
+  void set_mesh(mesh_view<T>) {
+    reject<T>();
+  }
+
+  /// Advances by `dt`. Throws `error` if `dt` is not finite or an effect's parameter makes no sense, before `set`, and
+  /// before `set_mesh` if an effect touches the mesh.
   void step(S dt) {
+    check_step(dt);
     if (state_.size == 0) return;
     (begin<Effect>(dt), ...);
     if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
@@ -246,6 +255,13 @@ class simulation {
     return particles.common_radius();
   }
 
+  template <class T>
+  static constexpr void reject() {
+    static_assert(sizeof(T) == 0,
+                  "collide: particles, their velocities and the mesh must have the scalar type of the simulation's "
+                  "detector, its fourth parameter: nothing is narrowed silently");
+  }
+
   template <class Column>
   static constexpr void check() {
     static_assert(detail::contains<columns, Column>,
@@ -285,6 +301,19 @@ class simulation {
     return detail::smaller(space_.saturating_blocks(), space_.template max_resident_blocks<Body>());
   }
 
+  void check_step(S dt) const {
+    if (!is_set_) throw error("collide: simulation: step needs particles: call set before it");
+    if (effects_type::touches && !has_mesh_)
+      throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
+    if (!detail::is_finite(dt)) throw error("collide: simulation: the time of a step is not finite");
+    (check_parameters<Effect>(), ...);
+  }
+
+  template <class E>
+  void check_parameters() const {
+    if constexpr (detail::checks_parameters<E>::value) effects_.template of<E>().check_parameters();
+  }
+
   template <class E>
   void begin(S dt) {
     if constexpr (detail::begins_in<E, execution_space, state_type, S>::value)
@@ -298,6 +327,7 @@ class simulation {
   index index_;
   detail::column_buffers<S, columns> memory_;
   state_type state_{};
+  bool is_set_ = false, has_mesh_ = false;
   bool reverse_order_ = false;  ///< of the next step
   buffer<double> time_;
   S largest_radius_ = 0, least_radius_ = 0;

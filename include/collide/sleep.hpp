@@ -17,6 +17,11 @@ struct sleep {
   double speed = 0.01;
   int steps = 50;
 
+  void check_parameters() const {
+    detail::check_parameter(speed >= 0, "sleep: speed is not negative");
+    detail::check_parameter(steps >= 1 && steps <= 255, "sleep: steps are from 1 to 255");
+  }
+
   template <class Particle>
   COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {
     return p[slow_steps{}] >= steps;

@@ -28,12 +28,20 @@ struct sphere_contact {
   double tangential_damping = 0;  ///< force per speed along the tangent, up to that limit
   double density = 1;             ///< mass per volume
 
+  void check_parameters() const {
+    detail::check_parameter(stiffness >= 0 && damping >= 0 && friction >= 0 && tangential_damping >= 0,
+                            "sphere_contact: stiffness, dampings and friction are not negative");
+    detail::check_parameter(density > 0, "sphere_contact: density is above 0");
+  }
+
   /// Spheres of this radius and density that collide for `duration` and part with `restitution` times the speed (at
   /// least 0.14: what is less needs more damping than the model has). They part when they no longer push each other:
   /// T. Schwager and T. Poeschel, "Coefficient of restitution and linear-dashpot model revisited", Granular Matter 9,
   /// 2007, of whose formula sin(a) is the damping ratio.
   static sphere_contact from_restitution(double restitution, double duration, double radius, double density,
                                          double friction = 0) {
+    detail::check_parameter(restitution >= 0 && restitution <= 1 && duration > 0 && radius > 0 && density > 0,
+                            "from_restitution: restitution is from 0 to 1, duration, radius and density are above 0");
     double const pi = 3.14159265358979323846, reduced_mass = density * pi * radius * radius * radius * 2 / 3;
     double a = 0, most = pi / 2;
     for (int i = 0; i < 60; ++i) {

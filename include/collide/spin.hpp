@@ -15,6 +15,10 @@ struct spin {
 
   double rolling_resistance = 0;
 
+  void check_parameters() const {
+    detail::check_parameter(rolling_resistance >= 0, "spin: rolling_resistance is not negative");
+  }
+
   template <class Particle, class S>
   COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S) const {
     S most = S(rolling_resistance) * t.normal_impulse;

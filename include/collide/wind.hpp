@@ -27,6 +27,10 @@ struct wind {
   double linear = 0, quadratic = 0;
   Field field = Field();
 
+  void check_parameters() const {
+    detail::check_parameter(linear >= 0 && quadratic >= 0, "wind: linear and quadratic are not negative");
+  }
+
   template <class Particle, class S>
   COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
     vec3<S> const there = field(p[position{}]);

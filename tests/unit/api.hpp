@@ -134,7 +134,8 @@ void check_end_of_pass(Space space) {
   collide::detector<Broad, NarrowPhase, Space> detector(space);
   ending_sink sink;
   auto const query = [&] { return detector.query(collide::upload(space, scene.spheres()).view(), sink).numbers; };
-  CHECK((query() == numbers{0, 1, 0}));  // nothing is built yet
+  detector.build({});
+  CHECK((query() == numbers{0, 1, 0}));
   detector.build(mesh.view());
   for (int k = 0; k < 3; ++k) CHECK((query() == numbers{4, 1, 4}));
   CHECK((detector.query(collide::sphere_view<float>(), sink).numbers == numbers{0, 1, 0}));
@@ -152,7 +153,9 @@ void check_sink_interface(Space space) {
   auto const spheres = collide::upload(space, scene.spheres());
   collide::detector<Broad, collide::karabassi<>, Space> detector(space);
 
-  CHECK(detector.query(spheres.view(), collide::count()).total() == 0);  // nothing is built yet
+  CHECK_THROWS_AS(detector.query(spheres.view(), collide::count()), collide::error);  // nothing is built yet
+  detector.build({});
+  CHECK(detector.query(spheres.view(), collide::count()).total() == 0);
   CHECK(detector.detect(mesh.view(), spheres.view(), collide::count()).total() == 4);
 
   collide::pairs kept(collide::order::canonical);

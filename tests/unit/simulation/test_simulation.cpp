@@ -142,12 +142,14 @@ TEST_CASE("simulation: a narrow phase of one's own says when its balls stop") {
 
 TEST_CASE("simulation: nothing to do") {
   simulation<plain, gravity, bounce> empty;
+  empty.set({});
+  empty.set_mesh({});
   empty.step(1);
   CHECK(empty.size() == 0);
   CHECK(empty.to_host<collide::position>().empty());
   float const centres[] = {0, 0, 0};
   empty.set(collide::spheres_xyz(centres, 1, 1.0f));
-  empty.step(1);  // no mesh
+  empty.step(1);
   CHECK(empty.to_host<collide::velocity>()[2] == doctest::Approx(-9.81));
   empty.set_mesh({});
   empty.step(1);

@@ -211,7 +211,9 @@ void check_streamed_edges(Space const& space, std::pmr::memory_resource* memory)
     total += found.total();
     ++calls;
   };
-  streamed.query(from.xyz(), collide::count(), add);  // nothing is built yet
+  CHECK_THROWS_AS(streamed.query(from.xyz(), collide::count(), add), collide::error);  // nothing is built yet
+  detector.build({});
+  streamed.query(from.xyz(), collide::count(), add);
   CHECK(calls == 5);
   CHECK(total == 0);
   streamed.query({}, collide::count(), add);

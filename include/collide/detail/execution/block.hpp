@@ -29,6 +29,10 @@
 
 #include <collide/config.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// A block of one lane with `Items` items; `Pending` hits are gathered before they go to the sink.
@@ -119,3 +123,5 @@ class serial_block {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

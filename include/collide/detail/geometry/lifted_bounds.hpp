@@ -57,8 +57,8 @@ COLLIDE_HD_INLINE vec3<S> lifted_origin(mesh_view<S> const& mesh) {
 /// Consecutive spheres in lifted form; of moving spheres, their swept bounding spheres.
 template <class S, int Items>
 struct lifted_batch {
-  S x[Items], y[Items], z[Items], radius[Items];
-  S threshold[Items];  ///< (centre^2 - radius^2) / 2, rounded down
+  S x[std::size_t(Items)], y[std::size_t(Items)], z[std::size_t(Items)], radius[std::size_t(Items)];
+  S threshold[std::size_t(Items)];  ///< (centre^2 - radius^2) / 2, rounded down
 
   template <class Spheres>
   COLLIDE_HD_INLINE void load(Spheres const& spheres, std::size_t first, vec3<S> const& origin) {

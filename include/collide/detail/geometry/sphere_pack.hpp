@@ -7,6 +7,10 @@
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/moving_spheres.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// `Items` consecutive spheres: in registers on CUDA, eight or sixteen to a vector register on a CPU. Spheres beyond
@@ -170,3 +174,5 @@ struct moving_batch {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -11,6 +11,10 @@
 #include <collide/detail/grid/triangle_cells.hpp>
 #include <collide/mesh.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// Adds 1 to the counters of several cells. Threads of a warp that meet in a cell, as those of neighbouring triangles
@@ -292,3 +296,5 @@ struct allocate_entries {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -32,6 +32,10 @@
 #include <collide/detail/grid/cell_coverage.hpp>
 #include <collide/detail/grid/size_histogram.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 inline constexpr int max_levels = 2;
@@ -178,3 +182,5 @@ struct alignas(8) item_range {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -10,6 +10,10 @@
 #include <collide/detail/grid/swept_cells.hpp>
 #include <collide/detail/grid/triangle_ref.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// The lookup of `bucket`: the grids, as bucket.cuh has them.
@@ -156,16 +160,16 @@ struct bucket_ref : triangle_ref<S> {
   COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball) const {
     cell_box const r = swept_cells<S>::cell_box_of_path(g, l, ball.centre, ball.displacement);
     if (!swept_cells<S>::is_short(r)) return false;  // is looked at more closely when it is walked
-    bool occupied = false;
+    bool found = false;
     for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
       for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) {
         std::uint32_t const row = l.row(y, z);
         for (std::uint32_t x = r.lower[0]; x <= r.upper[0]; ++x) {
-          occupied = occupied || is_occupied(row + (x & l.mask[0]));
+          found = found || is_occupied(row + (x & l.mask[0]));
         }
       }
     }
-    return !occupied;
+    return !found;
   }
 
   /// The entries of a cell that have not been gone through; then the cursor is at the next step.
@@ -211,3 +215,5 @@ struct bucket_ref : triangle_ref<S> {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

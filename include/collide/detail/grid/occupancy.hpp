@@ -8,6 +8,10 @@
 #include <collide/detail/grid/grid.hpp>
 #include <collide/detail/grid/swept_cells.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// Which cells have triangles, of the one level of the one grid that serves balls of one radius: all that most balls
@@ -113,3 +117,5 @@ struct occupancy_view {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

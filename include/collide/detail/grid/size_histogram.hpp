@@ -55,7 +55,7 @@ template <class Block>
 struct block_histogram {
   static constexpr int kept = Block::num_threads > 1 ? size_bins : 8;  ///< a power of two
 
-  std::uint32_t counts[kept], sums[kept];
+  std::uint32_t counts[std::size_t(kept)], sums[std::size_t(kept)];
   std::uint32_t bins[Block::num_threads > 1 ? 1 : kept];  ///< of one lane: whose counts they are
 
   COLLIDE_HD_INLINE void clear(Block& block) {

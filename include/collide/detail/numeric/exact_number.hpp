@@ -163,9 +163,9 @@ class exact_memory {
   COLLIDE_HD exact_numbers table() { return {mantissas_, exponents_, ends_}; }
 
  private:
-  std::int64_t mantissas_[Components];
-  std::int16_t exponents_[Components];
-  std::uint8_t ends_[Numbers + 1];
+  std::int64_t mantissas_[std::size_t(Components)];
+  std::int16_t exponents_[std::size_t(Components)];
+  std::uint8_t ends_[std::size_t(Numbers + 1)];
 };
 
 }  // namespace collide::detail

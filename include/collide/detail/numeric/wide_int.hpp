@@ -13,7 +13,7 @@ __extension__ typedef unsigned __int128 uint128;
 /// An integer of `N` words, in two's complement: sums are modulo 2^(64 N), and products have room for all bits.
 template <int N>
 struct int_words {
-  std::uint64_t word[N];  ///< the lowest first
+  std::uint64_t word[std::size_t(N)];  ///< the lowest first
 
   COLLIDE_HD bool negative() const { return word[N - 1] >> 63 != 0; }
   COLLIDE_HD bool positive() const {

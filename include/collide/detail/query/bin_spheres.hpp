@@ -14,6 +14,10 @@
 #include <collide/detail/geometry/sphere_pack.hpp>
 #include <collide/detail/grid/grid.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// Bit k is flags[k], for k < n <= 64; flags are 0 or 1.
@@ -235,3 +239,5 @@ struct scatter_spheres {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

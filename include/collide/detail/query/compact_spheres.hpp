@@ -12,6 +12,10 @@
 #include <collide/detail/grid/occupancy.hpp>
 #include <collide/detail/narrow_phase/traits.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// Gathers the spheres that may be near a triangle, and which grid serves each, in scratch memory.
@@ -152,3 +156,5 @@ struct compact_spheres {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

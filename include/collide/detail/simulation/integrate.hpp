@@ -10,6 +10,10 @@
 #include <collide/detail/grid/grid_ref.hpp>
 #include <collide/detail/simulation/step_context.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// In place of a mesh filter, where nothing touches the mesh.
@@ -177,3 +181,5 @@ struct integration {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -58,15 +58,15 @@ struct pair_interaction {
 template <class S, class Effects>
 struct interact_listed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
-    auto const& order = this->order;
-    if (i == 0) order.header->rebuild = 0;  // not read again in this step
-    if (i >= order.header->count) return;
+    auto const& places = this->order;
+    if (i == 0) places.header->rebuild = 0;  // not read again in this step
+    if (i >= places.header->count) return;
     auto const self = static_cast<std::uint32_t>(i);
-    if (order.list(0, i) == order.overflow_mark) return;
-    typename pair_interaction<S, Effects>::pair_state p(order.load(i));
-    packed_sphere<S> const own = order.spheres[i];
+    if (places.list(0, i) == places.overflow_mark) return;
+    typename pair_interaction<S, Effects>::pair_state p(places.load(i));
+    packed_sphere<S> const own = places.spheres[i];
     for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other) {
-      if (order.within_skin(own, other, S(0))) this->interact(p, place);
+      if (places.within_skin(own, other, S(0))) this->interact(p, place);
     });
     this->store(p);
   }
@@ -76,18 +76,18 @@ struct interact_listed : pair_interaction<S, Effects> {
   /// it are on their way (docs/performance.md).
   template <class F>
   COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, F const& f) const {
-    auto const& order = this->order;
+    auto const& places = this->order;
     auto const item = [&](std::uint32_t before, std::uint32_t n) {
-      return before != self && n < sorted_particles<S, Effects>::listed ? order.list(n, self) : self;
+      return before != self && n < sorted_particles<S, Effects>::listed ? places.list(n, self) : self;
     };
-    std::uint32_t next = order.list(0, self), behind = item(next, 1);
-    packed_sphere<S> next_sphere = order.spheres[next];
+    std::uint32_t next = places.list(0, self), behind = item(next, 1);
+    packed_sphere<S> next_sphere = places.spheres[next];
     COLLIDE_NO_UNROLL
     for (std::uint32_t n = 2; next != self; ++n) {
       std::uint32_t const place = next;
       packed_sphere<S> const sphere = next_sphere;
       next = behind;
-      next_sphere = order.spheres[next];
+      next_sphere = places.spheres[next];
       behind = item(next, n);
       f(place, sphere);
     }
@@ -99,16 +99,16 @@ struct interact_listed : pair_interaction<S, Effects> {
 template <class S, class Effects>
 struct interact_overflowed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
-    auto const& order = this->order;
-    if (i >= order.header->count || order.list(0, i) != order.overflow_mark) return;
+    auto const& places = this->order;
+    if (i >= places.header->count || places.list(0, i) != places.overflow_mark) return;
     auto const self = static_cast<std::uint32_t>(i);
-    typename pair_interaction<S, Effects>::pair_state p(order.load(i));
+    typename pair_interaction<S, Effects>::pair_state p(places.load(i));
     id last = 0;
     for (bool first = true, complete = false; !complete; first = false) {
       first_neighbours<16> near;
-      order.for_each_overlapping(self, S(0), [&](std::uint32_t k, int row) {
-        id const number = order.numbers[k];
-        if ((first || number > last) && order.is_in_row(k, self, row)) near.add(number, k);
+      places.for_each_overlapping(self, S(0), [&](std::uint32_t k, int row) {
+        id const number = places.numbers[k];
+        if ((first || number > last) && places.is_in_row(k, self, row)) near.add(number, k);
       });
       COLLIDE_NO_UNROLL
       for (std::uint32_t k = 0; k < near.size; ++k) this->interact(p, near.places[k]);

@@ -4,6 +4,10 @@
 
 #include <collide/detail/simulation/attributes.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// The value of one column, in a base class that is found by its type.
@@ -200,3 +204,5 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

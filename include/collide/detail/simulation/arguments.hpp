@@ -1,0 +1,28 @@
+/// \file
+/// What a simulation is made of.
+#pragma once
+
+#include <tuple>
+#include <type_traits>
+
+namespace collide::detail {
+
+/// True if `Rest` is nothing, or the parameters of all effects.
+template <class Effects, class... Rest>
+inline constexpr bool are_parameters = sizeof...(Rest) == 0 || std::is_same<std::tuple<Rest...>, Effects>::value;
+
+/// True if the arguments after the space are the options of the broad phase, and then the parameters of all effects or
+/// nothing.
+template <class Options, class Effects, class... Argument>
+inline constexpr bool starts_with_options = false;
+template <class Options, class Effects, class First, class... Rest>
+inline constexpr bool starts_with_options<Options, Effects, First, Rest...> =
+    std::is_convertible<First, Options>::value&& are_parameters<Effects, std::decay_t<Rest>...>;
+
+/// True for the arguments of a constructor of a simulation with such a space, options of the broad phase and effects.
+template <class Space, class Options, class Effects, class First, class... Argument>
+inline constexpr bool makes_simulation = std::is_convertible<First, Space>::value &&
+                                         (are_parameters<Effects, std::decay_t<Argument>...> ||
+                                          starts_with_options<Options, Effects, Argument...>);
+
+}  // namespace collide::detail

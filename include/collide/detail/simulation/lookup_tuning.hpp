@@ -1,0 +1,36 @@
+/// \file
+/// How a simulation uses a broad phase: it asks for the triangles near single spheres.
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+#include <collide/detail/execution/tuning.hpp>
+
+namespace collide {
+
+namespace detail {
+
+/// A space as a broad phase sees it that is asked for the triangles near single spheres: they are sorted, not the
+/// spheres, and into narrow cells, as a look-up is cheap and a candidate is not.
+template <class Space>
+struct lookup_tuning : Space {
+  explicit lookup_tuning(Space const& space) : Space(space) {}
+};
+
+template <class Index, class = void>
+struct has_lookup : std::false_type {};
+template <class Index>
+struct has_lookup<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
+
+}  // namespace detail
+
+template <class Space>
+struct bucket_tuning<detail::lookup_tuning<Space>> : bucket_tuning<Space> {
+  static constexpr bool bins_spheres = false;
+  /// The grid serves many steps.
+  static constexpr bucket_costs costs{bucket_tuning<Space>::costs.entry_ns / 16,
+                                      bucket_tuning<Space>::costs.candidate_ns, bucket_tuning<Space>::costs.level_ns};
+};
+
+}  // namespace collide

@@ -1,0 +1,9 @@
+// expect: collide: particles, their velocities and the mesh must have the scalar type of the simulation's detector
+#include <collide/bucket.cuh>
+#include <collide/gravity.hpp>
+#include <collide/simulation.cuh>
+
+int main() {
+  collide::simulation<collide::detector<collide::bucket>, collide::gravity> simulation;
+  simulation.set(collide::sphere_view<double>());
+}

@@ -1,0 +1,91 @@
+/// \file
+/// Uses what there is, so that its templates are made and a compiler can warn of them: nothing is run.
+#include <collide/absorb.hpp>
+#include <collide/adhesion.hpp>
+#include <collide/atomic_add.hpp>
+#include <collide/automatic.cuh>
+#include <collide/bounce.hpp>
+#include <collide/bounds.hpp>
+#include <collide/drag.hpp>
+#include <collide/earliest.hpp>
+#include <collide/emit.hpp>
+#include <collide/extend.hpp>
+#include <collide/friction.hpp>
+#include <collide/gravity.hpp>
+#include <collide/impacts.hpp>
+#include <collide/integrators.hpp>
+#include <collide/karabassi_swept.hpp>
+#include <collide/lost_motion.hpp>
+#include <collide/moving_spheres.hpp>
+#include <collide/polydisperse.hpp>
+#include <collide/simulation.cuh>
+#include <collide/sleep.hpp>
+#include <collide/sphere_contact.hpp>
+#include <collide/spin.hpp>
+#include <collide/streamed.cuh>
+#include <collide/upload.hpp>
+#include <collide/validate.hpp>
+#include <collide/wind.hpp>
+
+using namespace collide;
+
+template <class BroadPhase, class NarrowPhase, class S>
+void ask(mesh_view<S> mesh, typename detector<BroadPhase, NarrowPhase, host, S>::spheres_type const& spheres) {
+  detector<BroadPhase, NarrowPhase, host, S> one;
+  one.build(mesh, S(1));
+  one.query(spheres, count());
+  one.query(spheres, any_hit()).to_host();
+  one.query(spheres, pairs(order::canonical)).to_host();
+  one.query(spheres, contacts<S>(order::canonical)).to_host();
+  one.query(spheres, visit([](auto const& hit) { (void)hit.contact(); }));
+  streamed<detector<BroadPhase, NarrowPhase, host, S>> parts(one);
+  count total;
+  parts.query(spheres, total, [](id, count const&) {});
+  if constexpr (detail::is_discrete<NarrowPhase, S>) {
+    one.query(spheres, closest<S>()).to_host();
+  } else {
+    one.query(spheres, impacts<S>()).to_host();
+    one.query(spheres, earliest<S>()).to_host();
+  }
+}
+
+template <class NarrowPhase, class S>
+void move(mesh_view<S> mesh, sphere_view<S> const& spheres) {
+  using scene = simulation<detector<bucket, NarrowPhase, host, S>, velocity_verlet, collide::sleep, sphere_contact,
+                           gravity, drag, wind<>, bounce, friction, spin, adhesion, emit, absorb, absorbing_box,
+                           box_walls, periodic_box, polydisperse, lost_motion>;
+  scene one;
+  one.set(spheres, static_cast<S const*>(nullptr), 100);
+  one.set_mesh(mesh);
+  one.steps(2, S(0.1));
+  one.template to_host<position>();
+  one.spheres();
+}
+
+template <class S>
+void use_all() {
+  S const numbers[12] = {};
+  unsigned const corners[3] = {};
+  Eigen::Matrix<S, 3, 3> matrix;
+  Eigen::Matrix3i faces;
+  auto const mesh = indexed_mesh(numbers, 3, corners, 1);
+  auto const spheres = spheres_xyz(numbers, 3, S(1));
+  host space;
+  upload(space, mesh);
+  upload(space, spheres);
+  validate(mesh);
+  validate(spheres);
+  ask<bucket, karabassi<>, S>(indexed_mesh(matrix, faces), spheres_xyz(numbers, 3, numbers));
+  ask<automatic, karabassi<single_precision>, S>(triangle_soup(numbers, 1),
+                                                 spheres_soa(numbers, numbers, numbers, 3, S(1)));
+  ask<all_pairs, karabassi<double_precision>, S>(mesh, spheres_xyzr(numbers, 3));
+  ask<bucket, karabassi<baseline>, S>(mesh, spheres);
+  ask<bucket, karabassi_swept<>, S>(mesh, with_displacements(spheres, numbers));
+  move<karabassi<>, S>(mesh, spheres);
+  move<karabassi_swept<>, S>(mesh, spheres);
+}
+
+int main() {
+  use_all<float>();
+  use_all<double>();
+}

@@ -1,0 +1,143 @@
+/// Calls in the wrong order, and numbers that make no sense: what the errors say.
+#include <limits>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <collide/absorb.hpp>
+#include <collide/adhesion.hpp>
+#include <collide/bounce.hpp>
+#include <collide/bounds.hpp>
+#include <collide/bucket.cuh>
+#include <collide/drag.hpp>
+#include <collide/emit.hpp>
+#include <collide/friction.hpp>
+#include <collide/gravity.hpp>
+#include <collide/simulation.cuh>
+#include <collide/sleep.hpp>
+#include <collide/sphere_contact.hpp>
+#include <collide/spin.hpp>
+#include <collide/wind.hpp>
+
+using namespace collide;
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN(),
+                 infinity = std::numeric_limits<double>::infinity();
+float const corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, centres[] = {0.25f, 0.25f, 0.25f};
+
+mesh_view<float> mesh() { return triangle_soup(corners, 1); }
+sphere_view<float> spheres() { return spheres_xyz(centres, 1, 0.5f); }
+
+/// What the error says; empty if there is none.
+template <class F>
+std::string said_by(F const& f) {
+  try {
+    f();
+  } catch (error const& e) {
+    return e.what();
+  }
+  return {};
+}
+
+/// What a step with an effect of these parameters says.
+template <class... Before, class Effect>
+std::string said_with(Effect effect) {
+  simulation<detector<bucket>, Before..., Effect> scene(host(1), Before()..., effect);
+  scene.set(spheres());
+  scene.set_mesh(mesh());
+  return said_by([&] { scene.step(0.125f); });
+}
+
+/// Refuses memory.
+class empty_resource final : public std::pmr::memory_resource {
+  void* do_allocate(std::size_t, std::size_t) override { throw std::bad_alloc(); }
+  void do_deallocate(void*, std::size_t, std::size_t) override {}
+  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
+};
+
+}  // namespace
+
+TEST_CASE("misuse: a query before build, and after one that failed") {
+  detector<bucket> one;
+  auto const query = [&] { one.query(spheres(), count()); };
+  CHECK(said_by(query) == "collide: detector: query needs a mesh: call build before it");
+  one.build({});
+  CHECK(said_by(query) == "");
+  one.build(mesh());
+  CHECK(one.query(spheres(), count()).total() == 1);
+
+  empty_resource nothing;
+  detector<bucket> poor(host(1, &nothing));
+  CHECK_THROWS_AS(poor.build(mesh()), std::bad_alloc);
+  CHECK(said_by([&] { poor.query(spheres(), count()); }) != "");
+}
+
+TEST_CASE("misuse: the radius that build gets") {
+  detector<bucket> one;
+  one.build(mesh(), 0.5);  // a double for a detector of floats
+  CHECK(one.query(spheres(), count()).total() == 1);
+  for (double const radius : {not_a_number, -1.0}) {
+    CHECK(said_by([&] { one.build(mesh(), float(radius)); }) ==
+          "collide: detector: the radius passed to build is negative or NaN");
+  }
+  CHECK(one.query(spheres(), count()).total() == 1);
+  one.build(mesh(), std::numeric_limits<float>::infinity());
+  CHECK(one.query(spheres(), count()).total() == 1);
+}
+
+TEST_CASE("misuse: a step without particles, without a mesh, and of a time that is none") {
+  simulation<detector<bucket>, gravity, bounce> scene;
+  auto const step = [&](double dt) { return said_by([&] { scene.step(float(dt)); }); };
+  CHECK(step(0.125) == "collide: simulation: step needs particles: call set before it");
+  scene.set(spheres());
+  CHECK(step(0.125) == "collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
+  scene.set_mesh({});
+  CHECK(step(0.125) == "");
+  for (double const dt : {not_a_number, infinity})
+    CHECK(step(dt) == "collide: simulation: the time of a step is not finite");
+  simulation<detector<bucket>, gravity> free;
+  free.set(spheres());
+  CHECK(said_by([&] { free.step(0.125f); }) == "");
+}
+
+TEST_CASE("misuse: parameters of effects") {
+  CHECK(said_with(bounce{3}) == "collide: bounce: restitution is from 0 to 1");
+  CHECK(said_with(bounce{not_a_number}) != "");
+  CHECK(said_with(bounce{1}) == "");
+  CHECK(said_with<bounce>(friction{-0.1, 0.1}) == "collide: friction: coefficients are not negative");
+  CHECK(said_with<bounce>(spin{not_a_number}) == "collide: spin: rolling_resistance is not negative");
+  CHECK(said_with<bounce>(adhesion{-1}) == "collide: adhesion: max_acceleration and capture_speed are not negative");
+  CHECK(said_with(drag{-1, 0}) == "collide: drag: linear and quadratic are not negative");
+  CHECK(said_with(wind<>{0, not_a_number, {}}) == "collide: wind: linear and quadratic are not negative");
+  CHECK(said_with(gravity{0, 0, not_a_number}) == "collide: gravity: the acceleration is finite");
+  CHECK(said_with(sleep{0.01, 300}) == "collide: sleep: steps are from 1 to 255");
+  CHECK(said_with(emit{-1, {}}) == "collide: emit: rate is not negative");
+  CHECK(said_with(sphere_contact{1000, 0, 0, 0, 0}) == "collide: sphere_contact: density is above 0");
+  CHECK(said_with(box_walls{{0, 0, 1}, {1, 1, 0}}) == "collide: box_walls: no lower bound is above its upper bound");
+  CHECK(said_with(box_walls{}) == "");
+  CHECK(said_with(periodic_box{{0, 0, 0}, {1, 1, 0}}) ==
+        "collide: periodic_box: each lower bound is below its upper bound");
+  CHECK(said_with(absorbing_box{{1, 0, 0}, {0, 0, 0}}) ==
+        "collide: absorbing_box: no lower bound is above its upper bound");
+  CHECK(said_by([] { sphere_contact::from_restitution(3, 1, 1, 1); }) != "");
+}
+
+TEST_CASE("misuse: a parameter that changes between steps") {
+  simulation<detector<bucket>, bounce> scene;
+  scene.set(spheres());
+  scene.set_mesh(mesh());
+  scene.step(0.125f);
+  scene.effect<bounce>().restitution = not_a_number;
+  CHECK(said_by([&] { scene.step(0.125f); }) == "collide: bounce: restitution is from 0 to 1");
+}
+
+TEST_CASE("misuse: threads of the host") {
+  CHECK(said_by([] { host(-1); }) == "collide: host: the number of threads must not be negative");
+#if defined(_OPENMP)
+  CHECK(host(2).threads() == 2);
+#else
+  CHECK(said_by([] { host(2); }).find("-fopenmp") != std::string::npos);
+#endif
+}
