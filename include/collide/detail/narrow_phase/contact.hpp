@@ -23,9 +23,7 @@ COLLIDE_HD_NOINLINE inline measured_contact measure_exact(triangle<double> const
   vec3<double> normal = e.direction_to_centre(foot);
   if (max_norm(normal) == 0) normal = e.normal();
   if (max_norm(normal) == 0) {  // a segment or a point, and the centre lies on it
-    vec3<double> const ab = l.b - l.a, bc = l.c - l.b, ca = l.a - l.c;
-    double const x = dot(ab, ab), y = dot(bc, bc), z = dot(ca, ca);
-    normal = perpendicular(x >= y && x >= z ? ab : (y >= z ? bc : ca));
+    normal = perpendicular(longest_edge(l));
   } else {
     normal = unit(normal);
   }

@@ -12,7 +12,8 @@ namespace collide::detail {
 COLLIDE_HD_NOINLINE inline contact<double> contact_at_time(triangle<double> const& t, moving_sphere<double> const& s,
                                                            double time, digits wanted) {
   if (time == 0) return contact_of_pair(t, static_cast<sphere<double> const&>(s), wanted, true);
-  local_sweep<double> const l = to_unit_range(to_local<double>(t, s), t, s);
+  moving_sphere<double> const centre{{s.centre, 0}, s.displacement};
+  local_sweep<double> const l = to_unit_range(to_local<double>(t, centre), t, centre);
   return contact_with_fallback(at_time(l, time), s.centre + scaled(s.displacement, time), t, s, time, wanted, false);
 }
 
