@@ -111,6 +111,8 @@ COLLIDE_HD_NOINLINE inline contact<double> contact_with_fallback(local_triangle<
     bool const all = is_infinite(s.radius);
     found = measure_exact(t, {{s.centre, all ? 0 : s.radius}, s.displacement}, time, l, nearest.distance_squared);
     if (all) found.measured.depth = s.radius;
+    double const away = mul(found.measured.distance, l.scale);
+    if (found.kind != feature::vertex && away <= 4) nearest.point = scaled(found.normal, -away);
   }
   return contact_at_point<double>(found, nearest.point, l.scale, centre);
 }
