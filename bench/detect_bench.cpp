@@ -175,6 +175,20 @@ void add_sinks(std::string const& method, Space space) {
   with("closest", [] { return collide::closest<float>(); });
 }
 
+/// What contacts cost of each type and precision: the sinks are contacts_TYPE, closest_TYPE and pairs_TYPE.
+template <class Broad, class S, class Space>
+void add_contacts(std::string const& method, std::string const& type, Space space) {
+  auto const with = [&](char const* name, auto const& make) {
+    std::string const sink = name + ("_" + type);
+    add<Broad, collide::exact, Space, S>(method, phase::query, full, sink, make, space);
+    add<Broad, collide::double_precision, Space, S>(method, phase::query, full, sink, make, space);
+    add<Broad, collide::single_precision, Space, S>(method, phase::query, full, sink, make, space);
+  };
+  with("pairs", [] { return collide::pairs(); });
+  with("contacts", [] { return collide::contacts<S>(); });
+  with("closest", [] { return collide::closest<S>(); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -184,6 +198,8 @@ int main(int argc, char** argv) {
   add_series<collide::bucket>("bucket_seq/bucket_x_host", full, one);
   add_sinks<collide::bucket>("bucket_seq/bucket_x_host", one);
   add_layouts<collide::bucket>("bucket_seq/bucket_x_host", one);
+  add_contacts<collide::bucket, float>("bucket_seq/bucket_x_host", "float", one);
+  add_contacts<collide::bucket, double>("bucket_seq/bucket_x_host", "double", one);
   if (all.threads() > 1) {
     std::string const name = "bucket_seq/bucket_x_host_" + std::to_string(all.threads()) + "_threads";
     add<collide::bucket, collide::exact, collide::host, float>(name, phase::both, full, "pairs", pairs, all);
@@ -198,6 +214,8 @@ int main(int argc, char** argv) {
     add_series<collide::bucket>("bucket_shamem/bucket_x_cuda_shared", full, blocks);
     add_sinks<collide::bucket>("bucket_shamem/bucket_x_cuda_shared", blocks);
     add_layouts<collide::bucket>("bucket_shamem/bucket_x_cuda_shared", blocks);
+    add_contacts<collide::bucket, float>("bucket_shamem/bucket_x_cuda_shared", "float", blocks);
+    add_contacts<collide::bucket, double>("bucket_shamem/bucket_x_cuda_shared", "double", blocks);
     add_series<collide::all_pairs>("brute_force/all_pairs_x_cuda", full, threads);
     add_series<collide::all_pairs>("brute_force_shamem/all_pairs_x_cuda_shared", full, blocks);
   }

@@ -4,6 +4,7 @@
 
 #include <collide/contact.hpp>
 #include <collide/detail/narrow_phase/contact.hpp>
+#include <collide/detail/narrow_phase/contact_plain.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/narrow_phase/karabassi_test.hpp>
 #include <collide/precision.hpp>
@@ -15,9 +16,9 @@ namespace collide {
 /// steps: (1) the plane is farther than the radius: miss; (2) a vertex lies in the sphere: hit; (3) the centre projects
 /// into the triangle: hit; (4) a point on an edge lies in the sphere: hit; otherwise miss.
 ///
-/// `Precision` is the precision of the test: `exact` (never wrong), `double_precision`, `single_precision` or
-/// `baseline`; see precision.hpp, and docs/accuracy.md for the cost of each. It does not change the contact of a
-/// colliding pair.
+/// `Precision` is the precision of the test and of contacts: `exact` (verdicts are never wrong, distance and depth are
+/// within 4 units in the last place), `double_precision`, `single_precision` or `baseline`; see precision.hpp, and
+/// docs/accuracy.md for the cost of each.
 ///
 /// A degenerate triangle is treated as a segment or a point. A NaN or infinite coordinate and a NaN or negative radius
 /// never collide; an infinite radius always does where the geometry is finite. (`baseline` promises none of this.)
@@ -42,7 +43,11 @@ struct karabassi {
   /// Contact of a colliding pair; the caller sets the ids. O(1).
   template <class S>
   static COLLIDE_HD contact<S> contact_of(triangle<S> const& t, sphere<S> const& s) {
-    return detail::contact_of_pair(t, s);
+    if constexpr (std::is_same<Precision, exact>::value) {
+      return detail::contact_of_pair(t, s);
+    } else {
+      return detail::plain_contact_of_pair<typename Precision::scalar>(t, s);
+    }
   }
 };
 

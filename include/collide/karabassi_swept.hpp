@@ -2,6 +2,7 @@
 /// Karabassi's intersection test for moving spheres: continuous collision detection.
 #pragma once
 
+#include <collide/detail/narrow_phase/contact_plain.hpp>
 #include <collide/detail/narrow_phase/contact_swept.hpp>
 #include <collide/detail/narrow_phase/intersects_swept.hpp>
 #include <collide/detail/narrow_phase/karabassi_swept_test.hpp>
@@ -16,8 +17,8 @@ namespace collide {
 /// cylinder with spherical caps within a step. Tells whether the triangle touches it, the first time of contact, and
 /// the contact then.
 ///
-/// `Precision` is the precision of the test: `exact` (never wrong), `double_precision` or `single_precision`. It does
-/// not change time and contact of a colliding pair.
+/// `Precision` is the precision of the test and of contacts: `exact` (verdicts are never wrong), `double_precision` or
+/// `single_precision`. It does not change the time of impact.
 ///
 /// A degenerate triangle is treated as a segment or a point. A NaN or infinite coordinate or displacement and a NaN or
 /// negative radius never collide; an infinite radius always does where the geometry is finite. A sphere that does not
@@ -49,7 +50,7 @@ struct karabassi_swept {
   /// Contact of a colliding pair at its time of impact; the caller sets the ids.
   template <class S>
   static COLLIDE_HD contact<S> contact_of(triangle<S> const& t, moving_sphere<S> const& s) {
-    return detail::contact_at_time(t, s, time_of_impact(t, s));
+    return impact_of(t, s).contact;
   }
 
   /// Time of impact and contact of a colliding pair; the caller sets the ids. The depth is that of an overlap at the
@@ -57,7 +58,11 @@ struct karabassi_swept {
   template <class S>
   static COLLIDE_HD impact<S> impact_of(triangle<S> const& t, moving_sphere<S> const& s) {
     S const time = time_of_impact(t, s);
-    return {detail::contact_at_time(t, s, time), time};
+    if constexpr (std::is_same<Precision, exact>::value) {
+      return {detail::contact_at_time(t, s, time), time};
+    } else {
+      return {detail::plain_contact_at_time<typename Precision::scalar>(t, s, time), time};
+    }
   }
 };
 

@@ -1,5 +1,6 @@
 /// \file
-/// Precision policies: how sure a verdict must be, and so what arithmetic a narrow phase uses.
+/// Precision policies: how sure a verdict and how accurate a contact must be, and so what arithmetic a narrow phase
+/// uses.
 #pragma once
 
 #include <type_traits>
@@ -14,13 +15,15 @@ struct baseline {
 };
 
 /// Arithmetic in float, in coordinates local to the sphere. Results may be wrong for pairs within a few units in the
-/// last place (of float) of contact.
+/// last place (of float) of contact; distances of contacts are within 2^-13 of the triangle's size as seen from the
+/// sphere's centre.
 struct single_precision {
   using scalar = float;
 };
 
 /// Arithmetic in double, in coordinates local to the sphere. Results may be wrong for pairs within a few units in the
-/// last place (of double) of contact.
+/// last place (of double) of contact; distances of contacts are within 2^-42 of the triangle's size as seen from the
+/// sphere's centre.
 struct double_precision {
   using scalar = double;
 };

@@ -137,6 +137,34 @@ void check_contact(collide::contact<S> const& c, oracle::triangle const& t, orac
 }
 
 template <class S>
+void check_plain_contact(collide::contact<S> const& c, oracle::triangle const& t, oracle::sphere const& s,
+                         double roundoff) {
+  CAPTURE(c.sphere);
+  CAPTURE(c.triangle);
+  auto const nearest = oracle::closest(t, s.centre);
+  double const seen = std::max({size(t.a - s.centre), size(t.b - s.centre), size(t.c - s.centre)});
+  double const unit = std::numeric_limits<S>::epsilon(), tiny = 2 * std::numeric_limits<S>::denorm_min();
+  double const most = std::numeric_limits<S>::max(), error = 0x1p11 * roundoff * seen;
+  auto const close = [&](S x, double exact, double scale) {
+    if (std::abs(exact) + error > most) return true;  // as far as numbers of S reach
+    return std::abs(x - exact) <= error + 4 * unit * scale + tiny;
+  };
+  CHECK(close(c.distance, nearest.distance, nearest.distance));
+  CHECK(close(c.depth, oracle::depth(t, s), s.radius + nearest.distance));
+  auto const point = exact<S>(c.point), normal = exact<S>(c.normal);
+  REQUIRE(std::isfinite(size(point)));
+  if (seen < most / 4) {
+    CHECK(oracle::closest(t, point).distance <= error + 2 * unit * (size(point) + size(s.centre)) + tiny);
+  }
+  CHECK(std::abs(std::sqrt(dot(normal, normal)) - 1) <= 8 * std::max(unit, 2 * roundoff));
+  // where neither the distance nor the face is next to nothing, so that both have a direction
+  double const shortest = std::min({size(t.b - t.a), size(t.c - t.b), size(t.a - t.c)});
+  if (nearest.distance > seen / 16 && shortest > seen / 16 && c.feature != collide::feature::face) {
+    CHECK(std::abs(dot(normal, nearest.offset) / nearest.distance + 1) <= 0x1p-10);
+  }
+}
+
+template <class S>
 std::vector<collide::pair> check_pairs(subject<S>& detector, oracle::expectation const& expected) {
   auto const pairs = detector.pairs(collide::order::canonical);
   auto const found = ids(pairs);
@@ -202,7 +230,13 @@ std::vector<oracle::id_pair> check_all(scene<S> const& made, conditions const& h
         std::size_t const stride = 1 + found.contacts.size() / 2000;  // the exact answers take microseconds each
         for (std::size_t i = 0; i < found.contacts.size(); i += stride) {
           auto const& contact = found.contacts[i];
-          check_contact(contact, made.mesh[contact.triangle], made.spheres[contact.sphere], how.band == 0);
+          auto const& shape = made.mesh[contact.triangle];
+          auto const& ball = made.spheres[contact.sphere];
+          if (precision == std::string("exact")) {
+            check_contact(contact, shape, ball, how.band == 0);
+          } else {
+            check_plain_contact(contact, shape, ball, precision == std::string("single") ? 0x1p-24 : 0x1p-53);
+          }
         }
       }
       CHECK((found.pairs == first.pairs));
@@ -215,12 +249,16 @@ std::vector<oracle::id_pair> check_all(scene<S> const& made, conditions const& h
 template bool same(collide::contact<float> const&, collide::contact<float> const&);
 template bool same(std::vector<collide::contact<float>> const&, std::vector<collide::contact<float>> const&);
 template void check_contact(collide::contact<float> const&, oracle::triangle const&, oracle::sphere const&, bool);
+template void check_plain_contact(collide::contact<float> const&, oracle::triangle const&, oracle::sphere const&,
+                                  double);
 template std::vector<collide::pair> check_pairs(subject<float>&, oracle::expectation const&);
 template findings<float> check_sinks(subject<float>&, scene<float> const&, oracle::expectation const&);
 template std::vector<oracle::id_pair> check_all(scene<float> const&, conditions const&);
 template bool same(collide::contact<double> const&, collide::contact<double> const&);
 template bool same(std::vector<collide::contact<double>> const&, std::vector<collide::contact<double>> const&);
 template void check_contact(collide::contact<double> const&, oracle::triangle const&, oracle::sphere const&, bool);
+template void check_plain_contact(collide::contact<double> const&, oracle::triangle const&, oracle::sphere const&,
+                                  double);
 template std::vector<collide::pair> check_pairs(subject<double>&, oracle::expectation const&);
 template findings<double> check_sinks(subject<double>&, scene<double> const&, oracle::expectation const&);
 template std::vector<oracle::id_pair> check_all(scene<double> const&, conditions const&);

@@ -50,6 +50,12 @@ std::vector<collide::pair> check_pairs(subject<S>& detector, oracle::expectation
 template <class S>
 void check_contact(collide::contact<S> const& c, oracle::triangle const& t, oracle::sphere const& s, bool strict);
 
+/// Checks a contact of a precision other than `exact`: distance, depth and point within 2^11 roundings of the
+/// triangle's size as seen from the centre, the normal of length 1.
+template <class S>
+void check_plain_contact(collide::contact<S> const& c, oracle::triangle const& t, oracle::sphere const& s,
+                         double roundoff);
+
 /// Bitwise equality of all members (padding apart).
 template <class S>
 bool same(collide::contact<S> const& a, collide::contact<S> const& b);

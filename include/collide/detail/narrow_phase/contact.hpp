@@ -5,32 +5,10 @@
 #include <limits>
 
 #include <collide/detail/geometry/closest_point.hpp>
-#include <collide/detail/predicates/exact.hpp>
+#include <collide/detail/narrow_phase/measure_compensated.hpp>
+#include <collide/detail/narrow_phase/measured_contact.hpp>
 
 namespace collide::detail {
-
-/// Unit vector along `v`, which is not zero.
-template <class T>
-COLLIDE_HD inline vec3<T> unit(vec3<T> const& v) {
-  vec3<T> const w = scaled(v, inverse_power_of_two(max_norm(v)));
-  return scaled(w, div(T(1), sqrt_rn(dot(w, w))));
-}
-
-/// A unit vector perpendicular to `v`, or (0, 0, 1) if `v` is zero.
-template <class T>
-COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
-  vec3<T> const m = v.cwiseAbs();
-  if (m.x() == 0 && m.y() == 0) return m.z() == 0 ? vec3<T>{0, 0, 1} : vec3<T>{1, 0, 0};
-  return m.z() >= larger(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
-}
-
-/// A contact without its point.
-struct measured_contact {
-  separation measured;
-  vec3<double> normal;
-  feature kind;
-  int index;
-};
 
 /// Distance, depth and normal of a contact in exact arithmetic, to nearly all digits however small they are. `l` is the
 /// triangle as seen from where the sphere is at the time, and `distance_squared` what doubles take for the square of
@@ -45,9 +23,7 @@ COLLIDE_HD_NOINLINE inline measured_contact measure_exact(triangle<double> const
   vec3<double> normal = e.direction_to_centre(foot);
   if (max_norm(normal) == 0) normal = e.normal();
   if (max_norm(normal) == 0) {  // a segment or a point, and the centre lies on it
-    vec3<double> const ab = l.b - l.a, bc = l.c - l.b, ca = l.a - l.c;
-    double const x = dot(ab, ab), y = dot(bc, bc), z = dot(ca, ca);
-    normal = perpendicular(x >= y && x >= z ? ab : (y >= z ? bc : ca));
+    normal = perpendicular(longest_edge(l));
   } else {
     normal = unit(normal);
   }
@@ -109,41 +85,49 @@ COLLIDE_HD contact<S> narrow_to(contact<double> const& c) {
           c.feature_index};
 }
 
-/// From what local length on doubles tell a contact with all digits of `S`.
+/// The digits that a contact has.
+enum class digits { of_float, of_double };
+
 template <class S>
-inline constexpr double min_well_conditioned = sizeof(S) == sizeof(float) ? well_conditioned_length
-                                                                          : std::numeric_limits<double>::max();
+inline constexpr digits digits_of = sizeof(S) == sizeof(float) ? digits::of_float : digits::of_double;
 
 /// The contact of a finite triangle and a sphere where that is at a time, when its centre is where `l` is seen from.
-/// Computed exactly where the distance, or with `exact_depth` the depth too, is below `enough`.
+/// Computed exactly where the distance, or with `exact_depth` the depth too, is so small that nothing else will do.
 COLLIDE_HD_NOINLINE inline contact<double> contact_with_fallback(local_triangle<double> const& l,
                                                                  vec3<double> const& centre, triangle<double> const& t,
                                                                  moving_sphere<double> const& s, double time,
-                                                                 double enough, bool exact_depth) {
+                                                                 digits wanted, bool exact_depth) {
+  constexpr double enough = well_conditioned_length;
   auto const well_conditioned = [&](double distance, double depth) {
-    return distance >= enough && (!exact_depth || depth >= enough || depth <= -enough);
+    return wanted == digits::of_float && distance >= enough && (!exact_depth || depth >= enough || depth <= -enough);
   };
-  closest_point<double> foot;
   measured_contact found;
-  if (!measure_if_well_conditioned(l, s.radius, well_conditioned, foot, found)) {
-    bool const all = is_infinite(s.radius);
-    found = measure_exact(t, {{s.centre, all ? 0 : s.radius}, s.displacement}, time, l, foot.distance_squared);
-    if (all) found.measured.depth = s.radius;
+  vec3<double> foot;
+  if (wanted == digits::of_double && measure_compensated(t, s, time, l.scale, exact_depth, foot, found)) {
+    return contact_at_point<double>(found, foot, l.scale, centre);
   }
-  return contact_at_point<double>(found, foot.point, l.scale, centre);
+  closest_point<double> nearest;
+  if (!measure_if_well_conditioned(l, s.radius, well_conditioned, nearest, found)) {
+    bool const all = is_infinite(s.radius);
+    found = measure_exact(t, {{s.centre, all ? 0 : s.radius}, s.displacement}, time, l, nearest.distance_squared);
+    if (all) found.measured.depth = s.radius;
+    double const away = mul(found.measured.distance, l.scale);
+    if (found.kind != feature::vertex && away <= 4) nearest.point = scaled(found.normal, -away);
+  }
+  return contact_at_point<double>(found, nearest.point, l.scale, centre);
 }
 
 /// The contact of a finite triangle and a sphere at rest.
 COLLIDE_HD_NOINLINE inline contact<double> contact_of_pair(triangle<double> const& t, sphere<double> const& s,
-                                                           double enough, bool exact_depth) {
+                                                           digits wanted, bool exact_depth) {
   sphere<double> const centre{s.centre, 0};
   local_triangle<double> const l = to_unit_range(to_local<double>(t, centre), t, centre);
-  return contact_with_fallback(l, s.centre, t, {s, {0, 0, 0}}, 0, enough, exact_depth);
+  return contact_with_fallback(l, s.centre, t, {s, {0, 0, 0}}, 0, wanted, exact_depth);
 }
 
 template <class S>
 COLLIDE_HD contact<S> contact_of_pair(triangle<S> const& t, sphere<S> const& s) {
-  return narrow_to<S>(contact_of_pair(widened(t), widened(s), min_well_conditioned<S>, true));
+  return narrow_to<S>(contact_of_pair(widened(t), widened(s), digits_of<S>, true));
 }
 
 }  // namespace collide::detail

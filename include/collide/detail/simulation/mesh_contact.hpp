@@ -18,7 +18,7 @@ namespace detail {
 /// is known to within the rounding of doubles only: resting spheres do just that, all the time.
 template <class S>
 COLLIDE_HD contact<S> relaxed_contact(triangle<S> const& t, sphere<S> const& s) {
-  return narrow_to<S>(contact_of_pair(widened(t), widened(s), well_conditioned_length, false));
+  return narrow_to<S>(contact_of_pair(widened(t), widened(s), digits::of_float, false));
 }
 
 /// Whether a sphere touches a finite triangle, and the contact that `relaxed_contact` tells if so, where doubles

@@ -59,7 +59,8 @@ class records : public kept_in_space<Record> {
     if (order_ == order::canonical) collected_.sort(space, query);
     size_ = collected_.size();
     if (fixed_ && size_ > capacity_) size_ = capacity_;
-    if (!fixed_ && size_ > own_.capacity()) own_.reserve(space.resource(), size_ + size_ / 4);
+    std::size_t const room = own_.capacity();
+    if (!fixed_) own_.reserve(space.resource(), size_ > room ? size_ + size_ / 4 : room);
     data_ = fixed_ ? external_ : own_.data();
     using narrow_phase = typename Query::narrow_phase;
     space.for_each(size_,

@@ -20,29 +20,33 @@ struct reset_best {
   }
 };
 
-/// Kernel body of `for_each` over pairs: the smallest number of each sphere. Numbers are not negative, so they sort
-/// like their bits.
+/// Kernel body of `for_each` over pairs: the number of each, which takes a contact or an impact to tell, and the
+/// smallest of each sphere. Numbers are not negative, so they sort like their bits.
 template <class NarrowPhase, class S, class Entry, class Key>
 struct reduce_key {
   pair const* pairs;
+  uint_for<S>* numbers;
   Entry* to;
   mesh_view<S> mesh;
   sphere_view_for<NarrowPhase, S> spheres;
-  COLLIDE_HD uint_for<S> number(pair p) const { return to_bits(Key::of(hit<NarrowPhase, S>(p, mesh, spheres))); }
   COLLIDE_HD void operator()(std::size_t i) const {
     pair const p = pairs[i];
-    fetch_min(reinterpret_cast<uint_for<S>*>(&Key::key_of(to[p.sphere])), number(p));
+    uint_for<S> const number = to_bits(Key::of(hit<NarrowPhase, S>(p, mesh, spheres)));
+    numbers[i] = number;
+    fetch_min(reinterpret_cast<uint_for<S>*>(&Key::key_of(to[p.sphere])), number);
   }
 };
 
 /// Kernel body of `for_each` over pairs: the smallest id among the triangles with that number.
-template <class NarrowPhase, class S, class Entry, class Key>
+template <class S, class Entry, class Key>
 struct find_best {
-  reduce_key<NarrowPhase, S, Entry, Key> found;
+  pair const* pairs;
+  uint_for<S> const* numbers;
+  Entry* to;
   COLLIDE_HD void operator()(std::size_t i) const {
-    pair const p = found.pairs[i];
-    Entry& best = found.to[p.sphere];
-    if (found.number(p) == to_bits(Key::key_of(best))) fetch_min(&best.triangle, p.triangle);
+    pair const p = pairs[i];
+    Entry& best = to[p.sphere];
+    if (numbers[i] == to_bits(Key::key_of(best))) fetch_min(&best.triangle, p.triangle);
   }
 };
 
@@ -70,14 +74,19 @@ class per_sphere_min : public kept_in_space<Entry> {
     auto* const to = own_.reserve(space.resource(), size_);
     space.fill(to, 0xff, size_ * sizeof *to);
     space.for_each(size_, reset_best<Entry, Key>{to});
-    reduce_key<narrow_phase, S, Entry, Key> const step{collected_.data(), to, query.mesh, query.spheres};
-    space.for_each(collected_.size(), step);
-    space.for_each(collected_.size(), find_best<narrow_phase, S, Entry, Key>{step});
+    std::size_t const pairs = collected_.size();
+    std::size_t const room = numbers_.capacity();
+    numbers_.reserve(space.resource(), pairs > room ? pairs + pairs / 4 : room);
+    pair const* const from = collected_.data();
+    space.for_each(pairs,
+                   reduce_key<narrow_phase, S, Entry, Key>{from, numbers_.data(), to, query.mesh, query.spheres});
+    space.for_each(pairs, find_best<S, Entry, Key>{from, numbers_.data(), to});
   }
 
  private:
   std::size_t size_ = 0;
   pair_collector collected_;
+  buffer<uint_for<S>> numbers_;  ///< of the pairs
   buffer<Entry> own_;
   host_copier<Entry> download_;
 };
