@@ -44,9 +44,9 @@ class pairs : public detail::kept_in_space<pair> {
 
   /// Makes room for queries of up to so many spheres and pairs: they then allocate nothing.
   template <class Space>
-  void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
+  void reserve(Space const& space, std::size_t spheres, std::size_t most) {
     if (fixed_ && order_ == order::unspecified) return collected_.reserve(space);
-    collected_.reserve(space, spheres, pairs);
+    collected_.reserve(space, spheres, most);
     if (order_ == order::canonical) collected_.reserve_sort(space);
   }
 
