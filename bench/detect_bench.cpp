@@ -11,6 +11,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/csr.hpp>
 #include <collide/upload.hpp>
 
 #include "io/scenes.hpp"
@@ -125,6 +126,8 @@ void add_sinks(std::string const& method, Space space) {
   with("any", [] { return collide::any_hit(); });
   with("contacts", [] { return collide::contacts<float>(); });
   with("closest", [] { return collide::closest<float>(); });
+  with("csr", [] { return collide::csr(); });
+  with("canonical_csr", [] { return collide::csr(collide::order::canonical); });
 }
 
 }  // namespace
