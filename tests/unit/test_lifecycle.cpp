@@ -102,7 +102,7 @@ TEST_CASE_TEMPLATE("lifecycle: once there is room, more hits allocate nothing", 
     };
     query(3);
     auto const before = detector->memory().allocations;
-    for (std::size_t const near : {std::size_t{100}, spheres, std::size_t{0}, spheres}) query(near);
+    for (auto const near : {std::size_t{100}, spheres, std::size_t{0}, spheres}) query(near);
     CHECK(detector->memory().allocations == before);
   }
 }

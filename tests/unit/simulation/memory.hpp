@@ -2,6 +2,8 @@
 /// test_simulation_cuda.cpp.
 #pragma once
 
+#include <initializer_list>
+
 #include <collide/emit.hpp>
 #include <collide/sleep.hpp>
 #include <collide/sphere_contact.hpp>
@@ -35,7 +37,7 @@ void check_room(MakeSpace make, std::pmr::memory_resource* upstream) {
   std::size_t const bytes = counting.bytes - others, calls = counting.calls;
   CHECK(simulation.bytes() == bytes);
   CHECK(bytes >= 5000 * Simulation::bytes_per_particle);
-  for (std::size_t const n : {10, 5000, 0, 3000, 5000}) set(n);
+  for (auto const n : std::initializer_list<std::size_t>{10, 5000, 0, 3000, 5000}) set(n);
   CHECK(counting.calls == calls);
   CHECK(simulation.bytes() == bytes);
   CHECK_THROWS_AS(simulation.reserve(0xffffffff), collide::error);
