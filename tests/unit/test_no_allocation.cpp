@@ -48,7 +48,8 @@ void check_no_allocation(Detector& detector, tests::counting_resource& memory, c
   query(10);
   auto const before = memory.allocations, news_before = tests::counted_news();
   CHECK(before > taken);
-  for (auto const near : std::initializer_list<std::size_t>{20, 200, 1000, 0, 1000}) query(near);
+  for (auto const near : {crowd::spheres / 50, crowd::spheres / 5, crowd::spheres, std::size_t{0}, crowd::spheres})
+    query(near);
   auto const news_after = tests::counted_news();
   CHECK(memory.allocations == before);
   CHECK(news_after == news_before);
