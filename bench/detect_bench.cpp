@@ -14,7 +14,9 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/csr.hpp>
 #include <collide/memory.hpp>
+#include <collide/upload.hpp>
 
 #include "io/scenes.hpp"
 #include "program.hpp"
@@ -173,6 +175,8 @@ void add_sinks(std::string const& method, Space space) {
   with("any", [] { return collide::any_hit(); });
   with("contacts", [] { return collide::contacts<float>(); });
   with("closest", [] { return collide::closest<float>(); });
+  with("csr", [] { return collide::csr(); });
+  with("canonical_csr", [] { return collide::csr(collide::order::canonical); });
 }
 
 /// What contacts cost of each type and precision: the sinks are contacts_TYPE, closest_TYPE and pairs_TYPE.

@@ -24,6 +24,12 @@ class any_hit : public detail::kept_in_space<std::uint8_t> {
   /// A copy of the flags on the host; waits for them.
   std::vector<std::uint8_t> to_host() const { return download_(flags_, size_); }
 
+  /// Makes room for queries of up to so many spheres, whatever they touch: they then allocate nothing.
+  template <class Space>
+  void reserve(Space const& space, std::size_t spheres, std::size_t /*pairs*/ = 0) {
+    if (external_ == nullptr) own_.reserve(space.resource(), spheres);
+  }
+
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     size_ = query.spheres.size();

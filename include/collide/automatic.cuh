@@ -45,6 +45,12 @@ struct automatic {
       }
     }
 
+    /// Makes room for queries of up to so many spheres.
+    template <class Space>
+    void reserve([[maybe_unused]] Space& space, [[maybe_unused]] std::size_t spheres) {
+      if constexpr (detail::is_valid<detail::index_reserve, bucket::index<S>, Space>) grid_.reserve(space, spheres);
+    }
+
     template <class NarrowPhase, class Space, class Output>
     void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
       if (uses_grid_) {

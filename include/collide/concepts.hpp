@@ -8,6 +8,9 @@
 ///   - `void store(std::uint64_t slot, Hit const& hit) const`: called once per hit (see hit.hpp);
 ///   - `void end_pass() const`, if it wants to: called once per pass, when all hits are stored.
 /// `query.mesh` and `query.spheres` are the views, `Query::narrow_phase` and `Query::scalar` are types.
+///
+/// A sink may have a member `template <class Space> void reserve(Space const& space, std::size_t spheres, std::size_t
+/// pairs)`, which takes the memory that such a query needs, for `detector::reserve`.
 #pragma once
 
 #include <cstddef>
@@ -157,6 +160,10 @@ constexpr bool check_broad_phase() {
   return true;
 }
 
+/// An optional member of an index: makes room for queries of up to so many spheres.
+template <class Index, class Space>
+using index_reserve = decltype(std::declval<Index&>().reserve(std::declval<Space&>(), std::size_t{}));
+
 template <class D, class = void>
 struct is_detector : std::false_type {};
 template <class D>
@@ -175,8 +182,12 @@ using output_store = decltype(std::declval<H const&>().store(std::uint64_t{}, st
 template <class H>
 inline constexpr bool is_plain = std::is_trivially_destructible<H>::value;
 
-/// The member of a sink.
+/// The member of a sink,
 template <class Sink, class Space, class Query>
 using sink_run = decltype(std::declval<Sink&>().run(std::declval<Space&>(), std::declval<Query const&>()));
+/// and an optional one.
+template <class Sink, class Space>
+using sink_reserve =
+    decltype(std::declval<Sink&>().reserve(std::declval<Space const&>(), std::size_t{}, std::size_t{}));
 
 }  // namespace collide::detail

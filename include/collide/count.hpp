@@ -12,6 +12,12 @@ class count {
   /// How many pairs collide.
   std::uint64_t total() const { return total_; }
 
+  /// Makes room for queries of any size: they then allocate nothing.
+  template <class Space>
+  void reserve(Space const& space, std::size_t /*spheres*/, std::size_t /*pairs*/) {
+    total_of_.reserve(space);
+  }
+
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     query(detail::output{total_of_.begin(space), nullptr, 0, nullptr});

@@ -34,7 +34,8 @@ namespace collide {
 /// \tparam Scalar          type of the coordinates: float or double; nothing is ever narrowed silently
 ///
 /// Memory is taken from the space's resource and kept: once everything has run with the same sizes nothing is allocated
-/// (on the host that takes two queries, as the second may go another way; see docs/concepts.md).
+/// (on the host that takes two queries, as the second may go another way; see docs/concepts.md). `reserve` takes it
+/// ahead, so that nothing is allocated as hits grow.
 /// In the CUDA spaces work is put on the space's stream and the host waits only to read a size back (see each sink).
 /// One detector is for one thread at a time. Everything thrown derives from `error`, except what the memory resource
 /// throws.
@@ -75,6 +76,21 @@ class detector {
   /// nothing left to prepare. Larger spheres are tested too, but more slowly. Many spheres that move may still want a
   /// grid of their own on the host. Throws `error` if `radius` is negative or NaN. O(triangles).
   void build(mesh_view<Scalar> mesh, Scalar radius);
+
+  /// Makes room for queries of up to so many spheres, and in the sinks for up to so many pairs: what depends on the
+  /// numbers of spheres and pairs alone is then not allocated by a query. What depends on the mesh, or on the radii, is
+  /// by `build` and the first two queries.
+  template <class... Sink>
+  void reserve(std::size_t spheres, [[maybe_unused]] std::size_t pairs, Sink&... sinks) {
+    static_assert((detail::is_valid<detail::sink_reserve, Sink, ExecutionSpace> && ...),
+                  "collide: what reserve makes room in are sinks with a member reserve(space, spheres, pairs)");
+    using index = typename BroadPhase::template index<Scalar>;
+    if constexpr (detail::is_valid<detail::index_reserve, index, ExecutionSpace>) index_.reserve(space_, spheres);
+    if constexpr (query_tuning<ExecutionSpace>::defers_exact_tests && detail::filtered_predicate<NarrowPhase>::value) {
+      deferred_.reserve(space_, spheres);
+    }
+    (sinks.reserve(space_, spheres, pairs), ...);
+  }
 
   /// Hands every colliding pair, exactly once, to the sink (`count`, `any_hit`, `pairs`, `contacts`, `closest`,
   /// `visit`, or one of your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used

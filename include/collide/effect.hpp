@@ -73,10 +73,11 @@ inline void check_parameter(bool is_right, char const* must) {
 /// the surface of the second can only be left along the first: `move_out` and `repel` do so.
 template <class S>
 struct mesh_contact : contact<S> {
-  vec3<S> force_dv;    ///< what a step's acceleration adds to the velocity
-  vec3<S> start;       ///< the centre when the step began; of a swept particle where it was stopped
-  S elapsed;           ///< for how long the particle has moved from there
-  S approach_speed;    ///< speed towards the surface, before the contacts at this place changed it
+  vec3<S> force_dv;         ///< what a step's acceleration adds to the velocity
+  vec3<S> start;            ///< the centre when the step began; of a swept particle where it was stopped
+  S elapsed;                ///< for how long the particle has moved from there
+  vec3<S> velocity_before;  ///< the particle's velocity before this contact
+  S approach_speed;         ///< speed towards the surface, before the contacts at this place changed it
   vec3<S> lift;        ///< displacement that raises the particle above the surface by 1, and leaves it on those before
   S free_change;       ///< change of speed along the normal up to which no contact before is pressed on
   S normal_impulse;    ///< what the effects have added to the velocity along the normal: 0, or what repels

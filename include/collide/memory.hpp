@@ -92,6 +92,8 @@ class buffer {
 
   T* data() const { return data_; }
   std::size_t capacity() const { return capacity_; }
+  /// What it has taken of the resource.
+  std::size_t bytes() const { return capacity_ * sizeof(T); }
 
  private:
   static constexpr std::size_t alignment = 256;

@@ -42,6 +42,14 @@ class pairs : public detail::kept_in_space<pair> {
   /// A copy of the stored pairs on the host.
   std::vector<pair> to_host() const { return download_(data(), size()); }
 
+  /// Makes room for queries of up to so many spheres and pairs: they then allocate nothing.
+  template <class Space>
+  void reserve(Space const& space, std::size_t spheres, std::size_t most) {
+    if (fixed_ && order_ == order::unspecified) return collected_.reserve(space);
+    collected_.reserve(space, spheres, most);
+    if (order_ == order::canonical) collected_.reserve_sort(space);
+  }
+
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     download_ = detail::host_copier<pair>(space);

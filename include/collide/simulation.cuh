@@ -66,7 +66,7 @@ class simulation {
  public:
   /// The state that a particle has.
   using columns = typename effects_type::all;
-  /// Bytes of state of each particle.
+  /// Bytes of state of each particle: its columns; `bytes()` is what all takes.
   static constexpr std::size_t bytes_per_particle = detail::column_buffers<S, columns>::bytes_per_particle;
   /// Pointers to all columns, for kernels; see detail/simulation/particle.hpp.
   using state_type = detail::particle_state<S, columns>;
@@ -109,26 +109,36 @@ class simulation {
     if (room > n && !detail::contains<columns, alive>) {
       throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
     }
-    if (room >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
-    std::size_t const padded =
-        (room + detail::particle_padding - 1) / detail::particle_padding * detail::particle_padding;
-    memory_.reserve(space_.resource(), padded);
+    reserve(room);
     state_ = memory_.state(room, n, particles.common_radius());
     if constexpr (has_begin_step) {
-      state_.time = time_.reserve(space_.resource(), 1);
+      state_.time = device_time_.data();
       space_.fill(state_.time, 0, sizeof *state_.time);
     }
+    time_ = 0;
+    space_.for_each(padded(room), detail::init_particles<S, columns>{state_, particles, velocities});
+    is_set_ = true;
+    if constexpr (effects_type::meets || sweeps) largest_radius_ = largest_radius(particles);
+    if constexpr (effects_type::meets) neighbours_.clear(space_, room, largest_radius_);
+    prepare();
+  }
+
+  /// Makes room for up to so many particles, so that a later `set` takes no memory for them. There are none until
+  /// then. More than 2^32 - 2 are refused (`error`).
+  void reserve(std::size_t particles) {
+    if (particles >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
+    state_ = {};
+    is_set_ = false;
+    auto* const resource = space_.resource();
+    memory_.reserve(resource, padded(particles));
+    if constexpr (has_begin_step) device_time_.reserve(resource, 1);
     if constexpr (effects_type::touches) {
       using kernel = detail::step_kernel<step_context<std::decay_t<decltype(index_.lookup())>>>;
       if constexpr (kernel::template has_many_tiles<typename execution_space::template block<kernel>>) {
-        overflow_.reserve(space_.resource(), padded);
+        overflow_.reserve(resource, padded(particles));
       }
     }
-    space_.for_each(padded, detail::init_particles<S, columns>{state_, particles, velocities});
-    is_set_ = true;
-    if constexpr (effects_type::meets || sweeps) largest_radius_ = largest_radius(particles);
-    if constexpr (effects_type::meets) neighbours_.reserve(space_, room, largest_radius_);
-    prepare();
+    if constexpr (effects_type::meets) neighbours_.reserve(resource, particles);
   }
 
   /// The mesh that particles touch, which must stay as it is while it is used; call it again when the mesh has moved.
@@ -165,6 +175,7 @@ class simulation {
   /// before `set_mesh` if an effect touches the mesh.
   void step(S dt) {
     check_step(dt);
+    time_ += static_cast<double>(dt);
     if (state_.size == 0) return;
     (begin<Effect>(dt), ...);
     if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
@@ -187,6 +198,17 @@ class simulation {
   /// Advances `n` times by `dt`.
   void steps(std::size_t n, S dt) {
     for (std::size_t i = 0; i < n; ++i) step(dt);
+  }
+
+  /// The sum of the steps since `set`. Steps of a CUDA graph that replays them do not count.
+  double time() const { return time_; }
+
+  /// Bytes of memory that the particles take in all: columns, room for more, and what steps need for them, such as
+  /// lists of neighbours. What is prepared of the mesh is not in it.
+  std::size_t bytes() const {
+    std::size_t lists = 0;
+    if constexpr (effects_type::meets) lists = neighbours_.bytes();
+    return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + lists;
   }
 
   /// Number of particles, or of places for them, if an effect makes or removes some; see `alive`.
@@ -244,6 +266,11 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   struct no_lists {};
   using neighbour_lists = std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, no_lists>;
+
+  /// Places of columns for so many particles.
+  static std::size_t padded(std::size_t particles) {
+    return (particles + detail::particle_padding - 1) / detail::particle_padding * detail::particle_padding;
+  }
 
   S largest_radius(sphere_view<S> const& particles) {
     if constexpr (detail::contains<columns, radius>) {
@@ -329,7 +356,8 @@ class simulation {
   state_type state_{};
   bool is_set_ = false, has_mesh_ = false;
   bool reverse_order_ = false;  ///< of the next step
-  buffer<double> time_;
+  double time_ = 0;
+  buffer<double> device_time_;  ///< for effects with a member begin_step
   S largest_radius_ = 0, least_radius_ = 0;
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;

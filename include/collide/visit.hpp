@@ -55,6 +55,10 @@ class visit {
  public:
   explicit visit(F f) : f_{f} {}
 
+  /// Does nothing: queries never allocate here.
+  template <class Space>
+  void reserve(Space const&, std::size_t /*spheres*/, std::size_t /*pairs*/) {}
+
   template <class Space, class Query>
   void run(Space&, Query const& query) {
     using hit_type = hit<typename Query::narrow_phase, typename Query::scalar>;

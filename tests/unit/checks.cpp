@@ -39,6 +39,18 @@ void sort(std::vector<collide::contact<S>>& contacts) {
   });
 }
 
+/// The pairs of a csr, sphere after sphere.
+std::vector<collide::pair> pairs_of(rows const& found) {
+  std::vector<collide::pair> pairs;
+  for (std::size_t i = 0; i + 1 < found.offsets.size(); ++i) {
+    for (std::uint64_t k = found.offsets[i]; k < found.offsets[i + 1]; ++k) {
+      REQUIRE(k < found.triangles.stored.size());
+      pairs.push_back({static_cast<collide::id>(i), found.triangles.stored[k]});
+    }
+  }
+  return pairs;
+}
+
 template <class T>
 bool same_bits(T const& a, T const& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
@@ -202,6 +214,16 @@ findings<S> check_sinks(subject<S>& detector, scene<S> const& made, oracle::expe
   auto visited = detector.visit();
   sort(visited);
   CHECK(same(visited, found.contacts));
+
+  for (auto const asked : {collide::order::canonical, collide::order::unspecified}) {
+    auto const rows = detector.csr(asked);
+    CHECK(rows.offsets.size() == made.spheres.size() + 1);
+    CHECK(rows.offsets.front() == 0);
+    CHECK(rows.offsets.back() == rows.triangles.stored.size());
+    auto listed = pairs_of(rows);
+    if (asked == collide::order::unspecified) std::sort(listed.begin(), listed.end());
+    CHECK((listed == found.pairs));
+  }
 
   found.closest = detector.closest();
   auto const best = nearest_of(found.contacts, made.spheres.size());

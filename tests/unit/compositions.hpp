@@ -10,6 +10,7 @@
 #include <collide/closest.hpp>
 #include <collide/contacts.hpp>
 #include <collide/count.hpp>
+#include <collide/csr.hpp>
 #include <collide/pairs.hpp>
 #include <collide/visit.hpp>
 
@@ -155,6 +156,13 @@ class typed_subject final : public subject<S> {
       copy.push_back({entry.triangle, entry.distance});
     return copy;
   }
+  rows csr(collide::order o) override {
+    auto const& sink = detector_.query(spheres_, o == collide::order::canonical ? sorted_rows_ : rows_);
+    auto copy = sink.to_host();
+    if (sink.rows() != spheres_.size() || sink.size() != copy.triangles.size())
+      throw std::runtime_error("csr has other sizes than it says");
+    return {std::move(copy.offsets), {std::move(copy.triangles), sink.total(), sink.complete(), true}};
+  }
 
   std::vector<collide::contact<S>> visit() override {
     std::size_t const room = count() + 1;
@@ -174,10 +182,29 @@ class typed_subject final : public subject<S> {
   }
 
   bounded<collide::pair> pairs_within(std::size_t capacity, collide::order o) override {
-    return within<collide::pair, collide::pairs>(capacity, o);
+    return within<collide::pair>(
+        capacity, [&](collide::pair* to) { return detector_.query(spheres_, collide::pairs(to, capacity, o)); });
   }
   bounded<collide::contact<S>> contacts_within(std::size_t capacity, collide::order o) override {
-    return within<collide::contact<S>, collide::contacts<S>>(capacity, o);
+    using contact = collide::contact<S>;
+    return within<contact>(
+        capacity, [&](contact* to) { return detector_.query(spheres_, collide::contacts<S>(to, capacity, o)); });
+  }
+
+  rows csr_within(std::size_t capacity, collide::order o) override {
+    array<std::uint64_t> memory;
+    std::vector<std::uint64_t> offsets(spheres_.size() + 3, 77);
+    std::uint64_t* const to = memory.assign(space_, offsets);
+    auto triangles = within<collide::id>(
+        capacity, [&](collide::id* ids) { return detector_.query(spheres_, collide::csr(to + 1, ids, capacity, o)); });
+    space_.copy_to_host(offsets.data(), to, offsets.size());
+    if (offsets.front() != 77 || offsets.back() != 77) triangles.guards_intact = false;
+    return {{offsets.begin() + 1, offsets.end() - 1}, std::move(triangles)};
+  }
+
+  void reserve(std::size_t spheres, std::size_t pairs) override {
+    detector_.reserve(spheres, pairs, count_, any_, pairs_, sorted_pairs_, contacts_, sorted_contacts_, closest_, rows_,
+                      sorted_rows_);
   }
 
   double cell_width() override { return detector_.cell_width(); }
@@ -201,14 +228,15 @@ class typed_subject final : public subject<S> {
     return copy;
   }
 
-  template <class T, class Sink>
-  bounded<T> within(std::size_t capacity, collide::order o) {
+  /// What the sink that `query(memory)` returns has written of `T`.
+  template <class T, class Query>
+  bounded<T> within(std::size_t capacity, Query const& query) {
     constexpr std::size_t guard = 64;
     constexpr unsigned char pattern = 0xa5;
     std::vector<unsigned char> bytes(capacity * sizeof(T) + 2 * guard, pattern);
     array<unsigned char> memory;
     unsigned char* const raw = memory.assign(space_, bytes);
-    Sink const sink = detector_.query(spheres_, Sink(reinterpret_cast<T*>(raw + guard), capacity, o));
+    auto const sink = query(reinterpret_cast<T*>(raw + guard));
     space_.copy_to_host(bytes.data(), raw, bytes.size());
     bounded<T> result{std::vector<T>(sink.size()), sink.total(), sink.complete(), true};
     if (sink.size() != 0)
@@ -229,6 +257,7 @@ class typed_subject final : public subject<S> {
   collide::pairs pairs_, sorted_pairs_{collide::order::canonical};
   collide::contacts<S> contacts_, sorted_contacts_{collide::order::canonical};
   collide::closest<S> closest_;
+  collide::csr rows_, sorted_rows_{collide::order::canonical};
 };
 
 template <class Narrow, class S>

@@ -32,6 +32,22 @@ void check_bounded(tests::bounded<T> const& got, std::vector<T> const& all, std:
   CHECK(std::includes(possible.begin(), possible.end(), stored.begin(), stored.end()));
 }
 
+/// The offsets are those of all pairs, whatever there is room for. `all` is in canonical order.
+void check_rows(tests::rows const& got, std::vector<collide::pair> const& all, std::size_t spheres,
+                std::size_t capacity, order asked) {
+  std::vector<std::uint64_t> ends(spheres + 1, 0);
+  for (auto p : all) ++ends[p.sphere + 1];
+  for (std::size_t i = 0; i < spheres; ++i) ends[i + 1] += ends[i];
+  CHECK((got.offsets == ends));
+  tests::bounded<collide::pair> pairs{{}, got.triangles.total, got.triangles.complete, got.triangles.guards_intact};
+  REQUIRE(got.triangles.stored.size() == std::min(capacity, all.size()));
+  for (std::size_t i = 0; i < got.triangles.stored.size(); ++i) {
+    pairs.stored.push_back({all[i].sphere, got.triangles.stored[i]});
+    if (asked == order::canonical) CHECK(got.triangles.stored[i] == all[i].triangle);
+  }
+  check_bounded(pairs, all, capacity, asked);
+}
+
 }  // namespace
 
 TEST_CASE_TEMPLATE("buffers: every capacity from none to one more than needed", S, float, double) {
@@ -57,6 +73,7 @@ TEST_CASE_TEMPLATE("buffers: every capacity from none to one more than needed", 
           CHECK(tests::same(
               contacts.stored,
               {all_contacts.begin(), all_contacts.begin() + static_cast<std::ptrdiff_t>(contacts.stored.size())}));
+        check_rows(detector->csr_within(capacity, asked), all, made.spheres.size(), capacity, asked);
       }
   }
 }
@@ -78,6 +95,7 @@ TEST_CASE_TEMPLATE("buffers: more pairs than a first guess has room for, and the
       CHECK(detector->contacts(order::unspecified).size() == hits);
       CHECK(detector->pairs_within(5, order::unspecified).total == hits);
       CHECK(detector->count() == hits);
+      CHECK(detector->csr(order::unspecified).triangles.stored.size() == hits);
     }
   }
 }

@@ -19,6 +19,7 @@ void query_everything(tests::subject<S>& detector) {
   for (auto o : {order::unspecified, order::canonical}) {
     detector.pairs(o);
     detector.contacts(o);
+    detector.csr(o);
   }
 }
 
@@ -78,6 +79,31 @@ TEST_CASE_TEMPLATE("lifecycle: a mesh that moves and deforms is rebuilt without 
       CHECK(detector->memory().allocations == before);
       if (frame % 5 == 0) tests::check_pairs(*detector, moved.expect(1e-4));
     }
+  }
+}
+
+TEST_CASE_TEMPLATE("lifecycle: once there is room, more hits allocate nothing", S, float, double) {
+  constexpr std::size_t triangles = 40, spheres = 300, room = 300000;  // more than are merged
+  tests::scene<S> made;
+  for (std::size_t i = 0; i < triangles; ++i) made.mesh.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  for (std::size_t i = 0; i < spheres; ++i) made.spheres.add({0.25, 0.25, 0.5}, 1);
+  for (auto const& c : tests::compositions<S>()) {
+    CAPTURE(c.name());
+    auto const detector = c.make({});
+    detector->build(made.mesh, mesh_form::soup);
+    detector->reserve(spheres, room);
+    auto const query = [&](std::size_t near) {
+      auto now = made.spheres;
+      for (std::size_t i = 3 * near; i < now.centres.size(); ++i) now.centres[i] = 100;
+      detector->place(now, sphere_form::xyz_one);
+      query_everything(*detector);
+      query_everything(*detector);
+      CHECK(detector->count() == near * triangles);
+    };
+    query(3);
+    auto const before = detector->memory().allocations;
+    for (auto const near : {std::size_t{100}, spheres, std::size_t{0}, spheres}) query(near);
+    CHECK(detector->memory().allocations == before);
   }
 }
 

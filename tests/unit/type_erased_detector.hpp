@@ -39,6 +39,12 @@ struct bounded {
   bool guards_intact;  ///< nothing was written before or behind the buffer
 };
 
+/// What a `csr` sink left behind.
+struct rows {
+  std::vector<std::uint64_t> offsets;
+  bounded<collide::id> triangles;
+};
+
 template <class S>
 struct nearest {
   collide::id triangle;
@@ -89,11 +95,17 @@ class subject {
   virtual std::vector<collide::pair> pairs(collide::order o) = 0;
   virtual std::vector<collide::contact<S>> contacts(collide::order o) = 0;
   virtual std::vector<nearest<S>> closest() = 0;
+  virtual rows csr(collide::order o) = 0;
   /// What a visitor saw: the contact of each hit, with the ids of the hit itself.
   virtual std::vector<collide::contact<S>> visit() = 0;
 
   virtual bounded<collide::pair> pairs_within(std::size_t capacity, collide::order o) = 0;
   virtual bounded<collide::contact<S>> contacts_within(std::size_t capacity, collide::order o) = 0;
+
+  virtual rows csr_within(std::size_t capacity, collide::order o) = 0;
+
+  /// Makes room in the detector and all sinks above.
+  virtual void reserve(std::size_t spheres, std::size_t pairs) = 0;
 
   virtual double cell_width() = 0;
   /// The memory that the detector and its sinks take; none of what the tests themselves upload.

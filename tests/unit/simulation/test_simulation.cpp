@@ -2,6 +2,8 @@
 #include <collide/absorb.hpp>
 
 #include "compositions.hpp"
+#include "simulation/contact_forces.hpp"
+#include "simulation/memory.hpp"
 #include "simulation/simulation.hpp"
 
 namespace {
@@ -138,6 +140,23 @@ TEST_CASE("simulation: a narrow phase of one's own says when its balls stop") {
   asked::times = 0;
   tests::check_corner<asked, double>(host(1));
   CHECK(asked::times > 0);
+}
+
+TEST_CASE("simulation: bytes are what it has taken, and once there is room nothing is allocated") {
+  tests::check_bytes([](std::pmr::memory_resource* from) { return host(2, from); }, std::pmr::new_delete_resource());
+  using steps = tests::lockstep<64, true>;
+  tests::check_room<simulation<detector<collide::bucket, karabassi<>, steps>, gravity, bounce>>(
+      [](std::pmr::memory_resource* from) { return steps(1, from); }, std::pmr::new_delete_resource());
+}
+
+TEST_CASE("simulation: time is the sum of the steps since particles were set") { tests::check_time(host(1)); }
+
+TEST_CASE("simulation: forces of contacts are columns") {
+  tests::check_mesh_forces<karabassi<>>(host(1));
+  tests::check_mesh_forces<karabassi_swept<>>(host(2));
+  tests::check_mesh_forces<karabassi<>>(tests::lockstep<64, true>());
+  tests::check_pair_forces<float>(host(1));
+  tests::check_pair_forces<double>(tests::lockstep<256, false>());
 }
 
 TEST_CASE("simulation: nothing to do") {

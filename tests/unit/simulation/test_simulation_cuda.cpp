@@ -1,6 +1,8 @@
 /// Simulations on the GPU.
 #include <collide/absorb.hpp>
 
+#include "simulation/contact_forces.hpp"
+#include "simulation/memory.hpp"
 #include "simulation/simulation.hpp"
 
 namespace {
@@ -123,4 +125,18 @@ TEST_CASE("simulation: on the GPU, steps can be captured in a graph, with the sa
   using meets = simulation<tests::meets_mesh<cuda_shared>, gravity, collide::sphere_contact, bounce>;
   auto const contact = collide::sphere_contact::from_restitution(0.5, 4e-3, 0.06, 1000, 0.5);
   check_captured<meets>(tests::crowd<float>(2000, 1, 0.06, 3, 12), 2e-4f, 2, 300, 20, gravity{}, contact, bounce{});
+}
+
+TEST_CASE("simulation: on the GPU, bytes are what it has taken, and once there is room nothing is allocated") {
+  tests::check_bytes([](std::pmr::memory_resource* from) { return cuda_shared(nullptr, from); },
+                     collide::cuda_memory::get());
+}
+
+TEST_CASE("simulation: on the GPU, time and forces of contacts") {
+  tests::check_time(cuda_shared());
+  tests::check_mesh_forces<karabassi<>>(cuda_shared());
+  tests::check_mesh_forces<karabassi_swept<>>(cuda_shared());
+  tests::check_mesh_forces<karabassi<>>(collide::cuda());
+  tests::check_pair_forces<float>(cuda_shared());
+  tests::check_pair_forces<double>(collide::cuda());
 }

@@ -20,8 +20,7 @@ class deferred_pair_buffer {
   /// No pairs, and room for those of a query of so many spheres.
   template <class Space>
   deferred_pairs acquire(Space& space, std::size_t spheres) {
-    constexpr std::size_t least = 1024, most = std::size_t{1} << 22;
-    std::size_t const capacity = least + smaller(spheres, most);
+    std::size_t const capacity = capacity_for(spheres);
     bool const empty = empty_ && count_.data() != nullptr;  // that of a list which was moved is not there
     auto* const count = count_.reserve(space.resource(), 1);
     if (!empty) space.fill(count, 0, sizeof *count);
@@ -29,10 +28,23 @@ class deferred_pair_buffer {
     return {count, pairs_.reserve(space.resource(), capacity), capacity};
   }
 
+  /// Takes the memory for queries of up to so many spheres.
+  template <class Space>
+  void reserve(Space const& space, std::size_t spheres) {
+    if (count_.data() == nullptr) empty_ = false;
+    count_.reserve(space.resource(), 1);
+    pairs_.reserve(space.resource(), capacity_for(spheres));
+  }
+
   /// To be called when both passes are on their way.
   void release() { empty_ = true; }
 
  private:
+  static std::size_t capacity_for(std::size_t spheres) {
+    constexpr std::size_t least = 1024, most = std::size_t{1} << 22;
+    return least + smaller(spheres, most);
+  }
+
   buffer<deferred_pairs::counters> count_;
   buffer<pair> pairs_;
   bool empty_ = false;  ///< at least when all work that was given to the space is done

@@ -24,6 +24,10 @@ struct column_buffers<S, columns<C...>> : buffer_of<C, S>... {
     (static_cast<buffer_of<C, S>&>(*this).memory.reserve(resource, n * std::size_t(column_layout<C, S>::width)), ...);
   }
 
+  std::size_t bytes() const {
+    return (static_cast<buffer_of<C, S> const&>(*this).memory.bytes() + ... + std::size_t{0});
+  }
+
   particle_state<S, columns<C...>> state(std::size_t size, std::size_t placed, S radius) const {
     return {pointer_of<C, S>{static_cast<buffer_of<C, S> const&>(*this).memory.data()}..., size, placed, radius,
             nullptr};

@@ -156,6 +156,7 @@ struct contact_response {
       c.elapsed = context.dt;
       face_against(c, arrival);
     }
+    c.velocity_before = p[velocity{}];
     c.approach_speed = -dot(arrival, c.normal);
     colliding next = p;
     context.effects.accelerate(next, context.dt);

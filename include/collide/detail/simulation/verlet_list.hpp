@@ -37,28 +37,37 @@ namespace collide::detail {
 template <class S, class Effects>
 class verlet_list {
  public:
-  /// Takes all memory that steps need, for `n` particles of radius up to `radius`.
+  /// Takes all memory that steps of up to `n` particles need.
+  void reserve(std::pmr::memory_resource* resource, std::size_t n) {
+    header_.reserve(resource, 1);
+    ends_.reserve(resource, blocks_for(n) * cells::stride);
+    numbers_.reserve(resource, n);
+    memory_.reserve(resource, n);
+    spheres_.reserve(resource, n);
+    references_.reserve(resource, n);
+    if constexpr (order::has_absent) known_.reserve(resource, n);
+    lists_.reserve(resource, order::listed * n);
+  }
+
+  /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet.
   template <class Space>
-  void reserve(Space& space, std::size_t n, S radius) {
-    std::uint32_t bits = 0;
-    while (bits < 22 && (std::size_t{cells::cells_per_brick} << bits) < 2 * n) ++bits;
-    blocks_ = std::size_t{1} << bits;
+  void clear(Space& space, std::size_t n, S radius) {
+    blocks_ = blocks_for(n);
     skin_ = skin_fraction * 2 * radius;
     // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
     // away from the origin
     S const width = larger((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
     cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
-    auto* const resource = space.resource();
-    list_state* const header = header_.reserve(resource, 1);
+    list_state* const header = header_.data();
     space.fill(header, 0, sizeof *header);
-    space.fill(&header->rebuild, 1, sizeof header->rebuild);  // there are no lists yet
-    ends_.reserve(resource, blocks_ * cells::stride);
-    numbers_.reserve(resource, n);
-    memory_.reserve(resource, n);
-    spheres_.reserve(resource, n);
-    references_.reserve(resource, n);
-    if constexpr (order::has_absent) space.fill(known_.reserve(resource, n), 0, n * sizeof(*known_.data()));
-    lists_.reserve(resource, order::listed * n);
+    space.fill(&header->rebuild, 1, sizeof header->rebuild);
+    if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
+  }
+
+  /// What it has taken of the resource.
+  std::size_t bytes() const {
+    return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
+           references_.bytes() + known_.bytes() + memory_.bytes();
   }
 
   /// One pass of `on_pair_contact` over all pairs.
@@ -88,6 +97,13 @@ class verlet_list {
   using cells = spatial_hash<S>;
 
   static constexpr S skin_fraction = S(0.1);
+
+  /// How many blocks of cells there are for so many particles.
+  static std::size_t blocks_for(std::size_t n) {
+    std::uint32_t bits = 0;
+    while (bits < 22 && (std::size_t{cells::cells_per_brick} << bits) < 2 * n) ++bits;
+    return std::size_t{1} << bits;
+  }
 
   cells cells_{};
   S skin_{};

@@ -2,6 +2,7 @@
 /// What the built-in sinks share; what a sink must have is in concepts.hpp.
 #pragma once
 
+#include <algorithm>
 #include <new>
 #include <type_traits>
 #include <vector>
@@ -114,6 +115,13 @@ class hit_counter_buffer {
     return {numbers, numbers + 1};
   }
 
+  /// Takes the memory. What is in it is not known then.
+  template <class Space>
+  void reserve(Space const& space) {
+    numbers_.reserve(space.resource(), 2);
+    zero_in_ = nullptr;
+  }
+
   /// How many hits it had. Waits.
   template <class Space>
   std::uint64_t end(Space& space) {
@@ -142,8 +150,7 @@ class pair_collector {
   /// Runs the query until everything fits: once if the array of the last time is large enough.
   template <class Space, class Query>
   void fill(Space& space, Query const& query) {
-    std::size_t const guess = query.spheres.size() / 8 + 1024;
-    pair* const to = own_.reserve(space.resource(), own_.capacity() > guess ? own_.capacity() : guess);
+    pair* const to = take_room(space, query.spheres.size(), 0);
     fill(space, query, to, own_.capacity());
     if (total_ > own_.capacity()) {
       std::size_t const room = total_ + total_ / 4;  // so that a few more next time fit too
@@ -159,11 +166,37 @@ class pair_collector {
     sort_pairs(space, data_, size_, room, query.spheres.size(), query.mesh.size(), sort_memory_);
   }
 
+  /// Makes room for the pairs of a query in the array of its own.
+  template <class Space>
+  void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
+    total_of_.reserve(space);
+    take_room(space, spheres, pairs);
+  }
+  /// Takes what `fill` into the caller's array needs.
+  template <class Space>
+  void reserve(Space const& space) {
+    total_of_.reserve(space);
+  }
+  /// Takes what it needs to sort as many as there is room for.
+  template <class Space>
+  void reserve_sort(Space const& space) {
+    reserve_sort_memory(space, own_.capacity(), sort_memory_);
+  }
+
   pair* data() const { return data_; }
   std::size_t size() const { return size_; }
+  /// For how many pairs its own array has room.
+  std::size_t capacity() const { return own_.capacity(); }
   std::uint64_t total() const { return total_; }
 
  private:
+  /// Its own array, with room for `pairs`, and as many as one may expect of so many spheres.
+  template <class Space>
+  pair* take_room(Space const& space, std::size_t spheres, std::size_t pairs) {
+    std::size_t const guess = spheres / 8 + 1024;
+    return own_.reserve(space.resource(), std::max({own_.capacity(), guess, pairs}));
+  }
+
   hit_counter_buffer total_of_;
   buffer<pair> own_;
   sort_memory sort_memory_;

@@ -50,6 +50,14 @@ class records : public kept_in_space<Record> {
   /// A copy of the stored records on the host.
   std::vector<Record> to_host() const { return download_(data_, size_); }
 
+  /// Makes room for queries of up to so many spheres and pairs: they then allocate nothing.
+  template <class Space>
+  void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
+    collected_.reserve(space, spheres, pairs);
+    if (order_ == order::canonical) collected_.reserve_sort(space);
+    if (!fixed_) own_.reserve(space.resource(), collected_.capacity());
+  }
+
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
@@ -59,8 +67,7 @@ class records : public kept_in_space<Record> {
     if (order_ == order::canonical) collected_.sort(space, query);
     size_ = collected_.size();
     if (fixed_ && size_ > capacity_) size_ = capacity_;
-    std::size_t const room = own_.capacity();
-    if (!fixed_) own_.reserve(space.resource(), size_ > room ? size_ + size_ / 4 : room);
+    if (!fixed_) own_.reserve(space.resource(), size_ > own_.capacity() ? size_ + size_ / 4 : own_.capacity());
     data_ = fixed_ ? external_ : own_.data();
     using narrow_phase = typename Query::narrow_phase;
     space.for_each(size_,

@@ -63,6 +63,13 @@ class per_sphere_min : public kept_in_space<Entry> {
   /// A copy on the host.
   std::vector<Entry> to_host() const { return download_(data(), size_); }
 
+  /// Makes room for queries of up to so many spheres and pairs: they then allocate nothing.
+  template <class Space>
+  void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
+    collected_.reserve(space, spheres, pairs);
+    own_.reserve(space.resource(), spheres);
+  }
+
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,

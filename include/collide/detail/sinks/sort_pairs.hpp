@@ -22,6 +22,18 @@ struct sort_memory {
   buffer<unsigned char> bytes;
 };
 
+/// Takes the memory of `sort_pairs` for up to `capacity` pairs.
+template <class Space>
+void reserve_sort_memory(Space const& space, std::size_t capacity, sort_memory& memory) {
+  if constexpr (Space::host_accessible) {
+    memory.pairs.reserve(space.resource(), capacity);
+  } else {
+#if defined(__CUDACC__)
+    reserve_sort_on_device(space.stream(), space.resource(), capacity, memory.pairs, memory.bytes);
+#endif
+  }
+}
+
 /// Sorts n pairs, of which there may be `capacity` another time, in memory that the host can access: into parts by the
 /// leading bits of the sphere, then each part.
 template <class Space>

@@ -36,6 +36,36 @@ inline int bits_for(std::size_t n) {
   return b;
 }
 
+/// Temporary memory, in bytes, to sort up to `n` pairs by merging,
+inline std::size_t merge_sort_bytes(cudaStream_t stream, std::size_t n) {
+  std::size_t bytes = 0;
+  std::uint64_t* const none = nullptr;
+  cuda_check(cub::DeviceMergeSort::SortKeys(nullptr, bytes, none, n, canonical_less{}, stream),
+             "cub::DeviceMergeSort::SortKeys");
+  return bytes;
+}
+/// and by radix.
+inline std::size_t radix_sort_bytes(cudaStream_t stream, std::size_t n) {
+  std::size_t bytes = 0;
+  std::uint64_t* const none = nullptr;
+  cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, bytes, none, none, n, 0, 64, stream),
+             "cub::DeviceRadixSort::SortKeys");
+  return bytes;
+}
+
+/// Takes the memory of `sort_pairs_on_device` for up to `capacity` pairs, whichever way they are sorted.
+inline void reserve_sort_on_device(cudaStream_t stream, std::pmr::memory_resource* resource, std::size_t capacity,
+                                   buffer<pair>& other, buffer<unsigned char>& scratch) {
+  std::size_t const merge_bytes = merge_sort_bytes(stream, capacity < merge_sort_limit ? capacity : merge_sort_limit);
+  if (capacity <= merge_sort_limit) {
+    scratch.reserve(resource, merge_bytes);
+    return;
+  }
+  std::size_t const radix_bytes = radix_sort_bytes(stream, capacity);
+  scratch.reserve(resource, merge_bytes > radix_bytes ? merge_bytes : radix_bytes);
+  other.reserve(resource, capacity);
+}
+
 /// Sorts pairs into canonical order: not very many by merging; more by radix, by triangle, then (stably) by sphere,
 /// only the bits that ids below `spheres` and `triangles` have. Takes temporary memory for `capacity` pairs, at least
 /// `n`.
@@ -46,21 +76,15 @@ inline void sort_pairs_on_device(cudaStream_t stream, std::pmr::memory_resource*
   if (n < 2) return;
   auto* const keys = reinterpret_cast<std::uint64_t*>(pairs);
   // where there is room for many, the memory for both ways is taken the first time
-  bool const uses_radix = n > merge_sort_limit,
-             reserves_both = capacity > merge_sort_limit && other.capacity() < capacity;
-  std::size_t merge_bytes = 0, radix_bytes = 0;
-  if (!uses_radix || reserves_both) {
-    std::size_t const most = capacity < merge_sort_limit ? capacity : merge_sort_limit;
-    cuda_check(cub::DeviceMergeSort::SortKeys(nullptr, merge_bytes, keys, most, canonical_less{}, stream),
-               "cub::DeviceMergeSort::SortKeys");
+  bool const uses_radix = n > merge_sort_limit;
+  if (capacity > merge_sort_limit && other.capacity() < capacity) {
+    reserve_sort_on_device(stream, resource, capacity, other, scratch);
   }
-  if (uses_radix || reserves_both) {
-    cuda_check(cub::DeviceRadixSort::SortKeys(nullptr, radix_bytes, keys, keys, capacity, 0, 64, stream),
-               "cub::DeviceRadixSort::SortKeys");
-  }
-  void* const temporary = scratch.reserve(resource, merge_bytes > radix_bytes ? merge_bytes : radix_bytes);
-  auto* const sorted =
-      reinterpret_cast<std::uint64_t*>(reserves_both ? other.reserve(resource, capacity) : other.data());
+  std::size_t const most = capacity < merge_sort_limit ? capacity : merge_sort_limit;
+  std::size_t merge_bytes = uses_radix ? 0 : merge_sort_bytes(stream, most),
+              radix_bytes = uses_radix ? radix_sort_bytes(stream, capacity) : 0;
+  void* const temporary = scratch.reserve(resource, uses_radix ? radix_bytes : merge_bytes);
+  auto* const sorted = reinterpret_cast<std::uint64_t*>(other.data());
   if (!uses_radix) {
     cuda_check(cub::DeviceMergeSort::SortKeys(temporary, merge_bytes, keys, n, canonical_less{}, stream),
                "cub::DeviceMergeSort::SortKeys");

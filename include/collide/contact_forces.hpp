@@ -1,0 +1,82 @@
+/// \file
+/// Effects: the forces of contacts on each particle, as columns.
+#pragma once
+
+#include <collide/effect.hpp>
+
+namespace collide {
+
+struct bounce;
+struct friction;
+struct spin;
+struct adhesion;
+struct sphere_contact;
+
+/// Force of the mesh on a particle; see `mesh_forces`.
+struct mesh_force {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// Force of other particles on a particle; see `pair_forces`.
+struct pair_force {
+  template <class S>
+  using value = vec3<S>;
+};
+
+namespace detail {
+
+/// Mass over dt: force for a change of velocity in a step.
+template <class S>
+COLLIDE_HD_INLINE S force_per_change(double density, S radius, S dt) {
+  return dt > 0 ? S(4.188790204786391) * S(density) * radius * radius * radius / dt : S(0);  // 4 pi / 3
+}
+
+}  // namespace detail
+
+/// Sums the forces with which the mesh acts on each particle in a step: mass times what its contacts change of the
+/// velocity, over dt. So it is the mean over the step, of an impact as of what rests: that is pressed by its weight.
+/// What `adhesion` holds between contacts, and what does not happen to particles that `sleep`, is not in it.
+/// `to_host<mesh_force>()` reads it after a step, `data<mesh_force>()` is where it is. An effect for the end of the
+/// list: of those behind it it sees nothing. 3 scalars a particle.
+struct mesh_forces {
+  using reads = columns<velocity>;
+  using writes = columns<mesh_force>;
+  using runs_after = effects<bounce, friction, spin, adhesion>;
+
+  double density = 1;  ///< mass per volume
+
+  template <class Space, class State, class S>
+  void begin_step(Space& space, State const& state, S) const {
+    space.fill(state.at(mesh_force{}), 0, 3 * state.size * sizeof(S));
+  }
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
+    vec3<S> const change = p[velocity{}] - t.velocity_before;
+    p[mesh_force{}] += change * detail::force_per_change(density, p.radius(), dt);
+  }
+};
+
+/// Sums the forces with which other particles act on each particle in a step: mass times what `sphere_contact` (or an
+/// effect of your own with `on_pair_contact`) changes of the velocity, over dt. 0 for particles that `sleep`.
+/// `to_host<pair_force>()` reads it after a step. An effect for the end of the list: of those behind it it sees
+/// nothing. 3 scalars a particle, and as many in the lists of neighbours, which a scene has with it if it had none.
+struct pair_forces {
+  using reads = columns<velocity>;
+  using writes = columns<pair_force>;
+  using runs_after = effects<sphere_contact>;
+
+  double density = 1;  ///< mass per volume: that of `sphere_contact`
+
+  template <class Space, class State, class S>
+  void begin_step(Space& space, State const& state, S) const {
+    space.fill(state.at(pair_force{}), 0, 3 * state.size * sizeof(S));
+  }
+  template <class Particle, class Seen, class S>
+  COLLIDE_HD_INLINE void on_pair_contact(Particle& p, Seen const& self, Seen const&, S dt) const {
+    vec3<S> const change = p[velocity{}] - self[velocity{}];  // by all others that it has met so far
+    p[pair_force{}] = change * detail::force_per_change(density, p.radius(), dt);
+  }
+};
+
+}  // namespace collide
