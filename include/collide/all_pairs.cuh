@@ -132,8 +132,7 @@ struct compute_lifted_bounds {
   mesh_view<S> mesh;
   lifted_bounds<S>* bounds;
   COLLIDE_HD void operator()(std::size_t i) const {
-    vec3<S> const origin = lifted_origin(mesh);  // all is read before the roots, which are calls
-    bounds[i] = lifted_bounds<S>(bounding_sphere_of(mesh[i]), origin);
+    bounds[i] = lifted_bounds<S>(bounding_sphere_of(mesh[i]), lifted_origin(mesh));
   }
 };
 

@@ -128,6 +128,12 @@ class bucket::index {
     choose(space, options, bins);
   }
 
+  /// Makes room for queries of up to so many spheres.
+  template <class Space>
+  void reserve(Space& space, std::size_t spheres) {
+    if constexpr (bucket_tuning<Space>::bins_spheres) bins_.reserve(space, spheres);
+  }
+
   /// Puts one pass over the spheres on the space's stream; the last `prepare` was for these.
   template <class NarrowPhase, class Space, class Output>
   void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {

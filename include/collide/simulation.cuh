@@ -116,7 +116,7 @@ class simulation {
       space_.fill(state_.time, 0, sizeof *state_.time);
     }
     time_ = 0;
-    space_.for_each(padded(room), detail::init_particles<S, columns>{state_, particles, velocities});
+    space_.for_each(detail::padded_size(room), detail::init_particles<S, columns>{state_, particles, velocities});
     is_set_ = true;
     if constexpr (effects_type::meets || sweeps) largest_radius_ = largest_radius(particles);
     if constexpr (effects_type::meets) neighbours_.clear(space_, room, largest_radius_);
@@ -130,12 +130,12 @@ class simulation {
     state_ = {};
     is_set_ = false;
     auto* const resource = space_.resource();
-    memory_.reserve(resource, padded(particles));
+    memory_.reserve(resource, detail::padded_size(particles));
     if constexpr (has_begin_step) device_time_.reserve(resource, 1);
     if constexpr (effects_type::touches) {
       using kernel = detail::step_kernel<step_context<std::decay_t<decltype(index_.lookup())>>>;
       if constexpr (kernel::template has_many_tiles<typename execution_space::template block<kernel>>) {
-        overflow_.reserve(resource, padded(particles));
+        overflow_.reserve(resource, detail::padded_size(particles));
       }
     }
     if constexpr (effects_type::meets) neighbours_.reserve(resource, particles);
@@ -150,7 +150,9 @@ class simulation {
     if (mesh.size() != 0) index_.build(there, options_, mesh);
     mesh_ = mesh;
     has_mesh_ = true;
-    if constexpr (sweeps) least_radius_ = least_radius(mesh);
+    if constexpr (sweeps) {
+      least_radius_ = 8 * std::numeric_limits<S>::epsilon() * detail::largest_coordinate(space_, mesh, mesh_summary_);
+    }
     if constexpr (detail::contains<columns, slow_steps>) {  // what slept may have lost its support
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
     }
@@ -160,15 +162,15 @@ class simulation {
   // Other scalar types end here.
   template <class T, class = std::enable_if_t<!std::is_same<T, S>::value>>
   void set(sphere_view<T> const&) {
-    reject<T>();
+    detail::reject_scalar<T>();
   }
   template <class T, class V, class = std::enable_if_t<!(std::is_same<T, S>::value && std::is_same<V, S>::value)>>
   void set(sphere_view<T> const&, V const*, std::size_t = 0) {
-    reject<T>();
+    detail::reject_scalar<T>();
   }
   template <class T, class = std::enable_if_t<!std::is_same<T, S>::value>>
   void set_mesh(mesh_view<T>) {
-    reject<T>();
+    detail::reject_scalar<T>();
   }
 
   /// Advances by `dt`. Throws `error` if `dt` is not finite or an effect's parameter makes no sense, before `set`, and
@@ -190,7 +192,7 @@ class simulation {
     using kernel = detail::step_kernel<step_context<std::decay_t<decltype(lookup)>>>;
     using block = typename execution_space::template block<kernel>;
     kernel const body{{state_, effects_, lookup, overflow_.data(), dt, reverse_order_, least_radius_},
-                      kernel::template grid_size<block>(state_.size, resident_blocks<kernel>())};
+                      kernel::template grid_size<block>(state_.size, detail::resident_blocks<kernel>(space_))};
     reverse_order_ = !reverse_order_;
     space_.launch(body.blocks, body);
   }
@@ -267,11 +269,6 @@ class simulation {
   struct no_lists {};
   using neighbour_lists = std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, no_lists>;
 
-  /// Places of columns for so many particles.
-  static std::size_t padded(std::size_t particles) {
-    return (particles + detail::particle_padding - 1) / detail::particle_padding * detail::particle_padding;
-  }
-
   S largest_radius(sphere_view<S> const& particles) {
     if constexpr (detail::contains<columns, radius>) {
       if (!particles.one_radius()) {
@@ -280,13 +277,6 @@ class simulation {
       }
     }
     return particles.common_radius();
-  }
-
-  template <class T>
-  static constexpr void reject() {
-    static_assert(sizeof(T) == 0,
-                  "collide: particles, their velocities and the mesh must have the scalar type of the simulation's "
-                  "detector, its fourth parameter: nothing is narrowed silently");
   }
 
   template <class Column>
@@ -310,22 +300,6 @@ class simulation {
         index_.prepare(there, options_, spheres());
       }
     }
-  }
-
-  /// 8 units in the last place of the largest coordinate of the mesh. Waits.
-  S least_radius(mesh_view<S> mesh) {
-    using summary = detail::mesh_statistics<S>;
-    summary* const seen = mesh_summary_.reserve(space_.resource(), 1);
-    summary::clear(space_, seen);
-    detail::compute_mesh_statistics<S> const body{mesh, seen, nullptr};
-    space_.launch(detail::grid_size<execution_space>(mesh.size(), body), body);
-    return 8 * std::numeric_limits<S>::epsilon() * space_.read(seen).largest_coordinate();
-  }
-
-  /// How many blocks of a body are at work at a time.
-  template <class Body>
-  std::size_t resident_blocks() const {
-    return detail::smaller(space_.saturating_blocks(), space_.template max_resident_blocks<Body>());
   }
 
   void check_step(S dt) const {

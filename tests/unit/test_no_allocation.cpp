@@ -20,7 +20,7 @@ using collide::host, collide::order, collide::pair;
 
 /// Triangles all at one place, and spheres of which the first `near` touch them all.
 struct crowd {
-  static constexpr std::size_t triangles = 50, spheres = 1000, most = triangles * spheres;
+  static constexpr std::size_t triangles = 2, spheres = 100000, most = triangles * spheres;
   std::vector<float> corners, centres = std::vector<float>(3 * spheres), ways = std::vector<float>(3 * spheres);
 
   crowd() {

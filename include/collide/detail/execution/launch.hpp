@@ -14,4 +14,11 @@ std::size_t grid_size(std::size_t n, Body const&) {
   return (n + per_block - 1) / per_block;
 }
 
+/// How many blocks of a body are at work at a time.
+template <class Body, class Space>
+std::size_t resident_blocks(Space const& space) {
+  std::size_t const most = space.saturating_blocks(), of_body = space.template max_resident_blocks<Body>();
+  return most < of_body ? most : of_body;
+}
+
 }  // namespace collide::detail

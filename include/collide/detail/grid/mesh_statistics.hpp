@@ -4,8 +4,10 @@
 
 #include <cstddef>
 
+#include <collide/detail/execution/launch.hpp>
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/grid/size_histogram.hpp>
+#include <collide/memory.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
 
@@ -101,6 +103,16 @@ struct compute_mesh_statistics {
     return area <= 1 ? static_cast<std::uint32_t>(static_cast<std::int32_t>(area * 0x1p8f + 0.5f)) : 0;
   }
 };
+
+/// The largest coordinate of a mesh, without its sign. Waits.
+template <class Space, class S>
+S largest_coordinate(Space& space, mesh_view<S> const& mesh, buffer<mesh_statistics<S>>& memory) {
+  auto* const seen = memory.reserve(space.resource(), 1);
+  mesh_statistics<S>::clear(space, seen);
+  compute_mesh_statistics<S> const body{mesh, seen, nullptr};
+  space.launch(grid_size<Space>(mesh.size(), body), body);
+  return space.read(seen).largest_coordinate();
+}
 
 /// Kernel body: the histogram of the finite, valid radii.
 template <class S>

@@ -47,8 +47,8 @@ struct expand_cells {
     std::uint32_t sizes[Block::num_threads];  ///< of the spans
     std::uint32_t parts[Block::num_threads];  ///< where in their cells the spheres are
     typename swept_cells<S>::cell_visit
-        places[still ? 1 : Block::num_threads];           ///< where on its path a moving sphere is,
-    std::int8_t grid_of[still ? 1 : Block::num_threads];  ///< and in which grid
+        places[still ? 1 : Block::num_threads];           ///< where on its path a moving sphere is
+    std::int8_t grid_of[still ? 1 : Block::num_threads];  ///< of a moving sphere
     counts found;
     typename Block::balance_storage balance;
     pipeline_storage<Block, ahead> hits;

@@ -183,6 +183,17 @@ class sorted_spheres {
     is_empty_ = false;
   }
 
+  /// Makes room for up to so many spheres.
+  template <class Space>
+  void reserve(Space& space, std::size_t spheres) {
+    std::size_t const room = larger(placed_.capacity(), max_levels * spheres);
+    placed_.reserve(space.resource(), room);
+    order_.reserve(space.resource(), room);
+    total_.reserve(space.resource(), 1);
+    columns_ = columns(space, room);
+    clear();
+  }
+
   /// Forgets the spheres.
   void clear() { is_empty_ = true; }
   /// True if no spheres have been sorted since.

@@ -25,4 +25,12 @@ inline constexpr bool makes_simulation = std::is_convertible<First, Space>::valu
                                          (are_parameters<Effects, std::decay_t<Argument>...> ||
                                           starts_with_options<Options, Effects, Argument...>);
 
+/// Refuses another scalar type than the simulation's.
+template <class T>
+constexpr void reject_scalar() {
+  static_assert(sizeof(T) == 0,
+                "collide: particles, their velocities and the mesh must have the scalar type of the simulation's "
+                "detector, its fourth parameter: nothing is narrowed silently");
+}
+
 }  // namespace collide::detail

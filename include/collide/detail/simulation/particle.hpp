@@ -62,6 +62,11 @@ struct alignas(4 * sizeof(T)) four {
 /// reads and writes at a time, so that no lane asks whether its own are there.
 inline constexpr std::size_t particle_padding = 1024;
 
+/// Places of columns for so many particles.
+inline std::size_t padded_size(std::size_t particles) {
+  return (particles + particle_padding - 1) / particle_padding * particle_padding;
+}
+
 template <class S, class List>
 struct particle_state;
 template <class S, class... C>
