@@ -308,13 +308,12 @@ class bucket::index {
   std::uint32_t const* lists_total() const { return &lists_.data()[cells_].count; }
   std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
 
-  /// What is held for another number of cells would come on top of what the budget was planned for,
+  // what is held for another number of cells would come on top of what the budget was planned for,
   void release_cells() {
     lists_.release();
     entries_.release();
   }
-
-  /// and so would boxes of another number of triangles.
+  // and so would boxes of another number of triangles
   void release_grids() {
     boxes_.release();
     release_cells();
