@@ -33,7 +33,7 @@ void check_room(MakeSpace make, std::pmr::memory_resource* upstream) {
   set(100);
   simulation.reserve(5000);
   CHECK(simulation.size() == 0);
-  simulation.step(1e-3f);  // of none
+  CHECK_THROWS_AS(simulation.step(1e-3f), collide::error);  // before set
   std::size_t const bytes = counting.bytes - others, calls = counting.calls;
   CHECK(simulation.bytes() == bytes);
   CHECK(bytes >= 5000 * Simulation::bytes_per_particle);

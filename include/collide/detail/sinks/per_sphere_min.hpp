@@ -68,6 +68,7 @@ class per_sphere_min : public kept_in_space<Entry> {
   void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
     collected_.reserve(space, spheres, pairs);
     own_.reserve(space.resource(), spheres);
+    numbers_.reserve(space.resource(), pairs);
   }
 
   template <class Space, class Query>
