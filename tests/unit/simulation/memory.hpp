@@ -24,6 +24,7 @@ void check_room(MakeSpace make, std::pmr::memory_resource* upstream) {
   placed<float> const centres(space, w.centres);
   std::size_t const others = counting.bytes;
   Simulation simulation(space);
+  simulation.set_mesh({});
   CHECK(simulation.bytes() == 0);
   auto const set = [&](std::size_t n) {
     simulation.set(collide::spheres_xyz(centres.data(), n, 0.5f));
