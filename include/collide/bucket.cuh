@@ -253,7 +253,8 @@ class bucket::index {
     stage_ = stage::none;  // until all is done: an exception leaves no half-made grid behind
     grid_count_ = requested_ = 0;
     std::size_t const taken = fixed_bytes + (boxes_.data() != nullptr ? mesh_.size() * sizeof *boxes_.data() : 0);
-    auto const plan = detail::memory_plan::make(mesh_.size(), spheres.size(), requested, taken, options.memory_budget);
+    auto const plan = detail::memory_plan::make(mesh_.size(), spheres.size(), requested, options.cell_width > 0, taken,
+                                                options.memory_budget);
     for (int i = 0; i < detail::max_grids && i < requested; ++i) reaches_[i] = reaches[i];
     if (plan.grids != 0) {
       auto const count = static_cast<std::size_t>(plan.grids);
@@ -308,12 +309,11 @@ class bucket::index {
   std::uint32_t const* lists_total() const { return &lists_.data()[cells_].count; }
   std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
 
-  // what is held for another number of cells would come on top of what the budget was planned for,
+  // what is held for another number of cells would come on top of what the budget was planned for
   void release_cells() {
     lists_.release();
     entries_.release();
   }
-  // and so would boxes of another number of triangles
   void release_grids() {
     boxes_.release();
     release_cells();

@@ -35,11 +35,13 @@ struct level_cost {
   bucket_costs costs;
   float spheres;
   float reach;
+  float path;  ///< how far a sphere moves
   share_of_pairs const& share;
 
   COLLIDE_HD_INLINE float operator()(triangle_sums const& t, float width) const {
-    float const pairs = spheres * t.count * share(reach + 0.5f * width, t.mean_extent());
-    return costs.entry_ns * t.entries(width, reach) + costs.candidate_ns * pairs;
+    float const pairs = spheres * t.count * share(reach + 0.5f * width, t.mean_extent()), cells = path / width;
+    return costs.entry_ns * t.entries(width, reach) + costs.candidate_ns * pairs * (1 + cells) +
+           costs.step_ns * spheres * cells;
   }
 };
 

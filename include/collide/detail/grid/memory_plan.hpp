@@ -22,8 +22,9 @@ struct memory_plan {
 
   /// As many of `wanted` grids as fit into `budget` bytes, of which `fixed` are taken, and then as many cells. No grids
   /// if none fits. A budget of 0 is no limit.
-  static memory_plan make(std::size_t triangles, std::size_t spheres, int wanted, std::size_t fixed,
-                          std::size_t budget) {
+  /// If the width of the cells is asked for there may be many entries more.
+  static memory_plan make(std::size_t triangles, std::size_t spheres, int wanted, bool width_is_given,
+                          std::size_t fixed, std::size_t budget) {
     constexpr std::size_t id_limit = std::numeric_limits<std::uint32_t>::max();
     std::uint32_t most_bits = 12;
     std::size_t const cells =
@@ -35,8 +36,9 @@ struct memory_plan {
       std::size_t const least = 8 * triangles * grids;
       if (least > id_limit) continue;
       // the few spheres that use many triangles have, in the end, many pairs
-      std::size_t const most =
-          std::min(((spheres < triangles ? 48 : 16) * triangles + spheres / 2 + 4096) * grids, id_limit);
+      std::size_t const chosen = (spheres < triangles ? 48 : 16) * triangles + spheres / 2 + 4096,
+                        given = 1024 * triangles + (std::size_t{1} << 21);
+      std::size_t const most = std::min((width_is_given ? given : chosen) * grids, id_limit);
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
         std::size_t const base = fixed + table_size(grids << bits) * sizeof(item_range);
         if (budget == 0) return {g, bits, most};

@@ -24,14 +24,26 @@ struct vertices_as_spheres {
   COLLIDE_HD sphere<S> operator[](std::size_t i) const { return {mesh[i].a, common}; }
 };
 
-/// The sphere, or that around the way of a moving one, as far as its place goes.
+/// Where a sphere is; of one that moves, somewhere on its way, from 0 to 1.
 template <class S>
-COLLIDE_HD_INLINE sphere<S> place_of(sphere<S> const& s) {
+COLLIDE_HD_INLINE sphere<S> place_of(sphere<S> const& s, S) {
   return s;
 }
 template <class S>
-COLLIDE_HD_INLINE sphere<S> place_of(moving_sphere<S> const& s) {
-  return {s.centre, s.radius};
+COLLIDE_HD_INLINE sphere<S> place_of(moving_sphere<S> const& s, S time) {
+  return {s.centre + time * s.displacement, s.radius};
+}
+
+/// How far a sphere moves along the axis on which it moves farthest.
+template <class S>
+COLLIDE_HD_INLINE S path_of(sphere<S> const&) {
+  return 0;
+}
+template <class S>
+COLLIDE_HD_INLINE S path_of(moving_sphere<S> const& s) {
+  S most = 0;
+  for (int k = 0; k < 3; ++k) most = larger(most, larger(s.displacement[k], -s.displacement[k]));
+  return most;
 }
 
 /// The distances, on the axis where they are farther apart, of sampled spheres from the boxes of sampled triangles, in
@@ -41,6 +53,14 @@ struct pair_distances {
 
   std::uint32_t counts[bins];
   std::uint32_t sampled;  ///< spheres
+  std::uint32_t path;     ///< of all of them, at most 1 for each, in units of path_unit
+
+  static constexpr float path_unit = 0x1p-16f;
+
+  /// How far a sphere moves, on average.
+  COLLIDE_HD_INLINE float mean_path() const {
+    return sampled != 0 ? static_cast<float>(path) * path_unit / static_cast<float>(sampled) : 0.f;
+  }
 
   /// Bin k is of distances below 2^(k - 28); those of 8 and more are in the last.
   COLLIDE_HD_INLINE static std::uint32_t bin_of(float distance) {

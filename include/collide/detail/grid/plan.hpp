@@ -79,17 +79,12 @@ struct plan_grid {
       for (auto i = static_cast<std::uint32_t>(thread_rank); i < pair_distances::triangles; i += Block::num_threads) {
         s.boxes[i] = sampled_box(i);
       }
-      if (thread_rank == 0) s.distances.sampled = 0;
+      if (thread_rank == 0) s.distances.sampled = s.distances.path = 0;
     });
-    bool const sound = block.broadcast(s.planned.levels) != 0;
-    if (!sound) {
-      block.for_each_thread([&](int thread_rank) {
-        if (thread_rank != 0) return;
-        static_cast<grid_header<S>&>(g) = s.planned;
-        g.levels = 0;
-        g.level[0] = {};  // is read before it is known whether there is one
+    if (block.broadcast(s.planned.levels) == 0) {
+      return block.for_each_thread([&](int thread_rank) {
+        if (thread_rank == 0) set_empty(g, s.planned);
       });
-      return;
     }
     measure_distances(block, s);
     weigh(block, s);
@@ -100,6 +95,12 @@ struct plan_grid {
 
  private:
   static constexpr float unlimited = std::numeric_limits<float>::max();
+
+  /// A grid without levels; the first is read before it is known that there is none.
+  static COLLIDE_HD void set_empty(grid<S>& g, grid_header<S> const& planned) {
+    static_cast<grid_header<S>&>(g) = planned;
+    g.level[0] = {};
+  }
 
   /// The grid but for its levels: of these there are none if it can hold no triangle, or serve no sphere.
   COLLIDE_HD grid_header<S> frame(std::size_t i, S& extent) const {
@@ -147,9 +148,14 @@ struct plan_grid {
       for (auto j = static_cast<std::uint32_t>(thread_rank); j < parts * pair_distances::spheres;
            j += Block::num_threads) {
         if (spheres.size() == 0) break;
-        sphere<S> const ball = place_of(spheres[spheres.size() * (j / parts) / pair_distances::spheres]);
+        auto const moved = spheres[spheres.size() * (j / parts) / pair_distances::spheres];
+        sphere<S> const ball = place_of(moved, static_cast<S>(j / parts * 37 % 64) / S(63));  // times all over the way
         if (!(ball.radius <= reach && ball.radius > least) || !is_finite(ball.centre)) continue;
-        if (j % parts == 0) block.add(s.distances.sampled, 1);
+        if (j % parts == 0) {
+          block.add(s.distances.sampled, 1);
+          float const path = static_cast<float>(path_of(moved) * scale) / pair_distances::path_unit;
+          block.add(s.distances.path, path < 0x1p16f ? static_cast<std::uint32_t>(path) : 1u << 16);
+        }
         COLLIDE_NO_UNROLL
         for (std::uint32_t k = 0; k < pairs_of_sphere; ++k) {
           triangle_aabb<S> const& b = s.boxes[j % parts * pairs_of_sphere + k];
@@ -196,7 +202,8 @@ struct plan_grid {
       triangle_sums all{0, 0, 0};
       for (int c = 0; c < size_classes; ++c) all += s.classes[c];
       share_of_pairs const share(s.distances);
-      level_cost const cost{request.costs, spheres_served(s), reach_of(s), share};
+      level_cost const cost{request.costs, spheres_served(s), static_cast<float>(s.planned.dilation / s.extent),
+                            s.distances.mean_path(), share};
       best[thread_rank] = {unlimited, width_at(0), 0, 0};
       if (request.cell_width > 0) {
         float const asked = larger(narrowest, static_cast<float>(request.cell_width / s.extent));
@@ -268,11 +275,6 @@ struct plan_grid {
            pair_distances::spheres;
   }
 
-  template <class Scratch>
-  COLLIDE_HD_INLINE float reach_of(Scratch const& s) const {
-    return static_cast<float>(s.planned.dilation / s.extent);
-  }
-
   COLLIDE_HD void set_levels(grid<S>& g, grid_header<S> planned, cell_choice const& chosen, S extent,
                              std::size_t number) const {
     bool const two = chosen.coarse_width > 0;
@@ -309,7 +311,7 @@ struct plan_grid {
     for (int k = 0; k < 3; ++k) {
       g.lower[k] = summary->lower_of(k);
       g.upper[k] = summary->upper_of(k);
-      far = larger(far, larger(abs_of(g.lower[k]), abs_of(g.upper[k])));
+      far = larger(far, larger(larger(g.lower[k], -g.lower[k]), larger(g.upper[k], -g.upper[k])));
     }
     g.dilation = g.reach * (1 + 4 * S(ieee_traits<float>::unit_roundoff)) + 64 * ieee_traits<S>::unit_roundoff * far +
                  64 * std::numeric_limits<S>::min();
@@ -320,8 +322,6 @@ struct plan_grid {
     }
     return far;
   }
-
-  static COLLIDE_HD S abs_of(S x) { return x < 0 ? -x : x; }
 
   /// Gives each axis of the level as many cells as the grid has, and if that is more than `most` in all, cuts the
   /// longest axes down to powers of two, where coordinates wrap. Returns the number of cells.

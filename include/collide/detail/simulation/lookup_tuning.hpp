@@ -30,7 +30,8 @@ struct bucket_tuning<detail::lookup_tuning<Space>> : bucket_tuning<Space> {
   static constexpr bool bins_spheres = false;
   /// The grid serves many steps.
   static constexpr bucket_costs costs{bucket_tuning<Space>::costs.entry_ns / 16,
-                                      bucket_tuning<Space>::costs.candidate_ns, bucket_tuning<Space>::costs.level_ns};
+                                      bucket_tuning<Space>::costs.candidate_ns, bucket_tuning<Space>::costs.level_ns,
+                                      bucket_tuning<Space>::costs.step_ns};
 };
 
 }  // namespace collide
