@@ -132,6 +132,7 @@ struct compute_lifted_bounds {
   mesh_view<S> mesh;
   lifted_bounds<S>* bounds;
   COLLIDE_HD void operator()(std::size_t i) const {
+    // ptxas 13.0 reads the origin from a wrong place if it is read before the sphere is computed
     bounds[i] = lifted_bounds<S>(bounding_sphere_of(mesh[i]), lifted_origin(mesh));
   }
 };

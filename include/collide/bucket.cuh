@@ -27,12 +27,12 @@
 namespace collide {
 
 /// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid/grid.hpp explains how.
-/// Build O(triangles + entries), query O(spheres + candidates). Memory: 8 scalars for each triangle; for each grid at
-/// most 16 entries of 8 bytes for each triangle and one for each two spheres, and a cell of 8 bytes for each four of
-/// these; several grids only where radii differ by more than a factor of 4. The host sorts the spheres instead where
-/// there are many (detail/query/sorted_spheres.hpp): that takes O(triangles + spheres) for a query, 8 scalars per
-/// triangle, 4 bytes per cell, and about 12 scalars for each sphere in a cell with triangles, 19 if it moves; no
-/// entries.
+/// Build O(triangles + entries), query O(spheres + candidates). Memory: 8 scalars for each triangle; for each grid
+/// entries of 8 bytes, at most 16 for each triangle (48 where there are fewer spheres) and one for each two spheres,
+/// and cells of 8 bytes, at most 32 for each triangle; several grids only where radii differ by more than a factor
+/// of 4. The host sorts the spheres instead where there are many (detail/query/sorted_spheres.hpp): that takes
+/// O(triangles + spheres) for a query, 8 scalars per triangle, 4 bytes per cell, and about 12 scalars for each sphere
+/// in a cell with triangles, 19 if it moves; no entries.
 struct bucket {
   /// Width of the cells; 0 lets the library choose. The study's was 4 R. They are wider where triangles would meet too
   /// many of them.

@@ -15,7 +15,7 @@ struct bucket_costs {
 
 /// How `bucket` works on a host: one core after the other waits for the memory.
 struct host_bucket_tuning {
-  static constexpr bucket_costs costs{30, 1.5f, 10, 15};
+  static constexpr bucket_costs costs{30, 0.3f, 10, 3};
   /// True if many spheres are sorted into the cells, and triangles look for them, rather than the other way round.
   /// Needs memory that the host can access, and blocks of one thread with 64 items.
   static constexpr bool bins_spheres = true;

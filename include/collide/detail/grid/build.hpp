@@ -114,7 +114,7 @@ struct fill_entries {
 template <class S, class Pass>
 struct enter_triangles {
   static constexpr int items = 1;
-  /// A large triangle keeps its block busy: where there are few blocks, the others' triangles are elsewhere.
+  /// A block takes fewer triangles where there would be fewer blocks than this: the slabs of large ones keep it busy.
   static constexpr std::size_t many_blocks = 240;
   static constexpr int together = 4;  ///< cells that a lane asks at a time
 

@@ -91,11 +91,30 @@ class triangle_slab {
   bool there_[segment_count] = {};
 };
 
+/// Calls f(number, n) for the one or two runs of cells, number .. number + n, of a row from `first` to `last`.
+template <class S, class F>
+void each_range_of_row(grid_level<S> const& l, std::uint32_t y, std::uint32_t z, std::uint32_t first,
+                       std::uint32_t last, F const& f) {
+  std::uint32_t const row = l.row(y, z), begin = first & l.mask[0], n = last - first + 1;
+  std::uint32_t const to_end = l.mask[0] + 1 - begin;
+  f(row + begin, smaller(n, to_end));
+  if (n > to_end) f(row, n - to_end);
+}
+
+/// Calls f(number, n) for the runs of cells of all rows of a box of cells.
+template <class S, class F>
+void each_range_of_box(grid_level<S> const& l, cell_box const& r, F const& f) {
+  for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
+    for (std::uint32_t y = r.lower[1]; y <= r.upper[1]; ++y) each_range_of_row(l, y, z, r.lower[0], r.upper[0], f);
+  }
+}
+
 /// The cells of a level into which a triangle is entered.
 template <class S>
 class triangle_cells {
  public:
-  /// Of the triangle with this box: all that its dilated box meets if the grid says so, or if it is cut no further.
+  /// Of the triangle with this box. It is not cut, but entered into all cells that its dilated box meets, if the grid
+  /// wants that, or if there are few.
   COLLIDE_HD triangle_cells(grid<S> const& g, grid_level<S> const& l, aabb<S> const& b)
       : grid_{g}, level_{l}, box_{b}, range_{g.cells_of(l, b, first_step_, last_step_)} {
     bool turns = false;
@@ -170,15 +189,11 @@ class triangle_cells {
       triangle<S> const t = get_triangle();
       for (std::uint32_t k = 0; k < slabs(); ++k) {
         each_run(k, t, [&](std::uint32_t y, std::uint32_t z, std::uint32_t first, std::uint32_t last) {
-          call_wrapped(y, z, first, last, f);
+          each_range_of_row(level_, y, z, first, last, f);
         });
       }
     } else {
-      for (std::uint32_t z = range_.lower[2]; z <= range_.upper[2]; ++z) {
-        for (std::uint32_t y = range_.lower[1]; y <= range_.upper[1]; ++y) {
-          call_wrapped(y, z, range_.lower[0], range_.upper[0], f);
-        }
-      }
+      each_range_of_box(level_, range_, f);
     }
   }
 
@@ -212,14 +227,6 @@ class triangle_cells {
     return squared - mul(apart, apart);
   }
 
-  template <class F>
-  void call_wrapped(std::uint32_t y, std::uint32_t z, std::uint32_t first, std::uint32_t last, F const& f) const {
-    std::uint32_t const row = level_.row(y, z), begin = first & level_.mask[0], n = last - first + 1;
-    std::uint32_t const to_end = level_.mask[0] + 1 - begin;
-    f(row + begin, smaller(n, to_end));
-    if (n > to_end) f(row, n - to_end);
-  }
-
   COLLIDE_HD_INLINE std::uint32_t covered(std::uint32_t cell, int axis) const {
     return cell_coverage::encode_box(cell == range_.lower[axis] ? first_step_[axis] : cell_coverage::before,
                                      cell == range_.upper[axis] ? last_step_[axis] : cell_coverage::last, axis);
@@ -237,7 +244,13 @@ class triangle_cells {
 /// twice. `get_triangle()` is the triangle.
 template <class S, class GetTriangle, class F>
 void each_range(grid<S> const& g, aabb<S> const& b, GetTriangle const& get_triangle, F const& f) {
-  if (g.levels != 0 && !b.is_empty()) triangle_cells<S>(g, g.level_of(b), b).each_range(get_triangle, f);
+  if (g.levels == 0 || b.is_empty()) return;
+  grid_level<S> const& l = g.level_of(b);
+  cell_box const r = g.range_of(l, b);
+  bool few = true;  // nearly always: then nothing else has to be known
+  for (int k = 0; k < 3; ++k) few = few && r.upper[k] - r.lower[k] <= smaller(1u, l.mask[k]);
+  if (few) return each_range_of_box(l, r, f);
+  triangle_cells<S>(g, l, b).each_range(get_triangle, f);
 }
 
 }  // namespace collide::detail
