@@ -39,7 +39,7 @@ void check_with(tests::scene<S> const& made, oracle::expectation const& expected
   }
 }
 
-/// The grid has not collapsed: its cells are no wider than `largest`.
+/// The grid has not collapsed: its cells are no wider than `largest`. The scene must be one where narrow cells pay.
 template <class S>
 void check_width(tests::scene<S> const& made, double largest) {
   for (auto const& c : tests::compositions<S>()) {
@@ -411,10 +411,13 @@ TEST_CASE_TEMPLATE("grids: a soup with one triangle 1e6 times as large as the re
   random.triangle_size = 0.1;
   random.extent = 2;
   random.radius = 0.2;
-  auto made = random.make<S>();
-  made.mesh.add({{-1e5, -1e5, 0.3}, {1e5, -1e5, 0.3}, {0, 1e5, 0.3}});
-  check_with_budgets(made, 1e-2);
-  check_width(made, 5);
+  auto const add_giant = [](tests::scene<S> made) {
+    made.mesh.add({{-1e5, -1e5, 0.3}, {1e5, -1e5, 0.3}, {0, 1e5, 0.3}});
+    return made;
+  };
+  check_with_budgets(add_giant(random.make<S>()), 1e-2);
+  random.triangles = 3000, random.spheres = 5000;
+  check_width(add_giant(random.make<S>()), 5);
 }
 
 TEST_CASE_TEMPLATE("grids: two objects 1e6 radii apart", S, float, double) {
@@ -423,15 +426,19 @@ TEST_CASE_TEMPLATE("grids: two objects 1e6 radii apart", S, float, double) {
   random.triangle_size = 0.1;
   random.extent = 2;
   random.radius = 0.2;
+  auto const two_objects = [](tests::random_scene random) {
+    auto made = random.make<S>();
+    random.offset = {2e5, -2e5, 2e5};
+    auto const other = random.make<S>();
+    for (std::size_t i = 0; i < other.mesh.size(); ++i) made.mesh.add(other.mesh[i]);
+    for (std::size_t i = 0; i < other.spheres.size(); ++i)
+      made.spheres.add(other.spheres[i].centre, other.spheres[i].radius);
+    return made;
+  };
   random.triangles = random.spheres = 100;
-  auto made = random.make<S>();
-  random.offset = {2e5, -2e5, 2e5};
-  auto const other = random.make<S>();
-  for (std::size_t i = 0; i < other.mesh.size(); ++i) made.mesh.add(other.mesh[i]);
-  for (std::size_t i = 0; i < other.spheres.size(); ++i)
-    made.spheres.add(other.spheres[i].centre, other.spheres[i].radius);
-  check_with_budgets(made, 1e-4);
-  check_width(made, 5);
+  check_with_budgets(two_objects(random), 1e-4);
+  random.triangles = 3000, random.spheres = 5000;
+  check_width(two_objects(random), 5);
 }
 
 TEST_CASE_TEMPLATE("grids: all triangles in one cell", S, float, double) {

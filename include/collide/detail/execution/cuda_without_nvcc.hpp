@@ -2,6 +2,8 @@
 /// What the names of the CUDA spaces stand for where no nvcc compiles: a sentence.
 #pragma once
 
+#if !defined(__CUDACC__)
+
 namespace collide {
 
 namespace detail {
@@ -22,3 +24,5 @@ using cuda = detail::cuda_without_nvcc;
 using cuda_shared = detail::cuda_without_nvcc;
 
 }  // namespace collide
+
+#endif
