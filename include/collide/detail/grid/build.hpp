@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <collide/detail/execution/aggregated_count.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/grid/grid.hpp>
@@ -17,66 +18,6 @@
 
 namespace collide::detail {
 
-/// Adds 1 to the counters of several cells. Threads of a warp that meet in a cell, as those of neighbouring triangles
-/// do, add together: a counter takes its time for each that asks it.
-template <int N>
-class counted_together {
- public:
-  /// The cells whose bit in the mask is set.
-  COLLIDE_HD_INLINE void match(cell_ref const (&some)[N], std::uint32_t mask) {
-    for (std::uint32_t k = 0; k < N; ++k) {
-      bool const counts = (mask >> k & 1) != 0;
-      cells_[k] = some[k].number;
-#if defined(__CUDA_ARCH__)
-      unsigned const with = __match_any_sync(__activemask(), counts ? cells_[k] : none);
-      with_[k] = counts ? with : 0;
-#else
-      with_[k] = counts ? 1 : 0;
-#endif
-    }
-  }
-
-  /// `counter(cell)` is the address of a cell's counter.
-  template <class Counter>
-  COLLIDE_HD_INLINE void add(Counter const& counter) {
-    for (std::uint32_t k = 0; k < N; ++k) {
-      std::uint32_t const n = count_of_bits(with_[k]), earlier = count_of_bits(with_[k] & lanes_before());
-      before_[k] = n != 0 && earlier == 0 ? fetch_add(counter(cells_[k]), n) : 0;
-    }
-  }
-
-  /// What the counter of cell `k` was before this thread's 1 came to it.
-  COLLIDE_HD_INLINE std::uint32_t before(std::uint32_t k) const {
-#if defined(__CUDA_ARCH__)
-    if (with_[k] == 0) return 0;
-    return __shfl_sync(with_[k], before_[k], __ffs(static_cast<int>(with_[k])) - 1) +
-           count_of_bits(with_[k] & lanes_before());
-#else
-    return before_[k];
-#endif
-  }
-
- private:
-  static constexpr std::uint32_t none = ~std::uint32_t{0};  ///< no cell has this number
-
-  static COLLIDE_HD_INLINE std::uint32_t count_of_bits(std::uint32_t bits) {
-#if defined(__CUDA_ARCH__)
-    return static_cast<std::uint32_t>(__popc(bits));
-#else
-    return bits;  // 0 or 1: a thread is alone
-#endif
-  }
-  static COLLIDE_HD_INLINE std::uint32_t lanes_before() {
-#if defined(__CUDA_ARCH__)
-    return (1u << threadIdx.x % 32) - 1;
-#else
-    return 0;
-#endif
-  }
-
-  std::uint32_t cells_[N], with_[N], before_[N];
-};
-
 /// Counts the entries of cells.
 struct count_entries {
   item_range* cells;
@@ -84,8 +25,8 @@ struct count_entries {
   /// Of the cells whose bit is set.
   template <int N>
   COLLIDE_HD_INLINE void operator()(cell_ref const (&some)[N], std::uint32_t mask, id) const {
-    counted_together<N> counters;
-    counters.match(some, mask);
+    aggregated_count<N> counters;
+    counters.match([&](std::uint32_t k) { return some[k].number; }, mask);
     counters.add([&](std::uint32_t cell) { return &cells[cell].count; });
   }
 };
@@ -99,8 +40,8 @@ struct fill_entries {
   /// First all counters are asked, then all entries written: so their answers come together.
   template <int N>
   COLLIDE_HD_INLINE void operator()(cell_ref const (&some)[N], std::uint32_t mask, id triangle) const {
-    counted_together<N> counters;
-    counters.match(some, mask);
+    aggregated_count<N> counters;
+    counters.match([&](std::uint32_t k) { return some[k].number; }, mask);
     counters.add([&](std::uint32_t cell) { return &cells[cell].end; });
     for (std::uint32_t k = 0; k < N; ++k) {
       std::uint32_t const slot = counters.before(k);
