@@ -1,17 +1,51 @@
-"""check.py code|links|examples|glossary: the README, the pages of docs/ and what they promise.
+"""check.py code|links|examples|glossary|english: the README, the pages below docs/ and what they promise.
 
 code      The first block of C++ in the README is examples/minimal.cpp, and every other block of C++ stands word for word in
-          the file that the comment before it names (`<!-- from: FILE -->`).
+          the file that the comment before it names (`<!-- from: FILE -->`). Pages that teach have no other C++.
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md is in the file, or in the folder, that it is said to be in; words are in order.
+english   Pages for users have none of the words of FOREIGN, and no line of text longer than LONGEST.
 """
 import pathlib
 import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted((ROOT / "docs").glob("*.md"))
+PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted((ROOT / "docs").rglob("*.md"))
+
+
+# Pages in which every piece of C++ is from a program that tests run.
+TAUGHT = [ROOT / "README.md", ROOT / "docs" / "guide.md", ROOT / "docs" / "simulation.md", *(ROOT / "docs" / "tutorials").glob("*.md")]
+
+# Words that readers of English do not use for what is meant, and what to write instead. Patterns, in any case.
+FOREIGN = {
+    r"verdicts?": "result",
+    r"(on|along) (its|their) ways?": "on its path, in flight",
+    r"the way of": "data flow, path",
+    r"anew": "again",
+    r"dear(er)?": "expensive",
+    r"sorted out": "culled, rejected",
+    r"lets? through": "accept",
+    r"(are|is|be|were) told": "given",
+    r"told apart": "distinguished",
+    r"hands? (it|them|each|all|every)\b.* to": "pass, report",
+    r"balls?": "sphere, particle",
+    r"wanted": "target",
+    r"promised?": "guarantee, target",
+    r"at hand": "available",
+    r"(are|is) at work": "run, are resident",
+    r"processors": "streaming multiprocessors, cores",
+    r"statical": "static",
+    r"spheres that (move|rest)": "moving spheres, static spheres",
+    r"brings? about": "cause",
+    r"the same holds": "likewise",
+    r"invented": "false positives",
+    r"us\b(?= (a|each|of|for|per|in|on) )|(?<=\d )us": "µs",
+    r"times the floor": "times the bandwidth bound",
+    r"some \d": "about",
+}
+LONGEST = 160
 
 
 def without_code(text):
@@ -30,6 +64,10 @@ def code():
                 yield f"{page}:{line}: not {source}"
             elif match[2] not in (ROOT / source).read_text():
                 yield f"{page}:{line}: does not stand in {source}"
+        if page in TAUGHT:
+            outside = re.sub(r"^```.*?^```", lambda m: "\n" * m[0].count("\n"), text, flags=re.M | re.S)
+            yield from (f"{page}:{line}: code that no test runs" for line, words in enumerate(outside.splitlines(), 1)
+                        if re.match(r"    \S.*[;{]$", words))
     if "```cpp" not in (ROOT / "README.md").read_text():
         yield "README.md shows no code"
 
@@ -54,9 +92,9 @@ def links():
 
 def examples():
     text = "".join(page.read_text() for page in PAGES)
-    for program in sorted((ROOT / "examples").glob("*.cpp")):
+    for program in sorted([*(ROOT / "examples").glob("*.cpp"), *(ROOT / "examples" / "tutorials").glob("*.cpp")]):
         if program.name not in text and f"`{program.stem}`" not in text:
-            yield f"no page mentions examples/{program.name}"
+            yield f"no page mentions {program.relative_to(ROOT)}"
     for source in sorted((ROOT / "examples").rglob("*.?pp")):
         if re.search(r"collide(::|/)detail", source.read_text()):
             yield f"{source}: uses what may change at any time"
@@ -76,7 +114,22 @@ def glossary():
             yield f"{page}: {word}: there is no {name} in {target}"
 
 
-checks = {"code": code, "links": links, "examples": examples, "glossary": glossary}
+def english():
+    """Of pages for users: not of the laboratory's, and not of what scripts have written."""
+    for page in PAGES:
+        if page.name == "CHANGELOG.md" or (ROOT / "docs" / "development") in page.parents:
+            continue
+        text = re.sub(r"<!-- table: .*?<!-- end -->|^```.*?^```|`[^`\n]*`", lambda m: "\n" * m[0].count("\n"), page.read_text(), flags=re.M | re.S)
+        for line, words in enumerate(text.splitlines(), 1):
+            for pattern, instead in FOREIGN.items():
+                found = re.search(rf"\b({pattern})\b", words, re.I)
+                if found:
+                    yield f"{page}:{line}: {found[0]!r}: write {instead}"
+            if len(words) > LONGEST and not words.startswith("|"):
+                yield f"{page}:{line}: {len(words)} characters in a line"
+
+
+checks = {"english": english, "code": code, "links": links, "examples": examples, "glossary": glossary}
 problems = list(checks[sys.argv[1]]())
 print("\n".join(problems) or "fine")
 sys.exit(bool(problems))
