@@ -43,7 +43,7 @@ FOREIGN = {
     r"invented": "false positives",
     r"us\b(?= (a|each|of|for|per|in|on) )|(?<=\d )us": "µs",
     r"times the floor": "times the bandwidth bound",
-    r"some \d": "about",
+    r"some \d[\d,.]*": "about",
 }
 LONGEST = 120
 
