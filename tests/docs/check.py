@@ -1,4 +1,4 @@
-"""check.py code|links|examples|glossary|english: the README, the pages below docs/ and what they promise.
+"""check.py code|links|examples|glossary|english|numbers: the README, the pages below docs/ and what they promise.
 
 code      The first block of C++ in the README is examples/minimal.cpp, and every other block of C++ stands word for word in
           the file that the comment before it names (`<!-- from: FILE -->`). Pages that teach have no other C++.
@@ -6,6 +6,7 @@ links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md is in the file, or in the folder, that it is said to be in; words are in order.
 english   Pages for users have none of the words of FOREIGN, and no line of text longer than LONGEST.
+numbers   Times and rates in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
 import re
@@ -17,6 +18,9 @@ PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"
 
 # Pages in which every piece of C++ is from a program that tests run.
 TAUGHT = [ROOT / "README.md", ROOT / "docs" / "guide.md", ROOT / "docs" / "simulation.md", *(ROOT / "docs" / "tutorials").glob("*.md")]
+
+# Pages in which no one writes measured numbers by hand.
+MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "simulation"))]
 
 # Words that readers of English do not use for what is meant, and what to write instead. Patterns, in any case.
 FOREIGN = {
@@ -131,7 +135,16 @@ def english():
                     yield f"{page}:{line}: {found[0]!r}: write {instead}"
 
 
-checks = {"english": english, "code": code, "links": links, "examples": examples, "glossary": glossary}
+def numbers():
+    for page in MEASURED:
+        blank = lambda match: "\n" * match[0].count("\n")
+        text = re.sub(r"<!-- (?:table|compile-cost|number).*?<!-- end[^>]*-->|^```.*?^```", blank, page.read_text(), flags=re.M | re.S)
+        for line, words in enumerate(text.splitlines(), 1):
+            for found in re.findall(r"\b\d[\d.,]* ?(?:ms|µs|us|ns|ps|GB/s|times as (?:long|fast))", words):
+                yield f"{page}:{line}: {found!r} is not of bench/report"
+
+
+checks = {"numbers": numbers, "english": english, "code": code, "links": links, "examples": examples, "glossary": glossary}
 problems = list(checks[sys.argv[1]]())
 print("\n".join(problems) or "fine")
 sys.exit(bool(problems))
