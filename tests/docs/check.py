@@ -119,9 +119,9 @@ def glossary():
 
 
 def english():
-    """Of pages for users: not of the laboratory's, and not of what scripts have written."""
+    """Of pages for users: not of the laboratory's, those of the reference, and what scripts have written."""
     for page in PAGES:
-        if page.name in ("CHANGELOG.md", "CONTRIBUTING.md") or (ROOT / "docs" / "development") in page.parents:
+        if page.name in ("CHANGELOG.md", "CONTRIBUTING.md") or page.parent.name in ("development", "api"):
             continue
         blank = lambda match: "\n" * match[0].count("\n")
         text = re.sub(r"<!-- table: .*?<!-- end -->|^```.*?^```|<!-- [^\n]*? -->", blank, page.read_text(), flags=re.M | re.S)
