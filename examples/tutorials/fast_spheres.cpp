@@ -25,7 +25,7 @@ std::vector<float> above_the_plate() {
   std::vector<float> centres;
   for (std::size_t i = 0; i < count; ++i)
     centres.insert(centres.end(),
-                   {0.0018f * static_cast<float>(i) - 0.9f, 0.1f, 0.5f + 0.001f * static_cast<float>(i)});
+                   {0.0018f * static_cast<float>(i) - 0.9f, 0.1f, 0.5005f + 0.001f * static_cast<float>(i)});
   return centres;
 }
 
