@@ -90,7 +90,7 @@ class bucket::index {
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     request_grids(space, options, spheres);
-    // entering the triangles pays where few spheres come again and again (docs/performance.md)
+    // entering the triangles pays where few spheres come again and again (docs/development/experiments.md)
     bool const pays = queries_ == 0 || spheres.size() >= mesh_.size() / 8;
     choose(space, options, pays && stage_ != stage::none && can_bin<Space>(options, spheres.size()));
   }

@@ -24,7 +24,8 @@ namespace collide {
 ///                   `karabassi` a step ends where a particle is, and it touches what it then overlaps: one that moves
 ///                   farther than its radius in a step may pass through. With `karabassi_swept` it stops at each impact
 ///                   on its way, and passes through nothing.
-/// \tparam Effect    what happens to a particle; see effect.hpp, and docs/effects.md for those of the library. They are
+/// \tparam Effect    what happens to a particle; see effect.hpp, and docs/simulation.md for those of the library. They
+/// are
 ///                   applied in the order of the list. An integrator may be in the list too (integrators.hpp).
 ///
 /// The state is in memory of the execution space, in columns: an array for each thing that is known of a particle.

@@ -1,17 +1,55 @@
-"""check.py code|links|examples|glossary: the README, the pages of docs/ and what they promise.
+"""check.py code|links|examples|glossary|english|numbers: the README, the pages below docs/ and what they promise.
 
 code      The first block of C++ in the README is examples/minimal.cpp, and every other block of C++ stands word for word in
-          the file that the comment before it names (`<!-- from: FILE -->`).
+          the file that the comment before it names (`<!-- from: FILE -->`). Pages that teach have no other C++.
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md is in the file, or in the folder, that it is said to be in; words are in order.
+english   Pages for users have none of the words of FOREIGN, and no line of text longer than LONGEST.
+numbers   Times and rates in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
 import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted((ROOT / "docs").glob("*.md"))
+PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted((ROOT / "docs").rglob("*.md"))
+
+
+# Pages in which every piece of C++ is from a program that tests run.
+TAUGHT = [ROOT / "README.md", ROOT / "docs" / "guide.md", ROOT / "docs" / "simulation.md", *(ROOT / "docs" / "tutorials").glob("*.md")]
+
+# Pages in which no one writes measured numbers by hand.
+MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "simulation"))]
+
+# Words that readers of English do not use for what is meant, and what to write instead. Patterns, in any case.
+FOREIGN = {
+    r"verdicts?": "result",
+    r"(on|along) (its|their) ways?": "on its path, in flight",
+    r"the way of": "data flow, path",
+    r"anew": "again",
+    r"dear(er)?": "expensive",
+    r"sorted out": "culled, rejected",
+    r"lets? through": "accept",
+    r"(are|is|be|were) told": "given",
+    r"told apart": "distinguished",
+    r"hands? (it|them|each|all|every)\b.* to": "pass, report",
+    r"balls?": "sphere, particle",
+    r"wanted": "target",
+    r"promised?": "guarantee, target",
+    r"at hand": "available",
+    r"(are|is) at work": "run, are resident",
+    r"processors": "streaming multiprocessors, cores",
+    r"statical": "static",
+    r"spheres that (move|rest)": "moving spheres, static spheres",
+    r"brings? about": "cause",
+    r"the same holds": "likewise",
+    r"invented": "false positives",
+    r"us\b(?= (a|each|of|for|per|in|on) )|(?<=\d )us": "µs",
+    r"times the floor": "times the bandwidth bound",
+    r"some \d[\d,.]*": "about",
+}
+LONGEST = 120
 
 
 def without_code(text):
@@ -30,6 +68,10 @@ def code():
                 yield f"{page}:{line}: not {source}"
             elif match[2] not in (ROOT / source).read_text():
                 yield f"{page}:{line}: does not stand in {source}"
+        if page in TAUGHT:
+            outside = re.sub(r"^```.*?^```", lambda m: "\n" * m[0].count("\n"), text, flags=re.M | re.S)
+            yield from (f"{page}:{line}: code that no test runs" for line, words in enumerate(outside.splitlines(), 1)
+                        if re.match(r"    \S.*[;{]$", words))
     if "```cpp" not in (ROOT / "README.md").read_text():
         yield "README.md shows no code"
 
@@ -54,9 +96,9 @@ def links():
 
 def examples():
     text = "".join(page.read_text() for page in PAGES)
-    for program in sorted((ROOT / "examples").glob("*.cpp")):
+    for program in sorted([*(ROOT / "examples").glob("*.cpp"), *(ROOT / "examples" / "tutorials").glob("*.cpp")]):
         if program.name not in text and f"`{program.stem}`" not in text:
-            yield f"no page mentions examples/{program.name}"
+            yield f"no page mentions {program.relative_to(ROOT)}"
     for source in sorted((ROOT / "examples").rglob("*.?pp")):
         if re.search(r"collide(::|/)detail", source.read_text()):
             yield f"{source}: uses what may change at any time"
@@ -76,7 +118,33 @@ def glossary():
             yield f"{page}: {word}: there is no {name} in {target}"
 
 
-checks = {"code": code, "links": links, "examples": examples, "glossary": glossary}
+def english():
+    """Of pages for users: not of the laboratory's, those of the reference, and what scripts have written."""
+    for page in PAGES:
+        if page.name in ("CHANGELOG.md", "CONTRIBUTING.md") or page.parent.name in ("development", "api"):
+            continue
+        blank = lambda match: "\n" * match[0].count("\n")
+        text = re.sub(r"<!-- table: .*?<!-- end -->|^```.*?^```|<!-- [^\n]*? -->", blank, page.read_text(), flags=re.M | re.S)
+        for line, words in enumerate(text.splitlines(), 1):
+            if len(words) > LONGEST and not words.startswith(("|", "![", "[![", "    ")):
+                yield f"{page}:{line}: {len(words)} characters in a line"
+            prose = "" if words.startswith("    ") else re.sub(r"`[^`]*`|\]\([^)]*\)", "", words)
+            for pattern, instead in FOREIGN.items():
+                found = re.search(rf"\b({pattern})\b", prose, re.I)
+                if found:
+                    yield f"{page}:{line}: {found[0]!r}: write {instead}"
+
+
+def numbers():
+    for page in MEASURED:
+        blank = lambda match: "\n" * match[0].count("\n")
+        text = re.sub(r"<!-- (?:table|compile-cost|number).*?<!-- end[^>]*-->|^```.*?^```", blank, page.read_text(), flags=re.M | re.S)
+        for line, words in enumerate(text.splitlines(), 1):
+            for found in re.findall(r"\b\d[\d.,]* ?(?:ms|µs|us|ns|ps|GB/s|times as (?:long|fast))", words):
+                yield f"{page}:{line}: {found!r} is not of bench/report"
+
+
+checks = {"numbers": numbers, "english": english, "code": code, "links": links, "examples": examples, "glossary": glossary}
 problems = list(checks[sys.argv[1]]())
 print("\n".join(problems) or "fine")
 sys.exit(bool(problems))

@@ -9,7 +9,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = ROOT / "include" / "collide"
-PAGE = ROOT / "docs" / "concepts.md"
+PAGE = ROOT / "docs" / "design.md"
 LONGEST = 350  # lines of a header
 TOO_LONG = set()  # headers still to be split; what is here must be too long
 
@@ -36,7 +36,7 @@ LAYERS = {
 
 
 def pictured_layers():
-    """The layers of the picture in docs/concepts.md, from the lowest to the highest."""
+    """The layers of the picture in docs/design.md, from the lowest to the highest."""
     picture = PAGE.read_text().split("## Layers", 1)[1].split("\n## ", 1)[0]
     return re.findall(r"^    (\w+(?: \w+)*)  ", picture, re.MULTILINE)[::-1]
 
@@ -121,7 +121,7 @@ def check():
     yield from problems(headers)
     yield from length_problems({header: (INCLUDE / header).read_text().count("\n") for header in headers})
     if pictured_layers() != list(LAYERS):
-        yield f"docs/concepts.md shows other layers: {', '.join(pictured_layers())}"
+        yield f"docs/design.md shows other layers: {', '.join(pictured_layers())}"
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 Every mutation takes a guard out of the library, or loosens it; a small program, compiled with that, must then find
 something wrong, or fail; and nothing with the library as it is. The rows that it judges are those of tests/data, those
 of hunted_*.csv, which were looked for because no others show the guards that they name, and cases next to contact: see
-make_rows.cpp. `table` checks, or writes, the lists in docs/numerics.md.
+make_rows.cpp. `table` checks, or writes, the lists in docs/development/testing.md.
 """
 import argparse
 import pathlib
@@ -15,7 +15,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PAGE = ROOT / "docs" / "numerics.md"
+PAGE = ROOT / "docs" / "development" / "testing.md"
 DETAIL = pathlib.Path("collide") / "detail"
 SKIPPED = 77
 

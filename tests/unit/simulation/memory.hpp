@@ -44,7 +44,7 @@ void check_room(MakeSpace make, std::pmr::memory_resource* upstream) {
   CHECK_THROWS_AS(simulation.reserve(0xffffffff), collide::error);
 }
 
-/// Columns take what effects.md says, and so do lists of neighbours.
+/// Columns take what docs/simulation.md says, and so do lists of neighbours.
 template <class MakeSpace>
 void check_bytes(MakeSpace make, std::pmr::memory_resource* upstream) {
   using detector = meets_mesh<std::decay_t<decltype(make(upstream))>>;

@@ -61,7 +61,7 @@ struct alignas(4 * sizeof(S)) triangle_aabb : aabb<S> {
   S padding;  ///< room for the rounding of the coarsest narrow phase, as far as it goes with the triangle
 
   /// How far from the box the centre of a ball that touches the triangle is at most, `padding` apart; the root of the
-  /// smallest normal number covers squares that underflow. See docs/numerics.md.
+  /// smallest normal number covers squares that underflow. See docs/development/numerics.md.
   static COLLIDE_HD_INLINE S padded_radius(S radius) {
     return radius * (1 + 16 * S(ieee_traits<float>::unit_roundoff)) + 2 * sqrt_rn(std::numeric_limits<S>::min());
   }

@@ -18,7 +18,7 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
 
   /// The squared distance within which a centre can reach the triangle with a sphere of radius `r`: rounded up so far
   /// that `distance_squared(c) <= squared_reach(r)` holds, in floating-point numbers, whenever |c - centre| <= radius +
-  /// r in real ones. Derivation in docs/numerics.md; NaN for an invalid triangle.
+  /// r in real ones. Derivation in docs/development/numerics.md; NaN for an invalid triangle.
   COLLIDE_HD_INLINE S squared_reach(S r) const {
     S const sum = radius + r;
     return sum * sum * slack;

@@ -4,7 +4,8 @@
 /// |c - b| <= r + s holds if and only if c.b + r s + (s^2 - b^2) / 2 >= (c^2 - r^2) / 2. Terms of one sphere alone
 /// are computed once; the rest is a scalar product in five dimensions. Coordinates are taken relative to a common
 /// origin next to the mesh. Where squares cancel, rounding shows: it is covered by a part of the squares themselves, so
-/// that a sphere far from the origin overlaps a bit too much, but never too little. Derivation in docs/numerics.md.
+/// that a sphere far from the origin overlaps a bit too much, but never too little. Derivation in
+/// docs/development/numerics.md.
 #pragma once
 
 #include <collide/detail/geometry/bounding_sphere.hpp>

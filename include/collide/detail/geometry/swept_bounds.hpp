@@ -6,7 +6,7 @@
 
 namespace collide::detail {
 
-/// A sphere that contains the moving sphere at all times of the step. Proof: docs/numerics.md.
+/// A sphere that contains the moving sphere at all times of the step. Proof: docs/development/numerics.md.
 template <class S>
 COLLIDE_HD_INLINE sphere<S> swept_bounding_sphere(moving_sphere<S> const& s) {
   vec3<S> const half = scaled(s.displacement, S(0.5));
@@ -17,7 +17,7 @@ COLLIDE_HD_INLINE sphere<S> swept_bounding_sphere(moving_sphere<S> const& s) {
 }
 
 /// A sphere inside the moving sphere at time 1/2; its radius is negative if rounding leaves none. Proof:
-/// docs/numerics.md.
+/// docs/development/numerics.md.
 template <class S>
 COLLIDE_HD_INLINE sphere<S> midpoint_sphere(moving_sphere<S> const& s) {
   S const slack = 8 * ieee_traits<S>::unit_roundoff * (max_norm(s.centre) + max_norm(s.displacement));

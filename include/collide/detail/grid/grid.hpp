@@ -23,7 +23,7 @@
 /// separate a centre from a box that contains it; nor from the part of a cell that it covers. The slack of 64 units in
 /// the last place of the largest coordinate covers the rounding of the box itself and a compiler that reassociates. The
 /// reach is dilated by 4 units of float too, the coarsest arithmetic of a narrow phase, so that none of its hits is
-/// lost here, right or wrong. See docs/numerics.md.
+/// lost here, right or wrong. See docs/development/numerics.md.
 #pragma once
 
 #include <cstdint>

@@ -8,7 +8,7 @@
 /// The rounding: a cut errs by at most 16 units in the last place of the farthest coordinate, in every coordinate of
 /// the points that it makes, and a slab's ends by at most as much. What has been cut wrongly by e is still all there
 /// within e, if the next slab is wider by e. Four cuts and the ends are 80 units; the reach is wider by 256. See
-/// docs/numerics.md.
+/// docs/development/numerics.md.
 #pragma once
 
 #include <cstdint>

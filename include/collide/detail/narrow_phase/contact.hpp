@@ -30,7 +30,8 @@ COLLIDE_HD_NOINLINE inline measured_contact measure_exact(triangle<double> const
   return {measured, normal, exact_triangle::feature_of(foot), exact_triangle::feature_index_of(foot)};
 }
 
-/// The smallest length that doubles give to within 2^-45, in a problem of at most size 4; see docs/numerics.md.
+/// The smallest length that doubles give to within 2^-45, in a problem of at most size 4; see
+/// docs/development/numerics.md.
 inline constexpr double well_conditioned_length = 0x1p-20;
 
 /// The contact of a finite triangle, as seen from a sphere's centre, in doubles; `foot` is the point of the triangle.

@@ -4,7 +4,7 @@
 /// Which foot is the closest point is decided in double, what is next to the boundary of two either way: the squared
 /// distances of the two differ by the square of a rounding error only. The distance of that foot is then computed by
 /// the formulas of predicates/exact.hpp. For what has too few digits all the same there is exact arithmetic; see
-/// docs/numerics.md.
+/// docs/development/numerics.md.
 #pragma once
 
 #include <limits>

@@ -2,8 +2,8 @@
 /// The floating-point filter of the exact predicate: decides a pair in float or double where an error bound allows it.
 ///
 /// The closest point computed here may be wrong, and so may the feature that it lies in: the filter decides only where
-/// its result holds nevertheless. Every line is proved in docs/numerics.md, for any order and any fusing of the sums,
-/// and with subnormal numbers or without. On the device each operation is spelled out, so that a pair has the
+/// its result holds nevertheless. Every line is proved in docs/development/numerics.md, for any order and any fusing of
+/// the sums, and with subnormal numbers or without. On the device each operation is spelled out, so that a pair has the
 /// same result in every kernel; see deferred_pairs.hpp.
 #pragma once
 

@@ -3,7 +3,7 @@
 ///
 /// As seen from the sphere the triangle sweeps out a prism, whose corners are the triangle's and the same less the
 /// displacement. A witness in the prism makes a hit, a direction in which all six corners are far makes a miss. Every
-/// line is proved in docs/numerics.md.
+/// line is proved in docs/development/numerics.md.
 #pragma once
 
 #include <collide/detail/geometry/closest_approach.hpp>

@@ -15,8 +15,8 @@
 ///
 ///     w_i > 0 for all three  and  det m <= 0
 ///
-/// where w_i is the sum of row i of the adjugate of m, and so m w = (det m, det m, det m). docs/numerics.md has the
-/// proof, and that nothing overflows.
+/// where w_i is the sum of row i of the adjugate of m, and so m w = (det m, det m, det m). docs/development/numerics.md
+/// has the proof, and that nothing overflows.
 #pragma once
 
 #include <collide/detail/numeric/exact_number.hpp>

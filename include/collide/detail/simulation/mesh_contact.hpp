@@ -24,7 +24,7 @@ COLLIDE_HD contact<S> relaxed_contact(triangle<S> const& t, sphere<S> const& s) 
 /// Whether a sphere touches a finite triangle, and the contact that `relaxed_contact` tells if so, where doubles
 /// suffice for both; `sure` says that they touch. Calls nothing. The foot that it finds is a point of the triangle, so
 /// a depth that is clear means a hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but
-/// not by much: docs/numerics.md.
+/// not by much: docs/development/numerics.md.
 template <class S>
 COLLIDE_HD_INLINE verdict relaxed_contact_fast(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
   constexpr double clear_depth = 0x1p-40, clear_gap = 0x1p-32;

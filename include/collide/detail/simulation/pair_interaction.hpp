@@ -73,7 +73,7 @@ struct interact_listed : pair_interaction<S, Effects> {
 
  private:
   /// f(place, sphere) for each on the list of a particle. While one is looked at, the next and the list's item behind
-  /// it are on their way (docs/performance.md).
+  /// it are on their way (docs/development/experiments.md).
   template <class F>
   COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, F const& f) const {
     auto const& places = this->order;

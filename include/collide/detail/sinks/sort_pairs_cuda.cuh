@@ -26,7 +26,7 @@ struct canonical_less {
   }
 };
 
-/// Up to so many pairs it is faster to merge (docs/performance.md).
+/// Up to so many pairs it is faster to merge (docs/development/experiments.md).
 inline constexpr std::size_t merge_sort_limit = std::size_t{1} << 18;
 
 /// Bits that ids below `n` take; at least one.
