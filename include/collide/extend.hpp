@@ -40,7 +40,9 @@ using pipeline_storage = detail::pipeline_storage<Block, CandidatesPerThread>;
 template <class S>
 class bounding_sphere {
  public:
+  /// A sphere that is not set: assign one before it is used.
   bounding_sphere() = default;
+  /// The sphere around `t`.
   COLLIDE_HD explicit bounding_sphere(triangle<S> const& t) : sphere_(detail::bounding_sphere_of(t)) {}
 
   /// True if the sphere can touch the triangle. Rounding never makes it false.
@@ -54,7 +56,9 @@ class bounding_sphere {
 template <class S>
 class mesh_bounds_ref {
  public:
+  /// Bounds that no sphere reaches.
   mesh_bounds_ref() = default;
+  /// Bounds whose numbers are at `summary`, in memory of the space.
   explicit mesh_bounds_ref(detail::mesh_statistics<S> const* summary) : summary_{summary} {}
 
   /// True if the sphere can touch the box around the mesh. Rounding never makes it false.
@@ -86,6 +90,7 @@ class mesh_bounds {
     space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
+  /// The bounds for kernels; valid as long as this object, until the next build.
   mesh_bounds_ref<S> ref() const { return mesh_bounds_ref<S>(summary_.data()); }
 
  private:

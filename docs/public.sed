@@ -1,0 +1,9 @@
+# What Doxygen does not see of a header of include/collide/: what is no part of the API. Lines keep their numbers.
+# namespace detail may change at any time
+/^namespace (collide::)?detail \{/,/^\}.*namespace (collide::)?detail/s/.*//
+# members that the library calls: concepts.hpp, effect.hpp and docs/extending.md say what each is for, in all classes
+s/^ +(COLLIDE_HD(_INLINE)? )?(void|bool) (run|is_inactive|accelerate|on_mesh_contact|after_mesh_contact|on_pair_contact|try_wake|begin_step|end_step|check_parameters)\(/\/** \\private *\/ &/
+s/^ +using (value|block|reads|writes|optional_writes|runs_after) = /\/** \\private *\/ &/
+s/^ +static constexpr (S initial|std::uint8_t initial|bool saves_parameters) = /\/** \\private *\/ &/
+s/^ +class index/\/** \\private *\/ &/
+s/^class bucket::index/\/** \\private *\/ &/
