@@ -7,3 +7,5 @@ s/^ +using (value|block|reads|writes|optional_writes|runs_after) = /\/** \\priva
 s/^ +static constexpr (S initial|std::uint8_t initial|bool saves_parameters) = /\/** \\private *\/ &/
 s/^ +class index/\/** \\private *\/ &/
 s/^class bucket::index/\/** \\private *\/ &/
+# overloads that end with a sentence of static_assert
+/^  \/\/ .*(ends? here|arguments of another kind)/,/^$/s/.*//

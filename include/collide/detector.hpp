@@ -165,7 +165,6 @@ class detector {
   double cell_width() const;
 
   // What makes no sense ends here, with a sentence instead of a list of candidates: another scalar type,
-  /// \cond
   template <class S, class = std::enable_if_t<!std::is_same<S, Scalar>::value>>
   void build(mesh_view<S>, double = 0) {
     reject<S>();
@@ -198,7 +197,6 @@ class detector {
                   "collide: the first argument of query is spheres, such as spheres_xyz gives, and the second a sink; "
                   "a mesh goes to build");
   }
-  /// \endcond
 
   /// The space, to wait for it, or to put work of your own on its stream.
   ExecutionSpace& space() { return space_; }
