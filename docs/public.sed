@@ -1,6 +1,9 @@
 # What Doxygen does not see of a header of include/collide/: what is no part of the API. Lines keep their numbers.
 # namespace detail may change at any time
-/^namespace (collide::)?detail \{/,/^\}.*namespace (collide::)?detail/s/.*//
+/^namespace detail \{/,/^\}.*namespace detail/s/.*//
+# of the bases in detail/, and what stands with them, what no user sees
+/^ protected:/,/^\};/{/^\};/!s/.*//}
+/^\/\/\/ Kernel body/,/^\};/s/.*//
 # members that the library calls: concepts.hpp, effect.hpp and docs/extending.md say what each is for, in all classes
 s/^ +(COLLIDE_HD(_INLINE)? )?(void|bool) (run|is_inactive|accelerate|on_mesh_contact|after_mesh_contact|on_pair_contact|try_wake|begin_step|end_step|check_parameters)\(/\/** \\private *\/ &/
 s/^ +using (value|block|reads|writes|optional_writes|runs_after) = /\/** \\private *\/ &/
