@@ -1,7 +1,7 @@
 """prepare.py XML OUT: puts together in the folder OUT what Sphinx makes the site of. XML is the folder of Doxygen's result.
 
 The pages of docs/ are those that one reads in the repository. Here their links are changed: one to a source file leads to a
-page that shows it, one to a folder to a page that lists it. The pages are arranged as NAV says.
+page that shows it, one to a folder to a page that lists it, one to data to a download. The pages are arranged as NAV says.
 """
 import os
 import pathlib
@@ -23,29 +23,35 @@ NAV = {
 }
 # Pages that stand elsewhere in the repository.
 ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHANGELOG.md", "index": ROOT / "README.md"}
-CODE = {".hpp": "cpp", ".cuh": "cuda", ".cpp": "cpp", ".cu": "cuda", ".py": "python", ".cmake": "cmake", ".sh": "bash",
-        ".md": "markdown", ".json": "json", ".txt": "text", ".csv": "text"}
-LARGEST = 200_000  # bytes of a file that is shown; a larger one is a download
+LISTS = {DOCS / "README.md", DOCS / "index.md"}  # the navigation takes their place
+CODE = {".hpp": "cpp", ".cuh": "cuda", ".cpp": "cpp", ".cu": "cuda", ".py": "python", ".cmake": "cmake", ".md": "markdown"}
+
+
+def language(path):
+    """Of a file that is shown; None of data, which the site gives as a download."""
+    if path.name == "CMakeLists.txt":
+        return "cmake"
+    if not path.suffix and path.read_bytes().startswith(b"#!"):
+        return "python" if b"python" in path.read_bytes().split(b"\n")[0] else "bash"
+    return CODE.get(path.suffix)
 
 
 def pages():
     """The name of each page, and its file."""
-    found = {path.relative_to(DOCS).with_suffix("").as_posix(): path for path in sorted(DOCS.rglob("*.md"))
-             if path != DOCS / "README.md"}
-    return {**ELSEWHERE, **found}
+    found = {path.relative_to(DOCS).with_suffix("").as_posix(): path for path in sorted(DOCS.rglob("*.md"))}
+    return {name: path for name, path in {**found, **ELSEWHERE}.items() if path not in LISTS}
 
 
 class Site:
     def __init__(self, out):
-        self.out, self.pages, self.shown = out, pages(), set()
+        self.out, self.pages, self.shown, self.broken = out, pages(), set(), []
         self.names = {path: name for name, path in self.pages.items()}
-        self.names[ROOT / "README.md"] = self.names[DOCS / "README.md"] = "index"
+        self.names.update({path: "index" for path in LISTS})
 
     def write(self, name, text):
         path = self.out / f"{name}.md"
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not path.exists() or path.read_text() != text:  # Sphinx reads again what is newer
-            path.write_text(text)
+        path.write_text(text)
 
     def link(self, target, page, name):
         """Where a link of a page leads on the site."""
@@ -57,7 +63,10 @@ class Site:
             there = f"{self.names[path]}.md"
         elif path.is_relative_to(DOCS / "images"):
             there = path.relative_to(DOCS).as_posix()
-        elif path.is_dir() or path.stat().st_size <= LARGEST:
+        elif not path.exists():
+            self.broken.append(f"{page.relative_to(ROOT)}: {target} does not exist")
+            return target
+        elif path.is_dir() or language(path):
             there = f"{self.show(path)}.md"
         else:
             there = os.path.relpath(path, self.out)
@@ -76,14 +85,15 @@ class Site:
             lines = (f"- [{p.name}]({self.link(p.name, path / 'x', name)})\n" for p in inside)
             self.write(name, head + "".join(lines))
         else:
-            language = "cmake" if path.name == "CMakeLists.txt" else CODE.get(path.suffix, "text")
-            self.write(name, f"{head}``````{{code-block}} {language}\n:force:\n{path.read_text()}\n``````\n")
+            self.write(name, f"{head}``````{{code-block}} {language(path)}\n:force:\n{path.read_text()}\n``````\n")
         return name
 
     def page(self, name, path):
         def outside_code(text):
+            text = re.sub(r"<!--.*?-->", "", text, flags=re.S)  # one at the beginning of a line would end a paragraph
             return re.sub(r"(\]\()([^)\s]+)(\))", lambda m: m[1] + self.link(m[2], path, name) + m[3], text)
-        parts = re.split(r"(^```.*?^```$|`[^`\n]+`)", path.read_text(), flags=re.M | re.S)
+        text = path.read_text().replace("```mermaid", "```text")  # which Sphinx does not draw
+        parts = re.split(r"(^```.*?^```$|`[^`\n]+`)", text, flags=re.M | re.S)
         text = "".join(part if i % 2 else outside_code(part) for i, part in enumerate(parts))
         if name == "index":
             text += self.navigation()
@@ -116,6 +126,8 @@ class Site:
         for folder in (DOCS / "images", DOCS / "site" / "_static"):
             shutil.copytree(folder, self.out / folder.name, dirs_exist_ok=True)
         shutil.copy(DOCS / "site" / "conf.py", self.out)
+        if self.broken:
+            sys.exit("\n".join(self.broken))
 
 
 if __name__ == "__main__":
