@@ -69,7 +69,9 @@ class Site:
         elif path.is_dir() or language(path):
             there = f"{self.show(path)}.md"
         else:
-            there = os.path.relpath(path, self.out)
+            there = f"data/{path.relative_to(ROOT).as_posix()}"
+            (self.out / there).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(path, self.out / there)
         return os.path.relpath(there, os.path.dirname(name) or ".") + hash_ + anchor
 
     def show(self, path):
