@@ -12,7 +12,7 @@ namespace collide {
 /// spheres alone, by the measured costs of the space (docs/performance.md): the same calls always go the same way, and
 /// the pairs are the same either way. The grid is made by `build` with a radius, and else by the first query for which
 /// it pays, counting what the queries before it would have saved. Complexity and memory are those of the chosen one. A
-/// simulation names `bucket` or `all_pairs` itself. docs/performance.md compares them.
+/// simulation names `bucket` or `all_pairs` itself.
 struct automatic {
   bucket grid;  ///< options of `bucket`, for where that is chosen
 

@@ -105,6 +105,7 @@ class mesh_bounds {
 ///     for_each_candidate(sphere<S>, F f)` that calls f(triangle) for all that the sphere could touch, each once. It
 ///     runs where the space is, so it is `COLLIDE_HD`. For a sphere that moves it is called with a sphere around all of
 ///     its motion, unless it takes a `moving_sphere<S>` too.
+///
 /// A query takes O(spheres * enumeration); in spaces with threads that work together an enumeration is made for every 8
 /// candidates of a sphere, in simulations for every candidate.
 template <class Policy>
