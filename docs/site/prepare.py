@@ -16,10 +16,12 @@ DOCS = ROOT / "docs"
 
 # The navigation: parts, and their pages in this order. `*` is all pages of a folder. The last part has the rest too.
 NAV = {
-    "Use": ["install", "guide", "choosing", "tutorials/*", "programs", "gallery"],
-    "Simulations": ["simulation", "effects"],
+    "Use": ["install", "guide", "choosing", "programs", "gallery"],
+    "Tutorials": ["tutorials/*"],
+    "Simulations": ["simulation", "effects", "ranks"],
     "Reference": ["api/index", "accuracy", "performance", "glossary"],
-    "Inside": ["design", "extending", "contributing", "development/*", "changelog"],
+    "Inside": ["design", "extending", "contributing", "changelog"],
+    "Development": ["development/*"],
 }
 # Pages that stand elsewhere in the repository.
 ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHANGELOG.md", "index": ROOT / "README.md"}
@@ -110,7 +112,8 @@ class Site:
             if caption == list(NAV)[-1]:
                 names += sorted(left)
             lines = "".join(f"{n}\n" for n in names)
-            text += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n{lines}```\n"
+            if names:
+                text += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n{lines}```\n"
         return text
 
     def reference(self):
