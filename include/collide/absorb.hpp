@@ -26,7 +26,8 @@ struct absorbing_box {
   using reads = columns<position>;
   using writes = columns<alive>;
 
-  double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
+  double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; not above `upper`
+  double upper[3] = {0, 0, 0};  ///< the corner of the largest coordinates
 
   void check_parameters() const {
     detail::check_parameter(lower[0] <= upper[0] && lower[1] <= upper[1] && lower[2] <= upper[2],

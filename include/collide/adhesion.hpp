@@ -15,8 +15,8 @@ struct adhesion {
   using writes = columns<position, velocity, adhered>;
   using runs_after = effects<bounce>;
 
-  double max_acceleration = 20;
-  double capture_speed = std::numeric_limits<double>::infinity();
+  double max_acceleration = 20;  ///< length per time squared, not negative: what pulls harder tears the particle off
+  double capture_speed = std::numeric_limits<double>::infinity();  ///< length per time, not negative
 
   void check_parameters() const {
     detail::check_parameter(max_acceleration >= 0 && capture_speed >= 0,

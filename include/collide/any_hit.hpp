@@ -14,17 +14,20 @@ class any_hit : public detail::kept_in_space<std::uint8_t> {
  public:
   /// The flags are kept in memory of the space.
   any_hit() = default;
-  /// The flags are written to the caller's memory (of the space), one byte per sphere.
+  /// The flags are written to the caller's memory (of the space), one byte per sphere: 0 or 1, for all spheres of the
+  /// query. It must have room for them, and stay valid as long as this object is used.
   explicit any_hit(std::uint8_t* flags) : external_{flags} {}
 
-  /// The flags, in memory of the space.
+  /// The flags, in memory of the space: `size()` bytes, complete when the work on the stream is done. Valid until the
+  /// next query. Null before the first.
   std::uint8_t const* data() const { return flags_; }
   /// Number of spheres of the last query.
   std::size_t size() const { return size_; }
   /// A copy of the flags on the host; waits for them.
   std::vector<std::uint8_t> to_host() const { return download_(flags_, size_); }
 
-  /// Makes room for queries of up to so many spheres, whatever they touch: they then allocate nothing.
+  /// Makes room in memory of `space` for queries of up to so many spheres, whatever they touch: they then allocate
+  /// nothing. Number of pairs: of no account.
   template <class Space>
   void reserve(Space const& space, std::size_t spheres, std::size_t /*pairs*/ = 0) {
     if (external_ == nullptr) own_.reserve(space.resource(), spheres);

@@ -17,7 +17,7 @@ namespace collide {
 struct bounce {
   using writes = columns<position, velocity>;
 
-  double restitution = 0.5;
+  double restitution = 0.5;  ///< speed after a bounce over speed before it, 0 to 1
 
   void check_parameters() const {
     detail::check_parameter(restitution >= 0 && restitution <= 1, "bounce: restitution is from 0 to 1");

@@ -14,9 +14,10 @@ namespace collide {
 struct box_walls {
   using writes = columns<position, velocity>;
 
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  double lower[3] = {-none, -none, -none}, upper[3] = {none, none, none};
-  double restitution = 0.5;
+  static constexpr double none = std::numeric_limits<double>::infinity();  ///< a bound that is no wall
+  double lower[3] = {-none, -none, -none};  ///< the walls at the smallest coordinates; none is above that of `upper`
+  double upper[3] = {none, none, none};     ///< the walls at the largest coordinates
+  double restitution = 0.5;                 ///< speed after a bounce over speed before it, 0 to 1
 
   void check_parameters() const {
     for (int k = 0; k < 3; ++k)
@@ -46,7 +47,8 @@ struct box_walls {
 struct periodic_box {
   using writes = columns<position>;
 
-  double lower[3] = {0, 0, 0}, upper[3] = {1, 1, 1};
+  double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; each is below that of `upper`
+  double upper[3] = {1, 1, 1};  ///< the corner of the largest coordinates
 
   void check_parameters() const {
     for (int k = 0; k < 3; ++k)

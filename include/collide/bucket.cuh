@@ -34,12 +34,12 @@ namespace collide {
 /// O(triangles + spheres) for a query, 8 scalars per triangle, 4 bytes per cell, and about 12 scalars for each sphere
 /// in a cell with triangles, 19 if it moves; no entries.
 struct bucket {
-  /// Width of the cells; 0 lets the library choose. The study's was 4 R. They are wider where triangles would meet too
-  /// many of them.
+  /// Width of the cells, in the units of the coordinates; 0 lets the library choose, which is nearly always right. The
+  /// study's was 4 R. They are wider where triangles would meet too many of them.
   double cell_width = 0;
 
-  /// Bytes that the grids may take at most; 0 is no limit. Where the budget does not suffice for a grid, the spheres
-  /// are tested with every triangle: slower, with the same result.
+  /// Bytes of the space's memory that the grids may take at most; 0 is no limit. The results of sinks are not counted.
+  /// Where it does not suffice for a grid, spheres are tested with every triangle: slower, with the same result.
   std::size_t memory_budget = 0;
 
   template <class S>

@@ -31,8 +31,9 @@ struct distance_of_contact {
 }  // namespace detail
 
 /// The colliding triangle closest to each sphere's centre; of equally close ones that with the smallest id. Distances
-/// are those of `contact::distance`. `data()`, `size()`, `total()` and `to_host()` are those of
-/// `detail::per_sphere_min`.
+/// are those of `contact::distance`. `query` waits once, for the number of pairs. `S` is the scalar of the detector.
+/// Memory: an entry for each sphere, and a pair and a number for each colliding pair. For spheres at rest; of those
+/// that move, `earliest` finds the first triangle.
 template <class S = float>
 class closest : public detail::per_sphere_min<nearest<S>, S, detail::distance_of_contact> {};
 

@@ -20,10 +20,10 @@ namespace collide {
 /// A list of columns.
 template <class... Column>
 struct columns {
-  static constexpr std::size_t size = sizeof...(Column);
+  static constexpr std::size_t size = sizeof...(Column);  ///< how many
 };
 
-/// The centre.
+/// The centre, in the units of the scene.
 struct position {
   template <class S>
   using value = vec3<S>;
@@ -35,7 +35,7 @@ struct velocity {
   using value = vec3<S>;
 };
 
-/// The radius, where each particle has its own; see `polydisperse`.
+/// The radius, in the units of the scene, where each particle has its own; see `polydisperse`.
 struct radius {
   template <class S>
   using value = S;

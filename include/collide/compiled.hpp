@@ -19,6 +19,7 @@
   COLLIDE_DETECTOR(PREFIX, BROAD_PHASE, karabassi<double_precision>, SPACE, SCALAR) \
   COLLIDE_DETECTOR(PREFIX, BROAD_PHASE, karabassi_swept<exact>, SPACE, SCALAR)
 
+/// Declares the detectors of a broad phase in a space as compiled elsewhere, in namespace collide.
 #define COLLIDE_COMPILED_ELSEWHERE(BROAD_PHASE, SPACE)          \
   COLLIDE_DETECTORS(extern template, BROAD_PHASE, SPACE, float) \
   COLLIDE_DETECTORS(extern template, BROAD_PHASE, SPACE, double)

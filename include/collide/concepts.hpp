@@ -7,10 +7,11 @@
 ///   - `std::uint64_t allocate(std::uint64_t n) const`: called once per batch of n hits; returns the slot of the first;
 ///   - `void store(std::uint64_t slot, Hit const& hit) const`: called once per hit (see hit.hpp);
 ///   - `void end_pass() const`, if it wants to: called once per pass, when all hits are stored.
+///
 /// `query.mesh` and `query.spheres` are the views, `Query::narrow_phase` and `Query::scalar` are types.
 ///
-/// A sink may have a member `template <class Space> void reserve(Space const& space, std::size_t spheres, std::size_t
-/// pairs)`, which takes the memory that such a query needs, for `detector::reserve`.
+/// A sink may have a member, for `detector::reserve`, which takes the memory that such a query needs:
+/// `template <class Space> void reserve(Space const& space, std::size_t spheres, std::size_t pairs)`.
 #pragma once
 
 #include <cstddef>

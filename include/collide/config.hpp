@@ -29,6 +29,7 @@
 /// registers.
 #define COLLIDE_HD_RARE COLLIDE_HD_INLINE
 #else
+/// Marks a function that is called rarely.
 #define COLLIDE_HD_RARE COLLIDE_HD_NOINLINE inline
 #endif
 
@@ -36,9 +37,13 @@
 /// Before a loop that the device does not unroll.
 #define COLLIDE_NO_UNROLL _Pragma("unroll 1")
 #else
+/// Before a loop that the device does not unroll.
 #define COLLIDE_NO_UNROLL
 #endif
 
+/// The major version.
 #define COLLIDE_VERSION_MAJOR 0
+/// The minor version. Before 1.0.0 a new one may change or remove public names.
 #define COLLIDE_VERSION_MINOR 1
+/// The patch version.
 #define COLLIDE_VERSION_PATCH 0

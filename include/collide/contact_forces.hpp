@@ -12,13 +12,13 @@ struct spin;
 struct adhesion;
 struct sphere_contact;
 
-/// Force of the mesh on a particle; see `mesh_forces`.
+/// Force of the mesh on a particle, in mass times length per time squared; see `mesh_forces`.
 struct mesh_force {
   template <class S>
   using value = vec3<S>;
 };
 
-/// Force of other particles on a particle; see `pair_forces`.
+/// Force of other particles on a particle, in mass times length per time squared; see `pair_forces`.
 struct pair_force {
   template <class S>
   using value = vec3<S>;
@@ -44,7 +44,7 @@ struct mesh_forces {
   using writes = columns<mesh_force>;
   using runs_after = effects<bounce, friction, spin, adhesion>;
 
-  double density = 1;  ///< mass per volume
+  double density = 1;  ///< mass per volume: a particle has the mass of a solid sphere
 
   template <class Space, class State, class S>
   void begin_step(Space& space, State const& state, S) const {

@@ -9,10 +9,10 @@ namespace collide {
 /// Counts the colliding pairs, in 64 bits. `query` waits until the number is known.
 class count {
  public:
-  /// How many pairs collide.
+  /// How many pairs collide; 0 before the first query.
   std::uint64_t total() const { return total_; }
 
-  /// Makes room for queries of any size: they then allocate nothing.
+  /// Makes room in memory of `space` for queries of any size: they then allocate nothing.
   template <class Space>
   void reserve(Space const& space, std::size_t /*spheres*/, std::size_t /*pairs*/) {
     total_of_.reserve(space);

@@ -40,8 +40,8 @@ struct scatter_triangles {
 
 /// The arrays of `csr`, on the host.
 struct csr_arrays {
-  std::vector<std::uint64_t> offsets;
-  std::vector<id> triangles;
+  std::vector<std::uint64_t> offsets;  ///< one more than there are spheres
+  std::vector<id> triangles;           ///< row after row
 };
 
 /// All colliding pairs in compressed sparse rows (CSR), a row for each sphere: the triangles of sphere i are
@@ -70,14 +70,14 @@ class csr : public detail::kept_in_space<id> {
   /// Where the row of each sphere begins, and behind the last row the number of pairs: `rows() + 1` numbers, in memory
   /// of the space. Null before the first query.
   std::uint64_t const* offsets() const { return offsets_; }
-  /// The stored triangles, row after row, in memory of the space.
+  /// The stored triangles, row after row, `size()` of them, in memory of the space. Valid until the next query.
   id const* triangles() const { return triangles_; }
   /// A copy of both arrays on the host. Waits.
   csr_arrays to_host() const {
     return {download_offsets_(offsets_, offsets_ == nullptr ? 0 : rows_ + 1), download_(triangles_, size_)};
   }
 
-  /// Makes room for queries of up to so many spheres and pairs: they then allocate nothing.
+  /// Makes room in memory of `space` for queries of up to so many spheres and pairs: they then allocate nothing.
   template <class Space>
   void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
     collected_.reserve(space, spheres, pairs);

@@ -18,45 +18,56 @@
 
 namespace collide {
 
-/// Execution space: an NVIDIA GPU, each thread on its own. Views point to device memory; work is put on a stream.
+/// Execution space: an NVIDIA GPU, each thread on its own. Views point to device memory; work is put on a stream, and
+/// calls do not wait for it unless they say so. Simpler than `cuda_shared`, which in most scenes is the faster one; the
+/// results are the same. A small value that is copied into detectors. For the device that is current when it is made.
 class cuda : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
+  /// The name of the space, for messages.
   static constexpr char const* name() { return "cuda"; }
 
   template <class Body>
   using block = detail::serial_block<Body::items, 0>;
 
+  /// Puts a kernel on the stream that runs `body` once for each of `blocks` blocks. Throws `cuda_error`.
   template <class Body>
   void launch(std::size_t blocks, Body const& body) const {
     if (blocks == 0) return;
     launch_kernel("launch of run_threads", detail::run_threads<block<Body>, Body>, grid_of(blocks), blocks, body);
   }
 
+  /// How many blocks keep the device busy.
   std::size_t saturating_blocks() const { return static_cast<std::size_t>(sm_count_) * 2048; }
 
+  /// How many blocks of a body can be at work at a time; here that does not matter.
   template <class Body>
   std::size_t max_resident_blocks() const {
     return std::numeric_limits<std::size_t>::max();
   }
 };
 
-/// Measured on an H100.
+/// By what `automatic` chooses in `cuda`: measured on an H100.
 template <>
 struct broad_phase_costs<cuda> {
+  /// In nanoseconds; only the ratios count.
   static constexpr broad_phase_cost_model value{0, 30, 0.08, 0.2, 30000};
 };
 
 /// Execution space: an NVIDIA GPU, the threads of a block working together through shared memory. Views point to device
-/// memory; work is put on a stream.
+/// memory; work is put on a stream, and calls do not wait for it unless they say so. The space to begin with on a GPU.
+/// A small value that is copied into detectors. For the device that is current when it is made.
 class cuda_shared : public detail::cuda_space {
  public:
   using cuda_space::cuda_space;
+  /// The name of the space, for messages.
   static constexpr char const* name() { return "cuda_shared"; }
 
   template <class Body>
   using block = detail::cuda_block<Body::items>;
 
+  /// Puts a kernel on the stream that runs `body` once for each of `blocks` blocks. Throws `cuda_error`, and `error` if
+  /// there are 2^31 blocks or more.
   template <class Body>
   void launch(std::size_t blocks, Body const& body) const {
     if (blocks == 0) return;
@@ -66,6 +77,7 @@ class cuda_shared : public detail::cuda_space {
     launch_kernel("launch of run_blocks", detail::run_blocks<block<Body>, Body>, static_cast<unsigned>(blocks), body);
   }
 
+  /// How many blocks keep the device busy.
   std::size_t saturating_blocks() const { return static_cast<std::size_t>(sm_count_) * 8; }
 
   /// How many blocks of a body are at work at a time.

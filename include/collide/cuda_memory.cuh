@@ -15,21 +15,25 @@
 
 namespace collide {
 
-/// A CUDA call that failed. `what()` names the call, the file and the line; `code()` is CUDA's error.
+/// A CUDA call that failed. `what()` names the call, the file and the line; `code()` is CUDA's error. An error that a
+/// kernel left behind is reported by a later call.
 class cuda_error : public error {
  public:
+  /// The error `code` of the call whose text is `call`, in line `line` of `file`.
   cuda_error(cudaError_t code, char const* call, char const* file, int line)
       : error(std::string("collide: ") + call + " failed: " + cudaGetErrorName(code) + " (" + cudaGetErrorString(code) +
               ") at " + file + ":" + std::to_string(line)),
         code_{code} {}
 
+  /// CUDA's error.
   cudaError_t code() const { return code_; }
 
  private:
   cudaError_t code_;
 };
 
-/// Throws `cuda_error` unless `code` is cudaSuccess. `call` is the text of the call.
+/// Throws `cuda_error` unless `code` is cudaSuccess. `call` is the text of the call; `file` and `line` are those of the
+/// caller.
 inline void cuda_check(cudaError_t code, char const* call, char const* file = __builtin_FILE(),
                        int line = __builtin_LINE()) {
   if (code == cudaSuccess) return;
@@ -69,9 +73,11 @@ class cuda_memory final : public std::pmr::memory_resource {
   bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
 };
 
-/// Device memory by cudaMallocAsync and cudaFreeAsync, in the order of a stream; never waits.
+/// Device memory by cudaMallocAsync and cudaFreeAsync, in the order of a stream; never waits. For spaces of that
+/// stream: work on another one must wait before it uses the memory.
 class cuda_async_memory final : public std::pmr::memory_resource {
  public:
+  /// Memory in the order of `stream`, which must outlive this object and all that has memory of it.
   explicit cuda_async_memory(cudaStream_t stream) : stream_{stream} {}
 
  private:

@@ -28,16 +28,23 @@ namespace collide {
 
 /// Finds all colliding (sphere, triangle) pairs of a scene.
 ///
-/// \tparam BroadPhase      which triangles a sphere could touch: `bucket` (bucket.cuh) or `all_pairs` (all_pairs.cuh)
-/// \tparam NarrowPhase     whether a sphere touches a triangle: `karabassi<Precision>`
+/// \tparam BroadPhase      which triangles a sphere could touch: `bucket` (bucket.cuh), `all_pairs` (all_pairs.cuh) or
+///                         `automatic` (automatic.cuh)
+/// \tparam NarrowPhase     whether a sphere touches a triangle: `karabassi<Precision>`, or `karabassi_swept<Precision>`
+///                         for spheres that move
 /// \tparam ExecutionSpace  where and how it runs: `host`, `cuda`, `cuda_shared`
 /// \tparam Scalar          type of the coordinates: float or double; nothing is ever narrowed silently
 ///
 /// Memory is taken from the space's resource and kept: once everything has run with the same sizes nothing is allocated
 /// (on the host that takes two queries, as the second may go another way; see docs/design.md). `reserve` takes it
 /// ahead, so that nothing is allocated as hits grow.
-/// In the CUDA spaces work is put on the space's stream and the host waits only to read a size back (see each sink).
-/// One detector is for one thread at a time. Everything thrown derives from `error`, except what the memory resource
+/// A detector can be moved, but not copied.
+///
+/// In the CUDA spaces work is put on the space's stream, and the host waits only to read a size back: each sink says
+/// when. What a call reads must stay valid and unchanged until that work is done; on the host, until the call returns.
+///
+/// One detector is for one thread at a time; several detectors may work at once, each with a stream of its own.
+/// Everything thrown derives from `error`, except what the memory resource, or on the host the function of a `visit`,
 /// throws.
 template <class BroadPhase, class NarrowPhase = karabassi<>, class ExecutionSpace = host, class Scalar = float>
 class detector {
@@ -57,29 +64,52 @@ class detector {
   static_assert(detail::check_broad_phase<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>());
 
  public:
-  using broad_phase = BroadPhase;
-  using narrow_phase = NarrowPhase;
-  using execution_space = ExecutionSpace;
-  using scalar = Scalar;
+  using broad_phase = BroadPhase;          ///< the first parameter
+  using narrow_phase = NarrowPhase;        ///< the second parameter
+  using execution_space = ExecutionSpace;  ///< the third parameter
+  using scalar = Scalar;                   ///< the fourth parameter: the type of the coordinates
   /// `sphere_view`, or `moving_sphere_view` if the narrow phase judges spheres that move.
   using spheres_type = detail::sphere_view_for<NarrowPhase, Scalar>;
 
-  /// Throws what making the space throws: `cuda_error` if a CUDA space finds no usable device.
+  /// A detector without a mesh. It keeps a copy of the space and of the options, and allocates nothing; the stream and
+  /// the memory resource of the space must outlive it.
+  ///
+  /// \param space    where it runs; a CUDA space is for the device that is current when the space is made
+  /// \param options  of the broad phase, such as the width of the cells of `bucket`
+  /// \throws cuda_error  if a CUDA space finds no usable device (thrown where the space is made)
   explicit detector(ExecutionSpace space = ExecutionSpace(), BroadPhase options = BroadPhase())
       : space_(std::move(space)), options_(std::move(options)) {}
 
-  /// Prepares what depends on the mesh only. Call it before the first query, and again when the mesh has moved. The
-  /// mesh's memory must stay as it is until the last query. O(triangles).
+  /// Prepares what depends on the mesh only. Call it before the first query, and again when the mesh has moved.
+  ///
+  /// \param mesh  triangles in memory of the space, which are not copied: it must stay valid and unchanged until the
+  ///              work of the last query is done. A mesh without triangles is one that nothing touches.
+  /// \throws error  if the options make no sense, such as a negative width of cells
+  /// \throws cuda_error  if a CUDA call fails
+  ///
+  /// After an exception, also one of the memory resource, the detector has no mesh, and can be built again.
+  /// \complexity O(triangles). Allocates if there were fewer triangles before.
+  /// \sync None but what allocating takes: the work is put on the space's stream.
   void build(mesh_view<Scalar> mesh);
 
-  /// Prepares what depends on the mesh, and what spheres at rest of radius up to `radius` need, so that a query has
-  /// nothing left to prepare. Larger spheres are tested too, but more slowly. Many spheres that move may still want a
-  /// grid of their own on the host. Throws `error` if `radius` is negative or NaN. O(triangles).
+  /// Prepares what depends on the mesh, and what spheres at rest of a radius need, so that a query has nothing left to
+  /// prepare. Many spheres that move may still want a grid of their own on the host.
+  ///
+  /// \param mesh    triangles in memory of the space, not copied: valid and unchanged until the last query is done
+  /// \param radius  the largest usual radius, in the units of the coordinates, not negative. Larger spheres are found
+  ///                too, but more slowly; an infinite radius prepares nothing.
+  /// \throws error  if `radius` is negative or NaN, or the options make no sense
+  /// \throws cuda_error  if a CUDA call fails
+  /// \complexity O(triangles). Allocates if something has grown.
+  /// \sync May wait for the device, to read a size back.
   void build(mesh_view<Scalar> mesh, Scalar radius);
 
-  /// Makes room for queries of up to so many spheres, and in the sinks for up to so many pairs: what depends on the
-  /// numbers of spheres and pairs alone is then not allocated by a query. What depends on the mesh, or on the radii, is
-  /// by `build` and the first two queries.
+  /// Makes room for queries ahead: what depends on the numbers of spheres and pairs alone is then not allocated by a
+  /// query. What depends on the mesh, or on the radii, is allocated by `build` and the first two queries.
+  ///
+  /// \param spheres  the largest number of spheres of a query
+  /// \param pairs    the largest number of pairs that a sink keeps
+  /// \param sinks    those of later queries, kept by the caller: each gets its room too
   template <class... Sink>
   void reserve(std::size_t spheres, [[maybe_unused]] std::size_t pairs, Sink&... sinks) {
     static_assert((detail::is_valid<detail::sink_reserve, Sink, ExecutionSpace> && ...),
@@ -92,9 +122,21 @@ class detector {
     (sinks.reserve(space_, spheres, pairs), ...);
   }
 
-  /// Hands every colliding pair, exactly once, to the sink (`count`, `any_hit`, `pairs`, `contacts`, `closest`,
-  /// `visit`, or one of your own). Returns the sink: by reference if it was given as an lvalue (its memory is then used
-  /// again), else by value. Throws `error` if there was no `build`, or the last one failed.
+  /// Hands every colliding pair to the sink, each exactly once, in unspecified order. It gives what this gives:
+  ///
+  ///     for each sphere s and each triangle t: if (NarrowPhase::intersects(t, s)) sink gets (s, t)
+  ///
+  /// \param spheres  n spheres in memory of the space: valid and unchanged until the work is done, at the latest when
+  ///                 the sink is read. There may be none.
+  /// \param sink     where pairs go: `count`, `any_hit`, `pairs`, `csr`, `contacts`, `impacts`, `closest`, `earliest`,
+  ///                 `visit`, or one of your own
+  /// \return the sink: by reference if it was given as an lvalue (its memory is then used again), else by value
+  /// \throws error  if there was no `build`, or the last one failed
+  /// \throws cuda_error  if a CUDA call fails
+  ///
+  /// After an exception the detector can be used again; what the sink holds is then unspecified.
+  /// \complexity That of the broad phase: O(n + candidates) for `bucket`, O(n * triangles) for `all_pairs`.
+  /// \sync As the sink says. Where radii differ, `bucket` waits for their range.
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {
     using pass = detail::query_pass<typename BroadPhase::template index<Scalar>, NarrowPhase, ExecutionSpace, Scalar>;
@@ -107,14 +149,20 @@ class detector {
     return std::forward<Sink>(sink);
   }
 
-  /// `build(mesh)` and `query(spheres, sink)` in one call.
+  /// `build(mesh)` and `query(spheres, sink)` in one call; each says what it needs, takes and throws.
+  ///
+  /// \param mesh     as for `build`
+  /// \param spheres  as for `query`
+  /// \param sink     as for `query`
+  /// \return the sink, as `query` does
   template <class Mesh, class Spheres, class Sink>
   Sink detect(Mesh const& mesh, Spheres const& spheres, Sink&& sink) {
     build(mesh);
     return query(spheres, std::forward<Sink>(sink));
   }
 
-  /// The width of the finest cells in use; 0 if there are none. In the CUDA spaces it waits for the device.
+  /// The width of the finest cells in use, in the units of the coordinates; 0 if there are none. In the CUDA spaces it
+  /// waits for the device.
   double cell_width() const;
 
   // What makes no sense ends here, with a sentence instead of a list of candidates: another scalar type,
@@ -151,7 +199,9 @@ class detector {
                   "a mesh goes to build");
   }
 
+  /// The space, to wait for it, or to put work of your own on its stream.
   ExecutionSpace& space() { return space_; }
+  /// The space; see above.
   ExecutionSpace const& space() const { return space_; }
 
  private:

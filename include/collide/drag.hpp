@@ -15,7 +15,8 @@ namespace collide {
 struct drag {
   using writes = columns<velocity>;
 
-  double linear = 0, quadratic = 0;
+  double linear = 0;     ///< per time, not negative
+  double quadratic = 0;  ///< per length, not negative
 
   void check_parameters() const {
     detail::check_parameter(linear >= 0 && quadratic >= 0, "drag: linear and quadratic are not negative");

@@ -29,7 +29,8 @@ struct time_of_hit {
 }  // namespace detail
 
 /// The triangle with the smallest time of impact of each moving sphere; of equal times that with the smallest id. Needs
-/// a narrow phase for spheres that move.
+/// a narrow phase for spheres that move. `query` waits once, for the number of pairs. `S` is the scalar of the
+/// detector.
 template <class S = float>
 class earliest : public detail::per_sphere_min<first_impact<S>, S, detail::time_of_hit> {};
 

@@ -75,7 +75,7 @@ template <class S>
 struct mesh_contact : contact<S> {
   vec3<S> force_dv;         ///< what a step's acceleration adds to the velocity
   vec3<S> start;            ///< the centre when the step began; of a swept particle where it was stopped
-  S elapsed;                ///< for how long the particle has moved from there
+  S elapsed;                ///< for how long the particle has moved from there, in the units of `dt`
   vec3<S> velocity_before;  ///< the particle's velocity before this contact
   S approach_speed;         ///< speed towards the surface, before the contacts at this place changed it
   vec3<S> lift;        ///< displacement that raises the particle above the surface by 1, and leaves it on those before

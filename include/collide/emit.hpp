@@ -11,11 +11,12 @@ namespace collide {
 
 /// A nozzle: particles begin in a cube around a place, with about the same velocity.
 struct nozzle {
-  double position[3] = {0, 0, 0};
-  double half_width = 0;  ///< half of the cube's
-  double velocity[3] = {0, 0, 0};
-  double velocity_spread = 0;  ///< how much the coordinates of the velocity differ at most
+  double position[3] = {0, 0, 0};  ///< the middle of the cube
+  double half_width = 0;           ///< half the length of the cube's edges
+  double velocity[3] = {0, 0, 0};  ///< the mean velocity, in length per time
+  double velocity_spread = 0;      ///< how much the coordinates of the velocity differ from the mean at most
 
+  /// Says how particle `number` begins: sets its centre `x` and its velocity `v`. A number always gives the same.
   template <class S>
   COLLIDE_HD void operator()(std::uint64_t number, vec3<S>& x, vec3<S>& v) const {
     for (int k = 0; k < 3; ++k) {
@@ -65,8 +66,8 @@ template <class Source = nozzle>
 struct emit_from {
   using writes = columns<position, velocity, alive>;
 
-  double rate = 0;
-  Source source = Source();
+  double rate = 0;           ///< particles per time, not negative
+  Source source = Source();  ///< how they begin
 
   void check_parameters() const { detail::check_parameter(rate >= 0, "emit: rate is not negative"); }
 

@@ -40,7 +40,9 @@ using pipeline_storage = detail::pipeline_storage<Block, CandidatesPerThread>;
 template <class S>
 class bounding_sphere {
  public:
+  /// A sphere that is not set: assign one before it is used.
   bounding_sphere() = default;
+  /// The sphere around `t`.
   COLLIDE_HD explicit bounding_sphere(triangle<S> const& t) : sphere_(detail::bounding_sphere_of(t)) {}
 
   /// True if the sphere can touch the triangle. Rounding never makes it false.
@@ -54,7 +56,9 @@ class bounding_sphere {
 template <class S>
 class mesh_bounds_ref {
  public:
+  /// Bounds that no sphere reaches.
   mesh_bounds_ref() = default;
+  /// Bounds whose numbers are at `summary`, in memory of the space.
   explicit mesh_bounds_ref(detail::mesh_statistics<S> const* summary) : summary_{summary} {}
 
   /// True if the sphere can touch the box around the mesh. Rounding never makes it false.
@@ -86,6 +90,7 @@ class mesh_bounds {
     space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
+  /// The bounds for kernels; valid as long as this object, until the next build.
   mesh_bounds_ref<S> ref() const { return mesh_bounds_ref<S>(summary_.data()); }
 
  private:
@@ -100,6 +105,7 @@ class mesh_bounds {
 ///     for_each_candidate(sphere<S>, F f)` that calls f(triangle) for all that the sphere could touch, each once. It
 ///     runs where the space is, so it is `COLLIDE_HD`. For a sphere that moves it is called with a sphere around all of
 ///     its motion, unless it takes a `moving_sphere<S>` too.
+///
 /// A query takes O(spheres * enumeration); in spaces with threads that work together an enumeration is made for every 8
 /// candidates of a sphere, in simulations for every candidate.
 template <class Policy>

@@ -14,7 +14,8 @@ struct friction {
   using optional_writes = columns<angular_velocity>;
   using runs_after = effects<bounce>;
 
-  double static_coefficient = 0.5, kinetic_coefficient = 0.5;
+  double static_coefficient = 0.5;   ///< of what rests: a ratio of forces, not negative
+  double kinetic_coefficient = 0.5;  ///< of what slides: a ratio of forces, not negative
 
   void check_parameters() const {
     detail::check_parameter(static_coefficient >= 0 && kinetic_coefficient >= 0,

@@ -11,7 +11,9 @@ namespace collide {
 struct gravity {
   using writes = columns<velocity>;
 
-  double x = 0, y = 0, z = -9.81;
+  double x = 0;      ///< length per time squared, finite
+  double y = 0;      ///< length per time squared, finite
+  double z = -9.81;  ///< length per time squared, finite: that of the earth in metres and seconds
 
   void check_parameters() const {
     detail::check_parameter(detail::is_finite(x) && detail::is_finite(y) && detail::is_finite(z),

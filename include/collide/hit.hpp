@@ -9,15 +9,18 @@
 
 namespace collide {
 
-/// A colliding pair as a sink sees it: its ids, and on demand its geometry.
+/// A colliding pair as a sink sees it: its ids, and on demand its geometry. Valid only during the call that gets it. It
+/// lives where the space runs: on the device, in the CUDA spaces.
 template <class NarrowPhase, class S>
 class hit {
  public:
   id sphere;    ///< number of the sphere
   id triangle;  ///< number of the triangle
 
+  /// `sphere_view`, or `moving_sphere_view` if the narrow phase judges spheres that move.
   using spheres_type = detail::sphere_view_for<NarrowPhase, S>;
 
+  /// A hit of `p`, whose geometry is in `mesh` and `spheres`: both must outlive it.
   COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres)
       : sphere{p.sphere}, triangle{p.triangle}, mesh_{mesh}, spheres_{spheres} {}
 

@@ -20,7 +20,9 @@
 namespace collide {
 
 /// Execution space: this computer's CPU, with OpenMP threads where the program is compiled with OpenMP, else one
-/// thread. Views point to host memory; every call has finished its work when it returns.
+/// thread. Views point to host memory; every call has finished its work when it returns. A small value that is copied
+/// into detectors. Called from within an OpenMP parallel region it uses the threads that OpenMP gives a nested one:
+/// one, unless nesting is on. An exception of any thread is passed on to the caller.
 class host {
  public:
   /// `threads`: how many; 0 is as many as OpenMP offers. `resource`: where the library's memory comes from; null is
@@ -48,8 +50,11 @@ class host {
 #endif
   }
 
+  /// The name of the space, for messages.
   static constexpr char const* name() { return "host"; }
+  /// Where memory comes from.
   std::pmr::memory_resource* resource() const { return resource_; }
+  /// Does nothing: all work is done when a call returns.
   void synchronize() const {}
 
   // What the library's algorithms need of a space:
@@ -76,7 +81,7 @@ class host {
     });
   }
 
-  /// Calls f(i) for all i < n.
+  /// Calls f(i) for all i < n, from all threads.
   template <class F>
   void for_each(std::size_t n, F const& f) const {
     run((n + 1023) / 1024, [&](std::size_t first, std::size_t last) {
@@ -93,20 +98,24 @@ class host {
     return std::numeric_limits<std::size_t>::max();
   }
 
+  /// Sets `bytes` bytes.
   void fill(void* to, unsigned char byte, std::size_t bytes) const {
     if (bytes != 0) std::memset(to, byte, bytes);
   }
 
+  /// The value at `from`.
   template <class T>
   T read(T const* from) const {
     return *from;
   }
 
+  /// Copies `n` values; the two arrays do not overlap.
   template <class T>
   void copy_to_host(T* to, T const* from, std::size_t n) const {
     if (n != 0) std::memcpy(static_cast<void*>(to), from, n * sizeof(T));
   }
 
+  /// Copies `n` values; the two arrays do not overlap.
   template <class T>
   void copy_from_host(T* to, T const* from, std::size_t n) const {
     if (n != 0) std::memcpy(static_cast<void*>(to), from, n * sizeof(T));

@@ -6,8 +6,9 @@
 
 namespace collide {
 
-/// The impact of every pair that touches within the step: when it first does, and the contact then. As `contacts`
-/// otherwise. Needs a narrow phase for spheres that move.
+/// The impact of every pair that touches within the step: when it first does, and the contact then. In memory of the
+/// space, or in the caller's. `query` waits once, for their number. `S` is the scalar of the detector. Needs a narrow
+/// phase for spheres that move, such as `karabassi_swept`.
 template <class S = float>
 class impacts : public detail::records<impact<S>, S> {
  public:

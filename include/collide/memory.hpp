@@ -29,6 +29,7 @@ class allocator_resource final : public std::pmr::memory_resource {
   using pointer = typename std::allocator_traits<bytes>::pointer;
 
  public:
+  /// A resource that takes memory from a copy of `allocator`.
   explicit allocator_resource(Allocator const& allocator = Allocator()) : allocator_(allocator) {}
 
  private:
@@ -57,17 +58,21 @@ class buffer {
   static_assert(std::is_trivially_destructible<T>::value, "collide: a buffer holds plain values");
 
  public:
+  /// An array without memory.
   buffer() = default;
+  /// Takes the memory of `other`, which then has none.
   buffer(buffer&& other) noexcept
       : resource_{std::exchange(other.resource_, nullptr)},
         data_{std::exchange(other.data_, nullptr)},
         capacity_{std::exchange(other.capacity_, 0)} {}
+  /// Swaps the memory of the two.
   buffer& operator=(buffer&& other) noexcept {
     std::swap(resource_, other.resource_);
     std::swap(data_, other.data_);
     std::swap(capacity_, other.capacity_);
     return *this;
   }
+  /// Returns the memory to its resource.
   ~buffer() { release(); }
 
   /// Makes room for `n` values and returns their address. Allocates only if it must grow, and loses the old values
@@ -90,7 +95,9 @@ class buffer {
     resource_ = nullptr;
   }
 
+  /// The address of the array; null if it has no memory.
   T* data() const { return data_; }
+  /// For how many values there is room.
   std::size_t capacity() const { return capacity_; }
   /// What it has taken of the resource.
   std::size_t bytes() const { return capacity_ * sizeof(T); }

@@ -13,15 +13,17 @@ namespace collide {
 
 /// A non-owning view of a mesh: host memory for `host`, device memory for the CUDA spaces. Nothing is copied or checked
 /// (`validate` does that); an index that is not below the number of vertices is undefined behaviour. The memory must
-/// outlive every detector that was built from the view. Made by `indexed_mesh` and `triangle_soup`.
+/// outlive every detector that was built from the view. A triangle has two sides, and the order of its corners does not
+/// matter. Made by `indexed_mesh` and `triangle_soup`. Members that read memory are for code that runs where it is.
 template <class S>
 class mesh_view {
   static_assert(std::is_same<S, float>::value || std::is_same<S, double>::value,
                 "collide: a mesh has coordinates of type float or double");
 
  public:
-  using scalar = S;
+  using scalar = S;  ///< type of the coordinates: float or double
 
+  /// No triangles.
   mesh_view() = default;
   /// `size` triangles. The number of corner k of triangle i is at indices[i * triangle_stride + k * corner_stride], or
   /// 3 i + k if `indices` is null. Throws `error` if there are more than 2^32 - 2 triangles, or a stride is 2^32 or
@@ -106,8 +108,8 @@ mesh_view<typename std::decay_t<V>::Scalar> indexed_mesh(V&& vertices, F&& faces
           layout.side};
 }
 
-/// View of a triangle soup: 9 coordinates per triangle, vertex by vertex. O(1). Throws `error` if there are more than
-/// 2^32 - 2 triangles.
+/// View of a triangle soup: `coordinates` holds 9 numbers per triangle, vertex by vertex, each x, y, z. O(1). Throws
+/// `error` if there are more than 2^32 - 2 triangles.
 template <class S>
 mesh_view<S> triangle_soup(S const* coordinates, std::size_t triangle_count) {
   return {points(coordinates, 3 * triangle_count), nullptr, triangle_count};

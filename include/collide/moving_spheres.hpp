@@ -6,10 +6,12 @@
 
 namespace collide {
 
-/// A non-owning view of spheres and their displacements within a step. Made by `with_displacements`.
+/// A non-owning view of spheres and their displacements within a step: lengths, not velocities. Nothing is copied; what
+/// `sphere_view` says of memory holds for displacements too. Made by `with_displacements`.
 template <class S>
 class moving_sphere_view : public sphere_view<S> {
  public:
+  /// No spheres.
   moving_sphere_view() = default;
   /// The displacement of sphere i is displacements[i]. Throws `error` if there are not as many as spheres.
   moving_sphere_view(sphere_view<S> const& spheres, point_view<S> const& displacements)
@@ -51,7 +53,8 @@ moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, point_vi
   return {spheres, displacements};
 }
 
-/// View of moving spheres with packed displacements: 3 n components. O(1).
+/// View of moving spheres with packed displacements: for n spheres 3 n components x0, y0, z0, x1, ..., in the same kind
+/// of memory. O(1).
 template <class S>
 moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, S const* displacements) {
   return {spheres, points(displacements, spheres.size())};

@@ -20,10 +20,14 @@ struct copy_pairs {
 }  // namespace detail
 
 /// Every colliding (sphere, triangle) pair, each exactly once. `query` waits once, for their number;
-/// where there are more than its memory has room for, it makes room and runs a second time.
+/// where there are more than its memory has room for, it makes room and runs a second time. Memory: 8 bytes for each
+/// pair that there is room for, and in canonical order what the sort takes.
+///
+/// The pairs are in memory of the space, which the host may be unable to read: a loop over this object does not
+/// compile. Copy them with `to_host()`, or read `data()` in a kernel on the space's stream.
 class pairs : public detail::kept_in_space<pair> {
  public:
-  /// The pairs are kept in memory of the space, as many as there are.
+  /// The pairs are kept in memory of the space, as many as there are, in the order `o`.
   explicit pairs(order o = order::unspecified) : order_{o} {}
   /// The pairs are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total` tells
   /// how many there are all the same. If they do not fit, the first ones are stored in canonical order, else any.
@@ -37,12 +41,13 @@ class pairs : public detail::kept_in_space<pair> {
   /// True if all of them are stored.
   bool complete() const { return size() == total(); }
 
-  /// The stored pairs, in memory of the space.
+  /// The stored pairs, `size()` of them, in memory of the space. Valid until the next query. Null before the first.
   pair const* data() const { return data_; }
-  /// A copy of the stored pairs on the host.
+  /// A copy of the stored pairs on the host. Waits for them.
   std::vector<pair> to_host() const { return download_(data(), size()); }
 
-  /// Makes room for queries of up to so many spheres and pairs: they then allocate nothing.
+  /// Makes room in memory of `space` for queries of up to so many spheres, and `most` pairs: they then allocate
+  /// nothing.
   template <class Space>
   void reserve(Space const& space, std::size_t spheres, std::size_t most) {
     if (fixed_ && order_ == order::unspecified) return collected_.reserve(space);

@@ -23,16 +23,18 @@ inline unsigned checked_stride(std::size_t stride) {
 
 }  // namespace detail
 
-/// A non-owning view of points: host memory for `host`, device memory for the CUDA spaces. Nothing is copied. A layout
-/// is three addresses and a stride, so one kernel serves all layouts. Made by `points`.
+/// A non-owning view of points: host memory for `host`, device memory for the CUDA spaces. Nothing is copied: the
+/// arrays must outlive the view, and the work that reads it. A layout is three addresses and a stride, so one kernel
+/// serves all layouts. Made by `points`. Members that read memory are for code that runs where the memory is.
 template <class S>
 class point_view {
   static_assert(std::is_same<S, float>::value || std::is_same<S, double>::value,
                 "collide: points have coordinates of type float or double");
 
  public:
-  using scalar = S;
+  using scalar = S;  ///< type of the coordinates: float or double
 
+  /// No points.
   point_view() = default;
   /// Coordinates of point i at x[i * stride], y[i * stride], z[i * stride].
   point_view(S const* x, S const* y, S const* z, std::size_t stride, std::size_t size)

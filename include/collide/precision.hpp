@@ -11,21 +11,21 @@ namespace collide {
 /// and degenerate triangles, and more often with the distance from the origin; they may depend on compiler flags. A
 /// baseline for comparisons, not for use.
 struct baseline {
-  using scalar = float;
+  using scalar = float;  ///< of the arithmetic
 };
 
 /// Arithmetic in float, in coordinates local to the sphere. Results may be wrong for pairs within a few units in the
 /// last place (of float) of contact; distances of contacts are within 2^-13 of the triangle's size as seen from the
 /// sphere's centre.
 struct single_precision {
-  using scalar = float;
+  using scalar = float;  ///< of the arithmetic
 };
 
 /// Arithmetic in double, in coordinates local to the sphere. Results may be wrong for pairs within a few units in the
 /// last place (of double) of contact; distances of contacts are within 2^-42 of the triangle's size as seen from the
 /// sphere's centre.
 struct double_precision {
-  using scalar = double;
+  using scalar = double;  ///< of the arithmetic
 };
 
 /// Exact predicates: every result equals that of real arithmetic on the coordinates as given. A floating-point filter

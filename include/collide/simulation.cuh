@@ -42,10 +42,10 @@ class simulation {
                 "collide: the first parameter of a simulation is a detector, such as detector<bucket>");
 
  public:
-  using detector_type = Detector;
-  using execution_space = typename Detector::execution_space;
-  using scalar = typename Detector::scalar;
-  using effects_type = detail::effect_list<scalar, Effect...>;
+  using detector_type = Detector;                               ///< the first parameter
+  using execution_space = typename Detector::execution_space;   ///< that of the detector
+  using scalar = typename Detector::scalar;                     ///< type of all numbers: float or double
+  using effects_type = detail::effect_list<scalar, Effect...>;  ///< the effects with their parameters, for kernels
 
  private:
   using S = scalar;
@@ -72,7 +72,7 @@ class simulation {
   /// Pointers to all columns, for kernels; see detail/simulation/particle.hpp.
   using state_type = detail::particle_state<S, columns>;
 
-  /// Throws what making the space throws: `cuda_error` if a CUDA space finds no usable device.
+  /// Without particles, with effects as they are by default. Stream and resource of the space must outlive it.
   explicit simulation(execution_space space = execution_space(), broad_phase options = broad_phase())
       : space_(std::move(space)), options_(std::move(options)), effects_(Effect()...) {}
 
@@ -81,6 +81,7 @@ class simulation {
                                                  std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
   explicit simulation(execution_space space, E... effects)
       : space_(std::move(space)), effects_(std::move(effects)...) {}
+  /// With options of the broad phase, and parameters of all effects, in the order of the list.
   template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
                                                  std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
   simulation(execution_space space, broad_phase options, E... effects)
@@ -97,10 +98,10 @@ class simulation {
                   "parameters of all effects, in the order of its list");
   }
 
-  /// Copies particles from memory of the space: centres, radii, and three packed coordinates of velocity each, or null
-  /// for particles that rest. The other columns get their initial values. `capacity` is for how many there is room, if
-  /// an effect makes more; more than 2^32 - 2 are refused (`error`), as is room that no effect of the scene fills.
-  /// Radii that differ need `polydisperse` in the scene (else `error`). Allocates; may wait.
+  /// Copies particles from memory of the space: centres, radii, and three packed coordinates of velocity each (length
+  /// per time), or null for particles that rest. The other columns get their initial values. `capacity` is for how many
+  /// there is room, if an effect makes more; more than 2^32 - 2 are refused (`error`), as is room that no effect of the
+  /// scene fills, and radii that differ without `polydisperse` in the scene. O(particles). Allocates; may wait.
   void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
     constexpr bool differ = detail::contains<columns, radius>;
     if (!particles.one_radius() && !differ) {
@@ -142,8 +143,8 @@ class simulation {
     if constexpr (effects_type::meets) neighbours_.reserve(resource, particles);
   }
 
-  /// The mesh that particles touch, which must stay as it is while it is used; call it again when the mesh has moved.
-  /// An empty one is a mesh, too. Allocates unless there was a mesh of this size before; may wait. O(triangles).
+  /// The mesh that particles touch, not copied: it must stay as it is while it is used. Call it again when the mesh has
+  /// moved. An empty one is a mesh, too. Allocates if the mesh has grown; may wait. O(triangles).
   void set_mesh(mesh_view<S> mesh) {
     mesh_ = {};
     has_mesh_ = false;
@@ -174,8 +175,8 @@ class simulation {
     detail::reject_scalar<T>();
   }
 
-  /// Advances by `dt`. Throws `error` if `dt` is not finite or an effect's parameter makes no sense, before `set`, and
-  /// before `set_mesh` if an effect touches the mesh.
+  /// Advances by the time `dt`. Throws `error` if `dt` is not finite or an effect's parameter makes no sense, before
+  /// `set`, and before `set_mesh` if an effect touches the mesh; `cuda_error` if a kernel cannot be launched.
   void step(S dt) {
     check_step(dt);
     time_ += static_cast<double>(dt);
@@ -198,7 +199,7 @@ class simulation {
     space_.launch(body.blocks, body);
   }
 
-  /// Advances `n` times by `dt`.
+  /// Advances `n` times by `dt`; throws what `step` throws.
   void steps(std::size_t n, S dt) {
     for (std::size_t i = 0; i < n; ++i) step(dt);
   }
@@ -217,8 +218,8 @@ class simulation {
   /// Number of particles, or of places for them, if an effect makes or removes some; see `alive`.
   std::size_t size() const { return state_.size; }
 
-  /// A column in memory of the space: three coordinates a particle, or one number. Valid until the next `set`. Of a
-  /// device, kernels read it; the host reads `to_host<Column>()`.
+  /// A column in memory of the space: three coordinates a particle, or one number. Valid until the next `set`. Kernels
+  /// on the space's stream read and write it between steps; for the host there is `to_host<Column>()`.
   template <class Column>
   detail::column_element<Column, S>* data() const {
     check<Column>();
@@ -234,7 +235,7 @@ class simulation {
     return copy;
   }
 
-  /// Gives all particles a column's values, from memory of the space.
+  /// Gives all particles a column's values, from memory of the space, in the order of the stream.
   template <class Column>
   void assign(detail::column_element<Column, S> const* values) {
     check<Column>();
@@ -242,7 +243,7 @@ class simulation {
                     detail::copy_values<detail::column_element<Column, S>>{values, state_.at(Column{})});
   }
 
-  /// The particles as spheres, for a query.
+  /// The particles as spheres, for a query. They move with the steps; valid until the next `set`.
   sphere_view<S> spheres() const {
     S const* const xyz = state_.at(position{});
     if constexpr (detail::contains<columns, radius>) {
@@ -258,9 +259,9 @@ class simulation {
     return effects_.template of<E>();
   }
 
-  state_type const& state() const { return state_; }
-  execution_space& space() { return space_; }
-  execution_space const& space() const { return space_; }
+  state_type const& state() const { return state_; }       ///< pointers to all columns, valid until the next `set`
+  execution_space& space() { return space_; }              ///< for work of your own on its stream, and to wait
+  execution_space const& space() const { return space_; }  ///< the space
 
  private:
   static constexpr bool sweeps = effects_type::touches && !detail::is_discrete<narrow_phase, S>;

@@ -14,8 +14,8 @@ struct sleep {
   using reads = columns<velocity>;
   using writes = columns<slow_steps>;
 
-  double speed = 0.01;
-  int steps = 50;
+  double speed = 0.01;  ///< length per time, not negative: what is slower is slow
+  int steps = 50;       ///< 1 to 255: for how many steps a particle is slow before it sleeps
 
   void check_parameters() const {
     detail::check_parameter(speed >= 0, "sleep: speed is not negative");

@@ -22,11 +22,11 @@ struct sphere_contact {
   using writes = columns<velocity>;
   using optional_writes = columns<angular_velocity>;
 
-  double stiffness = 1000;        ///< force per overlap
-  double damping = 0;             ///< force per speed along the normal
-  double friction = 0;            ///< coefficient of Coulomb friction
-  double tangential_damping = 0;  ///< force per speed along the tangent, up to that limit
-  double density = 1;             ///< mass per volume
+  double stiffness = 1000;        ///< force per overlap, not negative
+  double damping = 0;             ///< force per speed along the normal, not negative
+  double friction = 0;            ///< coefficient of Coulomb friction, not negative
+  double tangential_damping = 0;  ///< force per speed along the tangent, up to that limit; not negative
+  double density = 1;             ///< mass per volume, above 0: a particle has the mass of a solid sphere
 
   void check_parameters() const {
     detail::check_parameter(stiffness >= 0 && damping >= 0 && friction >= 0 && tangential_damping >= 0,
@@ -34,10 +34,18 @@ struct sphere_contact {
     detail::check_parameter(density > 0, "sphere_contact: density is above 0");
   }
 
-  /// Spheres of this radius and density that collide for `duration` and part with `restitution` times the speed (at
-  /// least 0.14: what is less needs more damping than the model has). They part when they no longer push each other:
-  /// T. Schwager and T. Poeschel, "Coefficient of restitution and linear-dashpot model revisited", Granular Matter 9,
-  /// 2007, of whose formula sin(a) is the damping ratio.
+  /// The parameters of equal spheres that collide for a given time, and part with a given part of their speed. They
+  /// part when they no longer push each other: T. Schwager and T. Poeschel, "Coefficient of restitution and
+  /// linear-dashpot model revisited", Granular Matter 9, 2007, of whose formula sin(a) is the damping ratio.
+  ///
+  /// \param restitution  speed after over speed before, 0 to 1; below 0.14 the model has not enough damping, and 0.14
+  /// is
+  ///                     what comes out
+  /// \param duration     of a collision, above 0; a step should be a twentieth of it at most
+  /// \param radius       of the spheres, above 0
+  /// \param density      mass per volume, above 0
+  /// \param friction     coefficient of Coulomb friction
+  /// \throws error  if one of the first four is out of its range
   static sphere_contact from_restitution(double restitution, double duration, double radius, double density,
                                          double friction = 0) {
     detail::check_parameter(restitution >= 0 && restitution <= 1 && duration > 0 && radius > 0 && density > 0,

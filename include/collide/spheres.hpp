@@ -10,17 +10,19 @@
 
 namespace collide {
 
-/// A non-owning view of spheres: host memory for `host`, device memory for the CUDA spaces. Nothing is copied. A layout
-/// is a set of strides, so one kernel serves all layouts. Made by `spheres_at`, `spheres_xyz`, `spheres_soa` and
-/// `spheres_xyzr`.
+/// A non-owning view of spheres: host memory for `host`, device memory for the CUDA spaces. Nothing is copied: the
+/// arrays must outlive the view, and the queries that read it. A layout is a set of strides, so one kernel serves all
+/// layouts. Lengths are in any unit, the one of the mesh. Made by `spheres_at`, `spheres_xyz`, `spheres_soa` and
+/// `spheres_xyzr`. Members that read memory are for code that runs where the memory is.
 template <class S>
 class sphere_view {
   static_assert(std::is_same<S, float>::value || std::is_same<S, double>::value,
                 "collide: spheres have coordinates of type float or double");
 
  public:
-  using scalar = S;
+  using scalar = S;  ///< type of the coordinates: float or double
 
+  /// No spheres.
   sphere_view() = default;
   /// The radius of sphere i is at radii[i * radius_stride], or `radius` for all if `radii` is null. Throws `error` if
   /// there are more than 2^32 - 2 spheres, or a stride is 2^32 or more.
@@ -70,43 +72,50 @@ class sphere_view {
   S radius_ = 0;
 };
 
-/// Spheres of one radius whose centres are as `points` gives them. O(1).
+/// Spheres of one radius whose centres are as `points` gives them. O(1). Throws `error` if there are more than 2^32
+/// - 2.
 template <class S>
 sphere_view<S> spheres_at(point_view<S> const& centres, std::common_type_t<S> radius) {
   return {centres, nullptr, 0, radius};
 }
 
 /// Spheres whose centres are as `points` gives them, with a radius each: every `radius_stride`-th of `radii`. O(1).
+/// Throws `error` if there are more than 2^32 - 2 spheres, or the stride is 2^32 or more.
 template <class S>
 sphere_view<S> spheres_at(point_view<S> const& centres, S const* radii, std::size_t radius_stride = 1) {
   return {centres, radii, radius_stride, S(0)};
 }
 
-/// `n` spheres with packed centres (3 `n` coordinates) and one radius.
+/// `n` spheres with packed centres and one radius: `xyz` holds 3 n coordinates x0, y0, z0, x1, ... A radius that is
+/// negative or NaN makes all of them empty. O(1). Throws `error` if there are more than 2^32 - 2 spheres.
 template <class S>
 sphere_view<S> spheres_xyz(S const* xyz, std::size_t n, std::common_type_t<S> radius) {
   return {points(xyz, n), nullptr, 0, radius};
 }
 
-/// `n` spheres with packed centres (3 `n` coordinates) and `n` radii.
+/// `n` spheres with packed centres and a radius each: `xyz` holds 3 n coordinates x0, y0, z0, x1, ..., and `radii` n
+/// numbers in the same kind of memory. O(1). Throws `error` if there are more than 2^32 - 2 spheres.
 template <class S>
 sphere_view<S> spheres_xyz(S const* xyz, std::size_t n, S const* radii) {
   return {points(xyz, n), radii, 1, S(0)};
 }
 
-/// `n` spheres with the coordinates of their centres in three arrays and one radius.
+/// `n` spheres with the coordinates of their centres in three arrays of n, and one radius. O(1). Throws `error` if
+/// there are more than 2^32 - 2 spheres.
 template <class S>
 sphere_view<S> spheres_soa(S const* x, S const* y, S const* z, std::size_t n, std::common_type_t<S> radius) {
   return {points(x, y, z, n), nullptr, 0, radius};
 }
 
-/// `n` spheres with the coordinates of their centres in three arrays and `n` radii.
+/// `n` spheres with the coordinates of their centres in three arrays of n, and `n` radii. O(1). Throws `error` if there
+/// are more than 2^32 - 2 spheres.
 template <class S>
 sphere_view<S> spheres_soa(S const* x, S const* y, S const* z, std::size_t n, S const* radii) {
   return {points(x, y, z, n), radii, 1, S(0)};
 }
 
-/// `n` spheres as quadruples (x, y, z, r), such as an array of float4.
+/// `n` spheres as quadruples: `xyzr` holds 4 n numbers x0, y0, z0, r0, x1, ..., such as an array of float4. O(1).
+/// Throws `error` if there are more than 2^32 - 2 spheres.
 template <class S>
 sphere_view<S> spheres_xyzr(S const* xyzr, std::size_t n) {
   return {points(xyzr, n, 4), xyzr + 3, 4, S(0)};

@@ -13,7 +13,7 @@ struct spin {
   using writes = columns<position, velocity, angular_velocity>;
   using runs_after = effects<bounce>;
 
-  double rolling_resistance = 0;
+  double rolling_resistance = 0;  ///< a ratio of forces, not negative
 
   void check_parameters() const {
     detail::check_parameter(rolling_resistance >= 0, "spin: rolling_resistance is not negative");

@@ -25,6 +25,7 @@ class streamed {
                 "collide: what spheres are streamed to is a detector, such as detector<bucket>");
 
  public:
+  /// `sphere_view`, or `moving_sphere_view` if the detector's narrow phase judges spheres that move.
   using spheres_type = typename Detector::spheres_type;
 
   /// `detector` must outlive this. `chunk`: how many spheres go at a time, so many that a copy takes longer than what

@@ -34,10 +34,12 @@ point_view<S> upload_packed(Space const& space, point_view<S> const& from, buffe
 
 }  // namespace detail
 
-/// An owning, packed copy of a mesh in memory of a space, made by `upload`.
+/// An owning, packed copy of a mesh in memory of a space, made by `upload`. It can be moved, which keeps its views
+/// valid, but not copied. The resource of the space must outlive it.
 template <class S>
 class uploaded_mesh {
  public:
+  /// Copies; see `upload`.
   template <class Space>
   uploaded_mesh(Space const& space, mesh_view<S> mesh) {
     detail::check_memory<host>(mesh, "upload: the mesh is", "upload copies from host memory");
@@ -71,10 +73,12 @@ class uploaded_mesh {
   mesh_view<S> view_;
 };
 
-/// An owning, packed copy of spheres in memory of a space, made by `upload`.
+/// An owning, packed copy of spheres in memory of a space, made by `upload`. It can be moved, which keeps its views
+/// valid, but not copied. The resource of the space must outlive it.
 template <class S>
 class uploaded_spheres {
  public:
+  /// Copies; see `upload`.
   template <class Space>
   uploaded_spheres(Space const& space, sphere_view<S> spheres) {
     detail::check_memory<host>(spheres, "upload: the spheres are", "upload copies from host memory");
@@ -99,15 +103,28 @@ class uploaded_spheres {
   sphere_view<S> view_;
 };
 
-/// Copies a mesh of any layout from host memory into memory of the space, packed. O(vertices + triangles); may wait.
-/// Throws `error` if CUDA knows the mesh's memory as device memory.
+/// Copies a mesh of any layout from host memory into memory of the space, packed.
+///
+/// \param space  where to: its resource gives the memory, its stream the order
+/// \param mesh   in host memory, pageable or pinned; it may change as soon as this returns
+/// \return the copy, which owns its memory: keep it as long as a detector is built from its `view()`
+/// \throws error  if CUDA knows the mesh's memory as device memory
+/// \throws cuda_error  if a CUDA call fails
+/// \complexity O(vertices + triangles). Allocates. Waits for the copies.
 template <class Space, class S>
 uploaded_mesh<S> upload(Space const& space, mesh_view<S> mesh) {
   return uploaded_mesh<S>(space, mesh);
 }
 
-/// Copies spheres of any layout from host memory into memory of the space, as packed centres. O(n); may wait. Throws
-/// `error` if CUDA knows the spheres' memory as device memory.
+/// Copies spheres of any layout from host memory into memory of the space, as packed centres, and radii if they differ.
+/// For displacements of spheres that move there is none: copy those yourself.
+///
+/// \param space    where to: its resource gives the memory, its stream the order
+/// \param spheres  in host memory, pageable or pinned; it may change as soon as this returns
+/// \return the copy, which owns its memory: keep it as long as its `view()` is used
+/// \throws error  if CUDA knows the spheres' memory as device memory
+/// \throws cuda_error  if a CUDA call fails
+/// \complexity O(n). Allocates. Waits for the copies.
 template <class Space, class S>
 uploaded_spheres<S> upload(Space const& space, sphere_view<S> spheres) {
   return uploaded_spheres<S>(space, spheres);

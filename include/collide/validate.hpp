@@ -62,12 +62,13 @@ class report {
   /// True for what is unusual but has a defined meaning.
   static constexpr bool legal(problem p) { return p == problem::triangle_degenerate || p == problem::radius_infinite; }
 
-  /// As it is kept in memory of a space.
+  /// What is known of one kind of problem, as it is kept in memory of a space.
   struct finding {
-    std::uint64_t count;
-    id first;
+    std::uint64_t count;  ///< how many elements have it
+    id first;             ///< the smallest id of one; `no_id` if there is none
   };
 
+  /// A report of these findings, one for each kind of problem. `validate` makes it.
   explicit report(std::array<finding, problem_count> const& findings) : findings_(findings) {}
 
  private:
@@ -162,16 +163,28 @@ report inspect(Space const& space, View const& view) {
 
 }  // namespace detail
 
-/// Checks all triangles of a mesh in memory of the space. O(triangles); waits for the result.
-/// Throws `error` if CUDA knows that the space cannot read the mesh: device memory on the host, or the other way round.
+/// Checks all triangles of a mesh. An index that is out of range is found without reading what it points to.
+///
+/// \param mesh   in memory of the space
+/// \param space  where to check: pass that of a mesh in device memory, as the default is the host
+/// \return what was found; `ok()` says whether every triangle can collide
+/// \throws error  if CUDA knows that the space cannot read the mesh: device memory on the host, or the other way round
+/// \throws cuda_error  if a CUDA call fails
+/// \complexity O(triangles). Allocates some bytes, and waits for the result.
 template <class S, class Space = host>
 report validate(mesh_view<S> const& mesh, Space const& space = Space()) {
   detail::check_memory<Space>(mesh, "validate: the mesh is", "pass the space of that memory, as validate(mesh, space)");
   return detail::inspect<detail::inspect_triangle>(space, mesh);
 }
 
-/// Checks all spheres of a view in memory of the space. O(spheres); waits for the result. Throws
-/// `error` if CUDA knows that the space cannot read them: device memory on the host, or the other way round.
+/// Checks all spheres of a view.
+///
+/// \param spheres  in memory of the space
+/// \param space    where to check: pass that of spheres in device memory, as the default is the host
+/// \return what was found; `ok()` says whether every sphere can collide
+/// \throws error  if CUDA knows that the space cannot read them: device memory on the host, or the other way round
+/// \throws cuda_error  if a CUDA call fails
+/// \complexity O(spheres). Allocates some bytes, and waits for the result.
 template <class S, class Space = host>
 report validate(sphere_view<S> const& spheres, Space const& space = Space()) {
   detail::check_memory<Space>(spheres, "validate: the spheres are",

@@ -46,13 +46,15 @@ inline constexpr bool is_plain<call<F>> = std::is_trivially_destructible<F>::val
 
 /// Calls `f(hit)` once for every colliding pair and stores nothing; see `hit` for what f gets. On the host it is called
 /// from all threads of the space at once, in the CUDA spaces from many threads of the device: what it adds up is added
-/// with `atomic_add` (atomic_add.hpp). In the CUDA spaces f is copied to the device, and so is trivially copyable with
-/// a
-/// __device__ operator(): an object of a class, or with `nvcc --extended-lambda` a lambda, `[=] __device__ (auto const&
-/// hit) { ... }`. `query` does not wait in the CUDA spaces.
+/// with `atomic_add` (atomic_add.hpp).
+///
+/// In the CUDA spaces f is copied to the device, and so is trivially copyable with a `__device__` operator(): an object
+/// of a class, or with `nvcc --extended-lambda` a lambda, `[=] __device__ (auto const& hit) { ... }`. `query` does not
+/// wait there. On the host f may throw: `query` passes on the first exception.
 template <class F>
 class visit {
  public:
+  /// A sink that calls `f`, of which it keeps a copy. Pointers in it must be valid where it is called.
   explicit visit(F f) : f_{f} {}
 
   /// Does nothing: queries never allocate here.

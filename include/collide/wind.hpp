@@ -9,8 +9,11 @@ namespace collide {
 
 /// A velocity field that is uniform: (x, y, z) everywhere, in units of length per time.
 struct uniform_field {
-  double x = 0, y = 0, z = 0;
+  double x = 0;  ///< length per time
+  double y = 0;  ///< length per time
+  double z = 0;  ///< length per time
 
+  /// The velocity, whatever the position.
   template <class S>
   COLLIDE_HD_INLINE vec3<S> operator()(vec3<S> const&) const {
     return {S(x), S(y), S(z)};
@@ -24,8 +27,9 @@ struct wind {
   using reads = columns<position>;
   using writes = columns<velocity>;
 
-  double linear = 0, quadratic = 0;
-  Field field = Field();
+  double linear = 0;      ///< per time, not negative
+  double quadratic = 0;   ///< per length, not negative
+  Field field = Field();  ///< gives the velocity of the medium, in length per time
 
   void check_parameters() const {
     detail::check_parameter(linear >= 0 && quadratic >= 0, "wind: linear and quadratic are not negative");

@@ -18,9 +18,13 @@ namespace collide::detail {
 /// What both CUDA spaces have in common: a stream and memory.
 class cuda_space {
  public:
-  /// `stream`: where all work is put. `resource`: where device memory comes from; null is `cuda_memory`. Both must
-  /// outlive everything that was made with the space. The device that is current now must be current in every later
-  /// call. Throws `cuda_error` if there is no usable device.
+  /// A space for the device that is current now, which must be current in every later call.
+  ///
+  /// \param stream    where all work is put; null is CUDA's default stream
+  /// \param resource  where device memory comes from; null is `cuda_memory`. Memory is used in the order of the stream.
+  /// \throws cuda_error  if there is no usable device
+  ///
+  /// Stream and resource must outlive everything that was made with the space.
   explicit cuda_space(cudaStream_t stream = nullptr, std::pmr::memory_resource* resource = nullptr)
       : stream_{stream}, resource_{resource != nullptr ? resource : cuda_memory::get()} {
     int device = 0;
@@ -31,12 +35,15 @@ class cuda_space {
     has_pdl_ = compiled.ptxVersion >= 90;
   }
 
+  /// The stream that all work is put on.
   cudaStream_t stream() const { return stream_; }
+  /// Where device memory comes from.
   std::pmr::memory_resource* resource() const { return resource_; }
 
   /// Waits until all work on the stream is done.
   void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
+  /// True if the host reads this memory without waiting for anything: not here.
   static constexpr bool host_accessible = false;
 
   /// False if the memory at `p` is known not to be this space's: pageable memory, where the device cannot read that.
@@ -51,13 +58,15 @@ class cuda_space {
     return reads_pageable != 0;
   }
 
+  /// Puts a kernel on the stream that calls f(i) for all i < n. Throws `cuda_error`.
   template <class F>
   void for_each(std::size_t n, F const& f) const {
     if (n == 0) return;
     launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n), n, f);
   }
 
-  /// A little is filled by a kernel: in a graph, between kernels, that takes half as long as a memory set.
+  /// Puts work on the stream that sets `bytes` bytes. A little is filled by a kernel: in a graph, between kernels, that
+  /// takes half as long as a memory set.
   void fill(void* to, unsigned char byte, std::size_t bytes) const {
     constexpr std::size_t little = 16384;
     if (bytes <= little) {
@@ -67,6 +76,7 @@ class cuda_space {
     }
   }
 
+  /// The value at `from`. Waits.
   template <class T>
   T read(T const* from) const {
     T value;
@@ -74,7 +84,7 @@ class cuda_space {
     return value;
   }
 
-  /// Copies and waits.
+  /// Copies `n` values from the device and waits.
   template <class T>
   void copy_to_host(T* to, T const* from, std::size_t n) const {
     if (n == 0) return;
@@ -83,7 +93,7 @@ class cuda_space {
     synchronize();
   }
 
-  /// Copies; the source may be changed as soon as the call returns.
+  /// Copies `n` values to the device and waits; the source may be changed as soon as the call returns.
   template <class T>
   void copy_from_host(T* to, T const* from, std::size_t n) const {
     if (n == 0) return;

@@ -30,7 +30,7 @@ struct compute_records {
 template <class Record, class S>
 class records : public kept_in_space<Record> {
  public:
-  /// The records are kept in memory of the space, as many as there are.
+  /// The records are kept in memory of the space, as many as there are, in the order `o`.
   explicit records(order o = order::unspecified) : order_{o} {}
   /// The records are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total`
   /// tells how many there are all the same. Which ones are stored if they do not fit is unspecified, unless the order
@@ -45,12 +45,13 @@ class records : public kept_in_space<Record> {
   /// True if all of them are stored.
   bool complete() const { return size_ == total(); }
 
-  /// The stored records, in memory of the space.
+  /// The stored records, `size()` of them, in memory of the space; complete when the work on the stream is done. Valid
+  /// until the next query. Null before the first.
   Record const* data() const { return data_; }
-  /// A copy of the stored records on the host.
+  /// A copy of the stored records on the host. Waits for them.
   std::vector<Record> to_host() const { return download_(data_, size_); }
 
-  /// Makes room for queries of up to so many spheres and pairs: they then allocate nothing.
+  /// Makes room in memory of `space` for queries of up to so many spheres and pairs: they then allocate nothing.
   template <class Space>
   void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
     collected_.reserve(space, spheres, pairs);

@@ -54,16 +54,17 @@ struct find_best {
 template <class Entry, class S, class Key>
 class per_sphere_min : public kept_in_space<Entry> {
  public:
-  /// One entry per sphere, in memory of the space.
+  /// One entry per sphere, in memory of the space; complete when the work on the stream is done. Valid until the next
+  /// query. Null before the first.
   Entry const* data() const { return own_.data(); }
   /// Number of spheres of the last query.
   std::size_t size() const { return size_; }
   /// How many pairs collide.
   std::uint64_t total() const { return collected_.total(); }
-  /// A copy on the host.
+  /// A copy of the entries on the host. Waits for them.
   std::vector<Entry> to_host() const { return download_(data(), size_); }
 
-  /// Makes room for queries of up to so many spheres and pairs: they then allocate nothing.
+  /// Makes room in memory of `space` for queries of up to so many spheres and pairs: they then allocate nothing.
   template <class Space>
   void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
     collected_.reserve(space, spheres, pairs);

@@ -1,0 +1,14 @@
+# What Doxygen does not see of a header of include/collide/: what is no part of the API. Lines keep their numbers.
+# namespace detail may change at any time
+/^namespace detail \{/,/^\}.*namespace detail/s/.*//
+# of the bases in detail/, and what stands with them, what no user sees
+/^ protected:/,/^\};/{/^\};/!s/.*//}
+/^\/\/\/ Kernel body/,/^\};/s/.*//
+# members of classes that the library calls: concepts.hpp, effect.hpp, ranks.hpp and docs/extending.md say what each is for
+s/^  (COLLIDE_HD(_INLINE)? )?(void|bool) (run|is_inactive|accelerate|on_mesh_contact|after_mesh_contact|on_pair_contact|try_wake|begin_step|end_step|check_parameters|all_gather|reduce|exchange_counts|exchange)\(/\/** \\private *\/ &/
+s/^  using (value|block|reads|writes|optional_writes|runs_after) = /\/** \\private *\/ &/
+s/^  static constexpr (S initial|std::uint8_t initial|bool (saves_parameters|keeps_ids_alone)) = /\/** \\private *\/ &/
+s/^  class index/\/** \\private *\/ &/
+s/^class bucket::index/\/** \\private *\/ &/
+# overloads that end with a sentence of static_assert
+/^  \/\/ .*(ends? here|arguments of another kind)/,/^$/s/.*//

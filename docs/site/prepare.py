@@ -1,0 +1,140 @@
+"""prepare.py XML OUT: puts together in the folder OUT what Sphinx makes the site of. XML is the folder of Doxygen's result.
+
+The pages of docs/ are those that one reads in the repository. Here their links are changed: one to a source file leads to a
+page that shows it, one to a folder to a page that lists it, one to data to a download. The pages are arranged as NAV says.
+"""
+import os
+import pathlib
+import re
+import shutil
+import sys
+
+from regroup import regroup
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+
+# The navigation: parts, and their pages in this order. `*` is all pages of a folder. The last part has the rest too.
+NAV = {
+    "Use": ["install", "guide", "choosing", "programs", "gallery"],
+    "Tutorials": ["tutorials/*"],
+    "Simulations": ["simulation", "effects", "ranks"],
+    "Reference": ["api/index", "accuracy", "performance", "glossary"],
+    "Inside": ["design", "extending", "contributing", "changelog"],
+    "Development": ["development/*"],
+}
+# Pages that stand elsewhere in the repository.
+ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHANGELOG.md", "index": ROOT / "README.md"}
+LISTS = {DOCS / "README.md", DOCS / "index.md"}  # the navigation takes their place
+CODE = {".hpp": "cpp", ".cuh": "cuda", ".cpp": "cpp", ".cu": "cuda", ".py": "python", ".cmake": "cmake", ".md": "markdown"}
+
+
+def language(path):
+    """Of a file that is shown; None of data, which the site gives as a download."""
+    if path.name == "CMakeLists.txt":
+        return "cmake"
+    if not path.suffix and path.read_bytes().startswith(b"#!"):
+        return "python" if b"python" in path.read_bytes().split(b"\n")[0] else "bash"
+    return CODE.get(path.suffix)
+
+
+def pages():
+    """The name of each page, and its file."""
+    found = {path.relative_to(DOCS).with_suffix("").as_posix(): path for path in sorted(DOCS.rglob("*.md"))}
+    return {name: path for name, path in {**found, **ELSEWHERE}.items() if path not in LISTS}
+
+
+class Site:
+    def __init__(self, out):
+        self.out, self.pages, self.shown, self.broken = out, pages(), set(), []
+        self.names = {path: name for name, path in self.pages.items()}
+        self.names.update({path: "index" for path in LISTS})
+
+    def write(self, name, text):
+        path = self.out / f"{name}.md"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def link(self, target, page, name):
+        """Where a link of a page leads on the site."""
+        file, hash_, anchor = target.partition("#")
+        if not file or re.match(r"[a-z]+:", target):
+            return target
+        path = (page.parent / file).resolve()
+        if path in self.names:
+            there = f"{self.names[path]}.md"
+        elif path.is_relative_to(DOCS / "images"):
+            there = path.relative_to(DOCS).as_posix()
+        elif not path.exists():
+            self.broken.append(f"{page.relative_to(ROOT)}: {target} does not exist")
+            return target
+        elif path.is_dir() or language(path):
+            there = f"{self.show(path)}.md"
+        else:
+            there = f"data/{path.relative_to(ROOT).as_posix()}"
+            (self.out / there).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(path, self.out / there)
+        return os.path.relpath(there, os.path.dirname(name) or ".") + hash_ + anchor
+
+    def show(self, path):
+        """Makes a page that shows a file, or lists a folder; returns its name."""
+        relative = path.relative_to(ROOT).as_posix()
+        name = f"source/{relative}" + ("/index" if path.is_dir() else "")
+        if path in self.shown:
+            return name
+        self.shown.add(path)
+        head = f"---\norphan: true\n---\n\n# {relative}\n\n"
+        if path.is_dir():
+            inside = [p for p in sorted(path.iterdir()) if not p.name.startswith((".", "__"))]
+            lines = (f"- [{p.name}]({self.link(p.name, path / 'x', name)})\n" for p in inside)
+            self.write(name, head + "".join(lines))
+        else:
+            self.write(name, f"{head}``````{{code-block}} {language(path)}\n:force:\n{path.read_text()}\n``````\n")
+        return name
+
+    def page(self, name, path):
+        def outside_code(text):
+            text = re.sub(r"<!--.*?-->", "", text, flags=re.S)  # one at the beginning of a line would end a paragraph
+            return re.sub(r"(\]\()([^)\s]+)(\))", lambda m: m[1] + self.link(m[2], path, name) + m[3], text)
+        text = path.read_text().replace("```mermaid", "```text")  # which Sphinx does not draw
+        parts = re.split(r"(^```.*?^```$|`[^`\n]+`)", text, flags=re.M | re.S)
+        text = "".join(part if i % 2 else outside_code(part) for i, part in enumerate(parts))
+        if name == "index":
+            text += self.navigation()
+        self.write(name, text)
+
+    def navigation(self):
+        text, left = "", set(self.pages) - {"index"} - {n for n in self.pages if n.startswith("api/") and n != "api/index"}
+        for caption, entries in NAV.items():
+            names = [n for e in entries for n in (sorted(self.pages) if e.endswith("*") else [e])
+                     if n in self.pages and (n == e or (e.endswith("*") and n.startswith(e[:-1])))]
+            left -= set(names)
+            if caption == list(NAV)[-1]:
+                names += sorted(left)
+            lines = "".join(f"{n}\n" for n in names)
+            if names:
+                text += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n{lines}```\n"
+        return text
+
+    def reference(self):
+        """Each public header is in one page of docs/api/."""
+        listed = re.findall(r"^```\{doxygenfile\} (\S+)", "".join((DOCS / "api" / p).read_text() for p in os.listdir(DOCS / "api")), re.M)
+        headers = {p.name for p in (ROOT / "include" / "collide").iterdir() if p.is_file()}
+        if headers != set(listed) or len(listed) != len(headers):
+            wrong = headers ^ set(listed) or {n for n in listed if listed.count(n) > 1}
+            sys.exit(f"docs/site/prepare.py: not in exactly one page of docs/api/: {', '.join(sorted(wrong))}")
+
+    def make(self):
+        self.reference()
+        for name, path in self.pages.items():
+            self.page(name, path)
+        for folder in (DOCS / "images", DOCS / "site" / "_static"):
+            shutil.copytree(folder, self.out / folder.name, dirs_exist_ok=True)
+        shutil.copy(DOCS / "site" / "conf.py", self.out)
+        if self.broken:
+            sys.exit("\n".join(self.broken))
+
+
+if __name__ == "__main__":
+    regroup(pathlib.Path(sys.argv[1]))
+    Site(pathlib.Path(sys.argv[2]).resolve()).make()
