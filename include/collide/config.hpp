@@ -1,7 +1,9 @@
 /// \file
-/// What marks functions and loops for host and device, and the version: the only macros of the library, but for those
-/// of compiled.hpp.
+/// What marks functions and loops for host and device: the only macros of the library, but for those of version.hpp and
+/// compiled.hpp.
 #pragma once
+
+#include <collide/version.hpp>
 
 #if defined(__CUDACC__)
 /// Marks a function that runs on the host and on the device.
@@ -38,7 +40,3 @@
 #else
 #define COLLIDE_NO_UNROLL
 #endif
-
-#define COLLIDE_VERSION_MAJOR 0
-#define COLLIDE_VERSION_MINOR 1
-#define COLLIDE_VERSION_PATCH 0
