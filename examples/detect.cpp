@@ -1,6 +1,6 @@
 /// \file
 /// Finds every pair of a sphere (CSV) and a triangle (OBJ) that touch. What finds them is in detect/, and compiled once
-/// for each scalar type.
+/// for each scalar type, as CUDA where there is nvcc. Nothing here is for CUDA.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "detect/detection.hpp"
-#include "io/device.hpp"
 #include "io/output.hpp"
 #include "io/ply.hpp"
 #include "io/program.hpp"
@@ -144,7 +143,7 @@ void check(options& wish) {
   io::check_outputs(
       {{"MESH", wish.mesh}, {"SPHERES", wish.spheres}},
       {{"--output", wish.output}, {"--contacts", wish.contacts}, {"--ply", wish.ply}, {"--report", wish.report}});
-  io::choose_space(wish.space, [](auto space) { io::device_of<typename decltype(space)::type>::require(); });
+  detection::require_space(wish.space);
 }
 
 }  // namespace

@@ -52,6 +52,9 @@ struct findings {
   std::string device;
 };
 
+/// Throws unless this program has the space of that name, and this computer the device.
+void require_space(std::string const& name);
+
 /// Detects with the composition that the options name. It is instantiated in a file for each scalar type.
 template <class S>
 findings<S> detect(options const& wish, scene<S> const& from);

@@ -1,3 +1,7 @@
 #include "detect.hpp"
 
 template detection::findings<float> detection::detect(options const&, scene<float> const&);
+
+void detection::require_space(std::string const& name) {
+  io::choose_space(name, [](auto space) { io::device_of<typename decltype(space)::type>::require(); });
+}

@@ -12,7 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <collide/config.hpp>
+#include <collide/version.hpp>
 
 #include "error.hpp"
 

@@ -1,7 +1,9 @@
 /// \file
-/// What marks functions and loops for host and device, and the version: the only macros of the library, but for those
-/// of compiled.hpp.
+/// What marks functions and loops for host and device: the only macros of the library, but for those of version.hpp and
+/// compiled.hpp.
 #pragma once
+
+#include <collide/version.hpp>
 
 #if defined(__CUDACC__)
 /// Marks a function that runs on the host and on the device.
@@ -29,7 +31,6 @@
 /// registers.
 #define COLLIDE_HD_RARE COLLIDE_HD_INLINE
 #else
-/// Marks a function that is called rarely.
 #define COLLIDE_HD_RARE COLLIDE_HD_NOINLINE inline
 #endif
 
@@ -40,10 +41,3 @@
 /// Before a loop that the device does not unroll.
 #define COLLIDE_NO_UNROLL
 #endif
-
-/// The major version.
-#define COLLIDE_VERSION_MAJOR 0
-/// The minor version. Before 1.0.0 a new one may change or remove public names.
-#define COLLIDE_VERSION_MINOR 1
-/// The patch version.
-#define COLLIDE_VERSION_PATCH 0

@@ -15,7 +15,7 @@ TOO_LONG = set()  # headers still to be split; what is here must be too long
 
 # From the lowest to the highest: the headers of a layer, and the folders of which all headers are its own.
 LAYERS = {
-    "vocabulary": "config.hpp contact.hpp error.hpp geometry.hpp impact.hpp memory.hpp precision.hpp",
+    "vocabulary": "config.hpp contact.hpp error.hpp geometry.hpp impact.hpp memory.hpp precision.hpp version.hpp",
     "views": "mesh.hpp moving_spheres.hpp points.hpp spheres.hpp",
     "execution": "detail/execution/ atomic_add.hpp cuda.cuh cuda_memory.cuh host.hpp upload.hpp",
     "numeric": "detail/numeric/",

@@ -5,6 +5,17 @@
 
 std::uint64_t hits_of_the_other_unit();
 
+#if defined(FOUND_VERSION)
+#define TEXT_OF(x) #x
+#define TEXT(x) TEXT_OF(x)
+/// What find_package said, and what the header says.
+constexpr char const found_version[] = TEXT(FOUND_VERSION);
+constexpr char const header_version[] =
+    TEXT(COLLIDE_VERSION_MAJOR) "." TEXT(COLLIDE_VERSION_MINOR) "." TEXT(COLLIDE_VERSION_PATCH);
+#else
+constexpr char const found_version[] = "", header_version[] = "";
+#endif
+
 /// Whether the host has as many threads as it must, and says what is missing where it has but one.
 bool has_threads(bool several) {
   try {
@@ -27,9 +38,12 @@ bool refuses_without_device() {
 }
 #endif
 
+static_assert(COLLIDE_VERSION >= 100 && COLLIDE_VERSION / 10000 == COLLIDE_VERSION_MAJOR);
+
 /// The argument is `one` or `several`: the threads that the host must have.
 int main(int argc, char** argv) {
   if (argc != 2 || !has_threads(std::strcmp(argv[1], "several") == 0)) return 2;
+  if (std::strcmp(found_version, header_version) != 0) return 4;
 #if defined(__CUDACC__)
   if (collide::cuda_device_count() == 0) return refuses_without_device() ? 77 : 3;  // 77: the rest is skipped
 #endif

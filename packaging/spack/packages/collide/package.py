@@ -1,0 +1,17 @@
+from spack.package import *
+
+
+class Collide(CMakePackage):
+    """Collision detection between a triangle mesh and very many spheres, on CPU and GPU. Header-only."""
+
+    license("BSD-3-Clause")
+
+    # For `spack dev-build` or `spack develop`, which take the sources of a folder.
+    version("main")
+
+    depends_on("cxx", type="build")
+    depends_on("cmake@3.25:", type="build")
+    depends_on("eigen@3.4:")
+
+    def cmake_args(self):
+        return [self.define(f"COLLIDE_{part}", False) for part in ("TESTS", "EXAMPLES", "BENCH", "INSTALL_COMPILED")]

@@ -1,0 +1,19 @@
+"""What names a version must name that of include/collide/version.hpp."""
+import json
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+header = (ROOT / "include" / "collide" / "version.hpp").read_text()
+version = ".".join(re.findall(r"^#define COLLIDE_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)$", header, re.M))
+said = {
+    "CITATION.cff": re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(), re.M)[1],
+    "packaging/vcpkg/collide/vcpkg.json": json.loads((ROOT / "packaging/vcpkg/collide/vcpkg.json").read_text())["version"],
+    "CHANGELOG.md": re.search(r"^## \[(\d\S*)\]", (ROOT / "CHANGELOG.md").read_text(), re.M)[1],  # the newest
+}
+wrong = {name: other for name, other in said.items() if other != version}
+for name, other in wrong.items():
+    print(f"{name} says {other}, include/collide/version.hpp {version}")
+sys.exit(bool(wrong))
