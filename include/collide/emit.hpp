@@ -64,6 +64,7 @@ struct emit_particles {
 template <class Source = nozzle>
 struct emit_from {
   using writes = columns<position, velocity, alive>;
+  static constexpr bool saves_parameters = detail::saves_parameters<Source>;
 
   double rate = 0;
   Source source = Source();

@@ -262,6 +262,8 @@ class simulation {
   execution_space const& space() const { return space_; }
 
  private:
+  friend class detail::checkpoint<Detector, Effect...>;
+
   static constexpr bool sweeps = effects_type::touches && !detail::is_discrete<narrow_phase, S>;
   static constexpr bool has_begin_step = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
   template <class Triangles>

@@ -23,6 +23,7 @@ template <class Field = uniform_field>
 struct wind {
   using reads = columns<position>;
   using writes = columns<velocity>;
+  static constexpr bool saves_parameters = detail::saves_parameters<Field>;
 
   double linear = 0, quadratic = 0;
   Field field = Field();
