@@ -114,8 +114,7 @@ class checkpoint {
     space.for_each(padded_size(places),
                    init_particles<S, column_list>{state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr});
     restore_columns(space, state, column_list());
-    std::size_t next = 0;
-    (restore_parameters<Effect>(to, next), ...);
+    (restore_parameters<Effect>(to), ...);
     to.state_ = state;
     to.time_ = numbers_.time;
     to.reverse_order_ = numbers_.reverse_order != 0;
@@ -164,13 +163,14 @@ class checkpoint {
   template <class E>
   void read_parameters(checkpoint_reader& from) {
     if constexpr (has_bytes<E>) {
-      parameters_.push_back(from.block<unsigned char>(parameters_name<E>(), sizeof(E)));
+      std::get<bytes_of<E>>(parameters_).values = from.block<unsigned char>(parameters_name<E>(), sizeof(E));
     }
   }
   template <class E>
-  void restore_parameters(simulated& to, std::size_t& next) const {
+  void restore_parameters(simulated& to) const {
     if constexpr (has_bytes<E>) {
-      std::memcpy(static_cast<void*>(&to.template effect<E>()), parameters_[next++].data(), sizeof(E));
+      std::memcpy(static_cast<void*>(&to.template effect<E>()), std::get<bytes_of<E>>(parameters_).values.data(),
+                  sizeof(E));
     }
   }
 
@@ -193,6 +193,10 @@ class checkpoint {
     (copy(state.at(C{}), std::get<column_of<C>>(columns_).values), ...);
   }
 
+  template <class E>
+  struct bytes_of {
+    std::vector<unsigned char> values;
+  };
   template <class C>
   struct column_of {
     std::vector<column_element<C, S>> values;
@@ -205,7 +209,7 @@ class checkpoint {
   };
 
   saved_numbers<S> numbers_;
-  std::vector<std::vector<unsigned char>> parameters_;
+  std::tuple<bytes_of<Effect>...> parameters_;
   typename table_of<column_list>::type columns_;
 };
 

@@ -57,10 +57,6 @@ std::string read_file(std::string const& path) {
 
 TEST_CASE("checkpoint: a simulation that is loaded goes on in the same bits") { tests::check_scenes_go_on(host(2)); }
 
-TEST_CASE("checkpoint: on the GPU's kernels in lockstep, too") {
-  tests::check_scenes_go_on(tests::lockstep<64, true>());
-}
-
 TEST_CASE("checkpoint: pointers are not saved") { tests::check_pointers_stay(host(1)); }
 
 TEST_CASE("checkpoint: from one space to another, and the same bytes again") {
