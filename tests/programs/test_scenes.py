@@ -160,18 +160,17 @@ class All(SceneTest):
             self.assertEqual(seen, [f"particles-{i:05}.vtp" for i in range(6)])
 
     def test_a_process_that_is_killed_leaves_a_checkpoint(self):
-        args = ("--particles", 200, "--seconds", 2, "--frames", 400, "--threads", 1)
-        self.shoot("snow", *args)
-        killed = subprocess.Popen([programs.PROGRAMS / "snow", *map(str, args), "--save", "state"], cwd=self.folder,
-                                  stdout=subprocess.DEVNULL)
+        args = ("--particles", 200, "--seconds", 5, "--frames")
+        self.shoot("snow", *args, 1)
+        killed = subprocess.Popen([programs.PROGRAMS / "snow", *map(str, args), "3000", "--threads", "1", "--save", "state"],
+                                  cwd=self.folder, stdout=subprocess.DEVNULL)
         while not self.path("state").exists():
             self.assertIsNone(killed.poll())
             time.sleep(0.001)
-        time.sleep(0.1)
         killed.kill()
         killed.wait()
-        self.succeed("snow", *args, "--load", "state", "--output", "rest")
-        self.assertEqual(self.read("film/particles-00399.vtp"), self.read("rest/particles-00399.vtp"))
+        self.shoot("snow", *args, 1, "--load", "state", output="rest")
+        self.assertEqual(self.read("film/particles-00000.vtp"), self.read("rest/particles-00000.vtp"))
 
     def test_bad_checkpoints(self):
         self.succeed("dust", *self.small, "--save", "state")
