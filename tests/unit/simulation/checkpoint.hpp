@@ -193,9 +193,11 @@ template <class From, class To>
 void check_other_space(From const& from, To const& to) {
   using collide::bounce;
   using collide::gravity;
+  using collide::sleep;  // not that of unistd.h
   world<float> const w = layers<float>(5, 2, 0.05);
-  running<collide::simulation<meets_mesh<From>, gravity, bounce>> first(from, w, gravity{}, bounce{0.7});
-  running<collide::simulation<meets_mesh<To>, gravity, bounce>> next(to, w);
+  running<collide::simulation<meets_mesh<From>, sleep, gravity, bounce>> first(from, w, sleep{}, gravity{},
+                                                                               bounce{0.7});
+  running<collide::simulation<meets_mesh<To>, sleep, gravity, bounce>> next(to, w);
   first.simulation.steps(200, 1e-3f);
   std::string const file = saved(first.simulation);
   load_from(file, next.simulation);
