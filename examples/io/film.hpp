@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <collide/bucket.cuh>
+#include <collide/checkpoint.hpp>
 #include <collide/emit.hpp>
 #include <collide/simulation.cuh>
 #include <collide/upload.hpp>
@@ -27,18 +28,20 @@ namespace io {
 struct film {
   char const* name;
   char const* about;
-  scene stage;            ///< the mesh, and the radius of the particles
-  double dt;              ///< a step
-  std::size_t particles;  ///< how many there are at most
-  double seconds;         ///< of the scene's time
-  double pouring = 1;     ///< for which part of them there are new particles
-  std::size_t frames = 100;
-  std::string space = "host", output = "", report = "";
+  scene stage;                          ///< the mesh, and the radius of the particles
+  double dt;                            ///< a step
+  std::size_t particles;                ///< how many there are at most
+  double seconds;                       ///< of the scene's time
+  double pouring = 1;                   ///< for which part of them there are new particles
+  std::size_t frames = 100, until = 0;  ///< how many pictures there are, and after how many to stop; 0: after all
+  std::string space = "host", output = "", report = "", save = "", load = "";
   int threads = 0;
 
   /// How many steps there are, and after how many of them nothing more comes.
   std::size_t steps() const { return static_cast<std::size_t>(std::ceil(seconds / dt)); }
   std::size_t pouring_steps() const { return static_cast<std::size_t>(std::ceil(pouring * seconds / dt)); }
+  /// After how many steps picture number `i` is taken, if the one before was taken after `done`.
+  std::size_t picture(std::size_t i, std::size_t done) const { return std::max(done + 1, steps() * (i + 1) / frames); }
   /// How many particles must come a second, for all to have come then.
   double rate() const {
     double const simulated = static_cast<double>(static_cast<float>(dt)) * static_cast<double>(pouring_steps());
@@ -158,15 +161,24 @@ void shoot(film const& wish, Simulation simulation) {
   auto const radius = static_cast<float>(stage.radius);
   simulation.set(collide::spheres_xyz<float>(nullptr, 0, radius), nullptr, wish.particles);
   simulation.set_mesh(mesh.view());
+  if (!wish.load.empty()) collide::load(simulation, wish.load);
 
-  std::size_t const steps = wish.steps();
   auto const step = static_cast<float>(wish.dt);
-  if (!wish.output.empty()) write_mesh(wish.output + "/mesh.vtp", vertices, stage.corners);
+  auto const begin = static_cast<std::size_t>(std::llround(simulation.time() / static_cast<double>(step)));
+  std::size_t first = 0;  // the next picture
+  for (std::size_t at = 0; (at = wish.picture(first, at)) <= begin;) ++first;
+  std::size_t const steps = wish.steps();
   std::vector<vtk_frame> frames;
+  auto const goes_on = [&](std::size_t done) {
+    return done < steps && (wish.until == 0 || first + frames.size() < wish.until);
+  };
+  if (!goes_on(begin)) throw data_error(wish.load, "the film is over there, or --until comes before it");
+  if (!wish.output.empty()) write_mesh(wish.output + "/mesh.vtp", vertices, stage.corners);
   double spent = 0;
   progress bar(wish.name, static_cast<double>(steps));
-  for (std::size_t done = 0; done < steps;) {
-    std::size_t const until = std::max(done + 1, steps * (frames.size() + 1) / wish.frames);
+  std::size_t done = begin;
+  while (goes_on(done)) {
+    std::size_t const until = wish.picture(first + frames.size(), done);
     auto const start = clock::now();
     for (; done < until; ++done) {
       if (done == wish.pouring_steps()) stop_sources(simulation);
@@ -177,11 +189,12 @@ void shoot(film const& wish, Simulation simulation) {
     spent += std::chrono::duration<double, std::milli>(clock::now() - start).count();
     bar.update(static_cast<double>(done));
     char file[32];
-    std::snprintf(file, sizeof file, "particles-%05zu.vtp", frames.size());
+    std::snprintf(file, sizeof file, "particles-%05zu.vtp", first + frames.size());
     frames.push_back({file, static_cast<double>(done) * wish.dt});
     if (!wish.output.empty()) {
       write_particles(wish.output + "/" + file, simulation, typename Simulation::columns());
     }
+    if (!wish.save.empty()) collide::save(simulation, wish.save);
   }
   if (!wish.output.empty()) {
     output_file out(wish.output + "/film.pvd");
@@ -189,17 +202,17 @@ void shoot(film const& wish, Simulation simulation) {
     out.commit();
   }
 
-  double const each = spent / static_cast<double>(steps);
+  double const each = spent / static_cast<double>(done - begin);
   int const threads = device::threads(space);
-  std::cout << wish.name << ": " << wish.particles << " particles, " << steps << " steps of " << wish.dt << " s, "
-            << each << " ms a step, " << Simulation::bytes_per_particle << " bytes a particle, " << wish.space << " ("
-            << device::name() << (threads > 1 ? ", " + std::to_string(threads) + " threads" : "") << ")\n";
+  std::cout << wish.name << ": " << wish.particles << " particles, " << done - begin << " steps of " << wish.dt
+            << " s, " << each << " ms a step, " << Simulation::bytes_per_particle << " bytes a particle, " << wish.space
+            << " (" << device::name() << (threads > 1 ? ", " + std::to_string(threads) + " threads" : "") << ")\n";
   if (wish.report.empty()) return;
   output_file report(wish.report);
   report << nlohmann::ordered_json{{"scene", wish.name},
                                    {"particles", wish.particles},
                                    {"triangles", stage.triangle_count()},
-                                   {"steps", steps},
+                                   {"steps", done - begin},
                                    {"dt", wish.dt},
                                    {"ms_per_step", each},
                                    {"bytes_per_particle", Simulation::bytes_per_particle},
@@ -227,6 +240,12 @@ int film_program(int argc, char** argv, film wish, Make const& make) {
   app.add_option("--output", wish.output, "folder for film.pvd and mesh.vtp, which ParaView opens; none if not given")
       ->type_name("FOLDER");
   app.add_option("--report", wish.report, "measurements (JSON)")->type_name("FILE");
+  app.add_option("--until", wish.until, "after how many pictures to stop; 0 for all")
+      ->check(CLI::Range(0, 99'999))
+      ->type_name("N");
+  app.add_option("--save", wish.save, "checkpoint for --load, after each picture")->type_name("FILE");
+  app.add_option("--load", wish.load, "checkpoint to go on from; the other options are as they were")
+      ->type_name("FILE");
   add_choice(app, "--space", wish.space, {"host", "cuda", "cuda_shared"}, "execution space");
   app.add_option("--threads", wish.threads, "threads of the host; 0 for all")
       ->check(CLI::Range(0, 1024))
@@ -238,10 +257,13 @@ int film_program(int argc, char** argv, film wish, Make const& make) {
     choose_space(wish.space, [&](auto space) {
       using device = device_of<typename decltype(space)::type>;
       device::require();
-      if (!wish.report.empty() && !wish.output.empty() && detail::is_within(wish.report, wish.output)) {
-        throw usage_error("--report: " + wish.report + " is in the folder of --output");
+      for (named_file const& file : {named_file{"--report", wish.report}, named_file{"--save", wish.save}}) {
+        if (!file.path.empty() && !wish.output.empty() && detail::is_within(file.path, wish.output)) {
+          throw usage_error(file.name + ": " + file.path + " is in the folder of --output");
+        }
       }
-      check_outputs({}, {{"--report", wish.report}});
+      check_outputs({{"--load", wish.load}}, {{"--report", wish.report}});
+      check_outputs({{"--report", wish.report}}, {{"--save", wish.save}});  // may be --load's, too
       if (!wish.output.empty()) detail::make_folder(wish.output);
       detail::shoot(wish, make(device::make(wish.threads, device::memory()), wish));
     });

@@ -22,7 +22,8 @@
 /// - `end_step(particle&, dt)`, at the end of the step.
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
-/// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense.
+/// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense. An effect whose
+/// parameters have pointers says `static constexpr bool saves_parameters = false`; see checkpoint.hpp.
 /// `on_pair_contact` is called before the other members but `begin_step`: `self` and `other` are as they were when the
 /// step began, and what changes is `particle`, so that both of a pair see the same.
 ///
@@ -35,6 +36,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 
 #include <collide/columns.hpp>
 #include <collide/contact.hpp>
@@ -63,6 +65,12 @@ COLLIDE_HD_INLINE S rounding_at(vec3<S> const& position) {
 inline void check_parameter(bool is_right, char const* must) {
   if (!is_right) throw error(std::string("collide: ") + must);
 }
+
+/// True if what an effect, or a part of it, has in memory means the same in another process.
+template <class E, class = void>
+inline constexpr bool saves_parameters = true;
+template <class E>
+inline constexpr bool saves_parameters<E, std::void_t<decltype(E::saves_parameters)>> = E::saves_parameters;
 
 }  // namespace detail
 

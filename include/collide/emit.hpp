@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include <collide/detail/simulation/particle.hpp>
 #include <collide/effect.hpp>
@@ -65,6 +66,7 @@ struct emit_particles {
 template <class Source = nozzle>
 struct emit_from {
   using writes = columns<position, velocity, alive>;
+  static constexpr bool saves_parameters = detail::saves_parameters<Source>;
 
   double rate = 0;           ///< particles per time, not negative
   Source source = Source();  ///< how they begin
@@ -77,6 +79,8 @@ struct emit_from {
   }
   template <class Space, class State, class S>
   void begin_step(Space& space, State const& state, S dt) const {
+    static_assert(std::is_invocable<Source const&, std::uint64_t, vec3<S>&, vec3<S>&>::value,
+                  "collide: a source of emit_from is called as source(number, position&, velocity&) const");
     if (!(rate > 0) || state.size == state.placed) return;
     auto const most = static_cast<std::size_t>(std::ceil(rate * static_cast<double>(dt))) + 1;
     space.for_each(most, detail::emit_particles<S, State, Source>{state, source, rate, static_cast<double>(dt)});

@@ -10,6 +10,7 @@
 
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/simulation/arguments.hpp>
+#include <collide/detail/simulation/check_effect.hpp>
 #include <collide/detail/simulation/lookup_tuning.hpp>
 #include <collide/detail/simulation/particle_kernels.hpp>
 #include <collide/detail/simulation/step.hpp>
@@ -53,6 +54,7 @@ class simulation {
   using narrow_phase = typename Detector::narrow_phase;
   using index = typename broad_phase::template index<S>;
 
+  static_assert((detail::check_effect<Effect, execution_space, S>() && ...));
   static_assert((detail::is_effect<Effect, execution_space, S> && ...),
                 "collide: what follows the detector in a simulation are effects, such as gravity or bounce: copyable "
                 "classes with at least one of the members that effect.hpp names");
@@ -264,6 +266,8 @@ class simulation {
   execution_space const& space() const { return space_; }  ///< the space
 
  private:
+  friend class detail::checkpoint<Detector, Effect...>;
+
   static constexpr bool sweeps = effects_type::touches && !detail::is_discrete<narrow_phase, S>;
   static constexpr bool has_begin_step = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
   template <class Triangles>

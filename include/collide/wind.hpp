@@ -2,6 +2,8 @@
 /// Effect: the resistance of a medium that moves.
 #pragma once
 
+#include <type_traits>
+
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/effect.hpp>
 
@@ -26,6 +28,7 @@ template <class Field = uniform_field>
 struct wind {
   using reads = columns<position>;
   using writes = columns<velocity>;
+  static constexpr bool saves_parameters = detail::saves_parameters<Field>;
 
   double linear = 0;      ///< per time, not negative
   double quadratic = 0;   ///< per length, not negative
@@ -37,6 +40,8 @@ struct wind {
 
   template <class Particle, class S>
   COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
+    static_assert(std::is_invocable_r<vec3<S>, Field const&, vec3<S> const&>::value,
+                  "collide: a field of wind is called as field(position) const, and returns a velocity");
     vec3<S> const there = field(p[position{}]);
     vec3<S> const v = p[velocity{}] - there;
     S const k = S(linear) + S(quadratic) * detail::sqrt_rn(detail::dot(v, v));

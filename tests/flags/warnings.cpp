@@ -6,6 +6,7 @@
 #include <collide/automatic.cuh>
 #include <collide/bounce.hpp>
 #include <collide/bounds.hpp>
+#include <collide/checkpoint.hpp>
 #include <collide/drag.hpp>
 #include <collide/earliest.hpp>
 #include <collide/emit.hpp>
@@ -60,6 +61,8 @@ void move(mesh_view<S> mesh, sphere_view<S> const& spheres) {
   one.steps(2, S(0.1));
   one.template to_host<position>();
   one.spheres();
+  save(one, "file");
+  load(one, "file");
 }
 
 template <class S>

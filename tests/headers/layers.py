@@ -28,7 +28,7 @@ LAYERS = {
     "detector": "compiled.hpp detector.hpp validate.hpp",
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh extend.hpp",
     "effect interface": "columns.hpp effect.hpp integrators.hpp",
-    "simulation": "detail/simulation/ simulation.cuh",
+    "simulation": "detail/simulation/ checkpoint.hpp simulation.cuh",
     "effects": "absorb.hpp bounce.hpp bounds.hpp contact_forces.hpp drag.hpp emit.hpp friction.hpp gravity.hpp lost_motion.hpp polydisperse.hpp sleep.hpp "
                "sphere_contact.hpp spin.hpp adhesion.hpp wind.hpp",
     "streaming": "detail/streaming/ streamed.cuh",

@@ -4,6 +4,8 @@ import json
 import math
 import re
 import struct
+import subprocess
+import time
 import unittest
 from xml.etree import ElementTree
 
@@ -133,6 +135,7 @@ class Dust(SceneTest):
 
 class All(SceneTest):
     small = ("--particles", 150, "--seconds", 0.5, "--frames", 3)
+    long = ("--particles", 150, "--seconds", 1.5, "--frames", 6)
 
     def test_the_same_bits(self):
         for scene in SCENES:
@@ -140,6 +143,49 @@ class All(SceneTest):
             self.succeed(scene, *self.small, "--threads", 2, "--output", scene + "-2")
             for file in ("film.pvd", "mesh.vtp", "particles-00002.vtp"):
                 self.assertEqual(self.read(f"{scene}/{file}"), self.read(f"{scene}-2/{file}"), (scene, file))
+
+    def test_going_on_from_a_checkpoint_in_another_process(self):
+        """For each scene, saved while particles still come, and after: the pictures are those of a film without a pause."""
+        for scene in SCENES:
+            self.shoot(scene, *self.long, output=scene)
+            self.shoot(scene, *self.long, "--until", 2, "--save", "state", output=scene + "-1")
+            self.shoot(scene, *self.long, "--until", 5, "--load", "state", "--save", "state", output=scene + "-2")
+            self.shoot(scene, *self.long, "--load", "state", output=scene + "-3")
+            seen = []
+            for part in "123":
+                names = sorted(p.name for p in self.path(f"{scene}-{part}").glob("particles-*"))
+                for name in names:
+                    self.assertEqual(self.read(f"{scene}/{name}"), self.read(f"{scene}-{part}/{name}"), (scene, part, name))
+                seen += names
+            self.assertEqual(seen, [f"particles-{i:05}.vtp" for i in range(6)])
+
+    def test_a_process_that_is_killed_leaves_a_checkpoint(self):
+        args = ("--particles", 200, "--seconds", 5, "--frames")
+        self.shoot("snow", *args, 1)
+        killed = subprocess.Popen([programs.PROGRAMS / "snow", *map(str, args), "3000", "--threads", "1", "--save", "state"],
+                                  cwd=self.folder, stdout=subprocess.DEVNULL)
+        while not self.path("state").exists():
+            self.assertIsNone(killed.poll())
+            time.sleep(0.001)
+        killed.kill()
+        killed.wait()
+        self.shoot("snow", *args, 1, "--load", "state", output="rest")
+        self.assertEqual(self.read("film/particles-00000.vtp"), self.read("rest/particles-00000.vtp"))
+
+    def test_bad_checkpoints(self):
+        self.succeed("dust", *self.small, "--save", "state")
+        good = self.read("state")
+        self.assertEqual(self.files(), ["state"])
+        self.write("damaged", good[:-20] + b"?" + good[-19:])
+        self.write("cut", good[:-1])
+        self.write("longer", good + b"\n")
+        for name, words in (("damaged", ["checksum"]), ("cut", ["checksum", "ends"]), ("longer", ["longer"]), ("none", ["none"]),
+                            ("state", ["state", "over"])):
+            self.fail_with(1, words, "dust", *self.small, "--load", name)
+        self.fail_with(1, ["effects"], "snow", *self.small, "--load", "state")
+        self.fail_with(1, ["no/state"], "dust", *self.small, "--save", "no/state")
+        self.fail_with(2, ["--save", "--report"], "dust", *self.small, "--save", "same", "--report", "same")
+        self.fail_with(2, ["--save", "film"], "dust", *self.small, "--save", "film/state", "--output", "film")
 
     def test_what_it_says(self):
         for scene in SCENES:

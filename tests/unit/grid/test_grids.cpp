@@ -154,7 +154,7 @@ TEST_CASE_TEMPLATE("grids: of spheres that move, a few bits tell what walking th
   for (auto& byte : occupied) byte = static_cast<std::uint8_t>(1u << dice.integer(0, 7));
   std::uint32_t const total = 0;
   collide::detail::bucket_ref<S> lookup{{{}, nullptr}, &grid, 1, occupied.data(), nullptr, &total, nullptr, 0};
-  auto const marks = lookup.marks();
+  auto const marks = lookup.occupancy();
   S const bad[] = {std::numeric_limits<S>::infinity(), -std::numeric_limits<S>::infinity(),
                    std::numeric_limits<S>::quiet_NaN()};
   int empty = 0, near_some = 0, unknown = 0, away = 0;
@@ -373,7 +373,7 @@ TEST_CASE_TEMPLATE("grids: a triangle is in the cells of all centres within its 
           }
           if (distance({double(p[0]), double(p[1]), double(p[2])}, t) > static_cast<double>(radius)) continue;
           ++within;
-          auto const place = grid.place_of(level, p);
+          auto const place = grid.cell_at(level, p);
           auto const found = parts.find(place.number);
           missing += found == parts.end() ? 1 : 0;
           missing += ranged.count(place.number) == 0 ? 1 : 0;

@@ -19,7 +19,7 @@ struct all_pairs_ref : triangle_ref<S> {
     return this->mesh.size() == 0;
   }
   COLLIDE_HD bool has_single_cell_lookup(S) const { return false; }
-  COLLIDE_HD occupancy_view<S> marks() const { return {}; }
+  COLLIDE_HD occupancy_view<S> occupancy() const { return {}; }
   template <class Sphere>
   COLLIDE_HD candidate_cursor begin(Sphere const&) const {
     return {0, 0, 0, 0};

@@ -50,14 +50,14 @@ struct fill_entries {
   }
 };
 
-/// Kernel body: counts or fills, with `Pass`, the cells of triangles. A lane enters a triangle that meets few cells at
-/// once; the slabs of the others are spread evenly over the lanes.
+/// Kernel body: counts or fills, with `Pass`, the cells of triangles. A thread enters a triangle that meets few cells
+/// at once; the slabs of the others are spread evenly over the threads.
 template <class S, class Pass>
 struct enter_triangles {
   static constexpr int items = 1;
   /// A block takes fewer triangles where there would be fewer blocks than this: the slabs of large ones keep it busy.
   static constexpr std::size_t many_blocks = 240;
-  static constexpr int together = 4;  ///< cells that a lane asks at a time
+  static constexpr int together = 4;  ///< cells that a thread asks at a time
 
   mesh_view<S> mesh;
   triangle_aabb<S> const* boxes;  ///< null if there was no room for them
@@ -164,7 +164,7 @@ struct enter_triangles {
 /// come first is open; those of cells next to each other are next to each other, but for the ends of blocks.
 template <class S>
 struct allocate_entries {
-  static constexpr int items = 8;  ///< cells of a lane: their bits are a byte
+  static constexpr int items = 8;  ///< cells of a thread: their bits are a byte
 
   grid<S> const* grids;
   std::uint32_t table_bits;
@@ -224,7 +224,7 @@ struct allocate_entries {
   }
 
  private:
-  /// What a lane reads and writes at once.
+  /// What a thread reads and writes at once.
   struct alignas(16) two_lists {
     item_range a, b;
   };

@@ -75,7 +75,7 @@ struct grid_level {
   }
 
   /// The cell that holds a point inside the grid, whose lower end this is, and the place of the point in it.
-  COLLIDE_HD_INLINE cell_ref place_of(vec3<S> const& p, S const (&lower)[3]) const {
+  COLLIDE_HD_INLINE cell_ref cell_at(vec3<S> const& p, S const (&lower)[3]) const {
     std::uint32_t cell[3], place = 0;
     for (int k = 0; k < 3; ++k) {
       std::uint32_t step;
@@ -99,7 +99,7 @@ struct grid_level {
     return smaller(larger(S(0), mul(offset, inverse_width)), S(1 << 30));
   }
 
-  /// By way of a signed integer, for which all processors have an instruction.
+  /// Through a signed integer, for which all processors have an instruction.
   static COLLIDE_HD_INLINE std::uint32_t whole(S x) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(x)); }
 };
 
@@ -170,8 +170,8 @@ struct grid : grid_header<S> {
   }
 
   /// The cell that holds a point inside the grid, and the place of the point in it.
-  COLLIDE_HD_INLINE cell_ref place_of(grid_level<S> const& l, vec3<S> const& p) const {
-    return l.place_of(p, this->lower);
+  COLLIDE_HD_INLINE cell_ref cell_at(grid_level<S> const& l, vec3<S> const& p) const {
+    return l.cell_at(p, this->lower);
   }
 };
 

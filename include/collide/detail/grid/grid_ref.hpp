@@ -37,7 +37,7 @@ struct bucket_ref : triangle_ref<S> {
 
   COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) != 0; }
 
-  /// Which grid serves each of the balls of a pack, if there may be triangles near it; `no_cell` if not, `everywhere`
+  /// Which grid serves each of the spheres of a pack, if there may be triangles near it; `no_cell` if not, `everywhere`
   /// if no grid serves it.
   template <class Pack, int N>
   COLLIDE_HD_INLINE void locate(Pack const& pack, std::int8_t (&number)[N]) const {
@@ -47,7 +47,7 @@ struct bucket_ref : triangle_ref<S> {
     }
   }
 
-  /// True if the ball can touch no triangle.
+  /// True if the sphere can touch no triangle.
   template <class Sphere>
   COLLIDE_HD_INLINE bool empty(Sphere const& ball) const {
     if (this->mesh.size() == 0) return true;
@@ -65,7 +65,7 @@ struct bucket_ref : triangle_ref<S> {
   }
 
   /// The occupancy of the cells, for spheres with `has_single_cell_lookup`. May be read before that is checked.
-  COLLIDE_HD_INLINE occupancy_view<S> marks() const {
+  COLLIDE_HD_INLINE occupancy_view<S> occupancy() const {
     if (grid_count != 1) return {};
     grid<S> const& g = grids[0];
     return {{g.lower[0], g.lower[1], g.lower[2]},
@@ -102,14 +102,14 @@ struct bucket_ref : triangle_ref<S> {
     COLLIDE_HD_INLINE Sphere const& ball(int) const { return only; }
   };
 
-  /// The tightest grid that serves each ball; grids come by falling reach.
+  /// The tightest grid that serves each sphere; grids come by falling reach.
   template <class Pack, int N>
   COLLIDE_HD_INLINE void select_grids(Pack const& pack, std::int8_t (&number)[N]) const {
     for (int k = 0; k < N; ++k) number[k] = is_sound(pack.ball(k)) ? everywhere : no_cell;
     COLLIDE_NO_UNROLL
     for (int g = 0; g < grid_count; ++g) {
       for (int k = 0; k < N; ++k) {
-        // a ball that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
+        // a sphere that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
         bool const served = (number[k] != no_cell) & serves(grids[g], pack.ball(k));
         std::int8_t const there = meets(grids[g], pack.ball(k)) ? static_cast<std::int8_t>(g) : no_cell;
         number[k] = served ? there : number[k];
@@ -117,7 +117,7 @@ struct bucket_ref : triangle_ref<S> {
     }
   }
 
-  /// The centre of a ball at rest is not looked at: it is in no grid if it is NaN.
+  /// The centre of a sphere at rest is not looked at: it is in no grid if it is NaN.
   static COLLIDE_HD_INLINE bool is_sound(sphere<S> const& ball) { return is_valid_radius(ball.radius); }
   static COLLIDE_HD_INLINE bool is_sound(moving_sphere<S> const& ball) {
     return is_valid_radius(ball.radius) && is_finite(ball.centre) && is_finite(ball.displacement);
@@ -145,7 +145,7 @@ struct bucket_ref : triangle_ref<S> {
     return inside;
   }
 
-  /// True if no level has triangles near a ball that this grid serves.
+  /// True if no level has triangles near a sphere that this grid serves.
   template <class Sphere>
   COLLIDE_HD_INLINE bool has_no_candidates_in(grid<S> const& g, Sphere const& ball) const {
     COLLIDE_NO_UNROLL
@@ -155,7 +155,7 @@ struct bucket_ref : triangle_ref<S> {
     return true;
   }
   COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball) const {
-    return !is_occupied(g.place_of(l, ball.centre).number);
+    return !is_occupied(g.cell_at(l, ball.centre).number);
   }
   COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball) const {
     cell_box const r = swept_cells<S>::cell_box_of_path(g, l, ball.centre, ball.displacement);
@@ -186,14 +186,14 @@ struct bucket_ref : triangle_ref<S> {
     return left != 0;
   }
 
-  /// Whether the cell that was gone through last is known to be the last one of a level: a ball at rest is in one.
+  /// Whether the cell that was gone through last is known to be the last one of a level: a sphere at rest is in one.
   static COLLIDE_HD_INLINE bool was_last(sphere<S> const&, candidate_cursor const& c) { return c.step != 0; }
   static COLLIDE_HD_INLINE bool was_last(moving_sphere<S> const&, candidate_cursor const&) { return false; }
 
   COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball, candidate_cursor& c,
                                 std::uint32_t most, candidate_range& range) const {
     if (c.step != 0) return false;
-    cell_ref const at = g.place_of(l, ball.centre);
+    cell_ref const at = g.cell_at(l, ball.centre);
     return next_of_cell(at.number, at.coverage, c, most, range);
   }
 

@@ -14,8 +14,8 @@
 
 namespace collide::detail {
 
-/// Which cells have triangles, of the one level of the one grid that serves balls of one radius: all that most balls
-/// are asked, small enough to be kept in registers.
+/// Which cells have triangles, of the one level of the one grid that serves spheres of one radius: all that most
+/// spheres are asked, small enough to be kept in registers.
 template <class S>
 struct occupancy_view {
   S lower[3];
@@ -93,7 +93,7 @@ struct occupancy_view {
   }
 
  private:
-  /// The cells of a way on an axis, as `way` has them.
+  /// The cells of a path on an axis, as `swept_cells` has them.
   struct cells_on_axis {
     std::uint32_t inside, begin, end;  ///< cells: what they add to the number of a cell
     std::uint32_t more;                ///< cells than one

@@ -24,13 +24,13 @@ struct vertices_as_spheres {
   COLLIDE_HD sphere<S> operator[](std::size_t i) const { return {mesh[i].a, common}; }
 };
 
-/// Where a sphere is; of one that moves, somewhere on its way, from 0 to 1.
+/// Where a sphere is; of one that moves, somewhere on its path, from 0 to 1.
 template <class S>
-COLLIDE_HD_INLINE sphere<S> place_of(sphere<S> const& s, S) {
+COLLIDE_HD_INLINE sphere<S> sphere_on_path(sphere<S> const& s, S) {
   return s;
 }
 template <class S>
-COLLIDE_HD_INLINE sphere<S> place_of(moving_sphere<S> const& s, S time) {
+COLLIDE_HD_INLINE sphere<S> sphere_on_path(moving_sphere<S> const& s, S time) {
   return {s.centre + time * s.displacement, s.radius};
 }
 

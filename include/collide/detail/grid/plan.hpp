@@ -149,7 +149,7 @@ struct plan_grid {
            j += Block::num_threads) {
         if (spheres.size() == 0) break;
         auto const moved = spheres[spheres.size() * (j / parts) / pair_distances::spheres];
-        sphere<S> const ball = place_of(moved, static_cast<S>(j / parts * 37 % 64) / S(63));  // times all over the way
+        sphere<S> const ball = sphere_on_path(moved, static_cast<S>(j / parts * 37 % 64) / S(63));  // all along
         if (!(ball.radius <= reach && ball.radius > least) || !is_finite(ball.centre)) continue;
         if (j % parts == 0) {
           block.add(s.distances.sampled, 1);

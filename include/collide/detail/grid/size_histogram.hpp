@@ -49,14 +49,14 @@ struct size_histogram {
   COLLIDE_HD bool empty() const { return highest == 0; }
 };
 
-/// Counts in scratch memory first, so that a bin in memory is touched once per block. A block of one lane has so few
+/// Counts in scratch memory first, so that a bin in memory is touched once per block. A block of one thread has so few
 /// sizes, and most of them alike, that it counts the last ones only.
 template <class Block>
 struct block_histogram {
   static constexpr int kept = Block::num_threads > 1 ? size_bins : 8;  ///< a power of two
 
   std::uint32_t counts[std::size_t(kept)], sums[std::size_t(kept)];
-  std::uint32_t bins[Block::num_threads > 1 ? 1 : kept];  ///< of one lane: whose counts they are
+  std::uint32_t bins[Block::num_threads > 1 ? 1 : kept];  ///< of one thread: whose counts they are
 
   COLLIDE_HD_INLINE void clear(Block& block) {
     block.for_each_thread([&](int thread_rank) {

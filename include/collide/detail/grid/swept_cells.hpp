@@ -1,12 +1,13 @@
 /// \file
-/// The way of a moving sphere's centre through a grid.
+/// The path of a moving sphere's centre through a grid.
 ///
 /// If the sphere touches a triangle at some time, the centre is then in a cell that lists the triangle. So all cells
-/// of the way are looked into: the way is cut into pieces half as long as a cell is wide, and the box of a piece, with
-/// some slack for rounding, touches a few cells. (Most ways are short, and are one piece.) A triangle may be listed in
-/// several of these; it counts in the first of them only, which is found without memory: the boxes of pieces move one
-/// way on each axis, so the pieces whose cells a triangle shares follow each other. Of a way that is one piece it is
-/// known which part of each cell its box covers; if that meets a triangle's part of any cell, it does so in the first.
+/// of the path are looked into: the path is cut into pieces half as long as a cell is wide, and the box of a piece,
+/// with some slack for rounding, touches a few cells. (Most paths are short, and are one piece.) A triangle may be
+/// listed in several of these; it counts in the first of them only, which is found without memory: the boxes of pieces
+/// move in one direction on each axis, so the pieces whose cells a triangle shares follow each other. Of a path that is
+/// one piece it is known which part of each cell its box covers; if that meets a triangle's part of any cell, it does
+/// so in the first.
 #pragma once
 
 #include <collide/detail/geometry/closest_point.hpp>
@@ -18,10 +19,10 @@ namespace collide::detail {
 template <class S>
 class swept_cells {
  public:
-  /// No way at all.
+  /// No path at all.
   swept_cells() = default;
 
-  /// For a sphere that `is_traversable` in the grid, or whose way is short.
+  /// For a sphere that `is_traversable` in the grid, or whose path is short.
   COLLIDE_HD swept_cells(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from, vec3<S> const& along)
       : grid_{&g}, level_{&l}, from_{from}, along_{along} {
     for (int k = 0; k < 3; ++k) {
@@ -33,7 +34,7 @@ class swept_cells {
     if (!is_short(box_)) subdivide();
   }
 
-  /// The cells of the box around all of the way.
+  /// The cells of the box around all of the path.
   static COLLIDE_HD_INLINE cell_box cell_box_of_path(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from,
                                                      vec3<S> const& along) {
     cell_box r;
@@ -45,12 +46,12 @@ class swept_cells {
     return r;
   }
 
-  /// True of a way in so few cells that it is one piece.
+  /// True of a path in so few cells that it is one piece.
   static COLLIDE_HD_INLINE bool is_short(cell_box const& r) {
     return r.upper[0] - r.lower[0] <= 1 && r.upper[1] - r.lower[1] <= 1 && r.upper[2] - r.lower[2] <= 1;
   }
 
-  /// True if the way comes through the grid's box, which a sphere must to touch a triangle.
+  /// True if the path comes through the grid's box, which a sphere must to touch a triangle.
   static COLLIDE_HD_INLINE bool overlaps_slab(S lower, S upper, S from, S along) {
     S const to = from + along, slack = rounding_slack(from, along);
     return smaller(from, to) - slack <= upper && larger(from, to) + slack >= lower;
@@ -73,13 +74,13 @@ class swept_cells {
     std::uint32_t lower[3];  ///< where the piece that it belongs to begins
     cell_box before;         ///< the cells of the piece before; if there is none, none
     bool is_cell;
-    bool is_single;          ///< there are no other cells on the way
-    std::uint32_t coverage;  ///< of the cell: where in it the way is, or anywhere
+    bool is_single;          ///< there are no other cells on the path
+    std::uint32_t coverage;  ///< of the cell: where in it the path is, or anywhere
     std::uint32_t later;  ///< axes on which there is a cell before: what begins in that has been come to; or `unknown`
 
     static constexpr std::uint32_t unknown = ~std::uint32_t{0};
 
-    /// True if this is the first place on the way that shares a cell with a triangle in these cells.
+    /// True if this is the first place on the path that shares a cell with a triangle in these cells.
     COLLIDE_HD_INLINE bool owns_pair(cell_box const& r) const {
       bool here = true, earlier = true;
       for (int k = 0; k < 3; ++k) {
@@ -126,7 +127,7 @@ class swept_cells {
     return p;
   }
 
-  /// How far a coordinate on the way may be off by rounding.
+  /// How far a coordinate on the path may be off by rounding.
   static COLLIDE_HD_INLINE S rounding_slack(S from, S along) {
     return 8 * ieee_traits<S>::unit_roundoff * (abs_of(from) + abs_of(along)) + 8 * std::numeric_limits<S>::min();
   }
@@ -153,7 +154,7 @@ class swept_cells {
     return from_[k] + mul(begin_ + mul(static_cast<S>(subdivide), segment_dt_), along_[k]);
   }
 
-  /// Cuts a way through many cells into pieces.
+  /// Cuts a path through many cells into pieces.
   COLLIDE_HD void subdivide() {
     S end = 1, longest = 0;
     for (int k = 0; k < 3; ++k) {
@@ -194,7 +195,7 @@ class swept_cells {
   cell_box steps_;                   ///< where in the first and the last cell on each axis the path begins and ends
   std::uint32_t segment_extent_[3];  ///< how many cells a piece has on an axis, at most
   std::uint32_t segments_ = 1;
-  bool is_subdivided_ = false;    ///< else the only piece is the whole way
+  bool is_subdivided_ = false;    ///< else the only piece is the whole path
   S begin_ = 0, segment_dt_ = 0;  ///< times
 };
 

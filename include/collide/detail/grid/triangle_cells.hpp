@@ -81,7 +81,7 @@ class triangle_slab {
     return p[1] + mul(fraction(p[0] - v, q[0] - v), q[1] - p[1]);
   }
 
-  /// How far on the way between two points a plane lies that they are so far from, on different sides.
+  /// How far along the line between two points a plane lies that they are so far from, on different sides.
   static COLLIDE_HD_INLINE S fraction(S here, S there) {
     S const apart = here - there;
     return apart != 0 ? div_approximately(here, apart) : S(0);

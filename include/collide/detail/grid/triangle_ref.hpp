@@ -1,17 +1,17 @@
 /// \file
 /// Which triangles a single sphere could touch, asked from inside a kernel: what a broad phase gives a simulation.
 ///
-/// An index gives a trivially copyable `lookup()`. Of that, `has_single_cell_lookup(radius)` is true if balls of this
-/// radius are best asked several at a time whether they can touch a triangle: `marks().mark(marks().places_of(x, y, z),
-/// near)`, or `marks().test_swept(batch, near)` of those that move. In a kernel, `opened()` is that lookup for use, and
-/// then
-///   - `empty(ball)` is true if the ball can touch no triangle: it is quick;
-///   - `begin(ball)` is a cursor, and `next(ball, cursor, most, range)` moves it on and gives the next at most `most`
-///     entries, until it returns false; one may appear more than once if the ball moves; `cursor.at_end()` is true if
+/// An index gives a trivially copyable `lookup()`. Of that, `has_single_cell_lookup(radius)` is true if spheres of this
+/// radius are best asked several at a time whether they can touch a triangle:
+/// `occupancy().mark(occupancy().places_of(x, y, z), near)`, or `occupancy().test_swept(batch, near)` of those that
+/// move. In a kernel, `opened()` is that lookup for use, and then
+///   - `empty(sphere)` is true if the sphere can touch no triangle: it is quick;
+///   - `begin(sphere)` is a cursor, and `next(sphere, cursor, most, range)` moves it on and gives at most `most` more
+///     entries, until it returns false; one may appear more than once if the sphere moves; `cursor.at_end()` is true if
 ///     it is known to return false the next time;
-///   - `range.at(k)` is an entry, which is a triangle, `range.passes_coverage(entry)` a quick test whether the ball
-///   could
-///     touch it, and `near(around, triangle)` one whether a ball could all of whose way is in the ball `around`.
+///   - `range.at(k)` is an entry, which is a triangle, `range.passes_coverage(entry)` a quick test whether the sphere
+///     could touch it, and `near(around, triangle)` one whether a sphere could all of whose path is in the sphere
+///     `around`.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct candidate_range {
   cell_item const* listed;  ///< those of a cell; null: there are all, numbered from `first`
   id first;
   std::uint32_t count;
-  std::uint32_t place;  ///< of the ball, or of its way, in the cell
+  std::uint32_t place;  ///< of the sphere, or of its path, in the cell
 
   COLLIDE_HD_INLINE cell_item at(std::uint32_t k) const {
     return listed != nullptr ? listed[k] : cell_item{first + k, cell_coverage::full_box};
@@ -39,7 +39,7 @@ struct candidate_range {
   }
 };
 
-/// How far the candidates of a ball have been gone through.
+/// How far the candidates of a sphere have been gone through.
 struct candidate_cursor {
   static constexpr int ended = -1;  ///< in place of a grid's number
 

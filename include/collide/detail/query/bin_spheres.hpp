@@ -32,7 +32,7 @@ inline std::uint64_t bits_of_flags(unsigned char const* flags) {
   return mask;
 }
 
-/// Spheres that move as spheres at rest, all of one radius, that contain their ways: as far as placing them goes.
+/// Spheres that move as spheres at rest, all of one radius, that contain their paths: as far as placing them goes.
 template <class S>
 struct swept_bounding_spheres {
   moving_sphere_view<S> spheres;
@@ -70,8 +70,8 @@ struct binned_sphere {
   std::uint32_t cell;
 };
 
-/// Kernel body of a block of one lane: lists the spheres that are in cells with triangles. A sphere that no grid serves
-/// counts as in the cell behind the last, into which all triangles look.
+/// Kernel body of a block of one thread: lists the spheres that are in cells with triangles. A sphere that no grid
+/// serves counts as in the cell behind the last, into which all triangles look.
 template <class S, class Spheres>
 struct place_spheres {
   static constexpr int items = 4;
@@ -131,7 +131,7 @@ struct place_spheres {
           make_room(s);
           for (std::uint64_t rest = inside; rest != 0; rest &= rest - 1) {
             int const k = __builtin_ctzll(rest);
-            std::uint32_t const cell = box.place_of(box.level[l], {batch.x[k], batch.y[k], batch.z[k]}).number;
+            std::uint32_t const cell = box.cell_at(box.level[l], {batch.x[k], batch.y[k], batch.z[k]}).number;
             list(k, cell, (occupied[cell / 32] >> cell % 32 & 1) != 0);
           }
         }
@@ -181,7 +181,7 @@ struct sphere_soa {
   S *x, *y, *z, *radius;
   S* reach;  ///< as `triangle_aabb` has it
   id* number;
-  moving_sphere<S>* moving = nullptr;  ///< null if they rest; else the others are of the balls around their ways
+  moving_sphere<S>* moving = nullptr;  ///< null if they rest; else the others are bounding spheres of their paths
 
   sphere<S> operator[](std::uint32_t i) const { return {{x[i], y[i], z[i]}, radius[i]}; }
 

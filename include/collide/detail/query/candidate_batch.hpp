@@ -10,7 +10,7 @@
 namespace collide::detail {
 
 /// Pairs that wait for their verdict, number by number in arrays of their own. Of a sphere that moves there are two
-/// balls with one centre: one around its way, and one in the middle of it.
+/// spheres with one centre: one around its path, and one in the middle of it.
 template <class S>
 struct candidate_batch {
   static constexpr int room = 64;

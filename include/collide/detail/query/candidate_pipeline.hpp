@@ -73,10 +73,10 @@ inline constexpr bool defers_pairs = false;
 template <class Handle>
 inline constexpr bool defers_pairs<deferring<Handle>> = true;
 
-/// Scratch memory of a block for its candidates and hits. Where lanes work together, each step is made for many pairs
-/// at once, so that no lane waits for another that has more to do: candidates are gathered, then decided; hits are
-/// gathered, then written, so that the sink's atomic counter is touched once per batch. A single lane decides each
-/// candidate at once. `Ahead` is how many candidates a lane pushes before there is room for as many again.
+/// Scratch memory of a block for its candidates and hits. Where threads work together, each step is made for many pairs
+/// at once, so that no thread waits for another that has more to do: candidates are gathered, then decided; hits are
+/// gathered, then written, so that the sink's atomic counter is touched once per batch. A single thread decides each
+/// candidate at once. `Ahead` is how many candidates a thread pushes before there is room for as many again.
 template <class Block, int Ahead = 1>
 struct pipeline_storage {
   static constexpr std::uint32_t capacity = Block::pending;
@@ -101,13 +101,13 @@ struct candidate_pipeline {
   Output output;
   triangle_aabb<S> const* boxes = nullptr;  ///< of candidates that may be out of reach; null if there are no such
 
-  /// To be called first, by every lane; what follows may be done when the block has waited.
+  /// To be called first, by every thread; what follows may be done when the block has waited.
   template <class Block, int Ahead>
   COLLIDE_HD_INLINE void reset(pipeline_storage<Block, Ahead>& b, int thread_rank) const {
     if (thread_rank == 0) b.candidate_count = b.hit_count = 0;
   }
 
-  /// Takes a candidate. Called by any lane; where lanes work together, at most `Ahead` times between two calls of
+  /// Takes a candidate. Called by any thread; where threads work together, at most `Ahead` times between two calls of
   /// `drain_if_full`.
   template <class Block, int Ahead, class Sphere>
   COLLIDE_HD_INLINE void push(Block& block, pipeline_storage<Block, Ahead>& b, pair p, Sphere const& s) const {
@@ -128,7 +128,7 @@ struct candidate_pipeline {
     }
   }
 
-  /// Makes room for `Ahead` more candidates per lane. Called by the whole block.
+  /// Makes room for `Ahead` more candidates per thread. Called by the whole block.
   template <class Block, int Ahead>
   COLLIDE_HD_INLINE void drain_if_full(Block& block, pipeline_storage<Block, Ahead>& b) const {
     if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
@@ -149,7 +149,7 @@ struct candidate_pipeline {
     write_hits(block, b, block.broadcast(b.hit_count));
   }
 
-  /// Takes a hit of a lane; see `push_hits`.
+  /// Takes a hit of a thread; see `push_hits`.
   template <class Block, int Ahead>
   COLLIDE_HD_INLINE void push_hit(Block& block, pipeline_storage<Block, Ahead>& b, pair p) const {
     if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
@@ -161,7 +161,7 @@ struct candidate_pipeline {
     }
   }
 
-  /// Takes the pairs of those lanes that have a hit. Called by the whole block. What decides a pair may call a
+  /// Takes the pairs of those threads that have a hit. Called by the whole block. What decides a pair may call a
   /// function, from which the threads of a warp come back one after another; ptxas 13.0 lets some of them run on past a
   /// barrier that follows if there is an atomic operation in between. So they meet at a barrier before they push.
   template <class Block, int Ahead, class Pairs, class Flags>
@@ -175,14 +175,14 @@ struct candidate_pipeline {
   }
 
  private:
-  /// Decides a candidate of a lane that works alone.
+  /// Decides a candidate of a thread that works alone.
   template <class Block, int Ahead, class Sphere>
   COLLIDE_HD_INLINE void process_one(Block& block, pipeline_storage<Block, Ahead>& b, pair p, Sphere const& s) const {
     if (decide<Block>(p, s)) push_hit(block, b, p);
   }
 
-  /// Whether a candidate is a hit. Where lanes work together, a narrow phase in stages asks whether the box is in reach
-  /// itself.
+  /// Whether a candidate is a hit. Where threads work together, a narrow phase in stages asks whether the box is in
+  /// reach itself.
   template <class Block, class Sphere>
   COLLIDE_HD_INLINE bool decide(pair p, Sphere const& s) const {
     if constexpr (Block::num_threads == 1 || !filtered_predicate<NarrowPhase>::value) {

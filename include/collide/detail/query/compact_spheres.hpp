@@ -28,9 +28,9 @@ struct compact_spheres {
   occupancy_view<S> const& marks;
   bool has_one_level;  ///< all spheres are in one grid of one level: `marks` knows of them
   std::size_t blocks;  ///< that share the spheres
-  std::size_t beside;  ///< so many lanes of a block take packs next to each other
+  std::size_t beside;  ///< so many threads of a block take packs next to each other
 
-  /// How many spheres are active, how many of them no grid serves, and how many lanes have more.
+  /// How many spheres are active, how many of them no grid serves, and how many threads have more.
   struct counts {
     std::uint32_t active, ungridded, pending;
   };
@@ -43,12 +43,12 @@ struct compact_spheres {
     counts found;
   };
 
-  /// Consecutive spheres of a lane.
+  /// Consecutive spheres of a thread.
   template <class Block>
   using pack = std::conditional_t<still, sphere_batch<S, Block::items>, moving_batch<S, Block::items>>;
 
-  /// Lanes take packs in turn, of which those of neighbours are next to each other: where a lane begins, and how far it
-  /// goes on each time.
+  /// Threads take packs in turn, of which those of neighbours are next to each other: where a thread begins, and how
+  /// far it goes on each time.
   template <class Block>
   COLLIDE_HD_INLINE std::size_t first_of(Block const& block, int thread_rank) const {
     auto const own = static_cast<std::size_t>(thread_rank);
@@ -59,7 +59,7 @@ struct compact_spheres {
     return blocks * Block::num_threads * Block::items;
   }
 
-  /// Goes through a lane's spheres, from `next` on, as long as there is room.
+  /// Goes through a thread's spheres, from `next` on, as long as there is room.
   template <class Block>
   COLLIDE_HD_INLINE void compact(Block& block, scratch<Block>& s, std::size_t& next) const {
     auto const one_pack = [&](std::size_t first) {
@@ -79,12 +79,12 @@ struct compact_spheres {
  private:
   static constexpr std::int8_t no_cell = bucket_ref<S>::no_cell, everywhere = bucket_ref<S>::everywhere;
 
-  /// How many packs a lane goes through at most before all expand what they have found: where lanes work together, one
-  /// that finds less than others would else go on alone.
+  /// How many packs a thread goes through at most before all expand what they have found: where threads work together,
+  /// one that finds less than others would else go on alone.
   template <class Block>
   static constexpr std::uint32_t most_packs = Block::num_threads > 1 ? 12 : std::numeric_limits<std::uint32_t>::max();
 
-  /// Calls f(first) for a lane's packs, from `next` on, as long as there is room; f says how many spheres it has
+  /// Calls f(first) for a thread's packs, from `next` on, as long as there is room; f says how many spheres it has
   /// appended.
   template <class Block, class F>
   COLLIDE_HD_INLINE void each_pack(std::size_t& next, F const& f) const {
@@ -102,7 +102,7 @@ struct compact_spheres {
     return has_one_level && spheres.size() >= Block::items ? pack<Block>::aligned_centres(spheres) : nullptr;
   }
 
-  /// While the cells of a pack are asked whether they have triangles, the next pack is on its way: or, where not all of
+  /// While the cells of a pack are asked whether they have triangles, the next pack is being read: or, where not all of
   /// that is there, some other, as ptxas 13.0 keeps in memory what it loads under a condition.
   template <class Block, class OnePack>
   COLLIDE_HD_INLINE void compact_ahead(Block& block, scratch<Block>& s, std::size_t& next, S const* quads,

@@ -36,7 +36,7 @@ class deferred_pair_buffer {
     pairs_.reserve(space.resource(), capacity_for(spheres));
   }
 
-  /// To be called when both passes are on their way.
+  /// To be called when both passes have been launched.
   void release() { empty_ = true; }
 
  private:

@@ -13,14 +13,14 @@
 
 namespace collide::detail {
 
-/// Spreads the entries of the spheres' cells over the lanes, and makes candidates of those that meet.
+/// Spreads the entries of the spheres' cells over the threads, and makes candidates of those that meet.
 template <class S, class NarrowPhase, class Output>
 struct expand_cells {
   static constexpr bool still = is_discrete<NarrowPhase, S>;
   using compact = compact_spheres<S, NarrowPhase>;
 
-  /// Entries that a lane looks at together. With room for those of spheres that move, and for where these are on their
-  /// ways, 48 KB of scratch memory must suffice; and less leaves more of it to the cache.
+  /// Entries that a thread looks at together. With room for those of spheres that move, and for where these are on
+  /// their paths, 48 KB of scratch memory must suffice; and less leaves more of it to the cache.
   static constexpr int ahead = still ? 5 : 2;
 
   candidate_pipeline<S, NarrowPhase, Output> const& pipeline;
@@ -75,7 +75,7 @@ struct expand_cells {
     std::int8_t number;  ///< of the grid
   };
 
-  /// How far a sphere has come: steps of its way, and entries of its cell.
+  /// How far a sphere has come: steps of its path, and entries of its cell.
   struct cursor {
     std::uint32_t step, skip;
   };
@@ -99,7 +99,7 @@ struct expand_cells {
     for (std::uint32_t base = 0; base < n; base += Block::num_threads) {
       typename Block::template thread_private<cursor> at;
       bool more = false;
-      do {  // once, unless a span is very long, or spheres that move have more spans than there are lanes
+      do {  // once, unless a span is very long, or spheres that move have more spans than there are threads
         block.for_each_thread([&](int thread_rank) {
           if (!more) at[thread_rank] = {0, 0};
           std::uint32_t const i = base + static_cast<std::uint32_t>(thread_rank);
@@ -118,7 +118,7 @@ struct expand_cells {
     }
   }
 
-  /// Spreads the entries of `n` spans evenly over the lanes, and makes candidates of those that meet.
+  /// Spreads the entries of `n` spans evenly over the threads, and makes candidates of those that meet.
   template <class Block>
   COLLIDE_HD_INLINE void test_spans(Block& block, scratch<Block>& s, int level, std::uint32_t n) const {
     struct numbered_span {
@@ -146,7 +146,7 @@ struct expand_cells {
         [&](bool) { pipeline.drain_if_full(block, s.hits); });
   }
 
-  /// True if the pair counts in this cell of a way, and not in another that has the entry too.
+  /// True if the pair counts in this cell of a path, and not in another that has the entry too.
   COLLIDE_HD_INLINE bool owns_pair(grid<S> const& g, int level, typename swept_cells<S>::cell_visit const& place,
                                    cell_item const& e) const {
     if (place.later != swept_cells<S>::cell_visit::unknown)
@@ -163,7 +163,7 @@ struct expand_cells {
     }
     auto const ball = pipeline.spheres[number];
     if constexpr (still) {
-      cell_ref const cell = here.of->place_of(*here.level, ball.centre);
+      cell_ref const cell = here.of->cell_at(*here.level, ball.centre);
       return append(block, s, here, number, grids.lists[cell.number], cell.coverage, at);
     } else {
       swept_cells<S> const path(*here.of, *here.level, ball.centre, ball.displacement);

@@ -8,9 +8,9 @@
 /// of the cells. Neighbouring triangles, which most meshes have one after the other, then read the same spheres from
 /// the nearest cache.
 ///
-/// Spheres that move go the same way as the balls around their ways, which are spheres at rest; the narrow phase then
-/// judges the spheres themselves. That is for short ways: the ball around a long one touches much that the sphere does
-/// not.
+/// Spheres that move go the same way as the bounding spheres of their paths, which are spheres at rest; the narrow
+/// phase then judges the spheres themselves. That is for short paths: the bounding sphere of a long one touches much
+/// that the sphere does not.
 #pragma once
 
 #include <cstddef>
@@ -55,7 +55,7 @@ struct mark_occupied_cells {
   }
 };
 
-/// Kernel body of a block of one lane: the longest displacement, squared, and the farthest coordinate, as bits, of
+/// Kernel body of a block of one thread: the longest displacement, squared, and the farthest coordinate, as bits, of
 /// which the larger are those of the larger number. What is NaN does not count, also where the compiler takes it that
 /// there is none.
 template <class S>
@@ -130,7 +130,7 @@ class sorted_spheres {
     space.for_each(mesh.size(), mark_occupied_cells<S>{mesh, boxes, grids, grid_count, occupied});
   }
 
-  /// How far the grid must reach for spheres of one radius that move: the radius of a ball around the way of each.
+  /// How far the grid must reach for spheres of one radius that move: the radius of the bounding sphere of each path.
   template <class Space>
   S reach_of(Space& space, moving_sphere_view<S> const& spheres) {
     auto* const found = measures_.reserve(space.resource(), 2);

@@ -12,9 +12,9 @@
 
 namespace collide::detail {
 
-/// Kernel body: each lane locates some spheres; the few that may be near triangles are gathered in scratch memory, so
-/// that lanes expand the cells of as many of them at a time as there are lanes; the entries of these cells are spread
-/// evenly over all lanes.
+/// Kernel body: each thread locates some spheres; the few that may be near triangles are gathered in scratch memory, so
+/// that threads expand the cells of as many of them at a time as there are threads; the entries of these cells are
+/// spread evenly over all threads.
 template <class S, class NarrowPhase, class Output>
 struct bucket_query {
   static constexpr int items = 4;
@@ -27,7 +27,7 @@ struct bucket_query {
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
   bucket_ref<S> triangles;
   std::size_t blocks;  ///< that share the spheres
-  std::size_t beside;  ///< so many lanes of a block take spheres next to each other
+  std::size_t beside;  ///< so many threads of a block take spheres next to each other
 
   /// Shares `n` spheres among as many blocks as are at work at a time, if there are enough.
   template <class Space>
@@ -47,7 +47,7 @@ struct bucket_query {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    occupancy_view<S> const marks = triangles.marks();
+    occupancy_view<S> const marks = triangles.occupancy();
     bool const has_one_level =
         pipeline.spheres.one_radius() && triangles.has_single_cell_lookup(pipeline.spheres.common_radius());
     bucket_ref<S> const grids = triangles.opened();

@@ -13,7 +13,7 @@
 
 namespace collide::detail {
 
-/// Kernel body of a block of one lane: triangles look for spheres in the cells that they touch.
+/// Kernel body of a block of one thread: triangles look for spheres in the cells that they touch.
 template <class S, class NarrowPhase, class Output>
 struct query_triangle_major {
   static constexpr int items = 4;

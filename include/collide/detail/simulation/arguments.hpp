@@ -7,6 +7,10 @@
 
 namespace collide::detail {
 
+/// Saves and restores the state of a simulation; see checkpoint.hpp.
+template <class Detector, class... Effect>
+class checkpoint;
+
 /// True if `Rest` is nothing, or the parameters of all effects.
 template <class Effects, class... Rest>
 inline constexpr bool are_parameters = sizeof...(Rest) == 0 || std::is_same<std::tuple<Rest...>, Effects>::value;

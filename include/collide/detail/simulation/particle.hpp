@@ -165,18 +165,18 @@ struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
   }
 
   template <class D>
-  COLLIDE_HD_INLINE void load_value(D, column_value<D, S>& value, std::size_t i) const {
+  COLLIDE_HD_INLINE void load_value(D, column_value<D, S>& v, std::size_t i) const {
     using layout = column_layout<D, S>;
     for (int k = 0; k < layout::width; ++k) {
-      layout::at(value, k) = at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)];
+      layout::at(v, k) = at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)];
     }
   }
 
   template <class D>
-  COLLIDE_HD_INLINE void store_value(D, column_value<D, S> const& value, std::size_t i) const {
+  COLLIDE_HD_INLINE void store_value(D, column_value<D, S> const& v, std::size_t i) const {
     using layout = column_layout<D, S>;
     for (int k = 0; k < layout::width; ++k) {
-      at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)] = layout::at(value, k);
+      at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)] = layout::at(v, k);
     }
   }
 

@@ -146,7 +146,7 @@ struct step_kernel {
       if (thread_rank != 0) return;
       s.queue_size = 0;
       s.single_cell = integrate.is_single_cell();
-      s.marks = context.triangles.marks();
+      s.marks = context.triangles.occupancy();
     });
     auto const enqueue_one = [&](id number) { enqueue(block, s, number); };
     if constexpr (filters_after_integration<Block>) {

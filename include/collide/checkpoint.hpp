@@ -1,0 +1,277 @@
+/// \file
+/// Saves a simulation to a file, and goes on from it in another process.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <istream>
+#include <ostream>
+#include <string>
+#include <tuple>
+#include <typeinfo>
+#include <utility>
+#include <vector>
+
+#include <cxxabi.h>
+
+#include <collide/detail/simulation/checkpoint_format.hpp>
+#include <collide/simulation.cuh>
+
+namespace collide {
+
+namespace detail {
+
+/// The name of a type, such as "collide::gravity".
+template <class T>
+std::string type_name() {
+  int status = 0;
+  char* const readable = abi::__cxa_demangle(typeid(T).name(), nullptr, nullptr, &status);
+  std::string const name = status == 0 ? readable : typeid(T).name();
+  std::free(readable);
+  return name;
+}
+
+/// What a simulation knows besides its columns and the parameters of its effects.
+template <class S>
+struct saved_numbers {
+  std::uint64_t triangles = 0, places = 0, placed = 0;
+  S common_radius = 0, largest_radius = 0;
+  double time = 0, device_time = 0;
+  std::uint8_t reverse_order = 0;
+
+  /// Writes or reads all of them.
+  template <class Archive>
+  void pass(Archive& archive) {
+    archive.value("triangles", triangles);
+    archive.value("places", places);
+    archive.value("placed", placed);
+    archive.value("common radius", common_radius);
+    archive.value("largest radius", largest_radius);
+    archive.value("time", time);
+    archive.value("time on the device", device_time);
+    archive.value("reverse order", reverse_order);
+  }
+};
+
+/// A simulation's state: how it becomes blocks of a checkpoint, and is made of them.
+template <class Detector, class... Effect>
+class checkpoint {
+  using simulated = simulation<Detector, Effect...>;
+  using S = typename simulated::scalar;
+  using column_list = typename simulated::columns;
+
+ public:
+  /// Writes all blocks. A column is on the host while it is written.
+  static void write(simulated const& from, std::ostream& stream) {
+    if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
+    checkpoint_writer to(stream);
+    pass_types(to);
+    saved_numbers<S> numbers{from.mesh_.size(),
+                             from.state_.size,
+                             from.state_.placed,
+                             from.state_.common_radius,
+                             from.largest_radius_,
+                             from.time_,
+                             0,
+                             from.reverse_order_};
+    if constexpr (simulated::has_begin_step) numbers.device_time = from.space_.read(from.state_.time);
+    numbers.pass(to);
+    (write_parameters<Effect>(to, from), ...);
+    write_columns(to, from, column_list());
+    to.finish();
+  }
+
+  /// Reads and checks all blocks. Changes nothing.
+  checkpoint(simulated const& into, std::istream& stream) {
+    checkpoint_reader from(stream);
+    pass_types(from);
+    numbers_.pass(from);
+    if (simulated::effects_type::touches && numbers_.triangles != into.mesh_.size()) {
+      from.refuse("triangles", "the file has " + std::to_string(numbers_.triangles) + ", the mesh of the simulation " +
+                                   std::to_string(into.mesh_.size()));
+    }
+    if (numbers_.places >= no_id) from.refuse("places", "a simulation has at most 2^32 - 2 particles");
+    if (numbers_.placed > numbers_.places) from.refuse("placed", "more than there are places");
+    (read_parameters<Effect>(from), ...);
+    read_columns(from, column_list());
+    from.finish();
+  }
+
+  /// Gives the simulation this state.
+  void restore(simulated& to) const {
+    auto& space = to.space_;
+    auto const places = static_cast<std::size_t>(numbers_.places);
+    to.reserve(places);
+    auto state = to.memory_.state(places, static_cast<std::size_t>(numbers_.placed), numbers_.common_radius);
+    if constexpr (simulated::has_begin_step) {
+      state.time = to.device_time_.data();
+      space.copy_from_host(state.time, &numbers_.device_time, 1);
+    }
+    space.for_each(padded_size(places),
+                   init_particles<S, column_list>{state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr});
+    restore_columns(space, state, column_list());
+    (restore_parameters<Effect>(to), ...);
+    to.state_ = state;
+    to.time_ = numbers_.time;
+    to.reverse_order_ = numbers_.reverse_order != 0;
+    to.largest_radius_ = numbers_.largest_radius;
+    if constexpr (simulated::effects_type::meets) to.neighbours_.clear(space, places, to.largest_radius_);
+    to.is_set_ = true;
+    to.prepare();
+  }
+
+ private:
+  /// What the simulation is: written, or compared with what was.
+  template <class Archive>
+  static void pass_types(Archive& archive) {
+    archive.text("scalar", type_name<S>());
+    archive.text("narrow phase", type_name<typename simulated::narrow_phase>());
+    std::string list;
+    ((list += (list.empty() ? "" : ", ") + type_name<Effect>()), ...);
+    archive.text("effects", list);
+  }
+
+  template <class E>
+  static std::string parameters_name() {
+    return "parameters of " + type_name<E>();
+  }
+  template <class C>
+  static std::string column_name() {
+    return "column " + type_name<C>();
+  }
+
+  /// An effect's parameters are bytes in a checkpoint if it has some, and does not say otherwise.
+  template <class E>
+  static constexpr bool has_bytes = [] {
+    static_assert(std::is_trivially_destructible<E>::value || !saves_parameters<E>,
+                  "collide: save and load: the parameters of this effect are no plain values: what they own cannot be "
+                  "saved; give it a member static constexpr bool saves_parameters = false, and set them after load");
+    return saves_parameters<E> && !std::is_empty<E>::value;
+  }();
+
+  template <class E>
+  static void write_parameters(checkpoint_writer& to, simulated const& from) {
+    if constexpr (has_bytes<E>) {
+      auto const& effect = from.effects_.template of<E>();
+      to.block(parameters_name<E>(), reinterpret_cast<unsigned char const*>(&effect), sizeof(E));
+    }
+  }
+  template <class E>
+  void read_parameters(checkpoint_reader& from) {
+    if constexpr (has_bytes<E>) {
+      std::get<bytes_of<E>>(parameters_).values = from.block<unsigned char>(parameters_name<E>(), sizeof(E));
+    }
+  }
+  template <class E>
+  void restore_parameters(simulated& to) const {
+    if constexpr (has_bytes<E>) {
+      std::memcpy(static_cast<void*>(&to.template effect<E>()), std::get<bytes_of<E>>(parameters_).values.data(),
+                  sizeof(E));
+    }
+  }
+
+  template <class... C>
+  static void write_columns(checkpoint_writer& to, simulated const& from, columns<C...>) {
+    auto const write = [&](std::string const& name, auto const& values) {
+      to.block(name, values.data(), values.size());
+    };
+    (write(column_name<C>(), from.template to_host<C>()), ...);
+  }
+  template <class... C>
+  void read_columns(checkpoint_reader& from, columns<C...>) {
+    ((std::get<column_of<C>>(columns_).values = from.block<column_element<C, S>>(
+          column_name<C>(), numbers_.places * std::uint64_t{column_layout<C, S>::width})),
+     ...);
+  }
+  template <class Space, class State, class... C>
+  void restore_columns(Space const& space, State const& state, columns<C...>) const {
+    auto const copy = [&](auto* to, auto const& values) { space.copy_from_host(to, values.data(), values.size()); };
+    (copy(state.at(C{}), std::get<column_of<C>>(columns_).values), ...);
+  }
+
+  template <class E>
+  struct bytes_of {
+    std::vector<unsigned char> values;
+  };
+  template <class C>
+  struct column_of {
+    std::vector<column_element<C, S>> values;
+  };
+  template <class List>
+  struct table_of;
+  template <class... C>
+  struct table_of<columns<C...>> {
+    using type = std::tuple<column_of<C>...>;
+  };
+
+  saved_numbers<S> numbers_;
+  std::tuple<bytes_of<Effect>...> parameters_;
+  typename table_of<column_list>::type columns_;
+};
+
+}  // namespace detail
+
+/// Writes all that the next steps of a simulation depend on: columns, time, and the parameters of the effects. The mesh
+/// is not in it, nor the space: what was saved on the host can be loaded on a GPU. A stream must be binary.
+///
+/// An effect's parameters are saved as the bytes that they are. One with pointers, which mean nothing in another
+/// process, has a member `static constexpr bool saves_parameters = false`, and is left out; so has a source of
+/// `emit_from` and a field of `wind`.
+///
+/// Throws `error` if there are no particles yet, or the stream or the file does not take it. Waits. O(particles); takes
+/// memory of the host for a copy of the largest column.
+template <class Detector, class... Effect>
+void save(simulation<Detector, Effect...> const& from, std::ostream& to) {
+  detail::checkpoint<Detector, Effect...>::write(from, to);
+}
+
+/// Writes a checkpoint to a file, first under the name `path` + ".part": an older file stays until the new one is
+/// complete.
+template <class Detector, class... Effect>
+void save(simulation<Detector, Effect...> const& from, std::string const& path) {
+  std::string const part = path + ".part";
+  try {
+    std::ofstream file(part, std::ios::binary | std::ios::trunc);
+    if (!file) throw error("collide: save: " + path + " cannot be written");
+    save(from, file);
+    file.close();
+    if (!file || std::rename(part.c_str(), path.c_str()) != 0) {
+      throw error("collide: save: " + path + " cannot be written");
+    }
+  } catch (...) {
+    std::remove(part.c_str());
+    throw;
+  }
+}
+
+/// Gives a simulation the state that `save` has written: the particles that it had are gone, the parameters of its
+/// effects are those of the file. Steps from here on give the bits that they would have given there. Comes after
+/// `set_mesh` where an effect touches the mesh, with the mesh that the steps had there, of which only the number of
+/// triangles is compared. A graph that was captured before is good no longer.
+///
+/// Throws `error`, which names what is wrong, if the file is cut off or damaged, or of another version of the format,
+/// another scalar, narrow phase or list of effects, or another number of triangles: the simulation is as it was. If the
+/// space has no memory for it, it has no particles, as after a `set` that finds none. Reads no farther than the
+/// checkpoint goes. Waits. O(particles); takes memory of the host for a copy of all columns.
+template <class Detector, class... Effect>
+void load(simulation<Detector, Effect...>& into, std::istream& from) {
+  detail::checkpoint<Detector, Effect...>(into, from).restore(into);
+}
+
+/// Reads a checkpoint from a file, which has nothing else in it.
+template <class Detector, class... Effect>
+void load(simulation<Detector, Effect...>& into, std::string const& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw error("collide: load: " + path + " cannot be read");
+  detail::checkpoint<Detector, Effect...> const read(into, file);
+  if (file.peek() != std::ifstream::traits_type::eof()) {
+    throw error("collide: load: " + path + " goes on behind the checkpoint");
+  }
+  read.restore(into);
+}
+
+}  // namespace collide

@@ -1,0 +1,60 @@
+/// Parts of cells, against intervals of steps.
+#include <cstdint>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include <collide/detail/grid/cell_coverage.hpp>
+
+namespace {
+
+using coverage = collide::detail::cell_coverage;
+
+struct interval {
+  std::uint32_t from, to;
+};
+
+bool meet(interval a, interval b) { return a.from <= b.to && b.from <= a.to; }
+
+}  // namespace
+
+TEST_CASE("cell coverage: steps are sixteenths of a cell, but for the last, which is two") {
+  for (int i = 0; i < 1600; ++i) {
+    auto const expected = static_cast<std::uint32_t>(i / 100 < 14 ? i / 100 + 1 : 15);
+    CHECK(coverage::subcell_of(static_cast<double>(i) / 1600) == expected);
+    CHECK(coverage::subcell_of(static_cast<float>(i) / 1600) == expected);
+  }
+}
+
+TEST_CASE("cell coverage: a box and what may be in a part of the cell meet if they do on each axis") {
+  std::mt19937 engine(1);
+  auto const roll = [&](std::uint32_t from, std::uint32_t to) {
+    return std::uniform_int_distribution<std::uint32_t>(from, to)(engine);
+  };
+  int meetings = 0;
+  for (int i = 0; i < 100000; ++i) {
+    interval box[3], query[3];
+    std::uint32_t encoded_box = 0, encoded_query = 0;
+    bool expected = true;
+    for (int k = 0; k < 3; ++k) {
+      box[k].from = roll(coverage::before, coverage::last);
+      box[k].to = roll(box[k].from < 1 ? 1 : box[k].from, coverage::last);
+      query[k].from = roll(coverage::first, coverage::last);
+      query[k].to = roll(query[k].from, coverage::last);
+      encoded_box |= coverage::encode_box(box[k].from, box[k].to, k);
+      encoded_query |= coverage::encode_query(query[k].from, query[k].to, k);
+      expected = expected && meet(box[k], query[k]);
+    }
+    bool earlier = true;
+    for (int k = 0; k < 3; ++k) {
+      earlier = earlier && coverage::starts_in_earlier_cell(encoded_box, coverage::axis(k)) == (box[k].from == 0);
+    }
+    CHECK(earlier);
+    CHECK(coverage::overlaps(encoded_box, encoded_query) == expected);
+    CHECK(coverage::overlaps(coverage::full_box, encoded_query));
+    CHECK(coverage::overlaps(encoded_box, coverage::full_query));
+    meetings += expected;
+  }
+  CHECK(meetings > 10000);
+  CHECK(meetings < 90000);
+}
