@@ -23,6 +23,8 @@ struct copy_pairs {
 /// where there are more than its memory has room for, it makes room and runs a second time.
 class pairs : public detail::kept_in_space<pair> {
  public:
+  static constexpr bool keeps_ids_alone = true;
+
   /// The pairs are kept in memory of the space, as many as there are.
   explicit pairs(order o = order::unspecified) : order_{o} {}
   /// The pairs are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total` tells
