@@ -43,13 +43,11 @@ TEST_CASE("ranks: members, agreement and short memory, one to eight threads") {
   }
   tests::complaints wrong;
   tests::check_members(collide::one_rank(), wrong);
+  tests::check_both(collide::one_rank(), tests::random_motion<float>(7, {}), {}, wrong);
   CHECK(wrong.text() == "");
 }
 
 TEST_CASE("ranks: queries find what one detector finds, one rank and a few") {
-  tests::complaints alone;
-  tests::check_queries(collide::one_rank(), alone);
-  CHECK(alone.text() == "");
   for (int n = 1; n <= 4; ++n) {
     CHECK(on_threads(n, [](auto const& r, auto& wrong) { tests::check_queries(r, wrong); }) == "");
   }

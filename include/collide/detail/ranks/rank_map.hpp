@@ -29,9 +29,12 @@ class rank_map {
       });
     });
     ranks.all_gather(mine.data(), bit_words * sizeof(std::uint64_t), all.data());
-    for (std::size_t cell = 0; cell < coarse_grid::size(); ++cell) {
-      for (std::size_t r = 0; r < static_cast<std::size_t>(ranks.size()); ++r) {
-        if ((all[r * bit_words + cell / 64] & bit(cell)) != 0) masks_[cell * words_ + r / 64] |= bit(r);
+    for (std::size_t r = 0; r < all.size() / bit_words; ++r) {
+      for (std::size_t w = 0; w < bit_words; ++w) {
+        std::size_t cell = 64 * w;
+        for (std::uint64_t bits = all[r * bit_words + w]; bits != 0; bits >>= 1, ++cell) {
+          if ((bits & 1) != 0) masks_[cell * words_ + r / 64] |= bit(r);
+        }
       }
     }
     std::vector<std::uint64_t> inherited;
