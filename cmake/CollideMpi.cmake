@@ -4,6 +4,7 @@
 # collide_find_mpi(): makes the target collide::mpi where CMake finds MPI.
 function(collide_find_mpi)
   set(MPI_CXX_SKIP_MPICXX ON)  # the C interface is all that it takes
+  set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
   find_package(MPI QUIET COMPONENTS CXX)
   if(MPI_CXX_FOUND AND NOT TARGET collide::mpi)
     add_library(collide::mpi INTERFACE IMPORTED GLOBAL)

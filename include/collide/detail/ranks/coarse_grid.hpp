@@ -34,7 +34,7 @@ aabb<double> reach_of(sphere<S> const& s, vec3<S> const& displacement, double ex
 /// A cube of cells, in levels of 1, 8, 64, ... cells, each of which halves the width of the one before.
 class coarse_grid {
  public:
-  static constexpr int finest = 6;
+  static constexpr int finest = 5;
   static constexpr int cells_across = 1 << finest;
 
   /// Number of the first cell of a level, and with level finest + 1 of all cells.

@@ -11,7 +11,7 @@
 namespace collide::detail {
 
 /// Says to which ranks a box goes. Each rank has a bit in each cell of the coarse grid that its triangles meet, that
-/// has such a cell in it, or that is in such a cell. Takes 299,593 words of 8 bytes for every 64 ranks.
+/// has such a cell in it, or that is in such a cell. Takes 37,449 words of 8 bytes for every 64 ranks.
 class rank_map {
  public:
   /// All ranks call it; mark(f) calls f(box) for the box of each triangle of this one.
