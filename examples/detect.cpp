@@ -48,7 +48,7 @@ scene<S> read(Ranks const& ranks, options const& wish, std::string_view mesh, st
   from.tally += io::sum(ranks, from.spheres.tally);
   from.first_sphere = static_cast<std::size_t>(collide::count_before(ranks, from.spheres.size()));
   from.all_spheres = static_cast<std::size_t>(io::sum(ranks, from.spheres.size()));
-  if (from.all_spheres > 0) from.coarse = io::coarse(from.tally.most, -io::largest(ranks, -smallest));
+  if (from.all_spheres > 0) from.coarse = io::coarse(from.tally.most, io::smallest(ranks, smallest));
   return from;
 }
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/ranks.hpp>
 #include <collide/thread_ranks.hpp>
 
@@ -44,15 +44,29 @@ void read_together(Ranks const& ranks, F const& f) {
   if (somewhere != 0) throw error_elsewhere();
 }
 
-/// The largest of a number that each rank has.
+/// The largest of numbers that are not negative, of which each rank has one. They sort like their bits.
 template <class Ranks>
 double largest(Ranks const& ranks, double mine) {
-  std::uint64_t const bits = collide::detail::to_ordered_bits(mine);
-  std::uint64_t all = 0;
+  std::uint64_t bits = 0, all = 0;
+  std::memcpy(&bits, &mine, sizeof bits);
   ranks.reduce(&bits, &all, 1, collide::reduction::max);
-  return collide::detail::from_ordered_bits<double>(all);
+  std::memcpy(&mine, &all, sizeof mine);
+  return mine;
 }
 
+/// The smallest of numbers that are not negative.
+template <class Ranks>
+double smallest(Ranks const& ranks, double mine) {
+  std::uint64_t bits = 0, all = 0;
+  std::memcpy(&bits, &mine, sizeof bits);
+  bits = ~bits;
+  ranks.reduce(&bits, &all, 1, collide::reduction::max);
+  all = ~all;
+  std::memcpy(&mine, &all, sizeof mine);
+  return mine;
+}
+
+/// The sum of numbers of which each rank has one.
 template <class Ranks>
 std::uint64_t sum(Ranks const& ranks, std::uint64_t mine) {
   std::uint64_t all = 0;

@@ -171,7 +171,7 @@ class divided_mesh {
   std::uint64_t all_ = 0;
   std::vector<id> numbers_;
   std::vector<S> corners_;  ///< on the host
-  buffer<S> memory_;        ///< and a copy in memory of the space, where that is another
+  buffer<S> memory_;        ///< their copy in memory of the space, where that is another
   mesh_view<S> view_;
   rank_map map_;
 };

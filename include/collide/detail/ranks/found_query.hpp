@@ -12,7 +12,7 @@
 
 namespace collide::detail {
 
-/// Those triangles of a mesh that are here: a plain value. Triangles have the numbers that they have in the whole.
+/// A mesh of which some triangles are here, with the numbers that they have in the whole: a plain value.
 template <class S>
 struct partial_mesh {
   mesh_view<S> part;

@@ -130,7 +130,7 @@ class remote_pairs {
     for (std::size_t r = 0; r < received_.counts.size(); ++r) {
       std::uint64_t const end = first + received_.counts[r];
       std::size_t const before = h;
-      for (; h < hits_.size() && hits_[h].sphere < end; ++h) {
+      for (; h < hits_.size() && end > hits_[h].sphere; ++h) {
         answers_.items.push_back({static_cast<id>(hits_[h].sphere - first), hits_[h].triangle});
       }
       if (with_triangles) {
