@@ -753,7 +753,7 @@ class Ranks(ProgramTest):
 
     def test_the_scalar_is_one_for_all(self):
         self.write("mesh.obj", TRIANGLE)
-        self.write("spheres.csv", "x,y,z\n" + "0.5,0.5,0.5\n" * 20 + "1000000.0625,0,0\n")  # the last rank's needs double
+        self.write("spheres.csv", "x,y,z\n" + "0.5,0.5,0.5\n" * 20 + "1000000.03,0,0\n")  # of the last rank
         for ranks in ((), ("--ranks", "threads:3")):
             out = self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 1, *ranks)
             self.assertIn("to double; float would move one", out)
