@@ -76,14 +76,17 @@ class distributed {
       build(mine, on_every_rank);
     } else {
       is_divided_ = true;
+      is_built_ = false;
       mesh_.build(ranks_, detector_.space(), mine);
       together(ranks_, [&] { detector_.build(mesh_.view()); });
+      is_built_ = true;
     }
   }
 
   /// As `detector::query`, of the spheres of this rank, perhaps none. Where the mesh is divided, spheres go to the
   /// ranks that may have triangles for them, by way of memory of the host, and pairs come back; with them the
-  /// triangles, unless the sink says that it keeps ids alone (`keeps_ids_alone`, see concepts.hpp).
+  /// triangles, unless the sink says that it keeps ids alone (`keeps_ids_alone`, see concepts.hpp). Throws `error` if
+  /// there was no `build`, or the last one failed.
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {
     if constexpr (!alone) {
@@ -114,6 +117,7 @@ class distributed {
   template <class Sink>
   void query_divided(spheres_type const& spheres, Sink& sink) {
     using narrow_phase = typename Detector::narrow_phase;
+    if (!is_built_) throw error("collide: distributed: the last build has failed on some rank: build before you query");
     constexpr bool with_triangles = !detail::sink_keeps_ids_alone<std::remove_reference_t<Sink>>::value;
     remote_.find(ranks_, detector_, mesh_, spheres, chunk_, with_triangles);
     together(ranks_, [&] {
@@ -129,6 +133,7 @@ class distributed {
   Detector detector_;
   std::size_t chunk_;
   bool is_divided_ = false;
+  bool is_built_ = false;  ///< where the mesh is divided: on all ranks
   detail::divided_mesh<scalar> mesh_;
   detail::remote_pairs<Detector> remote_;
   detail::found_pairs<scalar> found_;

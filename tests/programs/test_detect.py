@@ -756,7 +756,7 @@ class Ranks(ProgramTest):
         self.write("spheres.csv", "x,y,z\n" + "0.5,0.5,0.5\n" * 20 + "1000000.03,0,0\n")  # of the last rank
         for ranks in ((), ("--ranks", "threads:3")):
             out = self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 1, *ranks)
-            self.assertIn("to double; float would move one", out)
+            self.assertIn("; float would move one by", out)
 
     def test_mistakes_are_told_once_with_the_line_of_the_file(self):
         self.write("mesh.obj", TRIANGLE)

@@ -123,6 +123,25 @@ TEST_CASE("ranks: what makes no sense is refused on all ranks") {
   CHECK(thrown(2, [](collide::thread_ranks const& ranks) {
           collide::distributed<detector, collide::thread_ranks> parts(ranks, collide::host(1), {}, 0);
         }) == "collide: distributed: chunk is 0");
+  std::atomic<int> refused{0};
+  collide::thread_ranks::run(
+      3, [&](collide::thread_ranks const& ranks) {  // one has no memory, and nobody has a mesh then
+        tests::short_memory memory;
+        if (ranks.rank() == 1) memory.left = 0;
+        auto const made = tests::random_motion<float>(2, {});
+        collide::distributed<detector, collide::thread_ranks> parts(ranks, collide::host(1, &memory));
+        try {
+          parts.build(made.mesh(), collide::divided);
+        } catch (std::exception const&) {
+          ++refused;
+        }
+        try {
+          parts.query(made.spheres(), collide::count());
+        } catch (collide::error const&) {
+          ++refused;
+        }
+      });
+  CHECK(refused == 6);
   std::string const missing = "collide: detector: query needs a mesh: call build before it";
   CHECK(thrown(2, [](collide::thread_ranks const& ranks) {
           collide::distributed<detector, collide::thread_ranks> parts(ranks, collide::host(1));

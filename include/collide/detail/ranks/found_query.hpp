@@ -21,6 +21,9 @@ struct partial_mesh {
 
   COLLIDE_HD std::size_t size() const { return all; }
 
+  /// Triangle number `t`, which is here.
+  COLLIDE_HD triangle<S> operator[](std::size_t t) const { return part[find(static_cast<id>(t))]; }
+
   /// Place of triangle number `t` in the part, which has it.
   COLLIDE_HD id find(id t) const {
     std::size_t low = 0, high = part.size();
