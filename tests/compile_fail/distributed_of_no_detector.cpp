@@ -2,6 +2,4 @@
 #include <collide/bucket.cuh>
 #include <collide/distributed.hpp>
 
-int main() {
-  collide::distributed<collide::bucket> parts;
-}
+int main() { collide::distributed<collide::bucket> parts; }

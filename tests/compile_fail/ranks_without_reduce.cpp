@@ -8,6 +8,4 @@ struct no_ranks {
   void all_gather(void const*, std::size_t, void*) const {}
 };
 
-int main() {
-  collide::distributed<collide::detector<collide::bucket>, no_ranks> parts;
-}
+int main() { collide::distributed<collide::detector<collide::bucket>, no_ranks> parts; }
