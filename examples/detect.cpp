@@ -4,14 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <list>
+#include <optional>
 
 #include <nlohmann/json.hpp>
+
+#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#include <collide/mpi.hpp>
+#endif
 
 #include "detect/detection.hpp"
 #include "io/output.hpp"
 #include "io/ply.hpp"
 #include "io/program.hpp"
+#include "io/ranks.hpp"
 #include "io/tables.hpp"
 #include "io/text.hpp"
 
@@ -20,30 +27,40 @@ namespace {
 using detection::clock, detection::milliseconds;
 using detection::findings, detection::options, detection::scene;
 
-template <class S>
-scene<S> read(options const& wish, std::string_view mesh, std::string_view spheres) {
+/// Each rank reads the mesh, and its part of the spheres.
+template <class S, class Ranks>
+scene<S> read(Ranks const& ranks, options const& wish, std::string_view mesh, std::string_view spheres) {
   scene<S> from;
-  from.mesh = io::read_obj<S>(wish.mesh, mesh, wish.strict);
-  from.spheres = io::read_csv<S>(wish.spheres, spheres);
-  from.tally = from.mesh.tally;
-  from.tally += from.spheres.tally;
-  if (!from.spheres.has_radii) {
-    if (wish.radius.empty()) throw io::usage_error("--radius: is required, as " + wish.spheres + " has no column r");
-    io::parse_number(wish.radius, from.radius, from.tally);
-  }
-  if (from.spheres.size() > 0) {
+  double smallest = std::numeric_limits<double>::infinity();
+  io::read_together(ranks, [&] {
+    from.mesh = io::read_obj<S>(wish.mesh, mesh, wish.strict);
+    from.spheres = io::read_csv<S>(wish.spheres, spheres, ranks.rank(), ranks.size());
+    from.tally = from.mesh.tally;
+    if (!from.spheres.has_radii) {
+      if (wish.radius.empty()) throw io::usage_error("--radius: is required, as " + wish.spheres + " has no column r");
+      io::parse_number(wish.radius, from.radius, from.tally);
+      smallest = from.radius;
+    }
     auto const& radii = from.spheres.radii;
-    S const smallest = radii.empty() ? from.radius : *std::min_element(radii.begin(), radii.end());
-    from.coarse = io::coarse(from.tally.most, smallest);
-  }
+    if (!radii.empty()) smallest = *std::min_element(radii.begin(), radii.end());
+  });
+  from.tally += io::sum(ranks, from.spheres.tally);
+  from.first_sphere = static_cast<std::size_t>(collide::count_before(ranks, from.spheres.size()));
+  from.all_spheres = static_cast<std::size_t>(io::sum(ranks, from.spheres.size()));
+  if (from.all_spheres > 0) from.coarse = io::coarse(from.tally.most, io::smallest(ranks, smallest));
   return from;
 }
 
 /// Reads the files as the scalar type that the options name, or chooses one.
-auto read(options& wish) {
-  io::text_file const mesh(wish.mesh), spheres(wish.spheres);
+template <class Ranks>
+auto read(Ranks const& ranks, options& wish) {
+  std::optional<io::text_file> mesh, spheres;
+  io::read_together(ranks, [&] {
+    mesh.emplace(wish.mesh);
+    spheres.emplace(wish.spheres);
+  });
   return io::read_as(wish.scalar,
-                     [&](auto scalar) { return read<decltype(scalar)>(wish, mesh.view(), spheres.view()); });
+                     [&](auto scalar) { return read<decltype(scalar)>(ranks, wish, mesh->view(), spheres->view()); });
 }
 
 nlohmann::ordered_json statistics(std::vector<double> values) {
@@ -82,7 +99,7 @@ void summarise(options const& wish, scene<S> const& from, findings<S> const& fou
     return;
   }
   auto const median = [&](char const* what) { return report[what]["median"].template get<double>(); };
-  std::cout << found.total << " colliding pairs of " << from.spheres.size() << " spheres and " << from.mesh.size()
+  std::cout << found.total << " colliding pairs of " << from.all_spheres << " spheres and " << from.mesh.size()
             << " triangles\n"
             << wish.broad << " on " << wish.space << " (" << found.device << "), " << wish.precision << " precision";
   if (found.cell_width > 0) std::cout << ", cells of width " << found.cell_width;
@@ -94,37 +111,93 @@ void summarise(options const& wish, scene<S> const& from, findings<S> const& fou
   }
 }
 
-template <class S>
-void run(options const& wish, scene<S> const& from, double read_ms, std::string const& roundings) {
-  auto found = detection::detect(wish, from);
-  nlohmann::ordered_json const report{
-      {"pairs", found.total},
-      {"build_ms", statistics(found.build_ms)},
-      {"query_ms", statistics(found.query_ms)},
-      {"total_ms", statistics(found.total_ms)},
-      {"peak_bytes", found.peak_bytes},
-      {"threads", found.threads},
-      {"space", wish.space},
-      {"broad", wish.broad},
-      {"precision", wish.precision},
-      {"scalar", wish.scalar},
-      {"cell_width", found.cell_width},
-      {"device", found.device},
-      {"triangles", from.mesh.size()},
-      {"spheres", from.spheres.size()},
-      {"repeat", wish.repeat},
-      {"read_ms", read_ms},
-      {"version", io::version()},
-  };
-  write(wish, from, found, report);
-  summarise(wish, from, found, report, roundings);
+/// Brings what all ranks have found to the first.
+template <class S, class Ranks>
+void gather(Ranks const& ranks, options const& wish, scene<S>& from, findings<S>& found) {
+  auto const first = static_cast<collide::id>(from.first_sphere);
+  for (auto& p : found.pairs) p.sphere += first;
+  for (auto& c : found.contacts) c.sphere += first;
+  io::gather_to_first(ranks, found.pairs);
+  io::gather_to_first(ranks, found.contacts);
+  found.total = io::sum(ranks, found.total);
+  if (wish.ply.empty()) return;
+  io::gather_to_first(ranks, from.spheres.xyz);
+  io::gather_to_first(ranks, from.spheres.radii);
 }
 
-void run(options& wish) {
+template <class S, class Ranks>
+void run(Ranks const& ranks, options const& wish, scene<S>& from, double read_ms, std::string const& roundings) {
+  if (from.all_spheres >= collide::no_id) throw io::data_error(wish.spheres, "more than 2^32 - 2 spheres");
+  findings<S> found;
+  collide::together(ranks, [&] { found = detection::detect(wish, from); });
+  gather(ranks, wish, from, found);
+  collide::together(ranks, [&] {
+    if (ranks.rank() != 0) return;
+    nlohmann::ordered_json report{
+        {"pairs", found.total},
+        {"build_ms", statistics(found.build_ms)},
+        {"query_ms", statistics(found.query_ms)},
+        {"total_ms", statistics(found.total_ms)},
+        {"peak_bytes", found.peak_bytes},
+        {"threads", found.threads},
+        {"space", wish.space},
+        {"broad", wish.broad},
+        {"precision", wish.precision},
+        {"scalar", wish.scalar},
+        {"cell_width", found.cell_width},
+        {"device", found.device},
+        {"triangles", from.mesh.size()},
+        {"spheres", from.all_spheres},
+        {"repeat", wish.repeat},
+        {"read_ms", read_ms},
+        {"version", io::version()},
+    };
+    if (!wish.ranks.empty()) report["ranks"] = ranks.size();
+    write(wish, from, found, report);
+    summarise(wish, from, found, report, roundings);
+  });
+}
+
+/// As `read`, but the rank with a bad file says to all what is wrong.
+template <class Ranks>
+auto read_or_agree(Ranks const& ranks, options& wish) {
+  try {
+    return read(ranks, wish);
+  } catch (io::error_elsewhere const&) {
+    collide::agree(ranks);
+    throw;
+  } catch (io::data_error const&) {
+    collide::agree(ranks, std::current_exception());
+    throw;
+  }
+}
+
+template <class Ranks>
+void run(Ranks const& ranks, options wish) {
   auto const start = clock::now();
-  auto const input = read(wish);
+  auto input = read_or_agree(ranks, wish);
   double const read_ms = milliseconds(clock::now() - start);
-  std::visit([&](auto const& from) { run(wish, from, read_ms, input.roundings); }, input.data);
+  std::visit([&](auto& from) { run(ranks, wish, from, read_ms, input.roundings); }, input.data);
+}
+
+/// Threads that are ranks share the cores and the devices.
+void run_on_threads(int n, options wish) {
+  if (wish.threads == 0) wish.threads = io::threads_for_each(n);
+  collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
+    io::choose_space(wish.space,
+                     [&](auto space) { io::device_of<typename decltype(space)::type>::take(ranks.rank()); });
+    run(ranks, wish);
+  });
+}
+
+void run(options const& wish) {
+  if (wish.ranks.empty()) return run(collide::one_rank(), wish);
+  if (int const n = io::threads_of(wish.ranks)) return run_on_threads(n, wish);
+#if defined(COLLIDE_PROGRAM_HAS_MPI)
+  collide::mpi_ranks const ranks;
+  io::choose_space(wish.space, [&](auto space) { io::device_of<typename decltype(space)::type>::take(ranks.rank()); });
+  run(ranks, wish);
+#endif
 }
 
 /// Checks what CLI11 does not, before any work is done.
@@ -139,6 +212,12 @@ void check(options& wish) {
   if (!(wish.cell_width >= 0) || std::isinf(wish.cell_width)) {
     throw io::usage_error("--cell-width: must be finite and not negative");
   }
+  if (!wish.ranks.empty() && wish.ranks != "mpi" && io::threads_of(wish.ranks) == 0) {
+    throw io::usage_error("--ranks: " + io::quoted(wish.ranks) + " is neither mpi nor threads:N, N from 1 to 1024");
+  }
+#if !defined(COLLIDE_PROGRAM_HAS_MPI)
+  if (wish.ranks == "mpi") throw io::usage_error("--ranks: this program was built without MPI");
+#endif
   if (wish.scalar.empty() && wish.precision == "double") wish.scalar = "double";
   io::check_outputs(
       {{"MESH", wish.mesh}, {"SPHERES", wish.spheres}},
@@ -173,10 +252,19 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   app.add_option("--cell-width", wish.cell_width, "width of the buckets; 0 for the best")->type_name("W");
+  app.add_option("--ranks", wish.ranks,
+                 "parts that each take some spheres: threads:N of this process, or mpi, the processes of mpirun")
+      ->type_name("RANKS");
   app.add_option("--repeat", wish.repeat, "how often to measure")->check(CLI::Range(1, 1'000'000))->type_name("N");
   app.footer("`detect MESH SPHERES RADIUS OUTPUT` is the short form.");
+#if defined(COLLIDE_PROGRAM_HAS_MPI)
+  std::optional<collide::mpi_session> session;  // until all has been said
+#endif
   return io::run_program(app, {argv + 1, argv + argc}, [&] {
     check(wish);
+#if defined(COLLIDE_PROGRAM_HAS_MPI)
+    if (wish.ranks == "mpi") session.emplace(argc, argv);
+#endif
     run(wish);
   });
 }

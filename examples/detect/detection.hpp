@@ -23,6 +23,7 @@ struct options {
   std::string mesh, spheres, radius;
   std::string broad = "bucket", space = "host", precision = "exact", scalar;
   std::string output, contacts, ply, report;
+  std::string ranks;
   double cell_width = 0;
   int threads = 0;
   int repeat = 1;
@@ -34,9 +35,11 @@ template <class S>
 struct scene {
   io::mesh_data<S> mesh;
   io::sphere_data<S> spheres;
-  S radius = 0;         ///< of all spheres, if the file has none
-  io::rounding tally;   ///< of all numbers
-  bool coarse = false;  ///< true if rounding moved one by more than a thousandth of the smallest radius
+  S radius = 0;                  ///< of all spheres, if the file has none
+  io::rounding tally;            ///< of all numbers
+  bool coarse = false;           ///< true if rounding moved one by more than a thousandth of the smallest radius
+  std::size_t first_sphere = 0;  ///< how many the ranks before have
+  std::size_t all_spheres = 0;   ///< of all ranks
 };
 
 /// What a detection gives: the pairs or the contacts, if somebody wants them, and what it cost.

@@ -25,12 +25,13 @@ struct sphere_data {
 
 /// Reads spheres from the text of a CSV file with the columns x, y, z and perhaps r; see `csv_table`. Numbers are
 /// correctly rounded to `S`. Throws `data_error`, which names file and line, at what is not a number, at a coordinate
-/// or radius that is not finite and at a radius below 0.
+/// or radius that is not finite and at a radius below 0. It reads part `part` of `parts` of the rows.
 template <class S>
-sphere_data<S> read_csv(std::string const& path, std::string_view text) {
+sphere_data<S> read_csv(std::string const& path, std::string_view text, int part = 0, int parts = 1) {
   std::vector<std::string> const names{"x", "y", "z", "r"};
   constexpr std::size_t radius = 3;
   csv_table table(path, text, names, 3);
+  table.keep_part(part, parts);
   auto const rows = table.most_rows();
   sphere_data<S> spheres;
   spheres.xyz.reserve(3 * rows);

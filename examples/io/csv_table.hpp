@@ -34,6 +34,21 @@ class csv_table {
     read_header(required);
   }
 
+  /// Leaves part `part` of `parts` to be read: the rows that begin in such a part of the text behind the header.
+  void keep_part(int part, int parts) {
+    auto const size = static_cast<std::size_t>(end_ - at_), n = static_cast<std::size_t>(parts);
+    auto const border = [&](std::size_t k) {
+      if (k == 0) return at_;
+      if (k == n) return end_;
+      char const* const near = std::find(at_ + size / n * k + size % n * k / n, end_, '\n');
+      return near == end_ ? end_ : near + 1;
+    };
+    auto const k = static_cast<std::size_t>(part);
+    char const *const begin = border(k), *const end = border(k + 1);
+    at_ = begin;
+    end_ = end;
+  }
+
   /// True if the file has this column.
   bool has(std::size_t column) const { return std::find(columns_.begin(), columns_.end(), column) != columns_.end(); }
 

@@ -33,6 +33,10 @@ struct device_of {
   static void require() {
     if (collide::cuda_device_count() == 0) throw std::runtime_error("--space: this computer has no usable CUDA device");
   }
+  /// Makes a device that of this thread: ranks take them in turn.
+  static void take(int rank) {
+    collide::cuda_check(cudaSetDevice(rank % collide::cuda_device_count()), "cudaSetDevice");
+  }
   static std::pmr::memory_resource* memory() { return collide::cuda_memory::get(); }
   static Space make(int, std::pmr::memory_resource* memory) { return Space(nullptr, memory); }
   static int threads(Space const&) { return 1; }
@@ -47,6 +51,7 @@ struct device_of {
 template <>
 struct device_of<collide::host> {
   static void require() {}
+  static void take(int) {}
   static std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }
   static collide::host make(int threads, std::pmr::memory_resource* memory) { return collide::host(threads, memory); }
   static int threads(collide::host const& space) { return space.threads(); }

@@ -12,6 +12,8 @@ namespace collide {
 /// sphere.
 class any_hit : public detail::kept_in_space<std::uint8_t> {
  public:
+  static constexpr bool keeps_ids_alone = true;
+
   /// The flags are kept in memory of the space.
   any_hit() = default;
   /// The flags are written to the caller's memory (of the space), one byte per sphere: 0 or 1, for all spheres of the

@@ -12,6 +12,8 @@
 ///
 /// A sink may have a member, for `detector::reserve`, which takes the memory that such a query needs:
 /// `template <class Space> void reserve(Space const& space, std::size_t spheres, std::size_t pairs)`.
+/// A sink that asks hits for nothing but ids may have a member `static constexpr bool keeps_ids_alone = true`:
+/// `distributed` then sends no triangles.
 #pragma once
 
 #include <cstddef>
@@ -190,5 +192,11 @@ using sink_run = decltype(std::declval<Sink&>().run(std::declval<Space&>(), std:
 template <class Sink, class Space>
 using sink_reserve =
     decltype(std::declval<Sink&>().reserve(std::declval<Space const&>(), std::size_t{}, std::size_t{}));
+
+/// True if a sink says that it keeps ids alone.
+template <class Sink, class = void>
+struct sink_keeps_ids_alone : std::false_type {};
+template <class Sink>
+struct sink_keeps_ids_alone<Sink, std::enable_if_t<Sink::keeps_ids_alone>> : std::true_type {};
 
 }  // namespace collide::detail

@@ -9,6 +9,8 @@ namespace collide {
 /// Counts the colliding pairs, in 64 bits. `query` waits until the number is known.
 class count {
  public:
+  static constexpr bool keeps_ids_alone = true;
+
   /// How many pairs collide; 0 before the first query.
   std::uint64_t total() const { return total_; }
 

@@ -50,6 +50,8 @@ struct csr_arrays {
 /// `pairs`. Beyond what `pairs` takes it is O(spheres + pairs), with 8 bytes a sphere and 8 a pair.
 class csr : public detail::kept_in_space<id> {
  public:
+  static constexpr bool keeps_ids_alone = true;
+
   /// The arrays are kept in memory of the space.
   explicit csr(order o = order::unspecified) : order_{o} {}
   /// The arrays are written to the caller's memory (of the space): one more offset than there are spheres, and

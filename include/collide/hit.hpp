@@ -21,8 +21,10 @@ class hit {
   using spheres_type = detail::sphere_view_for<NarrowPhase, S>;
 
   /// A hit of `p`, whose geometry is in `mesh` and `spheres`: both must outlive it.
-  COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres)
-      : sphere{p.sphere}, triangle{p.triangle}, mesh_{mesh}, spheres_{spheres} {}
+  COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres) : hit(p, mesh, spheres, p.triangle) {}
+  /// Of a triangle that is number `at` in the mesh here, and p.triangle in a whole of which that is a part.
+  COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres, id at)
+      : sphere{p.sphere}, triangle{p.triangle}, at_{at}, mesh_{mesh}, spheres_{spheres} {}
 
   /// Contact of the pair; of a moving sphere, at its time of impact. Computed by this call. The narrow phase needs a
   /// member contact_of.
@@ -31,7 +33,7 @@ class hit {
         detail::has_contact<NarrowPhase, S>::value,
         "collide: contacts need a narrow phase with a static member contact_of(triangle, sphere) that returns a "
         "contact");
-    collide::contact<S> c = NarrowPhase::contact_of(mesh_[triangle], spheres_[sphere]);
+    collide::contact<S> c = NarrowPhase::contact_of(mesh_[at_], spheres_[sphere]);
     c.sphere = sphere;
     c.triangle = triangle;
     return c;
@@ -44,15 +46,27 @@ class hit {
         detail::has_impact<NarrowPhase, S>::value,
         "collide: impacts need a narrow phase for spheres that move, with a static member impact_of(triangle, "
         "moving_sphere) that returns an impact, such as karabassi_swept");
-    collide::impact<S> i = NarrowPhase::impact_of(mesh_[triangle], spheres_[sphere]);
+    collide::impact<S> i = NarrowPhase::impact_of(mesh_[at_], spheres_[sphere]);
     i.contact.sphere = sphere;
     i.contact.triangle = triangle;
     return i;
   }
 
  private:
+  id at_;
   mesh_view<S> const& mesh_;
   spheres_type const& spheres_;
 };
+
+namespace detail {
+
+/// A pair with its geometry.
+template <class NarrowPhase, class S>
+COLLIDE_HD_INLINE hit<NarrowPhase, S> hit_of(pair p, mesh_view<S> const& mesh,
+                                             sphere_view_for<NarrowPhase, S> const& spheres) {
+  return {p, mesh, spheres};
+}
+
+}  // namespace detail
 
 }  // namespace collide

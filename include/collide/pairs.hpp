@@ -27,6 +27,8 @@ struct copy_pairs {
 /// compile. Copy them with `to_host()`, or read `data()` in a kernel on the space's stream.
 class pairs : public detail::kept_in_space<pair> {
  public:
+  static constexpr bool keeps_ids_alone = true;
+
   /// The pairs are kept in memory of the space, as many as there are, in the order `o`.
   explicit pairs(order o = order::unspecified) : order_{o} {}
   /// The pairs are written to the caller's `buffer` (in memory of the space) as long as `capacity` lasts; `total` tells

@@ -7,6 +7,7 @@
 #include <collide/bounce.hpp>
 #include <collide/bounds.hpp>
 #include <collide/checkpoint.hpp>
+#include <collide/distributed.hpp>
 #include <collide/drag.hpp>
 #include <collide/earliest.hpp>
 #include <collide/emit.hpp>
@@ -24,6 +25,7 @@
 #include <collide/sphere_contact.hpp>
 #include <collide/spin.hpp>
 #include <collide/streamed.cuh>
+#include <collide/thread_ranks.hpp>
 #include <collide/upload.hpp>
 #include <collide/validate.hpp>
 #include <collide/wind.hpp>
@@ -84,6 +86,11 @@ void use_all() {
   ask<all_pairs, karabassi<double_precision>, S>(mesh, spheres_xyzr(numbers, 3));
   ask<bucket, karabassi<baseline>, S>(mesh, spheres);
   ask<bucket, karabassi_swept<>, S>(mesh, with_displacements(spheres, numbers));
+  thread_ranks::run(1, [&](thread_ranks const& ranks) {
+    distributed<detector<bucket, karabassi<>, host, S>, thread_ranks> all(ranks);
+    all.build(mesh, divided);
+    all.query(spheres, contacts<S>());
+  });
   move<karabassi<>, S>(mesh, spheres);
   move<karabassi_swept<>, S>(mesh, spheres);
 }

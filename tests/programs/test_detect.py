@@ -5,6 +5,7 @@ import os
 import random
 import re
 import resource
+import shutil
 import signal
 import stat
 import subprocess
@@ -718,6 +719,70 @@ class Outputs(ProgramTest):
     def test_summary(self):
         text = self.succeed("detect", *self.call)
         self.assertIn(f"{len(self.detect(*self.call))} colliding pairs of 4 spheres and 12 triangles", text)
+
+
+class Ranks(ProgramTest):
+    """Several ranks write what one process writes, byte by byte."""
+    MPI = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+           "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",
+           "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe", "OMP_NUM_THREADS": "1"}
+    OUTPUTS = ("--output", "pairs.csv", "--contacts", "contacts.csv", "--ply", "hits.ply")
+
+    def written(self, *args):
+        self.succeed("detect", "mesh.obj", "spheres.csv", *args, *self.OUTPUTS)
+        return [self.read(name) for name in ("pairs.csv", "contacts.csv", "hits.ply")]
+
+    def on_mpi(self, n, *args):
+        return subprocess.run(["mpirun", "-np", str(n), programs.PROGRAMS / "detect", *map(str, args), "--ranks", "mpi"],
+                              cwd=self.folder, capture_output=True, stdin=subprocess.DEVNULL, timeout=300, env=self.MPI)
+
+    def test_threads(self):
+        vertices, triangles, spheres, radii = random_scene(3, 1)
+        for given, args in ((radii, ()), (None, ("--radius", 1.5))):
+            self.scene(vertices, triangles, spheres, given)
+            alone = self.written(*args)
+            for n in (1, 2, 3, 7, 100):  # the last have no spheres
+                self.assertEqual(self.written(*args, "--ranks", f"threads:{n}"), alone, n)
+        report = self.report("mesh.obj", "spheres.csv", "--radius", 1, "--ranks", "threads:3")
+        self.assertEqual((report["ranks"], report["spheres"]), (3, 60))
+
+    def test_a_single_sphere_and_no_newline(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", ONE_SPHERE.rstrip())
+        self.assertEqual(self.written("--radius", 1, "--ranks", "threads:4"), self.written("--radius", 1))
+
+    def test_the_scalar_is_one_for_all(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", "x,y,z\n" + "0.5,0.5,0.5\n" * 20 + "1000000.03,0,0\n")  # of the last rank
+        for ranks in ((), ("--ranks", "threads:3")):
+            out = self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 1, *ranks)
+            self.assertIn("; float would move one by", out)
+
+    def test_mistakes_are_told_once_with_the_line_of_the_file(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", "x,y,z\n" + "0.5,0.5,0.5\n" * 20 + "1,x,0\n")
+        self.fail_with(1, ["spheres.csv:22:", "'x'"], "detect", "mesh.obj", "spheres.csv", "--radius", 1, "--ranks", "threads:3")
+        self.fail_with(1, ["missing.csv"], "detect", "mesh.obj", "missing.csv", "--radius", 1, "--ranks", "threads:3")
+        self.write("spheres.csv", ONE_SPHERE)
+        self.fail_with(1, ["no/such"], "detect", "mesh.obj", "spheres.csv", "--radius", 1, "--ranks", "threads:3",
+                       "--output", "no/such/folder.csv")
+        for wrong in ("threads", "threads:", "threads:0", "threads:x", "threads:1e9", "many"):
+            self.fail_with(2, ["--ranks"], "detect", "mesh.obj", "spheres.csv", "--radius", 1, "--ranks", wrong)
+
+    def test_mpi(self):
+        self.scene(*random_scene(4, 2))
+        alone = self.written()
+        if shutil.which("mpirun") is None or b"without MPI" in self.on_mpi(1, "mesh.obj", "spheres.csv").stderr:
+            self.skipTest("no MPI")
+        for n in (1, 3):
+            done = self.on_mpi(n, "mesh.obj", "spheres.csv", *self.OUTPUTS)
+            self.assertEqual((done.returncode, done.stderr), (0, b""))
+            self.assertEqual([self.read(name) for name in ("pairs.csv", "contacts.csv", "hits.ply")], alone, n)
+        self.write("spheres.csv", "x,y,z,r\n" + "0.5,0.5,0.5,1\n" * 20 + "1,x,0,1\n")
+        done = self.on_mpi(3, "mesh.obj", "spheres.csv", "--output", "other.csv")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn(b"detect: spheres.csv:22:", done.stderr)
+        self.assertFalse(self.path("other.csv").exists())
 
 
 class Report(ProgramTest):

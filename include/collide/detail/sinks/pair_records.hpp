@@ -8,15 +8,15 @@
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over pairs.
-template <class NarrowPhase, class S, class Record>
+/// Kernel body of `for_each` over pairs. `Mesh` is a `mesh_view`, or what else `hit_of` takes.
+template <class NarrowPhase, class S, class Record, class Mesh>
 struct compute_records {
   pair const* pairs;
   Record* to;
-  mesh_view<S> mesh;
+  Mesh mesh;
   sphere_view_for<NarrowPhase, S> spheres;
   COLLIDE_HD void operator()(std::size_t i) const {
-    hit<NarrowPhase, S> const h(pairs[i], mesh, spheres);
+    hit<NarrowPhase, S> const h = hit_of<NarrowPhase, S>(pairs[i], mesh, spheres);
     if constexpr (std::is_same<Record, contact<S>>::value) {
       to[i] = h.contact();
     } else {
@@ -70,9 +70,8 @@ class records : public kept_in_space<Record> {
     if (fixed_ && size_ > capacity_) size_ = capacity_;
     if (!fixed_) own_.reserve(space.resource(), size_ > own_.capacity() ? size_ + size_ / 4 : own_.capacity());
     data_ = fixed_ ? external_ : own_.data();
-    using narrow_phase = typename Query::narrow_phase;
-    space.for_each(size_,
-                   compute_records<narrow_phase, S, Record>{collected_.data(), data_, query.mesh, query.spheres});
+    using compute = compute_records<typename Query::narrow_phase, S, Record, decltype(query.mesh)>;
+    space.for_each(size_, compute{collected_.data(), data_, query.mesh, query.spheres});
   }
 
  private:

@@ -21,17 +21,18 @@ struct reset_best {
 };
 
 /// Kernel body of `for_each` over pairs: the number of each, which takes a contact or an impact to tell, and the
-/// smallest of each sphere. Numbers are not negative, so they sort like their bits.
-template <class NarrowPhase, class S, class Entry, class Key>
+/// smallest of each sphere. Numbers are not negative, so they sort like their bits. `Mesh` is a `mesh_view`, or what
+/// else `hit_of` takes.
+template <class NarrowPhase, class S, class Entry, class Key, class Mesh>
 struct reduce_key {
   pair const* pairs;
   uint_for<S>* numbers;
   Entry* to;
-  mesh_view<S> mesh;
+  Mesh mesh;
   sphere_view_for<NarrowPhase, S> spheres;
   COLLIDE_HD void operator()(std::size_t i) const {
     pair const p = pairs[i];
-    uint_for<S> const number = to_bits(Key::of(hit<NarrowPhase, S>(p, mesh, spheres)));
+    uint_for<S> const number = to_bits(Key::of(hit_of<NarrowPhase, S>(p, mesh, spheres)));
     numbers[i] = number;
     fetch_min(reinterpret_cast<uint_for<S>*>(&Key::key_of(to[p.sphere])), number);
   }
@@ -76,7 +77,7 @@ class per_sphere_min : public kept_in_space<Entry> {
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: closest<S> and earliest<S> must have the scalar type of the detector");
-    using narrow_phase = typename Query::narrow_phase;
+    using reduce = reduce_key<typename Query::narrow_phase, S, Entry, Key, decltype(query.mesh)>;
     download_ = host_copier<Entry>(space);
     size_ = query.spheres.size();
     collected_.fill(space, query);
@@ -87,8 +88,7 @@ class per_sphere_min : public kept_in_space<Entry> {
     std::size_t const room = numbers_.capacity();
     numbers_.reserve(space.resource(), pairs > room ? pairs + pairs / 4 : room);
     pair const* const from = collected_.data();
-    space.for_each(pairs,
-                   reduce_key<narrow_phase, S, Entry, Key>{from, numbers_.data(), to, query.mesh, query.spheres});
+    space.for_each(pairs, reduce{from, numbers_.data(), to, query.mesh, query.spheres});
     space.for_each(pairs, find_best<S, Entry, Key>{from, numbers_.data(), to});
   }
 

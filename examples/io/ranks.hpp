@@ -1,0 +1,118 @@
+/// \file
+/// What programs on several ranks do with files: each reads a part of a table, and the first writes.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <collide/ranks.hpp>
+#include <collide/thread_ranks.hpp>
+
+#include "error.hpp"
+#include "number.hpp"
+#include "rounding.hpp"
+
+namespace io {
+
+/// What is wrong with a file is in the part of another rank.
+class error_elsewhere : public data_error {
+ public:
+  error_elsewhere() : data_error("a file", "another rank cannot read its part") {}
+};
+
+/// Calls f(), which reads files, on each rank. If there is a `data_error` on one, there is on all.
+template <class Ranks, class F>
+void read_together(Ranks const& ranks, F const& f) {
+  std::exception_ptr mine;
+  collide::together(ranks, [&] {
+    try {
+      f();
+    } catch (data_error const&) {
+      mine = std::current_exception();
+    }
+  });
+  std::uint64_t const is_wrong = mine ? 1 : 0;
+  std::uint64_t somewhere = 0;
+  ranks.reduce(&is_wrong, &somewhere, 1, collide::reduction::max);
+  if (mine) std::rethrow_exception(mine);
+  if (somewhere != 0) throw error_elsewhere();
+}
+
+/// The largest of numbers that are not negative, of which each rank has one. They sort like their bits.
+template <class Ranks>
+double largest(Ranks const& ranks, double mine) {
+  std::uint64_t bits = 0, all = 0;
+  std::memcpy(&bits, &mine, sizeof bits);
+  ranks.reduce(&bits, &all, 1, collide::reduction::max);
+  std::memcpy(&mine, &all, sizeof mine);
+  return mine;
+}
+
+/// The smallest of numbers that are not negative.
+template <class Ranks>
+double smallest(Ranks const& ranks, double mine) {
+  std::uint64_t bits = 0, all = 0;
+  std::memcpy(&bits, &mine, sizeof bits);
+  bits = ~bits;
+  ranks.reduce(&bits, &all, 1, collide::reduction::max);
+  all = ~all;
+  std::memcpy(&mine, &all, sizeof mine);
+  return mine;
+}
+
+/// The sum of numbers of which each rank has one.
+template <class Ranks>
+std::uint64_t sum(Ranks const& ranks, std::uint64_t mine) {
+  std::uint64_t all = 0;
+  ranks.reduce(&mine, &all, 1, collide::reduction::sum);
+  return all;
+}
+
+/// Of the numbers of all ranks.
+template <class Ranks>
+rounding sum(Ranks const& ranks, rounding const& mine) {
+  return {static_cast<std::size_t>(sum(ranks, mine.numbers)), static_cast<std::size_t>(sum(ranks, mine.rounded)),
+          largest(ranks, mine.most)};
+}
+
+/// Brings the values of all ranks, in the order of the ranks, to the first.
+template <class T, class Ranks>
+void gather_to_first(Ranks const& ranks, std::vector<T>& values) {
+  if (ranks.size() == 1) return;
+  std::vector<std::uint64_t> to_each, of_each;
+  collide::together(ranks, [&] {
+    to_each.assign(static_cast<std::size_t>(ranks.size()), 0);
+    of_each = to_each;
+    to_each[0] = values.size();
+  });
+  ranks.exchange_counts(to_each.data(), of_each.data());
+  std::vector<T> all;
+  collide::together(ranks, [&] {
+    std::uint64_t n = 0;
+    for (auto const each : of_each) n += each;
+    all.resize(static_cast<std::size_t>(n));
+  });
+  ranks.exchange(values.data(), to_each.data(), all.data(), of_each.data(), sizeof(T));
+  values = std::move(all);
+}
+
+/// How many ranks `threads:N` asks for; 0 if the text says something else.
+inline int threads_of(std::string const& text) {
+  std::string const name = "threads:";
+  int n = 0;
+  if (text.rfind(name, 0) != 0 || !parse_number(text.substr(name.size()), n) || n < 1 || n > 1024) return 0;
+  return n;
+}
+
+/// How many threads of the host each of `ranks` in one process gets.
+inline int threads_for_each(int ranks) {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks);
+}
+
+}  // namespace io

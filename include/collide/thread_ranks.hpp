@@ -1,0 +1,183 @@
+/// \file
+/// Ranks that are threads of one process: for machines with several devices, and for tests.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <collide/ranks.hpp>
+
+namespace collide {
+
+namespace detail {
+
+/// Where threads wait for each other, and see what the others have laid out. Who waits for one that has left throws.
+class meeting {
+ public:
+  explicit meeting(int size) : places_(static_cast<std::size_t>(size)) {}
+
+  /// What a rank shows to the others.
+  struct place {
+    void const* data = nullptr;
+    std::uint64_t const* counts = nullptr;
+  };
+
+  int size() const { return static_cast<int>(places_.size()); }
+  place& of(int rank) { return places_[static_cast<std::size_t>(rank)]; }
+
+  /// Returns when all have called it. Throws `rank_error` if one has left.
+  void wait() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    std::uint64_t const round = round_;
+    if (!gone_.empty()) throw rank_error(gone_);
+    if (++waiting_ == places_.size()) {
+      waiting_ = 0;
+      ++round_;
+      changed_.notify_all();
+      return;
+    }
+    changed_.wait(lock, [&] { return round_ != round || !gone_.empty(); });
+    if (round_ == round) throw rank_error(gone_);
+  }
+
+  /// A rank will not come again, because of `failure` or, if that is null, because it has ended.
+  void leave(int rank, std::exception_ptr const& failure) {
+    std::lock_guard<std::mutex> const lock(mutex_);
+    bool const is_first = gone_.empty();
+    if (is_first) {
+      gone_ = "collide: rank " + std::to_string(rank) + " of " + std::to_string(size()) +
+              (failure ? " failed: " + message_of(failure) : " has ended, and others wait for it");
+    }
+    if (failure && (!failure_ || (is_of_another(failure_) && !is_of_another(failure)))) failure_ = failure;
+    changed_.notify_all();
+  }
+
+  /// What went wrong first, rather than what that made others throw; null if nothing did.
+  std::exception_ptr failure() const { return failure_; }
+
+ private:
+  static bool is_of_another(std::exception_ptr const& failure) {
+    try {
+      std::rethrow_exception(failure);
+    } catch (rank_error const&) {
+      return true;
+    } catch (...) {
+      return false;
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<place> places_;
+  std::size_t waiting_ = 0;
+  std::uint64_t round_ = 0;
+  std::string gone_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace detail
+
+/// Ranks: threads of one process, made by `run`. What they exchange is copied once, from thread to thread. With several
+/// devices each thread takes its own, with cudaSetDevice(ranks.rank()) before it makes a CUDA space; on the host
+/// each gives its space a part of the cores, such as `host(2)`.
+class thread_ranks {
+ public:
+  /// Calls f(ranks) on `n` threads, and returns when all have ended. If one throws, those that wait for it throw
+  /// `rank_error`, and so does `run` in the end what the first has thrown. Throws `error` if n is not positive.
+  template <class F>
+  static void run(int n, F const& f) {
+    if (n < 1) throw error("collide: thread_ranks: there must be at least one rank");
+    detail::meeting meeting(n);
+    std::vector<std::thread> threads;
+    int started = 0;
+    try {
+      threads.reserve(static_cast<std::size_t>(n));
+      for (; started < n; ++started) threads.emplace_back([&meeting, &f, started] { work(meeting, started, f); });
+    } catch (...) {
+      meeting.leave(started, std::current_exception());
+    }
+    for (auto& thread : threads) thread.join();
+    if (meeting.failure()) std::rethrow_exception(meeting.failure());
+  }
+
+  int rank() const { return rank_; }
+  int size() const { return meeting_->size(); }
+
+  void all_gather(void const* mine, std::size_t bytes, void* all) const {
+    show({mine, nullptr}, [&] {
+      for (int r = 0; r < size(); ++r) copy(meeting_->of(r).data, bytes, all, static_cast<std::size_t>(r) * bytes);
+    });
+  }
+
+  void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, reduction how) const {
+    show({mine, nullptr}, [&] {
+      for (int r = 0; r < size(); ++r) {
+        auto const* const theirs = static_cast<std::uint64_t const*>(meeting_->of(r).data);
+        for (std::size_t i = 0; i < n; ++i) {
+          std::uint64_t const before = r == 0 ? 0 : all[i];
+          all[i] = how == reduction::sum ? before + theirs[i] : (before < theirs[i] ? theirs[i] : before);
+        }
+      }
+    });
+  }
+
+  void exchange_counts(std::uint64_t const* to_each, std::uint64_t* of_each) const {
+    show({nullptr, to_each}, [&] {
+      for (int r = 0; r < size(); ++r) of_each[r] = meeting_->of(r).counts[rank_];
+    });
+  }
+
+  void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
+                std::size_t bytes) const {
+    show({from, to_each}, [&] {
+      std::size_t filled = 0;
+      for (int r = 0; r < size(); ++r) {
+        detail::meeting::place const theirs = meeting_->of(r);
+        std::size_t before = 0;
+        for (int q = 0; q < rank_; ++q) before += static_cast<std::size_t>(theirs.counts[q]) * bytes;
+        std::size_t const n = static_cast<std::size_t>(of_each[r]) * bytes;
+        if (n != 0) copy(static_cast<unsigned char const*>(theirs.data) + before, n, to, filled);
+        filled += n;
+      }
+    });
+  }
+
+ private:
+  thread_ranks(detail::meeting& meeting, int rank) : meeting_{&meeting}, rank_{rank} {}
+
+  template <class F>
+  static void work(detail::meeting& meeting, int rank, F const& f) {
+    std::exception_ptr failure;
+    try {
+      f(thread_ranks(meeting, rank));
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    meeting.leave(rank, failure);
+  }
+
+  static void copy(void const* from, std::size_t bytes, void* to, std::size_t at) {
+    if (bytes != 0) std::memcpy(static_cast<unsigned char*>(to) + at, from, bytes);
+  }
+
+  /// Shows something to the others, calls take(), which looks at what they show, and waits until all have.
+  template <class Take>
+  void show(detail::meeting::place const& mine, Take const& take) const {
+    meeting_->of(rank_) = mine;
+    meeting_->wait();
+    take();
+    meeting_->wait();
+  }
+
+  detail::meeting* meeting_;
+  int rank_;
+};
+
+}  // namespace collide
