@@ -10,6 +10,7 @@
 
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/simulation/arguments.hpp>
+#include <collide/detail/simulation/body_memory.hpp>
 #include <collide/detail/simulation/lookup_tuning.hpp>
 #include <collide/detail/simulation/particle_kernels.hpp>
 #include <collide/detail/simulation/step.hpp>
@@ -118,7 +119,7 @@ class simulation {
     time_ = 0;
     space_.for_each(detail::padded_size(room), detail::init_particles<S, columns>{state_, particles, velocities});
     is_set_ = true;
-    if constexpr (effects_type::meets || sweeps) largest_radius_ = largest_radius(particles);
+    if constexpr (effects_type::meets || sweeps || has_bodies) largest_radius_ = largest_radius(particles);
     if constexpr (effects_type::meets) neighbours_.clear(space_, room, largest_radius_);
     prepare();
   }
@@ -133,7 +134,7 @@ class simulation {
     memory_.reserve(resource, detail::padded_size(particles));
     if constexpr (has_begin_step) device_time_.reserve(resource, 1);
     if constexpr (effects_type::touches) {
-      using kernel = detail::step_kernel<step_context<std::decay_t<decltype(index_.lookup())>>>;
+      using kernel = detail::step_kernel<step_context<decltype(lookup(S{}))>>;
       if constexpr (kernel::template has_many_tiles<typename execution_space::template block<kernel>>) {
         overflow_.reserve(resource, detail::padded_size(particles));
       }
@@ -143,11 +144,17 @@ class simulation {
 
   /// The mesh that particles touch, which must stay as it is while it is used; call it again when the mesh has moved.
   /// An empty one is a mesh, too. Allocates unless there was a mesh of this size before; may wait. O(triangles).
-  void set_mesh(mesh_view<S> mesh) {
+  ///
+  /// `bodies`, only with `moving_bodies` in the scene: parts of the mesh that move; see bodies.hpp. `error` if there
+  /// are more than 64, triangles are not in the mesh or in two bodies, or a motion is not finite.
+  void set_mesh(mesh_view<S> mesh, [[maybe_unused]] std::vector<body> const& bodies = {}) {
+    if constexpr (has_bodies) bodies_.check(bodies, mesh.size());
+    if (!has_bodies && !bodies.empty()) throw error("collide: set_mesh: bodies need the effect moving_bodies");
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
     if (mesh.size() != 0) index_.build(there, options_, mesh);
+    if constexpr (has_bodies) bodies_.build(space_, mesh, bodies);
     mesh_ = mesh;
     has_mesh_ = true;
     if constexpr (sweeps) {
@@ -180,18 +187,12 @@ class simulation {
     time_ += static_cast<double>(dt);
     if (state_.size == 0) return;
     (begin<Effect>(dt), ...);
+    if constexpr (has_bodies) advance_bodies(dt, false);
     if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
     if constexpr (effects_type::meets) neighbours_.interact(space_, state_, effects_, dt);
-    auto const lookup = [&] {
-      if constexpr (effects_type::touches) {
-        return mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
-      } else {
-        return detail::null_ref{};
-      }
-    }();
-    using kernel = detail::step_kernel<step_context<std::decay_t<decltype(lookup)>>>;
+    using kernel = detail::step_kernel<step_context<decltype(lookup(dt))>>;
     using block = typename execution_space::template block<kernel>;
-    kernel const body{{state_, effects_, lookup, overflow_.data(), dt, reverse_order_, least_radius_},
+    kernel const body{{state_, effects_, lookup(dt), overflow_.data(), dt, reverse_order_, least_radius_},
                       kernel::template grid_size<block>(state_.size, detail::resident_blocks<kernel>(space_))};
     reverse_order_ = !reverse_order_;
     space_.launch(body.blocks, body);
@@ -257,6 +258,23 @@ class simulation {
     return effects_.template of<E>();
   }
 
+  /// States of the bodies in memory of the space: poses at the end of the last step. With `moving_bodies<driven>`
+  /// kernels of yours write there, before a step, what is to be at its end. Valid until the next `set_mesh`.
+  body_state* bodies() const {
+    static_assert(has_bodies, "collide: a simulation has bodies if it names the effect moving_bodies");
+    return bodies_.states();
+  }
+
+  /// A copy of the states of the bodies. Waits.
+  std::vector<body_state> bodies_to_host() const {
+    std::vector<body_state> copy(bodies_.size());
+    space_.copy_to_host(copy.data(), bodies(), copy.size());
+    return copy;
+  }
+
+  /// What has gone wrong with bodies since `set_mesh`. Waits.
+  collide::body_report body_report() const { return space_.read(bodies_.report()); }
+
   state_type const& state() const { return state_; }
   execution_space& space() { return space_; }
   execution_space const& space() const { return space_; }
@@ -268,6 +286,31 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   struct no_lists {};
   using neighbour_lists = std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, no_lists>;
+  using motion = typename detail::bodies_of<Effect...>::motion;
+  static constexpr bool has_bodies = !std::is_void<motion>::value;
+  struct no_bodies {};
+  using bodies_memory = std::conditional_t<has_bodies, detail::body_memory<S, motion>, no_bodies>;
+
+  /// What a step asks for the triangles near a particle.
+  auto lookup([[maybe_unused]] S dt) const {
+    if constexpr (!effects_type::touches) {
+      return detail::null_ref{};
+    } else {
+      auto const whole = mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
+      if constexpr (has_bodies) {
+        return bodies_.lookup(whole, mesh_, dt);
+      } else {
+        return whole;
+      }
+    }
+  }
+
+  /// Moves the bodies on by `dt`, or, if they start, to where they are at this time.
+  void advance_bodies(S dt, bool start) {
+    if (mesh_.size() == 0 || state_.time == nullptr) return;
+    S const most = sweeps ? S(-1) : largest_radius_;
+    bodies_.advance(space_, effect<moving_bodies<motion>>().motion, state_.time, static_cast<double>(dt), most, start);
+  }
 
   S largest_radius(sphere_view<S> const& particles) {
     if constexpr (detail::contains<columns, radius>) {
@@ -291,6 +334,7 @@ class simulation {
   }
 
   void prepare() {
+    if constexpr (has_bodies) advance_bodies(S(0), true);
     if constexpr (effects_type::touches) {
       detail::lookup_tuning<execution_space> there(space_);
       if (mesh_.size() == 0 || state_.size == 0) return;
@@ -336,6 +380,7 @@ class simulation {
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
   buffer<id> overflow_;
+  bodies_memory bodies_;
 };
 
 }  // namespace collide
