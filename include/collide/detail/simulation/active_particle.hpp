@@ -64,9 +64,11 @@ template <class S, bool HasBodies>
 struct body_contacts {};
 template <class S>
 struct body_contacts<S, true> {
-  S surface_velocities[max_recorded_contacts][3];  ///< of the recorded contacts
-  int frames[max_recorded_contacts];               ///< of their bodies
-  bool is_held;                                    ///< it had no velocity relative to the surface after the last one
+  // of the recorded contacts
+  S surface_velocities[max_recorded_contacts][3];
+  S own_normals[max_recorded_contacts][3], own_points[max_recorded_contacts][3];  ///< in the frame of their body
+  int frames[max_recorded_contacts];
+  bool is_held;  ///< it had no velocity relative to the surface after the last one
 };
 
 /// How a particle moves, as a surface sees it that it may touch: one that rests sees what there is.
@@ -74,7 +76,10 @@ struct seen_at_rest {};
 /// A surface of a body sees a displacement of its own in the rest of the step, and a velocity.
 template <class S>
 struct seen_from_body {
-  vec3<S> displacement, velocity;
+  vec3<S> own_displacement;  ///< in the frame of the body
+  vec3<S> displacement;      ///< turned to the world
+  vec3<S> own_point;         ///< where the two may touch, in the frame of the body
+  vec3<S> velocity;          ///< in the world
   int frame;
 };
 
@@ -122,8 +127,9 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     return c;
   }
 
-  /// `frame` is that of its body, if there are bodies.
-  COLLIDE_HD_INLINE void record_contact(mesh_contact<S> const& c, [[maybe_unused]] int frame = 0) {
+  /// `own` is the contact in the frame of its body, if there are bodies.
+  COLLIDE_HD_INLINE void record_contact(mesh_contact<S> const& c, [[maybe_unused]] contact<S> const& own = {},
+                                        [[maybe_unused]] int frame = 0) {
     int const slot = contact_count % max_recorded;
     for (int k = 0; k < 3; ++k) {
       normals[slot][k] = c.normal[k];
@@ -132,7 +138,11 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     last_impulse = c.normal_impulse;
     if constexpr (IsSwept) this->triangles[slot] = c.triangle;
     if constexpr (HasBodies) {
-      for (int k = 0; k < 3; ++k) this->surface_velocities[slot][k] = c.surface_velocity[k];
+      for (int k = 0; k < 3; ++k) {
+        this->surface_velocities[slot][k] = c.surface_velocity[k];
+        this->own_normals[slot][k] = own.normal[k];
+        this->own_points[slot][k] = own.point[k];
+      }
       this->frames[slot] = frame;
     }
     ++contact_count;
@@ -162,7 +172,7 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     bool leaves = false;
     if constexpr (IsSwept) {
       for (int i = 0; i < max_recorded && i < contact_count; ++i) {
-        leaves = leaves || (this->triangles[i] == triangle && !is_approaching(normal_of(i), seen));
+        leaves = leaves || (this->triangles[i] == triangle && !is_approaching_again(i, seen));
       }
     }
     return leaves;
@@ -177,6 +187,9 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
       if (i >= contact_count) break;
       S above = 0;
       for (int k = 0; k < 3; ++k) above += normals[i][k] * (point[k] - points[i][k]);
+      if constexpr (HasBodies && IsSwept) {
+        if (this->frames[i] == seen.frame) above = own_height(i, seen.own_point);
+      }
       bool leaves = true;
       if constexpr (IsSwept) leaves = !is_approaching_again(i, seen);
       is_internal = is_internal || (leaves && above <= contact_tolerance<S> * radius);
@@ -279,11 +292,21 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
   /// True if the motion leads towards the surface of a recorded contact.
   COLLIDE_HD_INLINE bool is_approaching_again(int slot, seen_at_rest) const { return is_approaching(normal_of(slot)); }
   COLLIDE_HD_INLINE bool is_approaching_again(int slot, seen_from_body<S> seen) const {
-    S const(&u)[3] = this->surface_velocities[slot];
-    if (this->frames[slot] != seen.frame) {
-      seen.displacement = this->motion() - vec3<S>(u[0], u[1], u[2]) * this->remaining_time;
+    S const(&n)[3] = this->own_normals[slot];
+    if (this->frames[slot] == seen.frame) {  // which may have turned since
+      seen.displacement = seen.own_displacement;
+      return is_approaching(vec3<S>(n[0], n[1], n[2]), seen);
     }
+    S const(&u)[3] = this->surface_velocities[slot];
+    seen.displacement = this->motion() - vec3<S>(u[0], u[1], u[2]) * this->remaining_time;
     return is_approaching(normal_of(slot), seen);
+  }
+
+  /// How high a point of a body's frame is above the tangent plane of a contact with the body.
+  COLLIDE_HD_INLINE S own_height(int slot, vec3<S> const& point) const {
+    S above = 0;
+    for (int k = 0; k < 3; ++k) above += this->own_normals[slot][k] * (point[k] - this->own_points[slot][k]);
+    return above;
   }
 };
 

@@ -151,7 +151,7 @@ struct contact_response {
     if constexpr (has_bodies) seen.velocity = c.velocity_before;
     a.find_lift(c, velocity_before, seen);
     context.effects.on_mesh_contact(p, c, context.dt);
-    a.record_contact(c, surface.frame);
+    surface.record(a, c);
     if constexpr (has_bodies) a.is_held = p[velocity{}] == vec3<S>(S(0), S(0), S(0));
     surface.leave(p);
     a.is_active = a.contact_count < max_contacts_per_step;

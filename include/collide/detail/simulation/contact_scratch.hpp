@@ -54,32 +54,32 @@ struct span_counts {
 };
 
 /// In which frames the candidates of spans are.
-template <bool HasBodies, std::uint32_t N>
+template <bool HasBodies>
 struct span_frames {
-  COLLIDE_HD_INLINE void set(std::uint32_t, candidate_cursor const&) {}
-  COLLIDE_HD_INLINE int operator[](std::uint32_t) const { return 0; }
+  COLLIDE_HD_INLINE void set_frame(std::uint32_t, candidate_cursor const&) {}
+  COLLIDE_HD_INLINE int frame(std::uint32_t) const { return 0; }
 };
-template <std::uint32_t N>
-struct span_frames<true, N> {
-  std::uint8_t of[N];
-  COLLIDE_HD_INLINE void set(std::uint32_t i, body_cursor const& c) {
+template <>
+struct span_frames<true> {
+  std::uint8_t of[256];  // as many as bytes can count
+  COLLIDE_HD_INLINE void set_frame(std::uint32_t i, body_cursor const& c) {
     of[i] = static_cast<std::uint8_t>(c.frame_of_last);
   }
-  COLLIDE_HD_INLINE int operator[](std::uint32_t i) const { return of[i]; }
+  COLLIDE_HD_INLINE int frame(std::uint32_t i) const { return of[i]; }
 };
 
 /// Scratch memory of a block for a batch of particles.
 template <class S, bool IsSwept, bool HasBodies, class Block>
-struct contact_scratch {
+struct contact_scratch : span_frames<HasBodies> {
   using particle_type = active_particle<S, IsSwept, HasBodies>;
   static constexpr std::size_t bytes_per_particle = sizeof(particle_type) + sizeof(cell_item const*) +
-                                                    2 * sizeof(std::uint32_t) + sizeof(std::uint8_t) + 2 * sizeof(id) +
-                                                    (HasBodies ? 1 : 0);
+                                                    2 * sizeof(std::uint32_t) + sizeof(std::uint8_t) + 2 * sizeof(id);
+  static constexpr std::size_t bytes_of_frames = HasBodies ? sizeof(span_frames<HasBodies>) : 0;
 
   /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block, but fewer than lanes, and
   /// than bytes can count. The rest is for what else a step keeps there.
   static constexpr std::uint32_t room =
-      static_cast<std::uint32_t>((47 * 1024 - sizeof(contact_queues<Block>)) / bytes_per_particle);
+      static_cast<std::uint32_t>((47 * 1024 - sizeof(contact_queues<Block>) - bytes_of_frames) / bytes_per_particle);
   static constexpr std::uint32_t batch_size = Block::num_threads == 1     ? Block::items
                                               : room < Block::num_threads ? room
                                                                           : Block::num_threads - 1;
@@ -89,7 +89,6 @@ struct contact_scratch {
   std::uint32_t span_sizes[batch_size], span_coverage[batch_size];
   cell_item const* span_items[batch_size];
   id span_first[batch_size];
-  span_frames<HasBodies, batch_size> frames_of_spans;
   contact_queues<Block> queues;
   span_counts spans;
   std::uint32_t active_count;  ///< how often a particle was to be looked at again; only rises

@@ -108,7 +108,7 @@ struct contact_search {
         s.span_items[i] = range.listed;
         s.span_first[i] = range.first;
         s.span_coverage[i] = range.place;
-        s.frames_of_spans.set(i, a.cursor);
+        s.set_frame(i, a.cursor);
       }
     });
   }
@@ -141,7 +141,7 @@ struct contact_search {
   template <class Block>
   COLLIDE_HD_INLINE span span_of(scratch<Block>& s, std::uint32_t i) const {
     active& a = s.particles[s.particle_of_span[i]];
-    shape const whole = shape_seen(triangles.mesh, a, s.frames_of_spans[i]);
+    shape const whole = shape_seen(triangles.mesh, a, s.frame(i));
     shape part = whole;
     if constexpr (is_swept && Block::num_threads == 1) clip_to_best(a, part);
     return {s.particle_of_span[i],
@@ -149,7 +149,7 @@ struct contact_search {
             whole,
             swept_bounding_sphere(part),
             {s.span_items[i], s.span_first[i], 0, s.span_coverage[i]},
-            s.frames_of_spans[i]};
+            s.frame(i)};
   }
 
   /// A lane alone finds the first contacts first, as it goes along the motion, and hardly looks at what comes later.
@@ -290,7 +290,8 @@ struct contact_search {
     if constexpr (has_bodies) {
       int const frame = mesh.frame_of(c.triangle);
       double const part = part_done(mesh, a, time);
-      auto const seen = seen_in_world(mesh, a, frame, whole, part);
+      auto seen = seen_in_world(mesh, a, frame, whole, part);
+      seen.own_point = c.point;
       mesh.to_world(c, frame, part);
       return consider_seen<Block>(a, time, c, seen);
     } else {

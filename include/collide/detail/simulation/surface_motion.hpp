@@ -27,13 +27,14 @@ template <class S, class Active, class Shape>
 COLLIDE_HD_INLINE seen_from_body<S> seen_in_world([[maybe_unused]] moving_mesh<S> const& mesh, Active const&, int frame,
                                                   [[maybe_unused]] Shape const& whole, [[maybe_unused]] double part) {
   vec3<S> const none(S(0), S(0), S(0));
+  seen_from_body<S> seen{none, none, none, none, frame};
   if constexpr (Active::is_swept) {
-    if (frame == 0) return {whole.displacement, none, frame};
+    seen.own_displacement = seen.displacement = whole.displacement;
+    if (frame == 0) return seen;
     vec3<double> const d = whole.displacement.template cast<double>();
-    return {mesh.pose_at(frame, part).rotated(d).template cast<S>(), none, frame};
-  } else {
-    return {none, none, frame};
+    seen.displacement = mesh.pose_at(frame, part).rotated(d).template cast<S>();
   }
+  return seen;
 }
 
 /// A surface that rests, and sees what there is.
@@ -55,6 +56,10 @@ struct surface_at_rest {
   template <class S>
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
     c.body = no_id;
+  }
+  template <class Active, class S>
+  COLLIDE_HD_INLINE void record(Active& a, mesh_contact<S> const& c) const {
+    a.record_contact(c);
   }
   template <class Particle>
   COLLIDE_HD_INLINE void enter(Particle&) const {}
@@ -93,6 +98,16 @@ struct surface_of_body {
     c.body = frame == 0 ? no_id : static_cast<id>(frame - 1);
   }
 
+  template <class Active>
+  COLLIDE_HD_INLINE void record(Active& a, mesh_contact<S> const& c) const {
+    contact<S> own = c;
+    if (frame != 0) {
+      own.point = at.to_local(c.point.template cast<double>()).template cast<S>();
+      own.normal = at.rotated_back(c.normal.template cast<double>()).template cast<S>();
+    }
+    a.record_contact(c, own, frame);
+  }
+
   /// Gives a particle the velocities that the surface sees, and back those of the world.
   template <class Particle>
   COLLIDE_HD_INLINE void enter(Particle& p) const {
@@ -108,7 +123,6 @@ struct surface_of_body {
     if constexpr (contains<typename Particle::list, angular_velocity>) p[angular_velocity{}] += angular;
   }
 
- private:
   /// From the end of the step, where motion ends, to the time of contact, as the surface turns; and the other way.
   COLLIDE_HD_INLINE vec3<double> turned_back(vec3<double> const& x) const {
     if (!IsSwept || frame == 0) return x;
@@ -139,9 +153,11 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
   vector const local = s.at.to_local(x);
   s.change = velocity_at(f.moving, f.now, x) - velocity_at(f.moved, f.before, f.before.to_world(local));
   for (int k = 0; k < 3; ++k) s.angular[k] = static_cast<S>(f.moving.angular[k]);
-  double const time = mul(1 - part, static_cast<double>(mesh.dt));
-  if (Active::is_swept && time != 0) {
-    vector const own = here.template cast<double>(), way = f.now.to_world(own) - s.at.to_world(own);
+  if (Active::is_swept && mesh.dt != 0) {
+    // of a short rest of the step, rounding would leave nothing
+    double const from = smaller(part, 1 - 0x1p-10), time = mul(1 - from, static_cast<double>(mesh.dt));
+    vector const own = here.template cast<double>();
+    vector const way = f.now.to_world(own) - mesh.pose_at(s.frame, from).to_world(own);
     s.carried = vector(div(way.x(), time), div(way.y(), time), div(way.z(), time));
   } else {
     s.carried = velocity_at(f.moving, f.now, x);
@@ -152,7 +168,7 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
     vector const n = c.normal.template cast<double>();
     along += arm - scaled(n, dot(arm, n));
   }
-  s.carried += along;
+  s.carried += s.turned(along);
   return s;
 }
 
