@@ -52,6 +52,8 @@ class simulation {
   using broad_phase = typename Detector::broad_phase;
   using narrow_phase = typename Detector::narrow_phase;
   using index = typename broad_phase::template index<S>;
+  using bodies_memory = detail::bodies_of<S, Effect...>;
+  static constexpr bool has_bodies = bodies_memory::exist;
 
   static_assert((detail::is_effect<Effect, execution_space, S> && ...),
                 "collide: what follows the detector in a simulation are effects, such as gravity or bounce: copyable "
@@ -147,14 +149,13 @@ class simulation {
   ///
   /// `bodies`, only with `moving_bodies` in the scene: parts of the mesh that move; see bodies.hpp. `error` if there
   /// are more than 64, triangles are not in the mesh or in two bodies, or a motion is not finite.
-  void set_mesh(mesh_view<S> mesh, [[maybe_unused]] std::vector<body> const& bodies = {}) {
-    if constexpr (has_bodies) bodies_.check(bodies, mesh.size());
-    if (!has_bodies && !bodies.empty()) throw error("collide: set_mesh: bodies need the effect moving_bodies");
+  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}) {
+    bodies_.check(bodies, mesh.size());
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
     if (mesh.size() != 0) index_.build(there, options_, mesh);
-    if constexpr (has_bodies) bodies_.build(space_, mesh, bodies);
+    bodies_.build(space_, mesh, bodies);
     mesh_ = mesh;
     has_mesh_ = true;
     if constexpr (sweeps) {
@@ -187,7 +188,7 @@ class simulation {
     time_ += static_cast<double>(dt);
     if (state_.size == 0) return;
     (begin<Effect>(dt), ...);
-    if constexpr (has_bodies) advance_bodies(dt, false);
+    advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
     if constexpr (effects_type::meets) neighbours_.interact(space_, state_, effects_, dt);
     using kernel = detail::step_kernel<step_context<decltype(lookup(dt))>>;
@@ -258,22 +259,8 @@ class simulation {
     return effects_.template of<E>();
   }
 
-  /// States of the bodies in memory of the space: poses at the end of the last step. With `moving_bodies<driven>`
-  /// kernels of yours write there, before a step, what is to be at its end. Valid until the next `set_mesh`.
-  body_state* bodies() const {
-    static_assert(has_bodies, "collide: a simulation has bodies if it names the effect moving_bodies");
-    return bodies_.states();
-  }
-
-  /// A copy of the states of the bodies. Waits.
-  std::vector<body_state> bodies_to_host() const {
-    std::vector<body_state> copy(bodies_.size());
-    space_.copy_to_host(copy.data(), bodies(), copy.size());
-    return copy;
-  }
-
-  /// What has gone wrong with bodies since `set_mesh`. Waits.
-  collide::body_report body_report() const { return space_.read(bodies_.report()); }
+  /// The bodies of the mesh, in a scene with `moving_bodies`: where they are; see `body_memory`.
+  bodies_memory const& bodies() const { return bodies_; }
 
   state_type const& state() const { return state_; }
   execution_space& space() { return space_; }
@@ -286,30 +273,23 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   struct no_lists {};
   using neighbour_lists = std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, no_lists>;
-  using motion = typename detail::bodies_of<Effect...>::motion;
-  static constexpr bool has_bodies = !std::is_void<motion>::value;
-  struct no_bodies {};
-  using bodies_memory = std::conditional_t<has_bodies, detail::body_memory<S, motion>, no_bodies>;
-
   /// What a step asks for the triangles near a particle.
   auto lookup([[maybe_unused]] S dt) const {
-    if constexpr (!effects_type::touches) {
-      return detail::null_ref{};
-    } else {
+    if constexpr (effects_type::touches) {
       auto const whole = mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
-      if constexpr (has_bodies) {
-        return bodies_.lookup(whole, mesh_, dt);
-      } else {
-        return whole;
-      }
+      return bodies_.lookup(whole, mesh_, dt);
+    } else {
+      return detail::null_ref{};
     }
   }
 
   /// Moves the bodies on by `dt`, or, if they start, to where they are at this time.
-  void advance_bodies(S dt, bool start) {
-    if (mesh_.size() == 0 || state_.time == nullptr) return;
-    S const most = sweeps ? S(-1) : largest_radius_;
-    bodies_.advance(space_, effect<moving_bodies<motion>>().motion, state_.time, static_cast<double>(dt), most, start);
+  void advance_bodies(double dt, bool start) {
+    if constexpr (has_bodies) {
+      auto const& motion = effect<moving_bodies<typename bodies_memory::motion>>().motion;
+      if (state_.time != nullptr)
+        bodies_.advance(space_, motion, state_.time, dt, sweeps ? S(-1) : largest_radius_, start);
+    }
   }
 
   S largest_radius(sphere_view<S> const& particles) {
@@ -334,7 +314,7 @@ class simulation {
   }
 
   void prepare() {
-    if constexpr (has_bodies) advance_bodies(S(0), true);
+    advance_bodies(0, true);
     if constexpr (effects_type::touches) {
       detail::lookup_tuning<execution_space> there(space_);
       if (mesh_.size() == 0 || state_.size == 0) return;

@@ -108,4 +108,10 @@ struct bodies_ref {
   }
 };
 
+/// True for lookups of meshes of which parts move.
+template <class Triangles>
+inline constexpr bool has_moving_mesh = false;
+template <class S, class Triangles>
+inline constexpr bool has_moving_mesh<bodies_ref<S, Triangles>> = true;
+
 }  // namespace collide::detail

@@ -134,10 +134,32 @@ struct advance_bodies {
   static COLLIDE_HD_INLINE double norm(vec3<double> const& x) { return sqrt_rn(dot(x, x)); }
 };
 
-/// The bodies of a mesh. Without `moving_bodies` in the scene there is none of it.
+/// The bodies of a simulation's mesh.
 template <class S, class Motion>
 class body_memory {
  public:
+  using motion = Motion;
+  static constexpr bool exist = true;
+
+  /// States of the bodies in memory of the space: poses at the end of the last step. With `moving_bodies<driven>`
+  /// kernels of yours write there, before a step, what is to be at its end. Valid until the next `set_mesh`.
+  body_state* states() const { return states_.data(); }
+  std::size_t size() const { return count_; }
+
+  /// A copy of the states. Waits.
+  template <class Space>
+  std::vector<body_state> to_host(Space const& space) const {
+    std::vector<body_state> copy(count_);
+    if (count_ != 0) space.copy_to_host(copy.data(), states_.data(), count_);
+    return copy;
+  }
+
+  /// What has gone wrong since `set_mesh`. Waits.
+  template <class Space>
+  body_report report(Space const& space) const {
+    return report_.data() != nullptr ? space.read(report_.data()) : body_report();
+  }
+
   /// Throws `error` unless these can be bodies of a mesh of so many triangles.
   static void check(std::vector<body> const& bodies, std::size_t triangles) {
     constexpr std::size_t most = moving_bodies<Motion>::max_bodies;
@@ -192,19 +214,16 @@ class body_memory {
 
   /// Moves the bodies to where they are `dt` later; see `advance_bodies`.
   template <class Space>
-  void advance(Space& space, Motion const& motion, double const* time, double dt, S most, bool starts) {
+  void advance(Space& space, Motion const& of_all, double const* time, double dt, S most, bool starts) {
+    if (count_ == 0) return;
     space.for_each(count_, advance_bodies<S, Motion>{records_.data(), states_.data(), frames_.data(), report_.data(),
-                                                     time, dt, motion, most, starts});
+                                                     time, dt, of_all, most, starts});
   }
 
   template <class Triangles>
   bodies_ref<S, Triangles> lookup(Triangles const& whole, mesh_view<S> const& mesh, S dt) const {
     return {whole, {mesh, frames_.data(), numbers_.data(), first_, static_cast<int>(count_) + 1, dt}};
   }
-
-  body_state* states() const { return states_.data(); }
-  std::size_t size() const { return count_; }
-  body_report* report() const { return report_.data(); }
 
  private:
   static frame_pose identity() { return {{0, 0, 0}, 1, {0, 0, 0}}; }
@@ -242,16 +261,27 @@ class body_memory {
   buffer<body_report> report_;
 };
 
-/// How a simulation's list of effects says that bodies move.
-template <class... Effect>
-struct bodies_of {
-  using motion = void;
+/// In a scene without `moving_bodies`: nothing.
+struct no_bodies {
+  static constexpr bool exist = false;
+
+  static void check(std::vector<body> const& bodies, std::size_t) {
+    if (!bodies.empty()) throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
+  }
+  template <class Space, class Mesh>
+  void build(Space&, Mesh const&, std::vector<body> const&) {}
+  template <class Triangles, class Mesh, class S>
+  Triangles const& lookup(Triangles const& whole, Mesh const&, S) const {
+    return whole;
+  }
 };
-template <class Motion, class... Effect>
-struct bodies_of<moving_bodies<Motion>, Effect...> {
-  using motion = Motion;
-};
-template <class Other, class... Effect>
-struct bodies_of<Other, Effect...> : bodies_of<Effect...> {};
+
+/// The bodies of a scene with these effects.
+template <class S, class... Effect>
+struct bodies_of : no_bodies {};
+template <class S, class Motion, class... Effect>
+struct bodies_of<S, moving_bodies<Motion>, Effect...> : body_memory<S, Motion> {};
+template <class S, class Other, class... Effect>
+struct bodies_of<S, Other, Effect...> : bodies_of<S, Effect...> {};
 
 }  // namespace collide::detail

@@ -129,8 +129,11 @@ struct contact_search {
       return 0;
     }
   }
-  static COLLIDE_HD_INLINE shape shape_seen([[maybe_unused]] mesh_type const& mesh, active const& a,
-                                            [[maybe_unused]] int frame) {
+  static COLLIDE_HD_INLINE shape shape_seen(mesh_type const& mesh, active const& a, id number) {
+    return shape_in(mesh, a, frame_of(mesh, number));
+  }
+  static COLLIDE_HD_INLINE shape shape_in([[maybe_unused]] mesh_type const& mesh, active const& a,
+                                          [[maybe_unused]] int frame) {
     if constexpr (has_bodies) {
       return mesh.seen_from(frame, a.shape(), part_done(mesh, a));
     } else {
@@ -141,7 +144,7 @@ struct contact_search {
   template <class Block>
   COLLIDE_HD_INLINE span span_of(scratch<Block>& s, std::uint32_t i) const {
     active& a = s.particles[s.particle_of_span[i]];
-    shape const whole = shape_seen(triangles.mesh, a, s.frame(i));
+    shape const whole = shape_in(triangles.mesh, a, s.frame(i));
     shape part = whole;
     if constexpr (is_swept && Block::num_threads == 1) clip_to_best(a, part);
     return {s.particle_of_span[i],
@@ -171,7 +174,7 @@ struct contact_search {
         if (i >= n) return;
         id const number = q.candidates.triangles[i];
         active const& a = s.particles[q.candidates.particles[i]];
-        shape const whole = shape_seen(triangles.mesh, a, frame_of(triangles.mesh, number));
+        shape const whole = shape_seen(triangles.mesh, a, number);
         if (!triangles.template passes_coverage<NarrowPhase>(whole, number) || is_leaving(a, number, whole)) return;
         verdict const quick = filter<NarrowPhase>(triangles.mesh[number], whole);
         if (quick == verdict::miss) return;
@@ -192,8 +195,8 @@ struct contact_search {
     if constexpr (!is_swept) {
       consider_all(block, s, n, [&](active& a, id number, std::uint32_t i, contact<S>& found) {
         bool const is_sure = q.verdicts[i] == packed(verdict::hit);
-        shape const seen = shape_seen(triangles.mesh, a, frame_of(triangles.mesh, number));
-        verdict const quick = relaxed_contact_fast(triangles.mesh[number], seen, is_sure, found);
+        verdict const quick =
+            relaxed_contact_fast(triangles.mesh[number], shape_seen(triangles.mesh, a, number), is_sure, found);
         if (quick == verdict::uncertain) {
           block.add(q.unsure_count, 1);
           return no_contact;
@@ -201,7 +204,7 @@ struct contact_search {
         q.verdicts[i] = packed(verdict::miss);
         if (quick == verdict::miss) return no_contact;
         found.triangle = number;
-        return consider<Block>(a, triangles.mesh, seen, S(0), found);
+        return consider<Block>(a, triangles.mesh, a.shape(), S(0), found);
       });
       if (block.broadcast(q.unsure_count) == 0) return;
     }
@@ -244,8 +247,8 @@ struct contact_search {
     verdict const quick = filter<NarrowPhase>(triangles.mesh[number], c.whole);
     if (quick == verdict::miss) return;
     contact<S> found;
-    std::uint64_t const key =
-        contact_key_of<block>(c.one, triangles.mesh, c.whole, quick == verdict::hit, number, found);
+    std::uint64_t const key = contact_key_of<block>(c.one, triangles.mesh, triangles.mesh[number], c.whole,
+                                                    quick == verdict::hit, number, found);
     if (key != no_contact && key == c.one.best_key) c.one.set_best(found);
   }
 
@@ -255,13 +258,11 @@ struct contact_search {
   template <class Block>
   static COLLIDE_HD_NOINLINE std::uint64_t compute_contact(active& a, mesh_type mesh, id number, bool is_sure,
                                                            contact<S>& found) {
-    shape const seen = shape_seen(mesh, a, frame_of(mesh, number));
-    return contact_key_of<Block>(a, mesh, seen, is_sure, number, found);
+    return contact_key_of<Block>(a, mesh, mesh[number], shape_seen(mesh, a, number), is_sure, number, found);
   }
   template <class Block>
-  static COLLIDE_HD_INLINE std::uint64_t contact_key_of(active& a, mesh_type const& mesh, shape const& s, bool is_sure,
-                                                        id number, contact<S>& found) {
-    triangle<S> const t = mesh[number];
+  static COLLIDE_HD_INLINE std::uint64_t contact_key_of(active& a, mesh_type const& mesh, triangle<S> const& t,
+                                                        shape const& s, bool is_sure, id number, contact<S>& found) {
     if (!is_sure && !resolve<NarrowPhase>(t, s)) return no_contact;
     S time = 0;
     if constexpr (is_swept) time = key_time(stopping_time<NarrowPhase>::of(t, s));
