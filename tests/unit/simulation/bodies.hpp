@@ -219,6 +219,7 @@ void check_drum(Space const& space) {
   CHECK(angle_of(slides) == doctest::Approx(std::atan(mu) * 180 / pi).epsilon(0.5 / 21.8));
   using rolling = collide::simulation<detector, gravity, bounce, friction, spin, moving_bodies<>>;
   turning.rate = 0.5;
+  w.centres = {0, 0, -0.949};
   running_bodies<rolling> rolls(space, w, one_body(w, turning), gravity{}, bounce{0}, friction{mu, mu}, spin{},
                                 moving_bodies<>{});
   rolls.simulation.steps(6000, dt);
@@ -269,7 +270,7 @@ void check_riding(Space const& space) {
   add_drum(w, 1, 0.5, 64);
   w.particle(0, 0, -0.95);
   double const dt = 1e-3, rate = 2;
-  for (double const hold : {30.0, 11.0}) {
+  for (double const hold : {30.0, 5.0}) {
     body_motion turning;
     turning.axis[1] = 1, turning.axis[2] = 0;
     turning.rate = rate;
@@ -287,7 +288,7 @@ void check_riding(Space const& space) {
     if (hold > 20) {
       CHECK(slip < 1e-6);
     } else {
-      CHECK(slip > 1e-2);  // at the bottom it is pulled at by g + w^2 r = 13.6
+      CHECK(slip > 1e-2);  // on its way up the weight pulls along the wall, by 9.81
     }
   }
 }
@@ -341,7 +342,7 @@ void check_several_bodies(Space const& space) {
   auto const v = made.velocities();
   for (std::size_t k = 0; k < 64; ++k)
     CHECK(v[3 * k] == doctest::Approx(k == 0 || k == 1 ? v[3 * k] : 0.02 * double(k + 1)).epsilon(1e-9));
-  made.simulation.steps(4000, 1e-3);
+  made.simulation.steps(2500, 1e-3);
   auto const x = made.positions();
   for (std::size_t k = 0; k < 64; ++k) CHECK(x[3 * k] < 2.9 + 1e-9);
 }

@@ -128,8 +128,9 @@ struct contact_response {
       vec3<S> const own = here.centre;
       here.centre = !is_swept ? a.shape().centre : mesh.in_world(frame, own, part);
       auto const seen = seen_in_world(mesh, a, frame, whole, part);
-      constexpr bool spins = contains<typename effects_type::contact, angular_velocity>;
-      apply_contact_at(p, a, time, here, surface_of<spins, active>(mesh, c, own, here.centre, part), seen);
+      constexpr bool turns =
+          contains<typename effects_type::all, angular_velocity> || contains<typename effects_type::all, adhered>;
+      apply_contact_at(p, a, time, here, surface_of<turns, active>(mesh, c, own, here.centre, part), seen);
     } else {
       apply_contact_at(p, a, time, sphere_at(a.shape(), time), surface_at_rest{}, seen_at_rest{});
     }

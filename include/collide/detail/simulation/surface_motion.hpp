@@ -1,8 +1,8 @@
 /// \file
 /// How a particle moves as the surface that it touches sees it, where the mesh has parts that move.
 ///
-/// Effects get velocities relative to the surface, and so need not know that it moves: the frame is that of the body,
-/// which shifts but, but for particles with an angular velocity, does not turn.
+/// Effects get velocities relative to the surface, and so need not know that it moves: the frame shifts with the
+/// surface at the point, and, where particles have an angular velocity or stick, turns with the body.
 #pragma once
 
 #include <collide/detail/simulation/active_particle.hpp>
@@ -135,8 +135,9 @@ struct surface_of_body {
 };
 
 /// The surface of a contact of a particle, which is then at `here`: in the frame of the body where that is swept, and
-/// `part` of the step is over. `Spins`: the particle has an angular velocity.
-template <bool Spins, class Active, class S>
+/// `part` of the step is over. `Turns`: the particle may turn with the body, as it
+/// spins or sticks.
+template <bool Turns, class Active, class S>
 COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S> const& mesh, contact<S> const& c,
                                                                   vec3<S> const& here, vec3<S> const& centre,
                                                                   double part) {
@@ -164,7 +165,7 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
   }
   s.velocity = (s.carried + arm + f.belt).template cast<S>();
   vector along = f.belt;
-  if constexpr (!Spins) {  // it is dragged as the point is that it touches, and not turned with the body
+  if constexpr (!Turns) {  // it is dragged as the point is that it touches, and not turned with the body
     vector const n = c.normal.template cast<double>();
     along += arm - scaled(n, dot(arm, n));
   }
