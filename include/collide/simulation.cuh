@@ -2,7 +2,6 @@
 /// Particles that move, and collide with a mesh and with each other: a detector and the effects that a scene names.
 #pragma once
 
-#include <algorithm>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -11,6 +10,7 @@
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/simulation/arguments.hpp>
 #include <collide/detail/simulation/body_memory.hpp>
+#include <collide/detail/simulation/host_members.hpp>
 #include <collide/detail/simulation/lookup_tuning.hpp>
 #include <collide/detail/simulation/particle_kernels.hpp>
 #include <collide/detail/simulation/step.hpp>
@@ -121,7 +121,8 @@ class simulation {
     time_ = 0;
     space_.for_each(detail::padded_size(room), detail::init_particles<S, columns>{state_, particles, velocities});
     is_set_ = true;
-    if constexpr (effects_type::meets || sweeps || has_bodies) largest_radius_ = largest_radius(particles);
+    if constexpr (effects_type::meets || sweeps || has_bodies)
+      largest_radius_ = detail::largest_radius_of(*this, particles);
     if constexpr (effects_type::meets) neighbours_.clear(space_, room, largest_radius_);
     prepare();
   }
@@ -187,7 +188,7 @@ class simulation {
     check_step(dt);
     time_ += static_cast<double>(dt);
     if (state_.size == 0) return;
-    (begin<Effect>(dt), ...);
+    (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
     if constexpr (effects_type::meets) neighbours_.interact(space_, state_, effects_, dt);
@@ -292,16 +293,6 @@ class simulation {
     }
   }
 
-  S largest_radius(sphere_view<S> const& particles) {
-    if constexpr (detail::contains<columns, radius>) {
-      if (!particles.one_radius()) {
-        auto const radii = to_host<radius>();
-        return radii.empty() ? S(0) : *std::max_element(radii.begin(), radii.end());
-      }
-    }
-    return particles.common_radius();
-  }
-
   template <class Column>
   static constexpr void check() {
     static_assert(detail::contains<columns, Column>,
@@ -331,18 +322,7 @@ class simulation {
     if (effects_type::touches && !has_mesh_)
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
     if (!detail::is_finite(dt)) throw error("collide: simulation: the time of a step is not finite");
-    (check_parameters<Effect>(), ...);
-  }
-
-  template <class E>
-  void check_parameters() const {
-    if constexpr (detail::checks_parameters<E>::value) effects_.template of<E>().check_parameters();
-  }
-
-  template <class E>
-  void begin(S dt) {
-    if constexpr (detail::begins_in<E, execution_space, state_type, S>::value)
-      effect<E>().begin_step(space_, state_, dt);
+    (detail::check_parameters_of<Effect>(effects_), ...);
   }
 
   execution_space space_;

@@ -61,7 +61,7 @@ COLLIDE_HD_INLINE vec3<double> velocity_at(twist const& t, frame_pose const& p, 
 template <class S>
 struct body_frame {
   frame_pose before, now;  ///< when the step begins, and ends
-  twist moved, moving;     ///< then, too
+  twist moved, moving;     ///< its twists at these times
   vec3<double> belt;
   vec3<S> centre;  ///< of a ball around the body when the step begins; if not `swept`, when it ends
   S reach;         ///< no particle of radius r that moves by d can touch the body in the step if `shrink` times its
