@@ -29,7 +29,7 @@ LAYERS = {
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh extend.hpp",
     "effect interface": "bodies.hpp columns.hpp effect.hpp integrators.hpp",
     "simulation": "detail/simulation/ simulation.cuh",
-    "effects": "absorb.hpp bounce.hpp bounds.hpp contact_forces.hpp drag.hpp emit.hpp friction.hpp gravity.hpp lost_motion.hpp polydisperse.hpp sleep.hpp "
+    "effects": "absorb.hpp bounce.hpp bounds.hpp contact_forces.hpp drag.hpp emit.hpp friction.hpp gravity.hpp lost_motion.hpp polydisperse.hpp reaction.hpp sleep.hpp "
                "sphere_contact.hpp spin.hpp adhesion.hpp wind.hpp",
     "streaming": "detail/streaming/ streamed.cuh",
 }

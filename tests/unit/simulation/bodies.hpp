@@ -4,6 +4,7 @@
 #include <collide/adhesion.hpp>
 #include <collide/bodies.hpp>
 #include <collide/friction.hpp>
+#include <collide/reaction.hpp>
 #include <collide/sleep.hpp>
 #include <collide/spin.hpp>
 
@@ -374,6 +375,43 @@ void check_same_bits(Space const& space, Other const& other) {
     return made.positions();
   };
   CHECK(after(space) == after(other));
+}
+
+/// What bodies get is what particles lose, in the same bits however many lanes; what lies is weighed.
+template <class Space, class Other>
+void check_reaction(Space const& space, Other const& other) {
+  world<double> w;
+  w.radius = 0.1;
+  add_floor(w, 5, 4);
+  std::size_t const floor = triangles_of(w);
+  w.triangle({1, -9, -9, 1, 9, -9, 1, 0, 20});
+  for (int i = 0; i < 100; ++i) w.particle(-3 + 0.03 * i, 0.02 * i - 1, 0.1, 1 + 0.01 * i);
+  body_motion wall;
+  wall.velocity[0] = -0.5;
+  double const density = 3, mass = density * 4 / 3 * pi * 1e-3, dt = 1e-3;
+  auto const after = [&](auto const& there) {
+    using simulation = collide::simulation<meets_mesh<std::decay_t<decltype(there)>, collide::karabassi<>, double>,
+                                           gravity, bounce, friction, collide::reaction, moving_bodies<>>;
+    collide::reaction_sums sums(there, 2, 1e-12);
+    running_bodies<simulation> made(there, w, {body{0, floor, {}}, body{floor, 1, wall}}, gravity{}, bounce{0.5},
+                                    friction{0.1, 0.1}, sums.effect(density), moving_bodies<>{});
+    made.simulation.steps(4000, dt);
+    auto const found = sums.read(made.simulation.space());
+    auto const v = made.velocities();
+    double gained[3] = {0, 0, 0};
+    for (std::size_t i = 0; i < v.size(); ++i) gained[i % 3] += mass * (v[i] - w.velocities[i]);
+    gained[2] += 100 * mass * 9.81 * 4000 * dt;
+    for (int k = 0; k < 3; ++k) {
+      double const given = found[0].linear[k] + found[1].linear[k] + found[2].linear[k];
+      CHECK(given == doctest::Approx(-gained[k]).epsilon(1e-9).scale(mass));
+    }
+    CHECK(found[0].linear[2] == doctest::Approx(-100 * mass * 9.81 * 4000 * dt).epsilon(1e-6));
+    CHECK(found[1].linear[0] > 0.1 * mass);
+    CHECK(found[2].linear[2] == 0);
+    return found;
+  };
+  auto const a = after(space), b = after(other);
+  CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
 }
 
 }  // namespace tests
