@@ -53,11 +53,14 @@ struct span_counts {
   std::uint32_t spans, unfinished;
 };
 
+/// The frame of what rests, where there is no other.
+struct only_frame {};
+
 /// In which frames the candidates of spans are.
 template <bool HasBodies>
 struct span_frames {
   COLLIDE_HD_INLINE void set_frame(std::uint32_t, candidate_cursor const&) {}
-  COLLIDE_HD_INLINE int frame(std::uint32_t) const { return 0; }
+  COLLIDE_HD_INLINE only_frame frame(std::uint32_t) const { return {}; }
 };
 template <>
 struct span_frames<true> {

@@ -62,7 +62,9 @@ struct contact_search {
           [](span const& c, std::uint32_t k) { return c.range.at(k); },
           [](span const& c, cell_item const& e) { return c.range.passes_coverage(e); },
           [&](span const& c, cell_item const& e) {
-            if (frame_of(triangles.mesh, e.triangle) != c.frame) return;  // of another body
+            if constexpr (has_bodies) {
+              if (triangles.mesh.frame_of(e.triangle) != c.frame) return;  // of another body
+            }
             if constexpr (queues::used) {
               s.queues.candidates.push(block, c.particle, e.triangle);
             } else {
@@ -89,7 +91,7 @@ struct contact_search {
     shape whole;
     sphere<S> around;  ///< the part of its motion on which something may come before the best contact so far
     candidate_range range;
-    int frame;
+    std::conditional_t<has_bodies, int, only_frame> frame;
   };
 
   /// Lists the next span of candidates of each active particle. `before` is what `s.spans` was before.
@@ -121,17 +123,16 @@ struct contact_search {
     }
   }
 
-  /// The number of the frame in which a triangle lies, and what of a particle is seen there.
-  static COLLIDE_HD_INLINE int frame_of([[maybe_unused]] mesh_type const& mesh, [[maybe_unused]] id number) {
+  /// What of a particle is seen from the frame of a triangle, or from a frame.
+  static COLLIDE_HD_INLINE shape shape_seen([[maybe_unused]] mesh_type const& mesh, active const& a,
+                                            [[maybe_unused]] id number) {
     if constexpr (has_bodies) {
-      return mesh.frame_of(number);
+      return shape_in(mesh, a, mesh.frame_of(number));
     } else {
-      return 0;
+      return a.shape();
     }
   }
-  static COLLIDE_HD_INLINE shape shape_seen(mesh_type const& mesh, active const& a, id number) {
-    return shape_in(mesh, a, frame_of(mesh, number));
-  }
+  static COLLIDE_HD_INLINE shape shape_in(mesh_type const&, active const& a, only_frame) { return a.shape(); }
   static COLLIDE_HD_INLINE shape shape_in([[maybe_unused]] mesh_type const& mesh, active const& a,
                                           [[maybe_unused]] int frame) {
     if constexpr (has_bodies) {
