@@ -10,7 +10,8 @@ namespace collide {
 
 /// Adhesion, as of snow and mud: a particle that touches the mesh no faster than `capture_speed` stays where it is,
 /// until forces of more than `max_acceleration`, per unit of mass, pull it off. Forces are what changes the velocity of
-/// effects that come before it in the list, so it comes after those.
+/// effects that come before it in the list, so it comes after those. What sticks to a body that moves (bodies.hpp)
+/// moves with it, and is shaken off by its acceleration.
 struct adhesion {
   using writes = columns<position, velocity, adhered>;
   using runs_after = effects<bounce>;
@@ -44,7 +45,7 @@ struct adhesion {
     v = vec3<S>(S(0), S(0), S(0));
     if (t.depth > 0) p[position{}] += t.normal * t.depth;
     t.depth = detail::smaller(t.depth, S(0));
-    p[adhered{}] = 1;
+    p[adhered{}] = t.body == no_id ? std::uint8_t{1} : static_cast<std::uint8_t>(t.body + 2);
   }
 };
 

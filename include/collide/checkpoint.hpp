@@ -80,6 +80,10 @@ class checkpoint {
                              from.reverse_order_};
     if constexpr (simulated::has_begin_step) numbers.device_time = from.space_.read(from.state_.time);
     numbers.pass(to);
+    if constexpr (simulated::has_bodies) {
+      auto const states = from.bodies().to_host(from.space_);
+      to.block(bodies_name, states.data(), states.size());
+    }
     (write_parameters<Effect>(to, from), ...);
     write_columns(to, from, column_list());
     to.finish();
@@ -94,6 +98,7 @@ class checkpoint {
       from.refuse("triangles", "the file has " + std::to_string(numbers_.triangles) + ", the mesh of the simulation " +
                                    std::to_string(into.mesh_.size()));
     }
+    if constexpr (simulated::has_bodies) bodies_ = from.block<body_state>(bodies_name, into.bodies().size());
     if (numbers_.places >= no_id) from.refuse("places", "a simulation has at most 2^32 - 2 particles");
     if (numbers_.placed > numbers_.places) from.refuse("placed", "more than there are places");
     (read_parameters<Effect>(from), ...);
@@ -115,6 +120,7 @@ class checkpoint {
                    init_particles<S, column_list>{state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr});
     restore_columns(space, state, column_list());
     (restore_parameters<Effect>(to), ...);
+    if constexpr (simulated::has_bodies) space.copy_from_host(to.bodies().states(), bodies_.data(), bodies_.size());
     to.state_ = state;
     to.time_ = numbers_.time;
     to.reverse_order_ = numbers_.reverse_order != 0;
@@ -125,6 +131,8 @@ class checkpoint {
   }
 
  private:
+  static constexpr char const* bodies_name = "states of bodies";
+
   /// What the simulation is: written, or compared with what was.
   template <class Archive>
   static void pass_types(Archive& archive) {
@@ -209,14 +217,16 @@ class checkpoint {
   };
 
   saved_numbers<S> numbers_;
+  std::vector<body_state> bodies_;  ///< of a simulation that has some
   std::tuple<bytes_of<Effect>...> parameters_;
   typename table_of<column_list>::type columns_;
 };
 
 }  // namespace detail
 
-/// Writes all that the next steps of a simulation depend on: columns, time, and the parameters of the effects. The mesh
-/// is not in it, nor the space: what was saved on the host can be loaded on a GPU. A stream must be binary.
+/// Writes all that the next steps of a simulation depend on: columns, time, poses of bodies, and the parameters of the
+/// effects. The mesh is not in it, nor the space: what was saved on the host can be loaded on a GPU. A stream must be
+/// binary.
 ///
 /// An effect's parameters are saved as the bytes that they are. One with pointers, which mean nothing in another
 /// process, has a member `static constexpr bool saves_parameters = false`, and is left out; so has a source of

@@ -61,7 +61,7 @@ struct slow_steps {
   using value = std::uint8_t;
 };
 
-/// 1 if the particle sticks to the mesh; see `adhesion`.
+/// 1 if the particle sticks to what rests of the mesh, 2 + k if to body number k, 0 if it is free; see `adhesion`.
 struct adhered {
   template <class S>
   using value = std::uint8_t;

@@ -91,6 +91,8 @@ struct mesh_contact : contact<S> {
   S normal_impulse;    ///< what the effects have added to the velocity along the normal: 0, or what repels
   S friction_reserve;  ///< impulse along the surface that static friction has in reserve; 0 where the particle slides
   bool is_resting;     ///< an effect has found that the particle rests on the surface, or slides on it
+  vec3<S> surface_velocity;  ///< of the surface at the point, in the world: 0 of what rests; see bodies.hpp
+  id body;                   ///< number of the body whose surface it is; `no_id` of what rests
 
   /// Raises a particle above the surface by `height`.
   COLLIDE_HD_INLINE void move_out(vec3<S>& position, S height) {

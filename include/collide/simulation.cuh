@@ -2,7 +2,6 @@
 /// Particles that move, and collide with a mesh and with each other: a detector and the effects that a scene names.
 #pragma once
 
-#include <algorithm>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -10,7 +9,9 @@
 
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/simulation/arguments.hpp>
+#include <collide/detail/simulation/body_memory.hpp>
 #include <collide/detail/simulation/check_effect.hpp>
+#include <collide/detail/simulation/host_members.hpp>
 #include <collide/detail/simulation/lookup_tuning.hpp>
 #include <collide/detail/simulation/particle_kernels.hpp>
 #include <collide/detail/simulation/step.hpp>
@@ -25,9 +26,8 @@ namespace collide {
 ///                   `karabassi` a step ends where a particle is, and it touches what it then overlaps: one that moves
 ///                   farther than its radius in a step may pass through. With `karabassi_swept` it stops at each impact
 ///                   on its way, and passes through nothing.
-/// \tparam Effect    what happens to a particle; see effect.hpp, and docs/simulation.md for those of the library. They
-/// are
-///                   applied in the order of the list. An integrator may be in the list too (integrators.hpp).
+/// \tparam Effect    what happens to a particle (effect.hpp, docs/simulation.md), in the order of the list. An
+///                   integrator may be in the list too (integrators.hpp).
 ///
 /// The state is in memory of the execution space, in columns: an array for each thing that is known of a particle.
 /// There are exactly the columns that the effects name, and `position` and `velocity`. A simulation without effects
@@ -53,6 +53,8 @@ class simulation {
   using broad_phase = typename Detector::broad_phase;
   using narrow_phase = typename Detector::narrow_phase;
   using index = typename broad_phase::template index<S>;
+  using bodies_memory = detail::bodies_of<S, Effect...>;
+  static constexpr bool has_bodies = bodies_memory::exist;
 
   static_assert((detail::check_effect<Effect, execution_space, S>() && ...));
   static_assert((detail::is_effect<Effect, execution_space, S> && ...),
@@ -122,7 +124,8 @@ class simulation {
     time_ = 0;
     space_.for_each(detail::padded_size(room), detail::init_particles<S, columns>{state_, particles, velocities});
     is_set_ = true;
-    if constexpr (effects_type::meets || sweeps) largest_radius_ = largest_radius(particles);
+    if constexpr (effects_type::meets || sweeps || has_bodies)
+      largest_radius_ = detail::largest_radius_of(*this, particles);
     if constexpr (effects_type::meets) neighbours_.clear(space_, room, largest_radius_);
     prepare();
   }
@@ -137,7 +140,7 @@ class simulation {
     memory_.reserve(resource, detail::padded_size(particles));
     if constexpr (has_begin_step) device_time_.reserve(resource, 1);
     if constexpr (effects_type::touches) {
-      using kernel = detail::step_kernel<step_context<std::decay_t<decltype(index_.lookup())>>>;
+      using kernel = detail::step_kernel<step_context<decltype(lookup(S{}))>>;
       if constexpr (kernel::template has_many_tiles<typename execution_space::template block<kernel>>) {
         overflow_.reserve(resource, detail::padded_size(particles));
       }
@@ -147,11 +150,16 @@ class simulation {
 
   /// The mesh that particles touch, not copied: it must stay as it is while it is used. Call it again when the mesh has
   /// moved. An empty one is a mesh, too. Allocates if the mesh has grown; may wait. O(triangles).
-  void set_mesh(mesh_view<S> mesh) {
+  ///
+  /// `bodies`, only with `moving_bodies` in the scene: parts of the mesh that move; see bodies.hpp. `error` if there
+  /// are more than 64, triangles are not in the mesh or in two bodies, or a motion is not finite.
+  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}) {
+    bodies_.check(bodies, mesh.size());
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
     if (mesh.size() != 0) index_.build(there, options_, mesh);
+    bodies_.build(space_, mesh, bodies);
     mesh_ = mesh;
     has_mesh_ = true;
     if constexpr (sweeps) {
@@ -183,19 +191,13 @@ class simulation {
     check_step(dt);
     time_ += static_cast<double>(dt);
     if (state_.size == 0) return;
-    (begin<Effect>(dt), ...);
+    (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
+    advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
     if constexpr (effects_type::meets) neighbours_.interact(space_, state_, effects_, dt);
-    auto const lookup = [&] {
-      if constexpr (effects_type::touches) {
-        return mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
-      } else {
-        return detail::null_ref{};
-      }
-    }();
-    using kernel = detail::step_kernel<step_context<std::decay_t<decltype(lookup)>>>;
+    using kernel = detail::step_kernel<step_context<decltype(lookup(dt))>>;
     using block = typename execution_space::template block<kernel>;
-    kernel const body{{state_, effects_, lookup, overflow_.data(), dt, reverse_order_, least_radius_},
+    kernel const body{{state_, effects_, lookup(dt), overflow_.data(), dt, reverse_order_, least_radius_},
                       kernel::template grid_size<block>(state_.size, detail::resident_blocks<kernel>(space_))};
     reverse_order_ = !reverse_order_;
     space_.launch(body.blocks, body);
@@ -203,7 +205,7 @@ class simulation {
 
   /// Advances `n` times by `dt`; throws what `step` throws.
   void steps(std::size_t n, S dt) {
-    for (std::size_t i = 0; i < n; ++i) step(dt);
+    while (n-- > 0) step(dt);
   }
 
   /// The sum of the steps since `set`. Steps of a CUDA graph that replays them do not count.
@@ -261,6 +263,9 @@ class simulation {
     return effects_.template of<E>();
   }
 
+  /// The bodies of the mesh, in a scene with `moving_bodies`: where they are; see `body_memory`.
+  bodies_memory const& bodies() const { return bodies_; }
+
   state_type const& state() const { return state_; }       ///< pointers to all columns, valid until the next `set`
   execution_space& space() { return space_; }              ///< for work of your own on its stream, and to wait
   execution_space const& space() const { return space_; }  ///< the space
@@ -274,15 +279,23 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   struct no_lists {};
   using neighbour_lists = std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, no_lists>;
-
-  S largest_radius(sphere_view<S> const& particles) {
-    if constexpr (detail::contains<columns, radius>) {
-      if (!particles.one_radius()) {
-        auto const radii = to_host<radius>();
-        return radii.empty() ? S(0) : *std::max_element(radii.begin(), radii.end());
-      }
+  /// What a step asks for the triangles near a particle.
+  auto lookup([[maybe_unused]] S dt) const {
+    if constexpr (effects_type::touches) {
+      auto const whole = mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
+      return bodies_.lookup(whole, mesh_, dt);
+    } else {
+      return detail::null_ref{};
     }
-    return particles.common_radius();
+  }
+
+  /// Moves the bodies on by `dt`, or, if they start, to where they are at this time.
+  void advance_bodies(double dt, bool start) {
+    if constexpr (has_bodies) {
+      if (state_.time == nullptr) return;
+      auto const& motion = effect<moving_bodies<typename bodies_memory::motion>>().motion;
+      bodies_.advance(space_, motion, state_.time, dt, sweeps ? S(-1) : largest_radius_, start);
+    }
   }
 
   template <class Column>
@@ -297,14 +310,13 @@ class simulation {
   }
 
   void prepare() {
+    advance_bodies(0, true);
     if constexpr (effects_type::touches) {
       detail::lookup_tuning<execution_space> there(space_);
       if (mesh_.size() == 0 || state_.size == 0) return;
-      if (largest_radius_ >= 0 && largest_radius_ < least_radius_) {
-        index_.prepare(there, options_, spheres_xyz(state_.at(position{}), state_.size, least_radius_));
-      } else {
-        index_.prepare(there, options_, spheres());
-      }
+      bool const tiny = largest_radius_ >= 0 && largest_radius_ < least_radius_;
+      index_.prepare(there, options_,
+                     tiny ? spheres_xyz(state_.at(position{}), state_.size, least_radius_) : spheres());
     }
   }
 
@@ -313,18 +325,7 @@ class simulation {
     if (effects_type::touches && !has_mesh_)
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
     if (!detail::is_finite(dt)) throw error("collide: simulation: the time of a step is not finite");
-    (check_parameters<Effect>(), ...);
-  }
-
-  template <class E>
-  void check_parameters() const {
-    if constexpr (detail::checks_parameters<E>::value) effects_.template of<E>().check_parameters();
-  }
-
-  template <class E>
-  void begin(S dt) {
-    if constexpr (detail::begins_in<E, execution_space, state_type, S>::value)
-      effect<E>().begin_step(space_, state_, dt);
+    (detail::check_parameters_of<Effect>(effects_), ...);
   }
 
   execution_space space_;
@@ -342,6 +343,7 @@ class simulation {
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
   buffer<id> overflow_;
+  bodies_memory bodies_;
 };
 
 }  // namespace collide

@@ -27,9 +27,9 @@ LAYERS = {
     "sinks": "detail/sinks/ any_hit.hpp closest.hpp contacts.hpp count.hpp csr.hpp earliest.hpp impacts.hpp pairs.hpp visit.hpp",
     "detector": "compiled.hpp detector.hpp validate.hpp",
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh extend.hpp",
-    "effect interface": "columns.hpp effect.hpp integrators.hpp",
+    "effect interface": "bodies.hpp columns.hpp effect.hpp integrators.hpp",
     "simulation": "detail/simulation/ checkpoint.hpp simulation.cuh",
-    "effects": "absorb.hpp bounce.hpp bounds.hpp contact_forces.hpp drag.hpp emit.hpp friction.hpp gravity.hpp lost_motion.hpp polydisperse.hpp sleep.hpp "
+    "effects": "absorb.hpp bounce.hpp bounds.hpp contact_forces.hpp drag.hpp emit.hpp friction.hpp gravity.hpp lost_motion.hpp polydisperse.hpp reaction.hpp sleep.hpp "
                "sphere_contact.hpp spin.hpp adhesion.hpp wind.hpp",
     "streaming": "detail/streaming/ streamed.cuh",
     "ranks": "detail/ranks/ distributed.hpp mpi.hpp ranks.hpp thread_ranks.hpp",

@@ -18,6 +18,7 @@
 #include <collide/spin.hpp>
 #include <collide/wind.hpp>
 
+#include "simulation/bodies.hpp"
 #include "simulation/simulation.hpp"
 
 namespace tests {
@@ -173,6 +174,44 @@ void check_scenes_go_on(Space const& space) {
         space, w, 0, 1e-3, gravity{}, soft, bounce{0.5}, warmth{70, 2}, periodic_box{{-1, -1, -1}, {1, 1, 3}},
         mesh_forces{100}, pair_forces{100});
   }
+}
+
+/// Bodies go on from where they were: those of the family by the time, driven ones by their poses.
+template <class Space, class NarrowPhase, class Motion>
+void check_bodies_go_on(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, bounce, friction, moving_bodies<Motion>>;
+  auto const w = layers<float>(4, 2, 0.05);
+  body_motion shakes;
+  shakes.axis[0] = 0.1, shakes.rate = 1.5;
+  shakes.amplitude[2] = 0.02, shakes.frequency = 4;
+  auto const make = [&] {
+    return running_bodies<simulation>(space, w, one_body(w, shakes), gravity{}, bounce{0.5}, friction{0.4, 0.3},
+                                      moving_bodies<Motion>{});
+  };
+  auto const go = [&](auto& made, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      if (std::is_same<Motion, collide::driven>::value) {  // on from where it is
+        auto states = made.bodies();
+        states[0].moving.linear[2] = 0.1;
+        states[0].at.position[2] += 0.1 * 1e-3;
+        made.simulation.space().copy_from_host(made.simulation.bodies().states(), states.data(), 1);
+      }
+      made.simulation.step(1e-3f);
+    }
+  };
+  auto whole = make(), first = make(), next = make();
+  go(whole, 300);
+  go(first, 151);
+  go(next, 7);
+  std::string const file = saved(first.simulation);
+  load_from(file, next.simulation);
+  CHECK(saved(next.simulation) == file);
+  go(next, 149);
+  CHECK(bits_of(next.simulation) == bits_of(whole.simulation));
+  running_bodies<simulation> none(space, w, {}, gravity{}, bounce{}, friction{}, moving_bodies<Motion>{});
+  CHECK(fails_to_load(file, none.simulation) ==
+        "collide: load: states of bodies: the file has 1 numbers, expected are 0");
 }
 
 /// What may not be saved is left as the program that loads has it.

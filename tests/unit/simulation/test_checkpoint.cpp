@@ -59,6 +59,13 @@ TEST_CASE("checkpoint: a simulation that is loaded goes on in the same bits") { 
 
 TEST_CASE("checkpoint: pointers are not saved") { tests::check_pointers_stay(host(1)); }
 
+TEST_CASE("checkpoint: bodies go on from where they were") {
+  tests::check_bodies_go_on<host, karabassi<>, collide::body_motion>(host(1));
+  tests::check_bodies_go_on<host, collide::karabassi_swept<>, collide::body_motion>(host(1));
+  tests::check_bodies_go_on<host, karabassi<>, collide::driven>(host(1));
+  tests::check_bodies_go_on<host, collide::karabassi_swept<>, collide::driven>(host(1));
+}
+
 TEST_CASE("checkpoint: from one space to another, and the same bytes again") {
   tests::check_other_space(host(1), tests::lockstep<256, false>());
   tests::check_other_space(tests::lockstep<64, true>(), host(2));

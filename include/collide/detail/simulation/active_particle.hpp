@@ -4,10 +4,11 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include <collide/contact.hpp>
-#include <collide/detail/grid/triangle_ref.hpp>
 #include <collide/detail/numeric/float_bits.hpp>
+#include <collide/detail/simulation/bodies_ref.hpp>
 #include <collide/effect.hpp>
 
 namespace collide::detail {
@@ -58,21 +59,46 @@ struct remaining_motion<S, true> {
   COLLIDE_HD_INLINE vec3<S> motion() const { return {displacement[0], displacement[1], displacement[2]}; }
 };
 
+/// What is known of a particle alone that may touch bodies that move.
+template <class S, bool HasBodies>
+struct body_contacts {};
+template <class S>
+struct body_contacts<S, true> {
+  // of the recorded contacts
+  S surface_velocities[max_recorded_contacts][3];
+  S own_normals[max_recorded_contacts][3], own_points[max_recorded_contacts][3];  ///< in the frame of their body
+  int frames[max_recorded_contacts];
+  bool is_held;  ///< it had no velocity relative to the surface after the last one
+};
+
+/// How a particle moves, as a surface sees it that it may touch: one that rests sees what there is.
+struct seen_at_rest {};
+/// A surface of a body sees a displacement of its own in the rest of the step, and a velocity.
+template <class S>
+struct seen_from_body {
+  vec3<S> own_displacement;  ///< in the frame of the body
+  vec3<S> displacement;      ///< turned to the world
+  vec3<S> own_point;         ///< where the two may touch, in the frame of the body
+  vec3<S> velocity;          ///< in the world
+  int frame;
+};
+
 /// A particle that may touch the mesh in this step, in scratch memory. Plain numbers: scratch memory is not
 /// constructed.
-template <class S, bool IsSwept>
-struct active_particle : remaining_motion<S, IsSwept> {
+template <class S, bool IsSwept, bool HasBodies = false>
+struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodies> {
+  static constexpr bool is_swept = IsSwept;
   static constexpr int max_recorded = max_recorded_contacts;
 
   S centre[3], radius;
   id number;
   bool is_active;
-  std::uint8_t contact_count;                         ///< contacts so far in this step
-  std::uint8_t contacts_here;                         ///< those of them at this place
-  std::uint32_t candidate_count;                      ///< how many contacts have been considered as the next one
-  std::uint64_t best_key;                             ///< of the next contact
-  candidate_cursor cursor;                            ///< which triangles have been looked at
-  alignas(S) unsigned char best[sizeof(contact<S>)];  ///< the next contact
+  std::uint8_t contact_count;     ///< contacts so far in this step
+  std::uint8_t contacts_here;     ///< those of them at this place
+  std::uint32_t candidate_count;  ///< how many contacts have been considered as the next one
+  std::uint64_t best_key;         ///< of the next contact
+  std::conditional_t<HasBodies, body_cursor, candidate_cursor> cursor;  ///< which triangles have been looked at
+  alignas(S) unsigned char best[sizeof(contact<S>)];                    ///< the next contact
 
   // of the recorded contacts; not set before there is one
   S normals[max_recorded][3], points[max_recorded][3];
@@ -101,7 +127,9 @@ struct active_particle : remaining_motion<S, IsSwept> {
     return c;
   }
 
-  COLLIDE_HD_INLINE void record_contact(mesh_contact<S> const& c) {
+  /// `own` is the contact in the frame of its body, if there are bodies.
+  COLLIDE_HD_INLINE void record_contact(mesh_contact<S> const& c, [[maybe_unused]] contact<S> const& own = {},
+                                        [[maybe_unused]] int frame = 0) {
     int const slot = contact_count % max_recorded;
     for (int k = 0; k < 3; ++k) {
       normals[slot][k] = c.normal[k];
@@ -109,15 +137,24 @@ struct active_particle : remaining_motion<S, IsSwept> {
     }
     last_impulse = c.normal_impulse;
     if constexpr (IsSwept) this->triangles[slot] = c.triangle;
+    if constexpr (HasBodies) {
+      for (int k = 0; k < 3; ++k) {
+        this->surface_velocities[slot][k] = c.surface_velocity[k];
+        this->own_normals[slot][k] = own.normal[k];
+        this->own_points[slot][k] = own.point[k];
+      }
+      this->frames[slot] = frame;
+    }
     ++contact_count;
     ++contacts_here;
   }
 
   /// Begins with the contacts at a place: all in a step, but those of a particle that moves on to the next one.
-  COLLIDE_HD_INLINE void arrive(S time, vec3<S> const& velocity, vec3<S> const& from) {
+  template <class Seen = seen_at_rest>
+  COLLIDE_HD_INLINE void arrive(S time, vec3<S> const& velocity, vec3<S> const& from, Seen const& seen = {}) {
     bool is_same_place = contact_count > 0;
     if constexpr (IsSwept) {
-      vec3<S> const moved = scaled(this->motion(), time);
+      vec3<S> const moved = scaled(path_seen(seen), time);
       is_same_place = is_same_place && dot(moved, moved) <= S(1e-6) * radius * radius;
     }
     if (is_same_place) return;
@@ -130,11 +167,12 @@ struct active_particle : remaining_motion<S, IsSwept> {
 
   /// True of a swept particle's triangle that it has touched before and leaves: no part of that is above the tangent
   /// plane. To judge it once more would take exact arithmetic, as the distance is the radius.
-  COLLIDE_HD_INLINE bool is_leaving([[maybe_unused]] id triangle) const {
+  template <class Seen = seen_at_rest>
+  COLLIDE_HD_INLINE bool is_leaving([[maybe_unused]] id triangle, [[maybe_unused]] Seen const& seen = {}) const {
     bool leaves = false;
     if constexpr (IsSwept) {
       for (int i = 0; i < max_recorded && i < contact_count; ++i) {
-        leaves = leaves || (this->triangles[i] == triangle && !is_approaching(normal_of(i)));
+        leaves = leaves || (this->triangles[i] == triangle && !is_approaching_again(i, seen));
       }
     }
     return leaves;
@@ -142,14 +180,18 @@ struct active_particle : remaining_motion<S, IsSwept> {
 
   /// True if a point of the mesh is part of the same surface as a recorded contact: not above its tangent plane. So
   /// inner edges of a surface that is divided into triangles are not felt.
-  COLLIDE_HD_INLINE bool is_internal_contact(vec3<S> const& point) const {
+  template <class Seen = seen_at_rest>
+  COLLIDE_HD_INLINE bool is_internal_contact(vec3<S> const& point, [[maybe_unused]] Seen const& seen = {}) const {
     bool is_internal = false;
     for (int i = 0; i < max_recorded; ++i) {
       if (i >= contact_count) break;
       S above = 0;
       for (int k = 0; k < 3; ++k) above += normals[i][k] * (point[k] - points[i][k]);
+      if constexpr (HasBodies && IsSwept) {
+        if (this->frames[i] == seen.frame) above = own_height(i, seen.own_point);
+      }
       bool leaves = true;
-      if constexpr (IsSwept) leaves = !is_approaching(normal_of(i));
+      if constexpr (IsSwept) leaves = !is_approaching_again(i, seen);
       is_internal = is_internal || (leaves && above <= contact_tolerance<S> * radius);
     }
     return is_internal;
@@ -163,6 +205,16 @@ struct active_particle : remaining_motion<S, IsSwept> {
     return into > 0 && (into * into > tolerance * tolerance * dot(d, d) || into > radius / 4);
   }
 
+  /// True if the motion, as a body sees it, leads towards its surface by more than rounding.
+  COLLIDE_HD_INLINE bool is_approaching(vec3<S> const& normal, seen_from_body<S> const& seen) const {
+    S const into = -dot(seen.displacement, normal);
+    constexpr S tolerance = contact_tolerance<S>;
+    vec3<S> const here(centre[0], centre[1], centre[2]);
+    return into > 4 * rounding_at(here) &&
+           (into * into > tolerance * tolerance * dot(seen.displacement, seen.displacement) || into > radius / 4);
+  }
+  COLLIDE_HD_INLINE bool is_approaching(vec3<S> const& normal, seen_at_rest) const { return is_approaching(normal); }
+
   /// True if so deep an overlap with the mesh is more than rounding.
   COLLIDE_HD_INLINE bool overlaps(S depth) const {
     return depth > contact_tolerance<S> * radius + rounding_at(vec3<S>(centre[0], centre[1], centre[2]));
@@ -171,13 +223,18 @@ struct active_particle : remaining_motion<S, IsSwept> {
   /// Finds how to leave a contact such that this leaves the particle on the surfaces of those before it at this place:
   /// the projection of the normal onto what they leave free. They count where the normal leads into them, and a single
   /// one also where it leads off it but pushed harder than that relieves it, as in the two sides of an open groove.
-  COLLIDE_HD_INLINE void find_lift(mesh_contact<S>& c, vec3<S> const& velocity) const {
+  template <class Seen = seen_at_rest>
+  COLLIDE_HD_INLINE void find_lift(mesh_contact<S>& c, vec3<S> const& velocity,
+                                   [[maybe_unused]] Seen const& seen = {}) const {
     vec3<S> const& n = c.normal;
     c.lift = n;
     c.free_change = std::numeric_limits<S>::max();
     int const count = smaller(int{contacts_here}, max_recorded);
     if (count == 0) return;
     auto const last = [&](int i) { return normal_of((contact_count - 1 - i) % max_recorded); };
+    auto const speed_off = [&](int i) {
+      return dot(velocity_seen(velocity, (contact_count - 1 - i) % max_recorded, seen), last(i));
+    };
     int opposed = -1;
     S along = 0;
     for (int i = 0; i < count; ++i) {
@@ -190,7 +247,7 @@ struct active_particle : remaining_motion<S, IsSwept> {
     S free = 0;
     if (opposed >= 0) {
       vec3<S> const wall = last(opposed);
-      free = larger(dot(velocity, wall), S(0)) / -along;
+      free = larger(speed_off(opposed), S(0)) / -along;
       out -= wall * along;
       for (int i = 0; i < count; ++i) {
         if (i == opposed || dot(out, last(i)) >= -contact_tolerance<S>) continue;
@@ -201,7 +258,7 @@ struct active_particle : remaining_motion<S, IsSwept> {
     } else if (count == 1) {
       vec3<S> const wall = last(0);
       S const with = dot(n, wall), apart = 1 - with * with;  // the square of the sine of the angle between the two
-      S const relief = 2 * with * larger(-dot(velocity, n), S(0));
+      S const relief = 2 * with * larger(-speed_towards(velocity, n, seen), S(0));
       if (!(apart > S(1e-2) && relief <= last_impulse * apart)) return;
       out -= wall * with;
     } else {
@@ -215,6 +272,42 @@ struct active_particle : remaining_motion<S, IsSwept> {
 
  private:
   COLLIDE_HD_INLINE vec3<S> normal_of(int slot) const { return {normals[slot][0], normals[slot][1], normals[slot][2]}; }
+
+  COLLIDE_HD_INLINE vec3<S> path_seen(seen_at_rest) const { return this->motion(); }
+  COLLIDE_HD_INLINE vec3<S> path_seen(seen_from_body<S> const& seen) const { return seen.displacement; }
+
+  /// A velocity as the surface of a recorded contact sees it.
+  COLLIDE_HD_INLINE vec3<S> const& velocity_seen(vec3<S> const& velocity, int, seen_at_rest) const { return velocity; }
+  COLLIDE_HD_INLINE vec3<S> velocity_seen(vec3<S> const& velocity, int slot, seen_from_body<S> const& seen) const {
+    S const(&u)[3] = this->surface_velocities[slot];
+    return this->frames[slot] == seen.frame ? seen.velocity : vec3<S>(velocity - vec3<S>(u[0], u[1], u[2]));
+  }
+  COLLIDE_HD_INLINE S speed_towards(vec3<S> const& velocity, vec3<S> const& n, seen_at_rest) const {
+    return dot(velocity, n);
+  }
+  COLLIDE_HD_INLINE S speed_towards(vec3<S> const&, vec3<S> const& n, seen_from_body<S> const& seen) const {
+    return dot(seen.velocity, n);
+  }
+
+  /// True if the motion leads towards the surface of a recorded contact.
+  COLLIDE_HD_INLINE bool is_approaching_again(int slot, seen_at_rest) const { return is_approaching(normal_of(slot)); }
+  COLLIDE_HD_INLINE bool is_approaching_again(int slot, seen_from_body<S> seen) const {
+    S const(&n)[3] = this->own_normals[slot];
+    if (this->frames[slot] == seen.frame) {  // which may have turned since
+      seen.displacement = seen.own_displacement;
+      return is_approaching(vec3<S>(n[0], n[1], n[2]), seen);
+    }
+    S const(&u)[3] = this->surface_velocities[slot];
+    seen.displacement = this->motion() - vec3<S>(u[0], u[1], u[2]) * this->remaining_time;
+    return is_approaching(normal_of(slot), seen);
+  }
+
+  /// How high a point of a body's frame is above the tangent plane of a contact with the body.
+  COLLIDE_HD_INLINE S own_height(int slot, vec3<S> const& point) const {
+    S above = 0;
+    for (int k = 0; k < 3; ++k) above += this->own_normals[slot][k] * (point[k] - this->own_points[slot][k]);
+    return above;
+  }
 };
 
 }  // namespace collide::detail

@@ -36,6 +36,7 @@ struct contact_response {
   using scratch = typename search_type::template scratch<Block>;
 
   static constexpr bool is_swept = Context::is_swept;
+  static constexpr bool has_bodies = search_type::has_bodies;
   static constexpr int max_contacts_per_step = is_swept ? 8 : 4;  ///< of a particle
 
   Context const& context;
@@ -117,26 +118,52 @@ struct contact_response {
   /// Lets the effects respond to a contact, and says in `a` whether to look for another one.
   COLLIDE_HD_INLINE void apply_contact(colliding& p, active& a) const {
     S const time = time_of_key<S>(a.best_key);
-    sphere<S> const here = sphere_at(a.shape(), time);
+    if constexpr (has_bodies) {
+      auto const& mesh = context.triangles.mesh;
+      contact<S> const c = a.best_contact();
+      int const frame = mesh.frame_of(c.triangle);
+      double const part = part_done(mesh, a, time);
+      auto const whole = mesh.seen_from(frame, a.shape(), part_done(mesh, a));
+      sphere<S> here = sphere_at(whole, time);
+      vec3<S> const own = here.centre;
+      here.centre = !is_swept ? a.shape().centre : mesh.in_world(frame, own, part);
+      auto const seen = seen_in_world(mesh, a, frame, whole, part);
+      constexpr bool turns =
+          contains<typename effects_type::all, angular_velocity> || contains<typename effects_type::all, adhered>;
+      apply_contact_at(p, a, time, here, surface_of<turns, active>(mesh, c, own, here.centre, part), seen);
+    } else {
+      apply_contact_at(p, a, time, sphere_at(a.shape(), time), surface_at_rest{}, seen_at_rest{});
+    }
+  }
+
+  template <class Surface, class Seen>
+  COLLIDE_HD_INLINE void apply_contact_at(colliding& p, active& a, S time, sphere<S> const& here,
+                                          Surface const& surface, Seen seen) const {
     vec3<S> const velocity_before = p[velocity{}];
-    a.arrive(time, velocity_before, is_swept ? here.centre : vec3<S>(here.centre - velocity_before * context.dt));
+    a.arrive(time, velocity_before, is_swept ? here.centre : vec3<S>(here.centre - velocity_before * context.dt), seen);
     if constexpr (is_swept) {
       p[position{}] = here.centre;
       a.remaining_time -= a.remaining_time * time;
     }
-    mesh_contact<S> c = contact_for_effects(p, a);
+    mesh_contact<S> c = contact_for_effects(p, a, surface);
+    surface.enter(p);
     // how deep when the step began: what is pushed out farther than it came in may then touch what it did not before
     [[maybe_unused]] S const depth_at_start = c.depth + dot(c.normal, vec3<S>(here.centre - c.start));
-    a.find_lift(c, velocity_before);
+    if constexpr (has_bodies) seen.velocity = c.velocity_before;
+    a.find_lift(c, velocity_before, seen);
     context.effects.on_mesh_contact(p, c, context.dt);
-    a.record_contact(c);
+    surface.record(a, c);
+    if constexpr (has_bodies) a.is_held = p[velocity{}] == vec3<S>(S(0), S(0), S(0));
+    surface.leave(p);
     a.is_active = a.contact_count < max_contacts_per_step;
     if constexpr (is_swept) {
       a.place(p[position{}], p[velocity{}] * a.remaining_time);
       bool const is_repelled = dot(c.normal, vec3<S>(p[velocity{}] - velocity_before)) > 0;
-      if (!is_repelled && a.is_approaching(c.normal)) {  // it goes through
+      if (!is_repelled && a.is_approaching(c.normal, seen_now(a, surface.frame))) {  // it goes through
         p[position{}] += p[velocity{}] * a.remaining_time;
         a.is_active = false;
+      } else if constexpr (has_bodies) {
+        if (!a.is_active) ride(p, a, surface.frame);
       }
     } else {
       a.place(p[position{}], p[velocity{}]);
@@ -145,28 +172,51 @@ struct contact_response {
     if constexpr (effects_type::skips) a.is_active = a.is_active && !context.effects.is_skipped(p);
   }
 
+  /// How a swept particle moves for the rest of the step, as the surface of a body sees it.
+  COLLIDE_HD_INLINE auto seen_now([[maybe_unused]] active const& a, [[maybe_unused]] int frame) const {
+    if constexpr (has_bodies) {
+      auto const& mesh = context.triangles.mesh;
+      double const part = part_done(mesh, a);
+      return seen_in_world(mesh, a, frame, mesh.seen_from(frame, a.shape(), part), part);
+    } else {
+      return seen_at_rest{};
+    }
+  }
+
+  /// Leaves a particle, for the rest of the step, where it is on a body.
+  COLLIDE_HD_INLINE void ride(colliding& p, active const& a, int frame) const {
+    auto const& mesh = context.triangles.mesh;
+    sphere<S> const there = mesh.seen_from(frame, a.shape(), part_done(mesh, a));
+    p[position{}] = mesh.in_world(frame, there.centre, 1);
+  }
+
   /// A particle's next contact as effects see it.
-  COLLIDE_HD_INLINE mesh_contact<S> contact_for_effects(colliding const& p, active const& a) const {
-    vec3<S> const arrival(a.arrival_velocity[0], a.arrival_velocity[1], a.arrival_velocity[2]);
+  template <class Surface>
+  COLLIDE_HD_INLINE mesh_contact<S> contact_for_effects(colliding const& p, active const& a,
+                                                        Surface const& surface) const {
+    vec3<S> const arrival =
+        surface.velocity_seen(vec3<S>(a.arrival_velocity[0], a.arrival_velocity[1], a.arrival_velocity[2]));
     mesh_contact<S> c{};
     static_cast<contact<S>&>(c) = a.best_contact();
     c.sphere = a.number;
-    c.start = vec3<S>(a.start[0], a.start[1], a.start[2]);
+    c.start = surface.start_seen(vec3<S>(a.start[0], a.start[1], a.start[2]));
     if constexpr (!is_swept) {
       c.elapsed = context.dt;
       face_against(c, arrival);
     }
-    c.velocity_before = p[velocity{}];
+    c.velocity_before = surface.velocity_seen(p[velocity{}]);
     c.approach_speed = -dot(arrival, c.normal);
     colliding next = p;
     context.effects.accelerate(next, context.dt);
-    c.force_dv = next[velocity{}] - p[velocity{}];
+    c.force_dv = surface.acceleration_seen(vec3<S>(next[velocity{}] - p[velocity{}]));
+    surface.describe(c);
     return c;
   }
 
   COLLIDE_HD_INLINE void end_step(colliding& p, active const& a) const {
     if constexpr (Context::kick_after != 0) {
-      bool const is_held = a.contact_count > 0 && p[velocity{}] == vec3<S>(S(0), S(0), S(0));
+      bool is_held = a.contact_count > 0 && p[velocity{}] == vec3<S>(S(0), S(0), S(0));
+      if constexpr (has_bodies) is_held = a.contact_count > 0 && a.is_held;
       if (!is_held) context.effects.accelerate(p, Context::kick_after * context.dt);
     }
     context.effects.end_step(p, context.dt);

@@ -11,91 +11,24 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <collide/detail/execution/atomic.hpp>
-#include <collide/detail/execution/block.hpp>
 #include <collide/detail/narrow_phase/traits.hpp>
 #include <collide/detail/narrow_phase/two_stages.hpp>
-#include <collide/detail/simulation/active_particle.hpp>
+#include <collide/detail/simulation/contact_scratch.hpp>
 #include <collide/detail/simulation/mesh_contact.hpp>
+#include <collide/detail/simulation/surface_motion.hpp>
 
 namespace collide::detail {
-
-/// Pairs of a particle of the batch and a triangle, that wait for the lanes of their block.
-template <std::uint32_t Capacity>
-struct pair_queue {
-  static constexpr std::uint32_t capacity = Capacity;
-
-  id triangles[Capacity];
-  std::uint8_t particles[Capacity];
-  std::uint32_t size;
-
-  /// To be called by any lane, where there is room.
-  template <class Block>
-  COLLIDE_HD_INLINE std::uint32_t push(Block& block, std::uint8_t particle, id triangle) {
-    std::uint32_t const i = block.add(size, 1);
-    particles[i] = particle;
-    triangles[i] = triangle;
-    return i;
-  }
-};
-
-/// A verdict in scratch memory.
-enum class verdict_byte : std::uint8_t {};
-COLLIDE_HD_INLINE verdict_byte packed(verdict v) { return static_cast<verdict_byte>(v); }
-
-/// The queues of a block; a lane alone has none.
-template <class Block>
-struct contact_queues {
-  static constexpr bool used = Block::num_threads > 1;
-  static_assert(Block::num_threads <= 256, "a byte counts the particles of a batch");
-  static constexpr std::uint32_t ahead = 5;  ///< cell items that a lane looks at together
-
-  pair_queue<used ? (ahead + 1) * Block::num_threads : 1> candidates;
-  pair_queue<used ? 2 * Block::num_threads : 1> contacts;    ///< pairs that touch, or may do so
-  verdict_byte verdicts[used ? 2 * Block::num_threads : 1];  ///< on the latter; `miss` once the contact is known
-  std::uint32_t unsure_count;
-};
-
-/// How many spans of candidates have been listed, and how often a particle may have had more. They only rise, so that
-/// nothing waits until they are 0 again.
-struct span_counts {
-  std::uint32_t spans, unfinished;
-};
-
-/// Scratch memory of a block for a batch of particles.
-template <class S, bool IsSwept, class Block>
-struct contact_scratch {
-  using particle_type = active_particle<S, IsSwept>;
-  static constexpr std::size_t bytes_per_particle = sizeof(particle_type) + sizeof(cell_item const*) +
-                                                    2 * sizeof(std::uint32_t) + sizeof(std::uint8_t) + 2 * sizeof(id);
-
-  /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block, but fewer than lanes, and
-  /// than bytes can count. The rest is for what else a step keeps there.
-  static constexpr std::uint32_t room =
-      static_cast<std::uint32_t>((47 * 1024 - sizeof(contact_queues<Block>)) / bytes_per_particle);
-  static constexpr std::uint32_t batch_size = Block::num_threads == 1     ? Block::items
-                                              : room < Block::num_threads ? room
-                                                                          : Block::num_threads - 1;
-
-  particle_type particles[batch_size];
-  std::uint8_t particle_of_span[batch_size];
-  std::uint32_t span_sizes[batch_size], span_coverage[batch_size];
-  cell_item const* span_items[batch_size];
-  id span_first[batch_size];
-  contact_queues<Block> queues;
-  span_counts spans;
-  std::uint32_t active_count;  ///< how often a particle was to be looked at again; only rises
-  typename Block::balance_storage balance;
-};
 
 /// The search, which knows neither effects nor the integrator. `Triangles` is a lookup that is opened.
 template <class S, class NarrowPhase, class Triangles>
 struct contact_search {
   static constexpr bool is_swept = !is_discrete<NarrowPhase, S>;
-  using active = active_particle<S, is_swept>;
+  using mesh_type = decltype(Triangles::mesh);
+  static constexpr bool has_bodies = is_moving_mesh<mesh_type>;
+  using active = active_particle<S, is_swept, has_bodies>;
   using shape = std::conditional_t<is_swept, moving_sphere<S>, sphere<S>>;
   template <class Block>
-  using scratch = contact_scratch<S, is_swept, Block>;
+  using scratch = contact_scratch<S, is_swept, has_bodies, Block>;
 
   Triangles triangles;
 
@@ -129,6 +62,9 @@ struct contact_search {
           [](span const& c, std::uint32_t k) { return c.range.at(k); },
           [](span const& c, cell_item const& e) { return c.range.passes_coverage(e); },
           [&](span const& c, cell_item const& e) {
+            if constexpr (has_bodies) {
+              if (triangles.mesh.frame_of(e.triangle) != c.frame) return;  // of another body
+            }
             if constexpr (queues::used) {
               s.queues.candidates.push(block, c.particle, e.triangle);
             } else {
@@ -155,6 +91,7 @@ struct contact_search {
     shape whole;
     sphere<S> around;  ///< the part of its motion on which something may come before the best contact so far
     candidate_range range;
+    std::conditional_t<has_bodies, int, only_frame> frame;
   };
 
   /// Lists the next span of candidates of each active particle. `before` is what `s.spans` was before.
@@ -165,7 +102,7 @@ struct contact_search {
       for (auto j = static_cast<std::uint32_t>(thread_rank); j < n; j += Block::num_threads) {
         active& a = s.particles[j];
         candidate_range range{};
-        if (!a.is_active || !triangles.next(a.shape(), a.cursor, most, range)) continue;
+        if (!a.is_active || !next(a, most, range)) continue;
         if (!a.cursor.at_end()) block.add(s.spans.unfinished, 1);
         std::uint32_t const i = block.add(s.spans.spans, 1) - before.spans;
         s.particle_of_span[i] = static_cast<std::uint8_t>(j);
@@ -173,21 +110,50 @@ struct contact_search {
         s.span_items[i] = range.listed;
         s.span_first[i] = range.first;
         s.span_coverage[i] = range.place;
+        s.set_frame(i, a.cursor);
       }
     });
   }
 
+  COLLIDE_HD_INLINE bool next(active& a, std::uint32_t most, candidate_range& range) const {
+    if constexpr (has_bodies) {
+      return triangles.next(a.shape(), part_done(triangles.mesh, a), a.cursor, most, range);
+    } else {
+      return triangles.next(a.shape(), a.cursor, most, range);
+    }
+  }
+
+  /// What of a particle is seen from the frame of a triangle, or from a frame.
+  static COLLIDE_HD_INLINE shape shape_seen([[maybe_unused]] mesh_type const& mesh, active const& a,
+                                            [[maybe_unused]] id number) {
+    if constexpr (has_bodies) {
+      return shape_in(mesh, a, mesh.frame_of(number));
+    } else {
+      return a.shape();
+    }
+  }
+  static COLLIDE_HD_INLINE shape shape_in(mesh_type const&, active const& a, only_frame) { return a.shape(); }
+  static COLLIDE_HD_INLINE shape shape_in([[maybe_unused]] mesh_type const& mesh, active const& a,
+                                          [[maybe_unused]] int frame) {
+    if constexpr (has_bodies) {
+      return mesh.seen_from(frame, a.shape(), part_done(mesh, a));
+    } else {
+      return a.shape();
+    }
+  }
+
   template <class Block>
-  static COLLIDE_HD_INLINE span span_of(scratch<Block>& s, std::uint32_t i) {
+  COLLIDE_HD_INLINE span span_of(scratch<Block>& s, std::uint32_t i) const {
     active& a = s.particles[s.particle_of_span[i]];
-    shape const whole = a.shape();
+    shape const whole = shape_in(triangles.mesh, a, s.frame(i));
     shape part = whole;
     if constexpr (is_swept && Block::num_threads == 1) clip_to_best(a, part);
     return {s.particle_of_span[i],
             a,
             whole,
             swept_bounding_sphere(part),
-            {s.span_items[i], s.span_first[i], 0, s.span_coverage[i]}};
+            {s.span_items[i], s.span_first[i], 0, s.span_coverage[i]},
+            s.frame(i)};
   }
 
   /// A lane alone finds the first contacts first, as it goes along the motion, and hardly looks at what comes later.
@@ -209,8 +175,8 @@ struct contact_search {
         if (i >= n) return;
         id const number = q.candidates.triangles[i];
         active const& a = s.particles[q.candidates.particles[i]];
-        shape const whole = a.shape();
-        if (!triangles.template passes_coverage<NarrowPhase>(whole, number) || a.is_leaving(number)) return;
+        shape const whole = shape_seen(triangles.mesh, a, number);
+        if (!triangles.template passes_coverage<NarrowPhase>(whole, number) || is_leaving(a, number, whole)) return;
         verdict const quick = filter<NarrowPhase>(triangles.mesh[number], whole);
         if (quick == verdict::miss) return;
         q.verdicts[q.contacts.push(block, q.candidates.particles[i], number)] = packed(quick);
@@ -230,7 +196,8 @@ struct contact_search {
     if constexpr (!is_swept) {
       consider_all(block, s, n, [&](active& a, id number, std::uint32_t i, contact<S>& found) {
         bool const is_sure = q.verdicts[i] == packed(verdict::hit);
-        verdict const quick = relaxed_contact_fast(triangles.mesh[number], a.shape(), is_sure, found);
+        verdict const quick =
+            relaxed_contact_fast(triangles.mesh[number], shape_seen(triangles.mesh, a, number), is_sure, found);
         if (quick == verdict::uncertain) {
           block.add(q.unsure_count, 1);
           return no_contact;
@@ -238,7 +205,7 @@ struct contact_search {
         q.verdicts[i] = packed(verdict::miss);
         if (quick == verdict::miss) return no_contact;
         found.triangle = number;
-        return consider<Block>(a, S(0), found);
+        return consider<Block>(a, triangles.mesh, a.shape(), S(0), found);
       });
       if (block.broadcast(q.unsure_count) == 0) return;
     }
@@ -274,15 +241,15 @@ struct contact_search {
   /// A lane alone: a candidate's whole way to the best contact.
   COLLIDE_HD_INLINE void consider_at_once(span const& c, id number) const {
     using block = serial_block<1, 0>;
-    if (!triangles.near(c.around, number) || c.one.is_leaving(number)) return;
+    if (!triangles.near(c.around, number) || is_leaving(c.one, number, c.whole)) return;
     if constexpr (is_swept) {
       if (c.one.best_key != no_contact && static_cast<id>(c.one.best_key) == number) return;  // it was in another cell
     }
     verdict const quick = filter<NarrowPhase>(triangles.mesh[number], c.whole);
     if (quick == verdict::miss) return;
     contact<S> found;
-    std::uint64_t const key =
-        contact_key_of<block>(c.one, triangles.mesh[number], c.whole, quick == verdict::hit, number, found);
+    std::uint64_t const key = contact_key_of<block>(c.one, triangles.mesh, triangles.mesh[number], c.whole,
+                                                    quick == verdict::hit, number, found);
     if (key != no_contact && key == c.one.best_key) c.one.set_best(found);
   }
 
@@ -290,29 +257,54 @@ struct contact_search {
   /// touch; else that is found out, too. Returns its key, or `no_contact`. Out of line, and without a reference to what
   /// is in registers or parameters, which each thread would then have to keep in memory.
   template <class Block>
-  static COLLIDE_HD_NOINLINE std::uint64_t compute_contact(active& a, mesh_view<S> mesh, id number, bool is_sure,
+  static COLLIDE_HD_NOINLINE std::uint64_t compute_contact(active& a, mesh_type mesh, id number, bool is_sure,
                                                            contact<S>& found) {
-    return contact_key_of<Block>(a, mesh[number], a.shape(), is_sure, number, found);
+    return contact_key_of<Block>(a, mesh, mesh[number], shape_seen(mesh, a, number), is_sure, number, found);
   }
   template <class Block>
-  static COLLIDE_HD_INLINE std::uint64_t contact_key_of(active& a, triangle<S> const& t, shape const& s, bool is_sure,
-                                                        id number, contact<S>& found) {
+  static COLLIDE_HD_INLINE std::uint64_t contact_key_of(active& a, mesh_type const& mesh, triangle<S> const& t,
+                                                        shape const& s, bool is_sure, id number, contact<S>& found) {
     if (!is_sure && !resolve<NarrowPhase>(t, s)) return no_contact;
     S time = 0;
     if constexpr (is_swept) time = key_time(stopping_time<NarrowPhase>::of(t, s));
     found = relaxed_contact(t, sphere_at(s, time));
     found.triangle = number;
     if constexpr (is_swept) face_against(found, s.displacement);
-    return consider<Block>(a, time, found);
+    return consider<Block>(a, mesh, s, time, found);
   }
 
-  /// Considers a contact as the next one of a particle. Returns its key, or `no_contact` if it does not count: it is
-  /// part of a surface that the particle has touched, or the particle does not move towards it.
+  /// Whether a particle, of which this is what is seen, leaves a triangle that it has touched.
+  COLLIDE_HD_INLINE bool is_leaving(active const& a, id number, [[maybe_unused]] shape const& whole) const {
+    if constexpr (has_bodies && is_swept) {
+      auto const& mesh = triangles.mesh;
+      return a.is_leaving(number, seen_in_world(mesh, a, mesh.frame_of(number), whole, part_done(mesh, a)));
+    } else {
+      return a.is_leaving(number);
+    }
+  }
+
+  /// Considers a contact, in the frame of its triangle, as the next one of a particle. Returns its key, or `no_contact`
+  /// if it does not count: it is part of a surface that the particle has touched, or the particle does not move towards
+  /// it. Then the contact is in the world.
   template <class Block>
-  static COLLIDE_HD_INLINE std::uint64_t consider(active& a, S time, contact<S> const& c) {
-    if (a.is_internal_contact(c.point)) return no_contact;
+  static COLLIDE_HD_INLINE std::uint64_t consider(active& a, mesh_type const& mesh, shape const& whole, S time,
+                                                  contact<S>& c) {
+    if constexpr (has_bodies) {
+      int const frame = mesh.frame_of(c.triangle);
+      double const part = part_done(mesh, a, time);
+      auto seen = seen_in_world(mesh, a, frame, whole, part);
+      seen.own_point = c.point;
+      mesh.to_world(c, frame, part);
+      return consider_seen<Block>(a, time, c, seen);
+    } else {
+      return consider_seen<Block>(a, time, c, seen_at_rest{});
+    }
+  }
+  template <class Block, class Seen>
+  static COLLIDE_HD_INLINE std::uint64_t consider_seen(active& a, S time, contact<S> const& c, Seen const& seen) {
+    if (a.is_internal_contact(c.point, seen)) return no_contact;
     if constexpr (is_swept) {
-      if (!a.is_approaching(c.normal) && !(time == 0 && a.overlaps(c.depth))) return no_contact;
+      if (!a.is_approaching(c.normal, seen) && !(time == 0 && a.overlaps(c.depth))) return no_contact;
     }
     std::uint64_t const key = contact_key(time, c);
     if constexpr (Block::num_threads > 1) {

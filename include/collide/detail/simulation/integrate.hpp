@@ -8,6 +8,7 @@
 #include <collide/detail/execution/block.hpp>
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/grid/grid_ref.hpp>
+#include <collide/detail/simulation/riding.hpp>
 #include <collide/detail/simulation/step_context.hpp>
 
 // the numbers of elements of small arrays are int
@@ -37,6 +38,8 @@ struct integration {
   static constexpr int pack = particles_per_group;  ///< particles that are read or written together
   static constexpr bool has_one_radius = !contains<typename effects_type::all, radius>;
   static constexpr bool is_swept = Context::is_swept;
+  static constexpr bool has_bodies = Context::has_bodies;
+  static constexpr bool may_ride = has_bodies && contains<typename effects_type::all, adhered>;
 
   Context const& context;
 
@@ -66,20 +69,40 @@ struct integration {
     bool near[N] = {};
     for (int k = 0; k < N; ++k) {
       if (inactive[k]) continue;
-      if constexpr (Context::kick_before != 0) effects.accelerate(p[k], Context::kick_before * dt);
-      if constexpr (!is_swept) p[k][position{}] += p[k][velocity{}] * dt;
+      if constexpr (Context::kick_before != 0) accelerate(p[k], Context::kick_before * dt);
+      if constexpr (!is_swept) move(p[k]);
     }
     filter(p, inactive, near);
     for (int k = 0; k < N; ++k) {
       if (inactive[k] || near[k]) continue;
       if constexpr (is_swept) p[k][position{}] += p[k][velocity{}] * dt;
-      if constexpr (Context::kick_after != 0) effects.accelerate(p[k], Context::kick_after * dt);
+      if constexpr (Context::kick_after != 0) accelerate(p[k], Context::kick_after * dt);
       effects.end_step(p[k], dt);
     }
     for (int k = 0; k < N; k += pack) {
       state.store_group(block, s, p + k, first + static_cast<std::size_t>(k),
                         typename effects_type::integration_writes{});
     }
+  }
+
+  /// Lets the effects accelerate a particle for a part of the step.
+  COLLIDE_HD_INLINE void accelerate(integrated& p, S time) const {
+    if constexpr (may_ride) {
+      if (int const frame = frame_ridden(p)) return accelerate_on_body(context, p, frame, time);
+    }
+    context.effects.accelerate(p, time);
+  }
+
+  /// Moves a particle of a discrete step.
+  COLLIDE_HD_INLINE void move(integrated& p) const {
+    if constexpr (may_ride) {
+      if (int const frame = frame_ridden(p)) {
+        vec3<double> const x = p[position{}].template cast<double>();
+        p[position{}] = carried(context.triangles.mesh.frames[frame], x).template cast<S>();
+        return;
+      }
+    }
+    p[position{}] += p[velocity{}] * context.dt;
   }
 
   /// True if `marks` alone tell whether a particle can touch a triangle.
@@ -120,15 +143,42 @@ struct integration {
     particle<S, typename effects_type::skipping> skipping[N];
     load(block, s, skipping, first);
     bool all = true;
+    [[maybe_unused]] bool woken[N] = {};
     for (int k = 0; k < N; ++k) {
-      inactive[k] =
-          first + static_cast<std::size_t>(k) >= context.state.size || context.effects.is_skipped(skipping[k]);
+      std::size_t const i = first + static_cast<std::size_t>(k);
+      inactive[k] = i >= context.state.size || context.effects.is_skipped(skipping[k]);
+      if constexpr (may_wake) {
+        woken[k] = i < context.state.size && inactive[k] && is_woken(skipping[k], i);
+        inactive[k] = inactive[k] && !woken[k];
+      }
       all = all && inactive[k];
     }
     if (all) return;
     integrated p[N];
     load(block, s, p, first);
+    if constexpr (may_wake) {
+      for (int k = 0; k < N; ++k) {
+        if (woken[k]) p[k][slow_steps{}] = 0;
+      }
+    }
     integrate(block, s, first, p, inactive, filter);
+  }
+
+  /// Bodies that move wake particles that sleep.
+  static constexpr bool may_wake = has_bodies && contains<typename effects_type::skipping, slow_steps>;
+
+  /// True of a particle that sleeps where a body that moves may touch it.
+  template <class Skipping>
+  COLLIDE_HD_INLINE bool is_woken(Skipping p, std::size_t i) const {
+    p[slow_steps{}] = 0;
+    if (context.effects.is_skipped(p)) return false;  // it does not only sleep
+    S const* const x = context.state.at(position{}) + 3 * i;
+    sphere<S> const here{{x[0], x[1], x[2]}, context.state.radius_at(i)};
+    if constexpr (is_swept) {
+      return !context.triangles.opened().is_left_alone(moving_sphere<S>{here, {S(0), S(0), S(0)}});
+    } else {
+      return !context.triangles.opened().is_left_alone(here);
+    }
   }
 
   template <class Block, class P, int N>

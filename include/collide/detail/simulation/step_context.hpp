@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include <collide/detail/narrow_phase/traits.hpp>
+#include <collide/detail/simulation/bodies_ref.hpp>
 #include <collide/detail/simulation/effect_list.hpp>
 
 namespace collide::detail {
@@ -22,6 +23,7 @@ struct step_context {
 
   static constexpr bool is_swept = !is_discrete<NarrowPhase, S>;
   static constexpr bool touches = Effects::touches;
+  static constexpr bool has_bodies = has_moving_mesh<Triangles>;
   /// The parts of a step's acceleration that come before positions change, and at the end of the step.
   static constexpr S kick_before = S(Effects::integrator::kick_before), kick_after = S(Effects::integrator::kick_after);
 

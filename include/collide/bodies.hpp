@@ -1,0 +1,118 @@
+/// \file
+/// Bodies: parts of a simulation's mesh that move as a whole, such as drums, belts, pistons and screws.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/numeric/sin_cos.hpp>
+#include <collide/effect.hpp>
+
+namespace collide {
+
+/// Where a body is: a point x of its mesh is at position + R x, R the rotation.
+struct pose {
+  double position[3] = {0, 0, 0};
+  double rotation[4] = {1, 0, 0, 0};  ///< unit quaternion w, x, y, z
+};
+
+/// How a body moves: a point x of space that belongs to it has the velocity linear + angular x (x - pose.position).
+struct twist {
+  double linear[3] = {0, 0, 0};   ///< of `pose.position`, units of length per unit of time
+  double angular[3] = {0, 0, 0};  ///< radians per unit of time, around the axis that it points along
+};
+
+/// Where a body is and how it moves at a time.
+struct body_state {
+  pose at;
+  twist moving;                ///< how `at` changes
+  double belt[3] = {0, 0, 0};  ///< velocity of a belt that runs on the surface, which stays where it is
+};
+
+/// A motion of a small family, which may be combined: all zero is at rest. `belt` is the velocity of a belt that runs
+/// on the surface while the body stays where it is.
+///
+/// At time t, with s = sin(2 pi (frequency t + phase)): the pivot is at pivot + velocity t + amplitude s, and the body
+/// is turned around the axis through it by the angle rate t + swing s, in radians.
+struct body_motion {
+  double pivot[3] = {0, 0, 0};      ///< a point of the body's mesh
+  double velocity[3] = {0, 0, 0};   ///< of the pivot
+  double axis[3] = {0, 0, 1};       ///< need not have length 1
+  double rate = 0;                  ///< radians per unit of time
+  double amplitude[3] = {0, 0, 0};  ///< of the pivot
+  double swing = 0;                 ///< amplitude of the angle, radians
+  double frequency = 0;             ///< cycles per unit of time
+  double phase = 0;                 ///< cycles
+  double belt[3] = {0, 0, 0};       ///< velocity of the surface
+
+  /// Pose and twist at a time. The same bits in every space. O(1).
+  COLLIDE_HD body_state operator()(double time) const {
+    using namespace detail;
+    constexpr double two_pi = 6.283185307179586;
+    sin_cos const wave = sin_cos_of_turns(mul(frequency, time) + phase);
+    double const wave_rate = mul(mul(two_pi, frequency), wave.cos);
+    vec3<double> const direction(axis[0], axis[1], axis[2]);
+    double const length = sqrt_rn(dot(direction, direction));
+    double const angle = mul(rate, time) + mul(swing, wave.sin), angle_rate = rate + mul(swing, wave_rate);
+    sin_cos const half = sin_cos_of_turns(div(angle, 2 * two_pi));
+    body_state s;
+    s.at.rotation[0] = length > 0 ? half.cos : 1;
+    for (int k = 0; k < 3; ++k) {
+      double const along = length > 0 ? div(axis[k], length) : 0;
+      s.at.rotation[k + 1] = mul(along, half.sin);
+      s.moving.angular[k] = mul(along, angle_rate);
+      s.belt[k] = belt[k];
+    }
+    vec3<double> const arm = rotated(s.at.rotation, vec3<double>(pivot[0], pivot[1], pivot[2]));
+    vec3<double> const w(s.moving.angular[0], s.moving.angular[1], s.moving.angular[2]), turning = cross(w, arm);
+    for (int k = 0; k < 3; ++k) {
+      s.at.position[k] = (pivot[k] - arm[k]) + mul(velocity[k], time) + mul(amplitude[k], wave.sin);
+      s.moving.linear[k] = velocity[k] + mul(amplitude[k], wave_rate) - turning[k];
+    }
+    return s;
+  }
+
+ private:
+  static COLLIDE_HD_INLINE vec3<double> rotated(double const (&q)[4], vec3<double> const& x) {
+    vec3<double> const axis_part(q[1], q[2], q[3]), twice = detail::scaled(detail::cross(axis_part, x), 2.0);
+    return x + detail::scaled(twice, q[0]) + detail::cross(axis_part, twice);
+  }
+};
+
+/// A body: the `size` triangles of the mesh from number `first` on, and how they move.
+struct body {
+  std::size_t first = 0, size = 0;
+  body_motion motion = {};
+};
+
+/// In place of a motion: poses and twists are what the caller's kernels write to `simulation::bodies()`.
+struct driven {};
+
+/// What is told of bodies, counted since `set_mesh`: see `simulation::body_report`.
+struct body_report {
+  /// How often a body was to get a pose that is no rotation or not finite; it then stays where it was, at rest.
+  std::uint32_t refused_poses = 0;
+  /// How often a body of a simulation that is not swept moved by more than a particle's radius in a step, and so may
+  /// have passed through some.
+  std::uint32_t fast_steps = 0;
+};
+
+/// Named in a scene's list: parts of the mesh move, as `simulation::set_mesh(mesh, bodies)` says. `Motion` is
+///   - `body_motion`, the default: each body has its own, of a small family;
+///   - a copyable function object of your own: COLLIDE_HD body_state operator()(std::size_t body, double time) const;
+///   - `driven`: kernels of your own write poses and twists to `simulation::bodies()` before each step.
+///
+/// At most 64 bodies. Triangles of no body rest. The mesh is indexed once, as it lies in memory: that is each body's
+/// own frame, and nothing is built again while bodies move. O(bodies) more per particle.
+template <class Motion = body_motion>
+struct moving_bodies {
+  static constexpr std::size_t max_bodies = 64;
+
+  Motion motion = Motion();
+
+  /// Nothing: but with it the simulation keeps the time on the device.
+  template <class Space, class State, class S>
+  void begin_step(Space&, State const&, S) const {}
+};
+
+}  // namespace collide

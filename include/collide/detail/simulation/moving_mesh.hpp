@@ -1,0 +1,134 @@
+/// \file
+/// A mesh with parts that move: frames in which these rest, and how particles and contacts look from there.
+///
+/// Within a step a body moves from one pose to another; between the two, positions are interpolated linearly, rotations
+/// along the chord of their quaternions. A particle's path in a body's frame is the straight line from where it begins
+/// to where it ends there. So it is exact for bodies that shift, and off by at most the sagitta of the arc for bodies
+/// that turn; but in a body's frame what moves never jumps.
+#pragma once
+
+#include <cstdint>
+
+#include <collide/bodies.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/mesh.hpp>
+
+namespace collide::detail {
+
+COLLIDE_HD_INLINE vec3<double> vector_of(double const* x) { return {x[0], x[1], x[2]}; }
+
+/// A pose as arithmetic has it.
+struct frame_pose {
+  vec3<double> position;
+  double w;
+  vec3<double> axis;
+
+  COLLIDE_HD_INLINE vec3<double> rotated(vec3<double> const& x) const {
+    vec3<double> const twice = scaled(cross(axis, x), 2.0);
+    return x + scaled(twice, w) + cross(axis, twice);
+  }
+  COLLIDE_HD_INLINE vec3<double> rotated_back(vec3<double> const& x) const {
+    vec3<double> const twice = scaled(cross(axis, x), 2.0);
+    return x - scaled(twice, w) + cross(axis, twice);
+  }
+  COLLIDE_HD_INLINE vec3<double> to_world(vec3<double> const& x) const { return position + rotated(x); }
+  COLLIDE_HD_INLINE vec3<double> to_local(vec3<double> const& x) const { return rotated_back(x - position); }
+  COLLIDE_HD_INLINE bool operator==(frame_pose const& o) const {
+    return position == o.position && w == o.w && axis == o.axis;
+  }
+};
+
+COLLIDE_HD_INLINE frame_pose frame_pose_of(pose const& p) {
+  return {vector_of(p.position), p.rotation[0], vector_of(p.rotation + 1)};
+}
+
+/// The pose at a part of the way from one to another.
+COLLIDE_HD_INLINE frame_pose between(frame_pose const& a, frame_pose const& b, double t) {
+  double const same = mul(a.w, b.w) + dot(a.axis, b.axis) < 0 ? -1.0 : 1.0, s = 1 - t;
+  double const w = mul(s, a.w) + mul(mul(t, same), b.w);
+  vec3<double> const axis = scaled(a.axis, s) + scaled(b.axis, mul(t, same));
+  double const length = sqrt_rn(mul(w, w) + dot(axis, axis));
+  vec3<double> const unit(div(axis.x(), length), div(axis.y(), length), div(axis.z(), length));
+  return {scaled(a.position, s) + scaled(b.position, t), div(w, length), unit};
+}
+
+/// The velocity of what is at `x` in a body with this pose.
+COLLIDE_HD_INLINE vec3<double> velocity_at(twist const& t, frame_pose const& p, vec3<double> const& x) {
+  return vector_of(t.linear) + cross(vector_of(t.angular), vec3<double>(x - p.position));
+}
+
+/// A body in a step. Number 0 of a mesh is what rests.
+template <class S>
+struct body_frame {
+  frame_pose before, now;  ///< when the step begins, and ends
+  twist moved, moving;     ///< its twists at these times
+  vec3<double> belt;
+  vec3<S> centre;  ///< of a ball around the body when the step begins; if not `swept`, when it ends
+  S reach;         ///< no particle of radius r that moves by d can touch the body in the step if `shrink` times its
+  S shrink;        ///< distance from the centre is above reach + r + d
+  bool moves;      ///< in this step
+
+  template <class Vector>
+  COLLIDE_HD_INLINE bool is_far(Vector const& x, S r, S way) const {
+    S const at_least = reach + r + way;
+    vec3<S> const apart = x - centre;
+    return shrink > 0 && mul(dot(apart, apart), mul(shrink, shrink)) > mul(at_least, at_least);
+  }
+};
+
+/// A mesh of which bodies are parts. Its triangles are in the frames of their bodies.
+template <class S>
+struct moving_mesh : mesh_view<S> {
+  body_frame<S> const* frames;
+  std::uint8_t const* frame_numbers;  ///< of each triangle
+  int first_frame, frame_count;       ///< frames from the first that has triangles to before the last number
+  S dt;                               ///< of the step
+
+  moving_mesh() = default;
+  moving_mesh(mesh_view<S> const& mesh, body_frame<S> const* f, std::uint8_t const* numbers, int first, int count,
+              S step)
+      : mesh_view<S>(mesh), frames{f}, frame_numbers{numbers}, first_frame{first}, frame_count{count}, dt{step} {}
+
+  COLLIDE_HD_INLINE int frame_of(id triangle) const { return frame_numbers[triangle]; }
+
+  /// A body's pose at a part of the step.
+  COLLIDE_HD_INLINE frame_pose pose_at(int frame, double part) const {
+    body_frame<S> const& f = frames[frame];
+    return part <= 0 ? f.before : part >= 1 ? f.now : between(f.before, f.now, part);
+  }
+
+  /// A sphere as a body sees it at the end of the step.
+  COLLIDE_HD_INLINE sphere<S> seen_from(int frame, sphere<S> const& s, double) const {
+    if (frame == 0) return s;
+    return {frames[frame].now.to_local(s.centre.template cast<double>()).template cast<S>(), s.radius};
+  }
+  /// A sphere that moves for the rest of the step from a part of it on, as a body sees it.
+  COLLIDE_HD_INLINE moving_sphere<S> seen_from(int frame, moving_sphere<S> const& s, double part) const {
+    if (frame == 0) return s;
+    vec3<double> const begin = s.centre.template cast<double>(), way = s.displacement.template cast<double>();
+    vec3<S> const from = pose_at(frame, part).to_local(begin).template cast<S>();
+    vec3<double> const to = frames[frame].now.to_local(begin + way);
+    return {{from, s.radius}, (to - from.template cast<double>()).template cast<S>()};
+  }
+
+  /// A point of a body's frame, where it is in the world at a part of the step.
+  COLLIDE_HD_INLINE vec3<S> in_world(int frame, vec3<S> const& x, double part) const {
+    return frame == 0 ? x : vec3<S>(pose_at(frame, part).to_world(x.template cast<double>()).template cast<S>());
+  }
+
+  /// A contact in a body's frame at a part of the step, as it is in the world.
+  COLLIDE_HD_INLINE void to_world(contact<S>& c, int frame, double part) const {
+    if (frame == 0) return;
+    frame_pose const p = pose_at(frame, part);
+    c.point = p.to_world(c.point.template cast<double>()).template cast<S>();
+    c.normal = p.rotated(c.normal.template cast<double>()).template cast<S>();
+  }
+};
+
+/// True for meshes of which parts move.
+template <class Mesh>
+inline constexpr bool is_moving_mesh = false;
+template <class S>
+inline constexpr bool is_moving_mesh<moving_mesh<S>> = true;
+
+}  // namespace collide::detail

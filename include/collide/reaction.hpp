@@ -1,0 +1,123 @@
+/// \file
+/// Effect: the forces and torques with which particles act on bodies.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <collide/atomic_add.hpp>
+#include <collide/effect.hpp>
+#include <collide/memory.hpp>
+
+namespace collide {
+
+struct bounce;
+struct friction;
+struct spin;
+struct adhesion;
+
+/// What a body has got of all particles: an impulse, force times time, and its moment about the origin of space. About
+/// a point x it is angular - x x linear.
+struct body_impulse {
+  double linear[3] = {0, 0, 0}, angular[3] = {0, 0, 0};
+};
+
+namespace detail {
+
+/// Sums as integers, which do not depend on the order.
+struct impulse_counts {
+  std::int64_t count[6];
+};
+
+}  // namespace detail
+
+/// Sums up what the particles' contacts give to each body: minus mass times the change of their velocities. It is made
+/// by `reaction_sums`, which has its memory. An effect for the end of the list: of those behind it it sees nothing.
+struct reaction {
+  using reads = columns<velocity>;
+  using runs_after = effects<bounce, friction, spin, adhesion>;
+
+  static constexpr bool saves_parameters = false;  ///< what has been summed is not of the state that steps depend on
+  static constexpr std::size_t copies = 256;       ///< of the sums, so that particles do not wait for each other
+
+  double density = 1;  ///< mass per volume
+  double unit = 0;     ///< of impulse, and of its moment: each contact is rounded to a multiple
+  detail::impulse_counts* sums = nullptr;
+
+  void check_parameters() const {
+    detail::check_parameter(density > 0 && unit > 0 && sums != nullptr,
+                            "reaction: density is positive, and reaction_sums makes the effect");
+  }
+
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S) const {
+    using namespace detail;
+    double const r = static_cast<double>(p.radius());
+    double const mass = mul(mul(mul(4.188790204786391, density), r), mul(r, r));  // 4 pi / 3
+    vec3<S> const change = t.velocity_before - p[velocity{}];
+    vec3<double> const impulse = scaled(vec3<double>(change.template cast<double>()), div(mass, unit));
+    vec3<double> const moment = cross(vec3<double>(t.point.template cast<double>()), impulse);
+    std::size_t const body = t.body == no_id ? 0 : std::size_t{t.body} + 1;
+    impulse_counts& s = sums[body * copies + p.number() % copies];
+    for (int k = 0; k < 3; ++k) {
+      add(s.count[k], impulse[k]);
+      add(s.count[k + 3], moment[k]);
+    }
+  }
+
+ private:
+  static COLLIDE_HD_INLINE void add(std::int64_t& to, double x) {
+    if (x != 0) atomic_add(&to, static_cast<std::int64_t>(std::floor(x + 0.5)));
+  }
+};
+
+/// The memory in which `reaction` sums up: of each body, and of what rests. The same contacts give the same bits, in
+/// any order. Sums overflow at 9e18 units. It must outlive the steps of the simulation that has its effect.
+class reaction_sums {
+ public:
+  /// For so many bodies. `unit` is the impulse to which each contact is rounded, and the moment: at most 1e-9 of what
+  /// is to be told. Allocates 12 KB a body in the space.
+  template <class Space>
+  reaction_sums(Space const& space, std::size_t bodies, double unit) : bodies_{bodies}, unit_{unit} {
+    sums_.reserve(space.resource(), (bodies + 1) * reaction::copies);
+    clear(space);
+  }
+
+  /// The effect, for particles of a density.
+  reaction effect(double density) const { return {density, unit_, sums_.data()}; }
+
+  /// Begins anew, after the work that is on the stream of a space. Does not wait.
+  template <class Space>
+  void clear(Space const& space) {
+    space.fill(sums_.data(), 0, (bodies_ + 1) * reaction::copies * sizeof(detail::impulse_counts));
+  }
+
+  /// What each body has got since `clear`, and last what rests. Over the time since then it is the mean force. Waits.
+  template <class Space>
+  std::vector<body_impulse> read(Space const& space) const {
+    std::vector<detail::impulse_counts> all((bodies_ + 1) * reaction::copies);
+    space.copy_to_host(all.data(), sums_.data(), all.size());
+    std::vector<body_impulse> found;
+    for (std::size_t b = 1; b <= bodies_ + 1; ++b)
+      found.push_back(sum_of(all.data() + b % (bodies_ + 1) * reaction::copies));
+    return found;
+  }
+
+ private:
+  body_impulse sum_of(detail::impulse_counts const* of) const {
+    body_impulse s;
+    for (int k = 0; k < 6; ++k) {
+      std::int64_t n = 0;
+      for (std::size_t i = 0; i < reaction::copies; ++i) n += of[i].count[k];
+      (k < 3 ? s.linear[k] : s.angular[k - 3]) = static_cast<double>(n) * unit_;
+    }
+    return s;
+  }
+
+  std::size_t bodies_;
+  double unit_;
+  buffer<detail::impulse_counts> sums_;
+};
+
+}  // namespace collide

@@ -1,0 +1,33 @@
+/// Bodies that move, on the GPU.
+#include "simulation/bodies.hpp"
+
+using collide::cuda_shared;
+using collide::karabassi;
+using collide::karabassi_swept;
+
+TEST_CASE("bodies: on the GPU, belts and pistons") {
+  tests::check_belt<karabassi<>, float>(cuda_shared());
+  tests::check_belt<karabassi_swept<>, float>(cuda_shared());
+  tests::check_piston<karabassi<>, float>(cuda_shared());
+  tests::check_piston<karabassi_swept<>, double>(cuda_shared());
+}
+
+TEST_CASE("bodies: on the GPU, a floor that is shaken, a turntable and a drum") {
+  tests::check_vibrated_floor<karabassi<>>(cuda_shared());
+  tests::check_turntable<karabassi<>>(cuda_shared());
+  tests::check_turntable<karabassi_swept<>>(cuda_shared());
+  tests::check_drum<karabassi<>>(cuda_shared());
+}
+
+TEST_CASE("bodies: on the GPU, a closed box that turns and shakes keeps what is in it") {
+  tests::check_turning_box<karabassi<>, float>(cuda_shared(), 1, 1e-3, 10000, 10000);
+  tests::check_turning_box<karabassi_swept<>, float>(cuda_shared(), 10, 1e-2, 10000, 10000);
+}
+
+TEST_CASE("bodies: on the GPU, riding, waking, many bodies, and the same bits on every run") {
+  tests::check_riding<karabassi<>>(cuda_shared());
+  tests::check_waking<karabassi<>>(cuda_shared());
+  tests::check_several_bodies<karabassi_swept<>>(cuda_shared());
+  tests::check_same_bits<karabassi<>>(cuda_shared(), cuda_shared());
+  tests::check_same_bits<karabassi_swept<>>(cuda_shared(), cuda_shared());
+}
