@@ -17,9 +17,11 @@ namespace collide {
 
 /// Says to `distributed::build` that each rank has all of the mesh.
 struct on_every_rank_t {};
+/// The value of its type: `build(mesh, on_every_rank)`.
 inline constexpr on_every_rank_t on_every_rank{};
 /// Says to `distributed::build` that each rank has a part of the mesh.
 struct divided_t {};
+/// The value of its type: `build(mine, divided)`.
 inline constexpr divided_t divided{};
 
 /// A detector on many ranks, each of which queries spheres of its own; a sink then holds the pairs of its rank's
@@ -38,9 +40,9 @@ class distributed {
   static constexpr bool alone = std::is_same<Ranks, one_rank>::value;
 
  public:
-  using scalar = typename Detector::scalar;
-  using spheres_type = typename Detector::spheres_type;
-  using execution_space = typename Detector::execution_space;
+  using scalar = typename Detector::scalar;                    ///< type of the coordinates: float or double
+  using spheres_type = typename Detector::spheres_type;        ///< that of the detector
+  using execution_space = typename Detector::execution_space;  ///< that of the detector
 
   /// `chunk`: how many spheres of a rank go to others at a time, where the mesh is divided: it bounds the memory for
   /// what is sent. Throws what making the space throws, and `error` if `chunk` is 0; other ranks do not hear of that.
@@ -58,6 +60,7 @@ class distributed {
       detector_.build(mesh);
     });
   }
+  /// For a mesh that is the same on every rank, and spheres of radius up to `radius`; see `detector::build`.
   void build(mesh_view<scalar> mesh, scalar radius, on_every_rank_t) {
     together(ranks_, [&] {
       is_divided_ = false;
@@ -108,9 +111,11 @@ class distributed {
     return all;
   }
 
+  /// The ranks.
   Ranks const& ranks() const { return ranks_; }
   /// The detector of this rank: of the whole mesh, or of its part.
   Detector& local() { return detector_; }
+  /// The space of this rank.
   execution_space& space() { return detector_.space(); }
 
  private:

@@ -64,7 +64,9 @@ class mpi_ranks {
     requests_ = std::make_shared<std::vector<MPI_Request>>();
   }
 
+  /// The number of this rank, from 0: that of the process in the communicator.
   int rank() const { return rank_; }
+  /// How many ranks there are.
   int size() const { return size_; }
 
   void all_gather(void const* mine, std::size_t bytes, void* all) const {

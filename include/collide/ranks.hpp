@@ -26,7 +26,10 @@
 namespace collide {
 
 /// What `reduce` makes of the numbers of all ranks.
-enum class reduction { sum, max };
+enum class reduction {
+  sum,  ///< their sum
+  max   ///< the largest
+};
 
 /// What a rank throws because another one has failed, or has left: the message says which, and why.
 class rank_error : public error {
@@ -37,7 +40,9 @@ class rank_error : public error {
 /// Ranks: a single one. Nothing is sent, and nothing remains of it in compiled code.
 class one_rank {
  public:
+  /// The number of this rank.
   static constexpr int rank() { return 0; }
+  /// How many ranks there are.
   static constexpr int size() { return 1; }
   void all_gather(void const* mine, std::size_t bytes, void* all) const { copy(mine, bytes, all); }
   void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, reduction) const {

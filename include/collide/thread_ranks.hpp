@@ -107,7 +107,9 @@ class thread_ranks {
     if (meeting.failure()) std::rethrow_exception(meeting.failure());
   }
 
+  /// The number of this rank, from 0.
   int rank() const { return rank_; }
+  /// How many ranks there are.
   int size() const { return meeting_->size(); }
 
   void all_gather(void const* mine, std::size_t bytes, void* all) const {
