@@ -12,7 +12,7 @@ namespace collide {
 
 /// Where a body is: a point x of its mesh is at position + R x, R the rotation.
 struct pose {
-  double position[3] = {0, 0, 0};
+  double position[3] = {0, 0, 0};     ///< of the origin of the mesh
   double rotation[4] = {1, 0, 0, 0};  ///< unit quaternion w, x, y, z
 };
 
@@ -24,7 +24,7 @@ struct twist {
 
 /// Where a body is and how it moves at a time.
 struct body_state {
-  pose at;
+  pose at;                     ///< where it is
   twist moving;                ///< how `at` changes
   double belt[3] = {0, 0, 0};  ///< velocity of a belt that runs on the surface, which stays where it is
 };
@@ -81,8 +81,9 @@ struct body_motion {
 
 /// A body: the `size` triangles of the mesh from number `first` on, and how they move.
 struct body {
-  std::size_t first = 0, size = 0;
-  body_motion motion = {};
+  std::size_t first = 0;    ///< number of the first triangle
+  std::size_t size = 0;     ///< how many triangles
+  body_motion motion = {};  ///< how they move
 };
 
 /// In place of a motion: poses and twists are what the caller's kernels write to `simulation::bodies()`.
@@ -106,9 +107,9 @@ struct body_report {
 /// own frame, and nothing is built again while bodies move. O(bodies) more per particle.
 template <class Motion = body_motion>
 struct moving_bodies {
-  static constexpr std::size_t max_bodies = 64;
+  static constexpr std::size_t max_bodies = 64;  ///< most bodies of a mesh
 
-  Motion motion = Motion();
+  Motion motion = Motion();  ///< of all bodies, if it is a function object of your own
 
   /// Nothing: but with it the simulation keeps the time on the device.
   template <class Space, class State, class S>
