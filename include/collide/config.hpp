@@ -31,6 +31,7 @@
 /// registers.
 #define COLLIDE_HD_RARE COLLIDE_HD_INLINE
 #else
+/// Marks a function that is called rarely.
 #define COLLIDE_HD_RARE COLLIDE_HD_NOINLINE inline
 #endif
 

@@ -20,7 +20,8 @@ struct adhesion;
 /// What a body has got of all particles: an impulse, force times time, and its moment about the origin of space. About
 /// a point x it is angular - x x linear.
 struct body_impulse {
-  double linear[3] = {0, 0, 0}, angular[3] = {0, 0, 0};
+  double linear[3] = {0, 0, 0};   ///< impulse, mass times velocity
+  double angular[3] = {0, 0, 0};  ///< moment of it about the origin
 };
 
 namespace detail {
@@ -41,9 +42,9 @@ struct reaction {
   static constexpr bool saves_parameters = false;  ///< what has been summed is not of the state that steps depend on
   static constexpr std::size_t copies = 256;       ///< of the sums, so that particles do not wait for each other
 
-  double density = 1;  ///< mass per volume
-  double unit = 0;     ///< of impulse, and of its moment: each contact is rounded to a multiple
-  detail::impulse_counts* sums = nullptr;
+  double density = 1;                      ///< mass per volume
+  double unit = 0;                         ///< of impulse, and of its moment: each contact is rounded to a multiple
+  detail::impulse_counts* sums = nullptr;  ///< memory of the space, of `reaction_sums`
 
   void check_parameters() const {
     detail::check_parameter(density > 0 && unit > 0 && sums != nullptr,
