@@ -11,6 +11,7 @@ version = ".".join(re.findall(r"^#define COLLIDE_VERSION_(?:MAJOR|MINOR|PATCH) (
 said = {
     "CITATION.cff": re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(), re.M)[1],
     "packaging/vcpkg/collide/vcpkg.json": json.loads((ROOT / "packaging/vcpkg/collide/vcpkg.json").read_text())["version"],
+    "README.md": re.search(r"libcollide-dev_(\S+)_all", (ROOT / "README.md").read_text())[1],
     "CHANGELOG.md": re.search(r"^## \[(\d\S*)\]", (ROOT / "CHANGELOG.md").read_text(), re.M)[1],  # the newest
 }
 wrong = {name: other for name, other in said.items() if other != version}
