@@ -1,9 +1,10 @@
-"""mutate.py names | table [--write] | judge NAME --rows FOLDER [--eigen FOLDER]: the guards of `exact`, one by one.
+"""mutate.py names | table [--write] | precompile FOLDER | judge NAME --rows FOLDER: the guards of `exact`, one by one.
 
 Every mutation takes a guard out of the library, or loosens it; a small program, compiled with that, must then find
 something wrong, or fail; and nothing with the library as it is. The rows that it judges are those of tests/data, those
 of hunted_*.csv, which were looked for because no others show the guards that they name, and cases next to contact: see
-make_rows.cpp. `table` checks, or writes, the lists in docs/development/testing.md.
+make_rows.cpp. `precompile` compiles ../standard.hpp for all compilers, into the folder of the rows. `table` checks, or
+writes, the lists in docs/development/testing.md.
 """
 import argparse
 import pathlib
@@ -244,6 +245,19 @@ def mutated(name):
     return file, text
 
 
+def precompile(folder, eigen):
+    """Compiles what the library includes of others, for each compiler that is here."""
+    for compiler, command in COMPILERS.items():
+        command = command.split()
+        if not shutil.which(command[0]):
+            continue
+        header = pathlib.Path(folder) / compiler / "standard.hpp"
+        header.parent.mkdir(exist_ok=True)
+        shutil.copy(HERE.parent / "standard.hpp", header)
+        ending = ".gch" if command[0] == "g++" else ".pch"
+        subprocess.run([*command, "-std=c++17", "-w", "-isystem", eigen, "-x", "c++-header", header, "-o", f"{header}{ending}"], check=True)
+
+
 def judge(name, rows, eigen):
     """What is wrong with the verdicts: None if nothing is."""
     file, _, program, compiler, _ = (SOUND | MUTATIONS)[name]
@@ -258,7 +272,9 @@ def judge(name, rows, eigen):
             (place / DETAIL / file).parent.mkdir(parents=True)
             (place / DETAIL / file).write_text(text)
         source = ROOT / "tests" / ("flags" if program == "verdicts" else "mutation") / f"{program}.cpp"
-        subprocess.run([*command, "-std=c++17", "-w", f"-I{place}", f"-I{ROOT / 'include'}", "-isystem", eigen, source, "-o",
+        standard = pathlib.Path(rows) / compiler / "standard.hpp"
+        included = ["-include", standard] if standard.exists() else []
+        subprocess.run([*command, "-std=c++17", "-w", *included, f"-I{place}", f"-I{ROOT / 'include'}", "-isystem", eigen, source, "-o",
                         place / "program"], check=True)
         cases = ["float", ROOT / "tests" / "data" / "static_f32.csv"] if program == "verdicts" else [rows]
         result = subprocess.run([place / "program", *cases], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -285,6 +301,9 @@ def main():
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("names")
     commands.add_parser("table").add_argument("--write", action="store_true")
+    precompiled = commands.add_parser("precompile")
+    precompiled.add_argument("folder")
+    precompiled.add_argument("--eigen", default="/usr/include/eigen3")
     one = commands.add_parser("judge")
     one.add_argument("name", choices=SOUND | MUTATIONS)
     one.add_argument("--rows", required=True, help="the folder that make_rows has written to")
@@ -304,6 +323,9 @@ def main():
         elif listed != wanted:
             print(f"{PAGE} lists other mutations; tests/mutation/mutate.py table --write changes that")
             return 1
+        return 0
+    if args.command == "precompile":
+        precompile(args.folder, args.eigen)
         return 0
     said = judge(args.name, args.rows, args.eigen)
     print(f"{args.name}: {said or 'nothing wrong'}")

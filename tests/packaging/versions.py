@@ -13,6 +13,9 @@ said = {
     "packaging/vcpkg/collide/vcpkg.json": json.loads((ROOT / "packaging/vcpkg/collide/vcpkg.json").read_text())["version"],
     "CHANGELOG.md": re.search(r"^## \[(\d\S*)\]", (ROOT / "CHANGELOG.md").read_text(), re.M)[1],  # the newest
 }
+for other in re.findall(r"libcollide-dev_([0-9.]+)_all", (ROOT / "README.md").read_text()):
+    if other != version:
+        said["README.md"] = other
 wrong = {name: other for name, other in said.items() if other != version}
 for name, other in wrong.items():
     print(f"{name} says {other}, include/collide/version.hpp {version}")
