@@ -80,12 +80,15 @@ class checkpoint {
                              from.reverse_order_};
     if constexpr (simulated::has_begin_step) numbers.device_time = from.space_.read(from.state_.time);
     numbers.pass(to);
-    if constexpr (simulated::has_bodies) {
-      auto const states = from.bodies().to_host(from.space_);
-      to.block(bodies_name, states.data(), states.size());
-    }
     (write_parameters<Effect>(to, from), ...);
     write_columns(to, from, column_list());
+    if constexpr (simulated::has_bodies) {
+      from.bodies_.for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
+        std::vector<unsigned char> copy(n * sizeof(*elements));
+        from.space_.copy_to_host(copy.data(), reinterpret_cast<unsigned char const*>(elements), copy.size());
+        to.block(name, copy.data(), copy.size());
+      });
+    }
     to.finish();
   }
 
@@ -98,11 +101,15 @@ class checkpoint {
       from.refuse("triangles", "the file has " + std::to_string(numbers_.triangles) + ", the mesh of the simulation " +
                                    std::to_string(into.mesh_.size()));
     }
-    if constexpr (simulated::has_bodies) bodies_ = from.block<body_state>(bodies_name, into.bodies().size());
     if (numbers_.places >= no_id) from.refuse("places", "a simulation has at most 2^32 - 2 particles");
     if (numbers_.placed > numbers_.places) from.refuse("placed", "more than there are places");
     (read_parameters<Effect>(from), ...);
     read_columns(from, column_list());
+    if constexpr (simulated::has_bodies) {
+      into.bodies_.for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
+        bodies_.push_back(from.block<unsigned char>(name, n * sizeof(*elements)));
+      });
+    }
     from.finish();
   }
 
@@ -120,7 +127,6 @@ class checkpoint {
                    init_particles<S, column_list>{state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr});
     restore_columns(space, state, column_list());
     (restore_parameters<Effect>(to), ...);
-    if constexpr (simulated::has_bodies) space.copy_from_host(to.bodies().states(), bodies_.data(), bodies_.size());
     to.state_ = state;
     to.time_ = numbers_.time;
     to.reverse_order_ = numbers_.reverse_order != 0;
@@ -128,11 +134,16 @@ class checkpoint {
     if constexpr (simulated::effects_type::meets) to.neighbours_.clear(space, places, to.largest_radius_);
     to.is_set_ = true;
     to.prepare();
+    if constexpr (simulated::has_bodies) {
+      std::size_t next = 0;
+      to.bodies_.for_each_saved([&](std::string const&, auto* elements, std::size_t) {
+        auto const& saved = bodies_[next++];
+        space.copy_from_host(reinterpret_cast<unsigned char*>(elements), saved.data(), saved.size());
+      });
+    }
   }
 
  private:
-  static constexpr char const* bodies_name = "states of bodies";
-
   /// What the simulation is: written, or compared with what was.
   template <class Archive>
   static void pass_types(Archive& archive) {
@@ -217,8 +228,8 @@ class checkpoint {
   };
 
   saved_numbers<S> numbers_;
-  std::vector<body_state> bodies_;  ///< of a simulation that has some
   std::tuple<bytes_of<Effect>...> parameters_;
+  std::vector<std::vector<unsigned char>> bodies_;  ///< poses, and what else is known of them
   typename table_of<column_list>::type columns_;
 };
 

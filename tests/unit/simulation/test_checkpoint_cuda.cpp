@@ -7,6 +7,8 @@ using collide::host;
 
 TEST_CASE("checkpoint: on the GPU, a simulation that is loaded goes on in the same bits") {
   tests::check_scenes_go_on(cuda_shared());
+  tests::check_bodies_go_on<cuda_shared, collide::karabassi<>, collide::body_motion>(cuda_shared());
+  tests::check_bodies_go_on<cuda_shared, collide::karabassi_swept<>, collide::driven>(cuda_shared());
 }
 
 TEST_CASE("checkpoint: on the GPU, from one space to another, and what is not saved") {

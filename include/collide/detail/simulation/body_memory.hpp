@@ -160,6 +160,15 @@ class body_memory {
     return report_.data() != nullptr ? space.read(report_.data()) : body_report();
   }
 
+  /// f(name, elements, number of them) for what steps leave in memory of the space.
+  template <class F>
+  void for_each_saved(F const& f) const {
+    std::size_t const made = frames_.data() != nullptr ? 1 : 0;
+    f("poses of bodies", states_.data(), count_);
+    f("frames of bodies", frames_.data(), count_ + made);
+    f("report on bodies", report_.data(), made);
+  }
+
   /// Throws `error` unless these can be bodies of a mesh of so many triangles.
   static void check(std::vector<body> const& bodies, std::size_t triangles) {
     constexpr std::size_t most = moving_bodies<Motion>::max_bodies;
