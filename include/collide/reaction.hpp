@@ -77,8 +77,8 @@ struct reaction {
 /// any order. Sums overflow at 9e18 units. It must outlive the steps of the simulation that has its effect.
 class reaction_sums {
  public:
-  /// For so many bodies. `unit` is the impulse to which each contact is rounded, and the moment: at most 1e-9 of what
-  /// is to be told. Allocates 12 KB a body in the space.
+  /// For so many bodies. `unit` is the impulse to which each contact is rounded, and the moment: a sum may be off by
+  /// half a unit for each contact of a step. Allocates 12 KB a body in the space.
   template <class Space>
   reaction_sums(Space const& space, std::size_t bodies, double unit) : bodies_{bodies}, unit_{unit} {
     sums_.reserve(space.resource(), (bodies + 1) * reaction::copies);

@@ -392,7 +392,7 @@ void check_reaction(Space const& space, Other const& other) {
   auto const after = [&](auto const& there) {
     using simulation = collide::simulation<meets_mesh<std::decay_t<decltype(there)>, collide::karabassi<>, double>,
                                            gravity, bounce, friction, collide::reaction, moving_bodies<>>;
-    collide::reaction_sums sums(there, 2, 1e-12);
+    collide::reaction_sums sums(there, 2, 1e-15);
     running_bodies<simulation> made(there, w, {body{0, floor, {}}, body{floor, 1, wall}}, gravity{}, bounce{0.5},
                                     friction{0.1, 0.1}, sums.effect(density), moving_bodies<>{});
     made.simulation.steps(4000, dt);
@@ -405,7 +405,7 @@ void check_reaction(Space const& space, Other const& other) {
       double const given = found[0].linear[k] + found[1].linear[k] + found[2].linear[k];
       CHECK(given == doctest::Approx(-gained[k]).epsilon(1e-9).scale(mass));
     }
-    CHECK(found[0].linear[2] == doctest::Approx(-100 * mass * 9.81 * 4000 * dt).epsilon(1e-6));
+    CHECK(found[0].linear[2] < -0.99 * 100 * mass * 9.81 * 4000 * dt);  // friction at the wall bears the rest
     CHECK(found[1].linear[0] > 0.1 * mass);
     CHECK(found[2].linear[2] == 0);
     return found;
