@@ -184,8 +184,7 @@ void run(Ranks const& ranks, options wish) {
 void run_on_threads(int n, options wish) {
   if (wish.threads == 0) wish.threads = io::threads_for_each(n);
   collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
-    io::choose_space(wish.space,
-                     [&](auto space) { io::device_of<typename decltype(space)::type>::take(ranks.rank()); });
+    detection::take_device(wish.space, ranks.rank());
     run(ranks, wish);
   });
 }
@@ -195,7 +194,7 @@ void run(options const& wish) {
   if (int const n = io::threads_of(wish.ranks)) return run_on_threads(n, wish);
 #if defined(COLLIDE_PROGRAM_HAS_MPI)
   collide::mpi_ranks const ranks;
-  io::choose_space(wish.space, [&](auto space) { io::device_of<typename decltype(space)::type>::take(ranks.rank()); });
+  detection::take_device(wish.space, ranks.rank());
   run(ranks, wish);
 #endif
 }

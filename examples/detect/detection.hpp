@@ -58,6 +58,9 @@ struct findings {
 /// Throws unless this program has the space of that name, and this computer the device.
 void require_space(std::string const& name);
 
+/// Makes a device of the space that of this thread: ranks take them in turn.
+void take_device(std::string const& space, int rank);
+
 /// Detects with the composition that the options name. It is instantiated in a file for each scalar type.
 template <class S>
 findings<S> detect(options const& wish, scene<S> const& from);
