@@ -19,7 +19,7 @@ template <class S>
 aabb<double> reach_of(sphere<S> const& s, vec3<S> const& displacement, double extent) {
   auto box = aabb<double>::empty();
   if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(displacement)) return box;
-  double const unit = ieee_traits<float>::unit_roundoff, r = s.radius;
+  double const unit = static_cast<double>(ieee_traits<float>::unit_roundoff), r = static_cast<double>(s.radius);
   for (int k = 0; k < 3; ++k) {
     double const from = s.centre[k], way = displacement[k];
     double const size = (from < 0 ? -from : from) + (way < 0 ? -way : way);
