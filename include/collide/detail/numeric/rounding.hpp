@@ -117,6 +117,20 @@ COLLIDE_HD_INLINE T opaque_value(T x) {
 #endif
 }
 
+/// A vector of doubles, rounded to another scalar. g++ 12 leaves out roundings to float and back to double where its
+/// SLP vectoriser pairs them: it cannot look through this.
+template <class S>
+COLLIDE_HD_INLINE vec3<S> rounded_to(vec3<double> const& x) {
+  S r[3];
+  for (int k = 0; k < 3; ++k) {
+    r[k] = static_cast<S>(x[k]);
+#if !defined(__CUDA_ARCH__) && defined(__GNUC__) && !defined(__clang__)
+    if (sizeof(S) != sizeof(double)) __asm__("" : "+m"(r[k]));
+#endif
+  }
+  return {r[0], r[1], r[2]};
+}
+
 template <class T>
 COLLIDE_HD_INLINE T dot(vec3<T> const& a, vec3<T> const& b) {
   return mul(a.x(), b.x()) + mul(a.y(), b.y()) + mul(a.z(), b.z());

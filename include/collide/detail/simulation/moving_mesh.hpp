@@ -100,28 +100,28 @@ struct moving_mesh : mesh_view<S> {
   /// A sphere as a body sees it at the end of the step.
   COLLIDE_HD_INLINE sphere<S> seen_from(int frame, sphere<S> const& s, double) const {
     if (frame == 0) return s;
-    return {frames[frame].now.to_local(s.centre.template cast<double>()).template cast<S>(), s.radius};
+    return {rounded_to<S>(frames[frame].now.to_local(s.centre.template cast<double>())), s.radius};
   }
   /// A sphere that moves for the rest of the step from a part of it on, as a body sees it.
   COLLIDE_HD_INLINE moving_sphere<S> seen_from(int frame, moving_sphere<S> const& s, double part) const {
     if (frame == 0) return s;
     vec3<double> const begin = s.centre.template cast<double>(), way = s.displacement.template cast<double>();
-    vec3<S> const from = pose_at(frame, part).to_local(begin).template cast<S>();
+    vec3<S> const from = rounded_to<S>(pose_at(frame, part).to_local(begin));
     vec3<double> const to = frames[frame].now.to_local(begin + way);
-    return {{from, s.radius}, (to - from.template cast<double>()).template cast<S>()};
+    return {{from, s.radius}, rounded_to<S>(to - from.template cast<double>())};
   }
 
   /// A point of a body's frame, where it is in the world at a part of the step.
   COLLIDE_HD_INLINE vec3<S> in_world(int frame, vec3<S> const& x, double part) const {
-    return frame == 0 ? x : vec3<S>(pose_at(frame, part).to_world(x.template cast<double>()).template cast<S>());
+    return frame == 0 ? x : rounded_to<S>(pose_at(frame, part).to_world(x.template cast<double>()));
   }
 
   /// A contact in a body's frame at a part of the step, as it is in the world.
   COLLIDE_HD_INLINE void to_world(contact<S>& c, int frame, double part) const {
     if (frame == 0) return;
     frame_pose const p = pose_at(frame, part);
-    c.point = p.to_world(c.point.template cast<double>()).template cast<S>();
-    c.normal = p.rotated(c.normal.template cast<double>()).template cast<S>();
+    c.point = rounded_to<S>(p.to_world(c.point.template cast<double>()));
+    c.normal = rounded_to<S>(p.rotated(c.normal.template cast<double>()));
   }
 };
 

@@ -29,7 +29,7 @@ COLLIDE_HD_INLINE void accelerate_on_body(Context const& context, Particle& p, i
   vec3<double> const before = velocity_at(f.moved, f.before, x), after = velocity_at(f.moving, f.now, to);
   double const part = context.dt != 0 ? div(static_cast<double>(time), static_cast<double>(context.dt)) : 0;
   vec3<double> own = scaled(vec3<double>(before - after), part);
-  p[velocity{}] = own.template cast<S>();
+  p[velocity{}] = rounded_to<S>(own);
   context.effects.accelerate(p, time);
   own = p[velocity{}].template cast<double>();
   vec3<double> drift = after;
@@ -37,7 +37,7 @@ COLLIDE_HD_INLINE void accelerate_on_body(Context const& context, Particle& p, i
     double const dt = static_cast<double>(context.dt);
     if (dt != 0) drift = vec3<double>(div(to.x() - x.x(), dt), div(to.y() - x.y(), dt), div(to.z() - x.z(), dt));
   }
-  p[velocity{}] = (own + drift).template cast<S>();
+  p[velocity{}] = rounded_to<S>(own + drift);
 }
 
 }  // namespace collide::detail

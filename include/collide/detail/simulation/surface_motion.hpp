@@ -32,7 +32,7 @@ COLLIDE_HD_INLINE seen_from_body<S> seen_in_world([[maybe_unused]] moving_mesh<S
     seen.own_displacement = seen.displacement = whole.displacement;
     if (frame == 0) return seen;
     vec3<double> const d = whole.displacement.template cast<double>();
-    seen.displacement = mesh.pose_at(frame, part).rotated(d).template cast<S>();
+    seen.displacement = rounded_to<S>(mesh.pose_at(frame, part).rotated(d));
   }
   return seen;
 }
@@ -79,7 +79,7 @@ struct surface_of_body {
   S dt;
 
   COLLIDE_HD_INLINE vec3<S> velocity_seen(vec3<S> const& v) const {
-    return turned_back(v.template cast<double>() - carried).template cast<S>();
+    return rounded_to<S>(turned_back(v.template cast<double>() - carried));
   }
   /// What it was at the beginning of a discrete step, if the surface carried it with it.
   COLLIDE_HD_INLINE vec3<S> start_seen(vec3<S> const& x) const {
@@ -87,11 +87,11 @@ struct surface_of_body {
       return x;
     } else {
       vec3<double> const mean = carried - scaled(change, 0.5);
-      return (x.template cast<double>() + scaled(mean, static_cast<double>(dt))).template cast<S>();
+      return rounded_to<S>(x.template cast<double>() + scaled(mean, static_cast<double>(dt)));
     }
   }
   COLLIDE_HD_INLINE vec3<S> acceleration_seen(vec3<S> const& dv) const {
-    return (turned_back(dv.template cast<double>()) - change).template cast<S>();
+    return rounded_to<S>(turned_back(dv.template cast<double>()) - change);
   }
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
     c.surface_velocity = velocity;
@@ -102,8 +102,8 @@ struct surface_of_body {
   COLLIDE_HD_INLINE void record(Active& a, mesh_contact<S> const& c) const {
     contact<S> own = c;
     if (frame != 0) {
-      own.point = at.to_local(c.point.template cast<double>()).template cast<S>();
-      own.normal = at.rotated_back(c.normal.template cast<double>()).template cast<S>();
+      own.point = rounded_to<S>(at.to_local(c.point.template cast<double>()));
+      own.normal = rounded_to<S>(at.rotated_back(c.normal.template cast<double>()));
     }
     a.record_contact(c, own, frame);
   }
@@ -119,7 +119,7 @@ struct surface_of_body {
   COLLIDE_HD_INLINE void leave(Particle& p) const {
     if (frame == 0) return;
     vec3<S>& v = p[collide::velocity{}];
-    v = (carried + turned(v.template cast<double>())).template cast<S>();
+    v = rounded_to<S>(carried + turned(v.template cast<double>()));
     if constexpr (contains<typename Particle::list, angular_velocity>) p[angular_velocity{}] += angular;
   }
 
@@ -163,7 +163,7 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
   } else {
     s.carried = velocity_at(f.moving, f.now, x);
   }
-  s.velocity = (s.carried + arm + f.belt).template cast<S>();
+  s.velocity = rounded_to<S>(s.carried + arm + f.belt);
   vector along = f.belt;
   if constexpr (!Turns) {  // it is dragged as the point is that it touches, and not turned with the body
     vector const n = c.normal.template cast<double>();
