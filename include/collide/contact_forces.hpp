@@ -29,7 +29,7 @@ namespace detail {
 /// Mass over dt: force for a change of velocity in a step.
 template <class S>
 COLLIDE_HD_INLINE S force_per_change(double density, S radius, S dt) {
-  return dt > 0 ? S(4.188790204786391) * S(density) * radius * radius * radius / dt : S(0);  // 4 pi / 3
+  return dt > 0 ? sphere_mass(density, radius) / dt : S(0);
 }
 
 }  // namespace detail

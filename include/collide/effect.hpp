@@ -61,6 +61,12 @@ COLLIDE_HD_INLINE S rounding_at(vec3<S> const& position) {
   return std::numeric_limits<S>::epsilon() * max_component<S>(position.cwiseAbs());
 }
 
+/// The mass of a sphere.
+template <class S>
+COLLIDE_HD_INLINE S sphere_mass(double density, S radius) {
+  return S(4.188790204786391) * S(density) * radius * radius * radius;  // 4 pi / 3
+}
+
 /// Throws `error`, which says what a parameter must be, unless it is that.
 inline void check_parameter(bool is_right, char const* must) {
   if (!is_right) throw error(std::string("collide: ") + must);

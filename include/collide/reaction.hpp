@@ -54,8 +54,7 @@ struct reaction {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S) const {
     using namespace detail;
-    double const r = static_cast<double>(p.radius());
-    double const mass = mul(mul(mul(4.188790204786391, density), r), mul(r, r));  // 4 pi / 3
+    double const mass = sphere_mass(density, static_cast<double>(p.radius()));
     vec3<S> const change = t.velocity_before - p[velocity{}];
     vec3<double> const impulse = scaled(vec3<double>(change.template cast<double>()), div(mass, unit));
     vec3<double> const moment = cross(vec3<double>(t.point.template cast<double>()), impulse);

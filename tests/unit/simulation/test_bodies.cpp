@@ -97,17 +97,6 @@ TEST_CASE("bodies: sixty-four of them, and what rests") {
   tests::check_several_bodies<karabassi_swept<>>(host(1));
 }
 
-TEST_CASE("bodies: the same bits on every run, however many lanes") {
-  tests::check_same_bits<karabassi<>>(host(1), host(2));
-  tests::check_same_bits<karabassi<>>(host(1), lockstep<256, true>());
-  tests::check_same_bits<karabassi_swept<>>(host(1), lockstep<256, true>());
-}
-
-TEST_CASE("bodies: what they get of particles is what these lose, in the same bits however many lanes") {
-  tests::check_reaction(host(1), host(2));
-  tests::check_reaction(host(1), lockstep<256, true>());
-}
-
 TEST_CASE("bodies: what makes no sense is an error that says so, or is counted") {
   tests::world<double> w;
   w.radius = 0.1;

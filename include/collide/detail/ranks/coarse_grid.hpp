@@ -21,12 +21,12 @@ aabb<double> reach_of(sphere<S> const& s, vec3<S> const& displacement, double ex
   if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(displacement)) return box;
   double const unit = static_cast<double>(ieee_traits<float>::unit_roundoff), r = static_cast<double>(s.radius);
   for (int k = 0; k < 3; ++k) {
-    double const from = static_cast<double>(s.centre[k]), way = static_cast<double>(displacement[k]);
-    double const size = (from < 0 ? -from : from) + (way < 0 ? -way : way);
-    double const most = r * (1 + 16 * unit) + 16 * unit * (extent + (way < 0 ? -way : way)) + 0x1p-48 * size +
+    double const from = static_cast<double>(s.centre[k]), along = static_cast<double>(displacement[k]);
+    double const size = (from < 0 ? -from : from) + (along < 0 ? -along : along);
+    double const most = r * (1 + 16 * unit) + 16 * unit * (extent + (along < 0 ? -along : along)) + 0x1p-48 * size +
                         2 * sqrt_rn(static_cast<double>(std::numeric_limits<S>::min()));
-    box.lower[k] = smaller(from, from + way) - most;
-    box.upper[k] = larger(from, from + way) + most;
+    box.lower[k] = smaller(from, from + along) - most;
+    box.upper[k] = larger(from, from + along) + most;
   }
   return box;
 }

@@ -12,7 +12,7 @@
 
 namespace collide::detail {
 
-/// A sphere on its way to another rank: centre, radius and, if it moves, displacement.
+/// A sphere that is sent to another rank: centre, radius and, if it moves, displacement.
 template <class S, bool Moves>
 struct sent_sphere {
   static constexpr bool moves = Moves;
@@ -20,9 +20,9 @@ struct sent_sphere {
   S numbers[size];
 
   aabb<double> reach(double extent) const {
-    vec3<S> way(0, 0, 0);
-    if constexpr (Moves) way = {numbers[4], numbers[5], numbers[6]};
-    return reach_of(sphere<S>{{numbers[0], numbers[1], numbers[2]}, numbers[3]}, way, extent);
+    vec3<S> displacement(0, 0, 0);
+    if constexpr (Moves) displacement = {numbers[4], numbers[5], numbers[6]};
+    return reach_of(sphere<S>{{numbers[0], numbers[1], numbers[2]}, numbers[3]}, displacement, extent);
   }
 };
 
@@ -41,7 +41,7 @@ struct pack_spheres {
   }
 };
 
-/// A hit on its way back: which of the spheres of a message, and the triangle.
+/// A hit that is sent back: which of the spheres of a message, and the triangle.
 struct answer {
   id place, triangle;
 };

@@ -9,7 +9,7 @@
 
 namespace collide::detail {
 
-/// How far the candidates of a ball have been gone through.
+/// How far the candidates of a sphere have been gone through.
 struct body_cursor : candidate_cursor {
   int frame;          ///< where it goes on; the number of frames if there is no more
   int frame_of_last;  ///< of the candidates that it gave last
@@ -19,10 +19,10 @@ struct body_cursor : candidate_cursor {
   COLLIDE_HD_INLINE bool at_end() const { return ended; }
 };
 
-COLLIDE_HD_INLINE float way_of(sphere<float> const&) { return 0; }
-COLLIDE_HD_INLINE double way_of(sphere<double> const&) { return 0; }
+COLLIDE_HD_INLINE float path_length(sphere<float> const&) { return 0; }
+COLLIDE_HD_INLINE double path_length(sphere<double> const&) { return 0; }
 template <class S>
-COLLIDE_HD_INLINE S way_of(moving_sphere<S> const& s) {
+COLLIDE_HD_INLINE S path_length(moving_sphere<S> const& s) {
   return sqrt_rn(dot(s.displacement, s.displacement));
 }
 
@@ -36,22 +36,22 @@ struct bodies_ref {
   COLLIDE_HD_INLINE bool has_single_cell_lookup(S) const { return false; }
   COLLIDE_HD_INLINE auto occupancy() const { return whole.occupancy(); }
 
-  /// True if the ball can touch no triangle in the step.
+  /// True if the sphere can touch no triangle in the step.
   template <class Sphere>
-  COLLIDE_HD bool empty(Sphere const& ball) const {
+  COLLIDE_HD bool empty(Sphere const& shape) const {
     COLLIDE_NO_UNROLL
     for (int k = mesh.first_frame; k < mesh.frame_count; ++k) {
-      if (!is_empty_in(k, ball)) return false;
+      if (!is_empty_in(k, shape)) return false;
     }
     return true;
   }
 
-  /// True if a ball can touch no body that moves in the step.
+  /// True if a sphere can touch no body that moves in the step.
   template <class Sphere>
-  COLLIDE_HD bool is_left_alone(Sphere const& ball) const {
+  COLLIDE_HD bool is_left_alone(Sphere const& shape) const {
     COLLIDE_NO_UNROLL
     for (int k = 1; k < mesh.frame_count; ++k) {
-      if (mesh.frames[k].moves && !is_empty_in(k, ball)) return false;
+      if (mesh.frames[k].moves && !is_empty_in(k, shape)) return false;
     }
     return true;
   }
@@ -63,17 +63,17 @@ struct bodies_ref {
 
   /// `part` is how much of the step is over.
   template <class Sphere>
-  COLLIDE_HD bool next(Sphere const& ball, double part, body_cursor& c, std::uint32_t most,
+  COLLIDE_HD bool next(Sphere const& shape, double part, body_cursor& c, std::uint32_t most,
                        candidate_range& range) const {
     COLLIDE_NO_UNROLL
     for (; !c.ended && c.frame < mesh.frame_count; ++c.frame, c.has_begun = false) {
-      if (is_far(c.frame, ball)) continue;
-      Sphere const seen = mesh.seen_from(c.frame, ball, part);
+      if (is_far(c.frame, shape)) continue;
+      Sphere const seen = mesh.seen_from(c.frame, shape, part);
       if (!c.has_begun) static_cast<candidate_cursor&>(c) = whole.begin(seen);
       c.has_begun = true;
       if (!whole.next(seen, c, most, range)) continue;
       c.frame_of_last = c.frame;
-      if (static_cast<candidate_cursor&>(c).at_end()) skip_far(c, ball);
+      if (static_cast<candidate_cursor&>(c).at_end()) skip_far(c, shape);
       return true;
     }
     c.ended = true;
@@ -83,27 +83,27 @@ struct bodies_ref {
   /// `around` is in the triangle's frame.
   COLLIDE_HD_INLINE bool near(sphere<S> const& around, id triangle) const { return whole.near(around, triangle); }
   template <class NarrowPhase, class Sphere>
-  COLLIDE_HD_INLINE bool passes_coverage(Sphere const& ball, id triangle) const {
-    return whole.template passes_coverage<NarrowPhase>(ball, triangle);
+  COLLIDE_HD_INLINE bool passes_coverage(Sphere const& shape, id triangle) const {
+    return whole.template passes_coverage<NarrowPhase>(shape, triangle);
   }
 
  private:
   template <class Sphere>
-  COLLIDE_HD_INLINE bool is_far(int frame, Sphere const& ball) const {
-    return mesh.frames[frame].is_far(ball.centre, ball.radius, way_of(ball));
+  COLLIDE_HD_INLINE bool is_far(int frame, Sphere const& shape) const {
+    return mesh.frames[frame].is_far(shape.centre, shape.radius, path_length(shape));
   }
 
   template <class Sphere>
-  COLLIDE_HD_INLINE bool is_empty_in(int frame, Sphere const& ball) const {
-    return is_far(frame, ball) || whole.empty(mesh.seen_from(frame, ball, 0));
+  COLLIDE_HD_INLINE bool is_empty_in(int frame, Sphere const& shape) const {
+    return is_far(frame, shape) || whole.empty(mesh.seen_from(frame, shape, 0));
   }
 
   /// Goes on to the next frame that may have more.
   template <class Sphere>
-  COLLIDE_HD_INLINE void skip_far(body_cursor& c, Sphere const& ball) const {
+  COLLIDE_HD_INLINE void skip_far(body_cursor& c, Sphere const& shape) const {
     c.has_begun = false;
     do ++c.frame;
-    while (c.frame < mesh.frame_count && is_far(c.frame, ball));
+    while (c.frame < mesh.frame_count && is_far(c.frame, shape));
     c.ended = c.frame == mesh.frame_count;
   }
 };

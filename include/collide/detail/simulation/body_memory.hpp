@@ -15,7 +15,7 @@ namespace collide::detail {
 /// What is known of a body from the start.
 struct body_record {
   body_motion motion;
-  vec3<double> centre;  ///< of a ball around it, in its frame
+  vec3<double> centre;  ///< of its bounding sphere, in its frame
   double radius;
 };
 
@@ -112,7 +112,7 @@ struct advance_bodies {
     return true;
   }
 
-  /// The ball around a body, and how far it moves.
+  /// The bounding sphere of a body, and how far it moves.
   COLLIDE_HD_INLINE void bound(body_frame<S>& f, body_record const& r) const {
     constexpr double eps = std::numeric_limits<S>::epsilon();
     vec3<double> const shift = f.now.position - f.before.position;

@@ -42,7 +42,7 @@ COLLIDE_HD_INLINE frame_pose frame_pose_of(pose const& p) {
   return {vector_of(p.position), p.rotation[0], vector_of(p.rotation + 1)};
 }
 
-/// The pose at a part of the way from one to another.
+/// The pose at a fraction of the motion from one to another.
 COLLIDE_HD_INLINE frame_pose between(frame_pose const& a, frame_pose const& b, double t) {
   double const same = mul(a.w, b.w) + dot(a.axis, b.axis) < 0 ? -1.0 : 1.0, s = 1 - t;
   double const w = mul(s, a.w) + mul(mul(t, same), b.w);
@@ -63,14 +63,14 @@ struct body_frame {
   frame_pose before, now;  ///< when the step begins, and ends
   twist moved, moving;     ///< its twists at these times
   vec3<double> belt;
-  vec3<S> centre;  ///< of a ball around the body when the step begins; if not `swept`, when it ends
+  vec3<S> centre;  ///< of a bounding sphere of the body when the step begins; if not `swept`, when it ends
   S reach;         ///< no particle of radius r that moves by d can touch the body in the step if `shrink` times its
   S shrink;        ///< distance from the centre is above reach + r + d
   bool moves;      ///< in this step
 
   template <class Vector>
-  COLLIDE_HD_INLINE bool is_far(Vector const& x, S r, S way) const {
-    S const at_least = reach + r + way;
+  COLLIDE_HD_INLINE bool is_far(Vector const& x, S r, S path) const {
+    S const at_least = reach + r + path;
     vec3<S> const apart = x - centre;
     return shrink > 0 && mul(dot(apart, apart), mul(shrink, shrink)) > mul(at_least, at_least);
   }
@@ -105,9 +105,9 @@ struct moving_mesh : mesh_view<S> {
   /// A sphere that moves for the rest of the step from a part of it on, as a body sees it.
   COLLIDE_HD_INLINE moving_sphere<S> seen_from(int frame, moving_sphere<S> const& s, double part) const {
     if (frame == 0) return s;
-    vec3<double> const begin = s.centre.template cast<double>(), way = s.displacement.template cast<double>();
+    vec3<double> const begin = s.centre.template cast<double>(), displacement = s.displacement.template cast<double>();
     vec3<S> const from = rounded_to<S>(pose_at(frame, part).to_local(begin));
-    vec3<double> const to = frames[frame].now.to_local(begin + way);
+    vec3<double> const to = frames[frame].now.to_local(begin + displacement);
     return {{from, s.radius}, rounded_to<S>(to - from.template cast<double>())};
   }
 

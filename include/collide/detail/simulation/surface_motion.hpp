@@ -123,7 +123,7 @@ struct surface_of_body {
     if constexpr (contains<typename Particle::list, angular_velocity>) p[angular_velocity{}] += angular;
   }
 
-  /// From the end of the step, where motion ends, to the time of contact, as the surface turns; and the other way.
+  /// From the end of the step, where motion ends, to the time of contact, as the surface turns; and the other shift.
   COLLIDE_HD_INLINE vec3<double> turned_back(vec3<double> const& x) const {
     if (!IsSwept || frame == 0) return x;
     return at.rotated(now.rotated_back(x));
@@ -158,8 +158,8 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
     // of a short rest of the step, rounding would leave nothing
     double const from = smaller(part, 1 - 0x1p-10), time = mul(1 - from, static_cast<double>(mesh.dt));
     vector const own = here.template cast<double>();
-    vector const way = f.now.to_world(own) - mesh.pose_at(s.frame, from).to_world(own);
-    s.carried = vector(div(way.x(), time), div(way.y(), time), div(way.z(), time));
+    vector const shift = f.now.to_world(own) - mesh.pose_at(s.frame, from).to_world(own);
+    s.carried = vector(div(shift.x(), time), div(shift.y(), time), div(shift.z(), time));
   } else {
     s.carried = velocity_at(f.moving, f.now, x);
   }
