@@ -15,12 +15,14 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include <collide/absorb.hpp>
 #include <collide/adhesion.hpp>
+#include <collide/bodies.hpp>
 #include <collide/bounce.hpp>
 #include <collide/bounds.hpp>
 #include <collide/bucket.cuh>
@@ -30,6 +32,7 @@
 #include <collide/gravity.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/polydisperse.hpp>
+#include <collide/reaction.hpp>
 #include <collide/simulation.cuh>
 #include <collide/sleep.hpp>
 #include <collide/sphere_contact.hpp>
@@ -126,6 +129,7 @@ class suite {
     mesh_ = std::make_shared<collide::uploaded_mesh<float>>(collide::upload(
         space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count())));
     spheres_ = upload(centres);
+    sums_ = std::make_shared<collide::reaction_sums>(space, 16, 1e-6);
     auto const both = by_hand<touch_all>();
     bench::stopwatch<Space> watch(space);
     std::vector<double> seconds;
@@ -141,6 +145,9 @@ class suite {
 
   float radius() const { return radius_; }
 
+  /// Sums up what particles give to up to 16 bodies.
+  collide::reaction reaction() const { return sums_->effect(1); }
+
   /// A step of a simulation with these effects.
   template <class NarrowPhase = collide::karabassi<>, class... Effect>
   void add(std::string const& name, Effect const&... effects) const {
@@ -151,6 +158,17 @@ class suite {
   template <class... Effect>
   void add_lying(std::string const& name, Effect const&... effects) const {
     if (!Space::host_accessible) add_with<collide::karabassi<>>("lying: " + name, spheres_, 600, 0.01f, effects...);
+  }
+
+  /// The same where the mesh is bodies: this many ranges of it, which turn about its axis.
+  template <class... Effect>
+  void add_bodies(std::string const& name, int bodies, Effect const&... effects) const {
+    constexpr double slowly = 1e-3;  // radians per unit of time: places hardly change
+    auto const turning = bodies_that_turn(bodies, slowly);
+    add_on<collide::karabassi<>>(name, spheres_, 10, 0.01f, turning, collide::moving_bodies<>{}, effects...);
+    if (Space::host_accessible) return;
+    add_on<collide::karabassi<>>("lying: " + name, spheres_, 600, 0.01f, turning, collide::moving_bodies<>{},
+                                 effects...);
   }
 
   /// The same among balls that fill space, each in touch with six others. Their lists of neighbours are kept.
@@ -203,14 +221,35 @@ class suite {
         collide::upload(space_, collide::spheres_xyz(centres.data(), n_, radius_)));
   }
 
+  std::vector<collide::body> bodies_that_turn(int count, double rate) const {
+    std::size_t const triangles = mesh_->view().size(), n = static_cast<std::size_t>(count);
+    std::vector<collide::body> bodies(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      bodies[i].first = triangles * i / n;
+      bodies[i].size = triangles * (i + 1) / n - bodies[i].first;
+      bodies[i].motion.rate = rate;
+    }
+    return bodies;
+  }
+
   template <class NarrowPhase, class... Effect>
   void add_with(std::string const& name, uploaded const& spheres, std::size_t steps, float dt,
                 Effect const&... effects) const {
+    add_on<NarrowPhase>(name, spheres, steps, dt, std::vector<collide::body>(), effects...);
+  }
+
+  template <class NarrowPhase, class... Effect>
+  void add_on(std::string const& name, uploaded const& spheres, std::size_t steps, float dt,
+              std::vector<collide::body> const& bodies, Effect const&... effects) const {
     using simulation = collide::simulation<collide::detector<collide::bucket, NarrowPhase, Space>, Effect...>;
     ::add(name, space_, floor_, simulation::bytes_per_particle, [=, mesh = mesh_, space = space_] {
       auto const made = std::make_shared<simulation>(space, effects...);
       made->set(spheres->view());
-      made->set_mesh(mesh->view());
+      if constexpr ((std::is_same_v<Effect, collide::moving_bodies<>> || ...)) {
+        made->set_mesh(mesh->view(), bodies);
+      } else {
+        made->set_mesh(mesh->view());
+      }
       auto const begin = [=] {
         made->set(spheres->view());
         made->steps(steps, dt);
@@ -235,6 +274,7 @@ class suite {
   float radius_;
   std::shared_ptr<collide::uploaded_mesh<float>> mesh_;
   uploaded spheres_;
+  std::shared_ptr<collide::reaction_sums> sums_;
   double floor_;
 };
 
@@ -267,6 +307,11 @@ void add_all(suite<Space> const& scene) {
   scene.add("sleep, gravity, bounce: all asleep", collide::sleep{1e30, 5}, gravity{}, bounce{});
   scene.add("gravity, absorb", gravity{}, absorb{});
   scene.add("emit, gravity, bounce", emit{1e5, {}}, gravity{}, bounce{});
+  scene.add("gravity, bounce, reaction", gravity{}, bounce{}, scene.reaction());
+  scene.add_lying("gravity, bounce, reaction", gravity{}, bounce{}, scene.reaction());
+  scene.add_bodies("1 body: gravity, bounce", 1, gravity{}, bounce{});
+  scene.add_bodies("16 bodies: gravity, bounce", 16, gravity{}, bounce{});
+  scene.add_bodies("1 body: gravity, bounce, reaction", 1, gravity{}, bounce{}, scene.reaction());
   auto const contact = sphere_contact::from_restitution(0.5, 2e-3, double(scene.radius()), 1);
   scene.add("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
   scene.add_packed("sphere_contact, gravity", contact, gravity{});
