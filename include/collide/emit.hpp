@@ -68,13 +68,13 @@ struct emit_particles {
 template <class S, class State, class Source>
 struct emit_at_places : emit_particles<S, State, Source> {
   COLLIDE_HD void operator()(std::size_t i) const {
-    auto const& state = this->state;
-    auto const begin = static_cast<std::uint64_t>(*state.time * this->rate);
-    auto const end = static_cast<std::uint64_t>((*state.time + this->dt) * this->rate);
-    std::uint64_t const room = state.all_size - state.all_placed, place = state.at(global_number{})[i];
-    if (begin == end || place < state.all_placed) return;
+    State const& here = this->state;
+    auto const begin = static_cast<std::uint64_t>(*here.time * this->rate);
+    auto const end = static_cast<std::uint64_t>((*here.time + this->dt) * this->rate);
+    std::uint64_t const room = here.all_size - here.all_placed, place = here.at(global_number{})[i];
+    if (begin == end || place < here.all_placed) return;
     std::uint64_t const last = end - 1;  // of all particles for this place the latest stays
-    std::uint64_t const back = (last % room + room - (place - state.all_placed)) % room;
+    std::uint64_t const back = (last % room + room - (place - here.all_placed)) % room;
     if (back < end - begin) this->store_at(i, last - back);
   }
 };
