@@ -256,4 +256,86 @@ inline auto endless_radius() {
   return scene;
 }
 
+// ---- what goes wrong
+
+/// Memory ends on the last rank, wherever it may: all ranks throw, and `set` begins anew.
+template <class Ranks>
+void check_short_memory_of_simulations(Ranks const& ranks, complaints& wrong) {
+  auto scene = snow();
+  scene.steps = 40;
+  expected_values<decltype(scene)> const expected(scene);
+  range own = part_of(scene.w.size(), split::evenly, ranks.rank(), ranks.size());
+  int const failing = ranks.size() - 1;
+  range all = own;
+  if (ranks.rank() == failing) all.size += scene.capacity - scene.w.size();
+  std::uint64_t failures = 0;
+  for (std::size_t most = 0;; ++most) {
+    short_memory memory;
+    if (ranks.rank() == failing) memory.left = most;
+    bool failed = false;
+    std::apply(
+        [&](auto const&... effects) {
+          using simulation = typename decltype(scene)::simulation;
+          collide::distributed<simulation, Ranks> parts(ranks, collide::host(1, &memory), effects...);
+          auto const work = [&] {
+            parts.set_mesh(collide::triangle_soup(scene.w.corners.data(), scene.w.corners.size() / 9));
+            parts.set(spheres_of(scene.w, own), scene.w.velocities.data() + 3 * own.first, scene.capacity);
+            parts.steps(40, scene.dt);
+          };
+          try {
+            work();
+          } catch (std::bad_alloc const&) {
+            failed = true;
+            wrong.expect(ranks.rank() == failing, "memory ended elsewhere");
+          } catch (collide::rank_error const& e) {
+            failed = true;
+            std::string const others = "collide: rank " + std::to_string(failing) + " of ";
+            wrong.expect(std::string(e.what()).rfind(others, 0) == 0, e.what());
+          }
+          memory.left = std::numeric_limits<std::size_t>::max();
+          if (failed) work();
+          values_of<simulation> found;
+          found.read(parts);
+          wrong.expect(equal(found, expected.end.part(all.first, all.size)), "after a failure everything works again");
+        },
+        scene.effects);
+    if (!failed) break;
+    ++failures;
+  }
+  wrong.expect(failures > 10, "memory can end in several places");
+}
+
+/// What makes no sense is refused on all ranks.
+template <class Ranks>
+void check_refusals(Ranks const& ranks, complaints& wrong) {
+  using namespace collide;
+  auto const expect = [&](char const* text, auto const& f) {
+    std::string said = "nothing";
+    try {
+      f();
+    } catch (error const& e) {
+      said = e.what();
+    }
+    wrong.expect(said.rfind(text, 0) == 0, said);
+  };
+  distributed<simulation<discrete<float>, sphere_contact>, Ranks> parts(ranks, host(1));
+  float const centre[] = {0, 0, 0}, radii[] = {1};
+  auto const mine = [&](float r) { return spheres_xyz(centre, 1, r); };
+  expect("collide: simulation: step needs particles", [&] { parts.step(1); });
+  expect("collide: simulation: to_host needs particles", [&] { parts.template to_host<position>(); });
+  expect("collide: simulation: there is room for more particles", [&] { parts.set(mine(1), nullptr, 1000); });
+  if (ranks.size() > 1) {
+    expect("collide: simulation: the radii differ", [&] { parts.set(mine(float(1 + ranks.rank()))); });
+  }
+  expect("collide: simulation: the radii differ", [&] { parts.set(spheres_xyz(centre, 1, radii)); });
+  parts.set(ranks.rank() == 0 ? mine(1) : sphere_view<float>());
+  expect("collide: simulation: the time of a step is not finite",
+         [&] { parts.step(std::numeric_limits<float>::infinity()); });
+  parts.template effect<sphere_contact>().density = -1;
+  expect("collide: sphere_contact: density is above 0", [&] { parts.step(1); });
+  parts.template effect<sphere_contact>().density = 1;
+  parts.step(1);
+  wrong.expect(parts.size() == 1 && parts.time() == 1, "and then it goes on");
+}
+
 }  // namespace tests

@@ -54,3 +54,15 @@ TEST_CASE("simulations on ranks: particles that are nowhere, at one point, endle
   check_on_threads(tests::one_point(0));
   check_on_threads(tests::endless_radius());
 }
+
+TEST_CASE("simulations on ranks: short memory, and what makes no sense") {
+  for (int const n : {1, 2, 3}) {
+    std::vector<tests::complaints> wrong(static_cast<std::size_t>(n));
+    collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
+      auto& mine = wrong[static_cast<std::size_t>(ranks.rank())];
+      tests::check_short_memory_of_simulations(ranks, mine);
+      tests::check_refusals(ranks, mine);
+    });
+    for (auto const& w : wrong) CHECK(w.text() == "");
+  }
+}
