@@ -108,6 +108,7 @@ struct body_report {
 template <class Motion = body_motion>
 struct moving_bodies {
   static constexpr std::size_t max_bodies = 64;  ///< most bodies of a mesh
+  static constexpr bool begins_on_ranks = true;
 
   Motion motion = Motion();  ///< of all bodies, if it is a function object of your own
 

@@ -67,4 +67,10 @@ struct adhered {
   using value = std::uint8_t;
 };
 
+/// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
+struct global_number {
+  template <class S>
+  using value = id;
+};
+
 }  // namespace collide

@@ -35,7 +35,8 @@ inline constexpr divided_t divided{};
 template <class Detector, class Ranks = one_rank>
 class distributed {
   static_assert(detail::is_detector<Detector>::value,
-                "collide: the first parameter of distributed is a detector, such as detector<bucket>");
+                "collide: the first parameter of distributed is a detector, such as detector<bucket>, or a simulation, "
+                "which needs distributed_simulation.cuh");
   static_assert(detail::check_ranks<Ranks>());
   static constexpr bool alone = std::is_same<Ranks, one_rank>::value;
 

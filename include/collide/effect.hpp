@@ -23,7 +23,9 @@
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
 /// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense. An effect whose
-/// parameters have pointers says `static constexpr bool saves_parameters = false`; see checkpoint.hpp.
+/// parameters have pointers says `static constexpr bool saves_parameters = false`; see checkpoint.hpp. One whose
+/// `begin_step` does the same to particles wherever they are says `static constexpr bool begins_on_ranks = true`; see
+/// distributed_simulation.cuh.
 /// `on_pair_contact` is called before the other members but `begin_step`: `self` and `other` are as they were when the
 /// step began, and what changes is `particle`, so that both of a pair see the same.
 ///

@@ -50,11 +50,32 @@ struct emit_particles {
     auto const end = static_cast<std::uint64_t>((*state.time + dt) * rate);
     std::uint64_t const number = begin + i, room = state.size - state.placed;
     if (number >= end || end - number > room) return;
+    store_at(state.placed + static_cast<std::size_t>(number % room), number);
+  }
+
+ protected:
+  COLLIDE_HD_INLINE void store_at(std::size_t place, std::uint64_t number) const {
     particle<S, typename State::list> p;
     set_initial_values(p);
     if constexpr (contains<typename State::list, radius>) p[radius{}] = state.common_radius;
     source(number, p[position{}], p[velocity{}]);
-    state.store(p, state.placed + static_cast<std::size_t>(number % room), typename State::list{});
+    if constexpr (contains<typename State::list, global_number>) p[global_number{}] = state.at(global_number{})[place];
+    state.store(p, place, typename State::list{});
+  }
+};
+
+/// Kernel body of `for_each` over the places of a rank: particles of a step that begin there.
+template <class S, class State, class Source>
+struct emit_at_places : emit_particles<S, State, Source> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    State const& here = this->state;
+    auto const begin = static_cast<std::uint64_t>(*here.time * this->rate);
+    auto const end = static_cast<std::uint64_t>((*here.time + this->dt) * this->rate);
+    std::uint64_t const room = here.all_size - here.all_placed, place = here.at(global_number{})[i];
+    if (begin == end || place < here.all_placed) return;
+    std::uint64_t const last = end - 1;  // of all particles for this place the latest stays
+    std::uint64_t const back = (last % room + room - (place - here.all_placed)) % room;
+    if (back < end - begin) this->store_at(i, last - back);
   }
 };
 
@@ -67,6 +88,7 @@ template <class Source = nozzle>
 struct emit_from {
   using writes = columns<position, velocity, alive>;
   static constexpr bool saves_parameters = detail::saves_parameters<Source>;
+  static constexpr bool begins_on_ranks = true;
 
   double rate = 0;           ///< particles per time, not negative
   Source source = Source();  ///< how they begin
@@ -81,9 +103,15 @@ struct emit_from {
   void begin_step(Space& space, State const& state, S dt) const {
     static_assert(std::is_invocable<Source const&, std::uint64_t, vec3<S>&, vec3<S>&>::value,
                   "collide: a source of emit_from is called as source(number, position&, velocity&) const");
-    if (!(rate > 0) || state.size == state.placed) return;
-    auto const most = static_cast<std::size_t>(std::ceil(rate * static_cast<double>(dt))) + 1;
-    space.for_each(most, detail::emit_particles<S, State, Source>{state, source, rate, static_cast<double>(dt)});
+    if constexpr (detail::contains<typename State::list, global_number>) {
+      using places = detail::emit_at_places<S, State, Source>;
+      if (!(rate > 0) || state.all_size == state.all_placed) return;
+      space.for_each(state.size, places{{state, source, rate, static_cast<double>(dt)}});
+    } else {
+      if (!(rate > 0) || state.size == state.placed) return;
+      auto const most = static_cast<std::size_t>(std::ceil(rate * static_cast<double>(dt))) + 1;
+      space.for_each(most, detail::emit_particles<S, State, Source>{state, source, rate, static_cast<double>(dt)});
+    }
   }
 };
 

@@ -56,14 +56,7 @@ class simulation {
   using bodies_memory = detail::bodies_of<S, Effect...>;
   static constexpr bool has_bodies = bodies_memory::exist;
 
-  static_assert((detail::check_effect<Effect, execution_space, S>() && ...));
-  static_assert((detail::is_effect<Effect, execution_space, S> && ...),
-                "collide: what follows the detector in a simulation are effects, such as gravity or bounce: copyable "
-                "classes with at least one of the members that effect.hpp names");
-  static_assert(((int(detail::is_integrator<Effect>::value)) + ... + 0) <= 1,
-                "collide: a simulation has one integrator");
-  static_assert(detail::respects_order<Effect...>,
-                "collide: an effect comes after those whose result it uses: name friction after bounce");
+  static_assert(detail::check_effects<execution_space, S, Effect...>());
   static_assert(!effects_type::touches || detail::has_lookup<index>::value,
                 "collide: effects that touch the mesh need a broad phase whose index has a member lookup(), such as "
                 "bucket or all_pairs");
@@ -107,23 +100,9 @@ class simulation {
   /// there is room, if an effect makes more; more than 2^32 - 2 are refused (`error`), as is room that no effect of the
   /// scene fills, and radii that differ without `polydisperse` in the scene. O(particles). Allocates; may wait.
   void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
-    constexpr bool differ = detail::contains<columns, radius>;
-    if (!particles.one_radius() && !differ) {
-      throw error("collide: simulation: the radii differ: name the effect polydisperse in the scene");
-    }
     std::size_t const n = particles.size(), room = detail::larger(n, capacity);
-    if (room > n && !detail::contains<columns, alive>) {
-      throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
-    }
-    reserve(room);
-    state_ = memory_.state(room, n, particles.common_radius());
-    if constexpr (has_begin_step) {
-      state_.time = device_time_.data();
-      space_.fill(state_.time, 0, sizeof *state_.time);
-    }
-    time_ = 0;
-    space_.for_each(detail::padded_size(room), detail::init_particles<S, columns>{state_, particles, velocities});
-    is_set_ = true;
+    detail::check_particles<columns>(particles.one_radius(), n, room);
+    place(particles, velocities, room);
     if constexpr (effects_type::meets || sweeps || has_bodies)
       largest_radius_ = detail::largest_radius_of(*this, particles);
     if constexpr (effects_type::meets) neighbours_.clear(space_, room, largest_radius_);
@@ -133,7 +112,7 @@ class simulation {
   /// Makes room for up to so many particles, so that a later `set` takes no memory for them. There are none until
   /// then. More than 2^32 - 2 are refused (`error`).
   void reserve(std::size_t particles) {
-    if (particles >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
+    detail::check_places(particles);
     state_ = {};
     is_set_ = false;
     auto* const resource = space_.resource();
@@ -172,12 +151,8 @@ class simulation {
   }
 
   // Other scalar types end here.
-  template <class T, class = std::enable_if_t<!std::is_same<T, S>::value>>
-  void set(sphere_view<T> const&) {
-    detail::reject_scalar<T>();
-  }
-  template <class T, class V, class = std::enable_if_t<!(std::is_same<T, S>::value && std::is_same<V, S>::value)>>
-  void set(sphere_view<T> const&, V const*, std::size_t = 0) {
+  template <class T, class V = T, class = std::enable_if_t<!(std::is_same<T, S>::value && std::is_same<V, S>::value)>>
+  void set(sphere_view<T> const&, V const* = nullptr, std::size_t = 0) {
     detail::reject_scalar<T>();
   }
   template <class T, class = std::enable_if_t<!std::is_same<T, S>::value>>
@@ -191,16 +166,9 @@ class simulation {
     check_step(dt);
     time_ += static_cast<double>(dt);
     if (state_.size == 0) return;
-    (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
-    advance_bodies(static_cast<double>(dt), false);
-    if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
+    begin_step(dt);
     if constexpr (effects_type::meets) neighbours_.interact(space_, state_, effects_, dt);
-    using kernel = detail::step_kernel<step_context<decltype(lookup(dt))>>;
-    using block = typename execution_space::template block<kernel>;
-    kernel const body{{state_, effects_, lookup(dt), overflow_.data(), dt, reverse_order_, least_radius_},
-                      kernel::template grid_size<block>(state_.size, detail::resident_blocks<kernel>(space_))};
-    reverse_order_ = !reverse_order_;
-    space_.launch(body.blocks, body);
+    end_step(dt);
   }
 
   /// Advances `n` times by `dt`; throws what `step` throws.
@@ -272,6 +240,7 @@ class simulation {
 
  private:
   friend class detail::checkpoint<Detector, Effect...>;
+  friend class detail::part_of_simulation<simulation>;
 
   static constexpr bool sweeps = effects_type::touches && !detail::is_discrete<narrow_phase, S>;
   static constexpr bool has_begin_step = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
@@ -287,6 +256,36 @@ class simulation {
     } else {
       return detail::null_ref{};
     }
+  }
+
+  /// Puts particles into new columns, with places for more.
+  void place(sphere_view<S> const& particles, S const* velocities, std::size_t room) {
+    reserve(room);
+    state_ = memory_.state(room, particles.size(), particles.common_radius());
+    if constexpr (has_begin_step) {
+      state_.time = device_time_.data();
+      space_.fill(state_.time, 0, sizeof *state_.time);
+    }
+    time_ = 0;
+    space_.for_each(detail::padded_size(room), detail::init_particles<S, columns>{state_, particles, velocities});
+    is_set_ = true;
+  }
+
+  /// The part of a step before particles meet.
+  void begin_step(S dt) {
+    (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
+    advance_bodies(static_cast<double>(dt), false);
+    if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
+  }
+
+  /// The part of a step after particles have met.
+  void end_step(S dt) {
+    using kernel = detail::step_kernel<step_context<decltype(lookup(dt))>>;
+    using block = typename execution_space::template block<kernel>;
+    kernel const body{{state_, effects_, lookup(dt), overflow_.data(), dt, reverse_order_, least_radius_},
+                      kernel::template grid_size<block>(state_.size, detail::resident_blocks<kernel>(space_))};
+    reverse_order_ = !reverse_order_;
+    space_.launch(body.blocks, body);
   }
 
   /// Moves the bodies on by `dt`, or, if they start, to where they are at this time.
@@ -312,11 +311,13 @@ class simulation {
   void prepare() {
     advance_bodies(0, true);
     if constexpr (effects_type::touches) {
+      constexpr bool is_part = detail::contains<columns, global_number>;  // others come from other ranks
+      std::size_t const n = is_part ? detail::larger(state_.size, std::size_t{1}) : state_.size;
+      if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_tuning<execution_space> there(space_);
-      if (mesh_.size() == 0 || state_.size == 0) return;
       bool const tiny = largest_radius_ >= 0 && largest_radius_ < least_radius_;
-      index_.prepare(there, options_,
-                     tiny ? spheres_xyz(state_.at(position{}), state_.size, least_radius_) : spheres());
+      S const most = tiny ? least_radius_ : largest_radius_;
+      index_.prepare(there, options_, tiny || is_part ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }
   }
 

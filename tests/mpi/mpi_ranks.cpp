@@ -5,7 +5,7 @@
 
 #include <collide/mpi.hpp>
 
-#include "ranks/ranks.hpp"
+#include "ranks/simulations.hpp"
 
 namespace {
 
@@ -36,6 +36,24 @@ std::string check(std::string const& what) {
   return wrong.text();
 }
 
+/// The checks of one scene.
+template <class Scene>
+void check_scene(collide::mpi_ranks const& ranks, Scene const& scene, tests::complaints& wrong) {
+  tests::check_scene(ranks, scene, tests::expected_values<Scene>(scene), tests::split::odd, wrong);
+}
+
+/// Simulations, also with messages of several pieces.
+std::string check_simulations() {
+  tests::complaints wrong;
+  for (std::size_t const piece : {std::size_t{1} << 30, std::size_t{1000}}) {
+    collide::mpi_ranks const ranks(MPI_COMM_WORLD, piece);
+    check_scene(ranks, tests::snow(), wrong);
+    check_scene(ranks, tests::leaps(), wrong);
+  }
+  tests::check_refusals(collide::mpi_ranks(), wrong);
+  return wrong.text();
+}
+
 /// One rank fails while the others wait for it.
 [[noreturn]] void fail(bool dies) {
   collide::mpi_ranks const ranks;
@@ -59,7 +77,7 @@ int main(int argc, char** argv) {
     collide::mpi_session const session(argc, argv);
     std::string const what = argc > 1 ? argv[1] : "queries";
     if (what == "throws" || what == "dies") fail(what == "dies");
-    std::string const wrong = check(what);
+    std::string const wrong = what == "simulations" ? check_simulations() : check(what);
     std::cerr << wrong;
     return wrong.empty() ? 0 : 1;
   } catch (std::exception const& e) {

@@ -11,6 +11,10 @@ namespace collide::detail {
 template <class Detector, class... Effect>
 class checkpoint;
 
+/// Runs the simulation that a rank has of that of all; see detail/ranks/part_of_simulation.hpp.
+template <class Simulation>
+class part_of_simulation;
+
 /// True if `Rest` is nothing, or the parameters of all effects.
 template <class Effects, class... Rest>
 inline constexpr bool are_parameters = sizeof...(Rest) == 0 || std::is_same<std::tuple<Rest...>, Effects>::value;

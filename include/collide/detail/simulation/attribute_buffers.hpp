@@ -29,7 +29,11 @@ struct column_buffers<S, columns<C...>> : buffer_of<C, S>... {
   }
 
   particle_state<S, columns<C...>> state(std::size_t size, std::size_t placed, S radius) const {
-    return {pointer_of<C, S>{static_cast<buffer_of<C, S> const&>(*this).memory.data()}..., size, placed, radius,
+    return {pointer_of<C, S>{static_cast<buffer_of<C, S> const&>(*this).memory.data()}...,
+            {},
+            size,
+            placed,
+            radius,
             nullptr};
   }
 };

@@ -146,7 +146,7 @@ struct build_lists {
     first_neighbours<room> near;
     COLLIDE_NO_UNROLL
     for (std::uint32_t n = 0; n < found; ++n) {
-      if (order.is_in_row(places[n], i, rows[n])) near.add(order.numbers[places[n]], places[n]);
+      if (order.is_in_row(places[n], i, rows[n])) near.add(order.number_at(places[n]), places[n]);
     }
     COLLIDE_NO_UNROLL
     for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];

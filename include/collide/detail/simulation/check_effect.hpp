@@ -72,4 +72,17 @@ constexpr bool check_effect() {
   return true;
 }
 
+/// Says what is wrong with the effects of a simulation.
+template <class Space, class S, class... Effect>
+constexpr bool check_effects() {
+  static_assert((check_effect<Effect, Space, S>() && ...));
+  static_assert((is_effect<Effect, Space, S> && ...),
+                "collide: what follows the detector in a simulation are effects, such as gravity or bounce: copyable "
+                "classes with at least one of the members that effect.hpp names");
+  static_assert((int(is_integrator<Effect>::value) + ... + 0) <= 1, "collide: a simulation has one integrator");
+  static_assert(respects_order<Effect...>,
+                "collide: an effect comes after those whose result it uses: name friction after bounce");
+  return true;
+}
+
 }  // namespace collide::detail

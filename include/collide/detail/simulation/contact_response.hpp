@@ -198,7 +198,7 @@ struct contact_response {
         surface.velocity_seen(vec3<S>(a.arrival_velocity[0], a.arrival_velocity[1], a.arrival_velocity[2]));
     mesh_contact<S> c{};
     static_cast<contact<S>&>(c) = a.best_contact();
-    c.sphere = a.number;
+    c.sphere = number_of(p);
     c.start = surface.start_seen(vec3<S>(a.start[0], a.start[1], a.start[2]));
     if constexpr (!is_swept) {
       c.elapsed = context.dt;

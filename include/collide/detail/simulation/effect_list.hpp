@@ -2,80 +2,10 @@
 /// The effects of a simulation, the columns that they need, and how they are called.
 #pragma once
 
-#include <collide/detail/simulation/particle.hpp>
-#include <collide/effect.hpp>
+#include <collide/detail/simulation/particle_access.hpp>
 #include <collide/integrators.hpp>
 
 namespace collide::detail {
-
-// ---- what an effect names
-
-template <class E, class = void>
-struct reads_of {
-  using type = columns<>;
-};
-template <class E>
-struct reads_of<E, std::void_t<typename E::reads>> {
-  using type = typename E::reads;
-};
-template <class E, class = void>
-struct writes_of {
-  using type = columns<>;
-};
-template <class E>
-struct writes_of<E, std::void_t<typename E::writes>> {
-  using type = typename E::writes;
-};
-template <class E, class = void>
-struct optional_writes_of {
-  using type = columns<>;
-};
-template <class E>
-struct optional_writes_of<E, std::void_t<typename E::optional_writes>> {
-  using type = typename E::optional_writes;
-};
-template <class E, class = void>
-struct runs_after_of {
-  using type = effects<>;
-};
-template <class E>
-struct runs_after_of<E, std::void_t<typename E::runs_after>> {
-  using type = typename E::runs_after;
-};
-
-/// A particle as an effect sees it: with the columns that it names and no others.
-template <class Effect, class Particle>
-class particle_access {
- public:
-  using scalar = typename Particle::scalar;
-
-  COLLIDE_HD_INLINE explicit particle_access(Particle& p) : p_{p} {}
-
-  /// True if the scene has the column.
-  template <class C>
-  static constexpr bool has = contains<typename Particle::list, C>;
-
-  template <class C>
-  COLLIDE_HD_INLINE decltype(auto) operator[](C) const {
-    constexpr bool writes = contains<typename writes_of<Effect>::type, C> ||
-                            (contains<typename optional_writes_of<Effect>::type, C> && has<C>);
-    static_assert(
-        writes || contains<typename reads_of<Effect>::type, C>,
-        "collide: an effect may use a column only if it names it in its reads or writes, or in its optional_writes "
-        "and the scene has it");
-    if constexpr (writes) {
-      return static_cast<column_value<C, scalar>&>(p_[C{}]);
-    } else {
-      return static_cast<column_value<C, scalar> const&>(p_[C{}]);
-    }
-  }
-
-  COLLIDE_HD_INLINE scalar radius() const { return p_.the_radius; }
-  COLLIDE_HD_INLINE id number() const { return p_.number; }
-
- private:
-  Particle& p_;
-};
 
 /// Sees all that an effect names; only to ask what members the effect has.
 template <class E, class S>
@@ -231,21 +161,22 @@ struct effect_list : effect_slot<E>... {
   static constexpr bool writes_while_integrated = accelerates_in<F, S>::value || finishes_in<F, S>::value;
   template <class F>
   static constexpr bool interacts_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
-  using own_radius = std::conditional_t<contains<all, radius>, columns<radius>, columns<>>;
+  using own_radius = intersection_of<columns<radius>, all>;
+  using own_number = intersection_of<columns<global_number>, all>;
   template <bool Needed>
   using radius_if = std::conditional_t<Needed, own_radius, columns<>>;
 
  public:
   /// What is read to find out which particles are left out.
-  using skipping = union_of<columns<>, reads_if<E, skips_in<E, S>::value>...>;
+  using skipping = union_of<own_number, reads_if<E, skips_in<E, S>::value>...>;
   /// What is read and written for every particle,
-  using integration_reads = union_of<base, reads_if<E, is_integrated<E>>..., radius_if<touches>>;
+  using integration_reads = union_of<base, reads_if<E, is_integrated<E>>..., radius_if<touches>, own_number>;
   using integration_writes = union_of<columns<position>, writes_if<E, writes_while_integrated<E>>...>;
   /// and for those that may touch the mesh.
   using contact = union_of<integration_reads, reads_if<E, touches_mesh_in<E, S>>...>;
   using contact_writes = union_of<integration_writes, writes_if<E, touches_mesh_in<E, S>>...>;
   /// What is read and written for particles that meet others; what is read is also copied.
-  using interaction = union_of<columns<position>, reads_if<E, interacts_or_skips<E>>..., radius_if<meets>>;
+  using interaction = union_of<columns<position>, reads_if<E, interacts_or_skips<E>>..., radius_if<meets>, own_number>;
   using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
   using interaction_writes = union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>;
 

@@ -3,11 +3,29 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 #include <collide/detail/simulation/effect_list.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {
+
+/// Throws `error` if these are more places than a simulation may have.
+inline void check_places(std::uint64_t places) {
+  if (places >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
+}
+
+/// Throws `error` unless a simulation with these columns can have such particles, and places for them.
+template <class Columns>
+void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t places) {
+  if (!one_radius && !contains<Columns, radius>) {
+    throw error("collide: simulation: the radii differ: name the effect polydisperse in the scene");
+  }
+  if (places > particles && !contains<Columns, alive>) {
+    throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
+  }
+  check_places(places);
+}
 
 /// Calls an effect's `check_parameters`, if it has one.
 template <class E, class Effects>

@@ -28,6 +28,15 @@ struct pair_interaction {
     COLLIDE_HD_INLINE explicit pair_state(interaction const& p) : self(p), changed(p) {}
   };
 
+  /// True at the places of copies of particles of other ranks, which meet their neighbours there.
+  COLLIDE_HD_INLINE bool is_of_another([[maybe_unused]] std::size_t place) const {
+    if constexpr (contains<typename Effects::all, global_number>) {
+      return order.numbers[place] >= state.own;
+    } else {
+      return false;
+    }
+  }
+
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     if (!is_skipped(p.self)) {
@@ -60,7 +69,7 @@ struct interact_listed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
     if (i == 0) places.header->rebuild = 0;  // not read again in this step
-    if (i >= places.header->count) return;
+    if (i >= places.header->count || this->is_of_another(i)) return;
     auto const self = static_cast<std::uint32_t>(i);
     if (places.list(0, i) == places.overflow_mark) return;
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
@@ -101,13 +110,14 @@ struct interact_overflowed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
     if (i >= places.header->count || places.list(0, i) != places.overflow_mark) return;
+    if (this->is_of_another(i)) return;
     auto const self = static_cast<std::uint32_t>(i);
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
     id last = 0;
     for (bool first = true, complete = false; !complete; first = false) {
       first_neighbours<16> near;
       places.for_each_overlapping(self, S(0), [&](std::uint32_t k, int row) {
-        id const number = places.numbers[k];
+        id const number = places.number_at(k);
         if ((first || number > last) && places.is_in_row(k, self, row)) near.add(number, k);
       });
       COLLIDE_NO_UNROLL

@@ -37,6 +37,16 @@ struct particle<S, columns<C...>> : register_of<C, S>... {
   }
 };
 
+/// The number that effects know a particle by: where it is in memory, or among those of all ranks.
+template <class S, class List>
+COLLIDE_HD_INLINE id number_of(particle<S, List> const& p) {
+  if constexpr (contains<List, global_number>) {
+    return p[global_number{}];
+  } else {
+    return p.number;
+  }
+}
+
 /// A particle with the initial values of all columns.
 template <class S, class... C>
 COLLIDE_HD_INLINE void set_initial_values(particle<S, columns<C...>>& p) {
@@ -67,10 +77,19 @@ inline std::size_t padded_size(std::size_t particles) {
   return (particles + particle_padding - 1) / particle_padding * particle_padding;
 }
 
+/// What a rank knows of the particles of all, of which it has some. Those at places from `own` on are copies of others'
+/// particles.
+struct share_of_all {
+  std::size_t own;
+  std::size_t all_size, all_placed;  ///< `size` and `placed` of the simulation of all
+};
+struct all_of_all {};
+
 template <class S, class List>
 struct particle_state;
 template <class S, class... C>
-struct particle_state<S, columns<C...>> : pointer_of<C, S>... {
+struct particle_state<S, columns<C...>>
+    : pointer_of<C, S>..., std::conditional_t<contains<columns<C...>, global_number>, share_of_all, all_of_all> {
   using list = columns<C...>;
 
   std::size_t size;    ///< number of particles, or of places for them

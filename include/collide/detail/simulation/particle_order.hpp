@@ -82,6 +82,15 @@ struct sorted_particles {
     return p;
   }
 
+  /// The number of the particle at a place, in the order of which its neighbours meet it.
+  COLLIDE_HD_INLINE id number_at(std::uint32_t place) const {
+    if constexpr (contains<copied, global_number>) {
+      return copies.at(global_number{})[place];
+    } else {
+      return numbers[place];
+    }
+  }
+
   /// True if the surfaces of two particles are less than `skin` apart.
   static COLLIDE_HD_INLINE bool within_skin(packed_sphere<S> const& a, packed_sphere<S> const& b, S skin) {
     vec3<S> const between(a.x - b.x, a.y - b.y, a.z - b.z);

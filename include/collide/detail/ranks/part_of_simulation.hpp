@@ -1,0 +1,305 @@
+/// \file
+/// The particles that a rank has of a simulation: its own, and copies of others' that may meet them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/ranks/divided_mesh.hpp>
+#include <collide/detail/ranks/particle_rows.hpp>
+#include <collide/simulation.cuh>
+
+namespace collide::detail {
+
+/// Effect: particles know their numbers among those of all ranks.
+struct on_ranks {
+  using reads = columns<global_number>;
+};
+
+template <class E, class = void>
+inline constexpr bool begins_on_ranks = false;
+template <class E>
+inline constexpr bool begins_on_ranks<E, std::void_t<decltype(E::begins_on_ranks)>> = E::begins_on_ranks;
+
+/// Refuses an effect that would do something else on ranks than on one.
+template <class E, class Space, class State, class S>
+constexpr bool check_on_ranks() {
+  static_assert(!begins_in<E, Space, State, S>::value || begins_on_ranks<E>,
+                "collide: an effect's begin_step sees the places of one rank alone: if it does the same to particles "
+                "wherever they are, the effect says static constexpr bool begins_on_ranks = true");
+  return true;
+}
+
+/// What all ranks know of the particles of all when these are set.
+struct numbers_of_all {
+  std::uint64_t first;                  ///< number of this rank's first particle
+  std::uint64_t placed, size;           ///< particles, and places for them, on all ranks
+  std::uint64_t first_free, free_size;  ///< the free places that this rank begins with
+};
+
+/// Kernel body of `for_each` over spheres: their radii.
+template <class S>
+struct copy_radii {
+  sphere_view<S> spheres;
+  S* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = spheres.radius(i); }
+};
+
+/// Kernel body of `for_each` over places: numbers them.
+template <class S, class State>
+struct number_places {
+  State state;
+  std::size_t placed;
+  std::uint64_t first, first_free;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    bool const is_free = i >= placed;
+    state.at(global_number{})[i] = static_cast<id>(is_free ? first_free + (i - placed) : first + i);
+    if constexpr (contains<typename State::list, radius>) {
+      if (is_free) state.at(radius{})[i] = state.common_radius;
+    }
+  }
+};
+
+/// Where particles were, and whether they were there, when ranks last exchanged some.
+template <class S>
+struct last_places {
+  S* centres;
+  std::uint8_t* there;
+};
+
+/// Kernel body of `for_each` over particles: keeps where they are.
+template <class S, class State>
+struct keep_places {
+  State state;
+  last_places<S> last;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    for (std::size_t k = 0; k < 3; ++k) last.centres[3 * i + k] = state.at(position{})[3 * i + k];
+    if constexpr (contains<typename State::list, alive>) last.there[i] = state.at(alive{})[i];
+  }
+};
+
+/// Kernel body of `for_each` over particles: sets a flag if one has come, or moved too far.
+template <class S, class State>
+struct find_moved {
+  State state;
+  last_places<S> last;
+  S most;
+  std::uint32_t* flag;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if constexpr (contains<typename State::list, alive>) {
+      if (state.at(alive{})[i] == 0) return;
+      if (last.there[i] == 0) return store_relaxed(flag, 1u);
+    }
+    S const *const x = state.at(position{}) + 3 * i, *const before = last.centres + 3 * i;
+    vec3<S> const now(x[0], x[1], x[2]);
+    if (!is_finite(now)) return;
+    vec3<S> const moved(now.x() - before[0], now.y() - before[1], now.z() - before[2]);
+    bool const stayed = is_finite(moved) && dot(moved, moved) <= mul(most, most);
+    if (!stayed) store_relaxed(flag, 1u);
+  }
+};
+
+/// Runs the simulation of a rank. Its own particles come first in memory, in any order: neighbours meet by their
+/// numbers among all.
+template <class Simulation>
+class part_of_simulation {
+ public:
+  using S = typename Simulation::scalar;
+  using space_type = typename Simulation::execution_space;
+  using state_type = typename Simulation::state_type;
+  using effects_type = typename Simulation::effects_type;
+  using all_columns = typename Simulation::columns;
+  /// What is known of copies: all that is read of a particle that another one meets.
+  using seen_columns =
+      union_of<typename effects_type::interaction, intersection_of<columns<radius, alive>, all_columns>>;
+  template <class List>
+  using rows = std::vector<particle_row<S, List>>;
+
+  static constexpr bool meets = effects_type::meets;
+  static constexpr bool has_absent = contains<all_columns, alive>;
+
+  template <class... Argument>
+  explicit part_of_simulation(Argument&&... arguments) : simulation_(std::forward<Argument>(arguments)...) {}
+
+  Simulation& simulation() { return simulation_; }
+  Simulation const& simulation() const { return simulation_; }
+  space_type& space() { return simulation_.space_; }
+  std::size_t own() const { return simulation_.state_.own; }
+
+  /// The radii are those of all particles; `widest` is the largest one without its sign.
+  void set(sphere_view<S> const& particles, S const* velocities, numbers_of_all const& all, S common, S largest,
+           S widest) {
+    std::size_t const n = particles.size(), room = n + static_cast<std::size_t>(all.free_size);
+    capacity_ = larger(room, std::size_t{1});
+    simulation_.place(particles, velocities, capacity_);
+    describe(room, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), common);
+    space().for_each(room, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free});
+    simulation_.largest_radius_ = largest;
+    skin_ = skin_fraction * 2 * widest;
+    reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
+    copies_ = 0;
+    knows_others_ = false;
+    simulation_.prepare();
+  }
+
+  bool is_set() const { return simulation_.is_set_; }
+  std::size_t all_size() const { return simulation_.state_.all_size; }
+
+  /// How far from its own brick, as it was at the last exchange, a rank must know particles.
+  double reach() const { return reach_; }
+
+  /// The first part of a step. True if copies of particles may be missing somewhere in it.
+  bool begin_step(S dt) {
+    simulation_.check_step(dt);
+    simulation_.time_ += static_cast<double>(dt);
+    simulation_.begin_step(dt);
+    if constexpr (meets) {
+      return has_moved();
+    } else {
+      return false;
+    }
+  }
+
+  /// The rest of a step.
+  void end_step(S dt) {
+    if constexpr (meets) {
+      state_type with_copies = simulation_.state_;
+      with_copies.size += copies_;
+      if (own() != 0) simulation_.neighbours_.interact(space(), with_copies, simulation_.effects_, dt);
+    }
+    if (own() != 0) simulation_.end_step(dt);
+  }
+
+  /// A column of the rank's own particles on the host.
+  template <class Column>
+  std::vector<column_element<Column, S>> on_host() const {
+    return simulation_.template to_host<Column>();
+  }
+
+  /// The columns `List` of particles at places that the host knows.
+  template <class List>
+  void pack(std::vector<std::uint32_t> const& places, rows<List>& to) {
+    row_carrier<S, List>().pack(space(), simulation_.state_, in_space(space(), places, place_memory_), 0, places.size(),
+                                to);
+  }
+
+  /// Takes particles away from places, by rising number, and adds others.
+  void replace(std::vector<std::uint32_t> const& leaving, rows<all_columns> const& coming) {
+    knows_others_ = false;
+    std::size_t const before = own(), after = before - leaving.size() + coming.size();
+    make_room(after);
+    std::vector<std::uint32_t> to(
+        leaving.begin(), leaving.begin() + static_cast<std::ptrdiff_t>(smaller(leaving.size(), coming.size())));
+    for (std::size_t i = before; to.size() < coming.size(); ++i) to.push_back(static_cast<std::uint32_t>(i));
+    unpack(to, coming);
+    if (coming.size() < leaving.size()) close_gaps(leaving, coming.size(), after);
+    resize_own(after);
+  }
+
+  /// Prepares for copies of so many particles of other ranks, and keeps where its own are.
+  void expect_copies(std::size_t n) {
+    make_room(own() + n);
+    copies_ = n;
+    if constexpr (meets) simulation_.neighbours_.clear(space(), own() + n, simulation_.largest_radius_);
+    auto* const resource = space().resource();
+    last_centres_.reserve(resource, 3 * capacity_);
+    if constexpr (has_absent) last_there_.reserve(resource, capacity_);
+    space().for_each(own(), keep_places<S, state_type>{simulation_.state_, last()});
+    knows_others_ = true;
+  }
+
+  /// What others know of particles at these places, in memory of the space.
+  void pack_seen(std::uint32_t const* places, std::size_t n, rows<seen_columns>& to) {
+    seen_.pack(space(), simulation_.state_, places, 0, n, to);
+  }
+  /// Takes over what is known of all copies.
+  void unpack_seen(rows<seen_columns> const& from) { seen_.unpack(space(), simulation_.state_, nullptr, own(), from); }
+
+ private:
+  static constexpr S skin_fraction = S(0.1);  ///< of the largest diameter
+
+  void unpack(std::vector<std::uint32_t> const& places, rows<all_columns> const& from) {
+    all_.unpack(space(), simulation_.state_, in_space(space(), places, place_memory_), 0, from);
+  }
+
+  /// Moves the last particles to the places of those that have left, from the `filled`-th on.
+  void close_gaps(std::vector<std::uint32_t> const& leaving, std::size_t filled, std::size_t after) {
+    std::vector<std::uint32_t> from, to;
+    std::size_t gap = filled, end = leaving.size();
+    for (std::size_t i = own(); i-- > after;) {
+      if (end > gap && leaving[end - 1] == i) {
+        --end;  // it has left, too
+      } else {
+        from.push_back(static_cast<std::uint32_t>(i));
+        to.push_back(leaving[gap++]);
+      }
+    }
+    rows<all_columns> moved;
+    pack<all_columns>(from, moved);
+    unpack(to, moved);
+  }
+
+  /// Room for so many particles; the rank's own stay.
+  void make_room(std::size_t n) {
+    if (n <= capacity_) return;
+    state_type const old = simulation_.state_;
+    double const time = old.time != nullptr ? space().read(old.time) : 0;
+    rows<all_columns> kept;
+    all_.pack(space(), old, nullptr, 0, old.own, kept);
+    std::size_t const room = n + n / 4;
+    capacity_ = 0;
+    simulation_.reserve(room);
+    capacity_ = room;
+    describe(old.own, old.all_size, old.all_placed, old.common_radius);
+    if constexpr (Simulation::has_begin_step) {
+      simulation_.state_.time = simulation_.device_time_.data();
+      space().copy_from_host(simulation_.state_.time, &time, 1);
+    }
+    space().for_each(padded_size(room), init_particles<S, all_columns>{simulation_.state_, {}, nullptr});
+    all_.unpack(space(), simulation_.state_, nullptr, 0, kept);
+    space().synchronize();  // the rows go
+    simulation_.is_set_ = true;
+  }
+
+  void describe(std::size_t own, std::size_t all_size, std::size_t all_placed, S common) {
+    double* const time = simulation_.state_.time;
+    simulation_.state_ = simulation_.memory_.state(own, own, common);
+    simulation_.state_.time = time;
+    simulation_.state_.own = own;
+    simulation_.state_.all_size = all_size;
+    simulation_.state_.all_placed = all_placed;
+  }
+  void resize_own(std::size_t n) { simulation_.state_.size = simulation_.state_.placed = simulation_.state_.own = n; }
+
+  bool has_moved() {
+    if (!knows_others_) return true;
+    if (own() == 0) return false;
+    std::uint32_t* const flag = flag_.reserve(space().resource(), 1);
+    space().fill(flag, 0, sizeof *flag);
+    // half of the skin, but for rounding
+    space().for_each(own(), find_moved<S, state_type>{simulation_.state_, last(), S(0.495) * skin_, flag});
+    return space().read(flag) != 0;
+  }
+
+  last_places<S> last() const { return {last_centres_.data(), last_there_.data()}; }
+
+  Simulation simulation_;
+  std::size_t capacity_ = 0, copies_ = 0;
+  bool knows_others_ = false;  ///< there are copies of all that its own may meet, as long as nothing moves far
+  S skin_ = 0;
+  double reach_ = 0;
+  row_carrier<S, all_columns> all_;
+  row_carrier<S, seen_columns> seen_;
+  buffer<S> last_centres_;
+  buffer<std::uint8_t> last_there_;
+  buffer<std::uint32_t> flag_, place_memory_;
+};
+
+}  // namespace collide::detail

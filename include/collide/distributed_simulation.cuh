@@ -1,0 +1,219 @@
+/// \file
+/// A simulation on many ranks: each has some of the particles, and all have the mesh.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <collide/detail/ranks/particle_exchange.hpp>
+#include <collide/distributed.hpp>
+#include <collide/simulation.cuh>
+
+namespace collide {
+
+/// A simulation on many ranks, which gives the bits of one rank, on any number of them. Each rank puts some particles
+/// into it; from then on the library moves them to where their neighbours are. The mesh is the same on every rank. All
+/// ranks call all members, in the same order, with the same parameters of effects and the same `dt`. What one throws
+/// makes all throw: see `together`; then `set` begins anew.
+///
+/// Where particles meet each other, each rank has the particles of a brick of space, and copies of those that are near
+/// it. All tell each other in each step where copies are, and whether a particle has moved so far that some may be
+/// missing: then particles change ranks, and where many more are on one rank than on others, new bricks are cut. So a
+/// step waits for the other ranks, and with CUDA for the device. Where particles do not meet, they stay where they are.
+///
+/// \tparam Detector  that of the simulation
+/// \tparam Effect    those of the simulation. An effect of your own with a member `begin_step` sees the places of one
+///                   rank: it says `static constexpr bool begins_on_ranks = true` if that is enough.
+/// \tparam Ranks     `one_rank`, `thread_ranks` or `mpi_ranks`
+template <class Detector, class... Effect, class Ranks>
+class distributed<simulation<Detector, Effect...>, Ranks> {
+  static_assert(detail::check_ranks<Ranks>());
+
+ public:
+  using scalar = typename Detector::scalar;                                   ///< type of all numbers: float or double
+  using execution_space = typename Detector::execution_space;                 ///< that of the detector
+  using simulation_type = simulation<Detector, Effect..., detail::on_ranks>;  ///< what each rank runs
+  using columns = typename simulation<Detector, Effect...>::columns;          ///< the state that a particle has
+
+ private:
+  using S = scalar;
+  using part_type = detail::part_of_simulation<simulation_type>;
+  using broad_phase = typename Detector::broad_phase;
+  static constexpr bool meets = part_type::meets;
+  static_assert((detail::check_on_ranks<Effect, execution_space, typename simulation_type::state_type, S>() && ...));
+
+ public:
+  /// With effects as they are by default.
+  explicit distributed(Ranks ranks = Ranks(), execution_space space = execution_space(), broad_phase options = {})
+      : ranks_(std::move(ranks)), part_(std::move(space), std::move(options)) {}
+
+  /// With parameters of all effects, in the order of the list.
+  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
+                                                 std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
+  distributed(Ranks ranks, execution_space space, E... effects)
+      : ranks_(std::move(ranks)), part_(std::move(space), std::move(effects)..., detail::on_ranks()) {}
+
+  /// Copies this rank's particles, perhaps none, as `simulation::set`. One after the other, the ranks' particles have
+  /// the numbers of all. `capacity` is for how many particles there is room on all ranks together: the same number on
+  /// each. There are at most 2^32 - 2 on all ranks.
+  void set(sphere_view<S> const& mine, S const* velocities = nullptr, std::size_t capacity = 0) {
+    detail::numbers_of_all all{count_before(ranks_, mine.size()), 0, 0, 0, 0};
+    std::uint64_t const n = mine.size();
+    ranks_.reduce(&n, &all.placed, 1, reduction::sum);
+    auto const ranks = static_cast<std::uint64_t>(ranks_.size()), rank = static_cast<std::uint64_t>(ranks_.rank());
+    all.size = std::max(all.placed, std::uint64_t{capacity});
+    std::uint64_t const room = all.size - all.placed;
+    all.first_free = all.placed + room * rank / ranks;
+    all.free_size = all.placed + room * (rank + 1) / ranks - all.first_free;
+    together(ranks_, [&] {
+      detail::check_particles<columns>(true, all.placed, all.size);
+      starts_.resize(static_cast<std::size_t>(ranks) + 1);
+    });
+    ranks_.all_gather(&all.first, sizeof all.first, starts_.data());
+    starts_.back() = all.placed;
+    radii const of_all = radii_of_all(mine);
+    exchange_.clear();
+    together(ranks_, [&] { part_.set(mine, velocities, all, of_all.common, of_all.largest, of_all.widest); });
+  }
+
+  /// The mesh, which is the same on every rank; see `simulation::set_mesh`.
+  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}) {
+    together(ranks_, [&] { part_.simulation().set_mesh(mesh, bodies); });
+  }
+
+  /// Advances by the time `dt`; throws what `simulation::step` throws.
+  void step(S dt) {
+    std::exception_ptr failure;
+    std::uint64_t mine = 0, all = 0;  // 1: particles must change ranks; 2: something is wrong
+    try {
+      mine = part_.begin_step(dt) ? 1 : 0;
+      if (meets && mine == 0) exchange_.pack(part_);
+    } catch (...) {
+      failure = std::current_exception();
+      mine = 2;
+    }
+    ranks_.reduce(&mine, &all, 1, reduction::max);
+    if (all == 2) agree(ranks_, failure);
+    if constexpr (meets) {
+      if (all == 1) exchange_.exchange(ranks_, part_);
+      exchange_.send(ranks_);
+    }
+    together(ranks_, [&] {
+      if constexpr (meets) exchange_.unpack(part_);
+      part_.end_step(dt);
+    });
+  }
+
+  /// Advances `n` times by `dt`; throws what `step` throws.
+  void steps(std::size_t n, S dt) {
+    while (n-- > 0) step(dt);
+  }
+
+  /// The sum of the steps since `set`.
+  double time() const { return part_.simulation().time(); }
+  /// Number of particles on all ranks, or of places for them.
+  std::size_t size() const { return part_.all_size(); }
+
+  /// A column of the particles that this rank has `set`, in their order, wherever they are. The last rank gets behind
+  /// them those that effects have made. One after the other, the ranks' columns are that of one rank. Waits.
+  template <class Column>
+  std::vector<detail::column_element<Column, S>> to_host() {
+    using pair_of = collide::columns<global_number, Column>;
+    using row = detail::particle_row<S, pair_of>;
+    constexpr auto width = std::size_t(detail::column_layout<Column, S>::width);
+    detail::mail<row> out, in;
+    std::vector<detail::column_element<Column, S>> found;
+    std::uint64_t const first = starts_.empty() ? 0 : starts_[static_cast<std::size_t>(ranks_.rank())];
+    together(ranks_, [&] {
+      if (!part_.is_set()) throw error("collide: simulation: to_host needs particles: call set before it");
+      std::vector<id> const numbers = part_.template on_host<global_number>();
+      detail::mail<std::uint32_t> places;
+      detail::fill_mail(places, ranks_.size(), [&](auto const& put) {
+        for (std::size_t i = 0; i < numbers.size(); ++i) put(home_of(numbers[i]), static_cast<std::uint32_t>(i));
+      });
+      part_.template pack<pair_of>(places.items, out.items);
+      out.counts = places.counts;
+    });
+    detail::deliver(ranks_, out, in);
+    together(ranks_, [&] {
+      found.resize(width * in.items.size());
+      for (row const& one : in.items) {
+        id number = 0;
+        std::memcpy(&number, one.bytes, sizeof number);
+        std::memcpy(found.data() + width * static_cast<std::size_t>(number - first), one.bytes + sizeof number,
+                    row::size - sizeof number);
+      }
+    });
+    return found;
+  }
+
+  /// The parameters of an effect, which may be changed between steps, on all ranks alike.
+  template <class E>
+  E& effect() {
+    return part_.simulation().template effect<E>();
+  }
+
+  /// The ranks.
+  Ranks const& ranks() const { return ranks_; }
+  /// The simulation of this rank, to look at: its `size()` particles are those that are on this rank now, in any order;
+  /// the column `global_number` tells which.
+  simulation_type const& local() const { return part_.simulation(); }
+  /// The space of this rank.
+  execution_space& space() { return part_.space(); }
+
+ private:
+  struct radii {
+    S common, largest, widest;
+  };
+
+  /// Radii of the particles of all ranks. Throws `error` on all if there must be one, but there are several.
+  radii radii_of_all(sphere_view<S> const& mine) const {
+    using detail::to_ordered_bits;
+    S largest = mine.common_radius(), widest = 0;
+    together(ranks_, [&] {
+      buffer<S> memory;
+      auto const& space = part_.simulation().space();
+      std::vector<S> each;
+      if (!mine.one_radius()) {
+        each = detail::packed_on_host<S>(space, mine.size(), memory, [&](S* to) {
+          space.for_each(mine.size(), detail::copy_radii<S>{mine, to});
+        });
+      }
+      if (!each.empty()) largest = *std::max_element(each.begin(), each.end());
+      widest = largest < 0 ? -largest : largest;
+      for (S const r : each) widest = std::max(widest, r < 0 ? -r : r);
+    });
+    // a rank without particles has no say in this, unless no rank has any
+    auto const ask = [&](S value, bool has_say) {
+      std::uint64_t mine_bits[2] = {0, has_say ? to_ordered_bits(static_cast<double>(value)) : 0}, all[2];
+      mine_bits[0] = has_say ? 1 : 0;
+      ranks_.reduce(mine_bits, all, 2, reduction::max);
+      return std::pair<bool, S>(all[0] != 0, static_cast<S>(detail::from_ordered_bits<double>(all[1])));
+    };
+    bool const has_any = ask(S(0), mine.size() != 0).first;
+    bool const has_say = mine.size() != 0 || !has_any;
+    S const most = ask(mine.common_radius(), has_say).second, least = -ask(-mine.common_radius(), has_say).second;
+    bool const several =
+        ask(S(0), has_say && !mine.one_radius()).first || detail::to_bits(most) != detail::to_bits(least);
+    detail::check_particles<columns>(!several, 0, 0);
+    return {several ? S(0) : most, ask(largest, has_say).second, ask(widest, has_say).second};
+  }
+
+  /// The rank that has set a particle; the last has what effects make.
+  int home_of(id number) const {
+    auto const after = std::upper_bound(starts_.begin(), starts_.end(), std::uint64_t{number});
+    return std::min(static_cast<int>(after - starts_.begin()), ranks_.size()) - 1;
+  }
+
+  Ranks ranks_;
+  part_type part_;
+  detail::particle_exchange<part_type> exchange_;
+  std::vector<std::uint64_t> starts_;  ///< numbers of the first particles that ranks have set, and one behind the last
+};
+
+}  // namespace collide

@@ -1,0 +1,341 @@
+/// \file
+/// What simulations on ranks must do: the same as one simulation of everything, bit for bit. Each rank checks its own
+/// particles, and says what is wrong; used with threads by the unit tests, and with MPI by tests/mpi.
+#pragma once
+
+#include <tuple>
+
+#include <collide/absorb.hpp>
+#include <collide/adhesion.hpp>
+#include <collide/bodies.hpp>
+#include <collide/bounce.hpp>
+#include <collide/bounds.hpp>
+#include <collide/contact_forces.hpp>
+#include <collide/distributed_simulation.cuh>
+#include <collide/drag.hpp>
+#include <collide/emit.hpp>
+#include <collide/friction.hpp>
+#include <collide/gravity.hpp>
+#include <collide/sleep.hpp>
+#include <collide/spin.hpp>
+#include <collide/wind.hpp>
+
+#include "ranks/ranks.hpp"
+#include "simulation/neighbours.hpp"
+
+namespace tests {
+
+/// A scene, and how it goes on.
+template <class Simulation, class... Effect>
+struct played_scene {
+  using simulation = Simulation;
+  using S = typename Simulation::scalar;
+
+  std::string name;
+  world<S> w;
+  std::tuple<Effect...> effects;
+  int steps;
+  S dt;
+  std::size_t capacity = 0;
+  std::vector<collide::body> bodies = {};
+};
+template <class Simulation, class... Effect>
+played_scene<Simulation, Effect...> scene_of(std::string name, world<typename Simulation::scalar> w, int steps,
+                                             double dt, Effect... effects) {
+  return {std::move(name), std::move(w), {effects...}, steps, static_cast<typename Simulation::scalar>(dt)};
+}
+
+/// All columns of particles.
+template <class S, class List>
+struct all_values;
+template <class S, class... C>
+struct all_values<S, collide::columns<C...>> {
+  std::tuple<std::vector<collide::detail::column_element<C, S>>...> of;
+
+  template <class Simulation>
+  void read(Simulation& from) {
+    of = {from.template to_host<C>()...};
+  }
+  /// The values of `n` particles from `first` on.
+  all_values part(std::size_t first, std::size_t n) const {
+    all_values p;
+    std::apply(
+        [&](auto const&... all) {
+          auto const cut = [&](auto const& values, std::size_t width) {
+            auto const begin = values.begin() + static_cast<std::ptrdiff_t>(width * first);
+            return std::decay_t<decltype(values)>(begin, begin + static_cast<std::ptrdiff_t>(width * n));
+          };
+          p.of = {cut(all, std::size_t(collide::detail::column_layout<C, S>::width))...};
+        },
+        of);
+    return p;
+  }
+  friend bool equal(all_values const& a, all_values const& b) {
+    return equal_each(a, b, std::index_sequence_for<C...>{});
+  }
+
+ private:
+  template <std::size_t... I>
+  static bool equal_each(all_values const& a, all_values const& b, std::index_sequence<I...>) {
+    return (equal_bytes(std::get<I>(a.of), std::get<I>(b.of)) && ...);
+  }
+};
+template <class Simulation>
+using values_of = all_values<typename Simulation::scalar, typename Simulation::columns>;
+
+template <class S>
+collide::sphere_view<S> spheres_of(world<S> const& w, range part) {
+  S const* const centres = w.centres.data() + 3 * part.first;
+  return w.radii.empty() ? collide::spheres_xyz(centres, part.size, w.radius)
+                         : collide::spheres_xyz(centres, part.size, w.radii.data() + part.first);
+}
+
+/// What one simulation makes of a scene: in the middle, and in the end.
+template <class Scene>
+struct expected_values {
+  values_of<typename Scene::simulation> middle, end;
+
+  explicit expected_values(Scene const& scene) {
+    std::apply(
+        [&](auto const&... effects) {
+          typename Scene::simulation one(collide::host(1), effects...);
+          one.set_mesh(collide::triangle_soup(scene.w.corners.data(), scene.w.corners.size() / 9), scene.bodies);
+          one.set(spheres_of(scene.w, {0, scene.w.size()}), scene.w.velocities.data(), scene.capacity);
+          one.steps(static_cast<std::size_t>(scene.steps / 2), scene.dt);
+          middle.read(one);
+          one.steps(static_cast<std::size_t>(scene.steps - scene.steps / 2), scene.dt);
+          end.read(one);
+        },
+        scene.effects);
+  }
+};
+
+/// Ranks make the same of the scene.
+template <class Scene, class Ranks>
+void check_scene(Ranks const& ranks, Scene const& scene, expected_values<Scene> const& expected, split how,
+                 complaints& wrong) {
+  using simulation = typename Scene::simulation;
+  wrong.in(scene.name + ", " + std::to_string(ranks.size()) + " ranks, split " + std::to_string(int(how)));
+  range own = part_of(scene.w.size(), how, ranks.rank(), ranks.size());
+  std::apply(
+      [&](auto const&... effects) {
+        collide::distributed<simulation, Ranks> parts(ranks, collide::host(1), effects...);
+        parts.set_mesh(collide::triangle_soup(scene.w.corners.data(), scene.w.corners.size() / 9), scene.bodies);
+        parts.set(spheres_of(scene.w, own), scene.w.velocities.data() + 3 * own.first, scene.capacity);
+        if (ranks.rank() + 1 == ranks.size() && scene.capacity > scene.w.size())
+          own.size += scene.capacity - scene.w.size();
+        values_of<simulation> found;
+        parts.steps(static_cast<std::size_t>(scene.steps / 2), scene.dt);
+        found.read(parts);
+        wrong.expect(equal(found, expected.middle.part(own.first, own.size)), "in the middle");
+        parts.steps(static_cast<std::size_t>(scene.steps - scene.steps / 2), scene.dt);
+        found.read(parts);
+        wrong.expect(equal(found, expected.end.part(own.first, own.size)), "in the end");
+        wrong.expect(parts.size() == std::max(scene.w.size(), scene.capacity), "the number of places is of all");
+      },
+      scene.effects);
+}
+
+// ---- the scenes
+
+template <class S>
+using discrete = meets_mesh<collide::host, collide::karabassi<>, S>;
+
+/// Grains that fall into a box, roll, and lie on each other.
+template <class S, class NarrowPhase = collide::karabassi<>>
+auto grains_in_a_box() {
+  using namespace collide;
+  auto w = crowd<S>(500, 1, 0.09, 2, 11);
+  return scene_of<simulation<meets_mesh<host, NarrowPhase, S>, sphere_contact, gravity, bounce, friction, spin>>(
+      "grains", w, 200, 1e-3, sphere_contact::from_restitution(0.6, 0.02, 0.09, 1000, 0.5), gravity{}, bounce{0.5},
+      friction{0.5, 0.5}, spin{0.01});
+}
+
+/// Grains of three sizes that go round in a box, many at a time.
+inline auto sizes_that_repeat() {
+  using namespace collide;
+  auto w = packed_cube<float>(500, 0.05, 3);
+  for (std::size_t i = 0; i < 500; ++i) w.radii.push_back(i % 50 == 0 ? 0.3f : i % 5 == 0 ? 0.1f : 0.03f);
+  return scene_of<simulation<discrete<float>, velocity_verlet, polydisperse, sphere_contact, greets, periodic_box>>(
+      "sizes", w, 100, 2e-3, velocity_verlet{}, polydisperse{}, sphere_contact{300, 0.01, 0.2, 0.01, 1}, greets{},
+      periodic_box{{-1, -1, -1}, {1, 1, 1}});
+}
+
+/// Particles that cross all bricks in a step, and meet others there.
+inline auto leaps() {
+  using namespace collide;
+  auto w = packed_cube<float>(400, 0.1, 1.9);
+  return scene_of<simulation<discrete<float>, greets, periodic_box>>("leaps", w, 40, 1, greets{},
+                                                                     periodic_box{{-1, -1, -1}, {1, 1, 1}});
+}
+
+/// Snow that comes from a source, sticks, sleeps and wakes; when places end the oldest make room.
+inline auto snow() {
+  using namespace collide;
+  world<float> w = crowd<float>(100, 1, 0.06, 0.5, 3);
+  emit const source{700, {{0.2, 0, 0.7}, 0.25, {0.1, 0, -1}, 0.4}};
+  auto scene = scene_of<simulation<discrete<float>, emit, collide::sleep, gravity, drag, sphere_contact, bounce,
+                                   adhesion, box_walls, mesh_forces, pair_forces>>(
+      "snow", w, 400, 2e-3, source, collide::sleep{0.2, 6}, gravity{}, drag{3, 1},
+      sphere_contact::from_restitution(0.2, 0.04, 0.06, 100, 0.9), bounce{0.1}, adhesion{60},
+      box_walls{{-1, -1, -1}, {1, 1, 1}, 0.2}, mesh_forces{}, pair_forces{});
+  scene.capacity = 400;
+  return scene;
+}
+
+/// Dust that vanishes in a box; nothing meets anything.
+inline auto dust() {
+  using namespace collide;
+  world<float> w = crowd<float>(50, 1, 0.02, 0.5, 4);
+  emit const source{2000, {{-0.8, 0, 0}, 0.1, {2, 0, 0}, 1}};
+  auto scene = scene_of<simulation<discrete<float>, emit, gravity, wind<uniform_field>, bounce, absorbing_box>>(
+      "dust", w, 200, 2e-3, source, gravity{}, wind<uniform_field>{1, 0, {1.5, 0, 0}}, bounce{0.3},
+      absorbing_box{{0.5, -1, -1}, {1, 1, 1}});
+  scene.capacity = 300;
+  return scene;
+}
+
+/// A piston that pushes grains about, and a belt below them.
+template <class NarrowPhase>
+auto piston_and_belt() {
+  using namespace collide;
+  world<float> w;
+  add_floor(w, 1.5, 6, -1);
+  std::size_t const belt_size = w.corners.size() / 9;
+  world<float> wall;
+  wall.triangle({-1, -2, -2, -1, 2, -2, -1, 0, 3});
+  w.corners.insert(w.corners.end(), wall.corners.begin(), wall.corners.end());
+  auto const grains = packed_cube<float>(300, 0.1, 0.3);
+  w.centres = grains.centres;
+  w.velocities = grains.velocities;
+  w.radius = 0.1f;
+  auto scene = scene_of<simulation<meets_mesh<host, NarrowPhase, float>, sphere_contact, gravity, bounce, friction,
+                                   moving_bodies<>, box_walls>>(
+      "bodies", w, 200, 2e-3, sphere_contact::from_restitution(0.4, 0.05, 0.1, 1000, 0.5), gravity{}, bounce{0.2},
+      friction{0.5, 0.4}, moving_bodies<>{}, box_walls{{-2, -1, -3}, {2, 1, 3}, 0.1});
+  body belt{0, belt_size, {}}, piston{belt_size, 1, {}};
+  belt.motion.belt[1] = 0.7;
+  piston.motion.amplitude[0] = 0.5;
+  piston.motion.frequency = 2;
+  scene.bodies = {belt, piston};
+  return scene;
+}
+
+/// Particles that are nowhere, at one point, on a border, and far away.
+inline auto awkward_places() {
+  using namespace collide;
+  auto w = packed_cube<float>(100, 0.1, 0.01);
+  float const nan = std::numeric_limits<float>::quiet_NaN(), far = std::numeric_limits<float>::infinity();
+  w.particle(double(nan), 0, 0);
+  w.particle(0, double(far), 0);
+  w.particle(0, 0, 0, double(nan));
+  w.particle(0, 0, 0, double(far));
+  w.particle(0, 0, 0, 1e30);
+  w.particle(3e38, 0, 0);
+  for (int i = 0; i < 30; ++i) w.particle(0.5, 0.5, 0.5);
+  for (int i = -8; i <= 8; ++i) w.particle(0.125 * i, 0, 0);
+  return scene_of<simulation<discrete<float>, greets, sphere_contact>>("awkward places", w, 30, 1, greets{},
+                                                                       sphere_contact{1e-5, 0, 0, 0, 1});
+}
+
+/// All at one point, or nobody at all.
+inline auto one_point(std::size_t n) {
+  using namespace collide;
+  world<float> w;
+  w.radius = 0.1f;
+  for (std::size_t i = 0; i < n; ++i) w.particle(0.3, 0.2, 0.1, 0.001 * double(i));
+  return scene_of<simulation<discrete<float>, greets, box_walls>>("one point", w, 60, 1, greets{},
+                                                                  box_walls{{-1, -1, -1}, {1, 1, 1}, 1});
+}
+
+/// A radius without end: all meet all.
+inline auto endless_radius() {
+  auto scene = one_point(20);
+  scene.name = "endless radius";
+  scene.w.radius = std::numeric_limits<float>::infinity();
+  return scene;
+}
+
+// ---- what goes wrong
+
+/// Memory ends on the last rank, wherever it may: all ranks throw, and `set` begins anew.
+template <class Ranks>
+void check_short_memory_of_simulations(Ranks const& ranks, complaints& wrong) {
+  auto scene = snow();
+  scene.steps = 40;
+  expected_values<decltype(scene)> const expected(scene);
+  range own = part_of(scene.w.size(), split::evenly, ranks.rank(), ranks.size());
+  int const failing = ranks.size() - 1;
+  range all = own;
+  if (ranks.rank() == failing) all.size += scene.capacity - scene.w.size();
+  std::uint64_t failures = 0;
+  for (std::size_t most = 0;; ++most) {
+    short_memory memory;
+    if (ranks.rank() == failing) memory.left = most;
+    bool failed = false;
+    std::apply(
+        [&](auto const&... effects) {
+          using simulation = typename decltype(scene)::simulation;
+          collide::distributed<simulation, Ranks> parts(ranks, collide::host(1, &memory), effects...);
+          auto const work = [&] {
+            parts.set_mesh(collide::triangle_soup(scene.w.corners.data(), scene.w.corners.size() / 9));
+            parts.set(spheres_of(scene.w, own), scene.w.velocities.data() + 3 * own.first, scene.capacity);
+            parts.steps(40, scene.dt);
+          };
+          try {
+            work();
+          } catch (std::bad_alloc const&) {
+            failed = true;
+            wrong.expect(ranks.rank() == failing, "memory ended elsewhere");
+          } catch (collide::rank_error const& e) {
+            failed = true;
+            std::string const others = "collide: rank " + std::to_string(failing) + " of ";
+            wrong.expect(std::string(e.what()).rfind(others, 0) == 0, e.what());
+          }
+          memory.left = std::numeric_limits<std::size_t>::max();
+          if (failed) work();
+          values_of<simulation> found;
+          found.read(parts);
+          wrong.expect(equal(found, expected.end.part(all.first, all.size)), "after a failure everything works again");
+        },
+        scene.effects);
+    if (!failed) break;
+    ++failures;
+  }
+  wrong.expect(failures > 10, "memory can end in several places");
+}
+
+/// What makes no sense is refused on all ranks.
+template <class Ranks>
+void check_refusals(Ranks const& ranks, complaints& wrong) {
+  using namespace collide;
+  auto const expect = [&](char const* text, auto const& f) {
+    std::string said = "nothing";
+    try {
+      f();
+    } catch (error const& e) {
+      said = e.what();
+    }
+    wrong.expect(said.rfind(text, 0) == 0, said);
+  };
+  distributed<simulation<discrete<float>, sphere_contact>, Ranks> parts(ranks, host(1));
+  float const centre[] = {0, 0, 0}, radii[] = {1};
+  auto const mine = [&](float r) { return spheres_xyz(centre, 1, r); };
+  expect("collide: simulation: step needs particles", [&] { parts.step(1); });
+  expect("collide: simulation: to_host needs particles", [&] { parts.template to_host<position>(); });
+  expect("collide: simulation: there is room for more particles", [&] { parts.set(mine(1), nullptr, 1000); });
+  if (ranks.size() > 1) {
+    expect("collide: simulation: the radii differ", [&] { parts.set(mine(float(1 + ranks.rank()))); });
+  }
+  expect("collide: simulation: the radii differ", [&] { parts.set(spheres_xyz(centre, 1, radii)); });
+  parts.set(ranks.rank() == 0 ? mine(1) : sphere_view<float>());
+  expect("collide: simulation: the time of a step is not finite",
+         [&] { parts.step(std::numeric_limits<float>::infinity()); });
+  parts.template effect<sphere_contact>().density = -1;
+  expect("collide: sphere_contact: density is above 0", [&] { parts.step(1); });
+  parts.template effect<sphere_contact>().density = 1;
+  parts.step(1);
+  wrong.expect(parts.size() == 1 && parts.time() == 1, "and then it goes on");
+}
+
+}  // namespace tests
