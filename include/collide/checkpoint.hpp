@@ -4,10 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <istream>
 #include <ostream>
 #include <string>
@@ -69,7 +67,6 @@ class checkpoint {
   static void write(simulated const& from, std::ostream& stream) {
     if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
     checkpoint_writer to(stream);
-    pass_types(to);
     saved_numbers<S> numbers{from.mesh_.size(),
                              from.state_.size,
                              from.state_.placed,
@@ -79,38 +76,66 @@ class checkpoint {
                              0,
                              from.reverse_order_};
     if constexpr (simulated::has_begin_step) numbers.device_time = from.space_.read(from.state_.time);
+    begin(to, numbers, from.effects_);
+    for_each_column(
+        [&](auto column) { write_column<decltype(column)>(to, from.template to_host<decltype(column)>()); });
+    end(to, from);
+  }
+
+  /// Writes what is before the columns; then each column follows, and `end`.
+  template <class Effects>
+  static void begin(checkpoint_writer& to, saved_numbers<S>& numbers, Effects const& effects) {
+    pass_types(to);
     numbers.pass(to);
-    (write_parameters<Effect>(to, from), ...);
-    write_columns(to, from, column_list());
+    (write_parameters<Effect>(to, effects), ...);
+  }
+  template <class F>
+  static void for_each_column(F const& f) {
+    for_each_in(column_list(), f);
+  }
+  template <class C>
+  static void write_column(checkpoint_writer& to, std::vector<column_element<C, S>> const& values) {
+    to.block(column_name<C>(), values.data(), values.size());
+  }
+  template <class Simulation>
+  static void end(checkpoint_writer& to, Simulation const& from) {
     if constexpr (simulated::has_bodies) {
-      from.bodies_.for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
+      from.bodies().for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
         std::vector<unsigned char> copy(n * sizeof(*elements));
-        from.space_.copy_to_host(copy.data(), reinterpret_cast<unsigned char const*>(elements), copy.size());
+        from.space().copy_to_host(copy.data(), reinterpret_cast<unsigned char const*>(elements), copy.size());
         to.block(name, copy.data(), copy.size());
       });
     }
     to.finish();
   }
 
-  /// Reads and checks all blocks. Changes nothing.
-  checkpoint(simulated const& into, std::istream& stream) {
+  checkpoint(simulated const& into, std::istream& stream) : checkpoint(into.mesh_.size(), into, stream) {}
+  /// Reads and checks all blocks, for a simulation with so many triangles and such bodies. Changes nothing.
+  template <class Simulation>
+  checkpoint(std::size_t triangles, Simulation const& into, std::istream& stream) {
     checkpoint_reader from(stream);
     pass_types(from);
     numbers_.pass(from);
-    if (simulated::effects_type::touches && numbers_.triangles != into.mesh_.size()) {
+    if (simulated::effects_type::touches && numbers_.triangles != triangles) {
       from.refuse("triangles", "the file has " + std::to_string(numbers_.triangles) + ", the mesh of the simulation " +
-                                   std::to_string(into.mesh_.size()));
+                                   std::to_string(triangles));
     }
     if (numbers_.places >= no_id) from.refuse("places", "a simulation has at most 2^32 - 2 particles");
     if (numbers_.placed > numbers_.places) from.refuse("placed", "more than there are places");
     (read_parameters<Effect>(from), ...);
     read_columns(from, column_list());
     if constexpr (simulated::has_bodies) {
-      into.bodies_.for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
+      into.bodies().for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
         bodies_.push_back(from.block<unsigned char>(name, n * sizeof(*elements)));
       });
     }
     from.finish();
+  }
+
+  saved_numbers<S> const& numbers() const { return numbers_; }
+  template <class C>
+  std::vector<column_element<C, S>> const& column() const {
+    return std::get<column_of<C>>(columns_).values;
   }
 
   /// Gives the simulation this state.
@@ -125,8 +150,8 @@ class checkpoint {
     }
     space.for_each(padded_size(places),
                    init_particles<S, column_list>{state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr});
-    restore_columns(space, state, column_list());
-    (restore_parameters<Effect>(to), ...);
+    restore_columns(space, state, 0, 0, places);
+    restore_parameters(to);
     to.state_ = state;
     to.time_ = numbers_.time;
     to.reverse_order_ = numbers_.reverse_order != 0;
@@ -134,11 +159,29 @@ class checkpoint {
     if constexpr (simulated::effects_type::meets) to.neighbours_.clear(space, places, to.largest_radius_);
     to.is_set_ = true;
     to.prepare();
+    restore_bodies(to);
+  }
+
+  /// Gives places from `place` on the columns of `n` particles from number `first` on.
+  template <class Space, class State>
+  void restore_columns(Space const& space, State const& state, std::size_t place, std::size_t first,
+                       std::size_t n) const {
+    for_each_column([&](auto c) {
+      constexpr auto width = std::size_t(column_layout<decltype(c), S>::width);
+      space.copy_from_host(state.at(c) + width * place, column<decltype(c)>().data() + width * first, width * n);
+    });
+  }
+  template <class Simulation>
+  void restore_parameters(Simulation& to) const {
+    (restore_parameters_of<Effect>(to), ...);
+  }
+  template <class Simulation>
+  void restore_bodies(Simulation& to) const {
     if constexpr (simulated::has_bodies) {
       std::size_t next = 0;
-      to.bodies_.for_each_saved([&](std::string const&, auto* elements, std::size_t) {
+      to.bodies().for_each_saved([&](std::string const&, auto* elements, std::size_t) {
         auto const& saved = bodies_[next++];
-        space.copy_from_host(reinterpret_cast<unsigned char*>(elements), saved.data(), saved.size());
+        to.space().copy_from_host(reinterpret_cast<unsigned char*>(elements), saved.data(), saved.size());
       });
     }
   }
@@ -172,10 +215,10 @@ class checkpoint {
     return saves_parameters<E> && !std::is_empty<E>::value;
   }();
 
-  template <class E>
-  static void write_parameters(checkpoint_writer& to, simulated const& from) {
+  template <class E, class Effects>
+  static void write_parameters(checkpoint_writer& to, Effects const& effects) {
     if constexpr (has_bytes<E>) {
-      auto const& effect = from.effects_.template of<E>();
+      E const& effect = effects.template of<E>();
       to.block(parameters_name<E>(), reinterpret_cast<unsigned char const*>(&effect), sizeof(E));
     }
   }
@@ -185,20 +228,17 @@ class checkpoint {
       std::get<bytes_of<E>>(parameters_).values = from.block<unsigned char>(parameters_name<E>(), sizeof(E));
     }
   }
-  template <class E>
-  void restore_parameters(simulated& to) const {
+  template <class E, class Simulation>
+  void restore_parameters_of(Simulation& to) const {
     if constexpr (has_bytes<E>) {
       std::memcpy(static_cast<void*>(&to.template effect<E>()), std::get<bytes_of<E>>(parameters_).values.data(),
                   sizeof(E));
     }
   }
 
-  template <class... C>
-  static void write_columns(checkpoint_writer& to, simulated const& from, columns<C...>) {
-    auto const write = [&](std::string const& name, auto const& values) {
-      to.block(name, values.data(), values.size());
-    };
-    (write(column_name<C>(), from.template to_host<C>()), ...);
+  template <class... C, class F>
+  static void for_each_in(columns<C...>, F const& f) {
+    (f(C{}), ...);
   }
   template <class... C>
   void read_columns(checkpoint_reader& from, columns<C...>) {
@@ -206,12 +246,6 @@ class checkpoint {
           column_name<C>(), numbers_.places * std::uint64_t{column_layout<C, S>::width})),
      ...);
   }
-  template <class Space, class State, class... C>
-  void restore_columns(Space const& space, State const& state, columns<C...>) const {
-    auto const copy = [&](auto* to, auto const& values) { space.copy_from_host(to, values.data(), values.size()); };
-    (copy(state.at(C{}), std::get<column_of<C>>(columns_).values), ...);
-  }
-
   template <class E>
   struct bytes_of {
     std::vector<unsigned char> values;
@@ -254,19 +288,9 @@ void save(simulation<Detector, Effect...> const& from, std::ostream& to) {
 /// complete.
 template <class Detector, class... Effect>
 void save(simulation<Detector, Effect...> const& from, std::string const& path) {
-  std::string const part = path + ".part";
-  try {
-    std::ofstream file(part, std::ios::binary | std::ios::trunc);
-    if (!file) throw error("collide: save: " + path + " cannot be written");
-    save(from, file);
-    file.close();
-    if (!file || std::rename(part.c_str(), path.c_str()) != 0) {
-      throw error("collide: save: " + path + " cannot be written");
-    }
-  } catch (...) {
-    std::remove(part.c_str());
-    throw;
-  }
+  detail::checkpoint_file file(path);
+  save(from, file.stream());
+  file.complete();
 }
 
 /// Gives a simulation the state that `save` has written: the particles that it had are gone, the parameters of its
@@ -286,13 +310,9 @@ void load(simulation<Detector, Effect...>& into, std::istream& from) {
 /// Reads a checkpoint from a file, which has nothing else in it.
 template <class Detector, class... Effect>
 void load(simulation<Detector, Effect...>& into, std::string const& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw error("collide: load: " + path + " cannot be read");
-  detail::checkpoint<Detector, Effect...> const read(into, file);
-  if (file.peek() != std::ifstream::traits_type::eof()) {
-    throw error("collide: load: " + path + " goes on behind the checkpoint");
-  }
-  read.restore(into);
+  detail::read_checkpoint_file(path, [&](std::istream& file) {
+    return detail::checkpoint<Detector, Effect...>(into, file);
+  }).restore(into);
 }
 
 }  // namespace collide

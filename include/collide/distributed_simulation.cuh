@@ -12,9 +12,18 @@
 
 #include <collide/detail/ranks/particle_exchange.hpp>
 #include <collide/distributed.hpp>
+#include <collide/reaction.hpp>
 #include <collide/simulation.cuh>
 
 namespace collide {
+
+namespace detail {
+
+/// Saves and restores a simulation on ranks; see distributed_checkpoint.hpp.
+template <class Distributed>
+class distributed_checkpoint;
+
+}  // namespace detail
 
 /// A simulation on many ranks, which gives the bits of one rank, on any number of them. Each rank puts some particles
 /// into it; from then on the library moves them to where their neighbours are. The mesh is the same on every rank. All
@@ -53,8 +62,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       : ranks_(std::move(ranks)), part_(std::move(space), std::move(options)) {}
 
   /// With parameters of all effects, in the order of the list.
-  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
-                                                 std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
+  template <class... E, class = std::enable_if_t<detail::are_all_of<std::tuple<Effect...>, E...>>>
   distributed(Ranks ranks, execution_space space, E... effects)
       : ranks_(std::move(ranks)), part_(std::move(space), std::move(effects)..., detail::on_ranks()) {}
 
@@ -65,14 +73,11 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     detail::numbers_of_all all{count_before(ranks_, mine.size()), 0, 0, 0, 0};
     std::uint64_t const n = mine.size();
     ranks_.reduce(&n, &all.placed, 1, reduction::sum);
-    auto const ranks = static_cast<std::uint64_t>(ranks_.size()), rank = static_cast<std::uint64_t>(ranks_.rank());
     all.size = std::max(all.placed, std::uint64_t{capacity});
-    std::uint64_t const room = all.size - all.placed;
-    all.first_free = all.placed + room * rank / ranks;
-    all.free_size = all.placed + room * (rank + 1) / ranks - all.first_free;
+    share_free(all);
     together(ranks_, [&] {
       detail::check_particles<columns>(true, all.placed, all.size);
-      starts_.resize(static_cast<std::size_t>(ranks) + 1);
+      starts_.resize(static_cast<std::size_t>(ranks_.size()) + 1);
     });
     ranks_.all_gather(&all.first, sizeof all.first, starts_.data());
     starts_.back() = all.placed;
@@ -107,6 +112,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       if constexpr (meets) exchange_.unpack(part_);
       part_.end_step(dt);
     });
+    if (size() != 0) reverse_order_ = !reverse_order_;
   }
 
   /// Advances `n` times by `dt`; throws what `step` throws.
@@ -152,6 +158,21 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     return found;
   }
 
+  /// What the particles of all ranks give to each body; see `reaction_sums::read`. Waits.
+  std::vector<body_impulse> total(reaction_sums const& mine) const {
+    std::vector<std::int64_t> counts;
+    std::vector<std::uint64_t> own, all;
+    together(ranks_, [&] {
+      counts = mine.counts(local().space());
+      own.assign(counts.begin(), counts.end());
+      all.resize(own.size());
+    });
+    ranks_.reduce(own.data(), all.data(), all.size(), reduction::sum);
+    std::vector<body_impulse> found;
+    together(ranks_, [&] { found = mine.impulses({all.begin(), all.end()}); });
+    return found;
+  }
+
   /// The parameters of an effect, which may be changed between steps, on all ranks alike.
   template <class E>
   E& effect() {
@@ -167,9 +188,19 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   execution_space& space() { return part_.space(); }
 
  private:
+  friend class detail::distributed_checkpoint<distributed>;
+
   struct radii {
     S common, largest, widest;
   };
+
+  /// Says with which free places this rank begins.
+  void share_free(detail::numbers_of_all& all) const {
+    auto const ranks = static_cast<std::uint64_t>(ranks_.size()), rank = static_cast<std::uint64_t>(ranks_.rank());
+    std::uint64_t const room = all.size - all.placed;
+    all.first_free = all.placed + room * rank / ranks;
+    all.free_size = all.placed + room * (rank + 1) / ranks - all.first_free;
+  }
 
   /// Radii of the particles of all ranks. Throws `error` on all if there must be one, but there are several.
   radii radii_of_all(sphere_view<S> const& mine) const {
@@ -213,6 +244,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   Ranks ranks_;
   part_type part_;
   detail::particle_exchange<part_type> exchange_;
+  bool reverse_order_ = false;         ///< of one rank's next step, for checkpoints
   std::vector<std::uint64_t> starts_;  ///< numbers of the first particles that ranks have set, and one behind the last
 };
 

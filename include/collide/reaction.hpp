@@ -96,25 +96,37 @@ class reaction_sums {
   /// What each body has got since `clear`, and last what rests. Over the time since then it is the mean force. Waits.
   template <class Space>
   std::vector<body_impulse> read(Space const& space) const {
+    return impulses(counts(space));
+  }
+
+  /// What each body has got, and last what rests, as multiples of the unit: six numbers each. Those of several ranks
+  /// may be added. Waits.
+  template <class Space>
+  std::vector<std::int64_t> counts(Space const& space) const {
     std::vector<detail::impulse_counts> all((bodies_ + 1) * reaction::copies);
     space.copy_to_host(all.data(), sums_.data(), all.size());
-    std::vector<body_impulse> found;
-    for (std::size_t b = 1; b <= bodies_ + 1; ++b)
-      found.push_back(sum_of(all.data() + b % (bodies_ + 1) * reaction::copies));
+    std::vector<std::int64_t> found(6 * (bodies_ + 1));
+    for (std::size_t b = 0; b <= bodies_; ++b) {
+      auto const* const of = all.data() + (b + 1) % (bodies_ + 1) * reaction::copies;
+      for (std::size_t i = 0; i < reaction::copies; ++i) {
+        for (std::size_t k = 0; k < 6; ++k) found[6 * b + k] += of[i].count[k];
+      }
+    }
+    return found;
+  }
+  /// What `counts` are, in units of impulse.
+  std::vector<body_impulse> impulses(std::vector<std::int64_t> const& counts) const {
+    std::vector<body_impulse> found(counts.size() / 6);
+    for (std::size_t b = 0; b < found.size(); ++b) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        found[b].linear[k] = static_cast<double>(counts[6 * b + k]) * unit_;
+        found[b].angular[k] = static_cast<double>(counts[6 * b + 3 + k]) * unit_;
+      }
+    }
     return found;
   }
 
  private:
-  body_impulse sum_of(detail::impulse_counts const* of) const {
-    body_impulse s;
-    for (int k = 0; k < 6; ++k) {
-      std::int64_t n = 0;
-      for (std::size_t i = 0; i < reaction::copies; ++i) n += of[i].count[k];
-      (k < 3 ? s.linear[k] : s.angular[k - 3]) = static_cast<double>(n) * unit_;
-    }
-    return s;
-  }
-
   std::size_t bodies_;
   double unit_;
   buffer<detail::impulse_counts> sums_;

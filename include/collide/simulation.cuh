@@ -74,13 +74,11 @@ class simulation {
       : space_(std::move(space)), options_(std::move(options)), effects_(Effect()...) {}
 
   /// With parameters of all effects, in the order of the list.
-  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
-                                                 std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
+  template <class... E, class = std::enable_if_t<detail::are_all_of<std::tuple<Effect...>, E...>>>
   explicit simulation(execution_space space, E... effects)
       : space_(std::move(space)), effects_(std::move(effects)...) {}
   /// With options of the broad phase, and parameters of all effects, in the order of the list.
-  template <class... E, class = std::enable_if_t<(sizeof...(E) > 0) &&
-                                                 std::is_same<std::tuple<E...>, std::tuple<Effect...>>::value>>
+  template <class... E, class = std::enable_if_t<detail::are_all_of<std::tuple<Effect...>, E...>>>
   simulation(execution_space space, broad_phase options, E... effects)
       : space_(std::move(space)), options_(std::move(options)), effects_(std::move(effects)...) {}
 
@@ -246,8 +244,8 @@ class simulation {
   static constexpr bool has_begin_step = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
   template <class Triangles>
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
-  struct no_lists {};
-  using neighbour_lists = std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, no_lists>;
+  using neighbour_lists =
+      std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, detail::null_ref>;
   /// What a step asks for the triangles near a particle.
   auto lookup([[maybe_unused]] S dt) const {
     if constexpr (effects_type::touches) {
@@ -312,11 +310,11 @@ class simulation {
     advance_bodies(0, true);
     if constexpr (effects_type::touches) {
       constexpr bool is_part = detail::contains<columns, global_number>;  // others come from other ranks
-      std::size_t const n = is_part ? detail::larger(state_.size, std::size_t{1}) : state_.size;
+      std::size_t const n = detail::larger(state_.size, std::size_t{is_part});
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_tuning<execution_space> there(space_);
       bool const tiny = largest_radius_ >= 0 && largest_radius_ < least_radius_;
-      S const most = tiny ? least_radius_ : largest_radius_;
+      S const most = detail::larger(largest_radius_, least_radius_);
       index_.prepare(there, options_, tiny || is_part ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }
   }

@@ -32,7 +32,7 @@ LAYERS = {
     "effects": "absorb.hpp bounce.hpp bounds.hpp contact_forces.hpp drag.hpp emit.hpp friction.hpp gravity.hpp lost_motion.hpp polydisperse.hpp reaction.hpp sleep.hpp "
                "sphere_contact.hpp spin.hpp adhesion.hpp wind.hpp",
     "streaming": "detail/streaming/ streamed.cuh",
-    "ranks": "detail/ranks/ distributed.hpp distributed_simulation.cuh mpi.hpp ranks.hpp thread_ranks.hpp",
+    "ranks": "detail/ranks/ distributed.hpp distributed_checkpoint.hpp distributed_simulation.cuh mpi.hpp ranks.hpp thread_ranks.hpp",
 }
 
 

@@ -16,6 +16,7 @@
 #include <collide/emit.hpp>
 #include <collide/friction.hpp>
 #include <collide/gravity.hpp>
+#include <collide/reaction.hpp>
 #include <collide/sleep.hpp>
 #include <collide/spin.hpp>
 #include <collide/wind.hpp>
@@ -254,6 +255,33 @@ inline auto endless_radius() {
   scene.name = "endless radius";
   scene.w.radius = std::numeric_limits<float>::infinity();
   return scene;
+}
+
+/// What the particles of all ranks give to bodies is what those of one do.
+template <class Ranks>
+void check_reaction(Ranks const& ranks, complaints& wrong) {
+  using namespace collide;
+  using scene = simulation<discrete<float>, gravity, bounce, moving_bodies<>, box_walls, reaction>;
+  auto w = packed_cube<float>(300, 0.05, 0.4);
+  w.triangle({-2, -2, -0.5, 2, -2, -0.5, 0, 3, -0.5});
+  w.triangle({-2, -2, -1, 2, -2, -1, 0, 3, -1});
+  body plate{0, 1, {}};
+  plate.motion.amplitude[2] = 0.2;
+  plate.motion.frequency = 3;
+  box_walls const walls{{-1, -1, -2}, {1, 1, 2}, 1};
+  auto const play = [&](auto& parts, range own) {
+    parts.set_mesh(triangle_soup(w.corners.data(), 2), {plate});
+    parts.set(spheres_of(w, own), w.velocities.data() + 3 * own.first);
+    parts.steps(200, 2e-3f);
+  };
+  host const space(1);
+  reaction_sums const of_one(space, 1, 1e-9), mine(space, 1, 1e-9);
+  scene one(space, gravity{}, bounce{0.5}, moving_bodies<>{}, walls, of_one.effect(1000));
+  play(one, {0, w.size()});
+  distributed<scene, Ranks> parts(ranks, space, gravity{}, bounce{0.5}, moving_bodies<>{}, walls, mine.effect(1000));
+  play(parts, part_of(w.size(), split::evenly, ranks.rank(), ranks.size()));
+  auto const expected = of_one.read(space), found = parts.total(mine);
+  wrong.expect(equal_bytes(found, expected) && expected[0].linear[2] < 0, "what bodies have got");
 }
 
 // ---- what goes wrong

@@ -55,12 +55,13 @@ TEST_CASE("simulations on ranks: particles that are nowhere, at one point, endle
   check_on_threads(tests::endless_radius());
 }
 
-TEST_CASE("simulations on ranks: short memory, and what makes no sense") {
+TEST_CASE("simulations on ranks: short memory, what makes no sense, and what bodies get") {
   for (int const n : {1, 2, 3}) {
     std::vector<tests::complaints> wrong(static_cast<std::size_t>(n));
     collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
       auto& mine = wrong[static_cast<std::size_t>(ranks.rank())];
       tests::check_short_memory_of_simulations(ranks, mine);
+      tests::check_reaction(ranks, mine);
       tests::check_refusals(ranks, mine);
     });
     for (auto const& w : wrong) CHECK(w.text() == "");

@@ -8,103 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/ranks/divided_mesh.hpp>
+#include <collide/detail/ranks/particle_places.hpp>
 #include <collide/detail/ranks/particle_rows.hpp>
 #include <collide/simulation.cuh>
 
 namespace collide::detail {
-
-/// Effect: particles know their numbers among those of all ranks.
-struct on_ranks {
-  using reads = columns<global_number>;
-};
-
-template <class E, class = void>
-inline constexpr bool begins_on_ranks = false;
-template <class E>
-inline constexpr bool begins_on_ranks<E, std::void_t<decltype(E::begins_on_ranks)>> = E::begins_on_ranks;
-
-/// Refuses an effect that would do something else on ranks than on one.
-template <class E, class Space, class State, class S>
-constexpr bool check_on_ranks() {
-  static_assert(!begins_in<E, Space, State, S>::value || begins_on_ranks<E>,
-                "collide: an effect's begin_step sees the places of one rank alone: if it does the same to particles "
-                "wherever they are, the effect says static constexpr bool begins_on_ranks = true");
-  return true;
-}
-
-/// What all ranks know of the particles of all when these are set.
-struct numbers_of_all {
-  std::uint64_t first;                  ///< number of this rank's first particle
-  std::uint64_t placed, size;           ///< particles, and places for them, on all ranks
-  std::uint64_t first_free, free_size;  ///< the free places that this rank begins with
-};
-
-/// Kernel body of `for_each` over spheres: their radii.
-template <class S>
-struct copy_radii {
-  sphere_view<S> spheres;
-  S* to;
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = spheres.radius(i); }
-};
-
-/// Kernel body of `for_each` over places: numbers them.
-template <class S, class State>
-struct number_places {
-  State state;
-  std::size_t placed;
-  std::uint64_t first, first_free;
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    bool const is_free = i >= placed;
-    state.at(global_number{})[i] = static_cast<id>(is_free ? first_free + (i - placed) : first + i);
-    if constexpr (contains<typename State::list, radius>) {
-      if (is_free) state.at(radius{})[i] = state.common_radius;
-    }
-  }
-};
-
-/// Where particles were, and whether they were there, when ranks last exchanged some.
-template <class S>
-struct last_places {
-  S* centres;
-  std::uint8_t* there;
-};
-
-/// Kernel body of `for_each` over particles: keeps where they are.
-template <class S, class State>
-struct keep_places {
-  State state;
-  last_places<S> last;
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    for (std::size_t k = 0; k < 3; ++k) last.centres[3 * i + k] = state.at(position{})[3 * i + k];
-    if constexpr (contains<typename State::list, alive>) last.there[i] = state.at(alive{})[i];
-  }
-};
-
-/// Kernel body of `for_each` over particles: sets a flag if one has come, or moved too far.
-template <class S, class State>
-struct find_moved {
-  State state;
-  last_places<S> last;
-  S most;
-  std::uint32_t* flag;
-
-  COLLIDE_HD void operator()(std::size_t i) const {
-    if constexpr (contains<typename State::list, alive>) {
-      if (state.at(alive{})[i] == 0) return;
-      if (last.there[i] == 0) return store_relaxed(flag, 1u);
-    }
-    S const *const x = state.at(position{}) + 3 * i, *const before = last.centres + 3 * i;
-    vec3<S> const now(x[0], x[1], x[2]);
-    if (!is_finite(now)) return;
-    vec3<S> const moved(now.x() - before[0], now.y() - before[1], now.z() - before[2]);
-    bool const stayed = is_finite(moved) && dot(moved, moved) <= mul(most, most);
-    if (!stayed) store_relaxed(flag, 1u);
-  }
-};
 
 /// Runs the simulation of a rank. Its own particles come first in memory, in any order: neighbours meet by their
 /// numbers among all.
@@ -136,17 +45,50 @@ class part_of_simulation {
   /// The radii are those of all particles; `widest` is the largest one without its sign.
   void set(sphere_view<S> const& particles, S const* velocities, numbers_of_all const& all, S common, S largest,
            S widest) {
-    std::size_t const n = particles.size(), room = n + static_cast<std::size_t>(all.free_size);
-    capacity_ = larger(room, std::size_t{1});
+    std::size_t const n = particles.size();
+    capacity_ = larger(n + static_cast<std::size_t>(all.free_size), std::size_t{1});
     simulation_.place(particles, velocities, capacity_);
-    describe(room, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), common);
-    space().for_each(room, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free});
-    simulation_.largest_radius_ = largest;
-    skin_ = skin_fraction * 2 * widest;
-    reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
-    copies_ = 0;
-    knows_others_ = false;
+    start(n, all, common, largest, widest);
     simulation_.prepare();
+  }
+
+  /// What a checkpoint has of the simulation of all, besides columns, effects and bodies.
+  template <class Numbers>
+  Numbers saved_numbers_of_all(bool reverse_order) const {
+    auto const& s = simulation_;
+    Numbers numbers{s.mesh_.size(), s.state_.all_size, s.state_.all_placed, s.state_.common_radius, S(0), s.time_, 0,
+                    reverse_order};
+    if constexpr (meets || Simulation::sweeps || Simulation::has_bodies) numbers.largest_radius = s.largest_radius_;
+    if constexpr (Simulation::has_begin_step) numbers.device_time = s.space_.read(s.state_.time);
+    return numbers;
+  }
+  std::size_t triangles() const { return simulation_.mesh_.size(); }
+  effects_type const& effects() const { return simulation_.effects_; }
+
+  /// Takes particles, time, effects and bodies of a checkpoint: `mine` particles, and free places.
+  template <class Checkpoint>
+  void restore(Checkpoint const& saved, std::size_t mine, numbers_of_all const& all) {
+    auto const& numbers = saved.numbers();
+    S largest = larger(numbers.largest_radius, numbers.common_radius), widest = largest < 0 ? -largest : largest;
+    if constexpr (contains<all_columns, radius>) {
+      for (S const r : saved.template column<radius>()) {
+        largest = larger(largest, r);
+        widest = larger(widest, r < 0 ? -r : r);
+      }
+    }
+    auto const free = static_cast<std::size_t>(all.free_size);
+    capacity_ = larger(mine + free, std::size_t{1});
+    simulation_.place({}, nullptr, capacity_);
+    start(mine, all, numbers.common_radius, largest, widest);
+    auto const& state = simulation_.state_;
+    saved.restore_columns(space(), state, 0, static_cast<std::size_t>(all.first), mine);
+    saved.restore_columns(space(), state, mine, static_cast<std::size_t>(all.first_free), free);
+    if constexpr (Simulation::has_begin_step) space().copy_from_host(state.time, &numbers.device_time, 1);
+    saved.restore_parameters(simulation_);
+    simulation_.time_ = numbers.time;
+    simulation_.prepare();
+    saved.restore_bodies(simulation_);
+    space().synchronize();
   }
 
   bool is_set() const { return simulation_.is_set_; }
@@ -227,6 +169,18 @@ class part_of_simulation {
 
   void unpack(std::vector<std::uint32_t> const& places, rows<all_columns> const& from) {
     all_.unpack(space(), simulation_.state_, in_space(space(), places, place_memory_), 0, from);
+  }
+
+  /// Numbers the particles, of which `n` are this rank's, and free places behind them.
+  void start(std::size_t n, numbers_of_all const& all, S common, S largest, S widest) {
+    std::size_t const room = n + static_cast<std::size_t>(all.free_size);
+    describe(room, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), common);
+    space().for_each(room, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free});
+    simulation_.largest_radius_ = largest;
+    skin_ = skin_fraction * 2 * widest;
+    reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
+    copies_ = 0;
+    knows_others_ = false;
   }
 
   /// Moves the last particles to the places of those that have left, from the `filled`-th on.

@@ -15,6 +15,10 @@ class checkpoint;
 template <class Simulation>
 class part_of_simulation;
 
+/// True if `E` are the parameters of all effects, of which there are some.
+template <class Effects, class... E>
+inline constexpr bool are_all_of = sizeof...(E) > 0 && std::is_same<std::tuple<E...>, Effects>::value;
+
 /// True if `Rest` is nothing, or the parameters of all effects.
 template <class Effects, class... Rest>
 inline constexpr bool are_parameters = sizeof...(Rest) == 0 || std::is_same<std::tuple<Rest...>, Effects>::value;

@@ -11,7 +11,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <istream>
 #include <ostream>
 #include <string>
@@ -178,5 +180,45 @@ class checkpoint_reader {
   std::istream& from_;
   fnv1a checksum_;
 };
+
+/// A file that is written under the name `path` + ".part" until it is complete: an older one stays until then.
+class checkpoint_file {
+ public:
+  explicit checkpoint_file(std::string const& path)
+      : path_(path), part_(path + ".part"), file_(part_, std::ios::binary | std::ios::trunc) {
+    if (!file_) fail();
+  }
+  checkpoint_file(checkpoint_file const&) = delete;
+  checkpoint_file& operator=(checkpoint_file const&) = delete;
+  ~checkpoint_file() {
+    if (!is_complete_) std::remove(part_.c_str());
+  }
+
+  std::ostream& stream() { return file_; }
+  void complete() {
+    file_.close();
+    if (!file_ || std::rename(part_.c_str(), path_.c_str()) != 0) fail();
+    is_complete_ = true;
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw error("collide: save: " + path_ + " cannot be written"); }
+
+  std::string path_, part_;
+  std::ofstream file_;
+  bool is_complete_ = false;
+};
+
+/// What read(stream) makes of a file, which has nothing else in it.
+template <class Read>
+auto read_checkpoint_file(std::string const& path, Read const& read) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw error("collide: load: " + path + " cannot be read");
+  auto found = read(file);
+  if (file.peek() != std::ifstream::traits_type::eof()) {
+    throw error("collide: load: " + path + " goes on behind the checkpoint");
+  }
+  return found;
+}
 
 }  // namespace collide::detail

@@ -1,0 +1,108 @@
+/// \file
+/// Where the particles of a rank are, which they are of all, and whether they have moved.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/simulation/effect_list.hpp>
+#include <collide/spheres.hpp>
+
+namespace collide::detail {
+
+/// Effect: particles know their numbers among those of all ranks.
+struct on_ranks {
+  using reads = columns<global_number>;
+};
+
+template <class E, class = void>
+inline constexpr bool begins_on_ranks = false;
+template <class E>
+inline constexpr bool begins_on_ranks<E, std::void_t<decltype(E::begins_on_ranks)>> = E::begins_on_ranks;
+
+/// Refuses an effect that would do something else on ranks than on one.
+template <class E, class Space, class State, class S>
+constexpr bool check_on_ranks() {
+  static_assert(!begins_in<E, Space, State, S>::value || begins_on_ranks<E>,
+                "collide: an effect's begin_step sees the places of one rank alone: if it does the same to particles "
+                "wherever they are, the effect says static constexpr bool begins_on_ranks = true");
+  return true;
+}
+
+/// What all ranks know of the particles of all when these are set.
+struct numbers_of_all {
+  std::uint64_t first;                  ///< number of this rank's first particle
+  std::uint64_t placed, size;           ///< particles, and places for them, on all ranks
+  std::uint64_t first_free, free_size;  ///< the free places that this rank begins with
+};
+
+/// Kernel body of `for_each` over spheres: their radii.
+template <class S>
+struct copy_radii {
+  sphere_view<S> spheres;
+  S* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = spheres.radius(i); }
+};
+
+/// Kernel body of `for_each` over places: numbers them.
+template <class S, class State>
+struct number_places {
+  State state;
+  std::size_t placed;
+  std::uint64_t first, first_free;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    bool const is_free = i >= placed;
+    state.at(global_number{})[i] = static_cast<id>(is_free ? first_free + (i - placed) : first + i);
+    if constexpr (contains<typename State::list, radius>) {
+      if (is_free) state.at(radius{})[i] = state.common_radius;
+    }
+  }
+};
+
+/// Where particles were, and whether they were there, when ranks last exchanged some.
+template <class S>
+struct last_places {
+  S* centres;
+  std::uint8_t* there;
+};
+
+/// Kernel body of `for_each` over particles: keeps where they are.
+template <class S, class State>
+struct keep_places {
+  State state;
+  last_places<S> last;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    for (std::size_t k = 0; k < 3; ++k) last.centres[3 * i + k] = state.at(position{})[3 * i + k];
+    if constexpr (contains<typename State::list, alive>) last.there[i] = state.at(alive{})[i];
+  }
+};
+
+/// Kernel body of `for_each` over particles: sets a flag if one has come, or moved too far.
+template <class S, class State>
+struct find_moved {
+  State state;
+  last_places<S> last;
+  S most;
+  std::uint32_t* flag;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if constexpr (contains<typename State::list, alive>) {
+      if (state.at(alive{})[i] == 0) return;
+      if (last.there[i] == 0) return store_relaxed(flag, 1u);
+    }
+    S const *const x = state.at(position{}) + 3 * i, *const before = last.centres + 3 * i;
+    vec3<S> const now(x[0], x[1], x[2]);
+    if (!is_finite(now)) return;
+    vec3<S> const moved(now.x() - before[0], now.y() - before[1], now.z() - before[2]);
+    bool const stayed = is_finite(moved) && dot(moved, moved) <= mul(most, most);
+    if (!stayed) store_relaxed(flag, 1u);
+  }
+};
+
+}  // namespace collide::detail

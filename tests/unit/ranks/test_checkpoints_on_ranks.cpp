@@ -1,0 +1,111 @@
+/// Simulations on ranks that are saved and loaded, on the host.
+#include <sstream>
+
+#include <collide/distributed_checkpoint.hpp>
+#include <collide/thread_ranks.hpp>
+
+#include "ranks/simulations.hpp"
+
+namespace {
+
+template <class Scene, class Simulation>
+void set_scene(Simulation& parts, Scene const& scene, tests::range own) {
+  parts.set(tests::spheres_of(scene.w, own), scene.w.velocities.data() + 3 * own.first, scene.capacity);
+}
+template <class Scene, class Simulation>
+void set_mesh(Simulation& parts, Scene const& scene) {
+  parts.set_mesh(collide::triangle_soup(scene.w.corners.data(), scene.w.corners.size() / 9), scene.bodies);
+}
+
+/// What ranks save is what one saves; one, and any number of ranks, go on from it.
+template <class Scene>
+void check_checkpoints(Scene const& scene) {
+  using simulation = typename Scene::simulation;
+  std::apply(
+      [&](auto const&... effects) {
+        auto const half = static_cast<std::size_t>(scene.steps / 2);
+        std::ostringstream saved, end;
+        simulation one(collide::host(1), effects...);
+        set_mesh(one, scene);
+        set_scene(one, scene, {0, scene.w.size()});
+        one.steps(half, scene.dt);
+        collide::save(one, saved);
+        one.steps(half, scene.dt);
+        collide::save(one, end);
+        for (int const n : {1, 2, 5}) {
+          CAPTURE(n);
+          std::ostringstream from_start, at_end;
+          collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
+            auto const own = tests::part_of(scene.w.size(), tests::split::odd, ranks.rank(), n);
+            collide::distributed<simulation, collide::thread_ranks> parts(ranks, collide::host(1), effects...);
+            set_mesh(parts, scene);
+            set_scene(parts, scene, own);
+            parts.steps(half, scene.dt);
+            collide::save(parts, from_start);
+            collide::distributed<simulation, collide::thread_ranks> later(ranks, collide::host(1));
+            set_mesh(later, scene);
+            std::istringstream before(saved.str());
+            collide::load(later, before);
+            later.steps(half, scene.dt);
+            collide::save(later, at_end);
+          });
+          CHECK((from_start.str() == saved.str()));
+          CHECK((at_end.str() == end.str()));
+        }
+      },
+      scene.effects);
+}
+
+/// What all ranks throw.
+template <class F>
+std::string thrown(F const& f) {
+  try {
+    collide::thread_ranks::run(3, f);
+  } catch (std::exception const& e) {
+    return e.what();
+  }
+  return "nothing";
+}
+
+}  // namespace
+
+TEST_CASE("checkpoints on ranks: what one rank saves others go on from") {
+  check_checkpoints(tests::snow());
+  check_checkpoints(tests::dust());
+  check_checkpoints(tests::sizes_that_repeat());
+  check_checkpoints(tests::piston_and_belt<collide::karabassi_swept<>>());
+}
+
+TEST_CASE("checkpoints on ranks: files, and what is refused") {
+  using parts_type =
+      collide::distributed<collide::simulation<tests::discrete<float>, collide::sphere_contact>, collide::thread_ranks>;
+  std::string const path = "checkpoint_on_ranks.tmp";
+  float const centre[] = {0, 0, 0};
+  collide::thread_ranks::run(3, [&](collide::thread_ranks const& ranks) {
+    parts_type parts(ranks, collide::host(1));
+    parts.set(collide::spheres_xyz(centre, 1, 0.1f));
+    parts.step(0.001f);
+    collide::save(parts, path);
+    parts_type later(ranks, collide::host(1));
+    collide::load(later, path);
+    collide::together(ranks, [&] {
+      if (later.size() != 3 || later.time() != parts.time()) throw collide::error("something else was loaded");
+    });
+    later.step(0.001f);
+  });
+  CHECK(thrown([&](collide::thread_ranks const& ranks) {
+          parts_type parts(ranks, collide::host(1));
+          collide::save(parts, path);
+        }) == "collide: save: the simulation has no particles: call set before it");
+  CHECK(thrown([&](collide::thread_ranks const& ranks) {
+          parts_type parts(ranks, collide::host(1));
+          parts.set(collide::spheres_xyz(centre, 1, 0.1f));
+          collide::save(parts, "no/such/folder");
+        }) == "collide: save: no/such/folder cannot be written");
+  CHECK(thrown([&](collide::thread_ranks const& ranks) {
+          parts_type parts(ranks, collide::host(1));
+          collide::load(parts, "no/such/file");
+        }) == "collide: load: no/such/file cannot be read");
+  CHECK(std::ifstream(path + ".part").fail());
+  std::remove(path.c_str());
+}
