@@ -121,7 +121,7 @@ def glossary():
 def english():
     """Of pages for users: not of the laboratory's, those of the reference, and what scripts have written."""
     for page in PAGES:
-        if page.name in ("CHANGELOG.md", "CONTRIBUTING.md") or page.parent.name in ("development", "api"):
+        if page.name in ("CHANGELOG.md", "CONTRIBUTING.md") or page.parent.name in ("api",):
             continue
         blank = lambda match: "\n" * match[0].count("\n")
         text = re.sub(r"<!-- table: .*?<!-- end -->|^```.*?^```|<!-- [^\n]*? -->", blank, page.read_text(), flags=re.M | re.S)
