@@ -13,6 +13,10 @@ namespace {
 
 using wide = Eigen::Vector3d;
 
+wide product(wide const& a, wide const& b) {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+}
+
 /// Distance of a point from a triangle: the least of its vertices, edges and face.
 double distance_to(wide const& p, wide const (&v)[3]) {
   double least = 1e300;
@@ -21,10 +25,10 @@ double distance_to(wide const& p, wide const (&v)[3]) {
     double const length = along.squaredNorm(), t = length > 0 ? std::clamp((p - from).dot(along) / length, 0., 1.) : 0;
     least = std::min(least, (from + t * along - p).norm());
   }
-  wide const n = (v[1] - v[0]).cross(v[2] - v[0]);
+  wide const n = product(v[1] - v[0], v[2] - v[0]);
   if (n.squaredNorm() == 0) return least;
   for (int i = 0; i < 3; ++i) {
-    if ((v[(i + 1) % 3] - v[i]).cross(p - v[i]).dot(n) < 0) return least;
+    if (product(v[(i + 1) % 3] - v[i], p - v[i]).dot(n) < 0) return least;
   }
   return std::min(least, std::abs((p - v[0]).dot(n)) / n.norm());
 }
