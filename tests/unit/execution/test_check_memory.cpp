@@ -48,7 +48,7 @@ TEST_CASE("check memory: every array of a mesh and of spheres is looked at") {
 }
 
 TEST_CASE("check memory: what is empty may point anywhere") {
-  float const nothing = 0;
-  CHECK(refusal(collide::triangle_soup(&nothing, 0), &nothing) == "");
-  CHECK(refusal(collide::spheres_xyz(&nothing, 0, 1.f), &nothing) == "");
+  float const nothing[3] = {};
+  CHECK(refusal(collide::triangle_soup(nothing, 0), nothing) == "");
+  CHECK(refusal(collide::spheres_xyz(nothing, 0, 1.f), nothing) == "");
 }
