@@ -17,3 +17,7 @@ html_css_files = ["collide.css"]
 html_show_sphinx = False
 html_copy_source = False
 html_show_copyright = False
+
+# scripts/site --external
+linkcheck_anchors = False  # GitHub's pages make theirs in the browser
+linkcheck_timeout = 20

@@ -5,7 +5,7 @@ code      The first block of C++ in the README is examples/minimal.cpp, and ever
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md is in the file, or in the folder, that it is said to be in; words are in order.
-english   Pages for users have none of the words of FOREIGN, and no line of text longer than LONGEST.
+english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST.
 numbers   Times and rates in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
@@ -48,6 +48,10 @@ FOREIGN = {
     r"us\b(?= (a|each|of|for|per|in|on) )|(?<=\d )us": "µs",
     r"times the floor": "times the bandwidth bound",
     r"some \d[\d,.]*": "about",
+    r"open pairs": "uncertain pairs",
+    r"lists? of neighbours": "neighbour list",
+    r"lanes?": "thread",
+    r"made anew": "rebuilt",
 }
 LONGEST = 120
 
@@ -119,9 +123,9 @@ def glossary():
 
 
 def english():
-    """Of pages for users: not of the laboratory's, those of the reference, and what scripts have written."""
+    """Of all pages but the reference, and not of what scripts have written."""
     for page in PAGES:
-        if page.name in ("CHANGELOG.md", "CONTRIBUTING.md") or page.parent.name in ("development", "api"):
+        if page.parent.name == "api":
             continue
         blank = lambda match: "\n" * match[0].count("\n")
         text = re.sub(r"<!-- table: .*?<!-- end -->|^```.*?^```|<!-- [^\n]*? -->", blank, page.read_text(), flags=re.M | re.S)

@@ -1,4 +1,5 @@
 /// Parts of cells, against intervals of steps.
+#include <algorithm>
 #include <cstdint>
 #include <random>
 
@@ -57,4 +58,36 @@ TEST_CASE("cell coverage: a box and what may be in a part of the cell meet if th
   }
   CHECK(meetings > 10000);
   CHECK(meetings < 90000);
+}
+
+TEST_CASE("cell coverage: all intervals of one axis, beside whole ones on the others") {
+  using collide::detail::cell_coverage;
+  constexpr std::uint32_t first = cell_coverage::first, last = cell_coverage::last, before = cell_coverage::before;
+  auto const everywhere = [&](int axis) {
+    return cell_coverage::encode_query(first, last, (axis + 1) % 3) |
+           cell_coverage::encode_query(first, last, (axis + 2) % 3);
+  };
+  auto const whole = [&](int axis) {
+    return cell_coverage::encode_box(before, last, (axis + 1) % 3) |
+           cell_coverage::encode_box(before, last, (axis + 2) % 3);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    CHECK((whole(axis) | cell_coverage::encode_box(before, last, axis)) == cell_coverage::full_box);
+    CHECK((everywhere(axis) | cell_coverage::encode_query(first, last, axis)) == cell_coverage::full_query);
+    for (std::uint32_t from = before; from <= last; ++from) {
+      for (std::uint32_t to = std::max(from, first); to <= last; ++to) {
+        std::uint32_t const part = whole(axis) | cell_coverage::encode_box(from, to, axis);
+        CHECK(cell_coverage::overlaps(part, cell_coverage::full_query));
+        CHECK(cell_coverage::starts_in_earlier_cell(part, cell_coverage::axis(axis)) == (from == before));
+        CHECK_FALSE(cell_coverage::starts_in_earlier_cell(part, 0));
+        for (std::uint32_t a = first; a <= last; ++a) {
+          for (std::uint32_t b = a; b <= last; ++b) {
+            std::uint32_t const place = everywhere(axis) | cell_coverage::encode_query(a, b, axis);
+            CHECK(cell_coverage::overlaps(part, place) == (a <= to && b >= from));
+            CHECK(cell_coverage::overlaps(cell_coverage::full_box, place));
+          }
+        }
+      }
+    }
+  }
 }

@@ -1,3 +1,5 @@
+from spack_repo.builtin.build_systems.cmake import CMakePackage
+
 from spack.package import *
 
 

@@ -1,0 +1,54 @@
+/// How many grids and cells a memory budget allows.
+#include <algorithm>
+#include <cstddef>
+
+#include <doctest/doctest.h>
+
+#include <collide/detail/grid/memory_plan.hpp>
+
+using collide::detail::memory_plan;
+using collide::detail::table_size;
+
+namespace {
+
+/// What the tables and the entries of a plan take.
+std::size_t bytes_of(memory_plan const& plan) {
+  if (plan.grids == 0) return 0;
+  return table_size(static_cast<std::size_t>(plan.grids) << plan.table_bits) * sizeof(collide::detail::item_range) +
+         plan.entries * sizeof(collide::detail::cell_item);
+}
+
+}  // namespace
+
+TEST_CASE("memory plan: within the budget, and no fewer grids or cells with a larger one") {
+  for (std::size_t triangles : {std::size_t{1}, std::size_t{1000}, std::size_t{1000000}}) {
+    for (std::size_t spheres : {std::size_t{0}, std::size_t{100000}, std::size_t{100000000}}) {
+      for (bool is_width_given : {false, true}) {
+        memory_plan before;
+        for (std::size_t budget = 64; budget < (std::size_t{1} << 36); budget *= 2) {
+          std::size_t const fixed = 40;
+          auto const plan = memory_plan::make(triangles, spheres, 4, is_width_given, fixed, budget);
+          CHECK(plan.grids <= 4);
+          if (plan.grids != 0) {
+            CHECK(fixed + bytes_of(plan) <= budget);
+            CHECK(plan.entries >=
+                  8 * triangles * static_cast<std::size_t>(plan.grids));  // a small triangle is in 8 cells
+          }
+          CHECK(plan.grids >= before.grids);
+          if (plan.grids == before.grids) CHECK(plan.table_bits >= before.table_bits);
+          before = plan;
+        }
+        auto const free = memory_plan::make(triangles, spheres, 4, is_width_given, 40, 0);
+        CHECK(free.grids == 4);
+        CHECK(free.table_bits >= before.table_bits);
+      }
+    }
+  }
+}
+
+TEST_CASE("memory plan: too little memory, or too many triangles for numbers of 32 bits, is no grid") {
+  CHECK(memory_plan::make(1000, 0, 4, false, 0, 1000).grids == 0);
+  CHECK(memory_plan::make(1000, 0, 4, false, 1 << 20, 1 << 20).grids == 0);
+  CHECK(memory_plan::make(536870911, 0, 1, false, 0, 0).grids == 1);
+  CHECK(memory_plan::make(536870912, 0, 1, false, 0, 0).grids == 0);
+}

@@ -1,0 +1,117 @@
+/// What a pass over a mesh, or over radii, finds, against plain loops.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/host.hpp>
+
+#include "execution/lockstep.hpp"
+
+using namespace collide::detail;
+
+namespace {
+
+/// Triangles of all sizes, some with a number that is not finite.
+template <class S>
+std::vector<S> triangles(std::size_t n) {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<S> all;
+  for (std::size_t i = 0; i < n; ++i) {
+    double const size = std::exp2(20 * uniform(engine)), at[3] = {uniform(engine), uniform(engine), uniform(engine)};
+    for (int k = 0; k < 9; ++k) all.push_back(static_cast<S>(100 * at[k % 3] + size * uniform(engine)));
+    if (i % 17 == 3)
+      all[9 * i + i % 9] = i % 2 == 0 ? std::numeric_limits<S>::infinity() : std::numeric_limits<S>::quiet_NaN();
+  }
+  return all;
+}
+
+template <class S, class Space>
+void check(Space space, std::size_t n) {
+  auto const all = triangles<S>(n);
+  auto const mesh = collide::triangle_soup(all.data(), n);
+  mesh_statistics<S> seen;
+  std::vector<triangle_aabb<S>> boxes(n);
+  mesh_statistics<S>::clear(space, &seen);
+  compute_mesh_statistics<S> const body{mesh, &seen, boxes.data()};
+  space.launch(grid_size<Space>(n, body), body);
+
+  constexpr S infinity = std::numeric_limits<S>::infinity();
+  S lower[3] = {infinity, infinity, infinity}, upper[3] = {-infinity, -infinity, -infinity}, largest = 0;
+  std::vector<std::uint64_t> counts(size_bins, 0);
+  std::vector<double> areas(size_bins, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    S const* const t = all.data() + 9 * i;
+    CHECK(boxes[i].is_empty() == !std::all_of(t, t + 9, [](S x) { return std::isfinite(x); }));
+    if (boxes[i].is_empty()) continue;
+    S extent = 0;
+    for (int k = 0; k < 3; ++k) {
+      S const least = std::min({t[k], t[3 + k], t[6 + k]}), most = std::max({t[k], t[3 + k], t[6 + k]});
+      CHECK(boxes[i].lower[k] == least);
+      CHECK(boxes[i].upper[k] == most);
+      lower[k] = std::min(lower[k], least);
+      upper[k] = std::max(upper[k], most);
+      extent = std::max(extent, most - least);
+      largest = std::max({largest, most, -least});
+    }
+    auto const bin = size_bin(extent);
+    double const u[3] = {double(t[3]) - t[0], double(t[4]) - t[1], double(t[5]) - t[2]},
+                 v[3] = {double(t[6]) - t[0], double(t[7]) - t[1], double(t[8]) - t[2]};
+    ++counts[bin];
+    areas[bin] += std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
+  }
+  CHECK(seen.largest_coordinate() == largest);
+  if (!seen.extents.empty()) {
+    for (int k = 0; k < 3; ++k) {
+      CHECK(seen.lower_of(k) == lower[k]);
+      CHECK(seen.upper_of(k) == upper[k]);
+    }
+  }
+  bool is_right = true;
+  for (std::uint32_t b = 0; b < size_bins; ++b) {
+    is_right = is_right && seen.extents.counts[b] == counts[b];
+    if (counts[b] == 0) continue;
+    double const unit =
+        static_cast<double>(bin_end(b)) * static_cast<double>(bin_end(b)) / 256;  // each is rounded to one
+    is_right = is_right && std::abs(static_cast<double>(seen.extents.sums[b]) - areas[b] / unit) <=
+                               0.51 * static_cast<double>(counts[b]);
+  }
+  CHECK(is_right);
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("mesh statistics: bounds, boxes, sizes and areas of the finite triangles", S, float, double) {
+  for (std::size_t n : {0u, 1u, 4u, 5u, 1000u}) {
+    check<S>(collide::host(1), n);
+    check<S>(collide::host(2), n);
+    check<S>(tests::lockstep<8, false>(), n);
+    check<S>(tests::lockstep<8, true>(), n);
+  }
+}
+
+TEST_CASE_TEMPLATE("mesh statistics: a histogram of the radii that are valid", S, float, double) {
+  std::vector<S> radii, centres;
+  for (int i = 0; i < 1000; ++i) radii.push_back(static_cast<S>(std::exp2(i % 23 - 11)));
+  for (S bad : {S(-1), -std::numeric_limits<S>::infinity(), std::numeric_limits<S>::infinity(),
+                std::numeric_limits<S>::quiet_NaN()})
+    radii.insert(radii.begin() + 500, bad);
+  radii.push_back(S(0)), radii.push_back(S(-0.));
+  centres.resize(3 * radii.size());
+  auto const spheres = collide::spheres_xyz(centres.data(), radii.size(), radii.data());
+  size_histogram seen{};
+  radius_histogram_kernel<S> const body{spheres, &seen};
+  tests::lockstep<8, false> const space;
+  space.launch(grid_size<tests::lockstep<8, false>>(radii.size(), body), body);
+  std::vector<std::uint64_t> counts(size_bins, 0);
+  for (S r : radii) {
+    if (r >= 0 && std::isfinite(r)) ++counts[size_bin(r + S(0))];
+  }
+  CHECK(std::equal(counts.begin(), counts.end(), seen.counts));
+  CHECK(counts[0] == 2);
+}
