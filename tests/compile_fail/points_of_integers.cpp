@@ -1,0 +1,4 @@
+// expect: collide: points have coordinates of type float or double
+#include <collide/points.hpp>
+
+collide::point_view<int> none;
