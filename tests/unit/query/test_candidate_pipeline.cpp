@@ -1,5 +1,6 @@
 /// From candidates to hits in a sink, in blocks of one thread and of several.
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -111,7 +112,7 @@ TEST_CASE_TEMPLATE("candidate pipeline: what the filter leaves open goes to a li
   auto const where = centres();
   std::vector<collide::id> const hits = with_remainders({0}), open = with_remainders({2});
   for (std::size_t room : {std::size_t{0}, std::size_t{10}, n}) {
-    std::vector<collide::pair> found, later(n);
+    std::vector<collide::pair> found, later(n, {collide::no_id, collide::no_id});
     int allocations = 0;
     deferred_pairs::counters counters{0, 0};
     using output = deferring<counted_output>;
@@ -124,6 +125,8 @@ TEST_CASE_TEMPLATE("candidate pipeline: what the filter leaves open goes to a li
     push_all<Block>(pipeline);
     CHECK(spheres_of(found) == hits);
     CHECK(counters.total == open.size());
+    CHECK(std::all_of(later.begin() + static_cast<std::ptrdiff_t>(std::min(room, open.size())), later.end(),
+                      [](auto const& p) { return p.sphere == collide::no_id; }));
     later.resize(std::min(room, open.size()));
     auto const listed = spheres_of(later);
     CHECK(std::includes(open.begin(), open.end(), listed.begin(), listed.end()));
