@@ -49,8 +49,23 @@ void check_checkpoints(Scene const& scene) {
             later.steps(half, scene.dt);
             collide::save(later, at_end);
           });
-          CHECK((from_start.str() == saved.str()));
-          CHECK((at_end.str() == end.str()));
+          if (scene.bodies.empty()) {  // of which not all bytes mean something
+            CHECK((from_start.str() == saved.str()));
+            CHECK((at_end.str() == end.str()));
+          }
+          simulation alone(collide::host(1));
+          set_mesh(alone, scene);
+          std::istringstream before(from_start.str());
+          collide::load(alone, before);
+          alone.steps(half, scene.dt);
+          tests::values_of<simulation> expected, found, on_ranks;
+          expected.read(one);
+          found.read(alone);
+          CHECK(equal(found, expected));
+          std::istringstream last(at_end.str());
+          collide::load(alone, last);
+          on_ranks.read(alone);
+          CHECK(equal(on_ranks, expected));
         }
       },
       scene.effects);
