@@ -263,11 +263,14 @@ void on_ranks(film const& wish, F const& f) {
       if (wish.threads == 0) of_rank.threads = threads_for_each(n);
       return collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) { f(ranks, of_rank); });
     }
+    if (wish.ranks != "mpi") {
+      throw usage_error("--ranks: " + io::quoted(wish.ranks) + " is neither mpi nor threads:N, N from 1 to 1024");
+    }
 #if defined(COLLIDE_PROGRAM_HAS_MPI)
-    if (wish.ranks == "mpi") return f(collide::mpi_ranks(), wish);
+    f(collide::mpi_ranks(), wish);
+#else
+    throw usage_error("--ranks: this program was built without MPI");
 #endif
-    throw usage_error("--ranks: " + io::quoted(wish.ranks) +
-                      " is not threads:N, N from 1 to 1024, or mpi where that is");
   } else {
     throw usage_error("--ranks: works with --space host alone");
   }
