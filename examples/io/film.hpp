@@ -85,7 +85,7 @@ template <class Column, class Simulation>
 auto of_present(Simulation& simulation) {
   auto const present = simulation.template to_host<collide::alive>();
   auto values = simulation.template to_host<Column>();
-  constexpr auto width = std::size_t(collide::detail::column_layout<Column, float>::width);
+  constexpr std::size_t width = sizeof(typename Column::template value<float>) / sizeof(values[0]);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (present[i / width] != 0) values[kept++] = values[i];
