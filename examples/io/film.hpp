@@ -6,19 +6,25 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
 #include <collide/bucket.cuh>
-#include <collide/checkpoint.hpp>
+#include <collide/distributed_checkpoint.hpp>
 #include <collide/emit.hpp>
 #include <collide/simulation.cuh>
+#include <collide/thread_ranks.hpp>
 #include <collide/upload.hpp>
+#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#include <collide/mpi.hpp>
+#endif
 
 #include "device.hpp"
 #include "output.hpp"
 #include "program.hpp"
 #include "progress.hpp"
+#include "ranks.hpp"
 #include "scenes.hpp"
 #include "vtk.hpp"
 
@@ -34,7 +40,7 @@ struct film {
   double seconds;                       ///< of the scene's time
   double pouring = 1;                   ///< for which part of them there are new particles
   std::size_t frames = 100, until = 0;  ///< how many pictures there are, and after how many to stop; 0: after all
-  std::string space = "host", output = "", report = "", save = "", load = "";
+  std::string space = "host", output = "", report = "", save = "", load = "", ranks = "";
   int threads = 0;
 
   /// How many steps there are, and after how many of them nothing more comes.
@@ -76,10 +82,10 @@ inline char const* name_of(collide::slow_steps) { return "slow_steps"; }
 
 /// A column's values of the particles that are there, and how many each has.
 template <class Column, class Simulation>
-auto of_present(Simulation const& simulation) {
+auto of_present(Simulation& simulation) {
   auto const present = simulation.template to_host<collide::alive>();
   auto values = simulation.template to_host<Column>();
-  std::size_t const width = values.size() / present.size();  // not of those that are there: there may be none
+  constexpr std::size_t width = sizeof(typename Column::template value<float>) / sizeof(values[0]);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (present[i / width] != 0) values[kept++] = values[i];
@@ -88,12 +94,14 @@ auto of_present(Simulation const& simulation) {
   return std::pair(values, width);
 }
 
-/// Writes the particles that are there, with all that is known of them.
+/// Writes the particles that are there, with all that is known of them. With ranks, all call it, and the one that
+/// `shows` has all particles and writes.
 template <class Simulation, class... Column>
-void write_particles(std::string const& path, Simulation const& simulation, collide::columns<Column...>) {
+void write_particles(std::string const& path, Simulation& simulation, float radius, bool shows,
+                     collide::columns<Column...>) {
   auto const points = of_present<collide::position>(simulation).first;
   std::size_t const n = points.size() / 3;
-  std::vector<vtk_array> known{{"radius", std::vector<float>(n, simulation.spheres().common_radius())}};
+  std::vector<vtk_array> known{{"radius", std::vector<float>(n, radius)}};
   auto const add = [&](auto column) {
     using type = decltype(column);
     if constexpr (!std::is_same<type, collide::position>::value && !std::is_same<type, collide::alive>::value) {
@@ -102,6 +110,7 @@ void write_particles(std::string const& path, Simulation const& simulation, coll
     }
   };
   (add(Column{}), ...);
+  if (!shows) return;
   std::vector<std::uint32_t> all(n), ends;
   for (std::size_t i = 0; i < n; ++i) all[i] = static_cast<std::uint32_t>(i);
   if (n != 0) ends.push_back(static_cast<std::uint32_t>(n));
@@ -147,10 +156,26 @@ template <class Detector, class... Effect>
 void stop_sources(collide::simulation<Detector, Effect...>& simulation) {
   (stop(simulation.template effect<Effect>()), ...);
 }
+template <class Detector, class... Effect, class Ranks>
+void stop_sources(collide::distributed<collide::simulation<Detector, Effect...>, Ranks>& simulation) {
+  (stop(simulation.template effect<Effect>()), ...);
+}
 
-/// Runs the simulation and shows it.
-template <class Simulation>
-void shoot(film const& wish, Simulation simulation) {
+/// The simulation on ranks, if there are several.
+template <class Detector, class... Effect, class Ranks>
+auto distributed_over(Ranks const& ranks, collide::simulation<Detector, Effect...>&& one) {
+  using simulation = collide::simulation<Detector, Effect...>;
+  if constexpr (std::is_same<Ranks, collide::one_rank>::value) {
+    return std::move(one);
+  } else {
+    return collide::distributed<simulation, Ranks>(ranks, one.space(), one.template effect<Effect>()...);
+  }
+}
+
+/// Runs the simulation and shows it. Of ranks, the last does: it has all that sources make.
+template <class Ranks, class Simulation>
+void shoot(film const& wish, Ranks const& ranks, Simulation simulation) {
+  bool const shows = ranks.rank() + 1 == ranks.size();
   using device = device_of<typename Simulation::execution_space>;
   using clock = std::chrono::steady_clock;
   auto const& space = simulation.space();
@@ -173,7 +198,7 @@ void shoot(film const& wish, Simulation simulation) {
     return done < steps && (wish.until == 0 || first + frames.size() < wish.until);
   };
   if (!goes_on(begin)) throw data_error(wish.load, "the film is over there, or --until comes before it");
-  if (!wish.output.empty()) write_mesh(wish.output + "/mesh.vtp", vertices, stage.corners);
+  if (!wish.output.empty() && shows) write_mesh(wish.output + "/mesh.vtp", vertices, stage.corners);
   double spent = 0;
   progress bar(wish.name, static_cast<double>(steps));
   std::size_t done = begin;
@@ -183,19 +208,20 @@ void shoot(film const& wish, Simulation simulation) {
     for (; done < until; ++done) {
       if (done == wish.pouring_steps()) stop_sources(simulation);
       simulation.step(step);
-      if (Simulation::execution_space::host_accessible) bar.update(static_cast<double>(done));
+      if (shows && Simulation::execution_space::host_accessible) bar.update(static_cast<double>(done));
     }
     space.synchronize();
     spent += std::chrono::duration<double, std::milli>(clock::now() - start).count();
-    bar.update(static_cast<double>(done));
+    if (shows) bar.update(static_cast<double>(done));
     char file[32];
     std::snprintf(file, sizeof file, "particles-%05zu.vtp", first + frames.size());
     frames.push_back({file, static_cast<double>(done) * wish.dt});
     if (!wish.output.empty()) {
-      write_particles(wish.output + "/" + file, simulation, typename Simulation::columns());
+      write_particles(wish.output + "/" + file, simulation, radius, shows, typename Simulation::columns());
     }
     if (!wish.save.empty()) collide::save(simulation, wish.save);
   }
+  if (!shows) return;
   if (!wish.output.empty()) {
     output_file out(wish.output + "/film.pvd");
     write_pvd(out, frames);
@@ -205,8 +231,9 @@ void shoot(film const& wish, Simulation simulation) {
   double const each = spent / static_cast<double>(done - begin);
   int const threads = device::threads(space);
   std::cout << wish.name << ": " << wish.particles << " particles, " << done - begin << " steps of " << wish.dt
-            << " s, " << each << " ms a step, " << Simulation::bytes_per_particle << " bytes a particle, " << wish.space
-            << " (" << device::name() << (threads > 1 ? ", " + std::to_string(threads) + " threads" : "") << ")\n";
+            << " s, " << each << " ms a step, " << Simulation::bytes_per_particle << " bytes a particle, "
+            << (ranks.size() > 1 ? std::to_string(ranks.size()) + " ranks, " : "") << wish.space << " ("
+            << device::name() << (threads > 1 ? ", " + std::to_string(threads) + " threads" : "") << ")\n";
   if (wish.report.empty()) return;
   output_file report(wish.report);
   report << nlohmann::ordered_json{{"scene", wish.name},
@@ -218,11 +245,35 @@ void shoot(film const& wish, Simulation simulation) {
                                    {"bytes_per_particle", Simulation::bytes_per_particle},
                                    {"space", wish.space},
                                    {"threads", threads},
+                                   {"ranks", ranks.size()},
                                    {"device", device::name()},
                                    {"version", version()}}
                 .dump(2)
          << "\n";
   report.commit();
+}
+
+/// Calls f(ranks, film), on so many ranks as are wished for.
+template <class NamedSpace, class F>
+void on_ranks(film const& wish, F const& f) {
+  if (wish.ranks.empty()) return f(collide::one_rank(), wish);
+  if constexpr (std::is_same<typename NamedSpace::type, collide::host>::value) {
+    if (int const n = threads_of(wish.ranks)) {
+      film of_rank = wish;
+      if (wish.threads == 0) of_rank.threads = threads_for_each(n);
+      return collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) { f(ranks, of_rank); });
+    }
+    if (wish.ranks != "mpi") {
+      throw usage_error("--ranks: " + io::quoted(wish.ranks) + " is neither mpi nor threads:N, N from 1 to 1024");
+    }
+#if defined(COLLIDE_PROGRAM_HAS_MPI)
+    f(collide::mpi_ranks(), wish);
+#else
+    throw usage_error("--ranks: this program was built without MPI");
+#endif
+  } else {
+    throw usage_error("--ranks: works with --space host alone");
+  }
 }
 
 }  // namespace detail
@@ -250,6 +301,14 @@ int film_program(int argc, char** argv, film wish, Make const& make) {
   app.add_option("--threads", wish.threads, "threads of the host; 0 for all")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
+  app.add_option("--ranks", wish.ranks, "threads:N, or mpi under mpirun: so many simulate together, on the host")
+      ->type_name("RANKS");
+#if defined(COLLIDE_PROGRAM_HAS_MPI)
+  std::optional<collide::mpi_session> session;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string(argv[i]) == "mpi" || std::string(argv[i]) == "--ranks=mpi") session.emplace(argc, argv);
+  }
+#endif
   return run_program(app, {argv + 1, argv + argc}, [&] {
     if (!(wish.seconds >= wish.dt && wish.seconds <= 1e6)) {
       throw usage_error("--seconds: must be at least a step, " + std::to_string(wish.dt) + ", and at most a million");
@@ -262,10 +321,16 @@ int film_program(int argc, char** argv, film wish, Make const& make) {
           throw usage_error(file.name + ": " + file.path + " is in the folder of --output");
         }
       }
-      check_outputs({{"--load", wish.load}}, {{"--report", wish.report}});
-      check_outputs({{"--report", wish.report}}, {{"--save", wish.save}});  // may be --load's, too
-      if (!wish.output.empty()) detail::make_folder(wish.output);
-      detail::shoot(wish, make(device::make(wish.threads, device::memory()), wish));
+      detail::on_ranks<decltype(space)>(wish, [&](auto const& ranks, film const& of_rank) {
+        collide::together(ranks, [&] {
+          if (ranks.rank() + 1 != ranks.size()) return;
+          check_outputs({{"--load", wish.load}}, {{"--report", wish.report}});
+          check_outputs({{"--report", wish.report}}, {{"--save", wish.save}});  // may be --load's, too
+          if (!wish.output.empty()) detail::make_folder(wish.output);
+        });
+        auto one = make(device::make(of_rank.threads, device::memory()), of_rank);
+        detail::shoot(of_rank, ranks, detail::distributed_over(ranks, std::move(one)));
+      });
     });
   });
 }

@@ -81,8 +81,8 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
 
 }  // namespace detail
 
-/// Writes the checkpoint that `save` writes of the same simulation on one rank, byte by byte, to a stream of the first
-/// rank: others' are not touched. All ranks call it. Columns come to the first rank one after the other, which takes
+/// Writes the checkpoint that `save` writes of the same simulation on one rank to a stream of the first rank: others'
+/// are not touched. All ranks call it. Columns come to the first rank one after the other, which takes
 /// memory of its host for one column of all. Throws what that `save` throws, on all ranks.
 template <class Detector, class... Effect, class Ranks>
 void save(distributed<simulation<Detector, Effect...>, Ranks>& from, std::ostream& to) {

@@ -48,6 +48,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   using execution_space = typename Detector::execution_space;                 ///< that of the detector
   using simulation_type = simulation<Detector, Effect..., detail::on_ranks>;  ///< what each rank runs
   using columns = typename simulation<Detector, Effect...>::columns;          ///< the state that a particle has
+  static constexpr std::size_t bytes_per_particle = simulation_type::bytes_per_particle;  ///< of state, on its rank
 
  private:
   using S = scalar;

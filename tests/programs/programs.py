@@ -13,6 +13,12 @@ from pathlib import Path
 
 PROGRAMS = Path(os.environ.get("COLLIDE_PROGRAMS", Path(__file__).parents[2] / "build" / "examples"))
 
+# for ranks of MPI that share a machine, perhaps a container, as whoever runs the tests
+MPI = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+       "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_plm": "isolated",
+       "OMPI_MCA_btl": "self,vader", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+       "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe", "OMP_NUM_THREADS": "1"}
+
 
 class ProgramTest(unittest.TestCase):
     """A test in an empty folder of its own, in which programs run and files are named without a path."""
@@ -36,6 +42,10 @@ class ProgramTest(unittest.TestCase):
     def run_program(self, name, *args, **options):
         return subprocess.run([PROGRAMS / name, *map(str, args)], cwd=self.folder, capture_output=True,
                               stdin=subprocess.DEVNULL, timeout=300, **options)
+
+    def run_on_mpi(self, n, name, *args):
+        return subprocess.run(["mpirun", "-np", str(n), PROGRAMS / name, *map(str, args), "--ranks", "mpi"],
+                              cwd=self.folder, capture_output=True, stdin=subprocess.DEVNULL, timeout=300, env=MPI)
 
     def succeed(self, name, *args, **options):
         """Runs a program that must succeed and has nothing to complain of; returns its standard output."""

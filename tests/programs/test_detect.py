@@ -723,10 +723,6 @@ class Outputs(ProgramTest):
 
 class Ranks(ProgramTest):
     """Several ranks write what one process writes, byte by byte."""
-    MPI = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-           "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_plm": "isolated",
-           "OMPI_MCA_btl": "self,vader", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-           "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe", "OMP_NUM_THREADS": "1"}
     OUTPUTS = ("--output", "pairs.csv", "--contacts", "contacts.csv", "--ply", "hits.ply")
 
     def written(self, *args):
@@ -734,8 +730,7 @@ class Ranks(ProgramTest):
         return [self.read(name) for name in ("pairs.csv", "contacts.csv", "hits.ply")]
 
     def on_mpi(self, n, *args):
-        return subprocess.run(["mpirun", "-np", str(n), programs.PROGRAMS / "detect", *map(str, args), "--ranks", "mpi"],
-                              cwd=self.folder, capture_output=True, stdin=subprocess.DEVNULL, timeout=300, env=self.MPI)
+        return self.run_on_mpi(n, "detect", *args)
 
     def test_threads(self):
         vertices, triangles, spheres, radii = random_scene(3, 1)

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import shutil
 import struct
 import subprocess
 import time
@@ -159,6 +160,37 @@ class All(SceneTest):
                 seen += names
             self.assertEqual(seen, [f"particles-{i:05}.vtp" for i in range(6)])
 
+    def check_film(self, scene, output):
+        names = sorted(p.name for p in self.path(scene).iterdir())
+        self.assertEqual(sorted(p.name for p in self.path(output).iterdir()), names)
+        for name in names:
+            self.assertEqual(self.read(f"{scene}/{name}"), self.read(f"{output}/{name}"), (output, name))
+
+    def test_ranks(self):
+        """For each scene: on any number of ranks the film of one, also with a pause and on another number then."""
+        for scene in SCENES:
+            self.shoot(scene, *self.long, output=scene)
+            for n in (2, 3, 7):
+                self.shoot(scene, *self.long, "--ranks", f"threads:{n}", output=f"{scene}-{n}")
+                self.check_film(scene, f"{scene}-{n}")
+            self.shoot(scene, *self.long, "--ranks", "threads:2", "--until", 3, "--save", "state", output=scene + "-first")
+            self.shoot(scene, *self.long, "--ranks", "threads:3", "--load", "state", output=scene + "-rest")
+            for i in range(6):
+                part = "first" if i < 3 else "rest"
+                name = f"particles-{i:05}.vtp"
+                self.assertEqual(self.read(f"{scene}/{name}"), self.read(f"{scene}-{part}/{name}"), (scene, name))
+        for wrong in ("threads", "threads:0", "many"):
+            self.fail_with(2, ["--ranks"], "dust", *self.small, "--ranks", wrong)
+        self.fail_with(1, ["dust-2"], "dust", *self.small, "--ranks", "threads:2", "--output", "dust-2")
+
+    def test_mpi(self):
+        self.shoot("snow", *self.small, output="snow")
+        if shutil.which("mpirun") is None or b"without MPI" in self.run_on_mpi(1, "snow", *self.small).stderr:
+            self.skipTest("no MPI")
+        done = self.run_on_mpi(3, "snow", *self.small, "--output", "snow-mpi")
+        self.assertEqual((done.returncode, done.stderr), (0, b""))
+        self.check_film("snow", "snow-mpi")
+
     def test_a_process_that_is_killed_leaves_a_checkpoint(self):
         args = ("--particles", 200, "--seconds", 5, "--frames")
         self.shoot("snow", *args, 1)
@@ -193,7 +225,7 @@ class All(SceneTest):
             report = json.loads(self.read("report.json"))
             self.assertRegex(said, rf"\A{scene}: 50 particles, {report['steps']} steps of [^\n]* host [^\n]*\n\Z")
             self.assertEqual(list(report), ["scene", "particles", "triangles", "steps", "dt", "ms_per_step", "bytes_per_particle",
-                                            "space", "threads", "device", "version"])
+                                            "space", "threads", "ranks", "device", "version"])
             self.assertEqual((report["scene"], report["particles"], report["threads"]), (scene, 50, 1))
             self.assertAlmostEqual(report["steps"] * report["dt"], 0.1, delta=report["dt"])
             self.assertGreater(report["ms_per_step"], 0)

@@ -84,12 +84,44 @@ struct all_values<S, collide::columns<C...>> {
 template <class Simulation>
 using values_of = all_values<typename Simulation::scalar, typename Simulation::columns>;
 
-template <class S>
-collide::sphere_view<S> spheres_of(world<S> const& w, range part) {
-  S const* const centres = w.centres.data() + 3 * part.first;
-  return w.radii.empty() ? collide::spheres_xyz(centres, part.size, w.radius)
-                         : collide::spheres_xyz(centres, part.size, w.radii.data() + part.first);
+template <class Space>
+Space space_of_rank() {
+  if constexpr (std::is_same<Space, collide::host>::value) {
+    return collide::host(1);
+  } else {
+    return Space();
+  }
 }
+
+/// A world in memory of a space, and how a simulation gets it.
+template <class Space, class S>
+class world_in {
+ public:
+  world_in(Space const& space, world<S> const& w)
+      : corners_(space, w.corners),
+        centres_(space, w.centres),
+        velocities_(space, w.velocities),
+        radii_(space, w.radii),
+        radius_{w.radius} {}
+
+  template <class Simulation>
+  void set_mesh(Simulation& to, std::vector<collide::body> const& bodies = {}) const {
+    to.set_mesh(collide::triangle_soup(corners_.data(), corners_.size() / 9), bodies);
+  }
+  /// Sets a part of the particles.
+  template <class Simulation>
+  void set(Simulation& to, range part, std::size_t capacity = 0) const {
+    S const* const centres = centres_.data() + 3 * part.first;
+    to.set(radii_.size() == 0 ? collide::spheres_xyz(centres, part.size, radius_)
+                              : collide::spheres_xyz(centres, part.size, radii_.data() + part.first),
+           velocities_.data() + 3 * part.first, capacity);
+    to.space().synchronize();
+  }
+
+ private:
+  placed<S> corners_, centres_, velocities_, radii_;
+  S radius_;
+};
 
 /// What one simulation makes of a scene: in the middle, and in the end.
 template <class Scene>
@@ -99,9 +131,11 @@ struct expected_values {
   explicit expected_values(Scene const& scene) {
     std::apply(
         [&](auto const&... effects) {
-          typename Scene::simulation one(collide::host(1), effects...);
-          one.set_mesh(collide::triangle_soup(scene.w.corners.data(), scene.w.corners.size() / 9), scene.bodies);
-          one.set(spheres_of(scene.w, {0, scene.w.size()}), scene.w.velocities.data(), scene.capacity);
+          using space_type = typename Scene::simulation::execution_space;
+          typename Scene::simulation one(space_of_rank<space_type>(), effects...);
+          world_in<space_type, typename Scene::S> const there(one.space(), scene.w);
+          there.set_mesh(one, scene.bodies);
+          there.set(one, {0, scene.w.size()}, scene.capacity);
           one.steps(static_cast<std::size_t>(scene.steps / 2), scene.dt);
           middle.read(one);
           one.steps(static_cast<std::size_t>(scene.steps - scene.steps / 2), scene.dt);
@@ -120,9 +154,11 @@ void check_scene(Ranks const& ranks, Scene const& scene, expected_values<Scene> 
   range own = part_of(scene.w.size(), how, ranks.rank(), ranks.size());
   std::apply(
       [&](auto const&... effects) {
-        collide::distributed<simulation, Ranks> parts(ranks, collide::host(1), effects...);
-        parts.set_mesh(collide::triangle_soup(scene.w.corners.data(), scene.w.corners.size() / 9), scene.bodies);
-        parts.set(spheres_of(scene.w, own), scene.w.velocities.data() + 3 * own.first, scene.capacity);
+        using space_type = typename simulation::execution_space;
+        collide::distributed<simulation, Ranks> parts(ranks, space_of_rank<space_type>(), effects...);
+        world_in<space_type, typename Scene::S> const there(parts.space(), scene.w);
+        there.set_mesh(parts, scene.bodies);
+        there.set(parts, own, scene.capacity);
         if (ranks.rank() + 1 == ranks.size() && scene.capacity > scene.w.size())
           own.size += scene.capacity - scene.w.size();
         values_of<simulation> found;
@@ -139,43 +175,46 @@ void check_scene(Ranks const& ranks, Scene const& scene, expected_values<Scene> 
 
 // ---- the scenes
 
-template <class S>
-using discrete = meets_mesh<collide::host, collide::karabassi<>, S>;
+template <class Space, class S = float>
+using discrete = meets_mesh<Space, collide::karabassi<>, S>;
 
 /// Grains that fall into a box, roll, and lie on each other.
-template <class S, class NarrowPhase = collide::karabassi<>>
+template <class S, class NarrowPhase = collide::karabassi<>, class Space = collide::host>
 auto grains_in_a_box() {
   using namespace collide;
   auto w = crowd<S>(500, 1, 0.09, 2, 11);
-  return scene_of<simulation<meets_mesh<host, NarrowPhase, S>, sphere_contact, gravity, bounce, friction, spin>>(
+  return scene_of<simulation<meets_mesh<Space, NarrowPhase, S>, sphere_contact, gravity, bounce, friction, spin>>(
       "grains", w, 200, 1e-3, sphere_contact::from_restitution(0.6, 0.02, 0.09, 1000, 0.5), gravity{}, bounce{0.5},
       friction{0.5, 0.5}, spin{0.01});
 }
 
 /// Grains of three sizes that go round in a box, many at a time.
-inline auto sizes_that_repeat() {
+template <class Space = collide::host>
+auto sizes_that_repeat() {
   using namespace collide;
   auto w = packed_cube<float>(500, 0.05, 3);
   for (std::size_t i = 0; i < 500; ++i) w.radii.push_back(i % 50 == 0 ? 0.3f : i % 5 == 0 ? 0.1f : 0.03f);
-  return scene_of<simulation<discrete<float>, velocity_verlet, polydisperse, sphere_contact, greets, periodic_box>>(
+  return scene_of<simulation<discrete<Space>, velocity_verlet, polydisperse, sphere_contact, greets, periodic_box>>(
       "sizes", w, 100, 2e-3, velocity_verlet{}, polydisperse{}, sphere_contact{300, 0.01, 0.2, 0.01, 1}, greets{},
       periodic_box{{-1, -1, -1}, {1, 1, 1}});
 }
 
 /// Particles that cross all bricks in a step, and meet others there.
-inline auto leaps() {
+template <class Space = collide::host>
+auto leaps() {
   using namespace collide;
   auto w = packed_cube<float>(400, 0.1, 1.9);
-  return scene_of<simulation<discrete<float>, greets, periodic_box>>("leaps", w, 40, 1, greets{},
+  return scene_of<simulation<discrete<Space>, greets, periodic_box>>("leaps", w, 40, 1, greets{},
                                                                      periodic_box{{-1, -1, -1}, {1, 1, 1}});
 }
 
 /// Snow that comes from a source, sticks, sleeps and wakes; when places end the oldest make room.
-inline auto snow() {
+template <class Space = collide::host>
+auto snow() {
   using namespace collide;
   world<float> w = crowd<float>(100, 1, 0.06, 0.5, 3);
   emit const source{700, {{0.2, 0, 0.7}, 0.25, {0.1, 0, -1}, 0.4}};
-  auto scene = scene_of<simulation<discrete<float>, emit, collide::sleep, gravity, drag, sphere_contact, bounce,
+  auto scene = scene_of<simulation<discrete<Space>, emit, collide::sleep, gravity, drag, sphere_contact, bounce,
                                    adhesion, box_walls, mesh_forces, pair_forces>>(
       "snow", w, 400, 2e-3, source, collide::sleep{0.2, 6}, gravity{}, drag{3, 1},
       sphere_contact::from_restitution(0.2, 0.04, 0.06, 100, 0.9), bounce{0.1}, adhesion{60},
@@ -185,11 +224,12 @@ inline auto snow() {
 }
 
 /// Dust that vanishes in a box; nothing meets anything.
-inline auto dust() {
+template <class Space = collide::host>
+auto dust() {
   using namespace collide;
   world<float> w = crowd<float>(50, 1, 0.02, 0.5, 4);
   emit const source{2000, {{-0.8, 0, 0}, 0.1, {2, 0, 0}, 1}};
-  auto scene = scene_of<simulation<discrete<float>, emit, gravity, wind<uniform_field>, bounce, absorbing_box>>(
+  auto scene = scene_of<simulation<discrete<Space>, emit, gravity, wind<uniform_field>, bounce, absorbing_box>>(
       "dust", w, 200, 2e-3, source, gravity{}, wind<uniform_field>{1, 0, {1.5, 0, 0}}, bounce{0.3},
       absorbing_box{{0.5, -1, -1}, {1, 1, 1}});
   scene.capacity = 300;
@@ -197,7 +237,7 @@ inline auto dust() {
 }
 
 /// A piston that pushes grains about, and a belt below them.
-template <class NarrowPhase>
+template <class NarrowPhase, class Space = collide::host>
 auto piston_and_belt() {
   using namespace collide;
   world<float> w;
@@ -210,7 +250,7 @@ auto piston_and_belt() {
   w.centres = grains.centres;
   w.velocities = grains.velocities;
   w.radius = 0.1f;
-  auto scene = scene_of<simulation<meets_mesh<host, NarrowPhase, float>, sphere_contact, gravity, bounce, friction,
+  auto scene = scene_of<simulation<meets_mesh<Space, NarrowPhase, float>, sphere_contact, gravity, bounce, friction,
                                    moving_bodies<>, box_walls>>(
       "bodies", w, 200, 2e-3, sphere_contact::from_restitution(0.4, 0.05, 0.1, 1000, 0.5), gravity{}, bounce{0.2},
       friction{0.5, 0.4}, moving_bodies<>{}, box_walls{{-2, -1, -3}, {2, 1, 3}, 0.1});
@@ -223,7 +263,8 @@ auto piston_and_belt() {
 }
 
 /// Particles that are nowhere, at one point, on a border, and far away.
-inline auto awkward_places() {
+template <class Space = collide::host>
+auto awkward_places() {
   using namespace collide;
   auto w = packed_cube<float>(100, 0.1, 0.01);
   float const nan = std::numeric_limits<float>::quiet_NaN(), far = std::numeric_limits<float>::infinity();
@@ -235,23 +276,25 @@ inline auto awkward_places() {
   w.particle(3e38, 0, 0);
   for (int i = 0; i < 30; ++i) w.particle(0.5, 0.5, 0.5);
   for (int i = -8; i <= 8; ++i) w.particle(0.125 * i, 0, 0);
-  return scene_of<simulation<discrete<float>, greets, sphere_contact>>("awkward places", w, 30, 1, greets{},
+  return scene_of<simulation<discrete<Space>, greets, sphere_contact>>("awkward places", w, 30, 1, greets{},
                                                                        sphere_contact{1e-5, 0, 0, 0, 1});
 }
 
 /// All at one point, or nobody at all.
-inline auto one_point(std::size_t n) {
+template <class Space = collide::host>
+auto one_point(std::size_t n) {
   using namespace collide;
   world<float> w;
   w.radius = 0.1f;
   for (std::size_t i = 0; i < n; ++i) w.particle(0.3, 0.2, 0.1, 0.001 * double(i));
-  return scene_of<simulation<discrete<float>, greets, box_walls>>("one point", w, 60, 1, greets{},
+  return scene_of<simulation<discrete<Space>, greets, box_walls>>("one point", w, 60, 1, greets{},
                                                                   box_walls{{-1, -1, -1}, {1, 1, 1}, 1});
 }
 
 /// A radius without end: all meet all.
-inline auto endless_radius() {
-  auto scene = one_point(20);
+template <class Space = collide::host>
+auto endless_radius() {
+  auto scene = one_point<Space>(20);
   scene.name = "endless radius";
   scene.w.radius = std::numeric_limits<float>::infinity();
   return scene;
@@ -261,7 +304,7 @@ inline auto endless_radius() {
 template <class Ranks>
 void check_reaction(Ranks const& ranks, complaints& wrong) {
   using namespace collide;
-  using scene = simulation<discrete<float>, gravity, bounce, moving_bodies<>, box_walls, reaction>;
+  using scene = simulation<discrete<host>, gravity, bounce, moving_bodies<>, box_walls, reaction>;
   auto w = packed_cube<float>(300, 0.05, 0.4);
   w.triangle({-2, -2, -0.5, 2, -2, -0.5, 0, 3, -0.5});
   w.triangle({-2, -2, -1, 2, -2, -1, 0, 3, -1});
@@ -269,9 +312,10 @@ void check_reaction(Ranks const& ranks, complaints& wrong) {
   plate.motion.amplitude[2] = 0.2;
   plate.motion.frequency = 3;
   box_walls const walls{{-1, -1, -2}, {1, 1, 2}, 1};
+  world_in<host, float> const there(host(1), w);
   auto const play = [&](auto& parts, range own) {
-    parts.set_mesh(triangle_soup(w.corners.data(), 2), {plate});
-    parts.set(spheres_of(w, own), w.velocities.data() + 3 * own.first);
+    there.set_mesh(parts, {plate});
+    there.set(parts, own);
     parts.steps(200, 2e-3f);
   };
   host const space(1);
@@ -306,8 +350,9 @@ void check_short_memory_of_simulations(Ranks const& ranks, complaints& wrong) {
           using simulation = typename decltype(scene)::simulation;
           collide::distributed<simulation, Ranks> parts(ranks, collide::host(1, &memory), effects...);
           auto const work = [&] {
-            parts.set_mesh(collide::triangle_soup(scene.w.corners.data(), scene.w.corners.size() / 9));
-            parts.set(spheres_of(scene.w, own), scene.w.velocities.data() + 3 * own.first, scene.capacity);
+            world_in<collide::host, float> const there(collide::host(1), scene.w);
+            there.set_mesh(parts);
+            there.set(parts, own, scene.capacity);
             parts.steps(40, scene.dt);
           };
           try {
@@ -346,7 +391,7 @@ void check_refusals(Ranks const& ranks, complaints& wrong) {
     }
     wrong.expect(said.rfind(text, 0) == 0, said);
   };
-  distributed<simulation<discrete<float>, sphere_contact>, Ranks> parts(ranks, host(1));
+  distributed<simulation<discrete<host>, sphere_contact>, Ranks> parts(ranks, host(1));
   float const centre[] = {0, 0, 0}, radii[] = {1};
   auto const mine = [&](float r) { return spheres_xyz(centre, 1, r); };
   expect("collide: simulation: step needs particles", [&] { parts.step(1); });

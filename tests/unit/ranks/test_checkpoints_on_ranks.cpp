@@ -8,26 +8,18 @@
 
 namespace {
 
-template <class Scene, class Simulation>
-void set_scene(Simulation& parts, Scene const& scene, tests::range own) {
-  parts.set(tests::spheres_of(scene.w, own), scene.w.velocities.data() + 3 * own.first, scene.capacity);
-}
-template <class Scene, class Simulation>
-void set_mesh(Simulation& parts, Scene const& scene) {
-  parts.set_mesh(collide::triangle_soup(scene.w.corners.data(), scene.w.corners.size() / 9), scene.bodies);
-}
-
 /// What ranks save is what one saves; one, and any number of ranks, go on from it.
 template <class Scene>
 void check_checkpoints(Scene const& scene) {
   using simulation = typename Scene::simulation;
   std::apply(
       [&](auto const&... effects) {
+        tests::world_in<collide::host, typename Scene::S> const there(collide::host(1), scene.w);
         auto const half = static_cast<std::size_t>(scene.steps / 2);
         std::ostringstream saved, end;
         simulation one(collide::host(1), effects...);
-        set_mesh(one, scene);
-        set_scene(one, scene, {0, scene.w.size()});
+        there.set_mesh(one, scene.bodies);
+        there.set(one, {0, scene.w.size()}, scene.capacity);
         one.steps(half, scene.dt);
         collide::save(one, saved);
         one.steps(half, scene.dt);
@@ -38,19 +30,34 @@ void check_checkpoints(Scene const& scene) {
           collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
             auto const own = tests::part_of(scene.w.size(), tests::split::odd, ranks.rank(), n);
             collide::distributed<simulation, collide::thread_ranks> parts(ranks, collide::host(1), effects...);
-            set_mesh(parts, scene);
-            set_scene(parts, scene, own);
+            there.set_mesh(parts, scene.bodies);
+            there.set(parts, own, scene.capacity);
             parts.steps(half, scene.dt);
             collide::save(parts, from_start);
             collide::distributed<simulation, collide::thread_ranks> later(ranks, collide::host(1));
-            set_mesh(later, scene);
+            there.set_mesh(later, scene.bodies);
             std::istringstream before(saved.str());
             collide::load(later, before);
             later.steps(half, scene.dt);
             collide::save(later, at_end);
           });
-          CHECK((from_start.str() == saved.str()));
-          CHECK((at_end.str() == end.str()));
+          if (scene.bodies.empty()) {  // of which not all bytes mean something
+            CHECK((from_start.str() == saved.str()));
+            CHECK((at_end.str() == end.str()));
+          }
+          simulation alone(collide::host(1));
+          there.set_mesh(alone, scene.bodies);
+          std::istringstream before(from_start.str());
+          collide::load(alone, before);
+          alone.steps(half, scene.dt);
+          tests::values_of<simulation> expected, found, on_ranks;
+          expected.read(one);
+          found.read(alone);
+          CHECK(equal(found, expected));
+          std::istringstream last(at_end.str());
+          collide::load(alone, last);
+          on_ranks.read(alone);
+          CHECK(equal(on_ranks, expected));
         }
       },
       scene.effects);
@@ -77,8 +84,8 @@ TEST_CASE("checkpoints on ranks: what one rank saves others go on from") {
 }
 
 TEST_CASE("checkpoints on ranks: files, and what is refused") {
-  using parts_type =
-      collide::distributed<collide::simulation<tests::discrete<float>, collide::sphere_contact>, collide::thread_ranks>;
+  using parts_type = collide::distributed<collide::simulation<tests::discrete<collide::host>, collide::sphere_contact>,
+                                          collide::thread_ranks>;
   std::string const path = "checkpoint_on_ranks.tmp";
   float const centre[] = {0, 0, 0};
   collide::thread_ranks::run(3, [&](collide::thread_ranks const& ranks) {

@@ -143,6 +143,7 @@ class part_of_simulation {
     unpack(to, coming);
     if (coming.size() < leaving.size()) close_gaps(leaving, coming.size(), after);
     resize_own(after);
+    space().synchronize();  // the rows go
   }
 
   /// Prepares for copies of so many particles of other ranks, and keeps where its own are.
