@@ -94,7 +94,10 @@ class distributed {
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {
     if constexpr (!alone) {
-      if (is_divided_) {
+      if (is_divided_ && !is_built_) {
+        throw error("collide: distributed: the last build has failed on some rank: build before you query");
+      }
+      if (is_divided_ && ranks_.size() > 1) {
         query_divided(spheres, sink);
         return std::forward<Sink>(sink);
       }
@@ -123,11 +126,11 @@ class distributed {
   template <class Sink>
   void query_divided(spheres_type const& spheres, Sink& sink) {
     using narrow_phase = typename Detector::narrow_phase;
-    if (!is_built_) throw error("collide: distributed: the last build has failed on some rank: build before you query");
     constexpr bool with_triangles = !detail::sink_keeps_ids_alone<std::remove_reference_t<Sink>>::value;
     remote_.find(ranks_, detector_, mesh_, spheres, chunk_, with_triangles);
     together(ranks_, [&] {
-      found_.keep(detector_.space(), remote_.found(), remote_.triangles(), mesh_.size());
+      found_.keep(detector_.space(), remote_.found(), remote_.size(), {mesh_.view(), mesh_.numbers()},
+                  remote_.triangles(), mesh_.size());
       auto const query = found_.template query<narrow_phase>(detector_.space(), spheres);
       static_assert(detail::is_valid<detail::sink_run, std::remove_reference_t<Sink>, execution_space, decltype(query)>,
                     "collide: the second argument of query is a sink: an object with a member run(space, query)");

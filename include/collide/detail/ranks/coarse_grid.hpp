@@ -2,7 +2,6 @@
 /// A coarse grid over the triangles of all ranks, as each rank has it: which cells a box meets.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -16,15 +15,16 @@ namespace collide::detail {
 /// A box around a sphere at all times of the step, with room for the rounding of any narrow phase at triangles of up to
 /// `extent`; empty if the sphere can touch nothing.
 template <class S>
-aabb<double> reach_of(sphere<S> const& s, vec3<S> const& displacement, double extent) {
+COLLIDE_HD aabb<double> reach_of(sphere<S> const& s, vec3<S> const& displacement, double extent) {
   auto box = aabb<double>::empty();
   if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(displacement)) return box;
+  constexpr S tiny = std::numeric_limits<S>::min();
   double const unit = static_cast<double>(ieee_traits<float>::unit_roundoff), r = static_cast<double>(s.radius);
   for (int k = 0; k < 3; ++k) {
     double const from = static_cast<double>(s.centre[k]), along = static_cast<double>(displacement[k]);
     double const size = (from < 0 ? -from : from) + (along < 0 ? -along : along);
     double const most = r * (1 + 16 * unit) + 16 * unit * (extent + (along < 0 ? -along : along)) + 0x1p-48 * size +
-                        2 * sqrt_rn(static_cast<double>(std::numeric_limits<S>::min()));
+                        2 * sqrt_rn(static_cast<double>(tiny));
     box.lower[k] = smaller(from, from + along) - most;
     box.upper[k] = larger(from, from + along) + most;
   }
@@ -38,7 +38,7 @@ class coarse_grid {
   static constexpr int cells_across = 1 << finest;
 
   /// Number of the first cell of a level, and with level finest + 1 of all cells.
-  static constexpr std::size_t first_of(int level) { return ((std::size_t{1} << (3 * level)) - 1) / 7; }
+  static COLLIDE_HD constexpr std::size_t first_of(int level) { return ((std::size_t{1} << (3 * level)) - 1) / 7; }
   static constexpr std::size_t size() { return first_of(finest + 1); }
 
   /// Over the boxes of all ranks: all call it, each with the box of its own triangles.
@@ -54,14 +54,14 @@ class coarse_grid {
       frame_.lower[k] = -from_ordered_bits<double>(largest[k]);
       frame_.upper[k] = from_ordered_bits<double>(largest[3 + k]);
       double const half = frame_.upper[k] / 2 - frame_.lower[k] / 2, scale = half > 0 ? cells_across / half : 0;
-      scale_[static_cast<std::size_t>(k)] = is_finite(scale) ? scale : 0;
+      scale_[k] = is_finite(scale) ? scale : 0;
     }
   }
 
-  aabb<double> const& frame() const { return frame_; }
+  COLLIDE_HD aabb<double> const& frame() const { return frame_; }
 
   /// True if the box reaches into the frame.
-  bool meets(aabb<double> const& box) const {
+  COLLIDE_HD bool meets(aabb<double> const& box) const {
     bool so = !frame_.is_empty() && !box.is_empty();
     for (int k = 0; k < 3; ++k) so = so && box.lower[k] <= frame_.upper[k] && frame_.lower[k] <= box.upper[k];
     return so;
@@ -70,7 +70,7 @@ class coarse_grid {
   /// Calls f(cell) for up to 8 cells that cover what the box has of the frame: those of the finest level of which it
   /// meets two along an axis. Two boxes that share a point have cells of which one is, or is part of, the other.
   template <class F>
-  void for_each_cell(aabb<double> const& box, F const& f) const {
+  COLLIDE_HD void for_each_cell(aabb<double> const& box, F const& f) const {
     int low[3], high[3], level = finest;
     for (int k = 0; k < 3; ++k) {
       low[k] = cell(k, box.lower[k]);
@@ -105,14 +105,14 @@ class coarse_grid {
 
  private:
   /// Rises with x.
-  int cell(int axis, double x) const {
+  COLLIDE_HD int cell(int axis, double x) const {
     double const inside = smaller(larger(x, frame_.lower[axis]), frame_.upper[axis]);
-    double const at = (inside / 2 - frame_.lower[axis] / 2) * scale_[static_cast<std::size_t>(axis)];
+    double const at = (inside / 2 - frame_.lower[axis] / 2) * scale_[axis];
     return at < cells_across - 1 ? static_cast<int>(at) : cells_across - 1;
   }
 
   /// Bits of the coordinates in turn: the eight cells of one cell follow each other.
-  static std::size_t place_of(int x, int y, int z) {
+  static COLLIDE_HD std::size_t place_of(int x, int y, int z) {
     std::size_t place = 0;
     for (int bit = 0; bit < finest; ++bit) {
       place |= static_cast<std::size_t>((x >> bit) & 1) << (3 * bit);
@@ -123,7 +123,7 @@ class coarse_grid {
   }
 
   aabb<double> frame_ = aabb<double>::empty();
-  std::array<double, 3> scale_{};  ///< cells in half a unit
+  double scale_[3] = {};  ///< cells in half a unit
 };
 
 }  // namespace collide::detail

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <collide/detail/ranks/host_array.hpp>
 #include <collide/detail/ranks/mail.hpp>
 #include <collide/detail/ranks/rank_map.hpp>
 #include <collide/memory.hpp>
@@ -50,32 +51,6 @@ struct pack_triangles {
   }
 };
 
-/// Copies `n` values that `pack(to)` writes in memory of the space to the host.
-template <class S, class Space, class Pack>
-std::vector<S> packed_on_host(Space const& space, std::size_t n, buffer<S>& memory, Pack const& pack) {
-  std::vector<S> packed(n);
-  if constexpr (Space::host_accessible) {
-    pack(packed.data());
-  } else {
-    S* const to = memory.reserve(space.resource(), n);
-    pack(to);
-    space.copy_to_host(packed.data(), to, n);
-  }
-  return packed;
-}
-
-/// Values in memory of the space: a copy, unless the space reads the host's.
-template <class T, class Space>
-T const* in_space(Space const& space, std::vector<T> const& values, [[maybe_unused]] buffer<T>& memory) {
-  if constexpr (Space::host_accessible) {
-    return values.data();
-  } else {
-    T* const to = memory.reserve(space.resource(), values.size());
-    space.copy_from_host(to, values.data(), values.size());
-    return to;
-  }
-}
-
 /// The part of a rank.
 template <class S>
 class divided_mesh {
@@ -109,13 +84,18 @@ class divided_mesh {
     map_.build(ranks, grid, [&](auto const& mark) {
       for (auto const& t : in.items) mark(t.box());
     });
+    together(ranks, [&] { lookup_ = map_.lookup(space, mask_memory_); });
   }
 
   /// The triangles of this rank, in memory of the space, by rising number.
   mesh_view<S> view() const { return view_; }
+  /// Their numbers among those of all ranks, in memory of the space.
+  id const* numbers() const { return numbers_in_space_; }
   /// Of all ranks.
   std::size_t size() const { return static_cast<std::size_t>(all_); }
   rank_map const& map() const { return map_; }
+  /// The map for kernels of the space that the mesh was built in.
+  rank_lookup const& lookup() const { return lookup_; }
 
   /// Triangle `i` of this rank.
   numbered_triangle<S> operator[](std::size_t i) const {
@@ -164,6 +144,7 @@ class divided_mesh {
       numbers_[i] = triangles[i].number;
       std::copy_n(triangles[i].corners, 9, corners_.data() + 9 * i);
     }
+    numbers_in_space_ = in_space(space, numbers_, number_memory_);
     view_ = {};
     if (!triangles.empty()) view_ = triangle_soup(in_space(space, corners_, memory_), triangles.size());
   }
@@ -172,8 +153,12 @@ class divided_mesh {
   std::vector<id> numbers_;
   std::vector<S> corners_;  ///< on the host
   buffer<S> memory_;        ///< their copy in memory of the space, where that is another
+  buffer<id> number_memory_;
+  id const* numbers_in_space_ = nullptr;
   mesh_view<S> view_;
   rank_map map_;
+  buffer<std::uint64_t> mask_memory_;
+  rank_lookup lookup_{};
 };
 
 }  // namespace collide::detail

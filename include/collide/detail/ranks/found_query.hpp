@@ -2,7 +2,9 @@
 /// Pairs that are known, as a query that a sink runs.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <collide/concepts.hpp>
@@ -12,26 +14,36 @@
 
 namespace collide::detail {
 
-/// A mesh of which some triangles are here, with the numbers that they have in the whole: a plain value.
+/// Some triangles of a mesh, with the numbers that they have in the whole: a plain value.
 template <class S>
-struct partial_mesh {
-  mesh_view<S> part;
+struct mesh_part {
+  mesh_view<S> triangles;
   id const* numbers;  ///< of its triangles; they rise
-  std::size_t all;    ///< how many the whole mesh has
 
-  COLLIDE_HD std::size_t size() const { return all; }
-
-  /// Triangle number `t`, which is here.
-  COLLIDE_HD triangle<S> operator[](std::size_t t) const { return part[find(static_cast<id>(t))]; }
-
-  /// Place of triangle number `t` in the part, which has it.
+  /// The last place whose triangle has a number up to `t`; 0 if there is none.
   COLLIDE_HD id find(id t) const {
-    std::size_t low = 0, high = part.size();
+    std::size_t low = 0, high = triangles.size();
     while (high - low > 1) {
       std::size_t const middle = (low + high) / 2;
       (numbers[middle] <= t ? low : high) = middle;
     }
     return static_cast<id>(low);
+  }
+  COLLIDE_HD bool has_at(id place, id t) const { return place < triangles.size() && numbers[place] == t; }
+};
+
+/// A mesh of which some triangles are here, a rank's own and those of others that were hit: a plain value.
+template <class S>
+struct partial_mesh {
+  mesh_part<S> own, others;
+  std::size_t all;  ///< how many the whole mesh has
+
+  COLLIDE_HD std::size_t size() const { return all; }
+
+  /// Triangle number `t`, which is here.
+  COLLIDE_HD triangle<S> operator[](std::size_t t) const {
+    id const number = static_cast<id>(t), at = own.find(number);
+    return own.has_at(at, number) ? own.triangles[at] : others.triangles[others.find(number)];
   }
 };
 
@@ -39,7 +51,9 @@ struct partial_mesh {
 template <class NarrowPhase, class S>
 COLLIDE_HD hit<NarrowPhase, S> hit_of(pair p, partial_mesh<S> const& mesh,
                                       sphere_view_for<NarrowPhase, S> const& spheres) {
-  return {p, mesh.part, spheres, mesh.find(p.triangle)};
+  id const at = mesh.own.find(p.triangle);
+  if (mesh.own.has_at(at, p.triangle)) return {p, mesh.own.triangles, spheres, at};
+  return {p, mesh.others.triangles, spheres, mesh.others.find(p.triangle)};
 }
 
 /// Kernel body of `for_each` over pairs: hands them to a sink's output.
@@ -79,24 +93,26 @@ struct found_query {
   }
 };
 
-/// The pairs that were found in memory of a space.
+/// Pairs that were found, with the triangles in them, in memory of a space.
 template <class S>
 class found_pairs {
  public:
+  /// The pairs are in memory of the space, `others` on the host. `all`: how many triangles the whole mesh has.
   template <class Space>
-  void keep(Space const& space, std::vector<pair> const& pairs, std::vector<numbered_triangle<S>> const& triangles,
-            std::size_t all) {
-    std::vector<S> corners(9 * triangles.size());
-    numbers_.resize(triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      numbers_[i] = triangles[i].number;
-      std::copy_n(triangles[i].corners, 9, corners.data() + 9 * i);
+  void keep(Space const& space, pair const* pairs, std::size_t size, mesh_part<S> const& own,
+            std::vector<numbered_triangle<S>> const& others, std::size_t all) {
+    numbers_.resize(others.size());
+    corners_.resize(9 * others.size());
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      numbers_[i] = others[i].number;
+      std::copy_n(others[i].corners, 9, corners_.data() + 9 * i);
     }
-    corners_ = std::move(corners);
-    pairs_ = in_space(space, pairs, pair_memory_);
-    size_ = pairs.size();
-    mesh_ = {{}, in_space(space, numbers_, number_memory_), all};
-    if (!triangles.empty()) mesh_.part = triangle_soup(in_space(space, corners_, corner_memory_), triangles.size());
+    pairs_ = pairs;
+    size_ = size;
+    mesh_ = {own, {{}, in_space(space, numbers_, number_memory_)}, all};
+    if (!others.empty()) {
+      mesh_.others.triangles = triangle_soup(in_space(space, corners_, corner_memory_), others.size());
+    }
   }
 
   template <class NarrowPhase, class Space>
@@ -109,7 +125,6 @@ class found_pairs {
   std::vector<id> numbers_;
   buffer<S> corner_memory_;
   buffer<id> number_memory_;
-  buffer<pair> pair_memory_;
   pair const* pairs_ = nullptr;
   std::size_t size_ = 0;
   partial_mesh<S> mesh_{};

@@ -7,8 +7,29 @@
 #include <vector>
 
 #include <collide/detail/ranks/coarse_grid.hpp>
+#include <collide/detail/ranks/host_array.hpp>
 
 namespace collide::detail {
+
+/// What a `rank_map` says, as a plain value that a kernel takes: it reads the masks in memory of its space.
+struct rank_lookup {
+  coarse_grid grid;
+  std::uint64_t const* masks;  ///< of each cell
+  std::size_t words;           ///< of a mask
+
+  /// Calls f(rank) for each rank that may have a triangle that meets the box, in rising order.
+  template <class F>
+  COLLIDE_HD void for_each_rank(aabb<double> const& box, F const& f) const {
+    if (!grid.meets(box)) return;
+    for (std::size_t w = 0; w < words; ++w) {
+      std::uint64_t mask = 0;
+      grid.for_each_cell(box, [&](std::size_t cell) { mask |= masks[cell * words + w]; });
+      for (int r = static_cast<int>(64 * w); mask != 0; ++r, mask >>= 1) {
+        if ((mask & 1) != 0) f(r);
+      }
+    }
+  }
+};
 
 /// Says to which ranks a box goes. Each rank has a bit in each cell of the coarse grid that its triangles meet, that
 /// has such a cell in it, or that is in such a cell. Takes 37,449 words of 8 bytes for every 64 ranks.
@@ -49,14 +70,14 @@ class rank_map {
   /// Calls f(rank) for each rank that may have a triangle that meets the box, in rising order.
   template <class F>
   void for_each_rank(aabb<double> const& box, F const& f) const {
-    if (!grid_.meets(box)) return;
-    for (std::size_t w = 0; w < words_; ++w) {
-      std::uint64_t mask = 0;
-      grid_.for_each_cell(box, [&](std::size_t cell) { mask |= masks_[cell * words_ + w]; });
-      for (int r = static_cast<int>(64 * w); mask != 0; ++r, mask >>= 1) {
-        if ((mask & 1) != 0) f(r);
-      }
-    }
+    rank_lookup{grid_, masks_.data(), words_}.for_each_rank(box, f);
+  }
+
+  /// For kernels of a space, valid until the map is built again; `memory` has its masks, where the space cannot read
+  /// the host's.
+  template <class Space>
+  rank_lookup lookup(Space const& space, buffer<std::uint64_t>& memory) const {
+    return {grid_, in_space(space, masks_, memory), words_};
   }
 
  private:

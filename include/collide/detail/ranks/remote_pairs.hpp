@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <collide/detail/ranks/divided_mesh.hpp>
+#include <collide/detail/ranks/space_mail.hpp>
+#include <collide/detail/ranks/sphere_routes.hpp>
 #include <collide/detector.hpp>
+#include <collide/pairs.hpp>
 
 namespace collide::detail {
 
@@ -18,21 +22,16 @@ struct sent_sphere {
   static constexpr bool moves = Moves;
   static constexpr std::size_t size = Moves ? 7 : 4;
   S numbers[size];
-
-  aabb<double> reach(double extent) const {
-    vec3<S> displacement(0, 0, 0);
-    if constexpr (Moves) displacement = {numbers[4], numbers[5], numbers[6]};
-    return reach_of(sphere<S>{{numbers[0], numbers[1], numbers[2]}, numbers[3]}, displacement, extent);
-  }
 };
 
-/// Kernel body of `for_each` over spheres: as they are sent.
+/// Kernel body of `for_each` over routes: their spheres, as they are sent.
 template <class Spheres, class Sent>
 struct pack_spheres {
   Spheres spheres;
+  pair const* routes;
   Sent* to;
   COLLIDE_HD void operator()(std::size_t i) const {
-    auto const s = spheres[i];
+    auto const s = spheres[routes[i].triangle];
     for (int k = 0; k < 3; ++k) to[i].numbers[k] = s.centre[k];
     to[i].numbers[3] = s.radius;
     if constexpr (Sent::moves) {
@@ -41,13 +40,27 @@ struct pack_spheres {
   }
 };
 
-/// A hit that is sent back: which of the spheres of a message, and the triangle.
-struct answer {
-  id place, triangle;
+/// Kernel body of `for_each` over pairs of spheres that were received from a rank, and triangles of this one: as they
+/// are sent back, with the sphere's place in the message and the triangle's number among those of all ranks.
+struct pack_answers {
+  pair const* hits;
+  id first;  ///< the sphere that the message begins with
+  id const* numbers;
+  pair* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {hits[i].sphere - first, numbers[hits[i].triangle]}; }
 };
 
-/// Finds them: spheres go to the ranks that may have triangles for them, which query their own detectors, and pairs
-/// come back. So many spheres go at a time that no rank needs more memory than for a `chunk` from each.
+/// Kernel body of `for_each` over what has come back of some routes: pairs of this rank's spheres.
+struct unpack_answers {
+  pair const* answers;
+  pair const* routes;
+  pair* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {routes[answers[i].sphere].triangle, answers[i].triangle}; }
+};
+
+/// Finds them. A rank queries its own triangles with its spheres where they are. Those that others may have triangles
+/// for are sent, and pairs come back. So many go at a time that no rank needs more memory than for about a `chunk` from
+/// each. Everything is in memory of the space, but for the triangles that come back.
 template <class Detector>
 class remote_pairs {
   using S = typename Detector::scalar;
@@ -62,103 +75,129 @@ class remote_pairs {
   template <class Ranks>
   void find(Ranks const& ranks, Detector& detector, divided_mesh<S> const& mesh, view const& spheres, std::size_t chunk,
             bool with_triangles) {
-    found_.clear();
+    space_type& space = detector.space();
     triangles_.clear();
-    std::uint64_t const mine = (spheres.size() + chunk - 1) / chunk;
+    together(ranks, [&] {
+      routes_.find(space, mesh.lookup(), spheres, ranks.rank(), ranks.size());
+      query_own(detector, mesh, spheres);
+    });
+    std::uint64_t const mine = (routes_.size() + chunk - 1) / chunk;
     std::uint64_t rounds = 0;
     ranks.reduce(&mine, &rounds, 1, reduction::max);
     for (std::uint64_t round = 0; round < rounds; ++round) {
-      std::size_t const first = std::min(spheres.size(), static_cast<std::size_t>(round) * chunk);
-      view const part = spheres.subview(first, std::min(chunk, spheres.size() - first));
-      together(ranks, [&] { sort_spheres(ranks.size(), detector.space(), mesh.map(), part); });
-      deliver(ranks, sent_, received_);
+      together(ranks, [&] { pack(ranks.size(), space, spheres, round, rounds); });
+      deliver(ranks, space, sent_, received_);
       together(ranks, [&] {
-        query(detector);
-        answer_all(mesh, with_triangles);
+        query_received(detector);
+        answer_all(space, mesh);
+        if (with_triangles) name_triangles(mesh);
       });
-      deliver(ranks, answers_, answered_);
+      deliver(ranks, space, answers_, answered_);
       if (with_triangles) deliver(ranks, named_, learned_);
-      together(ranks, [&] { take(first); });
+      together(ranks, [&] { take(space, round, rounds, with_triangles); });
     }
     together(ranks, [&] { sort_triangles(); });
   }
 
-  /// The pairs, in no certain order: numbers of this rank's spheres, and of triangles among those of all ranks.
-  std::vector<pair> const& found() const { return found_; }
-  /// The triangles in them, each once, by rising number, if they were asked for.
+  /// The pairs, in no certain order, in memory of the space: numbers of this rank's spheres, and of triangles among
+  /// those of all ranks.
+  pair const* found() const { return found_.data(); }
+  std::size_t size() const { return size_; }
+  /// Triangles of other ranks in them, each once, by rising number, if they were asked for.
   std::vector<numbered_triangle<S>> const& triangles() const { return triangles_; }
 
  private:
-  void sort_spheres(int ranks, space_type const& space, rank_map const& map, view const& part) {
-    packed_ = packed_on_host<sent>(space, part.size(), memory_, [&](sent* to) {
-      space.for_each(part.size(), pack_spheres<view, sent>{part, to});
-    });
-    double const extent = map.grid().meets(map.grid().frame()) ? map.grid().frame().max_extent() : 0;
-    auto const sort = [&](auto const& put) {
-      for (std::size_t i = 0; i < packed_.size(); ++i) {
-        map.for_each_rank(packed_[i].reach(extent), [&](int rank) { put(rank, i); });
-      }
-    };
-    fill_mail(sent_, ranks, [&](auto const& put) { sort([&](int rank, std::size_t i) { put(rank, packed_[i]); }); });
-    fill_mail(numbers_, ranks,
-              [&](auto const& put) { sort([&](int rank, std::size_t i) { put(rank, static_cast<id>(i)); }); });
+  void query_own(Detector& detector, divided_mesh<S> const& mesh, view const& spheres) {
+    space_type& space = detector.space();
+    detector.query(spheres, hits_);
+    size_ = 0;
+    pair* const to = grow(space, hits_.size());
+    space.for_each(hits_.size(), pack_answers{hits_.data(), 0, mesh.numbers(), to});
   }
 
-  /// Finds the pairs of what was received.
-  void query(Detector& detector) {
-    std::size_t const n = received_.items.size();
-    hits_.clear();
+  void pack(int ranks, space_type const& space, view const& spheres, std::uint64_t round, std::uint64_t rounds) {
+    sent_.clear(ranks);
+    for (std::size_t r = 0; r < sent_.counts.size(); ++r) sent_.counts[r] = routes_.of(r, round, rounds).size;
+    sent* to = sent_.resize(space);
+    for (std::size_t r = 0; r < sent_.counts.size(); ++r) {
+      auto const part = routes_.of(r, round, rounds);
+      space.for_each(part.size, pack_spheres<view, sent>{spheres, part.first, to});
+      to += part.size;
+    }
+  }
+
+  /// Finds the pairs of what was received, and which of them are of which rank.
+  void query_received(Detector& detector) {
+    std::size_t const n = received_.size();
+    starts_.assign(received_.counts.size() + 1, 0);
+    for (std::size_t r = 0; r + 1 < starts_.size(); ++r) starts_[r + 1] = starts_[r] + received_.counts[r];
+    ends_.assign(starts_.size(), 0);
     if (n == 0) return;
-    S const* const at = in_space(detector.space(), received_.items, memory_)->numbers;
+    S const* const at = received_.data()->numbers;
     sphere_view<S> const spheres(points(at, n, sent::size), at + 3, sent::size, S(0));
     if constexpr (moves) {
-      detector.query(view(spheres, points(at + 4, n, sent::size)), local_);
+      detector.query(view(spheres, points(at + 4, n, sent::size)), received_hits_);
     } else {
-      detector.query(spheres, local_);
+      detector.query(spheres, received_hits_);
     }
-    hits_ = local_.to_host();
-    std::sort(hits_.begin(), hits_.end());
+    ends_ = starts_;
+    bounds_.find(detector.space(), received_hits_.data(), received_hits_.size(), ends_);
   }
 
-  void answer_all(divided_mesh<S> const& mesh, bool with_triangles) {
-    answers_.clear(static_cast<int>(received_.counts.size()));
+  void answer_all(space_type const& space, divided_mesh<S> const& mesh) {
+    std::size_t const ranks = received_.counts.size();
+    answers_.clear(static_cast<int>(ranks));
+    for (std::size_t r = 0; r < ranks; ++r) answers_.counts[r] = ends_[r + 1] - ends_[r];
+    pair* const to = answers_.resize(space);
+    for (std::size_t r = 0; r < ranks; ++r) {
+      space.for_each(
+          static_cast<std::size_t>(answers_.counts[r]),
+          pack_answers{received_hits_.data() + ends_[r], static_cast<id>(starts_[r]), mesh.numbers(), to + ends_[r]});
+    }
+  }
+
+  /// The triangles of the answers to each rank, each once.
+  void name_triangles(divided_mesh<S> const& mesh) {
     named_.clear(static_cast<int>(received_.counts.size()));
-    answers_.items.reserve(hits_.size());
+    if (ends_.back() == 0) return;
+    auto const hits = received_hits_.to_host();
     std::vector<id> local;
-    std::uint64_t first = 0;
-    std::size_t h = 0;
-    for (std::size_t r = 0; r < received_.counts.size(); ++r) {
-      std::uint64_t const end = first + received_.counts[r];
-      std::size_t const before = h;
-      for (; h < hits_.size() && end > hits_[h].sphere; ++h) {
-        answers_.items.push_back({static_cast<id>(hits_[h].sphere - first), hits_[h].triangle});
-      }
-      if (with_triangles) {
-        local.clear();
-        for (std::size_t k = before; k < h; ++k) local.push_back(hits_[k].triangle);
-        std::sort(local.begin(), local.end());
-        local.erase(std::unique(local.begin(), local.end()), local.end());
-        for (id const t : local) named_.items.push_back(mesh[t]);
-        named_.counts[r] = local.size();
-      }
-      answers_.counts[r] = h - before;
-      first = end;
+    for (std::size_t r = 0; r < named_.counts.size(); ++r) {
+      local.clear();
+      for (std::uint64_t k = ends_[r]; k < ends_[r + 1]; ++k)
+        local.push_back(hits[static_cast<std::size_t>(k)].triangle);
+      std::sort(local.begin(), local.end());
+      local.erase(std::unique(local.begin(), local.end()), local.end());
+      for (id const t : local) named_.items.push_back(mesh[t]);
+      named_.counts[r] = local.size();
     }
-    for (auto& a : answers_.items) a.triangle = mesh[a.triangle].number;
   }
 
-  /// Adds what has come back to what was found. `first` is the number of the first sphere that was sent.
-  void take(std::size_t first) {
-    std::size_t at = 0, sphere = 0;
+  /// Adds what has come back to what was found.
+  void take(space_type const& space, std::uint64_t round, std::uint64_t rounds, bool with_triangles) {
+    pair const* from = answered_.data();
+    pair* to = grow(space, answered_.size());
     for (std::size_t r = 0; r < answered_.counts.size(); ++r) {
-      for (std::uint64_t k = 0; k < answered_.counts[r]; ++k) {
-        answer const a = answered_.items[at++];
-        found_.push_back({static_cast<id>(first + numbers_.items[sphere + a.place]), a.triangle});
-      }
-      sphere += static_cast<std::size_t>(numbers_.counts[r]);
+      auto const n = static_cast<std::size_t>(answered_.counts[r]);
+      space.for_each(n, unpack_answers{from, routes_.of(r, round, rounds).first, to});
+      from += n;
+      to += n;
     }
-    triangles_.insert(triangles_.end(), learned_.items.begin(), learned_.items.end());
-    learned_.items.clear();
+    if (with_triangles) triangles_.insert(triangles_.end(), learned_.items.begin(), learned_.items.end());
+  }
+
+  /// Room for `n` more of what was found; returns where.
+  pair* grow(space_type const& space, std::size_t n) {
+    std::size_t const before = size_;
+    if (before + n > found_.capacity()) {
+      buffer<pair> larger;
+      pair* const to = make_room(larger, space.resource(), before + n);
+      space.for_each(before, copy_pairs{found_.data(), to});
+      space.synchronize();  // the old memory goes
+      found_ = std::move(larger);
+    }
+    size_ += n;
+    return found_.data() + before;
   }
 
   void sort_triangles() {
@@ -167,15 +206,15 @@ class remote_pairs {
     triangles_.erase(std::unique(triangles_.begin(), triangles_.end(), same), triangles_.end());
   }
 
-  std::vector<sent> packed_;
-  buffer<sent> memory_;
-  mail<sent> sent_, received_;
-  mail<id> numbers_;  ///< of the spheres sent, in this round
-  pairs local_;
-  std::vector<pair> hits_;  ///< of the spheres received
-  mail<answer> answers_, answered_;
+  sphere_routes routes_;
+  space_mail<sent> sent_, received_;
+  pairs hits_, received_hits_{order::canonical};
+  std::vector<std::uint64_t> starts_, ends_;  ///< of each rank's spheres received, and of their hits
+  pair_bounds bounds_;
+  space_mail<pair> answers_, answered_;
   mail<numbered_triangle<S>> named_, learned_;
-  std::vector<pair> found_;
+  buffer<pair> found_;
+  std::size_t size_ = 0;
   std::vector<numbered_triangle<S>> triangles_;
 };
 

@@ -1,0 +1,89 @@
+/// \file
+/// Items in memory of a space that ranks send to each other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <type_traits>
+#include <vector>
+
+#include <collide/detail/ranks/host_array.hpp>
+#include <collide/memory.hpp>
+#include <collide/ranks.hpp>
+
+namespace collide::detail {
+
+/// Items for each rank, or from each, in memory of a space: those of rank 0 first, without gaps.
+template <class T>
+class space_mail {
+  static_assert(std::is_trivially_copyable<T>::value, "collide: what ranks send is plain");
+
+ public:
+  std::vector<std::uint64_t> counts;  ///< for each rank
+
+  /// No items, for so many ranks.
+  void clear(int ranks) {
+    counts.assign(static_cast<std::size_t>(ranks), 0);
+    size_ = 0;
+  }
+  /// Makes room for as many as `counts` says.
+  template <class Space>
+  T* resize(Space const& space) {
+    size_ = static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
+    return make_room(items_, space.resource(), size_);
+  }
+
+  std::size_t size() const { return size_; }
+  T* data() const { return items_.data(); }
+
+  /// The items on the host, to be sent.
+  template <class Space>
+  T const* to_host(Space const& space) {
+    if constexpr (Space::host_accessible) {
+      return data();
+    } else {
+      on_host_.resize(space, size_);
+      space.copy_to_host(on_host_.data(), data(), size_);
+      return on_host_.data();
+    }
+  }
+  /// Where items are received on the host, which `from_host` then takes to the space.
+  template <class Space>
+  T* host_room(Space const& space) {
+    if constexpr (Space::host_accessible) {
+      return data();
+    } else {
+      on_host_.resize(space, size_);
+      return on_host_.data();
+    }
+  }
+  template <class Space>
+  void from_host(Space const& space) {
+    if constexpr (!Space::host_accessible) space.copy_from_host(data(), on_host_.data(), size_);
+  }
+
+ private:
+  buffer<T> items_;
+  std::size_t size_ = 0;
+  host_array<T> on_host_;
+};
+
+/// Sends `out` and receives `in`, by way of memory of the host. All ranks call it; where memory is short on one, all
+/// throw.
+template <class Ranks, class Space, class T>
+void deliver(Ranks const& ranks, Space const& space, space_mail<T>& out, space_mail<T>& in) {
+  together(ranks, [&] { in.clear(ranks.size()); });
+  ranks.exchange_counts(out.counts.data(), in.counts.data());
+  T const* from = nullptr;
+  T* to = nullptr;
+  together(ranks, [&] {
+    in.resize(space);
+    from = out.to_host(space);
+    to = in.host_room(space);
+  });
+  ranks.exchange(from, out.counts.data(), to, in.counts.data(), sizeof(T));
+  together(ranks, [&] { in.from_host(space); });
+}
+
+}  // namespace collide::detail
