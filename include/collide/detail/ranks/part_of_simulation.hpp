@@ -159,11 +159,13 @@ class part_of_simulation {
   }
 
   /// What others know of particles at these places, in memory of the space.
-  void pack_seen(std::uint32_t const* places, std::size_t n, rows<seen_columns>& to) {
+  void pack_seen(std::uint32_t const* places, std::size_t n, host_array<particle_row<S, seen_columns>>& to) {
     seen_.pack(space(), simulation_.state_, places, 0, n, to);
   }
   /// Takes over what is known of all copies.
-  void unpack_seen(rows<seen_columns> const& from) { seen_.unpack(space(), simulation_.state_, nullptr, own(), from); }
+  void unpack_seen(host_array<particle_row<S, seen_columns>> const& from) {
+    seen_.unpack(space(), simulation_.state_, nullptr, own(), from);
+  }
 
  private:
   static constexpr S skin_fraction = S(0.1);  ///< of the largest diameter

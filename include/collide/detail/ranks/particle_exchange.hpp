@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <collide/detail/ranks/bisection.hpp>
+#include <collide/detail/ranks/host_array.hpp>
 #include <collide/detail/ranks/mail.hpp>
 #include <collide/detail/ranks/part_of_simulation.hpp>
 
@@ -55,14 +56,14 @@ class particle_exchange {
           });
         }
       });
-      received_.clear(ranks.size());
+      to_receive_.assign(copies_.counts.size(), 0);
     });
-    ranks.exchange_counts(copies_.counts.data(), received_.counts.data());
+    ranks.exchange_counts(copies_.counts.data(), to_receive_.data());
     together(ranks, [&] {
       std::uint64_t n = 0;
-      for (std::uint64_t const each : received_.counts) n += each;
-      received_.items.resize(static_cast<std::size_t>(n));
-      part.expect_copies(received_.items.size());
+      for (std::uint64_t const each : to_receive_) n += each;
+      received_.resize(part.space(), static_cast<std::size_t>(n));
+      part.expect_copies(received_.size());
       places_ = in_space(part.space(), copies_.items, place_memory_);
       pack(part);
     });
@@ -74,12 +75,12 @@ class particle_exchange {
   /// Sends it.
   template <class Ranks>
   void send(Ranks const& ranks) {
-    ranks.exchange(sent_.data(), copies_.counts.data(), received_.items.data(), received_.counts.data(),
+    ranks.exchange(sent_.data(), copies_.counts.data(), received_.data(), to_receive_.data(),
                    sizeof(row<seen_columns>));
   }
 
   /// Takes over what the others have sent.
-  void unpack(Part& part) { part.unpack_seen(received_.items); }
+  void unpack(Part& part) { part.unpack_seen(received_); }
 
  private:
   /// Cuts bricks if there are none, or one has many more particles than it should.
@@ -148,8 +149,8 @@ class particle_exchange {
   mail<std::uint32_t> copies_;  ///< places of this rank's particles of which others have copies
   std::uint32_t const* places_ = nullptr;
   buffer<std::uint32_t> place_memory_;
-  std::vector<row<seen_columns>> sent_;
-  mail<row<seen_columns>> received_;
+  std::vector<std::uint64_t> to_receive_;  ///< copies of each other rank's particles
+  host_array<row<seen_columns>> sent_, received_;
 };
 
 }  // namespace collide::detail

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include <collide/detail/ranks/host_array.hpp>
 #include <collide/detail/simulation/particle.hpp>
 #include <collide/memory.hpp>
 
@@ -65,11 +66,12 @@ class row_carrier {
  public:
   using row = particle_row<S, List>;
 
-  /// The rows of `n` particles. `places`, in memory of the space: where they are; null: from `first` on.
-  template <class Space, class State>
+  /// The rows of `n` particles, in a vector or a `host_array`. `places`, in memory of the space: where they are; null:
+  /// from `first` on. Waits.
+  template <class Space, class State, class Rows>
   void pack(Space const& space, State const& state, std::uint32_t const* places, std::size_t first, std::size_t n,
-            std::vector<row>& to) {
-    to.resize(n);
+            Rows& to) {
+    resize(space, to, n);
     if constexpr (Space::host_accessible) {
       space.for_each(n, pack_rows<State, S, List>{state, places, first, to.data()});
     } else {
@@ -80,9 +82,9 @@ class row_carrier {
   }
 
   /// Puts rows into their places.
-  template <class Space, class State>
+  template <class Space, class State, class Rows>
   void unpack(Space const& space, State const& state, std::uint32_t const* places, std::size_t first,
-              std::vector<row> const& from) {
+              Rows const& from) {
     if constexpr (Space::host_accessible) {
       space.for_each(from.size(), unpack_rows<State, S, List>{state, places, first, from.data()});
     } else {
