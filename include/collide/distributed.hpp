@@ -45,8 +45,9 @@ class distributed {
   using spheres_type = typename Detector::spheres_type;        ///< that of the detector
   using execution_space = typename Detector::execution_space;  ///< that of the detector
 
-  /// `chunk`: how many spheres of a rank go to others at a time, where the mesh is divided: it bounds the memory for
-  /// what is sent. Throws what making the space throws, and `error` if `chunk` is 0; other ranks do not hear of that.
+  /// `chunk`: about how many spheres of a rank go to others at a time, where the mesh is divided: it bounds the memory
+  /// for what is sent. Throws what making the space throws, and `error` if `chunk` is 0; other ranks do not hear of
+  /// that.
   explicit distributed(Ranks ranks = Ranks(), execution_space space = execution_space(),
                        typename Detector::broad_phase options = {}, std::size_t chunk = std::size_t{1} << 20)
       : ranks_(std::move(ranks)), detector_(std::move(space), std::move(options)), chunk_{chunk} {
@@ -87,10 +88,11 @@ class distributed {
     }
   }
 
-  /// As `detector::query`, of the spheres of this rank, perhaps none. Where the mesh is divided, spheres go to the
-  /// ranks that may have triangles for them, by way of memory of the host, and pairs come back; with them the
-  /// triangles, unless the sink says that it keeps ids alone (`keeps_ids_alone`, see concepts.hpp). Throws `error` if
-  /// there was no `build`, or the last one failed.
+  /// As `detector::query`, of the spheres of this rank, perhaps none. Where the mesh is divided, spheres go to those
+  /// other ranks that may have triangles for them, by way of memory of the host (pinned, if the space is a device), and
+  /// pairs come back; with them the triangles, unless the sink says that it keeps ids alone (`keeps_ids_alone`, see
+  /// concepts.hpp). Takes 8 bytes of the space for each such sphere and rank, as much again to sort them, and 8 for
+  /// each pair. Throws `error` if there was no `build`, or the last one failed.
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {
     if constexpr (!alone) {

@@ -97,7 +97,7 @@ class pair_bounds {
   buffer<std::uint64_t> numbers_, bounds_;
 };
 
-/// The routes: pairs of a rank and a sphere in canonical order, in memory of the space. 8 bytes for each, and in the
+/// Routes: pairs of a rank and a sphere in canonical order, in memory of the space. 8 bytes for each, and in the
 /// space of a device twice that for the sort.
 class sphere_routes {
  public:
@@ -122,7 +122,7 @@ class sphere_routes {
     pair const* first;
     std::size_t size;
   };
-  /// Those to a rank that are sent in one of so many rounds, each of which has as many to each rank.
+  /// What is sent to a rank in one of so many rounds: about the same number in each.
   part of(std::size_t rank, std::uint64_t round, std::uint64_t rounds) const {
     std::uint64_t const all = ends_[rank + 1] - ends_[rank];
     std::uint64_t const most = (all + rounds - 1) / rounds, begin = std::min(all, round * most);
