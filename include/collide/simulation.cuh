@@ -124,9 +124,8 @@ class simulation {
     time_ = 0;
     space_.for_each(detail::padded_size(room), detail::init_particles<S, columns>{state_, particles, velocities});
     is_set_ = true;
-    if constexpr (effects_type::meets || sweeps || has_bodies)
-      largest_radius_ = detail::largest_radius_of(*this, particles);
-    if constexpr (effects_type::meets) neighbours_.clear(space_, room, largest_radius_);
+    if constexpr (effects_type::meets || sweeps || has_bodies) radii_ = detail::radius_range_of(*this, particles);
+    if constexpr (effects_type::meets) neighbours_.clear(space_, room, radii_.largest);
     prepare();
   }
 
@@ -212,11 +211,12 @@ class simulation {
   double time() const { return time_; }
 
   /// Bytes of memory that the particles take in all: columns, room for more, and what steps need for them, such as
-  /// lists of neighbours. What is prepared of the mesh is not in it.
+  /// lists of neighbours; and what is known of bodies, a byte a triangle and about 600 bytes a body. What is prepared
+  /// of the mesh to find its triangles is not in it.
   std::size_t bytes() const {
     std::size_t lists = 0;
     if constexpr (effects_type::meets) lists = neighbours_.bytes();
-    return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + lists;
+    return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
 
   /// Number of particles, or of places for them, if an effect makes or removes some; see `alive`.
@@ -294,7 +294,7 @@ class simulation {
     if constexpr (has_bodies) {
       if (state_.time == nullptr) return;
       auto const& motion = effect<moving_bodies<typename bodies_memory::motion>>().motion;
-      bodies_.advance(space_, motion, state_.time, dt, sweeps ? S(-1) : largest_radius_, start);
+      bodies_.advance(space_, motion, state_.time, dt, sweeps ? S(-1) : radii_.smallest, start);
     }
   }
 
@@ -314,7 +314,7 @@ class simulation {
     if constexpr (effects_type::touches) {
       detail::lookup_tuning<execution_space> there(space_);
       if (mesh_.size() == 0 || state_.size == 0) return;
-      bool const tiny = largest_radius_ >= 0 && largest_radius_ < least_radius_;
+      bool const tiny = radii_.largest >= 0 && radii_.largest < least_radius_;
       index_.prepare(there, options_,
                      tiny ? spheres_xyz(state_.at(position{}), state_.size, least_radius_) : spheres());
     }
@@ -339,7 +339,8 @@ class simulation {
   bool reverse_order_ = false;  ///< of the next step
   double time_ = 0;
   buffer<double> device_time_;  ///< for effects with a member begin_step
-  S largest_radius_ = 0, least_radius_ = 0;
+  detail::radius_range<S> radii_;
+  S least_radius_ = 0;
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
   buffer<id> overflow_;

@@ -169,6 +169,11 @@ class body_memory {
     f("report on bodies", report_.data(), made);
   }
 
+  /// Bytes of memory of the space.
+  std::size_t bytes() const {
+    return numbers_.bytes() + boxes_.bytes() + records_.bytes() + states_.bytes() + frames_.bytes() + report_.bytes();
+  }
+
   /// Throws `error` unless these can be bodies of a mesh of so many triangles.
   static void check(std::vector<body> const& bodies, std::size_t triangles) {
     constexpr std::size_t most = moving_bodies<Motion>::max_bodies;
@@ -274,6 +279,7 @@ class body_memory {
 struct no_bodies {
   static constexpr bool exist = false;
 
+  static std::size_t bytes() { return 0; }
   static void check(std::vector<body> const& bodies, std::size_t) {
     if (!bodies.empty()) throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
   }
