@@ -13,6 +13,7 @@
 namespace {
 
 using namespace collide;
+using io::operator+, io::operator*;
 
 /// Grains fall from a slot inside the drum.
 struct slot {
@@ -30,7 +31,7 @@ template <class Space>
 using drum = simulation<detector<bucket, karabassi<>, Space>, emit_from<slot>, gravity, sphere_contact, bounce,
                         friction, box_walls, moving_bodies<>>;
 
-constexpr double size = 0.008, duration = 0.008, pi = 3.14159265358979;
+constexpr double size = 0.008, duration = 0.008;
 constexpr double radius = 0.3, half = 0.1, rate = 1.6;  // of the drum; it ends at two walls
 constexpr double roller = 0.06, apart = 0.22;           // of the rollers: radius, and where they are
 constexpr int lifters = 8;
@@ -46,47 +47,23 @@ constexpr auto make = [](auto space, io::film const& film) {
 /// The height of the rollers' axes, on which the drum lies.
 double height() { return -std::sqrt((radius + roller) * (radius + roller) - apart * apart); }
 
-/// Adds a tube around an axis along y through (x, z), of so many sides.
-void add_tube(io::scene& s, double x, double z, double r, double longer, std::size_t sides) {
-  io::add_surface(s, sides, 4, false, [&](double across, double along) {
-    double const u = 2 * pi * across;
-    return io::point{x + r * std::cos(u), (half + longer) * (2 * along - 1), z + r * std::sin(u)};
-  });
-}
-
-/// The drum, two rollers, and the floor. Each body is what has been added since the one before.
+/// The drum, two rollers, and the floor.
 io::film scene() {
-  io::scene s;
+  io::film film{"drum", "A drum turns, and mixes the grains in it.", {}, duration / 20, 5'000, 9, 0.2};
+  auto& s = film.stage;
   s.radius = size;
-  std::vector<body> bodies;
-  auto const add_body = [&](double x, double z, double turning) {
-    body b;
-    b.first = bodies.empty() ? 0 : bodies.back().first + bodies.back().size;
-    b.size = s.triangle_count() - b.first;
-    b.motion.pivot[0] = x, b.motion.pivot[2] = z;
-    b.motion.axis[1] = 1, b.motion.axis[2] = 0;
-    b.motion.rate = turning;
-    bodies.push_back(b);
-  };
-  add_tube(s, 0, 0, radius, 0, 144);
+  io::add_tube(s, {0, -half, 0}, {0, half, 0}, radius, 144);
   for (int i = 0; i < lifters; ++i) {
-    double const u = 2 * pi * i / lifters;
-    io::add_surface(s, 4, 4, false, [&](double across, double along) {
-      double const r = radius - 0.04 * across;
-      return io::point{r * std::cos(u), half * (2 * along - 1), r * std::sin(u)};
-    });
+    double const u = 2 * io::pi * i / lifters;
+    io::point const outwards{std::cos(u), 0, std::sin(u)};
+    io::add_plate(s, (radius - 0.04) * outwards + io::point{0, -half, 0}, 0.04 * outwards, {0, 2 * half, 0});
   }
-  add_body(0, 0, rate);
-  for (double const side : {-apart, apart}) {
-    add_tube(s, side, height(), roller, 0.03, 12);  // as many sides that one sees it turn
-    add_body(side, height(), -rate * radius / roller);
+  io::add_body(film, io::turning({0, 0, 0}, {0, 1, 0}, rate));
+  for (double const side : {-apart, apart}) {  // of so few sides that one sees them turn
+    io::add_tube(s, {side, -half - 0.03, height()}, {side, half + 0.03, height()}, roller, 12);
+    io::add_body(film, io::turning({side, 0, height()}, {0, 1, 0}, -rate * radius / roller));
   }
-  double const floor = height() - roller;
-  io::add_surface(s, 8, 8, false, [&](double across, double along) {
-    return io::point{2.4 * across - 1.2, 1.6 * along - 0.8, floor};
-  });
-  io::film film{"drum", "A drum turns, and mixes the grains in it.", s, duration / 20, 5'000, 9, 0.2};
-  film.bodies = bodies;
+  io::add_plate(s, {-1.2, -0.8, height() - roller}, {2.4, 0, 0}, {0, 1.6, 0});
   return film;
 }
 

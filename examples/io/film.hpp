@@ -52,6 +52,21 @@ struct film {
   }
 };
 
+/// Makes a body of the triangles that the stage has got since the body before.
+inline void add_body(film& of, collide::body_motion const& motion) {
+  std::size_t const first = of.bodies.empty() ? 0 : of.bodies.back().first + of.bodies.back().size;
+  of.bodies.push_back({first, of.stage.triangle_count() - first, motion});
+}
+
+/// A motion around an axis through a point.
+inline collide::body_motion turning(point const& pivot, point const& axis, double rate) {
+  collide::body_motion m;
+  std::copy(pivot.begin(), pivot.end(), m.pivot);
+  std::copy(axis.begin(), axis.end(), m.axis);
+  m.rate = rate;
+  return m;
+}
+
 /// Where particle number 0, 1, 2, ... of a source begins, in coordinates between -1 and 1. Those of `evenly` are spread
 /// over the square such that numbers that follow each other are far apart, so that particles do not overlap when they
 /// begin (M. Roberts' sequence R2); those of `anyhow` have no order.
