@@ -26,6 +26,7 @@ void check_wall_set_again(Space const& space, double speed) {
     mesh = placed<S>(space, w.corners);
     made.simulation.set_mesh(collide::triangle_soup(mesh.data(), mesh.size() / 9));
     made.simulation.step(S(dt));
+    made.simulation.space().synchronize();
   }
   auto const found = made.positions();
   CHECK(double(found[0]) == doctest::Approx(x + 0.1).epsilon(1e-3));
