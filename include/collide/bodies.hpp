@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <collide/detail/numeric/sin_cos.hpp>
 #include <collide/effect.hpp>
@@ -116,6 +117,11 @@ struct body_report {
 /// own frame, and nothing is built again while bodies move. O(bodies) more per particle.
 template <class Motion = body_motion>
 struct moving_bodies {
+  static_assert(std::is_same<Motion, driven>::value ||
+                    std::is_invocable_r<body_state, Motion const&, std::size_t, double>::value ||
+                    std::is_same<Motion, body_motion>::value,
+                "collide: a motion of moving_bodies is called as motion(body, time) const, with a std::size_t and a "
+                "double, and gives a body_state");
   static constexpr std::size_t max_bodies = 64;  ///< most bodies of a mesh
 
   Motion motion = Motion();  ///< of all bodies, if it is a function object of your own

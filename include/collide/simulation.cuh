@@ -180,7 +180,7 @@ class simulation {
     detail::reject_scalar<T>();
   }
   template <class T, class = std::enable_if_t<!std::is_same<T, S>::value>>
-  void set_mesh(mesh_view<T>) {
+  void set_mesh(mesh_view<T>, std::vector<body> const& = {}) {
     detail::reject_scalar<T>();
   }
 

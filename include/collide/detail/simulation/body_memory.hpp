@@ -291,11 +291,19 @@ struct no_bodies {
   }
 };
 
+template <class Effect>
+inline constexpr bool is_moving_bodies = false;
+template <class Motion>
+inline constexpr bool is_moving_bodies<moving_bodies<Motion>> = true;
+
 /// The bodies of a scene with these effects.
 template <class S, class... Effect>
 struct bodies_of : no_bodies {};
 template <class S, class Motion, class... Effect>
-struct bodies_of<S, moving_bodies<Motion>, Effect...> : body_memory<S, Motion> {};
+struct bodies_of<S, moving_bodies<Motion>, Effect...> : body_memory<S, Motion> {
+  static_assert(!(is_moving_bodies<Effect> || ...),
+                "collide: a simulation has one effect moving_bodies, with one kind of motion");
+};
 template <class S, class Other, class... Effect>
 struct bodies_of<S, Other, Effect...> : bodies_of<S, Effect...> {};
 
