@@ -176,7 +176,16 @@ TEST_CASE("bodies: what makes no sense is an error that says so, or is counted")
   states[0].at.rotation[0] = 2;
   by_hand.simulation.step(1e-3);
   CHECK(by_hand.simulation.bodies().report(by_hand.simulation.space()).refused_poses == 1);
-  CHECK(by_hand.simulation.bodies().to_host(host(1))[0].at.rotation[0] == 1);
+  CHECK(states[0].at.rotation[0] == 1);
+  CHECK(states[0].at.position[0] == 2);  // where it was
+  CHECK(states[0].moving.linear[0] == 0);
+  states[0].at.position[1] = std::nan("");
+  by_hand.simulation.step(1e-3);
+  states[0].moving.angular[2] = std::numeric_limits<double>::infinity();
+  by_hand.simulation.step(1e-3);
+  CHECK(by_hand.simulation.bodies().report(by_hand.simulation.space()).refused_poses == 3);
+  CHECK(by_hand.simulation.bodies().to_host(host(1))[0].at.position[0] == 2);
+  CHECK(states[0].at.position[1] == 0);
   CHECK(std::isfinite(by_hand.positions()[0]));
 
   using plain = collide::simulation<collide::detector<collide::bucket, karabassi<>, host, double>, collide::bounce>;

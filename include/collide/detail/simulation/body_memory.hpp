@@ -71,10 +71,7 @@ struct advance_bodies {
     body_frame<S>& f = frames[i + 1];
     if (!make_unit(s)) {
       fetch_add(&report->refused_poses, 1u);
-      s = states[i];
-      s.moving = twist();
-      if (!make_unit(s)) s.at = pose();
-      for (double& v : s.belt) v = 0;
+      s = at_rest(f.now);
     }
     states[i] = s;
     frame_pose const now = frame_pose_of(s.at);
@@ -95,6 +92,16 @@ struct advance_bodies {
     } else {
       return motion(i, at);
     }
+  }
+
+  static COLLIDE_HD_INLINE body_state at_rest(frame_pose const& at) {
+    body_state s;
+    s.at.rotation[0] = at.w;
+    for (int k = 0; k < 3; ++k) {
+      s.at.position[k] = at.position[k];
+      s.at.rotation[k + 1] = at.axis[k];
+    }
+    return s;
   }
 
   /// Makes the rotation's length 1. False if it is not nearly that, or something is not finite.
