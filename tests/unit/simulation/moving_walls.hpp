@@ -187,4 +187,38 @@ void check_work(Space const& space) {
   CHECK(by_paddle + by_piston == doctest::Approx(gained).epsilon(2e-3));
 }
 
+/// Swept particles in a box that turns far in a step: bodies get what particles lose, and each triangle its part.
+template <class Space>
+void check_momentum_of_turning_box(Space const& space) {
+  world<double> w;
+  w.radius = 0.05;
+  add_box(w, 1);
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-0.9, 0.9);
+  for (int i = 0; i < 100; ++i) w.particle(uniform(engine), uniform(engine), uniform(engine));
+  body_motion turning;
+  turning.axis[0] = 0.4;
+  turning.rate = 5;
+  turning.pivot[1] = 0.3;
+  double const density = 3, mass = density * 4 / 3 * pi * std::pow(0.05, 3);
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi_swept<>, double>, bounce, friction,
+                                         collide::reaction, moving_bodies<>>;
+  collide::reaction_sums sums(space, 1, 1e-15, 12);
+  running_bodies<simulation> made(space, w, one_body(w, turning), bounce{0.5}, friction{0.3, 0.3}, sums.effect(density),
+                                  moving_bodies<>{});
+  made.simulation.steps(50, 0.02);
+  auto const v = made.velocities();
+  auto const got = sums.read(made.simulation.space());
+  auto const of_triangles = sums.read_triangles(made.simulation.space());
+  CHECK(of_triangles.size() == 12);
+  for (std::size_t k = 0; k < 3; ++k) {
+    double lost = 0, of_all = 0, moment = 0, size = 0;
+    for (std::size_t i = k; i < v.size(); i += 3) lost -= mass * v[i], size += mass * std::abs(v[i]);
+    for (auto const& t : of_triangles) of_all += t.linear[k], moment += t.angular[k];
+    CHECK(got[0].linear[k] == doctest::Approx(lost).epsilon(1e-9).scale(size));
+    CHECK(of_all == doctest::Approx(got[0].linear[k]).epsilon(1e-12).scale(size));
+    CHECK(moment == doctest::Approx(got[0].angular[k]).epsilon(1e-12).scale(size));
+  }
+}
+
 }  // namespace tests

@@ -38,4 +38,5 @@ TEST_CASE("moving walls: on the GPU, a mesh that is set again, slow bodies, func
   tests::check_own_motion<karabassi<>>(cuda_shared());
   tests::check_screw<karabassi<>>(cuda_shared());
   tests::check_work<karabassi<>>(cuda_shared());
+  tests::check_momentum_of_turning_box(cuda_shared());
 }

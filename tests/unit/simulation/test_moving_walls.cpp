@@ -36,3 +36,7 @@ TEST_CASE("moving walls: the work of the bodies is the work on the particles") {
   tests::check_work<karabassi<>>(host(1));
   tests::check_work<karabassi_swept<>>(host(1));
 }
+
+TEST_CASE("moving walls: a box that turns far in a step gets what swept particles lose, and each triangle its part") {
+  tests::check_momentum_of_turning_box(host(1));
+}
