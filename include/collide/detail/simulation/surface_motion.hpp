@@ -55,6 +55,7 @@ struct surface_at_rest {
   }
   template <class S>
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
+    c.surface_velocity = c.turn = vec3<S>(S(0), S(0), S(0));
     c.body = no_id;
   }
   template <class Active, class S>
@@ -102,6 +103,7 @@ struct surface_of_body {
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
     c.surface_velocity = velocity;
     c.body = frame == 0 ? no_id : static_cast<id>(frame - 1);
+    c.turn = vec3<S>(S(0), S(0), S(0));
     if constexpr (IsSwept) {
       if (frame != 0) c.turn = rounded_to<S>(turn_between(at, now));
     }
