@@ -53,8 +53,7 @@ struct mesh_forces {
   }
   template <class Particle, class S>
   COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
-    vec3<S> const change = p[velocity{}] - t.velocity_before;
-    p[mesh_force{}] += change * detail::force_per_change(density, p.radius(), dt);
+    p[mesh_force{}] += t.velocity_change(p) * detail::force_per_change(density, p.radius(), dt);
   }
 };
 

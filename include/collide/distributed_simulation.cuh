@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -82,9 +83,9 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     });
     ranks_.all_gather(&all.first, sizeof all.first, starts_.data());
     starts_.back() = all.placed;
-    radii const of_all = radii_of_all(mine);
+    detail::radii_of_all<S> const radii = find_radii(mine);
     exchange_.clear();
-    together(ranks_, [&] { part_.set(mine, velocities, all, of_all.common, of_all.largest, of_all.widest); });
+    together(ranks_, [&] { part_.set(mine, velocities, all, radii); });
   }
 
   /// The mesh, which is the same on every rank; see `simulation::set_mesh`.
@@ -191,10 +192,6 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
  private:
   friend class detail::distributed_checkpoint<distributed>;
 
-  struct radii {
-    S common, largest, widest;
-  };
-
   /// Says with which free places this rank begins.
   void share_free(detail::numbers_of_all& all) const {
     auto const ranks = static_cast<std::uint64_t>(ranks_.size()), rank = static_cast<std::uint64_t>(ranks_.rank());
@@ -204,9 +201,9 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   }
 
   /// Radii of the particles of all ranks. Throws `error` on all if there must be one, but there are several.
-  radii radii_of_all(sphere_view<S> const& mine) const {
+  detail::radii_of_all<S> find_radii(sphere_view<S> const& mine) const {
     using detail::to_ordered_bits;
-    S largest = mine.common_radius(), widest = 0;
+    S smallest = std::numeric_limits<S>::infinity(), largest = mine.common_radius(), widest = 0;
     together(ranks_, [&] {
       buffer<S> memory;
       auto const& space = part_.simulation().space();
@@ -218,7 +215,11 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       }
       if (!each.empty()) largest = *std::max_element(each.begin(), each.end());
       widest = largest < 0 ? -largest : largest;
-      for (S const r : each) widest = std::max(widest, r < 0 ? -r : r);
+      if (mine.one_radius() && largest >= 0) smallest = largest;
+      for (S const r : each) {
+        widest = std::max(widest, r < 0 ? -r : r);
+        if (r >= 0) smallest = std::min(smallest, r);
+      }
     });
     // a rank without particles has no say in this, unless no rank has any
     auto const ask = [&](S value, bool has_say) {
@@ -233,7 +234,10 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     bool const several =
         ask(S(0), has_say && !mine.one_radius()).first || detail::to_bits(most) != detail::to_bits(least);
     detail::check_particles<columns>(!several, 0, 0);
-    return {several ? S(0) : most, ask(largest, has_say).second, ask(widest, has_say).second};
+    S const least_of_all = -ask(-smallest, has_say).second;
+    return {several ? S(0) : most,
+            {several ? least_of_all : most, ask(largest, has_say).second},
+            ask(widest, has_say).second};
   }
 
   /// The rank that has set a particle; the last has what effects make.

@@ -71,10 +71,7 @@ struct advance_bodies {
     body_frame<S>& f = frames[i + 1];
     if (!make_unit(s)) {
       fetch_add(&report->refused_poses, 1u);
-      s = states[i];
-      s.moving = twist();
-      if (!make_unit(s)) s.at = pose();
-      for (double& v : s.belt) v = 0;
+      s = at_rest(f.now);
     }
     states[i] = s;
     frame_pose const now = frame_pose_of(s.at);
@@ -95,6 +92,16 @@ struct advance_bodies {
     } else {
       return motion(i, at);
     }
+  }
+
+  static COLLIDE_HD_INLINE body_state at_rest(frame_pose const& at) {
+    body_state s;
+    s.at.rotation[0] = at.w;
+    for (int k = 0; k < 3; ++k) {
+      s.at.position[k] = at.position[k];
+      s.at.rotation[k + 1] = at.axis[k];
+    }
+    return s;
   }
 
   /// Makes the rotation's length 1. False if it is not nearly that, or something is not finite.
@@ -167,6 +174,11 @@ class body_memory {
     f("poses of bodies", states_.data(), count_);
     f("frames of bodies", frames_.data(), count_ + made);
     f("report on bodies", report_.data(), made);
+  }
+
+  /// Bytes of memory of the space.
+  std::size_t bytes() const {
+    return numbers_.bytes() + boxes_.bytes() + records_.bytes() + states_.bytes() + frames_.bytes() + report_.bytes();
   }
 
   /// Throws `error` unless these can be bodies of a mesh of so many triangles.
@@ -274,6 +286,7 @@ class body_memory {
 struct no_bodies {
   static constexpr bool exist = false;
 
+  static std::size_t bytes() { return 0; }
   static void check(std::vector<body> const& bodies, std::size_t) {
     if (!bodies.empty()) throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
   }
@@ -285,11 +298,19 @@ struct no_bodies {
   }
 };
 
+template <class Effect>
+inline constexpr bool is_moving_bodies = false;
+template <class Motion>
+inline constexpr bool is_moving_bodies<moving_bodies<Motion>> = true;
+
 /// The bodies of a scene with these effects.
 template <class S, class... Effect>
 struct bodies_of : no_bodies {};
 template <class S, class Motion, class... Effect>
-struct bodies_of<S, moving_bodies<Motion>, Effect...> : body_memory<S, Motion> {};
+struct bodies_of<S, moving_bodies<Motion>, Effect...> : body_memory<S, Motion> {
+  static_assert(!(is_moving_bodies<Effect> || ...),
+                "collide: a simulation has one effect moving_bodies, with one kind of motion");
+};
 template <class S, class Other, class... Effect>
 struct bodies_of<S, Other, Effect...> : bodies_of<S, Effect...> {};
 

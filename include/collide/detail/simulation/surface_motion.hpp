@@ -55,6 +55,7 @@ struct surface_at_rest {
   }
   template <class S>
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
+    c.surface_velocity = c.turn = vec3<S>(S(0), S(0), S(0));
     c.body = no_id;
   }
   template <class Active, class S>
@@ -66,6 +67,12 @@ struct surface_at_rest {
   template <class Particle>
   COLLIDE_HD_INLINE void leave(Particle&) const {}
 };
+
+/// How a body turns from one pose to another: the vector part of the quaternion.
+COLLIDE_HD_INLINE vec3<double> turn_between(frame_pose const& a, frame_pose const& b) {
+  vec3<double> const turn = scaled(b.axis, a.w) - scaled(a.axis, b.w) - cross(b.axis, a.axis);
+  return mul(a.w, b.w) + dot(a.axis, b.axis) < 0 ? vec3<double>(-turn) : turn;
+}
 
 /// The surface of a body that moves, where a particle touches it.
 template <class S, bool IsSwept>
@@ -96,6 +103,10 @@ struct surface_of_body {
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
     c.surface_velocity = velocity;
     c.body = frame == 0 ? no_id : static_cast<id>(frame - 1);
+    c.turn = vec3<S>(S(0), S(0), S(0));
+    if constexpr (IsSwept) {
+      if (frame != 0) c.turn = rounded_to<S>(turn_between(at, now));
+    }
   }
 
   template <class Active>
