@@ -123,7 +123,7 @@ struct moving_bodies {
                 "collide: a motion of moving_bodies is called as motion(body, time) const, with a std::size_t and a "
                 "double, and gives a body_state");
   static constexpr std::size_t max_bodies = 64;  ///< most bodies of a mesh
-  static constexpr bool begins_on_ranks = true;
+  static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
   Motion motion = Motion();  ///< of all bodies, if it is a function object of your own
 

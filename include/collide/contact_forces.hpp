@@ -43,7 +43,7 @@ struct mesh_forces {
   using reads = columns<velocity>;
   using writes = columns<mesh_force>;
   using runs_after = effects<bounce, friction, spin, adhesion>;
-  static constexpr bool begins_on_ranks = true;
+  static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
   double density = 1;  ///< mass per volume: a particle has the mass of a solid sphere
 
@@ -65,7 +65,7 @@ struct pair_forces {
   using reads = columns<velocity>;
   using writes = columns<pair_force>;
   using runs_after = effects<sphere_contact>;
-  static constexpr bool begins_on_ranks = true;
+  static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
   double density = 1;  ///< mass per volume: that of `sphere_contact`
 
