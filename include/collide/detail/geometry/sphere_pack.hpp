@@ -142,14 +142,10 @@ struct moving_batch {
       bool const there = i < spheres.size();
       moving_sphere<S> const s =
           there ? spheres[i] : moving_sphere<S>{{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()}, {0, 0, 0}};
-      set(k, s);
+      x[k] = s.centre.x(), y[k] = s.centre.y(), z[k] = s.centre.z();
+      dx[k] = s.displacement.x(), dy[k] = s.displacement.y(), dz[k] = s.displacement.z();
+      radius[k] = s.radius;
     }
-  }
-
-  COLLIDE_HD_INLINE void set(int k, moving_sphere<S> const& s) {
-    x[k] = s.centre.x(), y[k] = s.centre.y(), z[k] = s.centre.z();
-    dx[k] = s.displacement.x(), dy[k] = s.displacement.y(), dz[k] = s.displacement.z();
-    radius[k] = s.radius;
   }
 
   COLLIDE_HD_INLINE vec3<S> centre(int k) const { return {x[k], y[k], z[k]}; }

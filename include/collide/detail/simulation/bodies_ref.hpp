@@ -3,7 +3,6 @@
 /// members are those of triangle_ref.hpp.
 #pragma once
 
-#include <collide/detail/geometry/sphere_pack.hpp>
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/triangle_ref.hpp>
 #include <collide/detail/simulation/moving_mesh.hpp>
@@ -34,30 +33,8 @@ struct bodies_ref {
 
   COLLIDE_HD_INLINE bodies_ref opened() const { return {whole.opened(), mesh}; }
 
-  /// In each frame.
-  COLLIDE_HD_INLINE bool has_single_cell_lookup(S radius) const { return whole.has_single_cell_lookup(radius); }
-  /// Of all triangles, each in its frame.
+  COLLIDE_HD_INLINE bool has_single_cell_lookup(S) const { return false; }
   COLLIDE_HD_INLINE auto occupancy() const { return whole.occupancy(); }
-
-  /// Sets near[k] for those of `N` spheres that may touch a triangle, where `marks` tell that of each frame. False if
-  /// it is not known: one of them goes a long way.
-  template <class Marks, class Sphere, int N>
-  COLLIDE_HD_INLINE bool test_marks(Marks const& marks, Sphere const (&shapes)[N], bool (&near)[N]) const {
-    COLLIDE_NO_UNROLL
-    for (int f = mesh.first_frame; f < mesh.frame_count; ++f) {
-      bool far[N], all_far = true, here[N] = {};
-      for (int k = 0; k < N; ++k) {
-        far[k] = is_far(f, shapes[k]);
-        all_far = all_far && far[k];
-      }
-      if (all_far) continue;
-      Sphere seen[N];
-      for (int k = 0; k < N; ++k) seen[k] = mesh.seen_from(f, shapes[k], 0);
-      if (!mark(marks, seen, here)) return false;
-      for (int k = 0; k < N; ++k) near[k] = near[k] || (here[k] && !far[k]);
-    }
-    return true;
-  }
 
   /// True if the sphere can touch no triangle in the step.
   template <class Sphere>
@@ -111,20 +88,6 @@ struct bodies_ref {
   }
 
  private:
-  template <class Marks, int N>
-  static COLLIDE_HD_INLINE bool mark(Marks const& marks, sphere<S> const (&seen)[N], bool (&near)[N]) {
-    S x[N], y[N], z[N];
-    for (int k = 0; k < N; ++k) x[k] = seen[k].centre.x(), y[k] = seen[k].centre.y(), z[k] = seen[k].centre.z();
-    marks.mark(marks.places_of(x, y, z), near);
-    return true;
-  }
-  template <class Marks, int N>
-  static COLLIDE_HD_INLINE bool mark(Marks const& marks, moving_sphere<S> const (&seen)[N], bool (&near)[N]) {
-    moving_batch<S, N> batch;
-    for (int k = 0; k < N; ++k) batch.set(k, seen[k]);
-    return marks.mark(batch, near);
-  }
-
   template <class Sphere>
   COLLIDE_HD_INLINE bool is_far(int frame, Sphere const& shape) const {
     return mesh.frames[frame].is_far(shape.centre, shape.radius, path_length(shape));

@@ -190,26 +190,20 @@ struct integration {
   /// near the mesh is not to be foreseen. False if it is not known: one of them goes a long way.
   template <int N>
   COLLIDE_HD_INLINE bool test_marks(occupancy_view<S> const& marks, integrated const (&p)[N], bool (&near)[N]) const {
-    if constexpr (has_bodies) {
-      decltype(shape_of(p[0])) shapes[N];
-      for (int k = 0; k < N; ++k) shapes[k] = shape_of(p[k]);
-      return context.triangles.test_marks(marks, shapes, near);
-    } else {
-      moving_batch<S, N> batch;
-      for (int k = 0; k < N; ++k) {
-        vec3<S> const& c = p[k][position{}];
-        batch.x[k] = c.x(), batch.y[k] = c.y(), batch.z[k] = c.z();
-        if constexpr (is_swept) {
-          vec3<S> const d = p[k][velocity{}] * context.dt;
-          batch.dx[k] = d.x(), batch.dy[k] = d.y(), batch.dz[k] = d.z();
-        }
-      }
+    moving_batch<S, N> batch;
+    for (int k = 0; k < N; ++k) {
+      vec3<S> const& c = p[k][position{}];
+      batch.x[k] = c.x(), batch.y[k] = c.y(), batch.z[k] = c.z();
       if constexpr (is_swept) {
-        return marks.test_swept(batch, near);
-      } else {
-        marks.mark(marks.places_of(batch.x, batch.y, batch.z), near);
-        return true;
+        vec3<S> const d = p[k][velocity{}] * context.dt;
+        batch.dx[k] = d.x(), batch.dy[k] = d.y(), batch.dz[k] = d.z();
       }
+    }
+    if constexpr (is_swept) {
+      return marks.test_swept(batch, near);
+    } else {
+      marks.mark(marks.places_of(batch.x, batch.y, batch.z), near);
+      return true;
     }
   }
 

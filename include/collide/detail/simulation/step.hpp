@@ -101,8 +101,8 @@ struct step_kernel {
   /// touch the mesh, as many as fill its vector registers at a time.
   template <class Block>
   static constexpr bool filters_after_integration =
-      Block::items % 16 == 0 && !Context::is_swept && !Context::has_bodies && integration_type::has_one_radius &&
-      !effects_type::skips && !effects_type::finishes && Context::kick_after == 0;
+      Block::items % 16 == 0 && !Context::is_swept && integration_type::has_one_radius && !effects_type::skips &&
+      !effects_type::finishes && Context::kick_after == 0;
 
   /// The next particles are on their way while a lane moves some. To ask for the cells of motions takes too many
   /// registers for that.
