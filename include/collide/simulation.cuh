@@ -127,15 +127,16 @@ class simulation {
   /// The mesh that particles touch, not copied: it must stay as it is while it is used. Call it again when the mesh has
   /// moved. An empty one is a mesh, too. Allocates if the mesh has grown; may wait. O(triangles).
   ///
-  /// `bodies`, only with `moving_bodies` in the scene: parts of the mesh that move; see bodies.hpp. `error` if there
-  /// are more than 64, triangles are not in the mesh or in two bodies, or a motion is not finite.
-  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}) {
-    bodies_.check(bodies, mesh.size());
+  /// Only with `moving_bodies` in the scene (bodies.hpp): `bodies`, parts of the mesh that move, and `velocities` of
+  /// all vertices (packed, in memory of the space) where the rest deforms: at the end of the next step, as the mesh is.
+  /// `error` if there are more than 64 bodies, triangles not in the mesh or in two, or a motion is not finite.
+  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
+    bodies_.check(bodies, mesh.size(), velocities);
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
     if (mesh.size() != 0) index_.build(there, options_, mesh);
-    bodies_.build(space_, mesh, bodies);
+    bodies_.build(space_, mesh, bodies, velocities);
     mesh_ = mesh;
     has_mesh_ = true;
     if constexpr (sweeps) {
@@ -153,7 +154,7 @@ class simulation {
     detail::reject_scalar<T>();
   }
   template <class T, class = std::enable_if_t<!std::is_same<T, S>::value>>
-  void set_mesh(mesh_view<T>, std::vector<body> const& = {}) {
+  void set_mesh(mesh_view<T>, std::vector<body> const& = {}, T const* = nullptr) {
     detail::reject_scalar<T>();
   }
 

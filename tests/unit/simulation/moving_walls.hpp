@@ -187,6 +187,53 @@ void check_work(Space const& space) {
   CHECK(by_paddle + by_piston == doctest::Approx(gained).epsilon(2e-3));
 }
 
+/// A mesh that deforms, set again before each step with the velocities of its vertices, hits and carries as they say.
+template <class NarrowPhase, class S, class Space>
+void check_deforming(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, bounce, friction, moving_bodies<>>;
+  world<S> w;
+  w.radius = S(0.05);
+  add_quad(w, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});
+  w.particle(0.25, 0.1, 0.06);
+  w.particle(0.75, -0.2, 0.06);
+  double const rate = 0.5, dt = 1e-3;
+  simulation made(space, bounce{1}, friction{0, 0}, moving_bodies<>{});
+  placed<S> const centres(space, w.centres), speeds(space, w.velocities);
+  made.set(collide::spheres_xyz(centres.data(), w.size(), w.radius), speeds.data());
+  for (int k = 1; k <= 200; ++k) {  // one edge rises: z = rate t x
+    std::vector<S> corners = w.corners, velocities(corners.size());
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+      corners[i + 2] = S(rate * k * dt * double(corners[i]));
+      velocities[i + 2] = S(rate * double(corners[i]));
+    }
+    placed<S> const mesh(space, corners), moving(space, velocities);
+    made.set_mesh(collide::triangle_soup(mesh.data(), 2), {}, moving.data());
+    made.step(S(dt));
+    made.space().synchronize();
+  }
+  auto const v = made.template to_host<velocity>();
+  CHECK(double(v[2]) == doctest::Approx(2 * rate * 0.25).epsilon(0.03));
+  CHECK(double(v[5]) == doctest::Approx(2 * rate * 0.75).epsilon(0.03));
+
+  using carried = collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, friction, moving_bodies<>>;
+  carried rubber(space, gravity{}, bounce{0}, friction{0.5, 0.5}, moving_bodies<>{});
+  std::vector<S> lying = w.centres, still(6), stretching(w.corners.size());
+  lying[2] = lying[5] = w.radius;
+  for (std::size_t i = 1; i < stretching.size(); i += 3) stretching[i] = S(0.1 * double(w.corners[i - 1]));
+  placed<S> const there(space, lying), none(space, still), shear(space, stretching), mesh(space, w.corners);
+  rubber.set(collide::spheres_xyz(there.data(), w.size(), w.radius), none.data());
+  rubber.set_mesh(collide::triangle_soup(mesh.data(), 2), {}, shear.data());
+  rubber.steps(500, S(dt));
+  auto const u = rubber.template to_host<velocity>();
+  CHECK(double(u[1]) == doctest::Approx(0.025).epsilon(1e-4));
+  CHECK(double(u[4]) == doctest::Approx(0.075).epsilon(1e-4));
+  CHECK(std::abs(double(u[0])) < 1e-6);
+
+  using plain = collide::simulation<meets_mesh<Space, NarrowPhase, S>, bounce>;
+  plain no_effect(space, bounce{});
+  CHECK_THROWS_AS(no_effect.set_mesh(collide::triangle_soup(mesh.data(), 2), {}, shear.data()), collide::error);
+}
+
 /// Swept particles in a box that turns far in a step: bodies get what particles lose, and each triangle its part.
 template <class Space>
 void check_momentum_of_turning_box(Space const& space) {

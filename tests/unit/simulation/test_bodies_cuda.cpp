@@ -39,4 +39,5 @@ TEST_CASE("moving walls: on the GPU, a mesh that is set again, slow bodies, func
   tests::check_screw<karabassi<>>(cuda_shared());
   tests::check_work<karabassi<>>(cuda_shared());
   tests::check_momentum_of_turning_box(cuda_shared());
+  tests::check_deforming<karabassi<>, float>(cuda_shared());
 }

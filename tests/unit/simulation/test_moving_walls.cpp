@@ -37,6 +37,11 @@ TEST_CASE("moving walls: the work of the bodies is the work on the particles") {
   tests::check_work<karabassi_swept<>>(host(1));
 }
 
+TEST_CASE_TEMPLATE("moving walls: a mesh that deforms hits and carries as its vertices move", S, float, double) {
+  tests::check_deforming<karabassi<>, S>(host(1));
+  tests::check_deforming<karabassi_swept<>, S>(host(1));
+}
+
 TEST_CASE("moving walls: a box that turns far in a step gets what swept particles lose, and each triangle its part") {
   tests::check_momentum_of_turning_box(host(1));
 }

@@ -182,7 +182,7 @@ class body_memory {
   }
 
   /// Throws `error` unless these can be bodies of a mesh of so many triangles.
-  static void check(std::vector<body> const& bodies, std::size_t triangles) {
+  static void check(std::vector<body> const& bodies, std::size_t triangles, S const*) {
     constexpr std::size_t most = moving_bodies<Motion>::max_bodies;
     if (bodies.size() > most) throw error("collide: set_mesh: there are more than 64 bodies");
     std::vector<bool> taken(triangles);
@@ -201,8 +201,9 @@ class body_memory {
 
   /// Takes over the bodies of a mesh, which `check` has let through. Waits.
   template <class Space>
-  void build(Space& space, mesh_view<S> const& mesh, std::vector<body> const& bodies) {
+  void build(Space& space, mesh_view<S> const& mesh, std::vector<body> const& bodies, S const* velocities) {
     auto* const resource = space.resource();
+    vertex_velocities_ = velocities;
     count_ = bodies.size();
     std::size_t const frames = count_ + 1;
     auto* const numbers = numbers_.reserve(resource, mesh.size());
@@ -243,7 +244,8 @@ class body_memory {
 
   template <class Triangles>
   bodies_ref<S, Triangles> lookup(Triangles const& whole, mesh_view<S> const& mesh, S dt) const {
-    return {whole, {mesh, frames_.data(), numbers_.data(), first_, static_cast<int>(count_) + 1, dt}};
+    return {whole,
+            {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt}};
   }
 
  private:
@@ -273,7 +275,8 @@ class body_memory {
   }
 
   std::size_t count_ = 0;
-  int first_ = 0;  ///< the first frame that has triangles: 1 if none rests
+  int first_ = 0;                         ///< the first frame that has triangles: 1 if none rests
+  S const* vertex_velocities_ = nullptr;  ///< of the caller
   buffer<std::uint8_t> numbers_;
   buffer<body_box<S>> boxes_;
   buffer<body_record> records_;
@@ -287,11 +290,12 @@ struct no_bodies {
   static constexpr bool exist = false;
 
   static std::size_t bytes() { return 0; }
-  static void check(std::vector<body> const& bodies, std::size_t) {
-    if (!bodies.empty()) throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
+  static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
+    if (!bodies.empty() || velocities != nullptr)
+      throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
   }
   template <class Space, class Mesh>
-  void build(Space&, Mesh const&, std::vector<body> const&) {}
+  void build(Space&, Mesh const&, std::vector<body> const&, void const*) {}
   template <class Triangles, class Mesh, class S>
   Triangles const& lookup(Triangles const& whole, Mesh const&, S) const {
     return whole;
