@@ -77,15 +77,17 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     ranks_.reduce(&n, &all.placed, 1, reduction::sum);
     all.size = std::max(all.placed, std::uint64_t{capacity});
     share_free(all);
+    together(ranks_, [&] { detail::check_particles<columns>(true, all.placed, all.size); });
+    detail::radii_of_all<S> const radii = find_radii(mine);
+    is_sound_ = false;
+    exchange_.clear();
     together(ranks_, [&] {
-      detail::check_particles<columns>(true, all.placed, all.size);
       starts_.resize(static_cast<std::size_t>(ranks_.size()) + 1);
+      part_.set(mine, velocities, all, radii);
     });
     ranks_.all_gather(&all.first, sizeof all.first, starts_.data());
     starts_.back() = all.placed;
-    detail::radii_of_all<S> const radii = find_radii(mine);
-    exchange_.clear();
-    together(ranks_, [&] { part_.set(mine, velocities, all, radii); });
+    is_sound_ = true;
   }
 
   /// The mesh, which is the same on every rank; see `simulation::set_mesh`.
@@ -93,27 +95,33 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     together(ranks_, [&] { part_.simulation().set_mesh(mesh, bodies); });
   }
 
-  /// Advances by the time `dt`; throws what `simulation::step` throws.
+  /// Advances by the time `dt`; throws what `simulation::step` throws. If it throws after the step has begun somewhere,
+  /// particles may be lost, and nothing works until the next `set` or `load`.
   void step(S dt) {
+    check_sound();
     std::exception_ptr failure;
-    std::uint64_t mine = 0, all = 0;  // 1: particles must change ranks; 2: something is wrong
+    std::uint64_t mine[2] = {0, 0}, all[2];  // 1: particles must change ranks, 2: something is wrong; has it begun?
     try {
-      mine = part_.begin_step(dt) ? 1 : 0;
-      if (meets && mine == 0) exchange_.pack(part_);
+      part_.check_step(dt);
+      mine[1] = 1;
+      mine[0] = part_.begin_step(dt) ? 1 : 0;
+      if (meets && mine[0] == 0) exchange_.pack(part_);
     } catch (...) {
       failure = std::current_exception();
-      mine = 2;
+      mine[0] = 2;
     }
-    ranks_.reduce(&mine, &all, 1, reduction::max);
-    if (all == 2) agree(ranks_, failure);
+    ranks_.reduce(mine, all, 2, reduction::max);
+    is_sound_ = all[1] == 0;
+    if (all[0] == 2) agree(ranks_, failure);
     if constexpr (meets) {
-      if (all == 1) exchange_.exchange(ranks_, part_);
+      if (all[0] == 1) exchange_.exchange(ranks_, part_);
       exchange_.send(ranks_);
     }
     together(ranks_, [&] {
       if constexpr (meets) exchange_.unpack(part_);
       part_.end_step(dt);
     });
+    is_sound_ = true;
     if (size() != 0) reverse_order_ = !reverse_order_;
   }
 
@@ -137,6 +145,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     detail::mail<row> out, in;
     std::vector<detail::column_element<Column, S>> found;
     std::uint64_t const first = starts_.empty() ? 0 : starts_[static_cast<std::size_t>(ranks_.rank())];
+    check_sound();
     together(ranks_, [&] {
       if (!part_.is_set()) throw error("collide: simulation: to_host needs particles: call set before it");
       std::vector<id> const numbers = part_.template on_host<global_number>();
@@ -191,6 +200,13 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
 
  private:
   friend class detail::distributed_checkpoint<distributed>;
+
+  /// All ranks know it alike.
+  void check_sound() const {
+    if (!is_sound_) {
+      throw error("collide: simulation: the last step, set or load has failed on some rank: call set or load");
+    }
+  }
 
   /// Says with which free places this rank begins.
   void share_free(detail::numbers_of_all& all) const {
@@ -249,6 +265,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   Ranks ranks_;
   part_type part_;
   detail::particle_exchange<part_type> exchange_;
+  bool is_sound_ = true;               ///< no step, `set` or `load` has stopped half-way
   bool reverse_order_ = false;         ///< of one rank's next step, for checkpoints
   std::vector<std::uint64_t> starts_;  ///< numbers of the first particles that ranks have set, and one behind the last
 };

@@ -108,9 +108,10 @@ class part_of_simulation {
   /// How far from its own brick, as it was at the last exchange, a rank must know particles.
   double reach() const { return reach_; }
 
+  void check_step(S dt) const { simulation_.check_step(dt); }
+
   /// The first part of a step. True if copies of particles may be missing somewhere in it.
   bool begin_step(S dt) {
-    simulation_.check_step(dt);
     simulation_.time_ += static_cast<double>(dt);
     simulation_.begin_step(dt);
     if constexpr (meets) {
