@@ -31,7 +31,8 @@ void check_wall_set_again(Space const& space, double speed) {
   auto const found = made.positions();
   CHECK(double(found[0]) == doctest::Approx(x + 0.1).epsilon(1e-3));
   CHECK(double(found[3]) == doctest::Approx(std::max(x + 0.1, 0.3)).epsilon(1e-3));
-  for (std::size_t i : {2, 5}) CHECK(double(found[i]) == doctest::Approx(0.1).epsilon(1e-3));
+  for (std::size_t const i : {std::size_t{2}, std::size_t{5}})
+    CHECK(double(found[i]) == doctest::Approx(0.1).epsilon(1e-3));
 }
 
 /// A body that moves slowly pushes what friction holds on the floor.
