@@ -1,36 +1,74 @@
 /// \file
-/// Parts of the mesh that move: a belt that carries a grain, and a table that turns.
-#include <cstdio>
-#include <vector>
+/// A belt lifts grains, throws them onto another one, and that heaps them up on a table that turns.
 
 #include <collide/bodies.hpp>
 #include <collide/bounce.hpp>
-#include <collide/bucket.cuh>
 #include <collide/friction.hpp>
 #include <collide/gravity.hpp>
-#include <collide/simulation.cuh>
+#include <collide/sphere_contact.hpp>
+
+#include "io/film.hpp"
+
+namespace {
 
 using namespace collide;
+using io::operator+, io::operator-, io::operator*;
 
-int main() {
-  std::vector<float> corners;  // metres; each body lies where it is at time 0
-  auto const add_plate = [&](float left, float right, float z) {
-    float const plate[] = {left, -1, z, right, -1, z, right, 1, z, left, -1, z, right, 1, z, left, 1, z};
-    corners.insert(corners.end(), plate, plate + 18);
-  };
-  add_plate(-1, 3, 0);    // two triangles of a belt
-  add_plate(5, 9, -0.5);  // and two of a turntable
-  simulation<detector<bucket>, gravity, bounce, friction, moving_bodies<>> scene(host(), gravity{}, bounce{0.2},
-                                                                                 friction{0.5, 0.4}, moving_bodies<>{});
-  body belt{0, 2, {}}, table{2, 2, {}};
-  belt.motion.belt[0] = 1.5;  // metres a second: the surface moves, the belt stays where it is
-  table.motion.pivot[0] = 7;
-  table.motion.rate = 0.5;  // radians a second, around motion.axis through motion.pivot: z, if not set
-  scene.set_mesh(triangle_soup(corners.data(), corners.size() / 9), {belt, table});
-  float const grain[] = {0, 0, 0.05f};
-  scene.set(spheres_xyz(grain, 1, 0.05f));
-  scene.steps(1000, 1e-3f);
-  std::printf("after 1 s the grain moves with %.2f m/s\n", scene.to_host<velocity>()[0]);
-  scene.steps(500, 1e-3f);
-  std::printf("the table has turned by %.2f rad\n", scene.time() * table.motion.rate);
+template <class Space>
+using conveyor =
+    simulation<detector<bucket, karabassi<>, Space>, emit, gravity, sphere_contact, bounce, friction, moving_bodies<>>;
+
+constexpr double size = 0.012, duration = 0.008;
+constexpr double half = 0.12;  // of the belts' width
+
+constexpr auto make = [](auto space, io::film const& film) {
+  return conveyor<decltype(space)>(space, emit{film.rate(), {{-0.48, 0, 0.3}, 0.07, {0, 0, -0.5}, 0.1}}, gravity{},
+                                   sphere_contact::from_restitution(0.3, duration, size, 2500, 0.5), bounce{0.2},
+                                   friction{0.7, 0.6}, moving_bodies<>{});
+};
+
+/// Adds a belt that runs along `way`, with its right edge there, and rollers at its ends. `across` leads to the left.
+void add_belt(io::film& film, io::point const& corner, io::point const& way, io::point const& across, double speed) {
+  constexpr double roller = 0.04;
+  io::point const along = io::normalized(way), up = io::normalized(io::cross(way, across));
+  io::add_plate(film.stage, corner, way, across, 16, 4);
+  body_motion belt;
+  std::copy_n((speed * along).begin(), 3, belt.belt);
+  io::add_body(film, belt);
+  for (io::point const& end : {corner, corner + way}) {
+    io::point const middle = end - 1.05 * roller * up;
+    io::add_tube(film.stage, middle, middle + across, roller, 8);
+    io::add_body(film, io::turning(middle, io::cross(up, along), speed / roller));
+  }
 }
+
+/// Two belts, a table, what keeps the grains on them, and the floor.
+io::film scene() {
+  io::film film{"conveyor", "Belts carry grains to a table that turns.", {}, duration / 20, 1'500, 12, 0.7};
+  auto& s = film.stage;
+  s.radius = size;
+  io::point const foot{-0.65, -half, 0.02}, rise{0.8, 0, 0.29}, height{0, 0, 0.08}, width{0, 2 * half, 0};
+  io::point const start{0.47, -0.16, 0.12}, level{0, 0.9, 0}, depth{-0.3, 0, 0};
+  io::point const table{0.32, 1.15, -0.1};
+  constexpr double radius = 0.42, rim = 0.07;
+  add_belt(film, foot, rise, width, 0.7);
+  add_belt(film, start, level, depth, 0.5);
+  io::add_surface(s, 96, 24, false, [&](double across, double along) {
+    double const u = 2 * io::pi * across, way = along * (radius + rim), r = std::min(way, radius);
+    return table + io::point{r * std::cos(u), r * std::sin(u), way - r};
+  });
+  io::add_body(film, io::turning(table, {0, 0, 1}, 1));
+  // what follows rests
+  io::add_plate(s, foot, rise, height);
+  io::add_plate(s, foot + width, rise, height);
+  io::add_plate(s, foot, width, {0, 0, 0.4});
+  io::add_plate(s, start, level, {0, 0, 0.25});
+  io::add_plate(s, start + depth, level, height);
+  io::add_plate(s, start, depth, {0, 0, 0.2});
+  io::add_plate(s, {-1, -0.5, -0.2}, {2, 0, 0}, {0, 2.4, 0});
+  return film;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return io::film_program(argc, argv, scene(), make); }

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
 #include <collide/distributed_checkpoint.hpp>
 #include <collide/emit.hpp>
@@ -42,6 +43,8 @@ struct film {
   std::size_t frames = 100, until = 0;  ///< how many pictures there are, and after how many to stop; 0: after all
   std::string space = "host", output = "", report = "", save = "", load = "", ranks = "";
   int threads = 0;
+  std::vector<collide::body> bodies =
+      {};  ///< parts of the mesh that move; no triangle of one shares a vertex with others
 
   /// How many steps there are, and after how many of them nothing more comes.
   std::size_t steps() const { return static_cast<std::size_t>(std::ceil(seconds / dt)); }
@@ -54,6 +57,21 @@ struct film {
     return (static_cast<double>(particles) + 0.5) / simulated;
   }
 };
+
+/// Makes a body of the triangles that the stage has got since the body before.
+inline void add_body(film& of, collide::body_motion const& motion) {
+  std::size_t const first = of.bodies.empty() ? 0 : of.bodies.back().first + of.bodies.back().size;
+  of.bodies.push_back({first, of.stage.triangle_count() - first, motion});
+}
+
+/// A motion around an axis through a point.
+inline collide::body_motion turning(point const& pivot, point const& axis, double rate) {
+  collide::body_motion m;
+  std::copy(pivot.begin(), pivot.end(), m.pivot);
+  std::copy(axis.begin(), axis.end(), m.axis);
+  m.rate = rate;
+  return m;
+}
 
 /// Where particle number 0, 1, 2, ... of a source begins, in coordinates between -1 and 1. Those of `evenly` are spread
 /// over the square such that numbers that follow each other are far apart, so that particles do not overlap when they
@@ -128,6 +146,50 @@ inline void write_mesh(std::string const& path, std::vector<float> const& vertic
   out.commit();
 }
 
+/// The vertices of a stage, where its bodies have been taken.
+inline std::vector<float> moved_vertices(film const& wish, std::vector<collide::body_state> const& states) {
+  auto const& stage = wish.stage;
+  std::vector<float> found(stage.vertices.begin(), stage.vertices.end());
+  for (std::size_t k = 0; k < wish.bodies.size(); ++k) {
+    auto const& body = wish.bodies[k];
+    for (std::size_t c = 3 * body.first; c < 3 * (body.first + body.size); ++c) {
+      point const p = vertex_of(stage, c);
+      auto const at = states[k].at({p[0], p[1], p[2]});
+      for (int i = 0; i < 3; ++i) found[3 * std::size_t{stage.corners[c]} + std::size_t(i)] = static_cast<float>(at[i]);
+    }
+  }
+  return found;
+}
+
+/// The files of picture number `i`.
+inline vtk_frame next_frame(film const& wish, std::size_t i, double time) {
+  char number[16];
+  std::snprintf(number, sizeof number, "-%05zu.vtp", i);
+  return {std::string("particles") + number, time, wish.bodies.empty() ? "" : std::string("mesh") + number};
+}
+
+/// The bodies of a simulation; on ranks all have them alike.
+template <class Detector, class... Effect>
+auto const& bodies_of(collide::simulation<Detector, Effect...> const& simulation) {
+  return simulation.bodies();
+}
+template <class Detector, class... Effect, class Ranks>
+auto const& bodies_of(collide::distributed<collide::simulation<Detector, Effect...>, Ranks> const& simulation) {
+  return simulation.local().bodies();
+}
+
+/// Writes the particles that are there, and the mesh if it moves. With ranks, all call it, and the one that `shows`
+/// writes.
+template <class Simulation>
+void write_frame(film const& wish, vtk_frame const& frame, Simulation& simulation, float radius, bool shows) {
+  write_particles(wish.output + "/" + frame.file, simulation, radius, shows, typename Simulation::columns());
+  if constexpr (std::decay_t<decltype(bodies_of(simulation))>::exist) {
+    if (!shows) return;
+    auto const states = bodies_of(simulation).to_host(simulation.space());
+    write_mesh(wish.output + "/" + frame.mesh, moved_vertices(wish, states), wish.stage.corners);
+  }
+}
+
 /// True if a file is in a folder, or a folder of that; either may not be there yet.
 inline bool is_within(std::string const& file, std::string const& folder) {
   using std::filesystem::weakly_canonical;
@@ -185,7 +247,7 @@ void shoot(film const& wish, Ranks const& ranks, Simulation simulation) {
       space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, stage.corners.data(), stage.triangle_count()));
   auto const radius = static_cast<float>(stage.radius);
   simulation.set(collide::spheres_xyz<float>(nullptr, 0, radius), nullptr, wish.particles);
-  simulation.set_mesh(mesh.view());
+  simulation.set_mesh(mesh.view(), wish.bodies);
   if (!wish.load.empty()) collide::load(simulation, wish.load);
 
   auto const step = static_cast<float>(wish.dt);
@@ -213,12 +275,8 @@ void shoot(film const& wish, Ranks const& ranks, Simulation simulation) {
     space.synchronize();
     spent += std::chrono::duration<double, std::milli>(clock::now() - start).count();
     if (shows) bar.update(static_cast<double>(done));
-    char file[32];
-    std::snprintf(file, sizeof file, "particles-%05zu.vtp", first + frames.size());
-    frames.push_back({file, static_cast<double>(done) * wish.dt});
-    if (!wish.output.empty()) {
-      write_particles(wish.output + "/" + file, simulation, radius, shows, typename Simulation::columns());
-    }
+    frames.push_back(next_frame(wish, first + frames.size(), static_cast<double>(done) * wish.dt));
+    if (!wish.output.empty()) write_frame(wish, frames.back(), simulation, radius, shows);
     if (!wish.save.empty()) collide::save(simulation, wish.save);
   }
   if (!shows) return;

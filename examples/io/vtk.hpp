@@ -55,17 +55,21 @@ inline void write_vtp(output_file& out, std::vector<float> const& points, std::v
   out << "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" << data << "\n</AppendedData>\n</VTKFile>\n";
 }
 
-/// A frame of a film: a file, and its time.
+/// A frame of a film: a file, its time, and a file with the mesh then, if that moves.
 struct vtk_frame {
   std::string file;
   double time;
+  std::string mesh = "";
 };
 
 /// Writes the list of a film's frames.
 inline void write_pvd(output_file& out, std::vector<vtk_frame> const& frames) {
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
-  for (auto const& frame : frames)
+  for (auto const& frame : frames) {
     out << "<DataSet timestep=\"" << frame.time << "\" file=\"" << frame.file << "\"/>\n";
+    if (!frame.mesh.empty())
+      out << "<DataSet timestep=\"" << frame.time << "\" part=\"1\" file=\"" << frame.mesh << "\"/>\n";
+  }
   out << "</Collection>\n</VTKFile>\n";
 }
 

@@ -4,16 +4,32 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <collide/detail/numeric/sin_cos.hpp>
 #include <collide/effect.hpp>
 
 namespace collide {
 
+namespace detail {
+
+/// A vector, rotated by a unit quaternion.
+COLLIDE_HD_INLINE vec3<double> rotated(double const (&q)[4], vec3<double> const& x) {
+  vec3<double> const axis_part(q[1], q[2], q[3]), twice = scaled(cross(axis_part, x), 2.0);
+  return x + scaled(twice, q[0]) + cross(axis_part, twice);
+}
+
+}  // namespace detail
+
 /// Where a body is: a point x of its mesh is at position + R x, R the rotation.
 struct pose {
   double position[3] = {0, 0, 0};     ///< of the origin of the mesh
   double rotation[4] = {1, 0, 0, 0};  ///< unit quaternion w, x, y, z
+
+  /// Where a point of the mesh is. O(1).
+  COLLIDE_HD vec3<double> operator()(vec3<double> const& x) const {
+    return vec3<double>(position[0], position[1], position[2]) + detail::rotated(rotation, x);
+  }
 };
 
 /// How a body moves: a point x of space that belongs to it has the velocity linear + angular x (x - pose.position).
@@ -71,12 +87,6 @@ struct body_motion {
     }
     return s;
   }
-
- private:
-  static COLLIDE_HD_INLINE vec3<double> rotated(double const (&q)[4], vec3<double> const& x) {
-    vec3<double> const axis_part(q[1], q[2], q[3]), twice = detail::scaled(detail::cross(axis_part, x), 2.0);
-    return x + detail::scaled(twice, q[0]) + detail::cross(axis_part, twice);
-  }
 };
 
 /// A body: the `size` triangles of the mesh from number `first` on, and how they move.
@@ -89,12 +99,12 @@ struct body {
 /// In place of a motion: poses and twists are what the caller's kernels write to `simulation::bodies()`.
 struct driven {};
 
-/// What is told of bodies, counted since `set_mesh`: see `simulation::body_report`.
+/// What is told of bodies, counted since `set_mesh`: see `simulation::bodies().report(space)`.
 struct body_report {
   /// How often a body was to get a pose that is no rotation or not finite; it then stays where it was, at rest.
   std::uint32_t refused_poses = 0;
-  /// How often a body of a simulation that is not swept moved by more than a particle's radius in a step, and so may
-  /// have passed through some.
+  /// How often a body of a simulation that is not swept moved in a step by more than the radius of the smallest
+  /// particle that `set` has seen, and so may have passed through some.
   std::uint32_t fast_steps = 0;
 };
 
@@ -107,8 +117,13 @@ struct body_report {
 /// own frame, and nothing is built again while bodies move. O(bodies) more per particle.
 template <class Motion = body_motion>
 struct moving_bodies {
+  static_assert(std::is_same<Motion, driven>::value ||
+                    std::is_invocable_r<body_state, Motion const&, std::size_t, double>::value ||
+                    std::is_same<Motion, body_motion>::value,
+                "collide: a motion of moving_bodies is called as motion(body, time) const, with a std::size_t and a "
+                "double, and gives a body_state");
   static constexpr std::size_t max_bodies = 64;  ///< most bodies of a mesh
-  static constexpr bool begins_on_ranks = true;
+  static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
   Motion motion = Motion();  ///< of all bodies, if it is a function object of your own
 

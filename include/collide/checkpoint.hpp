@@ -37,7 +37,7 @@ std::string type_name() {
 template <class S>
 struct saved_numbers {
   std::uint64_t triangles = 0, places = 0, placed = 0;
-  S common_radius = 0, largest_radius = 0;
+  S common_radius = 0, smallest_radius = 0, largest_radius = 0;
   double time = 0, device_time = 0;
   std::uint8_t reverse_order = 0;
 
@@ -48,6 +48,7 @@ struct saved_numbers {
     archive.value("places", places);
     archive.value("placed", placed);
     archive.value("common radius", common_radius);
+    archive.value("smallest radius", smallest_radius);
     archive.value("largest radius", largest_radius);
     archive.value("time", time);
     archive.value("time on the device", device_time);
@@ -67,13 +68,8 @@ class checkpoint {
   static void write(simulated const& from, std::ostream& stream) {
     if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
     checkpoint_writer to(stream);
-    saved_numbers<S> numbers{from.mesh_.size(),
-                             from.state_.size,
-                             from.state_.placed,
-                             from.state_.common_radius,
-                             from.largest_radius_,
-                             from.time_,
-                             0,
+    saved_numbers<S> numbers{from.mesh_.size(),    from.state_.size,    from.state_.placed, from.state_.common_radius,
+                             from.radii_.smallest, from.radii_.largest, from.time_,         0,
                              from.reverse_order_};
     if constexpr (simulated::has_begin_step) numbers.device_time = from.space_.read(from.state_.time);
     begin(to, numbers, from.effects_);
@@ -155,8 +151,8 @@ class checkpoint {
     to.state_ = state;
     to.time_ = numbers_.time;
     to.reverse_order_ = numbers_.reverse_order != 0;
-    to.largest_radius_ = numbers_.largest_radius;
-    if constexpr (simulated::effects_type::meets) to.neighbours_.clear(space, places, to.largest_radius_);
+    to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius};
+    if constexpr (simulated::effects_type::meets) to.neighbours_.clear(space, places, to.radii_.largest);
     to.is_set_ = true;
     to.prepare();
     restore_bodies(to);

@@ -43,7 +43,7 @@ struct mesh_forces {
   using reads = columns<velocity>;
   using writes = columns<mesh_force>;
   using runs_after = effects<bounce, friction, spin, adhesion>;
-  static constexpr bool begins_on_ranks = true;
+  static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
   double density = 1;  ///< mass per volume: a particle has the mass of a solid sphere
 
@@ -53,8 +53,7 @@ struct mesh_forces {
   }
   template <class Particle, class S>
   COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
-    vec3<S> const change = p[velocity{}] - t.velocity_before;
-    p[mesh_force{}] += change * detail::force_per_change(density, p.radius(), dt);
+    p[mesh_force{}] += t.velocity_change(p) * detail::force_per_change(density, p.radius(), dt);
   }
 };
 
@@ -66,7 +65,7 @@ struct pair_forces {
   using reads = columns<velocity>;
   using writes = columns<pair_force>;
   using runs_after = effects<sphere_contact>;
-  static constexpr bool begins_on_ranks = true;
+  static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
   double density = 1;  ///< mass per volume: that of `sphere_contact`
 

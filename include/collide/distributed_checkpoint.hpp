@@ -68,6 +68,7 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
       found.emplace(read([&](std::istream& from) { return format(to.part_.triangles(), to.local(), from); }));
       for (std::uint64_t r = 0; r <= n; ++r) starts.push_back(found->numbers().placed * r / n);
     });
+    to.is_sound_ = false;
     to.starts_ = std::move(starts);
     std::uint64_t const first = to.starts_[static_cast<std::size_t>(ranks.rank())],
                         end = to.starts_[static_cast<std::size_t>(ranks.rank()) + 1];
@@ -76,6 +77,7 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
     to.reverse_order_ = found->numbers().reverse_order != 0;
     to.exchange_.clear();
     together(ranks, [&] { to.part_.restore(*found, static_cast<std::size_t>(end - first), all); });
+    to.is_sound_ = true;
   }
 };
 

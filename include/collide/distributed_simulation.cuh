@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -76,15 +77,17 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     ranks_.reduce(&n, &all.placed, 1, reduction::sum);
     all.size = std::max(all.placed, std::uint64_t{capacity});
     share_free(all);
+    together(ranks_, [&] { detail::check_particles<columns>(true, all.placed, all.size); });
+    detail::radii_of_all<S> const radii = find_radii(mine);
+    is_sound_ = false;
+    exchange_.clear();
     together(ranks_, [&] {
-      detail::check_particles<columns>(true, all.placed, all.size);
       starts_.resize(static_cast<std::size_t>(ranks_.size()) + 1);
+      part_.set(mine, velocities, all, radii);
     });
     ranks_.all_gather(&all.first, sizeof all.first, starts_.data());
     starts_.back() = all.placed;
-    radii const of_all = radii_of_all(mine);
-    exchange_.clear();
-    together(ranks_, [&] { part_.set(mine, velocities, all, of_all.common, of_all.largest, of_all.widest); });
+    is_sound_ = true;
   }
 
   /// The mesh, which is the same on every rank; see `simulation::set_mesh`.
@@ -92,27 +95,33 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     together(ranks_, [&] { part_.simulation().set_mesh(mesh, bodies); });
   }
 
-  /// Advances by the time `dt`; throws what `simulation::step` throws.
+  /// Advances by the time `dt`; throws what `simulation::step` throws. If it throws after the step has begun somewhere,
+  /// particles may be lost, and nothing works until the next `set` or `load`.
   void step(S dt) {
+    check_sound();
     std::exception_ptr failure;
-    std::uint64_t mine = 0, all = 0;  // 1: particles must change ranks; 2: something is wrong
+    std::uint64_t mine[2] = {0, 0}, all[2];  // 1: particles must change ranks, 2: something is wrong; has it begun?
     try {
-      mine = part_.begin_step(dt) ? 1 : 0;
-      if (meets && mine == 0) exchange_.pack(part_);
+      part_.check_step(dt);
+      mine[1] = 1;
+      mine[0] = part_.begin_step(dt) ? 1 : 0;
+      if (meets && mine[0] == 0) exchange_.pack(part_);
     } catch (...) {
       failure = std::current_exception();
-      mine = 2;
+      mine[0] = 2;
     }
-    ranks_.reduce(&mine, &all, 1, reduction::max);
-    if (all == 2) agree(ranks_, failure);
+    ranks_.reduce(mine, all, 2, reduction::max);
+    is_sound_ = all[1] == 0;
+    if (all[0] == 2) agree(ranks_, failure);
     if constexpr (meets) {
-      if (all == 1) exchange_.exchange(ranks_, part_);
+      if (all[0] == 1) exchange_.exchange(ranks_, part_);
       exchange_.send(ranks_);
     }
     together(ranks_, [&] {
       if constexpr (meets) exchange_.unpack(part_);
       part_.end_step(dt);
     });
+    is_sound_ = true;
     if (size() != 0) reverse_order_ = !reverse_order_;
   }
 
@@ -136,6 +145,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     detail::mail<row> out, in;
     std::vector<detail::column_element<Column, S>> found;
     std::uint64_t const first = starts_.empty() ? 0 : starts_[static_cast<std::size_t>(ranks_.rank())];
+    check_sound();
     together(ranks_, [&] {
       if (!part_.is_set()) throw error("collide: simulation: to_host needs particles: call set before it");
       std::vector<id> const numbers = part_.template on_host<global_number>();
@@ -191,9 +201,12 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
  private:
   friend class detail::distributed_checkpoint<distributed>;
 
-  struct radii {
-    S common, largest, widest;
-  };
+  /// All ranks know it alike.
+  void check_sound() const {
+    if (!is_sound_) {
+      throw error("collide: simulation: the last step, set or load has failed on some rank: call set or load");
+    }
+  }
 
   /// Says with which free places this rank begins.
   void share_free(detail::numbers_of_all& all) const {
@@ -204,9 +217,9 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   }
 
   /// Radii of the particles of all ranks. Throws `error` on all if there must be one, but there are several.
-  radii radii_of_all(sphere_view<S> const& mine) const {
+  detail::radii_of_all<S> find_radii(sphere_view<S> const& mine) const {
     using detail::to_ordered_bits;
-    S largest = mine.common_radius(), widest = 0;
+    S smallest = std::numeric_limits<S>::infinity(), largest = mine.common_radius(), widest = 0;
     together(ranks_, [&] {
       buffer<S> memory;
       auto const& space = part_.simulation().space();
@@ -218,7 +231,11 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       }
       if (!each.empty()) largest = *std::max_element(each.begin(), each.end());
       widest = largest < 0 ? -largest : largest;
-      for (S const r : each) widest = std::max(widest, r < 0 ? -r : r);
+      if (mine.one_radius() && largest >= 0) smallest = largest;
+      for (S const r : each) {
+        widest = std::max(widest, r < 0 ? -r : r);
+        if (r >= 0) smallest = std::min(smallest, r);
+      }
     });
     // a rank without particles has no say in this, unless no rank has any
     auto const ask = [&](S value, bool has_say) {
@@ -233,7 +250,10 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     bool const several =
         ask(S(0), has_say && !mine.one_radius()).first || detail::to_bits(most) != detail::to_bits(least);
     detail::check_particles<columns>(!several, 0, 0);
-    return {several ? S(0) : most, ask(largest, has_say).second, ask(widest, has_say).second};
+    S const least_of_all = -ask(-smallest, has_say).second;
+    return {several ? S(0) : most,
+            {several ? least_of_all : most, ask(largest, has_say).second},
+            ask(widest, has_say).second};
   }
 
   /// The rank that has set a particle; the last has what effects make.
@@ -245,6 +265,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   Ranks ranks_;
   part_type part_;
   detail::particle_exchange<part_type> exchange_;
+  bool is_sound_ = true;               ///< no step, `set` or `load` has stopped half-way
   bool reverse_order_ = false;         ///< of one rank's next step, for checkpoints
   std::vector<std::uint64_t> starts_;  ///< numbers of the first particles that ranks have set, and one behind the last
 };

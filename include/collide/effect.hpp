@@ -101,6 +101,7 @@ struct mesh_contact : contact<S> {
   bool is_resting;     ///< an effect has found that the particle rests on the surface, or slides on it
   vec3<S> surface_velocity;  ///< of the surface at the point, in the world: 0 of what rests; see bodies.hpp
   id body;                   ///< number of the body whose surface it is; `no_id` of what rests
+  vec3<S> turn;  ///< how the body still turns in the step, of a swept particle: sine of half the angle, times the axis
 
   /// Raises a particle above the surface by `height`.
   COLLIDE_HD_INLINE void move_out(vec3<S>& position, S height) {
@@ -113,6 +114,17 @@ struct mesh_contact : contact<S> {
     S const direct = detail::smaller(change, free_change), wedged = change - direct;
     velocity += this->normal * direct + lift * wedged;
     normal_impulse += direct + wedged * detail::dot(lift, lift);
+  }
+
+  /// What the contact has changed of the particle's velocity so far, in the world. Differences of velocities that an
+  /// effect sees are those when they touch; where particles are swept, what they got turns on with the body.
+  template <class Particle>
+  COLLIDE_HD_INLINE vec3<S> velocity_change(Particle const& p) const {
+    vec3<S> const change = p[velocity{}] - velocity_before;
+    S const sine = detail::dot(turn, turn);
+    if (sine == 0) return change;
+    vec3<S> const twice = detail::scaled(detail::cross(turn, change), S(2));
+    return change + detail::scaled(twice, detail::sqrt_rn(S(1) - sine)) + detail::cross(turn, twice);
   }
 
   /// Stops a particle that something holds: its velocity is 0, and it is where it was when the step began, raised or

@@ -88,7 +88,7 @@ template <class Source = nozzle>
 struct emit_from {
   using writes = columns<position, velocity, alive>;
   static constexpr bool saves_parameters = detail::saves_parameters<Source>;
-  static constexpr bool begins_on_ranks = true;
+  static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
   double rate = 0;           ///< particles per time, not negative
   Source source = Source();  ///< how they begin

@@ -17,8 +17,8 @@ struct friction;
 struct spin;
 struct adhesion;
 
-/// What a body has got of all particles: an impulse, force times time, and its moment about the origin of space. About
-/// a point x it is angular - x x linear.
+/// What a body, or a triangle, has got of all particles: an impulse, force times time, and its moment about the origin
+/// of space. About a point x it is angular - x x linear.
 struct body_impulse {
   double linear[3] = {0, 0, 0};   ///< impulse, mass times velocity
   double angular[3] = {0, 0, 0};  ///< moment of it about the origin
@@ -45,6 +45,8 @@ struct reaction {
   double density = 1;                      ///< mass per volume
   double unit = 0;                         ///< of impulse, and of its moment: each contact is rounded to a multiple
   detail::impulse_counts* sums = nullptr;  ///< memory of the space, of `reaction_sums`
+  detail::impulse_counts* sums_of_triangles = nullptr;  ///< memory of the space, of `reaction_sums`
+  std::size_t triangles = 0;                            ///< of how many there are sums
 
   void check_parameters() const {
     detail::check_parameter(density > 0 && unit > 0 && sums != nullptr,
@@ -55,42 +57,52 @@ struct reaction {
   COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S) const {
     using namespace detail;
     double const mass = sphere_mass(density, static_cast<double>(p.radius()));
-    vec3<S> const change = t.velocity_before - p[velocity{}];
+    vec3<S> const change = -t.velocity_change(p);
     vec3<double> const impulse = scaled(vec3<double>(change.template cast<double>()), div(mass, unit));
     vec3<double> const moment = cross(vec3<double>(t.point.template cast<double>()), impulse);
     std::size_t const body = t.body == no_id ? 0 : std::size_t{t.body} + 1;
-    impulse_counts& s = sums[body * copies + p.number() % copies];
-    for (int k = 0; k < 3; ++k) {
-      add(s.count[k], impulse[k]);
-      add(s.count[k + 3], moment[k]);
-    }
+    add(sums[body * copies + p.number() % copies], impulse, moment);
+    std::size_t const number = t.triangle;
+    if (number < triangles) add(sums_of_triangles[number], impulse, moment);
   }
 
  private:
+  static COLLIDE_HD_INLINE void add(detail::impulse_counts& to, vec3<double> const& impulse,
+                                    vec3<double> const& moment) {
+    for (int k = 0; k < 3; ++k) {
+      add(to.count[k], impulse[k]);
+      add(to.count[k + 3], moment[k]);
+    }
+  }
   static COLLIDE_HD_INLINE void add(std::int64_t& to, double x) {
     if (x != 0) atomic_add(&to, static_cast<std::int64_t>(std::floor(x + 0.5)));
   }
 };
 
-/// The memory in which `reaction` sums up: of each body, and of what rests. The same contacts give the same bits, in
-/// any order. Sums overflow at 9e18 units. It must outlive the steps of the simulation that has its effect.
+/// The memory in which `reaction` sums up: of each body, and of what rests; of each triangle, if asked. The same
+/// contacts give the same bits, in any order. Sums overflow at 9e18 units. It must outlive the steps of the simulation
+/// that has its effect.
 class reaction_sums {
  public:
   /// For so many bodies. `unit` is the impulse to which each contact is rounded, and the moment: a sum may be off by
-  /// half a unit for each contact of a step. Allocates 12 KB a body in the space.
+  /// half a unit for each contact of a step. `triangles`: for how many of the mesh, from the first on, there are sums
+  /// too. Allocates 12 KB a body and 48 bytes a triangle in the space.
   template <class Space>
-  reaction_sums(Space const& space, std::size_t bodies, double unit) : bodies_{bodies}, unit_{unit} {
-    sums_.reserve(space.resource(), (bodies + 1) * reaction::copies);
+  reaction_sums(Space const& space, std::size_t bodies, double unit, std::size_t triangles = 0)
+      : bodies_{bodies}, triangles_{triangles}, unit_{unit} {
+    sums_.reserve(space.resource(), size());
     clear(space);
   }
 
   /// The effect, for particles of a density.
-  reaction effect(double density) const { return {density, unit_, sums_.data()}; }
+  reaction effect(double density) const {
+    return {density, unit_, sums_.data(), sums_.data() + of_bodies(), triangles_};
+  }
 
   /// Begins anew, after the work that is on the stream of a space. Does not wait.
   template <class Space>
   void clear(Space const& space) {
-    space.fill(sums_.data(), 0, (bodies_ + 1) * reaction::copies * sizeof(detail::impulse_counts));
+    space.fill(sums_.data(), 0, size() * sizeof(detail::impulse_counts));
   }
 
   /// What each body has got since `clear`, and last what rests. Over the time since then it is the mean force. Waits.
@@ -103,7 +115,7 @@ class reaction_sums {
   /// may be added. Waits.
   template <class Space>
   std::vector<std::int64_t> counts(Space const& space) const {
-    std::vector<detail::impulse_counts> all((bodies_ + 1) * reaction::copies);
+    std::vector<detail::impulse_counts> all(of_bodies());
     space.copy_to_host(all.data(), sums_.data(), all.size());
     std::vector<std::int64_t> found(6 * (bodies_ + 1));
     for (std::size_t b = 0; b <= bodies_; ++b) {
@@ -114,7 +126,24 @@ class reaction_sums {
     }
     return found;
   }
-  /// What `counts` are, in units of impulse.
+
+  /// What each triangle has got since `clear`, as multiples of the unit: six numbers each. Waits.
+  template <class Space>
+  std::vector<std::int64_t> triangle_counts(Space const& space) const {
+    std::vector<detail::impulse_counts> all(triangles_);
+    space.copy_to_host(all.data(), sums_.data() + of_bodies(), all.size());
+    std::vector<std::int64_t> found;
+    for (detail::impulse_counts const& one : all) found.insert(found.end(), one.count, one.count + 6);
+    return found;
+  }
+
+  /// What each triangle has got since `clear`. Waits.
+  template <class Space>
+  std::vector<body_impulse> read_triangles(Space const& space) const {
+    return impulses(triangle_counts(space));
+  }
+
+  /// What counts are, in units of impulse.
   std::vector<body_impulse> impulses(std::vector<std::int64_t> const& counts) const {
     std::vector<body_impulse> found(counts.size() / 6);
     for (std::size_t b = 0; b < found.size(); ++b) {
@@ -127,7 +156,10 @@ class reaction_sums {
   }
 
  private:
-  std::size_t bodies_;
+  std::size_t of_bodies() const { return (bodies_ + 1) * reaction::copies; }
+  std::size_t size() const { return of_bodies() + triangles_; }
+
+  std::size_t bodies_, triangles_;
   double unit_;
   buffer<detail::impulse_counts> sums_;
 };

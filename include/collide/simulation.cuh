@@ -101,9 +101,8 @@ class simulation {
     std::size_t const n = particles.size(), room = detail::larger(n, capacity);
     detail::check_particles<columns>(particles.one_radius(), n, room);
     place(particles, velocities, room);
-    if constexpr (effects_type::meets || sweeps || has_bodies)
-      largest_radius_ = detail::largest_radius_of(*this, particles);
-    if constexpr (effects_type::meets) neighbours_.clear(space_, room, largest_radius_);
+    if constexpr (effects_type::meets || sweeps || has_bodies) radii_ = detail::radius_range_of(*this, particles);
+    if constexpr (effects_type::meets) neighbours_.clear(space_, room, radii_.largest);
     prepare();
   }
 
@@ -128,15 +127,16 @@ class simulation {
   /// The mesh that particles touch, not copied: it must stay as it is while it is used. Call it again when the mesh has
   /// moved. An empty one is a mesh, too. Allocates if the mesh has grown; may wait. O(triangles).
   ///
-  /// `bodies`, only with `moving_bodies` in the scene: parts of the mesh that move; see bodies.hpp. `error` if there
-  /// are more than 64, triangles are not in the mesh or in two bodies, or a motion is not finite.
-  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}) {
-    bodies_.check(bodies, mesh.size());
+  /// Only with `moving_bodies` in the scene (bodies.hpp): `bodies`, parts of the mesh that move, and `velocities` of
+  /// all vertices (packed, in memory of the space) where the rest deforms: at the end of the next step, as the mesh is.
+  /// `error` if there are more than 64 bodies, triangles not in the mesh or in two, or a motion is not finite.
+  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
+    bodies_.check(bodies, mesh.size(), velocities);
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
     if (mesh.size() != 0) index_.build(there, options_, mesh);
-    bodies_.build(space_, mesh, bodies);
+    bodies_.build(space_, mesh, bodies, velocities);
     mesh_ = mesh;
     has_mesh_ = true;
     if constexpr (sweeps) {
@@ -154,7 +154,7 @@ class simulation {
     detail::reject_scalar<T>();
   }
   template <class T, class = std::enable_if_t<!std::is_same<T, S>::value>>
-  void set_mesh(mesh_view<T>) {
+  void set_mesh(mesh_view<T>, std::vector<body> const& = {}, T const* = nullptr) {
     detail::reject_scalar<T>();
   }
 
@@ -178,11 +178,12 @@ class simulation {
   double time() const { return time_; }
 
   /// Bytes of memory that the particles take in all: columns, room for more, and what steps need for them, such as
-  /// lists of neighbours. What is prepared of the mesh is not in it.
+  /// lists of neighbours; and what is known of bodies, a byte a triangle and about 600 bytes a body. What is prepared
+  /// of the mesh to find its triangles is not in it.
   std::size_t bytes() const {
     std::size_t lists = 0;
     if constexpr (effects_type::meets) lists = neighbours_.bytes();
-    return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + lists;
+    return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
 
   /// Number of particles, or of places for them, if an effect makes or removes some; see `alive`.
@@ -291,7 +292,7 @@ class simulation {
     if constexpr (has_bodies) {
       if (state_.time == nullptr) return;
       auto const& motion = effect<moving_bodies<typename bodies_memory::motion>>().motion;
-      bodies_.advance(space_, motion, state_.time, dt, sweeps ? S(-1) : largest_radius_, start);
+      bodies_.advance(space_, motion, state_.time, dt, sweeps ? S(-1) : radii_.smallest, start);
     }
   }
 
@@ -313,8 +314,8 @@ class simulation {
       std::size_t const n = detail::larger(state_.size, std::size_t{is_part});
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_tuning<execution_space> there(space_);
-      bool const tiny = largest_radius_ >= 0 && largest_radius_ < least_radius_;
-      S const most = detail::larger(largest_radius_, least_radius_);
+      bool const tiny = radii_.largest >= 0 && radii_.largest < least_radius_;
+      S const most = detail::larger(radii_.largest, least_radius_);
       index_.prepare(there, options_, tiny || is_part ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }
   }
@@ -338,7 +339,8 @@ class simulation {
   bool reverse_order_ = false;  ///< of the next step
   double time_ = 0;
   buffer<double> device_time_;  ///< for effects with a member begin_step
-  S largest_radius_ = 0, least_radius_ = 0;
+  detail::radius_range<S> radii_;
+  S least_radius_ = 0;
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
   buffer<id> overflow_;

@@ -8,6 +8,7 @@
 #include <collide/bounds.hpp>
 #include <collide/checkpoint.hpp>
 #include <collide/distributed.hpp>
+#include <collide/distributed_checkpoint.hpp>
 #include <collide/drag.hpp>
 #include <collide/earliest.hpp>
 #include <collide/emit.hpp>
@@ -90,6 +91,14 @@ void use_all() {
     distributed<detector<bucket, karabassi<>, host, S>, thread_ranks> all(ranks);
     all.build(mesh, divided);
     all.query(spheres, contacts<S>());
+    distributed<simulation<detector<bucket, karabassi<>, host, S>, emit, sphere_contact, bounce>, thread_ranks> parts(
+        ranks);
+    parts.set_mesh(mesh);
+    parts.set(spheres, nullptr, 10);
+    parts.step(S(0.1));
+    parts.template to_host<velocity>();
+    save(parts, "checkpoint");
+    load(parts, "checkpoint");
   });
   move<karabassi<>, S>(mesh, spheres);
   move<karabassi_swept<>, S>(mesh, spheres);

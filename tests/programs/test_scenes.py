@@ -1,4 +1,4 @@
-"""The scenes snow, marbles, mud and dust as their users see them, run small: what they write, and whether it can be true."""
+"""The scenes of the gallery as their users see them, run small: what they write, and whether it can be true."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import programs
 from programs import ProgramTest
 
-SCENES = ("snow", "marbles", "mud", "dust")
+SCENES = ("snow", "marbles", "mud", "dust", "drum", "conveyor")
 KINDS = {"Float32": "f", "UInt8": "B", "UInt32": "I"}
 
 
@@ -44,9 +44,14 @@ class SceneTest(ProgramTest):
 
     def frames(self, output="film"):
         """(time, points, arrays) of each frame, each of which must be sound."""
-        listed = re.findall(r'<DataSet timestep="(.*?)" file="(.*?)"/>', self.read(f"{output}/film.pvd").decode())
+        film = self.read(f"{output}/film.pvd").decode()
+        listed = re.findall(r'<DataSet timestep="([^"]*)" file="(.*?)"/>', film)
+        moved = re.findall(r'<DataSet timestep="([^"]*)" part="1" file="(.*?)"/>', film)
         names = [name for _, name in listed]
-        self.assertEqual(sorted(p.name for p in self.path(output).iterdir()), ["film.pvd", "mesh.vtp", *names])
+        self.assertEqual(sorted(p.name for p in self.path(output).iterdir()),
+                         ["film.pvd", *[name for _, name in moved], "mesh.vtp", *names])
+        if moved:
+            self.assertEqual([time for time, _ in moved], [time for time, _ in listed])
         times = [float(time) for time, _ in listed]
         self.assertEqual(times, sorted(set(times)))
         frames = []
@@ -63,8 +68,8 @@ class SceneTest(ProgramTest):
             frames.append((time, points, arrays))
         return frames
 
-    def mesh(self, output="film"):
-        file = read_vtp(self.read(f"{output}/mesh.vtp"))
+    def mesh(self, output="film", name="mesh"):
+        file = read_vtp(self.read(f"{output}/{name}.vtp"))
         points, corners, ends = file["Points"]["position"], file["Polys"]["connectivity"], file["Polys"]["offsets"]
         self.assertEqual(file["counts"], {"NumberOfPoints": len(points), "NumberOfPolys": len(ends)})
         self.assertEqual(ends, list(range(3, len(corners) + 1, 3)))
@@ -132,6 +137,42 @@ class Dust(SceneTest):
             self.assertTrue(1.8 < mean[0] < 2.8 and abs(mean[1]) < 0.3 and abs(mean[2]) < 0.3, mean)
         self.assertTrue(1000 < len(points) < 3000)  # those that the wind has carried away are gone
         self.assertGreater(max(p[2] for p in points), 0.5)
+
+
+class Drum(SceneTest):
+    def test_it_turns_and_carries_grains_up(self):
+        self.shoot("drum", "--particles", 600, "--seconds", 4, "--frames", 4)
+        start = self.mesh()
+        for i, (time, points, arrays) in enumerate(self.frames()):
+            now = self.mesh(name=f"mesh-{i:05}")
+            turn = 1.6 * time
+            for (x, y, z), (u, v, w) in zip(start[:700], now):  # of the drum
+                self.assertAlmostEqual(u, x * math.cos(turn) + z * math.sin(turn), delta=1e-4)
+                self.assertAlmostEqual(v, y, delta=1e-6)
+                self.assertAlmostEqual(w, z * math.cos(turn) - x * math.sin(turn), delta=1e-4)
+            self.assertEqual(start[-25:], now[-25:])  # the floor rests
+            self.assertNotEqual(start[-40:-25], now[-40:-25])
+            for (x, y, z) in points:
+                self.assertLess(math.hypot(x, z), 0.3)
+                self.assertLessEqual(abs(y), 0.1)
+        self.assertEqual(len(points), 600)
+        self.assertGreater(max(z for _, _, z in points), 0)  # what a lifter has taken along
+        self.assertLess(sum(x for x, _, _ in points) / len(points), -0.05)
+
+
+class Conveyor(SceneTest):
+    def test_belts_carry_grains_to_the_table(self):
+        self.shoot("conveyor", "--particles", 200, "--seconds", 6, "--frames", 6)
+        frames = self.frames()
+        on_belt = [v for _, points, arrays in frames for (x, y, z), v in zip(points, arrays["velocity"])
+                   if -0.4 < x < 0.1 and abs(y) < 0.1]
+        self.assertGreater(len(on_belt), 20)
+        self.assertAlmostEqual(sorted(math.hypot(*v) for v in on_belt)[len(on_belt) // 2], 0.7, delta=0.1)
+        _, points, arrays = frames[-1]
+        there = [((x - 0.32, y - 1.15), v) for (x, y, z), v in zip(points, arrays["velocity"]) if math.hypot(x - 0.32, y - 1.15) < 0.42]
+        self.assertGreater(len(there), 50)
+        turning = sorted((x * v[1] - y * v[0]) / (x * x + y * y) for (x, y), v in there)
+        self.assertAlmostEqual(turning[len(turning) // 2], 1, delta=0.1)  # with the table
 
 
 class All(SceneTest):

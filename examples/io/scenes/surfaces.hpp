@@ -47,6 +47,22 @@ void add_surface(scene& s, std::size_t columns, std::size_t rows, bool closed, S
   }
 }
 
+/// Adds a parallelogram that two edges span from a corner.
+inline void add_plate(scene& s, point const& corner, point const& a, point const& b, std::size_t columns = 4,
+                      std::size_t rows = 4) {
+  add_surface(s, columns, rows, false, [&](double across, double along) { return corner + across * a + along * b; });
+}
+
+/// Adds a cylinder without ends around the line between two points, of so many sides.
+inline void add_tube(scene& s, point const& from, point const& to, double radius, std::size_t sides) {
+  point const axis = to - from, any = {0, axis[2] == 0 ? 0.0 : 1.0, axis[2] == 0 ? 1.0 : 0.0};
+  point const u = normalized(cross(axis, any)), v = normalized(cross(axis, u));
+  add_surface(s, sides, 4, false, [&](double across, double along) {
+    double const angle = 2 * pi * across;
+    return from + along * axis + radius * std::cos(angle) * u + radius * std::sin(angle) * v;
+  });
+}
+
 /// The torus of the study, of about so many triangles, around `centre`.
 inline void add_torus(scene& s, std::size_t triangles, point const& centre) {
   auto const [columns, rows] = grid_of(triangles, 192.0 / 164);

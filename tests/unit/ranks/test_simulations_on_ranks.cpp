@@ -67,3 +67,38 @@ TEST_CASE("simulations on ranks: short memory, what makes no sense, and what bod
     for (auto const& w : wrong) CHECK(w.text() == "");
   }
 }
+
+TEST_CASE("simulations on ranks: bricks have as many particles, and know who is near") {
+  for (int const n : {1, 2, 5, 8, 13}) {
+    collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
+      std::mt19937 engine(static_cast<unsigned>(ranks.rank()));
+      std::normal_distribution<double> normal;
+      std::vector<double> x;  // denser in the middle, long along y, and not the same on all ranks
+      for (int i = 0; i < 300 * (1 + ranks.rank() % 3); ++i) {
+        x.insert(x.end(), {normal(engine), 7 * normal(engine), normal(engine)});
+      }
+      collide::detail::bisection bricks;
+      bricks.build(ranks, x);
+      std::vector<std::uint64_t> mine(static_cast<std::size_t>(n)), all(mine.size());
+      std::size_t missing = 0;
+      for (std::size_t i = 0; i < x.size(); i += 3) {
+        int const at = bricks.rank_at(x.data() + i);
+        ++mine[static_cast<std::size_t>(at)];
+        for (std::size_t k = 0; k < 30; k += 3) {  // with a neighbour anywhere within reach
+          double const reach = 0.3 * static_cast<double>(k),
+                       near[] = {x[i] - reach, x[i + 1] + reach, x[i + 2] - reach};
+          bool found = false;
+          bricks.for_each_rank(near, reach * (1 + 1e-12), [&](int rank) { found = found || rank == at; });
+          missing += !found;
+        }
+      }
+      ranks.reduce(mine.data(), all.data(), all.size(), collide::reduction::sum);
+      std::uint64_t const sum = std::accumulate(all.begin(), all.end(), std::uint64_t{0});
+      std::uint64_t const most = *std::max_element(all.begin(), all.end());
+      collide::together(ranks, [&] {
+        if (missing != 0) throw collide::error("a rank does not know who is near");
+        if (most * static_cast<std::uint64_t>(n) > sum * 6 / 5) throw collide::error("not divided evenly");
+      });
+    });
+  }
+}

@@ -97,6 +97,25 @@ TEST_CASE("bodies: sixty-four of them, and what rests") {
   tests::check_several_bodies<karabassi_swept<>>(host(1));
 }
 
+TEST_CASE("bodies: bytes() counts them") {
+  tests::world<float> w;
+  w.radius = 0.1f;
+  for (int i = 0; i < 100; ++i) tests::add_floor(w, 5, 10);
+  std::size_t const triangles = tests::triangles_of(w);
+  w.particle(0, 0, 1);
+  using simulation = collide::simulation<tests::meets_mesh<host>, collide::bounce, collide::moving_bodies<>>;
+  tests::running<simulation> made(host(1), w, collide::bounce{}, collide::moving_bodies<>{});
+  auto const mesh = collide::triangle_soup(static_cast<float const*>(w.corners.data()), triangles);
+  std::size_t const none = made.simulation.bytes();
+  std::vector<collide::body> bodies;
+  for (std::size_t k = 0; k < 64; ++k) bodies.push_back({k, 1, {}});
+  made.simulation.set_mesh(mesh, bodies);
+  std::size_t const each = (made.simulation.bytes() - none) / 64;
+  CHECK(each >= sizeof(collide::body_motion) + sizeof(collide::body_state));
+  CHECK(each <= 700);
+  CHECK(none >= triangles);
+}
+
 TEST_CASE("bodies: what makes no sense is an error that says so, or is counted") {
   tests::world<double> w;
   w.radius = 0.1;
@@ -128,6 +147,21 @@ TEST_CASE("bodies: what makes no sense is an error that says so, or is counted")
   made.simulation.steps(3, 1e-3);
   CHECK(made.simulation.bodies().report(made.simulation.space()).fast_steps == 3);
 
+  using mixed = collide::simulation<collide::detector<collide::bucket, karabassi<>, host, double>, collide::bounce,
+                                    collide::polydisperse, collide::moving_bodies<>>;
+  w.particle(0.5, 0, 0);
+  w.particle(-0.5, 0, 0);
+  w.radii = {0.5, 0.1, -1};  // what has a negative radius touches nothing
+  tests::running<mixed> of_each(host(1), w, collide::bounce{}, collide::polydisperse{}, collide::moving_bodies<>{});
+  of_each.simulation.set_mesh(mesh, {wild});  // two radii of the smallest a step
+  of_each.simulation.steps(2, 1e-3);
+  CHECK(of_each.simulation.bodies().report(of_each.simulation.space()).fast_steps == 2);
+  w.radii = {0.5, 0.3, -1};
+  of_each.place(w);
+  of_each.simulation.steps(2, 1e-3);
+  CHECK(of_each.simulation.bodies().report(of_each.simulation.space()).fast_steps == 2);
+  w.centres.resize(3), w.velocities.resize(3), w.radii.clear();
+
   using driven = collide::simulation<collide::detector<collide::bucket, karabassi<>, host, double>, collide::bounce,
                                      collide::moving_bodies<collide::driven>>;
   tests::running<driven> by_hand(host(1), w, collide::bounce{1}, collide::moving_bodies<collide::driven>{});
@@ -142,7 +176,16 @@ TEST_CASE("bodies: what makes no sense is an error that says so, or is counted")
   states[0].at.rotation[0] = 2;
   by_hand.simulation.step(1e-3);
   CHECK(by_hand.simulation.bodies().report(by_hand.simulation.space()).refused_poses == 1);
-  CHECK(by_hand.simulation.bodies().to_host(host(1))[0].at.rotation[0] == 1);
+  CHECK(states[0].at.rotation[0] == 1);
+  CHECK(states[0].at.position[0] == 2);  // where it was
+  CHECK(states[0].moving.linear[0] == 0);
+  states[0].at.position[1] = std::nan("");
+  by_hand.simulation.step(1e-3);
+  states[0].moving.angular[2] = std::numeric_limits<double>::infinity();
+  by_hand.simulation.step(1e-3);
+  CHECK(by_hand.simulation.bodies().report(by_hand.simulation.space()).refused_poses == 3);
+  CHECK(by_hand.simulation.bodies().to_host(host(1))[0].at.position[0] == 2);
+  CHECK(states[0].at.position[1] == 0);
   CHECK(std::isfinite(by_hand.positions()[0]));
 
   using plain = collide::simulation<collide::detector<collide::bucket, karabassi<>, host, double>, collide::bounce>;

@@ -1,5 +1,5 @@
 /// Bodies that move, on the GPU.
-#include "simulation/bodies.hpp"
+#include "simulation/moving_walls.hpp"
 
 using collide::cuda_shared;
 using collide::karabassi;
@@ -30,4 +30,14 @@ TEST_CASE("bodies: on the GPU, riding, waking, many bodies, and the same bits on
   tests::check_several_bodies<karabassi_swept<>>(cuda_shared());
   tests::check_same_bits<karabassi<>>(cuda_shared(), cuda_shared());
   tests::check_same_bits<karabassi_swept<>>(cuda_shared(), cuda_shared());
+}
+
+TEST_CASE("moving walls: on the GPU, a mesh that is set again, slow bodies, functions of one's own, a screw, and work") {
+  tests::check_wall_set_again<karabassi<>, float>(cuda_shared(), 0.2);
+  tests::check_slow_wall<karabassi<>, double>(cuda_shared(), 0.001);
+  tests::check_own_motion<karabassi<>>(cuda_shared());
+  tests::check_screw<karabassi<>>(cuda_shared());
+  tests::check_work<karabassi<>>(cuda_shared());
+  tests::check_momentum_of_turning_box(cuda_shared());
+  tests::check_deforming<karabassi<>, float>(cuda_shared());
 }

@@ -15,6 +15,14 @@
 
 namespace collide::detail {
 
+/// The radii of the particles of all ranks in the beginning.
+template <class S>
+struct radii_of_all {
+  S common;  ///< of those that have none of their own
+  radius_range<S> range;
+  S widest;  ///< the largest one without its sign
+};
+
 /// Runs the simulation of a rank. Its own particles come first in memory, in any order: neighbours meet by their
 /// numbers among all.
 template <class Simulation>
@@ -42,13 +50,12 @@ class part_of_simulation {
   space_type& space() { return simulation_.space_; }
   std::size_t own() const { return simulation_.state_.own; }
 
-  /// The radii are those of all particles; `widest` is the largest one without its sign.
-  void set(sphere_view<S> const& particles, S const* velocities, numbers_of_all const& all, S common, S largest,
-           S widest) {
+  void set(sphere_view<S> const& particles, S const* velocities, numbers_of_all const& all,
+           radii_of_all<S> const& radii) {
     std::size_t const n = particles.size();
     capacity_ = larger(n + static_cast<std::size_t>(all.free_size), std::size_t{1});
     simulation_.place(particles, velocities, capacity_);
-    start(n, all, common, largest, widest);
+    start(n, all, radii);
     simulation_.prepare();
   }
 
@@ -56,9 +63,13 @@ class part_of_simulation {
   template <class Numbers>
   Numbers saved_numbers_of_all(bool reverse_order) const {
     auto const& s = simulation_;
-    Numbers numbers{s.mesh_.size(), s.state_.all_size, s.state_.all_placed, s.state_.common_radius, S(0), s.time_, 0,
-                    reverse_order};
-    if constexpr (meets || Simulation::sweeps || Simulation::has_bodies) numbers.largest_radius = s.largest_radius_;
+    Numbers numbers{
+        s.mesh_.size(), s.state_.all_size, s.state_.all_placed, s.state_.common_radius, S(0), S(0), s.time_, 0,
+        reverse_order};
+    if constexpr (meets || Simulation::sweeps || Simulation::has_bodies) {
+      numbers.smallest_radius = s.radii_.smallest;
+      numbers.largest_radius = s.radii_.largest;
+    }
     if constexpr (Simulation::has_begin_step) numbers.device_time = s.space_.read(s.state_.time);
     return numbers;
   }
@@ -79,7 +90,7 @@ class part_of_simulation {
     auto const free = static_cast<std::size_t>(all.free_size);
     capacity_ = larger(mine + free, std::size_t{1});
     simulation_.place({}, nullptr, capacity_);
-    start(mine, all, numbers.common_radius, largest, widest);
+    start(mine, all, {numbers.common_radius, {numbers.smallest_radius, largest}, widest});
     auto const& state = simulation_.state_;
     saved.restore_columns(space(), state, 0, static_cast<std::size_t>(all.first), mine);
     saved.restore_columns(space(), state, mine, static_cast<std::size_t>(all.first_free), free);
@@ -97,9 +108,10 @@ class part_of_simulation {
   /// How far from its own brick, as it was at the last exchange, a rank must know particles.
   double reach() const { return reach_; }
 
+  void check_step(S dt) const { simulation_.check_step(dt); }
+
   /// The first part of a step. True if copies of particles may be missing somewhere in it.
   bool begin_step(S dt) {
-    simulation_.check_step(dt);
     simulation_.time_ += static_cast<double>(dt);
     simulation_.begin_step(dt);
     if constexpr (meets) {
@@ -150,7 +162,7 @@ class part_of_simulation {
   void expect_copies(std::size_t n) {
     make_room(own() + n);
     copies_ = n;
-    if constexpr (meets) simulation_.neighbours_.clear(space(), own() + n, simulation_.largest_radius_);
+    if constexpr (meets) simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_.largest);
     auto* const resource = space().resource();
     last_centres_.reserve(resource, 3 * capacity_);
     if constexpr (has_absent) last_there_.reserve(resource, capacity_);
@@ -175,11 +187,12 @@ class part_of_simulation {
   }
 
   /// Numbers the particles, of which `n` are this rank's, and free places behind them.
-  void start(std::size_t n, numbers_of_all const& all, S common, S largest, S widest) {
+  void start(std::size_t n, numbers_of_all const& all, radii_of_all<S> const& radii) {
     std::size_t const room = n + static_cast<std::size_t>(all.free_size);
-    describe(room, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), common);
+    describe(room, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), radii.common);
     space().for_each(room, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free});
-    simulation_.largest_radius_ = largest;
+    S const widest = radii.widest;
+    simulation_.radii_ = radii.range;
     skin_ = skin_fraction * 2 * widest;
     reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
     copies_ = 0;

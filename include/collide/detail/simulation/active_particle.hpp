@@ -165,6 +165,13 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     }
   }
 
+  /// What a surface that has been moved has pushed by `height` does not go back to where it was: where it is held at
+  /// the contacts that follow, it is there.
+  COLLIDE_HD_INLINE void shift_start(mesh_contact<S> const& c, S height) {
+    if (!overlaps(height)) return;
+    for (int k = 0; k < 3; ++k) start[k] += c.lift[k] * height;
+  }
+
   /// True of a swept particle's triangle that it has touched before and leaves: no part of that is above the tangent
   /// plane. To judge it once more would take exact arithmetic, as the distance is the radius.
   template <class Seen = seen_at_rest>

@@ -15,8 +15,9 @@ namespace collide::detail {
 /// What is known of a body from the start.
 struct body_record {
   body_motion motion;
-  vec3<double> centre;  ///< of its bounding sphere, in its frame
-  double radius;
+  vec3<double> centre;  ///< of its box, in its frame
+  vec3<double> half;    ///< half the box's extents
+  double radius;        ///< of the bounding sphere
 };
 
 /// The box of a body's triangles, as ordered bits; memory of zeros is that of none. See `mesh_statistics`.
@@ -71,10 +72,7 @@ struct advance_bodies {
     body_frame<S>& f = frames[i + 1];
     if (!make_unit(s)) {
       fetch_add(&report->refused_poses, 1u);
-      s = states[i];
-      s.moving = twist();
-      if (!make_unit(s)) s.at = pose();
-      for (double& v : s.belt) v = 0;
+      s = at_rest(f.now);
     }
     states[i] = s;
     frame_pose const now = frame_pose_of(s.at);
@@ -97,6 +95,16 @@ struct advance_bodies {
     }
   }
 
+  static COLLIDE_HD_INLINE body_state at_rest(frame_pose const& at) {
+    body_state s;
+    s.at.rotation[0] = at.w;
+    for (int k = 0; k < 3; ++k) {
+      s.at.position[k] = at.position[k];
+      s.at.rotation[k + 1] = at.axis[k];
+    }
+    return s;
+  }
+
   /// Makes the rotation's length 1. False if it is not nearly that, or something is not finite.
   static COLLIDE_HD_INLINE bool make_unit(body_state& s) {
     double(&q)[4] = s.at.rotation;
@@ -112,7 +120,7 @@ struct advance_bodies {
     return true;
   }
 
-  /// The bounding sphere of a body, and how far it moves.
+  /// The bounding sphere and the box of a body, and how far it moves.
   COLLIDE_HD_INLINE void bound(body_frame<S>& f, body_record const& r) const {
     constexpr double eps = std::numeric_limits<S>::epsilon();
     vec3<double> const shift = f.now.position - f.before.position;
@@ -126,9 +134,23 @@ struct advance_bodies {
     double const reach = swept ? r.radius + 2 * moved : r.radius;
     f.reach = static_cast<S>(mul(reach, 1 + 1e-5) + mul(16 * eps, norm(from) + norm(to)));
     f.shrink = static_cast<S>(swept ? 1 - 1e-5 - turned : 1 - 1e-5);
+    for (int k = 0; k < 3; ++k) f.half[k] = swept ? std::numeric_limits<S>::infinity() : half_extent(f, r, k, norm(to));
     if (!swept && norm(by) + mul(turned, r.radius) > static_cast<double>(most) && !starts) {
       fetch_add(&report->fast_steps, 1u);
     }
+  }
+
+  /// Of the body where it is in the end, on an axis of the world.
+  static COLLIDE_HD_INLINE S half_extent(body_frame<S> const& f, body_record const& r, int axis, double distance) {
+    constexpr double eps = std::numeric_limits<S>::epsilon();
+    double half = 0;
+    for (int k = 0; k < 3; ++k) {
+      vec3<double> unit(0, 0, 0);
+      unit[k] = r.half[k];
+      double const on = f.now.rotated(unit)[axis];
+      half += larger(on, -on);
+    }
+    return static_cast<S>(mul(half, 1 + 1e-5) + mul(16 * eps, distance + r.radius));
   }
 
   static COLLIDE_HD_INLINE double norm(vec3<double> const& x) { return sqrt_rn(dot(x, x)); }
@@ -169,8 +191,13 @@ class body_memory {
     f("report on bodies", report_.data(), made);
   }
 
+  /// Bytes of memory of the space.
+  std::size_t bytes() const {
+    return numbers_.bytes() + boxes_.bytes() + records_.bytes() + states_.bytes() + frames_.bytes() + report_.bytes();
+  }
+
   /// Throws `error` unless these can be bodies of a mesh of so many triangles.
-  static void check(std::vector<body> const& bodies, std::size_t triangles) {
+  static void check(std::vector<body> const& bodies, std::size_t triangles, S const*) {
     constexpr std::size_t most = moving_bodies<Motion>::max_bodies;
     if (bodies.size() > most) throw error("collide: set_mesh: there are more than 64 bodies");
     std::vector<bool> taken(triangles);
@@ -189,8 +216,9 @@ class body_memory {
 
   /// Takes over the bodies of a mesh, which `check` has let through. Waits.
   template <class Space>
-  void build(Space& space, mesh_view<S> const& mesh, std::vector<body> const& bodies) {
+  void build(Space& space, mesh_view<S> const& mesh, std::vector<body> const& bodies, S const* velocities) {
     auto* const resource = space.resource();
+    vertex_velocities_ = velocities;
     count_ = bodies.size();
     std::size_t const frames = count_ + 1;
     auto* const numbers = numbers_.reserve(resource, mesh.size());
@@ -208,10 +236,16 @@ class body_memory {
     space.copy_to_host(found.data(), boxes, frames);
     std::vector<body_record> records;
     for (std::size_t k = 0; k < count_; ++k) records.push_back(record_of(bodies[k], found[k + 1]));
-    std::vector<body_frame<S>> at_rest(
-        frames,
-        body_frame<S>{
-            identity(), identity(), {}, {}, {0, 0, 0}, {0, 0, 0}, std::numeric_limits<S>::infinity(), S(0), false});
+    std::vector<body_frame<S>> at_rest(frames, body_frame<S>{identity(),
+                                                             identity(),
+                                                             {},
+                                                             {},
+                                                             {0, 0, 0},
+                                                             {0, 0, 0},
+                                                             std::numeric_limits<S>::infinity(),
+                                                             S(0),
+                                                             vec3<S>(0, 0, 0),
+                                                             false});
     std::vector<body_state> const states(count_);
     space.copy_from_host(records_.reserve(resource, count_), records.data(), count_);
     space.copy_from_host(states_.reserve(resource, count_), states.data(), count_);
@@ -231,7 +265,8 @@ class body_memory {
 
   template <class Triangles>
   bodies_ref<S, Triangles> lookup(Triangles const& whole, mesh_view<S> const& mesh, S dt) const {
-    return {whole, {mesh, frames_.data(), numbers_.data(), first_, static_cast<int>(count_) + 1, dt}};
+    return {whole,
+            {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt}};
   }
 
  private:
@@ -247,21 +282,21 @@ class body_memory {
   }
 
   static body_record record_of(body const& b, body_box<S> const& box) {
-    body_record r{b.motion, {0, 0, 0}, 0};
+    body_record r{b.motion, {0, 0, 0}, {0, 0, 0}, 0};
     if (box.upper[0] == 0) return r;  // nothing that could be touched
-    vec3<double> half;
     for (int k = 0; k < 3; ++k) {
       double const lower = static_cast<double>(from_ordered_bits<S>(static_cast<uint_for<S>>(~box.lower[k])));
       double const upper = static_cast<double>(from_ordered_bits<S>(box.upper[k]));
       r.centre[k] = lower / 2 + upper / 2;
-      half[k] = upper / 2 - lower / 2;
+      r.half[k] = upper / 2 - lower / 2;
     }
-    r.radius = sqrt_rn(dot(half, half));
+    r.radius = sqrt_rn(dot(r.half, r.half));
     return r;
   }
 
   std::size_t count_ = 0;
-  int first_ = 0;  ///< the first frame that has triangles: 1 if none rests
+  int first_ = 0;                         ///< the first frame that has triangles: 1 if none rests
+  S const* vertex_velocities_ = nullptr;  ///< of the caller
   buffer<std::uint8_t> numbers_;
   buffer<body_box<S>> boxes_;
   buffer<body_record> records_;
@@ -274,22 +309,32 @@ class body_memory {
 struct no_bodies {
   static constexpr bool exist = false;
 
-  static void check(std::vector<body> const& bodies, std::size_t) {
-    if (!bodies.empty()) throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
+  static std::size_t bytes() { return 0; }
+  static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
+    if (!bodies.empty() || velocities != nullptr)
+      throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
   }
   template <class Space, class Mesh>
-  void build(Space&, Mesh const&, std::vector<body> const&) {}
+  void build(Space&, Mesh const&, std::vector<body> const&, void const*) {}
   template <class Triangles, class Mesh, class S>
   Triangles const& lookup(Triangles const& whole, Mesh const&, S) const {
     return whole;
   }
 };
 
+template <class Effect>
+inline constexpr bool is_moving_bodies = false;
+template <class Motion>
+inline constexpr bool is_moving_bodies<moving_bodies<Motion>> = true;
+
 /// The bodies of a scene with these effects.
 template <class S, class... Effect>
 struct bodies_of : no_bodies {};
 template <class S, class Motion, class... Effect>
-struct bodies_of<S, moving_bodies<Motion>, Effect...> : body_memory<S, Motion> {};
+struct bodies_of<S, moving_bodies<Motion>, Effect...> : body_memory<S, Motion> {
+  static_assert(!(is_moving_bodies<Effect> || ...),
+                "collide: a simulation has one effect moving_bodies, with one kind of motion");
+};
 template <class S, class Other, class... Effect>
 struct bodies_of<S, Other, Effect...> : bodies_of<S, Effect...> {};
 

@@ -148,10 +148,11 @@ struct contact_response {
     mesh_contact<S> c = contact_for_effects(p, a, surface);
     surface.enter(p);
     // how deep when the step began: what is pushed out farther than it came in may then touch what it did not before
-    [[maybe_unused]] S const depth_at_start = c.depth + dot(c.normal, vec3<S>(here.centre - c.start));
+    S const depth_at_start = c.depth + dot(c.normal, vec3<S>(here.centre - c.start)), depth = c.depth;
     if constexpr (has_bodies) seen.velocity = c.velocity_before;
     a.find_lift(c, velocity_before, seen);
     context.effects.on_mesh_contact(p, c, context.dt);
+    a.shift_start(c, smaller(depth_at_start, S(depth - c.depth)));
     surface.record(a, c);
     if constexpr (has_bodies) a.is_held = p[velocity{}] == vec3<S>(S(0), S(0), S(0));
     surface.leave(p);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include <collide/detail/simulation/effect_list.hpp>
 #include <collide/spheres.hpp>
@@ -39,16 +40,27 @@ void begin_step_of(Effects& effects, Space& space, State const& state, S dt) {
   if constexpr (begins_in<E, Space, State, S>::value) effects.template of<E>().begin_step(space, state, dt);
 }
 
-/// The largest radius of a simulation's particles. Waits if they have radii of their own.
+/// The radii of a simulation's particles.
+template <class S>
+struct radius_range {
+  S smallest = 0;  ///< of those that are not negative; infinite if there are none
+  S largest = 0;
+};
+
+/// The radii that particles have in the beginning. Waits if they have radii of their own.
 template <class Simulation, class S>
-S largest_radius_of(Simulation const& simulation, sphere_view<S> const& particles) {
+radius_range<S> radius_range_of(Simulation const& simulation, sphere_view<S> const& particles) {
+  radius_range<S> found{particles.common_radius(), particles.common_radius()};
   if constexpr (contains<typename Simulation::columns, radius>) {
-    if (!particles.one_radius()) {
-      auto const radii = simulation.template to_host<radius>();
-      return radii.empty() ? S(0) : *std::max_element(radii.begin(), radii.end());
+    if (particles.one_radius()) return found;
+    auto const radii = simulation.template to_host<radius>();
+    found.smallest = std::numeric_limits<S>::infinity();
+    if (!radii.empty()) found.largest = *std::max_element(radii.begin(), radii.end());
+    for (S const r : radii) {
+      if (r >= 0) found.smallest = smaller(found.smallest, r);
     }
   }
-  return particles.common_radius();
+  return found;
 }
 
 }  // namespace collide::detail

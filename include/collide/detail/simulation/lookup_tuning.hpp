@@ -28,8 +28,8 @@ struct has_lookup<Index, std::void_t<decltype(std::declval<Index const&>().looku
 template <class Space>
 struct bucket_tuning<detail::lookup_tuning<Space>> : bucket_tuning<Space> {
   static constexpr bool bins_spheres = false;
-  /// The grid serves many steps.
-  static constexpr bucket_costs costs{bucket_tuning<Space>::costs.entry_ns / 16,
+  /// The grid serves many steps. On a device narrower cells gain nothing: their bits take more memory.
+  static constexpr bucket_costs costs{bucket_tuning<Space>::costs.entry_ns / (Space::host_accessible ? 16 : 1),
                                       bucket_tuning<Space>::costs.candidate_ns, bucket_tuning<Space>::costs.level_ns,
                                       bucket_tuning<Space>::costs.step_ns};
 };

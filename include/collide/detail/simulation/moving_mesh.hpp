@@ -66,13 +66,17 @@ struct body_frame {
   vec3<S> centre;  ///< of a bounding sphere of the body when the step begins; if not `swept`, when it ends
   S reach;         ///< no particle of radius r that moves by d can touch the body in the step if `shrink` times its
   S shrink;        ///< distance from the centre is above reach + r + d
+  vec3<S> half;    ///< or if this is true of an axis and half the extent of the body's box on it, infinite if swept
   bool moves;      ///< in this step
 
   template <class Vector>
   COLLIDE_HD_INLINE bool is_far(Vector const& x, S r, S path) const {
     S const at_least = reach + r + path;
     vec3<S> const apart = x - centre;
-    return shrink > 0 && mul(dot(apart, apart), mul(shrink, shrink)) > mul(at_least, at_least);
+    if (!(shrink > 0)) return false;
+    bool far = mul(dot(apart, apart), mul(shrink, shrink)) > mul(at_least, at_least);
+    for (int k = 0; k < 3; ++k) far = far || mul(larger(apart[k], -apart[k]), shrink) > half[k] + r + path;
+    return far;
   }
 };
 
@@ -81,15 +85,41 @@ template <class S>
 struct moving_mesh : mesh_view<S> {
   body_frame<S> const* frames;
   std::uint8_t const* frame_numbers;  ///< of each triangle
+  S const* vertex_velocities;         ///< of what is in no body, if that deforms, else null
   int first_frame, frame_count;       ///< frames from the first that has triangles to before the last number
   S dt;                               ///< of the step
 
   moving_mesh() = default;
-  moving_mesh(mesh_view<S> const& mesh, body_frame<S> const* f, std::uint8_t const* numbers, int first, int count,
-              S step)
-      : mesh_view<S>(mesh), frames{f}, frame_numbers{numbers}, first_frame{first}, frame_count{count}, dt{step} {}
+  moving_mesh(mesh_view<S> const& mesh, body_frame<S> const* f, std::uint8_t const* numbers, S const* velocities,
+              int first, int count, S step)
+      : mesh_view<S>(mesh),
+        frames{f},
+        frame_numbers{numbers},
+        vertex_velocities{velocities},
+        first_frame{first},
+        frame_count{count},
+        dt{step} {}
 
   COLLIDE_HD_INLINE int frame_of(id triangle) const { return frame_numbers[triangle]; }
+
+  /// The velocity of a point of a triangle that deforms, of those of its corners.
+  COLLIDE_HD_INLINE vec3<double> velocity_of(id triangle, vec3<S> const& point) const {
+    auto const t = (*this)[triangle];
+    vec3<double> const a = t.a.template cast<double>();
+    vec3<double> const ab = t.b.template cast<double>() - a, ac = t.c.template cast<double>() - a;
+    vec3<double> const to_point = point.template cast<double>() - a, normal = cross(ab, ac);
+    double const area = dot(normal, normal);
+    auto const part = [&](vec3<double> const& opposite) {
+      double const p = area > 0 ? div(dot(opposite, normal), area) : 0;
+      return p > 0 ? smaller(p, 1.0) : 0.0;
+    };
+    double const b = part(cross(to_point, ac)), c = part(cross(ab, to_point));
+    auto const of_corner = [&](unsigned k) {
+      S const* const v = vertex_velocities + 3 * this->corner(triangle, k);
+      return vec3<double>(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
+    };
+    return scaled(of_corner(0), larger(1 - b - c, 0.0)) + scaled(of_corner(1), b) + scaled(of_corner(2), c);
+  }
 
   /// A body's pose at a part of the step.
   COLLIDE_HD_INLINE frame_pose pose_at(int frame, double part) const {

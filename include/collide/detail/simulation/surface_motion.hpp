@@ -55,6 +55,7 @@ struct surface_at_rest {
   }
   template <class S>
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
+    c.surface_velocity = c.turn = vec3<S>(S(0), S(0), S(0));
     c.body = no_id;
   }
   template <class Active, class S>
@@ -67,7 +68,13 @@ struct surface_at_rest {
   COLLIDE_HD_INLINE void leave(Particle&) const {}
 };
 
-/// The surface of a body that moves, where a particle touches it.
+/// How a body turns from one pose to another: the vector part of the quaternion.
+COLLIDE_HD_INLINE vec3<double> turn_between(frame_pose const& a, frame_pose const& b) {
+  vec3<double> const turn = scaled(b.axis, a.w) - scaled(a.axis, b.w) - cross(b.axis, a.axis);
+  return mul(a.w, b.w) + dot(a.axis, b.axis) < 0 ? vec3<double>(-turn) : turn;
+}
+
+/// The surface of a body that moves, or of what deforms, where a particle touches it.
 template <class S, bool IsSwept>
 struct surface_of_body {
   int frame;
@@ -77,6 +84,7 @@ struct surface_of_body {
   vec3<S> angular;       ///< of the body
   vec3<S> velocity;      ///< of the surface at the point
   S dt;
+  bool rests;
 
   COLLIDE_HD_INLINE vec3<S> velocity_seen(vec3<S> const& v) const {
     return rounded_to<S>(turned_back(v.template cast<double>() - carried));
@@ -96,6 +104,10 @@ struct surface_of_body {
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
     c.surface_velocity = velocity;
     c.body = frame == 0 ? no_id : static_cast<id>(frame - 1);
+    c.turn = vec3<S>(S(0), S(0), S(0));
+    if constexpr (IsSwept) {
+      if (frame != 0) c.turn = rounded_to<S>(turn_between(at, now));
+    }
   }
 
   template <class Active>
@@ -111,13 +123,13 @@ struct surface_of_body {
   /// Gives a particle the velocities that the surface sees, and back those of the world.
   template <class Particle>
   COLLIDE_HD_INLINE void enter(Particle& p) const {
-    if (frame == 0) return;
+    if (rests) return;
     p[collide::velocity{}] = velocity_seen(p[collide::velocity{}]);
     if constexpr (contains<typename Particle::list, angular_velocity>) p[angular_velocity{}] -= angular;
   }
   template <class Particle>
   COLLIDE_HD_INLINE void leave(Particle& p) const {
-    if (frame == 0) return;
+    if (rests) return;
     vec3<S>& v = p[collide::velocity{}];
     v = rounded_to<S>(carried + turned(v.template cast<double>()));
     if constexpr (contains<typename Particle::list, angular_velocity>) p[angular_velocity{}] += angular;
@@ -143,9 +155,14 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
                                                                   double part) {
   using vector = vec3<double>;
   vector const none(0, 0, 0);
-  surface_of_body<S, Active::is_swept> s{mesh.frame_of(c.triangle), {},     {}, none, none, {S(0), S(0), S(0)},
-                                         {S(0), S(0), S(0)},        mesh.dt};
-  if (s.frame == 0) return s;
+  surface_of_body<S, Active::is_swept> s{mesh.frame_of(c.triangle), {},      {},   none, none, {S(0), S(0), S(0)},
+                                         {S(0), S(0), S(0)},        mesh.dt, false};
+  s.rests = s.frame == 0 && mesh.vertex_velocities == nullptr;
+  if (s.frame == 0) {
+    if (!s.rests) s.carried = mesh.velocity_of(c.triangle, c.point);
+    s.velocity = rounded_to<S>(s.carried);
+    return s;
+  }
   body_frame<S> const& f = mesh.frames[s.frame];
   s.now = f.now;
   s.at = mesh.pose_at(s.frame, part);

@@ -1,0 +1,9 @@
+// expect: collide: an effect comes after those whose result it uses
+#include <collide/bodies.hpp>
+#include <collide/bounce.hpp>
+#include <collide/bucket.cuh>
+#include <collide/reaction.hpp>
+#include <collide/simulation.cuh>
+
+collide::simulation<collide::detector<collide::bucket>, collide::reaction, collide::bounce, collide::moving_bodies<>>
+    sums_too_early;

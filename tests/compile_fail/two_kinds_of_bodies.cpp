@@ -1,0 +1,9 @@
+// expect: collide: a simulation has one effect moving_bodies
+#include <collide/bodies.hpp>
+#include <collide/bounce.hpp>
+#include <collide/bucket.cuh>
+#include <collide/simulation.cuh>
+
+collide::simulation<collide::detector<collide::bucket>, collide::bounce, collide::moving_bodies<>,
+                    collide::moving_bodies<collide::driven>>
+    two_kinds;
