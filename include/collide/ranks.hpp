@@ -9,7 +9,9 @@
 ///   - `reduce(mine, all, n, reduction)`: the sums or maxima of n numbers of 64 bits; `all` is not `mine`;
 ///   - `exchange_counts(to_each, of_each)`: one number of 64 bits from each rank to each;
 ///   - `exchange(from, to_each, to, of_each, bytes)`: items of so many `bytes`, `to_each[r]` of them to rank r, and
-///     `of_each[r]` from it, each time in the order of the ranks and without gaps.
+///     `of_each[r]` from it, each time in the order of the ranks and without gaps;
+///   - `exchange_in_space(space, from, to_each, to, of_each, bytes)`, if they can: the same of memory of spaces. All
+///     ranks come out of it, also where one of them throws.
 #pragma once
 
 #include <cstddef>

@@ -138,17 +138,29 @@ class thread_ranks {
 
   void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
                 std::size_t bytes) const {
-    show({from, to_each}, [&] {
-      std::size_t filled = 0;
-      for (int r = 0; r < size(); ++r) {
-        detail::meeting::place const theirs = meeting_->of(r);
-        std::size_t before = 0;
-        for (int q = 0; q < rank_; ++q) before += static_cast<std::size_t>(theirs.counts[q]) * bytes;
-        std::size_t const n = static_cast<std::size_t>(of_each[r]) * bytes;
-        if (n != 0) copy(static_cast<unsigned char const*>(theirs.data) + before, n, to, filled);
-        filled += n;
+    exchange_by([](void* at, void const* theirs, std::size_t n) { std::memcpy(at, theirs, n); }, from, to_each, to,
+                of_each, bytes);
+  }
+
+  /// As `exchange`, of memory of the ranks' spaces, which are of devices: from one to the other, not by way of the
+  /// host. If a copy fails on a rank, that one throws.
+  template <class Space>
+  auto exchange_in_space(Space const& space, void const* from, std::uint64_t const* to_each, void* to,
+                         std::uint64_t const* of_each, std::size_t bytes) const
+      -> decltype(space.copy_from_any_device(to, from, bytes)) {
+    std::exception_ptr failure;
+    auto const attempt = [&](auto const& work) {
+      try {
+        if (!failure) work();
+      } catch (...) {
+        failure = std::current_exception();
       }
-    });
+    };
+    attempt([&] { space.synchronize(); });
+    exchange_by([&](void* at, void const* theirs,
+                    std::size_t n) { attempt([&] { space.copy_from_any_device(at, theirs, n); }); },
+                from, to_each, to, of_each, bytes);
+    if (failure) std::rethrow_exception(failure);
   }
 
  private:
@@ -163,6 +175,26 @@ class thread_ranks {
       failure = std::current_exception();
     }
     meeting.leave(rank, failure);
+  }
+
+  /// Calls copy(to, from, bytes) for what comes from each rank.
+  template <class Copy>
+  void exchange_by(Copy const& copy_bytes, void const* from, std::uint64_t const* to_each, void* to,
+                   std::uint64_t const* of_each, std::size_t bytes) const {
+    show({from, to_each}, [&] {
+      std::size_t filled = 0;
+      for (int r = 0; r < size(); ++r) {
+        detail::meeting::place const theirs = meeting_->of(r);
+        std::size_t before = 0;
+        for (int q = 0; q < rank_; ++q) before += static_cast<std::size_t>(theirs.counts[q]) * bytes;
+        std::size_t const n = static_cast<std::size_t>(of_each[r]) * bytes;
+        if (n != 0) {
+          copy_bytes(static_cast<unsigned char*>(to) + filled, static_cast<unsigned char const*>(theirs.data) + before,
+                     n);
+        }
+        filled += n;
+      }
+    });
   }
 
   static void copy(void const* from, std::size_t bytes, void* to, std::size_t at) {

@@ -102,7 +102,28 @@ class cuda_space {
     synchronize();
   }
 
+  /// Copies `bytes` bytes to this device from memory of any other of the process, or its own, and waits.
+  void copy_from_any_device(void* to, void const* from, std::size_t bytes) const {
+    if (bytes == 0) return;
+    read_directly(from);
+    cuda_check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream_), "cudaMemcpyAsync");
+    synchronize();
+  }
+
  protected:
+  /// Has this device read the memory of that at `p` without help of the host, where it can.
+  static void read_directly(void const* p) {
+    cudaPointerAttributes memory{};
+    cuda_check(cudaPointerGetAttributes(&memory, p), "cudaPointerGetAttributes");
+    int device = 0, can = 0;
+    cuda_check(cudaGetDevice(&device), "cudaGetDevice");
+    if (memory.type != cudaMemoryTypeDevice || memory.device == device) return;
+    cuda_check(cudaDeviceCanAccessPeer(&can, device, memory.device), "cudaDeviceCanAccessPeer");
+    if (can != 0 && cudaDeviceEnablePeerAccess(memory.device, 0) != cudaSuccess) {
+      cudaGetLastError();  // it does already, or copies go by way of the host
+    }
+  }
+
   /// Launches a kernel that begins with `pdl_wait`.
   template <class... Parameters>
   void launch_kernel(char const* call, void (*kernel)(Parameters...), unsigned blocks,

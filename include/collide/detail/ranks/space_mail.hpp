@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <numeric>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include <collide/concepts.hpp>
 #include <collide/detail/ranks/host_array.hpp>
 #include <collide/memory.hpp>
 #include <collide/ranks.hpp>
@@ -69,21 +71,33 @@ class space_mail {
   host_array<T> on_host_;
 };
 
-/// Sends `out` and receives `in`, by way of memory of the host. All ranks call it; where memory is short on one, all
-/// throw.
+/// The member of ranks that send from one device's memory to another's; not all have it.
+template <class R, class Space>
+using ranks_exchange_in_space = decltype(std::declval<R const&>().exchange_in_space(
+    std::declval<Space const&>(), static_cast<void const*>(nullptr), static_cast<std::uint64_t const*>(nullptr),
+    static_cast<void*>(nullptr), static_cast<std::uint64_t const*>(nullptr), std::size_t{}));
+
+/// Sends `out` and receives `in`, by way of memory of the host unless the ranks can do without. All ranks call it;
+/// where memory is short on one, all throw.
 template <class Ranks, class Space, class T>
 void deliver(Ranks const& ranks, Space const& space, space_mail<T>& out, space_mail<T>& in) {
   together(ranks, [&] { in.clear(ranks.size()); });
   ranks.exchange_counts(out.counts.data(), in.counts.data());
-  T const* from = nullptr;
-  T* to = nullptr;
-  together(ranks, [&] {
-    in.resize(space);
-    from = out.to_host(space);
-    to = in.host_room(space);
-  });
-  ranks.exchange(from, out.counts.data(), to, in.counts.data(), sizeof(T));
-  together(ranks, [&] { in.from_host(space); });
+  together(ranks, [&] { in.resize(space); });
+  if constexpr (is_valid<ranks_exchange_in_space, Ranks, Space>) {
+    together(ranks, [&] {
+      ranks.exchange_in_space(space, out.data(), out.counts.data(), in.data(), in.counts.data(), sizeof(T));
+    });
+  } else {
+    T const* from = nullptr;
+    T* to = nullptr;
+    together(ranks, [&] {
+      from = out.to_host(space);
+      to = in.host_room(space);
+    });
+    ranks.exchange(from, out.counts.data(), to, in.counts.data(), sizeof(T));
+    together(ranks, [&] { in.from_host(space); });
+  }
 }
 
 }  // namespace collide::detail
