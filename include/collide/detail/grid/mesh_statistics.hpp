@@ -56,7 +56,7 @@ struct compute_mesh_statistics {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    static_assert(Block::items % 2 == 0, "collide: a lane reads two triangles at a time");
+    static_assert(Block::items % 2 == 0, "collide: a thread reads two triangles at a time");
     typename Block::template thread_private<aabb<S>> all;
     s.extents.clear(block);
     block.for_each_thread([&](int thread_rank) {
