@@ -85,6 +85,7 @@ struct place_spheres {
   binned_sphere<S>* to;
   std::uint64_t* total;  ///< counts also those that find no room
   std::uint64_t capacity;
+  std::size_t stride = 1;  ///< 1: all spheres; n: those of every n-th block
 
   template <class Block>
   struct scratch {
@@ -104,7 +105,7 @@ struct place_spheres {
   template <class Block>
   void place(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
-    std::size_t const begin = block.index() * batches * n;
+    std::size_t const begin = block.index() * stride * batches * n;
     bool const one_radius = spheres.one_radius();
     s.count = 0;
     for (std::size_t first = begin; first < begin + batches * n && first < spheres.size(); first += n) {
