@@ -17,13 +17,9 @@ namespace {
 class ours {
  public:
   ours(peers::scene const& from, int threads) : from_{from}, detector_{collide::host(threads)} {
-    if (from.radii.empty()) {
-      detector_.build(from.mesh(), from.largest_radius());
-    } else {
-      detector_.build(from.mesh());
-    }
+    detector_.build(from.mesh());
   }
-  peers::pair_list query() { return detector_.query(from_.view(), collide::pairs()).to_host(); }
+  collide::pairs query() { return detector_.query(from_.view(), collide::pairs()); }
 
  private:
   peers::scene const& from_;

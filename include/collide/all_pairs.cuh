@@ -20,9 +20,9 @@ namespace collide {
 
 namespace detail {
 
-/// Kernel body: each lane keeps some spheres; tiles of bounding spheres of the triangles pass by, in shared memory
-/// where there is some. Where one is reached by some sphere of a lane, the two are listed, and looked at closely by all
-/// lanes together. With few spheres the mesh is split among `splits` blocks.
+/// Kernel body: each thread keeps some spheres; tiles of bounding spheres of the triangles pass by, in shared memory
+/// where there is some. Where one is reached by some sphere of a thread, the two are listed, and looked at closely by
+/// all threads together. With few spheres the mesh is split among `splits` blocks.
 template <class S, class NarrowPhase, class Output>
 struct all_pairs_query {
   static constexpr int items = 8;
@@ -34,7 +34,7 @@ struct all_pairs_query {
   lifted_bounds<S> const* bounds;
   std::size_t splits;
 
-  /// The spheres of a lane, and a triangle of the tile that some of them may touch.
+  /// The spheres of a thread, and a triangle of the tile that some of them may touch.
   struct encounter {
     std::uint16_t thread_rank, triangle;
   };
@@ -84,7 +84,7 @@ struct all_pairs_query {
   }
 
  private:
-  /// Lists the triangles of a tile, from `t` on, that spheres of a lane may touch, as long as there is room; returns
+  /// Lists the triangles of a tile, from `t` on, that spheres of a thread may touch, as long as there is room; returns
   /// the first for which there was none.
   template <class Block, int N>
   COLLIDE_HD_INLINE static int find(Block& block, scratch<Block>& s, lifted_batch<S, N> const& own,
@@ -119,10 +119,10 @@ struct all_pairs_query {
   template <class Block>
   COLLIDE_HD_INLINE void test_one(Block& block, scratch<Block>& s, std::size_t i, std::size_t triangle) const {
     if (i >= pipeline.spheres.size()) return;
-    auto const ball = pipeline.spheres[i];
-    sphere<S> const around = swept_bounding_sphere(ball);
+    auto const shape = pipeline.spheres[i];
+    sphere<S> const around = swept_bounding_sphere(shape);
     if (!bounding_sphere_of(pipeline.mesh[triangle]).overlaps(around.centre, around.radius)) return;
-    pipeline.push(block, s.hits, {static_cast<id>(i), static_cast<id>(triangle)}, ball);
+    pipeline.push(block, s.hits, {static_cast<id>(i), static_cast<id>(triangle)}, shape);
   }
 };
 

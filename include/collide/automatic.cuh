@@ -51,6 +51,12 @@ struct automatic {
       if constexpr (detail::is_valid<detail::index_reserve, bucket::index<S>, Space>) grid_.reserve(space, spheres);
     }
 
+    /// About how many hits the query has, if the grid can tell; else 0.
+    template <class NarrowPhase, class Space>
+    std::uint64_t expected_hits(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres) {
+      return uses_grid_ ? grid_.template expected_hits<NarrowPhase>(space, spheres) : 0;
+    }
+
     template <class NarrowPhase, class Space, class Output>
     void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
       if (uses_grid_) {

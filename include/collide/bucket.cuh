@@ -134,6 +134,20 @@ class bucket::index {
     if constexpr (bucket_tuning<Space>::bins_spheres) bins_.reserve(space, spheres);
   }
 
+  /// About how many hits a pass over the spheres has, rather too many; 0 if it is not known, or hardly worth a look.
+  /// The last `prepare` was for these.
+  template <class NarrowPhase, class Space>
+  std::uint64_t expected_hits([[maybe_unused]] Space& space,
+                              [[maybe_unused]] detail::sphere_view_for<NarrowPhase, S> const& spheres) {
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (algorithm_ == algorithm::triangle_major) {
+        if (bins_.empty()) bin(space, spheres);
+        return bins_.template expected_hits<NarrowPhase>(space, mesh_, spheres.size());
+      }
+    }
+    return 0;
+  }
+
   /// Puts one pass over the spheres on the space's stream; the last `prepare` was for these.
   template <class NarrowPhase, class Space, class Output>
   void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
@@ -213,8 +227,8 @@ class bucket::index {
   void request_grids(Space& space, bucket const& options, Spheres const& spheres) {
     if (origin_ == origin::radius || summary_.data() == nullptr) return;
     S reaches[detail::max_grids];
-    int const n =
-        spheres.one_radius() ? reach_of(spheres.common_radius(), reaches) : reaches_of(space, spheres, reaches);
+    int const n = spheres.one_radius() ? reach_of(spheres.common_radius(), reaches)
+                                       : detail::reaches_of(space, spheres, radii_, reaches);
     if (n == 0 || (n == requested_ && std::equal(reaches, reaches + n, reaches_))) return;
     origin_ = origin::spheres;
     make_grids(space, options, reaches, n, spheres);
@@ -226,25 +240,6 @@ class bucket::index {
     bool const kept = requested_ == 1 && radius <= reaches_[0] && reaches_[0] <= 4 * radius;
     reaches[0] = kept ? reaches_[0] : radius;
     return 1;
-  }
-
-  /// The grids of many radii: reaches a factor of 4 or more apart, only where there are spheres.
-  template <class Space>
-  int reaches_of(Space& space, sphere_view<S> const& spheres, S* reaches) {
-    auto* const radii = radii_.reserve(space.resource(), 1);
-    detail::size_histogram::clear(space, radii);
-    detail::radius_histogram_kernel<S> const body{spheres, radii};
-    space.launch(detail::grid_size<Space>(spheres.size(), body), body);
-    detail::size_histogram const seen = space.read(radii);
-    if (seen.empty()) return 0;
-    constexpr int bins_per_factor_4 = 8;
-    int n = 0;
-    for (int b = seen.last(); b >= seen.first() && n < detail::max_grids; b -= bins_per_factor_4) {
-      while (seen.counts[b] == 0) --b;
-      float const end = detail::bin_end(static_cast<std::uint32_t>(b));
-      reaches[n++] = static_cast<S>(std::min(end, std::numeric_limits<float>::max()));
-    }
-    return n;
   }
 
   /// Chooses the cells of grids up to these radii, as many of `requested` as the budget allows, for these spheres.

@@ -7,10 +7,12 @@
 #include <collide/karabassi_swept.hpp>
 
 /// One detector, with all built-in sinks. PREFIX is `template` where it is compiled, `extern template` elsewhere.
-#define COLLIDE_DETECTOR(PREFIX, BROAD_PHASE, NARROW_PHASE, SPACE, SCALAR)                             \
-  PREFIX class detector<BROAD_PHASE, NARROW_PHASE, SPACE, SCALAR>;                                     \
-  PREFIX void detail::query_pass<BROAD_PHASE::index<SCALAR>, NARROW_PHASE, SPACE, SCALAR>::operator()( \
-      detail::output const&) const;
+#define COLLIDE_DETECTOR(PREFIX, BROAD_PHASE, NARROW_PHASE, SPACE, SCALAR)                                          \
+  PREFIX class detector<BROAD_PHASE, NARROW_PHASE, SPACE, SCALAR>;                                                  \
+  PREFIX void detail::query_pass<BROAD_PHASE::index<SCALAR>, NARROW_PHASE, SPACE, SCALAR>::operator()(              \
+      detail::output const&) const;                                                                                 \
+  PREFIX std::uint64_t detail::query_pass<BROAD_PHASE::index<SCALAR>, NARROW_PHASE, SPACE, SCALAR>::expected_hits() \
+      const;
 
 /// The detectors of a broad phase, in namespace collide.
 #define COLLIDE_DETECTORS(PREFIX, BROAD_PHASE, SPACE, SCALAR)                       \

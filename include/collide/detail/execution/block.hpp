@@ -1,26 +1,25 @@
 /// \file
-/// What a kernel body is written against: a block of lanes that work together.
+/// What a kernel body is written against: a block of threads that work together.
 ///
 /// A body is a function object `body(block, scratch)`. It runs once per block, on any execution space:
-///   - `block.for_each_thread(f)` calls f(lane) for every lane, then waits for all of them;
-///   - `Block::thread_private<T>` is a value per lane (a register on CUDA);
-///   - `block.broadcast(x)` reads a value of the scratch memory, alike for all lanes, that later code may overwrite;
+///   - `block.for_each_thread(f)` calls f(thread) for every thread, then waits for all of them;
+///   - `Block::thread_private<T>` is a value per thread (a register on CUDA);
+///   - `block.broadcast(x)` reads a value of the scratch memory, alike for all threads, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
 ///   - `block.load_striped(from, row, to)`, `striped_to_blocked(s, to)` and `store_transposed(s, to, row, from)` are
-///   for rows of a few
-///     values, one for each lane, that follow each other: `warp_size` lanes call them at a time, and read and write
-///     what lies side by side together, so that all of these rows must exist; what a lane has read is its own row after
-///     the exchange, and not before;
-///   - `block.for_each_balanced<Ahead>(...)` spreads work evenly over the lanes: for all k < counts[i], which are at
-///   least 1, it
-///     finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f); `find` and `look` only read, and a
-///     lane does them up to `Ahead` times before it takes, so that it waits for all of them at once if they do not
-///     branch; after each round the whole block calls `after_round(is_last)`;
-///   - `block.scan(...)` makes of at most as many values as lanes the sums of those before each;
-///   - `block.reduce(...)` combines a value per lane.
+///   for
+///     rows of a few values, one row for each thread, that follow each other: `warp_size` threads call them at a time
+///     and read and write what lies side by side together, so all of these rows must exist; what a thread has read is
+///     its own row after the exchange, and not before;
+///   - `block.for_each_balanced<Ahead>(...)` spreads work evenly over the threads: for all k < counts[i], which are at
+///     least 1, it finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f). `find` and `look` only
+///     read, and a thread does them up to `Ahead` times before it takes, so that it waits for all of them at once if
+///     they do not branch; after each round the whole block calls `after_round(is_last)`;
+///   - `block.scan(...)` makes of at most as many values as threads the sums of those before each;
+///   - `block.reduce(...)` combines a value per thread.
 /// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
-/// Here is the block of plain C++: `serial_block`, a single lane that does everything itself (the host's block, and a
+/// Here is the block of plain C++: `serial_block`, a single thread that does everything itself (the host's block, and a
 /// CUDA thread without shared memory). That of CUDA threads that work together is in cuda_block.cuh.
 #pragma once
 
@@ -35,7 +34,7 @@
 
 namespace collide::detail {
 
-/// A block of one lane with `Items` items; `Pending` hits are gathered before they go to the sink.
+/// A block of one thread with `Items` items; `Pending` hits are gathered before they go to the sink.
 template <int Items, int Pending>
 class serial_block {
  public:

@@ -108,7 +108,7 @@ class cuda_block {
     }
   }
 
-  /// Exclusive scan of at most as many values in shared memory as there are lanes; returns their sum.
+  /// Exclusive scan of at most as many values in shared memory as there are threads; returns their sum.
   __device__ std::uint32_t scan(scan_storage& s, std::uint32_t* values, std::uint32_t n) {
     auto const i = static_cast<std::uint32_t>(thread_rank());
     std::uint32_t own = i < n ? values[i] : 0, sum;
@@ -154,7 +154,7 @@ class cuda_block {
     }
   }
 
-  /// The combination of all lanes' values; valid in lane 0.
+  /// The combination of all threads' values; valid in thread 0.
   template <class T, class Combine>
   __device__ __forceinline__ T reduce(reduce_storage<T>& s, thread_private<T>& values, Combine const& combine) {
     T const result = cub::BlockReduce<T, num_threads>(s).Reduce(values.value, combine);
@@ -199,7 +199,7 @@ class cuda_block {
 
   static __device__ __forceinline__ int thread_rank() { return static_cast<int>(threadIdx.x); }
 
-  /// Waits for all lanes. A warp comes together first: ptxas 13.0 keeps loop counters in registers of the warp, but
+  /// Waits for all threads. A warp comes together first: ptxas 13.0 keeps loop counters in registers of the warp, but
   /// lets its threads reach the barrier one after another where what was before it has called a function.
   __device__ __forceinline__ void sync() {
     __syncwarp();

@@ -55,12 +55,12 @@ COLLIDE_HD_INLINE aabb<S> aabb_of(triangle<S> const& t) {
   return {{lower.x(), lower.y(), lower.z()}, {upper.x(), upper.y(), upper.z()}};
 }
 
-/// The box of a triangle, and the cheap test before the narrow phase: whether a ball comes near it.
+/// The box of a triangle, and the cheap test before the narrow phase: whether a sphere comes near it.
 template <class S>
 struct alignas(4 * sizeof(S)) triangle_aabb : aabb<S> {
   S padding;  ///< room for the rounding of the coarsest narrow phase, as far as it goes with the triangle
 
-  /// How far from the box the centre of a ball that touches the triangle is at most, `padding` apart; the root of the
+  /// How far from the box the centre of a sphere that touches the triangle is at most, `padding` apart; the root of the
   /// smallest normal number covers squares that underflow. See docs/development/numerics.md.
   static COLLIDE_HD_INLINE S padded_radius(S radius) {
     return radius * (1 + 16 * S(ieee_traits<float>::unit_roundoff)) + 2 * sqrt_rn(std::numeric_limits<S>::min());

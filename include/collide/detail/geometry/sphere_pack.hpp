@@ -52,7 +52,7 @@ struct sphere_batch {
     }
   }
 
-  COLLIDE_HD_INLINE sphere<S> ball(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
+  COLLIDE_HD_INLINE sphere<S> shape(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 
   /// The packed centres if the device can load four at a time with 16-byte loads; else null.
   static COLLIDE_HD_INLINE S const* aligned_centres(sphere_view<S> const& spheres) {
@@ -150,7 +150,7 @@ struct moving_batch {
 
   COLLIDE_HD_INLINE vec3<S> centre(int k) const { return {x[k], y[k], z[k]}; }
   COLLIDE_HD_INLINE vec3<S> displacement(int k) const { return {dx[k], dy[k], dz[k]}; }
-  COLLIDE_HD_INLINE moving_sphere<S> ball(int k) const { return {{centre(k), radius[k]}, displacement(k)}; }
+  COLLIDE_HD_INLINE moving_sphere<S> shape(int k) const { return {{centre(k), radius[k]}, displacement(k)}; }
 
  private:
   COLLIDE_HD_INLINE void load_packed(moving_sphere_view<S> const& spheres, std::size_t first) {

@@ -43,16 +43,16 @@ struct bucket_ref : triangle_ref<S> {
   COLLIDE_HD_INLINE void locate(Pack const& pack, std::int8_t (&number)[N]) const {
     select_grids(pack, number);
     for (int k = 0; k < N; ++k) {
-      if (number[k] >= 0 && has_no_candidates_in(grids[number[k]], pack.ball(k))) number[k] = no_cell;
+      if (number[k] >= 0 && has_no_candidates_in(grids[number[k]], pack.shape(k))) number[k] = no_cell;
     }
   }
 
   /// True if the sphere can touch no triangle.
   template <class Sphere>
-  COLLIDE_HD_INLINE bool empty(Sphere const& ball) const {
+  COLLIDE_HD_INLINE bool empty(Sphere const& shape) const {
     if (this->mesh.size() == 0) return true;
     std::int8_t number[1];
-    locate(pack_of_one<Sphere>{ball}, number);
+    locate(pack_of_one<Sphere>{shape}, number);
     return number[0] == no_cell;
   }
 
@@ -75,20 +75,20 @@ struct bucket_ref : triangle_ref<S> {
   }
 
   template <class Sphere>
-  COLLIDE_HD candidate_cursor begin(Sphere const& ball) const {
+  COLLIDE_HD candidate_cursor begin(Sphere const& shape) const {
     std::int8_t number[1] = {no_cell};
-    if (this->mesh.size() != 0) select_grids(pack_of_one<Sphere>{ball}, number);
+    if (this->mesh.size() != 0) select_grids(pack_of_one<Sphere>{shape}, number);
     return {number[0], 0, 0, 0};
   }
 
   template <class Sphere>
-  COLLIDE_HD bool next(Sphere const& ball, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+  COLLIDE_HD bool next(Sphere const& shape, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
     if (c.grid == no_cell) return false;
     if (c.grid == everywhere) return this->next_of_all(c, most, range);
     grid<S> const& g = grids[c.grid];
     for (; c.level < g.levels; ++c.level, c.step = 0) {
-      if (!next_of_level(g, g.level[c.level], ball, c, most, range)) continue;
-      if (c.level + 1 == g.levels && was_last(ball, c)) c.grid = no_cell;
+      if (!next_of_level(g, g.level[c.level], shape, c, most, range)) continue;
+      if (c.level + 1 == g.levels && was_last(shape, c)) c.grid = no_cell;
       return true;
     }
     c.grid = no_cell;
@@ -99,66 +99,66 @@ struct bucket_ref : triangle_ref<S> {
   template <class Sphere>
   struct pack_of_one {
     Sphere const& only;
-    COLLIDE_HD_INLINE Sphere const& ball(int) const { return only; }
+    COLLIDE_HD_INLINE Sphere const& shape(int) const { return only; }
   };
 
   /// The tightest grid that serves each sphere; grids come by falling reach.
   template <class Pack, int N>
   COLLIDE_HD_INLINE void select_grids(Pack const& pack, std::int8_t (&number)[N]) const {
-    for (int k = 0; k < N; ++k) number[k] = is_sound(pack.ball(k)) ? everywhere : no_cell;
+    for (int k = 0; k < N; ++k) number[k] = is_sound(pack.shape(k)) ? everywhere : no_cell;
     COLLIDE_NO_UNROLL
     for (int g = 0; g < grid_count; ++g) {
       for (int k = 0; k < N; ++k) {
         // a sphere that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
-        bool const served = (number[k] != no_cell) & serves(grids[g], pack.ball(k));
-        std::int8_t const there = meets(grids[g], pack.ball(k)) ? static_cast<std::int8_t>(g) : no_cell;
+        bool const served = (number[k] != no_cell) & serves(grids[g], pack.shape(k));
+        std::int8_t const there = meets(grids[g], pack.shape(k)) ? static_cast<std::int8_t>(g) : no_cell;
         number[k] = served ? there : number[k];
       }
     }
   }
 
   /// The centre of a sphere at rest is not looked at: it is in no grid if it is NaN.
-  static COLLIDE_HD_INLINE bool is_sound(sphere<S> const& ball) { return is_valid_radius(ball.radius); }
-  static COLLIDE_HD_INLINE bool is_sound(moving_sphere<S> const& ball) {
-    return is_valid_radius(ball.radius) && is_finite(ball.centre) && is_finite(ball.displacement);
+  static COLLIDE_HD_INLINE bool is_sound(sphere<S> const& shape) { return is_valid_radius(shape.radius); }
+  static COLLIDE_HD_INLINE bool is_sound(moving_sphere<S> const& shape) {
+    return is_valid_radius(shape.radius) && is_finite(shape.centre) && is_finite(shape.displacement);
   }
 
-  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& ball) { return g.serves(ball.radius); }
-  static COLLIDE_HD_INLINE bool meets(grid<S> const& g, sphere<S> const& ball) {
-    return g.contains(ball.centre.x(), ball.centre.y(), ball.centre.z());
+  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, sphere<S> const& shape) { return g.serves(shape.radius); }
+  static COLLIDE_HD_INLINE bool meets(grid<S> const& g, sphere<S> const& shape) {
+    return g.contains(shape.centre.x(), shape.centre.y(), shape.centre.z());
   }
 
-  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, moving_sphere<S> const& ball) {
+  static COLLIDE_HD_INLINE bool serves(grid<S> const& g, moving_sphere<S> const& shape) {
     S const inverse_width = g.levels > 0 ? g.level[0].inverse_width : S(0);
-    bool served = g.serves(ball.radius);
+    bool served = g.serves(shape.radius);
     for (int k = 0; k < 3; ++k) {
-      served = served && swept_cells<S>::is_traversable(g.lower[k], g.upper[k], inverse_width, ball.centre[k],
-                                                        ball.displacement[k]);
+      served = served && swept_cells<S>::is_traversable(g.lower[k], g.upper[k], inverse_width, shape.centre[k],
+                                                        shape.displacement[k]);
     }
     return served;
   }
-  static COLLIDE_HD_INLINE bool meets(grid<S> const& g, moving_sphere<S> const& ball) {
+  static COLLIDE_HD_INLINE bool meets(grid<S> const& g, moving_sphere<S> const& shape) {
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
-      inside = inside && swept_cells<S>::overlaps_slab(g.lower[k], g.upper[k], ball.centre[k], ball.displacement[k]);
+      inside = inside && swept_cells<S>::overlaps_slab(g.lower[k], g.upper[k], shape.centre[k], shape.displacement[k]);
     }
     return inside;
   }
 
   /// True if no level has triangles near a sphere that this grid serves.
   template <class Sphere>
-  COLLIDE_HD_INLINE bool has_no_candidates_in(grid<S> const& g, Sphere const& ball) const {
+  COLLIDE_HD_INLINE bool has_no_candidates_in(grid<S> const& g, Sphere const& shape) const {
     COLLIDE_NO_UNROLL
     for (int l = 0; l < g.levels; ++l) {
-      if (!empty_level(g, g.level[l], ball)) return false;
+      if (!empty_level(g, g.level[l], shape)) return false;
     }
     return true;
   }
-  COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball) const {
-    return !is_occupied(g.cell_at(l, ball.centre).number);
+  COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& shape) const {
+    return !is_occupied(g.cell_at(l, shape.centre).number);
   }
-  COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball) const {
-    cell_box const r = swept_cells<S>::cell_box_of_path(g, l, ball.centre, ball.displacement);
+  COLLIDE_HD_INLINE bool empty_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& shape) const {
+    cell_box const r = swept_cells<S>::cell_box_of_path(g, l, shape.centre, shape.displacement);
     if (!swept_cells<S>::is_short(r)) return false;  // is looked at more closely when it is walked
     bool found = false;
     for (std::uint32_t z = r.lower[2]; z <= r.upper[2]; ++z) {
@@ -190,16 +190,16 @@ struct bucket_ref : triangle_ref<S> {
   static COLLIDE_HD_INLINE bool was_last(sphere<S> const&, candidate_cursor const& c) { return c.step != 0; }
   static COLLIDE_HD_INLINE bool was_last(moving_sphere<S> const&, candidate_cursor const&) { return false; }
 
-  COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& ball, candidate_cursor& c,
+  COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, sphere<S> const& shape, candidate_cursor& c,
                                 std::uint32_t most, candidate_range& range) const {
     if (c.step != 0) return false;
-    cell_ref const at = g.cell_at(l, ball.centre);
+    cell_ref const at = g.cell_at(l, shape.centre);
     return next_of_cell(at.number, at.coverage, c, most, range);
   }
 
-  COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& ball,
+  COLLIDE_HD bool next_of_level(grid<S> const& g, grid_level<S> const& l, moving_sphere<S> const& shape,
                                 candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
-    swept_cells<S> const path(g, l, ball.centre, ball.displacement);
+    swept_cells<S> const path(g, l, shape.centre, shape.displacement);
     while (c.step < path.steps()) {
       auto const here = path.at(c.step);
       std::uint32_t const cell = l.row(here.cell[1], here.cell[2]) + (here.cell[0] & l.mask[0]);

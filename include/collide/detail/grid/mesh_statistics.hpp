@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 #include <collide/detail/execution/launch.hpp>
 #include <collide/detail/geometry/aabb.hpp>
+#include <collide/detail/grid/grid.hpp>
 #include <collide/detail/grid/size_histogram.hpp>
 #include <collide/memory.hpp>
 #include <collide/mesh.hpp>
@@ -56,7 +58,7 @@ struct compute_mesh_statistics {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    static_assert(Block::items % 2 == 0, "collide: a lane reads two triangles at a time");
+    static_assert(Block::items % 2 == 0, "collide: a thread reads two triangles at a time");
     typename Block::template thread_private<aabb<S>> all;
     s.extents.clear(block);
     block.for_each_thread([&](int thread_rank) {
@@ -143,5 +145,25 @@ struct radius_histogram_kernel {
     s.histogram.flush(block, histogram);
   }
 };
+
+/// How far the grids of spheres of many radii reach: reaches a factor of 4 or more apart, falling, only where there are
+/// spheres. Returns how many there are. Waits.
+template <class Space, class S>
+int reaches_of(Space& space, sphere_view<S> const& spheres, buffer<size_histogram>& memory, S (&reaches)[max_grids]) {
+  auto* const radii = memory.reserve(space.resource(), 1);
+  size_histogram::clear(space, radii);
+  radius_histogram_kernel<S> const body{spheres, radii};
+  space.launch(grid_size<Space>(spheres.size(), body), body);
+  size_histogram const seen = space.read(radii);
+  if (seen.empty()) return 0;
+  constexpr int bins_per_factor_4 = 8;
+  int n = 0;
+  for (int b = seen.last(); b >= seen.first() && n < max_grids; b -= bins_per_factor_4) {
+    while (seen.counts[b] == 0) --b;
+    float const end = bin_end(static_cast<std::uint32_t>(b));
+    reaches[n++] = static_cast<S>(smaller(end, std::numeric_limits<float>::max()));
+  }
+  return n;
+}
 
 }  // namespace collide::detail

@@ -149,8 +149,8 @@ struct plan_grid {
            j += Block::num_threads) {
         if (spheres.size() == 0) break;
         auto const moved = spheres[spheres.size() * (j / parts) / pair_distances::spheres];
-        sphere<S> const ball = sphere_on_path(moved, static_cast<S>(j / parts * 37 % 64) / S(63));  // all along
-        if (!(ball.radius <= reach && ball.radius > least) || !is_finite(ball.centre)) continue;
+        sphere<S> const here = sphere_on_path(moved, static_cast<S>(j / parts * 37 % 64) / S(63));  // all along
+        if (!(here.radius <= reach && here.radius > least) || !is_finite(here.centre)) continue;
         if (j % parts == 0) {
           block.add(s.distances.sampled, 1);
           float const path = static_cast<float>(path_of(moved) * scale) / pair_distances::path_unit;
@@ -160,8 +160,8 @@ struct plan_grid {
         for (std::uint32_t k = 0; k < pairs_of_sphere; ++k) {
           triangle_aabb<S> const& b = s.boxes[j % parts * pairs_of_sphere + k];
           if (b.is_empty()) continue;
-          S const distance = larger(b.axis_distance(0, ball.centre.x()),
-                                    larger(b.axis_distance(1, ball.centre.y()), b.axis_distance(2, ball.centre.z())));
+          S const distance = larger(b.axis_distance(0, here.centre.x()),
+                                    larger(b.axis_distance(1, here.centre.y()), b.axis_distance(2, here.centre.z())));
           block.add(s.distances.counts[pair_distances::bin_of(static_cast<float>(distance * scale))], 1);
         }
       }

@@ -53,7 +53,7 @@ struct size_histogram {
 /// sizes, and most of them alike, that it counts the last ones only.
 template <class Block>
 struct block_histogram {
-  static constexpr int kept = Block::num_threads > 1 ? size_bins : 8;  ///< a power of two
+  static constexpr int kept = Block::num_threads > 1 ? size_bins : 64;  ///< a power of two
 
   std::uint32_t counts[std::size_t(kept)], sums[std::size_t(kept)];
   std::uint32_t bins[Block::num_threads > 1 ? 1 : kept];  ///< of one thread: whose counts they are

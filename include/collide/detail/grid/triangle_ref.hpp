@@ -63,11 +63,11 @@ struct triangle_ref {
   /// Whether a triangle that has passed the quick tests is near, unless the narrow phase asks that itself before
   /// anything else.
   template <class NarrowPhase, class Sphere>
-  COLLIDE_HD_INLINE bool passes_coverage(Sphere const& ball, id triangle) const {
+  COLLIDE_HD_INLINE bool passes_coverage(Sphere const& shape, id triangle) const {
     if constexpr (filtered_predicate<NarrowPhase>::value) {
       return true;
     } else {
-      return near(swept_bounding_sphere(ball), triangle);
+      return near(swept_bounding_sphere(shape), triangle);
     }
   }
 

@@ -9,7 +9,7 @@
 
 namespace collide::detail {
 
-/// True if the narrow phase has a static member intersects(triangle<S>, Ball) that returns bool.
+/// True if the narrow phase has a static member intersects(triangle<S>, Sphere) that returns bool.
 template <class NarrowPhase, class S, class Sphere, class = void>
 struct has_intersects : std::false_type {};
 template <class NarrowPhase, class S, class Sphere>
@@ -29,7 +29,7 @@ using sphere_view_for =
 template <class NarrowPhase, class S>
 inline constexpr bool is_discrete = std::is_same<sphere_view_for<NarrowPhase, S>, sphere_view<S>>::value;
 
-/// True if the narrow phase has a static member contact_of(triangle<S>, Ball), Ball as `sphere_view_for` has it.
+/// True if the narrow phase has a static member contact_of(triangle<S>, Sphere), Sphere as `sphere_view_for` has it.
 template <class N, class S, class = void>
 struct has_contact : std::false_type {};
 template <class N, class S>

@@ -56,7 +56,7 @@ COLLIDE_HD_INLINE verdict filtered_test(local_triangle<T> const& t, T size) {
   T const va = minor(d3, d6, d5, d4), vb = minor(d5, d2, d1, d6), vc = minor(d1, d4, d3, d2);
   T v = vb, w = vc, weight_sum = va + vb + vc;
   // decided on bits; not finite if some coordinate is not
-  bool const sound = is_finite(weight_sum), ball = is_valid_radius(t.radius), bad = !sound | !ball;
+  bool const sound = is_finite(weight_sum), has_radius = is_valid_radius(t.radius), bad = !sound | !has_radius;
   if (!Branchless && bad) return verdict::uncertain;
   bool face = true;
   auto const select_region = [&](bool inside, T v_there, T w_there, T weight_sum_there) {

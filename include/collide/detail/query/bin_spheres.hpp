@@ -51,21 +51,21 @@ void load(sphere_batch<S, Items>& batch, sphere_view<S> const& spheres, std::siz
 
 /// The bounding spheres of consecutive moving spheres. A centre that is not finite is in no cell.
 template <class S, int Items>
-void load(sphere_batch<S, Items>& batch, swept_bounding_spheres<S> const& balls, std::size_t first) {
+void load(sphere_batch<S, Items>& batch, swept_bounding_spheres<S> const& bounds, std::size_t first) {
   moving_batch<S, Items> ways;
-  ways.load(balls.spheres, first);
+  ways.load(bounds.spheres, first);
   for (int k = 0; k < Items; ++k) {
     batch.x[k] = ways.x[k] + S(0.5) * ways.dx[k];
     batch.y[k] = ways.y[k] + S(0.5) * ways.dy[k];
     batch.z[k] = ways.z[k] + S(0.5) * ways.dz[k];
-    batch.radius[k] = balls.reach;
+    batch.radius[k] = bounds.reach;
   }
 }
 
 /// A sphere in a cell with triangles.
 template <class S>
 struct binned_sphere {
-  sphere<S> ball;  ///< a copy: in the order of the cells the caller's memory would be read all over the place
+  sphere<S> copy;  ///< in the order of the cells the caller's memory would be read all over the place
   id number;
   std::uint32_t cell;
 };
@@ -85,6 +85,7 @@ struct place_spheres {
   binned_sphere<S>* to;
   std::uint64_t* total;  ///< counts also those that find no room
   std::uint64_t capacity;
+  std::size_t stride = 1;  ///< 1: all spheres; n: those of every n-th block
 
   template <class Block>
   struct scratch {
@@ -96,7 +97,7 @@ struct place_spheres {
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::num_threads == 1 && Block::items == 64,
-                  "collide: spheres are sorted by blocks of one lane with 64 items");
+                  "collide: spheres are sorted by blocks of one thread with 64 items");
     multiversioned([&] { place(block, s); });
   }
 
@@ -104,7 +105,7 @@ struct place_spheres {
   template <class Block>
   void place(Block& block, scratch<Block>& s) const {
     constexpr int n = Block::items;
-    std::size_t const begin = block.index() * batches * n;
+    std::size_t const begin = block.index() * stride * batches * n;
     bool const one_radius = spheres.one_radius();
     s.count = 0;
     for (std::size_t first = begin; first < begin + batches * n && first < spheres.size(); first += n) {
@@ -233,7 +234,7 @@ struct scatter_spheres {
       to.moving[i] = s;
       to.set(i, swept_bounding_sphere(s), p.number);
     } else {
-      to.set(i, p.ball, p.number);
+      to.set(i, p.copy, p.number);
     }
   }
 };

@@ -110,13 +110,13 @@ struct resolve_deferred {
   /// Whether a pair is a hit that the first pass has not written.
   COLLIDE_HD_INLINE bool is_hit(pair p, bool is_deferred) const {
     triangle<S> const t = pipeline.mesh[p.triangle];
-    auto const ball = pipeline.spheres[p.sphere];
+    auto const shape = pipeline.spheres[p.sphere];
     if (!is_deferred) {
-      sphere<S> const around = swept_bounding_sphere(ball);
+      sphere<S> const around = swept_bounding_sphere(shape);
       if (!bounding_sphere_of(t).overlaps(around.centre, around.radius)) return false;
-      if (filter<NarrowPhase>(t, ball) != verdict::uncertain) return false;
+      if (filter<NarrowPhase>(t, shape) != verdict::uncertain) return false;
     }
-    return resolve<NarrowPhase>(t, ball);
+    return resolve<NarrowPhase>(t, shape);
   }
 };
 

@@ -161,12 +161,12 @@ struct expand_cells {
       auto const triangles = static_cast<std::uint32_t>(grids.mesh.size());
       return append(block, s, here, number, {triangles, triangles}, cell_coverage::full_query, at);
     }
-    auto const ball = pipeline.spheres[number];
+    auto const shape = pipeline.spheres[number];
     if constexpr (still) {
-      cell_ref const cell = here.of->cell_at(*here.level, ball.centre);
+      cell_ref const cell = here.of->cell_at(*here.level, shape.centre);
       return append(block, s, here, number, grids.lists[cell.number], cell.coverage, at);
     } else {
-      swept_cells<S> const path(*here.of, *here.level, ball.centre, ball.displacement);
+      swept_cells<S> const path(*here.of, *here.level, shape.centre, shape.displacement);
       for (; at.step < path.steps(); ++at.step, at.skip = 0) {
         auto const place = path.at(at.step);
         std::uint32_t const cell =

@@ -2,7 +2,9 @@
 /// One pass of a query, as a sink calls it.
 #pragma once
 
+#include <cstdint>
 #include <type_traits>
+#include <utility>
 
 #include <collide/concepts.hpp>
 #include <collide/detail/execution/tuning.hpp>
@@ -26,7 +28,22 @@ struct query_pass {
   /// Not defined in the class, so not inline; see compiled.hpp.
   template <class Handle>
   void operator()(Handle const& handle) const;
+
+  /// About how many hits there are, rather too many; 0 if the index cannot tell.
+  std::uint64_t expected_hits() const;
 };
+
+template <class Index, class NarrowPhase, class Space, class Spheres>
+using index_expected_hits = decltype(std::declval<Index&>().template expected_hits<NarrowPhase>(
+    std::declval<Space&>(), std::declval<Spheres const&>()));
+
+template <class Index, class NarrowPhase, class Space, class S>
+std::uint64_t query_pass<Index, NarrowPhase, Space, S>::expected_hits() const {
+  if constexpr (is_valid<index_expected_hits, Index, NarrowPhase, Space, sphere_view_for<NarrowPhase, S>>) {
+    if (mesh.size() != 0 && spheres.size() != 0) return index.template expected_hits<NarrowPhase>(space, spheres);
+  }
+  return 0;
+}
 
 template <class Index, class NarrowPhase, class Space, class S>
 template <class Handle>

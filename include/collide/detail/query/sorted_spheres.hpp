@@ -25,12 +25,15 @@
 #include <collide/detail/geometry/sphere_pack.hpp>
 #include <collide/detail/grid/grid.hpp>
 #include <collide/detail/query/bin_spheres.hpp>
+#include <collide/detail/query/expected_hits.hpp>
+#include <collide/detail/query/triangle_group.hpp>
 #include <collide/detail/query/triangle_major.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over triangles: sets a bit for every cell that a triangle looks into.
+/// Kernel body of `for_each` over groups of triangles: sets a bit for every cell that a triangle looks into, and
+/// perhaps for some more.
 template <class S>
 struct mark_occupied_cells {
   mesh_view<S> mesh;
@@ -40,17 +43,30 @@ struct mark_occupied_cells {
   std::uint32_t* occupied;
 
   void operator()(std::size_t i) const {
+    constexpr std::size_t n = triangle_group<S>::size;
+    std::size_t const first = i * n, end = smaller(first + n, mesh.size());
+    triangle_group<S> group;
+    bool const whole = end - first == n && group.load(boxes, first);
     for (int g = 0; g < grid_count; ++g) {
-      each_range(
-          grids[g], boxes[i], [&] { return mesh[i]; },
-          [&](std::uint32_t first, std::uint32_t n) {
-            for (std::uint32_t const end = first + n; first < end;) {
-              std::uint32_t const next = smaller((first / 32 + 1) * 32, end);
-              std::uint32_t const bits = 0xffffffffu >> (32 - (next - first)) << first % 32;
-              if ((load_relaxed(occupied + first / 32) & bits) != bits) fetch_or(occupied + first / 32, bits);
-              first = next;
-            }
-          });
+      if (whole && group.is_small(grids[g])) {
+        group.each_range(grids[g], [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
+        continue;
+      }
+      for (std::size_t t = first; t < end; ++t) {
+        each_range(
+            grids[g], boxes[t], [&] { return mesh[t]; },
+            [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
+      }
+    }
+  }
+
+ private:
+  void mark(std::uint32_t first, std::uint32_t n) const {
+    for (std::uint32_t const end = first + n; first < end;) {
+      std::uint32_t const next = smaller((first / 32 + 1) * 32, end);
+      std::uint32_t const bits = 0xffffffffu >> (32 - (next - first)) << first % 32;
+      if ((load_relaxed(occupied + first / 32) & bits) != bits) fetch_or(occupied + first / 32, bits);
+      first = next;
     }
   }
 };
@@ -127,7 +143,8 @@ class sorted_spheres {
     std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
-    space.for_each(mesh.size(), mark_occupied_cells<S>{mesh, boxes, grids, grid_count, occupied});
+    constexpr std::size_t group = triangle_group<S>::size;
+    space.for_each((mesh.size() + group - 1) / group, mark_occupied_cells<S>{mesh, boxes, grids, grid_count, occupied});
   }
 
   /// How far the grid must reach for spheres of one radius that move: the radius of the bounding sphere of each path.
@@ -151,14 +168,22 @@ class sorted_spheres {
     clear();
     using place = place_spheres<S, Spheres>;
     auto* const total = total_.reserve(space.resource(), 1);
-    std::size_t room = larger(placed_.capacity(), spheres.size() / 16 + 1024);
-    for (;; room = static_cast<std::size_t>(*total + *total / 4)) {
-      auto* const placed = placed_.reserve(space.resource(), room);
+    constexpr std::size_t share = place::batches * 64;
+    std::size_t const blocks = (spheres.size() + share - 1) / share;
+    std::size_t room = placed_.capacity();
+    for (bool placed = false; !placed; room = static_cast<std::size_t>(*total + *total / 4)) {
+      place body{spheres, grids_, grid_count_, occupied_.data(), everywhere(), nullptr, total, 0};
       space.fill(total, 0, sizeof *total);
-      place const body{spheres, grids_, grid_count_, occupied_.data(), everywhere(), placed, total, room};
-      constexpr std::size_t share = place::batches * 64;
-      space.launch((spheres.size() + share - 1) / share, body);
-      if (*total <= room) break;
+      if (room == 0) {  // of a sample, to begin with
+        body.stride = blocks / 32 + 1;
+        space.launch((blocks - 1) / body.stride + 1, body);
+        *total = *total * body.stride + 1024;
+        continue;
+      }
+      body.to = placed_.reserve(space.resource(), room);
+      body.capacity = room;
+      space.launch(blocks, body);
+      placed = *total <= room;
     }
     auto const n = static_cast<std::size_t>(*total);
     columns_ = columns(space, placed_.capacity());
@@ -198,6 +223,18 @@ class sorted_spheres {
   void clear() { is_empty_ = true; }
   /// True if no spheres have been sorted since.
   bool empty() const { return is_empty_; }
+
+  /// About how many hits a pass over the spheres has, of which there are `all`; 0 if few of them are in cells with
+  /// triangles, and so have no more hits than there are spheres, mostly. O(triangles).
+  template <class NarrowPhase, class Space>
+  std::uint64_t expected_hits(Space& space, mesh_view<S> const& mesh, std::size_t all) const {
+    if (*total_.data() < all / 4) return 0;
+    std::uint64_t hits = 0;
+    sample_hits<S, NarrowPhase> const body{mesh,     boxes_,       grids_,       grid_count_,
+                                           columns_, ends_.data(), everywhere(), &hits};
+    space.launch(grid_size<Space>(mesh.size(), body), body);
+    return body.all_of(hits);
+  }
 
   /// One pass: the triangles look for the spheres.
   template <class NarrowPhase, class Space, class Output>

@@ -10,6 +10,7 @@
 #include <collide/detail/query/bin_spheres.hpp>
 #include <collide/detail/query/candidate_batch.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/detail/query/triangle_group.hpp>
 
 namespace collide::detail {
 
@@ -26,10 +27,11 @@ struct query_triangle_major {
   std::uint32_t const* ends;  ///< the spheres of cell c: ends[c] .. ends[c + 1]
   std::uint32_t everywhere;   ///< number of the cell behind the last
 
-  /// Spheres `first` + k whose bit k is set, and a triangle whose box they reach.
+  /// Pairs that are near each other: bit k is of sphere `sphere` + k, or, in a group, of triangle `triangle` + k.
   struct reached {
-    std::uint32_t first, mask;
+    std::uint32_t sphere;
     id triangle;
+    std::uint32_t mask;
   };
 
   template <class Block>
@@ -37,6 +39,8 @@ struct query_triangle_major {
     static constexpr std::uint32_t room = 256;
     reached found[room];
     std::uint32_t count;
+    triangle_group<S> group;
+    triangle<S> corners[triangle_group<S>::size];  ///< of the group
     candidate_batch<S> batch;
     pipeline_storage<Block> hits;
   };
@@ -44,20 +48,32 @@ struct query_triangle_major {
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::num_threads == 1, "collide: triangles look for spheres in blocks of one lane");
+    constexpr std::uint32_t n = triangle_group<S>::size;
     pipeline.reset(s.hits, 0);
     s.count = 0;
     s.batch.size = 0;
-    multiversioned([&] { look(block, s); });
+    std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, pipeline.mesh.size());
+    for (std::size_t first = begin; first < end; first += n) {
+      std::uint32_t together = 0;  // bits of grids where the group is compared as a whole
+      if (first + n <= end && s.group.load(boxes, first)) {
+        for (int g = 0; g < grid_count; ++g) together |= s.group.pays(grids[g]) ? 1u << g : 0;
+      }
+      if (together != 0) {
+        test(block, s);
+        multiversioned([&] { look_together(block, s, first, together); });
+        test_group(block, s);
+      }
+      multiversioned([&] { look(block, s, first, smaller(first + n, end), together); });
+    }
     test(block, s);
     if constexpr (in_batches<NarrowPhase, S>) s.batch.decide(pipeline, block, s.hits);
     pipeline.drain(block, s.hits);
   }
 
  private:
-  /// Finds the spheres near the triangles of a block.
+  /// Finds the spheres near single triangles, in the grids whose bits are not set.
   template <class Block>
-  void look(Block& block, scratch<Block>& s) const {
-    std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, pipeline.mesh.size());
+  void look(Block& block, scratch<Block>& s, std::size_t begin, std::size_t end, std::uint32_t but) const {
     for (std::size_t t = begin; t < end; ++t) {
       triangle_aabb<S> const around = boxes[t];
       if (around.is_empty()) continue;  // not finite
@@ -65,38 +81,92 @@ struct query_triangle_major {
         std::uint32_t const last = ends[cell + n];
         for (std::uint32_t i = ends[cell]; i < last; i += spheres.simd_width) {
           std::uint32_t const here = spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
-          s.found[s.count] = {i, here, static_cast<id>(t)};
+          s.found[s.count] = {i, static_cast<id>(t), here};
           s.count += here != 0;  // no branch: it would often be mispredicted
           if (s.count == s.room) test(block, s);
         }
       };
       for (int g = 0; g < grid_count; ++g) {
-        each_range(
-            grids[g], around, [&] { return pipeline.mesh[t]; }, look_into);
+        if ((but >> g & 1) == 0)
+          each_range(
+              grids[g], around, [&] { return pipeline.mesh[t]; }, look_into);
       }
       look_into(everywhere, 1);
     }
   }
 
-  /// Tests what was found. Out of line: `look` is a tight loop that is compiled for two vector units.
+  /// Finds the spheres near a group, in the grids whose bits are set, and which of its triangles they are near to.
+  template <class Block>
+  void look_together(Block& block, scratch<Block>& s, std::size_t first, std::uint32_t in) const {
+    auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
+      std::uint32_t const last = ends[cell + n];
+      for (std::uint32_t i = ends[cell]; i < last; i += spheres.simd_width) {
+        std::uint32_t near = spheres.reaching(s.group.all, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+        for (; near != 0; near &= near - 1) {
+          std::uint32_t const k = i + static_cast<std::uint32_t>(__builtin_ctz(near));
+          std::uint32_t const mask = s.group.reached_by(spheres.x[k], spheres.y[k], spheres.z[k], spheres.reach[k]);
+          s.found[s.count] = {k, static_cast<id>(first), mask};
+          s.count += mask != 0;
+          if (s.count == s.room) test_group(block, s);
+        }
+      }
+    };
+    for (int g = 0; g < grid_count; ++g) {
+      if ((in >> g & 1) != 0) s.group.each_range(grids[g], look_into);
+    }
+  }
+
+  /// Tests what was found near single triangles. Out of line: `look` is a tight loop that is compiled for two vector
+  /// units.
   template <class Block>
   [[gnu::noinline]] void test(Block& block, scratch<Block>& s) const {
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
-      [[maybe_unused]] triangle<S> const t = pipeline.mesh[r.triangle];
+      triangle<S> const t = pipeline.mesh[r.triangle];
       for (std::uint32_t rest = r.mask; rest != 0; rest &= rest - 1) {
-        std::uint32_t const place = r.first + static_cast<std::uint32_t>(__builtin_ctz(rest));
-        pair const p{spheres.number[place], r.triangle};
-        if constexpr (in_batches<NarrowPhase, S>) {
-          if (s.batch.size == s.batch.room) s.batch.decide(pipeline, block, s.hits);
-          s.batch.add(p, t, sphere_of(place));
-        } else {
-          pipeline.push(block, s.hits, p, sphere_of(place));
-          pipeline.drain_if_full(block, s.hits);
-        }
+        test_pair(block, s, r.sphere + static_cast<std::uint32_t>(__builtin_ctz(rest)), r.triangle, t);
       }
     }
     s.count = 0;
+  }
+
+  /// Tests what was found near a group.
+  template <class Block>
+  [[gnu::noinline]] void test_group(Block& block, scratch<Block>& s) const {
+    if (s.count == 0) return;
+    constexpr std::uint32_t n = triangle_group<S>::size, all = (1u << n) - 1;
+    id const first = s.found[0].triangle;
+    for (std::uint32_t k = 0; k < n; ++k) s.corners[k] = pipeline.mesh[first + k];
+    for (std::uint32_t i = 0; i < s.count; ++i) {
+      reached const r = s.found[i];
+      if constexpr (is_discrete<NarrowPhase, S> && filtered_predicate<NarrowPhase>::value) {
+        if (r.mask == all && s.group.is_inside(spheres[r.sphere])) {
+          for (std::uint32_t k = 0; k < n; ++k) {
+            pipeline.push_hit(block, s.hits, {spheres.number[r.sphere], first + k});
+            pipeline.drain_if_full(block, s.hits);
+          }
+          continue;
+        }
+      }
+      for (std::uint32_t rest = r.mask; rest != 0; rest &= rest - 1) {
+        auto const k = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        test_pair(block, s, r.sphere, first + k, s.corners[k]);
+      }
+    }
+    s.count = 0;
+  }
+
+  template <class Block>
+  void test_pair(Block& block, scratch<Block>& s, std::uint32_t place, id number,
+                 [[maybe_unused]] triangle<S> const& t) const {
+    pair const p{spheres.number[place], number};
+    if constexpr (in_batches<NarrowPhase, S>) {
+      if (s.batch.size == s.batch.room) s.batch.decide(pipeline, block, s.hits);
+      s.batch.add(p, t, sphere_of(place));
+    } else {
+      pipeline.push(block, s.hits, p, sphere_of(place));
+      pipeline.drain_if_full(block, s.hits);
+    }
   }
 
   /// What the narrow phase judges.

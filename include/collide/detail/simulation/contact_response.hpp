@@ -1,7 +1,7 @@
 /// \file
 /// Resolves the contacts of active particles: the effects respond to each, and the particle's step ends after the last.
 ///
-/// The search finds each particle's next contact, and one lane lets the effects respond. This is repeated until no
+/// The search finds each particle's next contact, and one thread lets the effects respond. This is repeated until no
 /// contact counts, each time from where the particle then is. A contact counts only if its point lies above the tangent
 /// planes of those before: in a corner both walls count; on a plane that is divided into triangles one does, and no
 /// inner edge is felt. A swept particle spends what is left of the step after each contact.

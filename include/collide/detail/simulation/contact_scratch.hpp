@@ -1,5 +1,5 @@
 /// \file
-/// Scratch memory of the search for contacts: particles, spans of candidates, and pairs that wait for lanes.
+/// Scratch memory of the search for contacts: particles, spans of candidates, and pairs that wait for threads.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace collide::detail {
 
-/// Pairs of a particle of the batch and a triangle, that wait for the lanes of their block.
+/// Pairs of a particle of the batch and a triangle, that wait for the threads of their block.
 template <std::uint32_t Capacity>
 struct pair_queue {
   static constexpr std::uint32_t capacity = Capacity;
@@ -20,7 +20,7 @@ struct pair_queue {
   std::uint8_t particles[Capacity];
   std::uint32_t size;
 
-  /// To be called by any lane, where there is room.
+  /// To be called by any thread, where there is room.
   template <class Block>
   COLLIDE_HD_INLINE std::uint32_t push(Block& block, std::uint8_t particle, id triangle) {
     std::uint32_t const i = block.add(size, 1);
@@ -34,12 +34,12 @@ struct pair_queue {
 enum class verdict_byte : std::uint8_t {};
 COLLIDE_HD_INLINE verdict_byte packed(verdict v) { return static_cast<verdict_byte>(v); }
 
-/// The queues of a block; a lane alone has none.
+/// The queues of a block; a thread alone has none.
 template <class Block>
 struct contact_queues {
   static constexpr bool used = Block::num_threads > 1;
   static_assert(Block::num_threads <= 256, "a byte counts the particles of a batch");
-  static constexpr std::uint32_t ahead = 5;  ///< cell items that a lane looks at together
+  static constexpr std::uint32_t ahead = 5;  ///< cell items that a thread looks at together
 
   pair_queue<used ? (ahead + 1) * Block::num_threads : 1> candidates;
   pair_queue<used ? 2 * Block::num_threads : 1> contacts;    ///< pairs that touch, or may do so
@@ -79,7 +79,7 @@ struct contact_scratch : span_frames<HasBodies> {
                                                     2 * sizeof(std::uint32_t) + sizeof(std::uint8_t) + 2 * sizeof(id);
   static constexpr std::size_t bytes_of_frames = HasBodies ? sizeof(span_frames<HasBodies>) : 0;
 
-  /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block, but fewer than lanes, and
+  /// How many particles a batch has: as many as fit in the 48 KB that CUDA has for a block, but fewer than threads, and
   /// than bytes can count. The rest is for what else a step keeps there.
   static constexpr std::uint32_t room =
       static_cast<std::uint32_t>((47 * 1024 - sizeof(contact_queues<Block>) - bytes_of_frames) / bytes_per_particle);

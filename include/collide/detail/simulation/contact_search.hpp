@@ -1,10 +1,10 @@
 /// \file
 /// Finds for each active particle the next contact with the mesh.
 ///
-/// The candidates of a batch of particles are spread evenly over the lanes of the block. Those that the quick test of
-/// their cell lets through are queued, and go through the narrow phase's filter as many at a time as there are lanes;
+/// The candidates of a batch of particles are spread evenly over the threads of the block. Those that the quick test of
+/// their cell lets through are queued, and go through the narrow phase's filter as many at a time as there are threads;
 /// what passes is queued again, and its contact computed as many at a time. Queues are drained when they are full, and
-/// at the end. A lane alone does all of this at once with each candidate. The deepest contact, or of particles that
+/// at the end. A thread alone does all of this at once with each candidate. The deepest contact, or of particles that
 /// move the earliest, wins by a minimum over 64-bit keys, which does not depend on the order.
 #pragma once
 
@@ -32,7 +32,7 @@ struct contact_search {
 
   Triangles triangles;
 
-  /// Called by one lane when the block begins with a batch.
+  /// Called by one thread when the block begins with a batch.
   template <class Block>
   COLLIDE_HD_INLINE void reset(scratch<Block>& s) const {
     s.queues.candidates.size = s.queues.contacts.size = s.queues.unsure_count = 0;
@@ -156,7 +156,7 @@ struct contact_search {
             s.frame(i)};
   }
 
-  /// A lane alone finds the first contacts first, as it goes along the motion, and hardly looks at what comes later.
+  /// A thread alone finds the first contacts first, as it goes along the motion, and hardly looks at what comes later.
   static COLLIDE_HD_INLINE void clip_to_best(active const& a, shape& part) {
     // times are early by less, or by what the slack of bounding spheres covers; in keys they are rounded
     constexpr S late = S(0x1p-21);
@@ -238,7 +238,7 @@ struct contact_search {
     }
   }
 
-  /// A lane alone: a candidate's whole way to the best contact.
+  /// A thread alone: a candidate's whole way to the best contact.
   COLLIDE_HD_INLINE void consider_at_once(span const& c, id number) const {
     using block = serial_block<1, 0>;
     if (!triangles.near(c.around, number) || is_leaving(c.one, number, c.whole)) return;

@@ -23,7 +23,7 @@ struct no_filter {
   COLLIDE_HD_INLINE void operator()(Particles const&, Flags const&, Flags const&) const {}
 };
 
-/// What a lane does with the particles that it moves.
+/// What a thread does with the particles that it moves.
 template <class Context>
 struct integration {
   using S = typename Context::scalar;
@@ -47,7 +47,7 @@ struct integration {
   /// touch the mesh: for these the step is not over.
   template <int N, class Block, class Filter>
   COLLIDE_HD_INLINE void advance(Block& block, scratch<Block>& s, std::size_t first, Filter const& filter) const {
-    if constexpr (effects_type::skips) {  // each lane alone: of particles that are left out nothing is read
+    if constexpr (effects_type::skips) {  // each thread alone: of particles that are left out nothing is read
       serial_block<N, 0> alone(block.index());
       scratch<serial_block<N, 0>> none;
       if (first < context.state.size) advance_active<N>(alone, none, first, filter);

@@ -69,7 +69,7 @@ struct alignas(4 * sizeof(T)) four {
 };
 
 /// All columns of a simulation in memory. Each has room for a multiple of this many particles: as many as a CUDA block
-/// reads and writes at a time, so that no lane asks whether its own are there.
+/// reads and writes at a time, so that no thread asks whether its own are there.
 inline constexpr std::size_t particle_padding = 1024;
 
 /// Places of columns for so many particles.

@@ -2,10 +2,10 @@
 /// A simulation's step: each block moves its share of the particles, and then resolves the contacts of those that may
 /// touch the mesh.
 ///
-/// Particles are divided into tiles. Where lanes share a block and something touches the mesh, there are as many blocks
-/// as can be at work at the same time. Each has tiles from everywhere among the particles, as those that are close to
-/// each other there may be close to the mesh together; so all have about as many contacts to resolve, and none waits
-/// for another. Else a block has one tile.
+/// Particles are divided into tiles. Where threads share a block and something touches the mesh, there are as many
+/// blocks as can be at work at the same time. Each has tiles from everywhere among the particles, as those that are
+/// close to each other there may be close to the mesh together; so all have about as many contacts to resolve, and none
+/// waits for another. Else a block has one tile.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ struct step_kernel {
   using response_type = contact_response<Context>;
 
   static constexpr int items = particles_per_group;
-  /// Waits for memory, mostly; a lane alone resolves contacts in many registers.
+  /// Waits for memory, mostly; a thread alone resolves contacts in many registers.
   template <class Block>
   static constexpr int residency = !Context::touches ? 1 : (Block::num_threads > 1 ? 3 : 2);
 
@@ -37,13 +37,14 @@ struct step_kernel {
   template <class Block>
   static constexpr bool has_many_tiles = Context::touches&& Block::num_threads > 1;
 
-  /// A tile: the particles of lanes that read and write together. One that is a block's only one is all of the block's.
+  /// A tile: the particles of threads that read and write together. One that is a block's only one is all of the
+  /// block's.
   template <class Block>
-  static constexpr std::uint32_t tile_lanes = has_many_tiles<Block> ? Block::warp_size : Block::num_threads;
+  static constexpr std::uint32_t tile_threads = has_many_tiles<Block> ? Block::warp_size : Block::num_threads;
   template <class Block>
-  static constexpr std::uint32_t tile = tile_lanes<Block>* Block::items;
+  static constexpr std::uint32_t tile = tile_threads<Block>* Block::items;
   template <class Block>
-  static constexpr std::uint32_t tiles_together = Block::num_threads / tile_lanes<Block>;  ///< of a block
+  static constexpr std::uint32_t tiles_together = Block::num_threads / tile_threads<Block>;  ///< of a block
 
   template <class Block>
   static COLLIDE_HD_INLINE std::uint32_t tile_count(std::size_t particles) {
@@ -91,7 +92,7 @@ struct step_kernel {
  private:
   static constexpr int pack = particles_per_group;
 
-  /// How many particles a lane moves at a time: a pack, which compilers put into vector registers, or as many as are
+  /// How many particles a thread moves at a time: a pack, which compilers put into vector registers, or as many as are
   /// asked together whether they are near the mesh.
   template <class Block>
   static constexpr int at_a_time = Block::items % 16 == 0 && Context::touches ? 16 : pack;
@@ -104,7 +105,7 @@ struct step_kernel {
       Block::items % 16 == 0 && !Context::is_swept && integration_type::has_one_radius && !effects_type::skips &&
       !effects_type::finishes && Context::kick_after == 0;
 
-  /// The next particles are on their way while a lane moves some. To ask for the cells of motions takes too many
+  /// The next particles are on their way while a thread moves some. To ask for the cells of motions takes too many
   /// registers for that.
   template <class Block>
   static constexpr bool prefetches = has_many_tiles<Block> && !Context::is_swept && !effects_type::skips;
@@ -115,11 +116,11 @@ struct step_kernel {
     return k * static_cast<std::uint32_t>(blocks) + static_cast<std::uint32_t>(block.index());
   }
 
-  /// The first particle of a lane in a tile that exists.
+  /// The first particle of a thread in a tile that exists.
   template <class Block>
   COLLIDE_HD_INLINE std::uint32_t first_of(int thread_rank, std::uint32_t tile_number, std::uint32_t tiles) const {
     return (context.reverse_order ? tiles - 1 - tile_number : tile_number) * tile<Block> +
-           static_cast<std::uint32_t>(thread_rank) % tile_lanes<Block> * Block::items;
+           static_cast<std::uint32_t>(thread_rank) % tile_threads<Block> * Block::items;
   }
 
   /// Where a block has the number of its `i`-th particle for which its queue has no room: where its own tiles would be.
@@ -168,13 +169,13 @@ struct step_kernel {
                                     });
   }
 
-  /// Moves the particles of a block's tiles, a lane `N` at a time.
+  /// Moves the particles of a block's tiles, a thread `N` at a time.
   template <int N, class Block, class Filter>
   COLLIDE_HD_INLINE void advance_tiles(Block& block, scratch<Block>& s, Filter const& filter) const {
     integration_type const integrate{context};
     std::uint32_t const tiles = tile_count<Block>(context.state.size);
     block.for_each_thread([&](int thread_rank) {
-      std::uint32_t k = static_cast<std::uint32_t>(thread_rank) / tile_lanes<Block>;
+      std::uint32_t k = static_cast<std::uint32_t>(thread_rank) / tile_threads<Block>;
       if constexpr (prefetches<Block>) {
         advance_with_prefetch(block, s, thread_rank, tile_index(block, k), tiles, filter);
       } else if constexpr (has_many_tiles<Block>) {
@@ -191,7 +192,7 @@ struct step_kernel {
     });
   }
 
-  /// Moves a lane's particles of tiles from the `i`-th on; while it moves some, the next ones are on their way.
+  /// Moves a thread's particles of tiles from the `i`-th on; while it moves some, the next ones are on their way.
   template <class Block, class Filter>
   COLLIDE_HD_INLINE void advance_with_prefetch(Block& block, scratch<Block>& s, int thread_rank, std::uint32_t i,
                                                std::uint32_t tiles, Filter const& filter) const {

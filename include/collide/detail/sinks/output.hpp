@@ -135,6 +135,16 @@ class hit_counter_buffer {
   std::pmr::memory_resource* zero_in_ = nullptr;  ///< in whose memory the sum is 0 for sure
 };
 
+/// About how many hits a query has, rather too many; 0 if it cannot tell.
+template <class Query>
+auto expected_hits(Query const& query, int) -> decltype(query.expected_hits()) {
+  return query.expected_hits();
+}
+template <class Query>
+std::uint64_t expected_hits(Query const&, long) {
+  return 0;
+}
+
 /// Collects all colliding pairs, in an array of its own that grows until they fit or in the caller's of fixed size.
 class pair_collector {
  public:
@@ -147,10 +157,18 @@ class pair_collector {
     size_ = static_cast<std::size_t>(total_ < capacity ? total_ : capacity);
   }
 
-  /// Runs the query until everything fits: once if the array of the last time is large enough.
+  /// Runs the query until everything fits: once if the array of the last time is large enough, or if there is none and
+  /// the query can tell how large it must be.
   template <class Space, class Query>
   void fill(Space& space, Query const& query) {
-    pair* const to = take_room(space, query.spheres.size(), 0);
+    std::size_t const spheres = query.spheres.size();
+    std::size_t expected = 0;
+    if (own_.capacity() == 0) {
+      expected = static_cast<std::size_t>(expected_hits(query, 0));
+      // what is never written is not there, on a host
+      if (Space::host_accessible && expected < spheres) expected = spheres;
+    }
+    pair* const to = take_room(space, spheres, expected);
     fill(space, query, to, own_.capacity());
     if (total_ > own_.capacity()) {
       std::size_t const room = total_ + total_ / 4;  // so that a few more next time fit too

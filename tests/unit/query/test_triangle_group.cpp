@@ -1,0 +1,143 @@
+/// Triangles that are compared with spheres eight at a time, and what a sample of the candidates tells of the hits.
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <io/scenes.hpp>
+
+#include <collide/all_pairs.cuh>
+#include <collide/automatic.cuh>
+#include <collide/bucket.cuh>
+
+namespace {
+
+using collide::detail::triangle_aabb;
+using collide::detail::triangle_group;
+
+/// Eight triangles of a size around a point.
+template <class S>
+std::vector<collide::triangle<S>> some_triangles(std::mt19937& random, S around, S size) {
+  std::uniform_real_distribution<S> at(around - size, around + size);
+  auto const point = [&] { return collide::vec3<S>{at(random), at(random), at(random)}; };
+  std::vector<collide::triangle<S>> made;
+  for (int i = 0; i < 8; ++i) made.push_back({point(), point(), point()});
+  return made;
+}
+
+template <class S>
+void check_group() {
+  std::mt19937 random(1);
+  int inside = 0;
+  for (int round = 0; round < 2000; ++round) {
+    S const size = round % 2 == 0 ? S(1) : S(1e-3);
+    auto const triangles = some_triangles<S>(random, S(round % 7), size);
+    std::vector<triangle_aabb<S>> boxes;
+    for (auto const& t : triangles) boxes.push_back(collide::detail::triangle_aabb_of(t));
+    triangle_group<S> group{};
+    REQUIRE(group.load(boxes.data(), 0));
+    std::uniform_real_distribution<S> at(S(round % 7) - 3 * size, S(round % 7) + 3 * size), far(0, 4 * size);
+    collide::sphere<S> const ball{{at(random), at(random), at(random)}, far(random)};
+    std::uint32_t expected = 0;
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      if (boxes[i].overlaps(ball.centre, ball.radius)) expected |= 1u << i;
+    }
+    S const reach = triangle_aabb<S>::padded_radius(ball.radius);
+    CHECK(group.reached_by(ball.centre.x(), ball.centre.y(), ball.centre.z(), reach) == expected);
+    if (expected != 0) CHECK(group.all.overlaps(ball.centre, ball.radius));
+    if (!group.is_inside(ball)) continue;
+    ++inside;
+    for (auto const& t : triangles) CHECK(collide::karabassi<>::intersects(t, ball));
+  }
+  CHECK(inside > 50);
+}
+
+/// A copy of a scene's numbers.
+struct numbers {
+  std::vector<float> vertices, centres, radii;
+  std::vector<collide::id> corners;
+  float radius;
+
+  explicit numbers(io::scene const& s)
+      : vertices(s.vertices.begin(), s.vertices.end()),
+        centres(s.centres.begin(), s.centres.end()),
+        radii(s.radii.begin(), s.radii.end()),
+        corners(s.corners),
+        radius{static_cast<float>(s.radius)} {}
+
+  collide::mesh_view<float> mesh() const {
+    return collide::indexed_mesh(vertices.data(), vertices.size() / 3, corners.data(), corners.size() / 3);
+  }
+  collide::sphere_view<float> spheres() const {
+    std::size_t const n = centres.size() / 3;
+    return radii.empty() ? collide::spheres_xyz(centres.data(), n, radius)
+                         : collide::spheres_xyz(centres.data(), n, radii.data());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a group of triangles: which boxes a sphere reaches is what each box says, and inside is inside") {
+  check_group<float>();
+  check_group<double>();
+}
+
+TEST_CASE(
+    "a group is certain of nothing where squares overflow or vanish, and is none with a triangle that is not finite") {
+  float const huge = 3e19f, tiny = 1e-25f;
+  for (float const scale : {huge, tiny}) {
+    std::vector<triangle_aabb<float>> boxes(
+        8, collide::detail::triangle_aabb_of(collide::triangle<float>{{0, 0, 0}, {scale, 0, 0}, {0, scale, 0}}));
+    triangle_group<float> group{};
+    REQUIRE(group.load(boxes.data(), 0));
+    CHECK(!group.is_inside({{0, 0, 0}, scale}));
+    CHECK(!group.is_inside({{0, 0, 0}, 0}));
+    boxes[5] = collide::detail::triangle_aabb_of(
+        collide::triangle<float>{{0, 0, 0}, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 1, 0}});
+    CHECK(!group.load(boxes.data(), 0));
+  }
+}
+
+TEST_CASE(
+    "pairs of scenes with many hits and with radii that differ are those of all_pairs, in any number of threads") {
+  for (char const* name : {"hits", "many_hits", "radii_1000", "radii_100", "crowd", "camera", "soup", "drum"}) {
+    CAPTURE(name);
+    auto const& kind = *io::find_scene(name);
+    numbers const made(kind.make(4000, 1003, 0));  // the last group is not whole
+    collide::detector<collide::all_pairs> plain;
+    auto const expected =
+        plain.detect(made.mesh(), made.spheres(), collide::pairs(collide::order::canonical)).to_host();
+    for (int threads : {1, 3}) {
+      collide::detector<collide::bucket> detector{collide::host(threads)};
+      auto const found =
+          detector.detect(made.mesh(), made.spheres(), collide::pairs(collide::order::canonical)).to_host();
+      CHECK((found == expected));
+    }
+  }
+}
+
+TEST_CASE("a first query of many hits runs once: a sample of the candidates tells how many there are") {
+  for (char const* name : {"hits", "many_hits", "crowd"}) {
+    CAPTURE(name);
+    auto const& kind = *io::find_scene(name);
+    numbers const made(kind.make(20000, 20000, 0));
+    collide::detector<collide::bucket> detector{collide::host(2)};
+    detector.build(made.mesh());
+    struct sink {
+      std::uint64_t expected = 0, total = 0;
+      collide::count counted;
+      void run(collide::host& space, collide::detail::query_pass<collide::bucket::index<float>, collide::karabassi<>,
+                                                                 collide::host, float> const& query) {
+        expected = query.expected_hits();
+        counted.run(space, query);
+        total = counted.total();
+      }
+    };
+    sink told;
+    detector.query(made.spheres(), told);
+    CHECK(told.total > made.spheres().size());
+    CHECK(told.expected >= told.total);
+    CHECK(told.expected <= told.total + told.total / 4 + 20000);
+  }
+}
