@@ -83,8 +83,7 @@ TEST_CASE("a group of triangles: which boxes a sphere reaches is what each box s
   check_group<double>();
 }
 
-TEST_CASE(
-    "a group is certain of nothing where squares overflow or vanish, and is none with a triangle that is not finite") {
+TEST_CASE("a group is certain of nothing where squares overflow, and is none with a triangle that is not finite") {
   float const huge = 3e19f, tiny = 1e-25f;
   for (float const scale : {huge, tiny}) {
     std::vector<triangle_aabb<float>> boxes(
@@ -99,8 +98,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "pairs of scenes with many hits and with radii that differ are those of all_pairs, in any number of threads") {
+TEST_CASE("many hits and radii that differ: pairs are those of all_pairs, with any number of threads") {
   for (char const* name : {"hits", "many_hits", "radii_1000", "radii_100", "crowd", "camera", "soup", "drum"}) {
     CAPTURE(name);
     auto const& kind = *io::find_scene(name);
