@@ -168,7 +168,7 @@ MUTATIONS = {
     "second-time": ("query/deferred_pairs.hpp", "then all pairs are tested, and not as many as the list counts", "scenes", "plain",
                     [("all_found_room ? total : std::uint64_t{pipeline.spheres.size()} * pipeline.mesh.size()", "total")]),
     "first-step": ("query/deferred_pairs.hpp", "what was certain is not reported again", "scenes", "plain",
-                   [("      if (filter<NarrowPhase>(t, ball) != verdict::uncertain) return false;\n", "")]),
+                   [("      if (filter<NarrowPhase>(t, shape) != verdict::uncertain) return false;\n", "")]),
     "left-empty": ("query/deferred_pairs.hpp", "the list is empty for the next query", "scenes", "plain",
                    [("      deferred.count->total = deferred.count->ready = 0;\n", "")]),
     "near-depth": ("narrow_phase/contact.hpp", "depths of which doubles have too few digits", "contacts", "plain",
@@ -212,7 +212,7 @@ UNSEEN = [
     ("geometry/bounding_sphere.hpp", "if (!is_finite(far_squared))",
      "the root of infinity is infinity, but a NaN with -ffast-math in kernels that read the bounding sphere from memory; "
      "`verdicts` saw it until the host came to do without bounding spheres"),
-    ("predicates/filter.hpp", " | !ball",
+    ("predicates/filter.hpp", " | !has_radius",
      "below 0 `radius_low > 0` fails, and with NaN every comparison; -ffinite-math-only promises neither, but g++ and clang++ do so"),
     ("predicates/filter.hpp", "bad = !sound",
      "weights are limited by selection, so a NaN becomes 0, and no comparison holds that follows; the same compilers"),
