@@ -32,8 +32,7 @@ TEST_CASE("bodies: on the GPU, riding, waking, many bodies, and the same bits on
   tests::check_same_bits<karabassi_swept<>>(cuda_shared(), cuda_shared());
 }
 
-TEST_CASE(
-    "moving walls: on the GPU, a mesh that is set again, slow bodies, functions of one's own, a screw, and work") {
+TEST_CASE("moving walls: on the GPU, a mesh set again, slow bodies, functions of one's own, a screw, and work") {
   tests::check_wall_set_again<karabassi<>, float>(cuda_shared(), 0.2);
   tests::check_slow_wall<karabassi<>, double>(cuda_shared(), 0.001);
   tests::check_own_motion<karabassi<>>(cuda_shared());
