@@ -36,8 +36,8 @@ void check_still(collide::sphere_view<S> const& spheres) {
     for (int k = 0; k < 4; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
       if (i < n) {
-        CHECK(batch.ball(k).centre == spheres.centre(i));
-        CHECK(batch.ball(k).radius == spheres.radius(i));
+        CHECK(batch.shape(k).centre == spheres.centre(i));
+        CHECK(batch.shape(k).radius == spheres.radius(i));
       } else {
         CHECK(std::isnan(batch.radius[k]));
         CHECK(batch.x[k] > 1e30);
@@ -56,9 +56,9 @@ void check_moving(collide::moving_sphere_view<S> const& spheres) {
     for (int k = 0; k < 4; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
       if (i < n) {
-        CHECK(batch.ball(k).centre == spheres[i].centre);
-        CHECK(batch.ball(k).radius == spheres[i].radius);
-        CHECK(batch.ball(k).displacement == spheres[i].displacement);
+        CHECK(batch.shape(k).centre == spheres[i].centre);
+        CHECK(batch.shape(k).radius == spheres[i].radius);
+        CHECK(batch.shape(k).displacement == spheres[i].displacement);
         CHECK(around.ball(k).centre == swept_bounding_sphere(spheres[i]).centre);
         CHECK(around.ball(k).radius == swept_bounding_sphere(spheres[i]).radius);
       } else {
