@@ -59,8 +59,8 @@ void check_moving(collide::moving_sphere_view<S> const& spheres) {
         CHECK(batch.shape(k).centre == spheres[i].centre);
         CHECK(batch.shape(k).radius == spheres[i].radius);
         CHECK(batch.shape(k).displacement == spheres[i].displacement);
-        CHECK(around.ball(k).centre == swept_bounding_sphere(spheres[i]).centre);
-        CHECK(around.ball(k).radius == swept_bounding_sphere(spheres[i]).radius);
+        CHECK(around.shape(k).centre == swept_bounding_sphere(spheres[i]).centre);
+        CHECK(around.shape(k).radius == swept_bounding_sphere(spheres[i]).radius);
       } else {
         CHECK(std::isnan(batch.radius[k]));
         CHECK(std::isnan(around.radius[k]));
