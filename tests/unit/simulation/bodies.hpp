@@ -156,6 +156,23 @@ void check_small_angles(Space const& space) {
   }
 }
 
+/// What a body gets of which there is no sum goes nowhere.
+template <class Space>
+void check_bodies_without_sums(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, float>, bounce, collide::reaction, moving_bodies<>>;
+  world<float> w;
+  w.radius = 0.1f;
+  for (double const x : {-9.0, 0.0}) w.triangle({x, -5, -5, x, 5, -5, x, 0, 9});
+  w.particle(0.05, 0, 0, -1);
+  collide::reaction_sums sums(space, 1, 1e-9, 1);
+  running_bodies<simulation> made(space, w, {{0, 1, {}}, {1, 1, {}}}, bounce{1}, sums.effect(1000), moving_bodies<>{});
+  made.simulation.step(1e-3f);
+  CHECK(double(made.velocities()[0]) == doctest::Approx(1));
+  CHECK(sums.counts(space) == std::vector<std::int64_t>(12, 0));
+  CHECK(sums.triangle_counts(space) == std::vector<std::int64_t>(6, 0));
+}
+
 /// A floor that is shaken throws what lies on it if and only if A w^2 > g.
 template <class NarrowPhase, class Space>
 void check_vibrated_floor(Space const& space) {

@@ -61,6 +61,10 @@ TEST_CASE_TEMPLATE("bodies: a piston hits with twice its speed", S, float, doubl
   tests::check_piston<karabassi<>, S>(lockstep<256, true>());
 }
 
+TEST_CASE("bodies: those of which there are no sums leave the sums of others alone") {
+  tests::check_bodies_without_sums(host(1));
+}
+
 TEST_CASE("bodies: one far from its axis hits what is in its way, however small the angle of a step") {
   tests::check_small_angles(host(1));
 }
