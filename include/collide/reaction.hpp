@@ -47,6 +47,7 @@ struct reaction {
   detail::impulse_counts* sums = nullptr;  ///< memory of the space, of `reaction_sums`
   detail::impulse_counts* sums_of_triangles = nullptr;  ///< memory of the space, of `reaction_sums`
   std::size_t triangles = 0;                            ///< of how many there are sums
+  std::size_t bodies = 0;                               ///< of how many there are sums
 
   void check_parameters() const {
     detail::check_parameter(density > 0 && unit > 0 && sums != nullptr,
@@ -61,7 +62,7 @@ struct reaction {
     vec3<double> const impulse = scaled(vec3<double>(change.template cast<double>()), div(mass, unit));
     vec3<double> const moment = cross(vec3<double>(t.point.template cast<double>()), impulse);
     std::size_t const body = t.body == no_id ? 0 : std::size_t{t.body} + 1;
-    add(sums[body * copies + p.number() % copies], impulse, moment);
+    if (body <= bodies) add(sums[body * copies + p.number() % copies], impulse, moment);
     std::size_t const number = t.triangle;
     if (number < triangles) add(sums_of_triangles[number], impulse, moment);
   }
@@ -84,9 +85,9 @@ struct reaction {
 /// that has its effect.
 class reaction_sums {
  public:
-  /// For so many bodies. `unit` is the impulse to which each contact is rounded, and the moment: a sum may be off by
-  /// half a unit for each contact of a step. `triangles`: for how many of the mesh, from the first on, there are sums
-  /// too. Allocates 12 KB a body and 48 bytes a triangle in the space.
+  /// For so many bodies: of those beyond them nothing is summed. `unit` is the impulse to which each contact is
+  /// rounded, and the moment: a sum may be off by half a unit for each contact of a step. `triangles`: for how many of
+  /// the mesh, from the first on, there are sums too. Allocates 12 KB a body and 48 bytes a triangle in the space.
   template <class Space>
   reaction_sums(Space const& space, std::size_t bodies, double unit, std::size_t triangles = 0)
       : bodies_{bodies}, triangles_{triangles}, unit_{unit} {
@@ -96,7 +97,7 @@ class reaction_sums {
 
   /// The effect, for particles of a density.
   reaction effect(double density) const {
-    return {density, unit_, sums_.data(), sums_.data() + of_bodies(), triangles_};
+    return {density, unit_, sums_.data(), sums_.data() + of_bodies(), triangles_, bodies_};
   }
 
   /// Begins anew, after the work that is on the stream of a space. Does not wait.

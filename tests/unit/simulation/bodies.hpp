@@ -131,6 +131,48 @@ void check_piston(Space const& space) {
   }
 }
 
+/// A body far from what it turns around goes far even in steps of small angles, and hits what is in its way.
+template <class Space>
+void check_small_angles(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi_swept<>, double>, bounce, moving_bodies<>>;
+  double const arm = 1e9;
+  for (double const angle : {1e-9, 1e-8, 2e-8, 5e-8, 1e-6}) {
+    for (double const before : {0.0, 0.7}) {  // turns
+      world<double> w;
+      w.radius = 0.1;
+      w.triangle({arm - 1, 0, -1, arm + 1, 0, -1, arm, 0, 1});
+      double const cosine = std::cos(2 * pi * before), sine = std::sin(2 * pi * before), y = 0.5 * angle * arm;
+      w.particle(arm * cosine - y * sine, arm * sine + y * cosine, 0);
+      body_motion turning;
+      turning.rate = angle;
+      turning.swing = 2 * pi * before;
+      turning.phase = 0.25;  // so it is `swing` in the beginning, and stays so
+      running_bodies<simulation> made(space, w, one_body(w, turning), bounce{1}, moving_bodies<>{});
+      made.simulation.steps(1, 1.0);
+      auto const v = made.velocities();
+      CHECK(std::hypot(double(v[0]), double(v[1])) == doctest::Approx(2 * angle * arm).epsilon(1e-3));
+    }
+  }
+}
+
+/// What a body gets of which there is no sum goes nowhere.
+template <class Space>
+void check_bodies_without_sums(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, float>, bounce, collide::reaction, moving_bodies<>>;
+  world<float> w;
+  w.radius = 0.1f;
+  for (double const x : {-9.0, 0.0}) w.triangle({x, -5, -5, x, 5, -5, x, 0, 9});
+  w.particle(0.05, 0, 0, -1);
+  collide::reaction_sums sums(space, 1, 1e-9, 1);
+  running_bodies<simulation> made(space, w, {{0, 1, {}}, {1, 1, {}}}, bounce{1}, sums.effect(1000), moving_bodies<>{});
+  made.simulation.step(1e-3f);
+  CHECK(double(made.velocities()[0]) == doctest::Approx(1));
+  CHECK(sums.counts(space) == std::vector<std::int64_t>(12, 0));
+  CHECK(sums.triangle_counts(space) == std::vector<std::int64_t>(6, 0));
+}
+
 /// A floor that is shaken throws what lies on it if and only if A w^2 > g.
 template <class NarrowPhase, class Space>
 void check_vibrated_floor(Space const& space) {

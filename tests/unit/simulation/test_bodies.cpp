@@ -61,6 +61,14 @@ TEST_CASE_TEMPLATE("bodies: a piston hits with twice its speed", S, float, doubl
   tests::check_piston<karabassi<>, S>(lockstep<256, true>());
 }
 
+TEST_CASE("bodies: those of which there are no sums leave the sums of others alone") {
+  tests::check_bodies_without_sums(host(1));
+}
+
+TEST_CASE("bodies: one far from its axis hits what is in its way, however small the angle of a step") {
+  tests::check_small_angles(host(1));
+}
+
 TEST_CASE("bodies: a floor that is shaken throws what lies on it if and only if it accelerates by more than gravity") {
   tests::check_vibrated_floor<karabassi<>>(host(1));
   tests::check_vibrated_floor<karabassi_swept<>>(host(1));

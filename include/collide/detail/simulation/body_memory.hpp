@@ -124,8 +124,10 @@ struct advance_bodies {
   COLLIDE_HD_INLINE void bound(body_frame<S>& f, body_record const& r) const {
     constexpr double eps = std::numeric_limits<S>::epsilon();
     vec3<double> const shift = f.now.position - f.before.position;
-    double const cosine = mul(f.before.w, f.now.w) + dot(f.before.axis, f.now.axis);
-    double const turned = 2 * sqrt_rn(larger(1 - mul(cosine, cosine), 0.0));  // |R x - x| / |x|, at most
+    // the sine of half the angle between the two: from its cosine, small angles would be lost
+    vec3<double> const sine =
+        scaled(f.now.axis, f.before.w) - scaled(f.before.axis, f.now.w) - cross(f.before.axis, f.now.axis);
+    double const turned = 2 * norm(sine);  // |R x - x| / |x|
     double const shifted = sqrt_rn(dot(shift, shift)), moved = shifted + mul(turned, norm(r.centre));
     vec3<double> const from = f.before.to_world(r.centre), to = f.now.to_world(r.centre), by = to - from;
     f.moves = !(f.before == f.now) || dot(f.belt, f.belt) > 0;
