@@ -11,6 +11,7 @@
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/triangle_cells.hpp>
+#include <collide/detail/narrow_phase/traits.hpp>
 #include <collide/detail/query/bin_spheres.hpp>
 #include <collide/mesh.hpp>
 
@@ -67,10 +68,10 @@ struct sample_hits {
 
  private:
   bool touches(std::uint32_t place, std::size_t t) const {
-    sphere<S> const ball = spheres[place];
-    if (!boxes[t].overlaps(ball.centre, ball.radius)) return false;
+    sphere<S> const here = spheres[place];
+    if (!boxes[t].overlaps(here.centre, here.radius)) return false;
     if constexpr (is_discrete<NarrowPhase, S>) {
-      return NarrowPhase::intersects(mesh[t], ball);
+      return NarrowPhase::intersects(mesh[t], here);
     } else {
       return NarrowPhase::intersects(mesh[t], spheres.moving[place]);
     }
