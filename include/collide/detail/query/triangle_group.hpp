@@ -56,14 +56,14 @@ struct triangle_group {
   }
 
   /// True if all of the triangles are inside the sphere, whatever is rounded. May be false all the same.
-  bool is_inside(sphere<S> const& ball) const {
+  bool is_inside(sphere<S> const& shape) const {
     S sum = 0;
     for (int k = 0; k < 3; ++k) {
-      S const far = larger(ball.centre[k] - all.lower[k], all.upper[k] - ball.centre[k]);
+      S const far = larger(shape.centre[k] - all.lower[k], all.upper[k] - shape.centre[k]);
       sum += far * far;
     }
     constexpr S u = ieee_traits<S>::unit_roundoff;
-    S const square = ball.radius * ball.radius;
+    S const square = shape.radius * shape.radius;
     return sum <= square * (1 - 32 * u) && square > std::numeric_limits<S>::min() / (u * u) &&
            square < std::numeric_limits<S>::max() / 4;
   }
