@@ -211,6 +211,17 @@ struct sphere_soa {
   }
 };
 
+/// Spheres that are sorted into the cells of grids, and the boxes of the triangles that look for them.
+template <class S>
+struct spheres_in_cells {
+  triangle_aabb<S> const* boxes;
+  grid<S> const* grids;
+  int grid_count;
+  sphere_soa<S> spheres;
+  std::uint32_t const* ends;  ///< the spheres of cell c: ends[c] .. ends[c + 1]
+  std::uint32_t everywhere;   ///< number of the cell behind the last
+};
+
 /// Kernel body of `for_each` over placed spheres: gives each its place in the order of the cells.
 template <class S>
 struct rank_spheres {

@@ -25,13 +25,8 @@ struct sample_hits {
   static constexpr std::uint32_t stride = 256;
 
   mesh_view<S> mesh;
-  triangle_aabb<S> const* boxes;
-  grid<S> const* grids;
-  int grid_count;
-  sphere_soa<S> spheres;
-  std::uint32_t const* ends;  ///< the spheres of cell c: ends[c] .. ends[c + 1]
-  std::uint32_t everywhere;   ///< number of the cell behind the last
-  std::uint64_t* hits;        ///< of those that were decided
+  spheres_in_cells<S> in;
+  std::uint64_t* hits;  ///< of those that were decided
 
   struct nothing {};
   template <class>
@@ -44,17 +39,17 @@ struct sample_hits {
     std::uint32_t skip = static_cast<std::uint32_t>(block.index()) * 2654435769u >> 24;
     std::uint64_t found = 0;
     for (std::size_t t = begin; t < end; ++t) {
-      if (boxes[t].is_empty()) continue;  // not finite
+      if (in.boxes[t].is_empty()) continue;  // not finite
       auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
-        std::uint32_t const first = ends[cell], size = ends[cell + n] - first;
+        std::uint32_t const first = in.ends[cell], size = in.ends[cell + n] - first;
         for (; skip < size; skip += stride) found += touches(first + skip, t);
         skip -= size;
       };
-      for (int g = 0; g < grid_count; ++g) {
+      for (int g = 0; g < in.grid_count; ++g) {
         each_range(
-            grids[g], boxes[t], [&] { return mesh[t]; }, look_into);
+            in.grids[g], in.boxes[t], [&] { return mesh[t]; }, look_into);
       }
-      look_into(everywhere, 1);
+      look_into(in.everywhere, 1);
     }
     if (found != 0) fetch_add(hits, found);
   }
@@ -68,12 +63,12 @@ struct sample_hits {
 
  private:
   bool touches(std::uint32_t place, std::size_t t) const {
-    sphere<S> const here = spheres[place];
-    if (!boxes[t].overlaps(here.centre, here.radius)) return false;
+    sphere<S> const here = in.spheres[place];
+    if (!in.boxes[t].overlaps(here.centre, here.radius)) return false;
     if constexpr (is_discrete<NarrowPhase, S>) {
       return NarrowPhase::intersects(mesh[t], here);
     } else {
-      return NarrowPhase::intersects(mesh[t], spheres.moving[place]);
+      return NarrowPhase::intersects(mesh[t], in.spheres.moving[place]);
     }
   }
 };

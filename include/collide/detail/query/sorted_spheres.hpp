@@ -230,8 +230,7 @@ class sorted_spheres {
   std::uint64_t expected_hits(Space& space, mesh_view<S> const& mesh, std::size_t all) const {
     if (*total_.data() < all / 4) return 0;
     std::uint64_t hits = 0;
-    sample_hits<S, NarrowPhase> const body{mesh,     boxes_,       grids_,       grid_count_,
-                                           columns_, ends_.data(), everywhere(), &hits};
+    sample_hits<S, NarrowPhase> const body{mesh, in_cells(), &hits};
     space.launch(grid_size<Space>(mesh.size(), body), body);
     return body.all_of(hits);
   }
@@ -239,8 +238,7 @@ class sorted_spheres {
   /// One pass: the triangles look for the spheres.
   template <class NarrowPhase, class Space, class Output>
   void query(Space& space, candidate_pipeline<S, NarrowPhase, Output> const& pipeline) const {
-    query_triangle_major<S, NarrowPhase, Output> const body{pipeline, boxes_,       grids_,      grid_count_,
-                                                            columns_, ends_.data(), everywhere()};
+    query_triangle_major<S, NarrowPhase, Output> const body{pipeline, in_cells()};
     space.launch(grid_size<Space>(pipeline.mesh.size(), body), body);
   }
 
@@ -255,6 +253,7 @@ class sorted_spheres {
     return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids};
   }
 
+  spheres_in_cells<S> in_cells() const { return {boxes_, grids_, grid_count_, columns_, ends_.data(), everywhere()}; }
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
 
   triangle_aabb<S> const* boxes_ = nullptr;

@@ -20,12 +20,7 @@ struct query_triangle_major {
   static constexpr int items = 4;
 
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
-  triangle_aabb<S> const* boxes;
-  grid<S> const* grids;
-  int grid_count;
-  sphere_soa<S> spheres;
-  std::uint32_t const* ends;  ///< the spheres of cell c: ends[c] .. ends[c + 1]
-  std::uint32_t everywhere;   ///< number of the cell behind the last
+  spheres_in_cells<S> in;
 
   /// Pairs that are near each other: bit k is of sphere `sphere` + k, or, in a group, of triangle `triangle` + k.
   struct reached {
@@ -47,7 +42,7 @@ struct query_triangle_major {
 
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
-    static_assert(Block::num_threads == 1, "collide: triangles look for spheres in blocks of one lane");
+    static_assert(Block::num_threads == 1, "collide: triangles look for spheres in blocks of one thread");
     constexpr std::uint32_t n = triangle_group<S>::size;
     pipeline.reset(s.hits, 0);
     s.count = 0;
@@ -55,8 +50,8 @@ struct query_triangle_major {
     std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, pipeline.mesh.size());
     for (std::size_t first = begin; first < end; first += n) {
       std::uint32_t together = 0;  // bits of grids where the group is compared as a whole
-      if (first + n <= end && s.group.load(boxes, first)) {
-        for (int g = 0; g < grid_count; ++g) together |= s.group.pays(grids[g]) ? 1u << g : 0;
+      if (first + n <= end && s.group.load(in.boxes, first)) {
+        for (int g = 0; g < in.grid_count; ++g) together |= s.group.pays(in.grids[g]) ? 1u << g : 0;
       }
       if (together != 0) {
         test(block, s);
@@ -75,44 +70,45 @@ struct query_triangle_major {
   template <class Block>
   void look(Block& block, scratch<Block>& s, std::size_t begin, std::size_t end, std::uint32_t but) const {
     for (std::size_t t = begin; t < end; ++t) {
-      triangle_aabb<S> const around = boxes[t];
+      triangle_aabb<S> const around = in.boxes[t];
       if (around.is_empty()) continue;  // not finite
       auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
-        std::uint32_t const last = ends[cell + n];
-        for (std::uint32_t i = ends[cell]; i < last; i += spheres.simd_width) {
-          std::uint32_t const here = spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+        std::uint32_t const last = in.ends[cell + n];
+        for (std::uint32_t i = in.ends[cell]; i < last; i += in.spheres.simd_width) {
+          std::uint32_t const here = in.spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
           s.found[s.count] = {i, static_cast<id>(t), here};
           s.count += here != 0;  // no branch: it would often be mispredicted
           if (s.count == s.room) test(block, s);
         }
       };
-      for (int g = 0; g < grid_count; ++g) {
+      for (int g = 0; g < in.grid_count; ++g) {
         if ((but >> g & 1) == 0)
           each_range(
-              grids[g], around, [&] { return pipeline.mesh[t]; }, look_into);
+              in.grids[g], around, [&] { return pipeline.mesh[t]; }, look_into);
       }
-      look_into(everywhere, 1);
+      look_into(in.everywhere, 1);
     }
   }
 
   /// Finds the spheres near a group, in the grids whose bits are set, and which of its triangles they are near to.
   template <class Block>
-  void look_together(Block& block, scratch<Block>& s, std::size_t first, std::uint32_t in) const {
+  void look_together(Block& block, scratch<Block>& s, std::size_t first, std::uint32_t some) const {
     auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
-      std::uint32_t const last = ends[cell + n];
-      for (std::uint32_t i = ends[cell]; i < last; i += spheres.simd_width) {
-        std::uint32_t near = spheres.reaching(s.group.all, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+      std::uint32_t const last = in.ends[cell + n];
+      for (std::uint32_t i = in.ends[cell]; i < last; i += in.spheres.simd_width) {
+        std::uint32_t near = in.spheres.reaching(s.group.all, i) & (0xffu >> (8 - smaller(last - i, 8u)));
         for (; near != 0; near &= near - 1) {
           std::uint32_t const k = i + static_cast<std::uint32_t>(__builtin_ctz(near));
-          std::uint32_t const mask = s.group.reached_by(spheres.x[k], spheres.y[k], spheres.z[k], spheres.reach[k]);
+          std::uint32_t const mask =
+              s.group.reached_by(in.spheres.x[k], in.spheres.y[k], in.spheres.z[k], in.spheres.reach[k]);
           s.found[s.count] = {k, static_cast<id>(first), mask};
           s.count += mask != 0;
           if (s.count == s.room) test_group(block, s);
         }
       }
     };
-    for (int g = 0; g < grid_count; ++g) {
-      if ((in >> g & 1) != 0) s.group.each_range(grids[g], look_into);
+    for (int g = 0; g < in.grid_count; ++g) {
+      if ((some >> g & 1) != 0) s.group.each_range(in.grids[g], look_into);
     }
   }
 
@@ -140,9 +136,9 @@ struct query_triangle_major {
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
       if constexpr (is_discrete<NarrowPhase, S> && filtered_predicate<NarrowPhase>::value) {
-        if (r.mask == all && s.group.is_inside(spheres[r.sphere])) {
+        if (r.mask == all && s.group.is_inside(in.spheres[r.sphere])) {
           for (std::uint32_t k = 0; k < n; ++k) {
-            pipeline.push_hit(block, s.hits, {spheres.number[r.sphere], first + k});
+            pipeline.push_hit(block, s.hits, {in.spheres.number[r.sphere], first + k});
             pipeline.drain_if_full(block, s.hits);
           }
           continue;
@@ -159,7 +155,7 @@ struct query_triangle_major {
   template <class Block>
   void test_pair(Block& block, scratch<Block>& s, std::uint32_t place, id number,
                  [[maybe_unused]] triangle<S> const& t) const {
-    pair const p{spheres.number[place], number};
+    pair const p{in.spheres.number[place], number};
     if constexpr (in_batches<NarrowPhase, S>) {
       if (s.batch.size == s.batch.room) s.batch.decide(pipeline, block, s.hits);
       s.batch.add(p, t, sphere_of(place));
@@ -172,9 +168,9 @@ struct query_triangle_major {
   /// What the narrow phase judges.
   decltype(auto) sphere_of(std::uint32_t place) const {
     if constexpr (is_discrete<NarrowPhase, S>) {
-      return spheres[place];
+      return in.spheres[place];
     } else {
-      return static_cast<moving_sphere<S> const&>(spheres.moving[place]);
+      return static_cast<moving_sphere<S> const&>(in.spheres.moving[place]);
     }
   }
 };
