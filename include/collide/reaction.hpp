@@ -53,6 +53,10 @@ struct reaction {
     detail::check_parameter(density > 0 && unit > 0 && sums != nullptr,
                             "reaction: density is positive, and reaction_sums makes the effect");
   }
+  /// Of the bodies of a simulation's mesh.
+  void check_bodies(std::size_t of_mesh) const {
+    detail::check_parameter(of_mesh <= bodies, "reaction: the mesh has more bodies than reaction_sums was made for");
+  }
 
   template <class Particle, class S>
   COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S) const {
@@ -62,7 +66,7 @@ struct reaction {
     vec3<double> const impulse = scaled(vec3<double>(change.template cast<double>()), div(mass, unit));
     vec3<double> const moment = cross(vec3<double>(t.point.template cast<double>()), impulse);
     std::size_t const body = t.body == no_id ? 0 : std::size_t{t.body} + 1;
-    if (body <= bodies) add(sums[body * copies + p.number() % copies], impulse, moment);
+    add(sums[body * copies + p.number() % copies], impulse, moment);
     std::size_t const number = t.triangle;
     if (number < triangles) add(sums_of_triangles[number], impulse, moment);
   }
@@ -85,9 +89,9 @@ struct reaction {
 /// that has its effect.
 class reaction_sums {
  public:
-  /// For so many bodies: of those beyond them nothing is summed. `unit` is the impulse to which each contact is
-  /// rounded, and the moment: a sum may be off by half a unit for each contact of a step. `triangles`: for how many of
-  /// the mesh, from the first on, there are sums too. Allocates 12 KB a body and 48 bytes a triangle in the space.
+  /// For so many bodies; a step of a mesh with more is refused (`error`). `unit` is the impulse to which each contact
+  /// is rounded, and the moment: a sum may be off by half a unit for each contact of a step. `triangles`: for how many
+  /// of the mesh, from the first on, there are sums too. Allocates 12 KB a body and 48 bytes a triangle in the space.
   template <class Space>
   reaction_sums(Space const& space, std::size_t bodies, double unit, std::size_t triangles = 0)
       : bodies_{bodies}, triangles_{triangles}, unit_{unit} {

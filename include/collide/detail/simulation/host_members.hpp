@@ -34,6 +34,16 @@ void check_parameters_of(Effects const& effects) {
   if constexpr (checks_parameters<E>::value) effects.template of<E>().check_parameters();
 }
 
+/// Calls `check_bodies` of an effect that keeps something for each body.
+template <class E, class = void>
+struct keeps_bodies : std::false_type {};
+template <class E>
+struct keeps_bodies<E, std::void_t<decltype(std::declval<E const&>().check_bodies(std::size_t{}))>> : std::true_type {};
+template <class E, class Effects>
+void check_bodies_of(Effects const& effects, std::size_t bodies) {
+  if constexpr (keeps_bodies<E>::value) effects.template of<E>().check_bodies(bodies);
+}
+
 /// Calls an effect's `begin_step`, if it has one.
 template <class E, class Effects, class Space, class State, class S>
 void begin_step_of(Effects& effects, Space& space, State const& state, S dt) {
