@@ -15,9 +15,8 @@ namespace collide::detail {
 /// What is known of a body from the start.
 struct body_record {
   body_motion motion;
-  vec3<double> centre;  ///< of its box, in its frame
-  vec3<double> half;    ///< half the box's extents
-  double radius;        ///< of the bounding sphere
+  vec3<double> centre;  ///< of its bounding sphere, in its frame
+  double radius;
 };
 
 /// The box of a body's triangles, as ordered bits; memory of zeros is that of none. See `mesh_statistics`.
@@ -120,7 +119,7 @@ struct advance_bodies {
     return true;
   }
 
-  /// The bounding sphere and the box of a body, and how far it moves.
+  /// The bounding sphere of a body, and how far it moves.
   COLLIDE_HD_INLINE void bound(body_frame<S>& f, body_record const& r) const {
     constexpr double eps = std::numeric_limits<S>::epsilon();
     vec3<double> const shift = f.now.position - f.before.position;
@@ -136,23 +135,9 @@ struct advance_bodies {
     double const reach = swept ? r.radius + 2 * moved : r.radius;
     f.reach = static_cast<S>(mul(reach, 1 + 1e-5) + mul(16 * eps, norm(from) + norm(to)));
     f.shrink = static_cast<S>(swept ? 1 - 1e-5 - turned : 1 - 1e-5);
-    for (int k = 0; k < 3; ++k) f.half[k] = swept ? std::numeric_limits<S>::infinity() : half_extent(f, r, k, norm(to));
     if (!swept && norm(by) + mul(turned, r.radius) > static_cast<double>(most) && !starts) {
       fetch_add(&report->fast_steps, 1u);
     }
-  }
-
-  /// Of the body where it is in the end, on an axis of the world.
-  static COLLIDE_HD_INLINE S half_extent(body_frame<S> const& f, body_record const& r, int axis, double distance) {
-    constexpr double eps = std::numeric_limits<S>::epsilon();
-    double half = 0;
-    for (int k = 0; k < 3; ++k) {
-      vec3<double> unit(0, 0, 0);
-      unit[k] = r.half[k];
-      double const on = f.now.rotated(unit)[axis];
-      half += larger(on, -on);
-    }
-    return static_cast<S>(mul(half, 1 + 1e-5) + mul(16 * eps, distance + r.radius));
   }
 
   static COLLIDE_HD_INLINE double norm(vec3<double> const& x) { return sqrt_rn(dot(x, x)); }
@@ -238,16 +223,10 @@ class body_memory {
     space.copy_to_host(found.data(), boxes, frames);
     std::vector<body_record> records;
     for (std::size_t k = 0; k < count_; ++k) records.push_back(record_of(bodies[k], found[k + 1]));
-    std::vector<body_frame<S>> at_rest(frames, body_frame<S>{identity(),
-                                                             identity(),
-                                                             {},
-                                                             {},
-                                                             {0, 0, 0},
-                                                             {0, 0, 0},
-                                                             std::numeric_limits<S>::infinity(),
-                                                             S(0),
-                                                             vec3<S>(0, 0, 0),
-                                                             false});
+    std::vector<body_frame<S>> at_rest(
+        frames,
+        body_frame<S>{
+            identity(), identity(), {}, {}, {0, 0, 0}, {0, 0, 0}, std::numeric_limits<S>::infinity(), S(0), false});
     std::vector<body_state> const states(count_);
     space.copy_from_host(records_.reserve(resource, count_), records.data(), count_);
     space.copy_from_host(states_.reserve(resource, count_), states.data(), count_);
@@ -284,15 +263,16 @@ class body_memory {
   }
 
   static body_record record_of(body const& b, body_box<S> const& box) {
-    body_record r{b.motion, {0, 0, 0}, {0, 0, 0}, 0};
+    body_record r{b.motion, {0, 0, 0}, 0};
     if (box.upper[0] == 0) return r;  // nothing that could be touched
+    vec3<double> half;
     for (int k = 0; k < 3; ++k) {
       double const lower = static_cast<double>(from_ordered_bits<S>(static_cast<uint_for<S>>(~box.lower[k])));
       double const upper = static_cast<double>(from_ordered_bits<S>(box.upper[k]));
       r.centre[k] = lower / 2 + upper / 2;
-      r.half[k] = upper / 2 - lower / 2;
+      half[k] = upper / 2 - lower / 2;
     }
-    r.radius = sqrt_rn(dot(r.half, r.half));
+    r.radius = sqrt_rn(dot(half, half));
     return r;
   }
 
@@ -312,6 +292,7 @@ struct no_bodies {
   static constexpr bool exist = false;
 
   static std::size_t bytes() { return 0; }
+  static std::size_t size() { return 0; }
   static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
     if (!bodies.empty() || velocities != nullptr)
       throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");

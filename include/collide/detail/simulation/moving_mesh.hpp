@@ -66,17 +66,13 @@ struct body_frame {
   vec3<S> centre;  ///< of a bounding sphere of the body when the step begins; if not `swept`, when it ends
   S reach;         ///< no particle of radius r that moves by d can touch the body in the step if `shrink` times its
   S shrink;        ///< distance from the centre is above reach + r + d
-  vec3<S> half;    ///< or if this is true of an axis and half the extent of the body's box on it, infinite if swept
   bool moves;      ///< in this step
 
   template <class Vector>
   COLLIDE_HD_INLINE bool is_far(Vector const& x, S r, S path) const {
     S const at_least = reach + r + path;
     vec3<S> const apart = x - centre;
-    if (!(shrink > 0)) return false;
-    bool far = mul(dot(apart, apart), mul(shrink, shrink)) > mul(at_least, at_least);
-    for (int k = 0; k < 3; ++k) far = far || mul(larger(apart[k], -apart[k]), shrink) > half[k] + r + path;
-    return far;
+    return shrink > 0 && mul(dot(apart, apart), mul(shrink, shrink)) > mul(at_least, at_least);
   }
 };
 
