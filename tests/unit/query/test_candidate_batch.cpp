@@ -10,20 +10,15 @@
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
 
+#include "query/pair_output.hpp"
+
 using namespace collide::detail;
 
 namespace {
 
-using block_type = serial_block<4, 8>;
+using tests::pair_output;
 
-struct pair_output {
-  std::vector<collide::pair>* to;
-  std::uint64_t allocate(std::uint64_t n) const { return to->resize(to->size() + n), to->size() - n; }
-  template <class Hit>
-  void store(std::uint64_t slot, Hit const& hit) const {
-    (*to)[static_cast<std::size_t>(slot)] = {hit.sphere, hit.triangle};
-  }
-};
+using block_type = serial_block<4, 8>;
 
 /// Random triangles and spheres of about one size, and displacements.
 struct scene {

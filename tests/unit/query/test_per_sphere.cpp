@@ -10,10 +10,13 @@
 #include <collide/karabassi.hpp>
 
 #include "execution/lockstep.hpp"
+#include "query/pair_output.hpp"
 
 using namespace collide::detail;
 
 namespace {
+
+using tests::pair_output;
 
 /// Candidates in any order, and some of them several times. Remembers the sphere.
 struct listed {
@@ -34,15 +37,6 @@ struct swept {
   template <class F>
   void for_each_candidate(collide::moving_sphere<float> const& s, F const&) const {
     *seen = s;
-  }
-};
-
-struct pair_output {
-  std::vector<collide::pair>* to;
-  std::uint64_t allocate(std::uint64_t n) const { return to->resize(to->size() + n), to->size() - n; }
-  template <class Hit>
-  void store(std::uint64_t slot, Hit const& hit) const {
-    (*to)[static_cast<std::size_t>(slot)] = {hit.sphere, hit.triangle};
   }
 };
 

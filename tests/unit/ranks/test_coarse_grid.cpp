@@ -9,24 +9,13 @@
 
 #include <collide/detail/ranks/coarse_grid.hpp>
 
+#include "ranks/boxes.hpp"
+
 using collide::detail::aabb;
 using collide::detail::coarse_grid;
+using tests::box_at, tests::overlap;
 
 namespace {
-
-aabb<double> box_at(double x, double y, double z, double half) {
-  auto box = aabb<double>::empty();
-  double const at[] = {x, y, z};
-  for (int k = 0; k < 3; ++k) box.lower[k] = at[k] - half, box.upper[k] = at[k] + half;
-  return box;
-}
-
-bool overlap(aabb<double> const& a, aabb<double> const& b) {
-  for (int k = 0; k < 3; ++k) {
-    if (a.lower[k] > b.upper[k] || b.lower[k] > a.upper[k]) return false;
-  }
-  return true;
-}
 
 std::vector<std::size_t> cells_of(coarse_grid const& grid, aabb<double> const& box) {
   std::vector<std::size_t> cells;

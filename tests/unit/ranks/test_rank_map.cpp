@@ -9,23 +9,17 @@
 #include <collide/detail/ranks/rank_map.hpp>
 #include <collide/thread_ranks.hpp>
 
+#include "ranks/boxes.hpp"
+
 using collide::detail::aabb;
+using tests::overlap;
 
 namespace {
 
 aabb<double> random_box(std::mt19937& engine, double at_x) {
   std::uniform_real_distribution<double> uniform(-1, 1), size(-8, -1);
-  auto box = aabb<double>::empty();
-  double const half = std::exp2(size(engine)), at[] = {at_x + uniform(engine), uniform(engine), uniform(engine)};
-  for (int k = 0; k < 3; ++k) box.lower[k] = at[k] - half, box.upper[k] = at[k] + half;
-  return box;
-}
-
-bool overlap(aabb<double> const& a, aabb<double> const& b) {
-  for (int k = 0; k < 3; ++k) {
-    if (a.lower[k] > b.upper[k] || b.lower[k] > a.upper[k]) return false;
-  }
-  return true;
+  double const half = std::exp2(size(engine)), x = at_x + uniform(engine), y = uniform(engine), z = uniform(engine);
+  return tests::box_at(x, y, z, half);
 }
 
 }  // namespace
