@@ -7,11 +7,10 @@
 ///   - `block.broadcast(x)` reads a value of the scratch memory, alike for all threads, that later code may overwrite;
 ///   - `block.add(counter, n)` is an atomic add on scratch memory that returns the value before;
 ///   - `block.stage(s, from, n)` gives fast access to n values: a copy in shared memory, or just `from`;
-///   - `block.load_striped(from, row, to)`, `striped_to_blocked(s, to)` and `store_transposed(s, to, row, from)` are
-///   for
-///     rows of a few values, one row for each thread, that follow each other: `warp_size` threads call them at a time
-///     and read and write what lies side by side together, so all of these rows must exist; what a thread has read is
-///     its own row after the exchange, and not before;
+///   - `block.load_striped(from, row, to)`, `striped_to_blocked(s, to)`, `store_transposed(s, to, row, from)`: for rows
+///     of a few values, one row for each thread, that follow each other: `warp_size` threads call them at a time and
+///     read and write what lies side by side together, so all of these rows must exist; what a thread has read is its
+///     own row after the exchange, and not before;
 ///   - `block.for_each_balanced<Ahead>(...)` spreads work evenly over the threads: for all k < counts[i], which are at
 ///     least 1, it finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f). `find` and `look` only
 ///     read, and a thread does them up to `Ahead` times before it takes, so that it waits for all of them at once if
