@@ -90,6 +90,11 @@ TEST_CASE_TEMPLATE("bodies: a closed box that turns and shakes keeps what is in 
   tests::check_turning_box<karabassi_swept<>, S>(host(1), 10, 1e-2, 300, 1000);
 }
 
+TEST_CASE("hunt: bodies: a closed box that turns and shakes keeps its balls for 1e5 steps") {
+  tests::check_turning_box<karabassi<>, float>(host(), 1, 1e-3, 10000, 100000);
+  tests::check_turning_box<karabassi_swept<>, float>(host(), 1, 1e-3, 1000, 100000);
+}
+
 TEST_CASE("bodies: what sticks to one rides along until its acceleration shakes it off") {
   tests::check_riding<karabassi<>>(host(1));
   tests::check_riding<karabassi_swept<>>(host(1));

@@ -24,6 +24,11 @@ TEST_CASE("bodies: on the GPU, a closed box that turns and shakes keeps what is 
   tests::check_turning_box<karabassi_swept<>, float>(cuda_shared(), 10, 1e-2, 10000, 10000);
 }
 
+TEST_CASE("hunt: bodies: on the GPU, a closed box that turns and shakes keeps 1e6 balls for 1e5 steps") {
+  tests::check_turning_box<karabassi<>, float>(cuda_shared(), 1, 1e-3, 1000000, 100000);
+  tests::check_turning_box<karabassi_swept<>, float>(cuda_shared(), 1, 1e-3, 1000000, 100000);
+}
+
 TEST_CASE("bodies: on the GPU, riding, waking, many bodies, and the same bits on every run") {
   tests::check_riding<karabassi<>>(cuda_shared());
   tests::check_waking<karabassi<>>(cuda_shared());
