@@ -7,7 +7,9 @@
 #include <collide/gravity.hpp>
 #include <collide/sphere_contact.hpp>
 
-#include "io/film.hpp"
+#include "io/film_program.hpp"
+#include "io/scenes/solids.hpp"
+#include "io/scenes/surfaces.hpp"
 
 namespace {
 

@@ -185,7 +185,7 @@ void run_on_threads(int n, options wish) {
   if (wish.threads == 0) wish.threads = io::threads_for_each(n);
   collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
     detection::take_device(wish.space, ranks.rank());
-    run(ranks, wish);
+    run(io::any_ranks(ranks), wish);
   });
 }
 
@@ -193,7 +193,7 @@ void run(options const& wish) {
   if (wish.ranks.empty()) return run(collide::one_rank(), wish);
   if (int const n = io::threads_of(wish.ranks)) return run_on_threads(n, wish);
 #if defined(COLLIDE_PROGRAM_HAS_MPI)
-  collide::mpi_ranks const ranks;
+  io::any_ranks const ranks{collide::mpi_ranks()};
   detection::take_device(wish.space, ranks.rank());
   run(ranks, wish);
 #endif

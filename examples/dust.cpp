@@ -6,7 +6,8 @@
 #include <collide/gravity.hpp>
 #include <collide/wind.hpp>
 
-#include "io/film.hpp"
+#include "io/film_program.hpp"
+#include "io/scenes/surfaces.hpp"
 
 namespace {
 

@@ -7,7 +7,8 @@
 #include <collide/sphere_contact.hpp>
 #include <collide/spin.hpp>
 
-#include "io/film.hpp"
+#include "io/film_program.hpp"
+#include "io/scenes/surfaces.hpp"
 
 namespace {
 

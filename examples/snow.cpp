@@ -10,7 +10,8 @@
 #include <collide/sphere_contact.hpp>
 
 #include "io/cohesion.hpp"
-#include "io/film.hpp"
+#include "io/film_program.hpp"
+#include "io/scenes/surfaces.hpp"
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,6 +20,60 @@
 #include "rounding.hpp"
 
 namespace io {
+
+/// Ranks of any kind, so that a program is compiled once for all of them. It has a copy of what it is made from.
+class any_ranks {
+ public:
+  template <class Ranks>
+  explicit any_ranks(Ranks const& ranks) : ranks_{std::make_shared<model<Ranks>>(ranks)} {}
+
+  int rank() const { return ranks_->rank(); }
+  int size() const { return ranks_->size(); }
+  void all_gather(void const* mine, std::size_t bytes, void* all) const { ranks_->all_gather(mine, bytes, all); }
+  void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, collide::reduction how) const {
+    ranks_->reduce(mine, all, n, how);
+  }
+  void exchange_counts(std::uint64_t const* to_each, std::uint64_t* of_each) const {
+    ranks_->exchange_counts(to_each, of_each);
+  }
+  void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
+                std::size_t bytes) const {
+    ranks_->exchange(from, to_each, to, of_each, bytes);
+  }
+
+ private:
+  struct interface {
+    virtual ~interface() = default;
+    virtual int rank() const = 0;
+    virtual int size() const = 0;
+    virtual void all_gather(void const*, std::size_t, void*) const = 0;
+    virtual void reduce(std::uint64_t const*, std::uint64_t*, std::size_t, collide::reduction) const = 0;
+    virtual void exchange_counts(std::uint64_t const*, std::uint64_t*) const = 0;
+    virtual void exchange(void const*, std::uint64_t const*, void*, std::uint64_t const*, std::size_t) const = 0;
+  };
+  template <class Ranks>
+  struct model final : interface {
+    explicit model(Ranks const& r) : ranks{r} {}
+    int rank() const override { return ranks.rank(); }
+    int size() const override { return ranks.size(); }
+    void all_gather(void const* mine, std::size_t bytes, void* all) const override {
+      ranks.all_gather(mine, bytes, all);
+    }
+    void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, collide::reduction how) const override {
+      ranks.reduce(mine, all, n, how);
+    }
+    void exchange_counts(std::uint64_t const* to_each, std::uint64_t* of_each) const override {
+      ranks.exchange_counts(to_each, of_each);
+    }
+    void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
+                  std::size_t bytes) const override {
+      ranks.exchange(from, to_each, to, of_each, bytes);
+    }
+    Ranks ranks;
+  };
+
+  std::shared_ptr<interface const> ranks_;
+};
 
 /// What is wrong with a file is in the part of another rank.
 class error_elsewhere : public data_error {
