@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/detail/ranks/found_query.hpp>
 #include <collide/detail/ranks/remote_pairs.hpp>
+#include <collide/detail/streaming/found_query.hpp>
 #include <collide/detector.hpp>
 #include <collide/ranks.hpp>
 
