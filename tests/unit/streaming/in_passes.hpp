@@ -11,6 +11,7 @@
 #include <collide/in_passes.hpp>
 
 #include "ranks/ranks.hpp"
+#include "type_erased_detector.hpp"
 
 namespace tests {
 
