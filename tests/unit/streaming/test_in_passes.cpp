@@ -68,7 +68,7 @@ TEST_CASE("in passes: visits, and the first pairs where memory ends") {
   auto const expected = whole.query(made.spheres(), collide::pairs(collide::order::canonical)).to_host();
   REQUIRE(expected.size() > 20);
   collide::in_passes<floats> passes;
-  for (std::size_t const most : {200, 30}) {
+  for (std::size_t const most : {std::size_t{200}, std::size_t{30}}) {
     passes.build(made.mesh(), most);
     std::vector<collide::pair> few(9);
     collide::pairs kept(few.data(), few.size(), collide::order::canonical);
