@@ -211,6 +211,9 @@ void check(options& wish) {
   if (!(wish.cell_width >= 0) || std::isinf(wish.cell_width)) {
     throw io::usage_error("--cell-width: must be finite and not negative");
   }
+  if (wish.triangles_per_pass != 0 && wish.space != "host") {
+    throw io::usage_error("--triangles-per-pass: is for --space host");
+  }
   if (!wish.ranks.empty() && wish.ranks != "mpi" && io::threads_of(wish.ranks) == 0) {
     throw io::usage_error("--ranks: " + io::quoted(wish.ranks) + " is neither mpi nor threads:N, N from 1 to 1024");
   }
@@ -251,6 +254,10 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   app.add_option("--cell-width", wish.cell_width, "width of the buckets; 0 for the best")->type_name("W");
+  app.add_option("--triangles-per-pass", wish.triangles_per_pass,
+                 "how many triangles to build at a time, for large meshes, on the host; all if not given")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{4294967294}))
+      ->type_name("N");
   app.add_option("--ranks", wish.ranks,
                  "parts that each take some spheres: threads:N of this process, or mpi, the processes of mpirun")
       ->type_name("RANKS");

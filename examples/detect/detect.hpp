@@ -8,6 +8,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/in_passes.hpp>
 
 #include "../io/choose.hpp"
 #include "../io/counting.hpp"
@@ -70,10 +71,24 @@ void append(Sink const& sink, std::size_t first, std::vector<Found>& to) {
   }
 }
 
+/// Gives a detector the mesh.
+template <class Detector, class Input>
+void build(options const&, Detector& detector, Input const& in) {
+  if (in.one_radius()) {
+    detector.build(in.mesh(), in.spheres(0, 0).common_radius());
+  } else {
+    detector.build(in.mesh());
+  }
+}
+template <class Detector, class Input>
+void build(options const& wish, collide::in_passes<Detector>& passes, Input const& in) {
+  passes.build(in.mesh(), wish.triangles_per_pass);
+}
+
 /// Builds and queries as often as wanted, and calls keep(sink, first) with what the first run finds.
 ///
 /// If someone watches and it takes longer than a person has patience for, the spheres are queried in parts of about a
-/// fifth of that time, for the progress bar; otherwise all at once.
+/// fifth of that time, for the progress bar; otherwise all at once, as where each query builds the mesh again.
 template <class Detector, class Input, class Sink, class S, class Keep>
 void measure(options const& wish, Detector& detector, Input const& in, Sink& sink, findings<S>& out, Keep const& keep) {
   std::size_t const n = in.size();
@@ -89,15 +104,9 @@ void measure(options const& wish, Detector& detector, Input const& in, Sink& sin
     return timed([&] { detector.query(in.spheres(first, count), sink); });
   };
   for (int run = 0; run < wish.repeat; ++run) {
-    double const build = timed([&] {
-      if (in.one_radius()) {
-        detector.build(in.mesh(), in.spheres(0, 0).common_radius());
-      } else {
-        detector.build(in.mesh());
-      }
-    });
+    double const built = timed([&] { build(wish, detector, in); });
     constexpr std::size_t probe = 1024;
-    if (run == 0 && io::progress::watched() && n > probe) {
+    if (run == 0 && wish.triangles_per_pass == 0 && io::progress::watched() && n > probe) {
       double const once = query(0, probe);
       double const patience = 1000 * io::progress::patience();
       if (once * static_cast<double>(n / probe) > patience) {
@@ -112,20 +121,31 @@ void measure(options const& wish, Detector& detector, Input const& in, Sink& sin
       first += step;
       bar.update(static_cast<double>(n) * run + static_cast<double>(std::min(first, n)));
     } while (first < n);
-    out.build_ms.push_back(build);
+    out.build_ms.push_back(built);
     out.query_ms.push_back(spent);
-    out.total_ms.push_back(build + spent);
+    out.total_ms.push_back(built + spent);
   }
 }
 
-template <class Broad, class Precision, class Space, class S>
+/// The width of cells; in passes each has its own.
+template <class Detector>
+double cell_width(Detector const& detector) {
+  return detector.cell_width();
+}
+template <class Detector>
+double cell_width(collide::in_passes<Detector> const&) {
+  return 0;
+}
+
+/// `Detector` is a detector, or one in passes.
+template <class Detector, class S, class Broad>
 findings<S> detect_with(options const& wish, scene<S> const& from, Broad const& broad) {
+  using Space = typename Detector::execution_space;
   using device = io::device_of<Space>;
   io::counting_resource memory(device::memory());
   findings<S> out;
   {
-    collide::detector<Broad, collide::karabassi<Precision>, Space, S> detector(device::make(wish.threads, &memory),
-                                                                               broad);
+    Detector detector(device::make(wish.threads, &memory), broad);
     input<Space, S> const in(detector.space(), from);
     if (Space::host_accessible) {
       memory.add((from.mesh.vertices.size() + from.spheres.xyz.size() + from.spheres.radii.size()) * sizeof(S) +
@@ -143,7 +163,7 @@ findings<S> detect_with(options const& wish, scene<S> const& from, Broad const& 
     } else {
       run(collide::count(), [&](auto const& sink, std::size_t) { out.total += sink.total(); });
     }
-    out.cell_width = detector.cell_width();
+    out.cell_width = cell_width(detector);
     out.threads = device::threads(detector.space());
   }
   out.peak_bytes = memory.peak();
@@ -160,6 +180,15 @@ Broad broad_phase(options const& wish) {
   }
 }
 
+template <class Detector, class S>
+findings<S> detect_with(options const& wish, scene<S> const& from) {
+  auto const broad = broad_phase<typename Detector::broad_phase>(wish);
+  if constexpr (Detector::execution_space::host_accessible) {
+    if (wish.triangles_per_pass != 0) return detect_with<collide::in_passes<Detector>>(wish, from, broad);
+  }
+  return detect_with<Detector>(wish, from, broad);
+}
+
 template <class S>
 findings<S> detect(options const& wish, scene<S> const& from) {
   using io::choose, io::named;
@@ -172,8 +201,9 @@ findings<S> detect(options const& wish, scene<S> const& from) {
             [&](auto broad) {
               using broad_type = typename decltype(broad)::type;
               io::choose_space(wish.space, [&](auto space) {
-                out = detect_with<broad_type, typename decltype(precision)::type, typename decltype(space)::type>(
-                    wish, from, broad_phase<broad_type>(wish));
+                using narrow_phase = collide::karabassi<typename decltype(precision)::type>;
+                out = detect_with<collide::detector<broad_type, narrow_phase, typename decltype(space)::type, S>>(wish,
+                                                                                                                  from);
               });
             },
             named<collide::all_pairs>{"all_pairs"}, named<collide::bucket>{"bucket"});

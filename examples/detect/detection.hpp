@@ -25,6 +25,7 @@ struct options {
   std::string output, contacts, ply, report;
   std::string ranks;
   double cell_width = 0;
+  std::size_t triangles_per_pass = 0;  ///< 0: the mesh is not divided
   int threads = 0;
   int repeat = 1;
   bool strict = false;

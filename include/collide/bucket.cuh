@@ -42,6 +42,9 @@ struct bucket {
   /// Where it does not suffice for a grid, spheres are tested with every triangle: slower, with the same result.
   std::size_t memory_budget = 0;
 
+  /// The most triangles of a build; more are refused (`error`). A grid has no more: larger meshes go in_passes.
+  std::size_t most_triangles = detail::most_triangles_of_grid;
+
   template <class S>
   class index;
 };
@@ -54,6 +57,7 @@ class bucket::index {
   template <class Space>
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
     if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
+    detail::check_triangles(mesh.size(), options.most_triangles);
     if (options.memory_budget != 0 && mesh.size() != mesh_.size()) release_grids();
     mesh_ = mesh;
     stage_ = stage::none;

@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/detail/ranks/found_query.hpp>
 #include <collide/detail/ranks/remote_pairs.hpp>
+#include <collide/detail/streaming/found_query.hpp>
 #include <collide/detector.hpp>
 #include <collide/ranks.hpp>
 
@@ -74,7 +74,8 @@ class distributed {
   /// which the ranks' triangles follow one another. They are copied, and sorted among the ranks so that all have as
   /// many, and those near each other; the caller's mesh is not needed afterwards. Takes, of the host, 40 bytes of float
   /// or 76 of double for each triangle of a rank, twice that while it builds, and 0.3 MB for every 64 ranks; as much
-  /// again in memory of a device. Throws `error` if there are more than 2^32 - 2 triangles in all. O(triangles log
+  /// again in memory of a device; and what the detector takes for them. Throws `error` if there are more than 2^32 - 2
+  /// triangles in all, or more on a rank than its detector builds (see `bucket::most_triangles`). O(triangles log
   /// triangles).
   void build(mesh_view<scalar> mine, divided_t) {
     if constexpr (alone) {

@@ -51,6 +51,12 @@ class mesh_view {
     return indices_ == nullptr ? 3 * i + k : indices_[i * triangle_stride_ + std::size_t{corner_stride_} * k];
   }
 
+  /// View of the `n` triangles from number `first` on, with the vertices of all. O(1); the range must exist.
+  mesh_view subview(std::size_t first, std::size_t n) const {
+    if (indices_ == nullptr) return {vertices_.subview(3 * first, 3 * n), nullptr, n};
+    return {vertices_, indices_ + first * triangle_stride_, n, triangle_stride_, corner_stride_};
+  }
+
   /// The vertices; of a triangle soup the corners, three per triangle.
   COLLIDE_HD point_view<S> const& vertices() const { return vertices_; }
   /// The vertex numbers of the corners; null for a triangle soup.

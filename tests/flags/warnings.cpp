@@ -16,6 +16,7 @@
 #include <collide/friction.hpp>
 #include <collide/gravity.hpp>
 #include <collide/impacts.hpp>
+#include <collide/in_passes.hpp>
 #include <collide/integrators.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/lost_motion.hpp>
@@ -43,6 +44,9 @@ void ask(mesh_view<S> mesh, typename detector<BroadPhase, NarrowPhase, host, S>:
   one.query(spheres, contacts<S>(order::canonical)).to_host();
   one.query(spheres, visit([](auto const& hit) { (void)hit.contact(); }));
   streamed<detector<BroadPhase, NarrowPhase, host, S>> parts(one);
+  in_passes<detector<BroadPhase, NarrowPhase, host, S>> passes;
+  passes.build(mesh, 2);
+  passes.query(spheres, contacts<S>(order::canonical)).to_host();
   count total;
   parts.query(spheres, total, [](id, count const&) {});
   if constexpr (detail::is_discrete<NarrowPhase, S>) {

@@ -41,6 +41,19 @@ def random_scene(seed, spread):
 
 
 class Answers(ProgramTest):
+    def test_passes(self):
+        self.scene(*random_scene(5, 3))
+        def written(*args):
+            self.succeed("detect", "mesh.obj", "spheres.csv", "--output", "pairs.csv", *args)
+            self.succeed("detect", "mesh.obj", "spheres.csv", "--contacts", "contacts.csv", *args)
+            return self.read("pairs.csv"), self.read("contacts.csv")
+        for args in ((), ("--broad", "all_pairs"), ("--scalar", "double"), ("--ranks", "threads:2")):
+            whole = written(*args)
+            for n in (1, 7, 39, 40, 1000):  # there are 40 triangles
+                self.assertEqual(written(*args, "--triangles-per-pass", n), whole, (args, n))
+        report = self.report("mesh.obj", "spheres.csv", "--triangles-per-pass", 9, "--repeat", 2)
+        self.assertEqual((report["pairs"], report["cell_width"]), (len(whole[0].splitlines()) - 1, 0))
+
     def test_the_cube(self):
         spheres = [(0, 0, 0), (3, 3, 3), (.5, .5, .5), (1.3, 0, .5)]
         self.scene(*CUBE, spheres)
@@ -610,6 +623,10 @@ class BadUsage(ProgramTest):
                             (["--repeat"], [*files, 1, "--repeat", "x"]), (["--cell-width"], [*files, 1, "--cell-width", -2]),
                             (["--cell-width"], [*files, 1, "--cell-width", "nan"]), (["--cell-width"], [*files, 1, "--cell-width", "inf"]),
                             (["--cell-width"], [*files, 1, "--cell-width", "wide"]), (["--output", "mesh.obj"], [*files, 1, "./mesh.obj"]),
+                            (["--triangles-per-pass"], [*files, 1, "--triangles-per-pass", 0]),
+                            (["--triangles-per-pass"], [*files, 1, "--triangles-per-pass", "-1"]),
+                            (["--triangles-per-pass"], [*files, 1, "--triangles-per-pass", "1.5"]),
+                            (["--triangles-per-pass", "host"], [*files, 1, "--triangles-per-pass", 7, "--space", "cuda"]),
                             (["--report", "--output"], [*files, 1, "new", "--report", "new"]), (["--ply"], [*files, 1, "--ply", "spheres.csv"])):
             with self.subTest(args=args):
                 self.fail_with(2, words, "detect", *args)
@@ -627,7 +644,7 @@ class BadUsage(ProgramTest):
     def test_help_and_version(self):
         text = self.succeed("detect", "--help")
         for option in ("--radius", "--broad", "--space", "--precision", "--threads", "--cell-width", "--output", "--contacts", "--ply", "--report",
-                       "--repeat", "--strict", "--scalar", "all_pairs", "bucket", "host", "cuda_shared", "exact", "single", "double"):
+                       "--repeat", "--strict", "--triangles-per-pass", "--scalar", "all_pairs", "bucket", "host", "cuda_shared", "exact", "single", "double"):
             self.assertIn(option, text)
         self.assertRegex(self.succeed("detect", "--version"), r"^detect .*\d+\.\d+\.\d+\n$")
 

@@ -6,13 +6,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 
 #include <collide/detail/grid/grid.hpp>
+#include <collide/error.hpp>
 
 namespace collide::detail {
 
 /// Size of the table of `cells` cells: a list per cell, the number of all entries, and a bit per cell.
 inline std::size_t table_size(std::size_t cells) { return cells + 1 + cells / 64; }
+
+/// Entries are numbered with 32 bits, and a triangle that is small against the cells is in at most eight.
+inline constexpr std::size_t most_entries = std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::size_t most_triangles_of_grid = most_entries / 8;
+
+/// Throws `error` if a build has more triangles than `most`, or than a grid has.
+inline void check_triangles(std::size_t triangles, std::size_t most) {
+  most = std::min(most, most_triangles_of_grid);
+  if (triangles <= most) return;
+  throw error("collide: bucket: " + std::to_string(triangles) + " triangles are more than " + std::to_string(most) +
+              ", the most of one build: query them in_passes, or divide them among ranks");
+}
 
 /// The grids that are made.
 struct memory_plan {
@@ -25,20 +39,18 @@ struct memory_plan {
   /// If the width of the cells is asked for there may be many entries more.
   static memory_plan make(std::size_t triangles, std::size_t spheres, int wanted, bool width_is_given,
                           std::size_t fixed, std::size_t budget) {
-    constexpr std::size_t id_limit = std::numeric_limits<std::uint32_t>::max();
     std::uint32_t most_bits = 12;
     std::size_t const cells =
         std::max({triangles, std::min(4 * triangles, std::size_t{1} << 18), std::min(spheres / 16, 16 * triangles)});
     while (most_bits < 28 && (std::size_t{1} << most_bits) < cells) ++most_bits;
     for (int g = wanted; g > 0; --g) {
       auto const grids = static_cast<std::size_t>(g);
-      // a triangle that is small against the cells is in at most eight
       std::size_t const least = 8 * triangles * grids;
-      if (least > id_limit) continue;
+      if (least > most_entries) continue;
       // the few spheres that use many triangles have, in the end, many pairs
       std::size_t const chosen = (spheres < triangles ? 48 : 16) * triangles + spheres / 2 + 4096,
                         given = 1024 * triangles + (std::size_t{1} << 21);
-      std::size_t const most = std::min((width_is_given ? given : chosen) * grids, id_limit);
+      std::size_t const most = std::min((width_is_given ? given : chosen) * grids, most_entries);
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
         std::size_t const base = fixed + table_size(grids << bits) * sizeof(item_range);
         if (budget == 0) return {g, bits, most};

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/ranks/bisection.hpp>
-#include <collide/detail/ranks/host_array.hpp>
 #include <collide/detail/ranks/mail.hpp>
 #include <collide/detail/ranks/part_of_simulation.hpp>
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include <collide/detail/ranks/host_array.hpp>
+#include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/simulation/particle.hpp>
 #include <collide/memory.hpp>
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/ranks/coarse_grid.hpp>
-#include <collide/detail/ranks/host_array.hpp>
 
 namespace collide::detail {
 

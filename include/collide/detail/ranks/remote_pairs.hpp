@@ -11,6 +11,7 @@
 #include <collide/detail/ranks/divided_mesh.hpp>
 #include <collide/detail/ranks/space_mail.hpp>
 #include <collide/detail/ranks/sphere_routes.hpp>
+#include <collide/detail/streaming/pair_list.hpp>
 #include <collide/detector.hpp>
 #include <collide/pairs.hpp>
 
@@ -102,7 +103,7 @@ class remote_pairs {
   /// The pairs, in no certain order, in memory of the space: numbers of this rank's spheres, and of triangles among
   /// those of all ranks.
   pair const* found() const { return found_.data(); }
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return found_.size(); }
   /// Triangles of other ranks in them, each once, by rising number, if they were asked for.
   std::vector<numbered_triangle<S>> const& triangles() const { return triangles_; }
 
@@ -110,8 +111,8 @@ class remote_pairs {
   void query_own(Detector& detector, divided_mesh<S> const& mesh, view const& spheres) {
     space_type& space = detector.space();
     detector.query(spheres, hits_);
-    size_ = 0;
-    pair* const to = grow(space, hits_.size());
+    found_.clear();
+    pair* const to = found_.append(space, hits_.size());
     space.for_each(hits_.size(), pack_answers{hits_.data(), 0, mesh.numbers(), to});
   }
 
@@ -176,7 +177,7 @@ class remote_pairs {
   /// Adds what has come back to what was found.
   void take(space_type const& space, std::uint64_t round, std::uint64_t rounds, bool with_triangles) {
     pair const* from = answered_.data();
-    pair* to = grow(space, answered_.size());
+    pair* to = found_.append(space, answered_.size());
     for (std::size_t r = 0; r < answered_.counts.size(); ++r) {
       auto const n = static_cast<std::size_t>(answered_.counts[r]);
       space.for_each(n, unpack_answers{from, routes_.of(r, round, rounds).first, to});
@@ -184,20 +185,6 @@ class remote_pairs {
       to += n;
     }
     if (with_triangles) triangles_.insert(triangles_.end(), learned_.items.begin(), learned_.items.end());
-  }
-
-  /// Room for `n` more of what was found; returns where.
-  pair* grow(space_type const& space, std::size_t n) {
-    std::size_t const before = size_;
-    if (before + n > found_.capacity()) {
-      buffer<pair> larger;
-      pair* const to = make_room(larger, space.resource(), before + n);
-      space.for_each(before, copy_pairs{found_.data(), to});
-      space.synchronize();  // the old memory goes
-      found_ = std::move(larger);
-    }
-    size_ += n;
-    return found_.data() + before;
   }
 
   void sort_triangles() {
@@ -213,8 +200,7 @@ class remote_pairs {
   pair_bounds bounds_;
   space_mail<pair> answers_, answered_;
   mail<numbered_triangle<S>> named_, learned_;
-  buffer<pair> found_;
-  std::size_t size_ = 0;
+  pair_list found_;
   std::vector<numbered_triangle<S>> triangles_;
 };
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <collide/concepts.hpp>
-#include <collide/detail/ranks/host_array.hpp>
+#include <collide/detail/execution/host_array.hpp>
 #include <collide/memory.hpp>
 #include <collide/ranks.hpp>
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <collide/contact.hpp>
+#include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
-#include <collide/detail/ranks/host_array.hpp>
 #include <collide/detail/ranks/rank_map.hpp>
 #include <collide/detail/sinks/output.hpp>
 #include <collide/moving_spheres.hpp>

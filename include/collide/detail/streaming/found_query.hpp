@@ -8,8 +8,9 @@
 #include <vector>
 
 #include <collide/concepts.hpp>
+#include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
-#include <collide/detail/ranks/divided_mesh.hpp>
+#include <collide/detail/streaming/numbered_triangle.hpp>
 #include <collide/hit.hpp>
 
 namespace collide::detail {
@@ -32,7 +33,7 @@ struct mesh_part {
   COLLIDE_HD bool has_at(id place, id t) const { return place < triangles.size() && numbers[place] == t; }
 };
 
-/// A mesh of which some triangles are here, a rank's own and those of others that were hit: a plain value.
+/// A mesh of which some triangles are here, some of its own and others that were hit: a plain value.
 template <class S>
 struct partial_mesh {
   mesh_part<S> own, others;
@@ -56,11 +57,11 @@ COLLIDE_HD hit<NarrowPhase, S> hit_of(pair p, partial_mesh<S> const& mesh,
   return {p, mesh.others.triangles, spheres, mesh.others.find(p.triangle)};
 }
 
-/// Kernel body of `for_each` over pairs: hands them to a sink's output.
-template <class NarrowPhase, class S, class Output>
+/// Kernel body of `for_each` over pairs: hands them to a sink's output. `Mesh` is `partial_mesh` or `mesh_view`.
+template <class NarrowPhase, class S, class Mesh, class Output>
 struct hand_over {
   pair const* pairs;
-  partial_mesh<S> mesh;
+  Mesh mesh;
   sphere_view_for<NarrowPhase, S> spheres;
   Output output;
 #if defined(__CUDACC__)
@@ -73,20 +74,20 @@ struct hand_over {
 };
 
 /// One pass over the pairs, as a sink sees it; see concepts.hpp.
-template <class NarrowPhase, class Space, class S>
+template <class NarrowPhase, class Space, class Mesh, class S>
 struct found_query {
   using narrow_phase = NarrowPhase;
   using scalar = S;
 
   Space& space;
-  partial_mesh<S> mesh;
+  Mesh mesh;
   sphere_view_for<NarrowPhase, S> spheres;
   pair const* pairs;
   std::size_t size;
 
   template <class Output>
   void operator()(Output const& output) const {
-    space.for_each(size, hand_over<NarrowPhase, S, Output>{pairs, mesh, spheres, output});
+    space.for_each(size, hand_over<NarrowPhase, S, Mesh, Output>{pairs, mesh, spheres, output});
     if constexpr (finishes<Output>::value) {
       if (has_end_pass(output)) space.for_each(1, finish_only<Output>{output});
     }
@@ -116,7 +117,8 @@ class found_pairs {
   }
 
   template <class NarrowPhase, class Space>
-  found_query<NarrowPhase, Space, S> query(Space& space, sphere_view_for<NarrowPhase, S> const& spheres) const {
+  found_query<NarrowPhase, Space, partial_mesh<S>, S> query(Space& space,
+                                                            sphere_view_for<NarrowPhase, S> const& spheres) const {
     return {space, mesh_, spheres, pairs_, size_};
   }
 
