@@ -42,6 +42,20 @@ TEST_CASE("simulations on ranks: sources and sinks, what sticks and what sleeps"
   check_on_threads(tests::dust());
 }
 
+TEST_CASE("simulations on ranks: sources where nobody is, and with fewer places than ranks") {
+  auto snow = tests::snow();
+  auto dust = tests::dust();
+  auto const empty = [](auto& scene) {
+    scene.w.centres.clear();
+    scene.w.velocities.clear();
+    scene.capacity = 5;
+    scene.steps = 60;
+    check_on_threads(scene);
+  };
+  empty(snow);
+  empty(dust);
+}
+
 TEST_CASE("simulations on ranks: bodies that move") {
   check_on_threads(tests::piston_and_belt<collide::karabassi<>>());
   check_on_threads(tests::piston_and_belt<collide::karabassi_swept<>>());
