@@ -2,7 +2,8 @@
 /// What many ranks cost and gain: ranks_bench RANKS SPHERES PARTICLES [OPTION OF GOOGLE BENCHMARK...]
 ///
 /// Names are ranks/SPACE/WORK/KIND:RANKS, for threads from 1 to RANKS, a GPU each where there are as many; under mpirun
-/// (RANKS is then 0) for its processes. WORK is
+/// (RANKS is then 0) for its processes. On the host ranks have one thread each; there KIND is also `cores`: one rank
+/// with so many threads. WORK is
 ///   copied   a query of SPHERES spheres of all ranks together, the study's mesh on every rank;
 ///   divided  the same with that mesh divided among the ranks;
 ///   packed   a step of PARTICLES spheres for each rank, that touch each other, with gravity and walls.
@@ -95,10 +96,11 @@ double time_query(Ranks const& ranks, Space const& space, bool divides) {
   });
 }
 
+/// For so many times the particles of a rank.
 template <class Ranks, class Space>
-double time_step(Ranks const& ranks, Space const& space) {
+double time_step(Ranks const& ranks, Space const& space, int times) {
   using collide::box_walls, collide::gravity, collide::sphere_contact;
-  std::size_t const n = particles_of_rank * static_cast<std::size_t>(ranks.size());
+  std::size_t const n = particles_of_rank * static_cast<std::size_t>(times);
   auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
   share const own(ranks, n);
   std::vector<float> centres;
@@ -142,9 +144,9 @@ void on_ranks(int threads, F const& f) {
 
 /// The space of a rank.
 template <class Space, class Ranks>
-Space space_of([[maybe_unused]] Ranks const& ranks) {
+Space space_of([[maybe_unused]] Ranks const& ranks, [[maybe_unused]] int cores) {
   if constexpr (Space::host_accessible) {
-    return Space(1);
+    return Space(cores);
   } else {
 #if defined(__CUDACC__)
     collide::cuda_check(cudaSetDevice(ranks.rank() % collide::cuda_device_count()), "cudaSetDevice");
@@ -153,16 +155,18 @@ Space space_of([[maybe_unused]] Ranks const& ranks) {
   }
 }
 
+/// `threads` ranks, or if that is 0 the `ranks` processes of MPI, with so many cores each.
 template <class Space, class Work>
-void add(std::string const& name, int threads, int ranks, Work const& work) {
-  std::string const kind = threads == 0 ? "mpi:" : "threads:";
+void add(std::string const& name, int threads, int ranks, int cores, Work const& work) {
+  int const times = ranks * cores;
+  std::string const kind = cores > 1 ? "cores:" : threads == 0 ? "mpi:" : "threads:";
   benchmark::RegisterBenchmark(
-      (std::string("ranks/") + Space::name() + "/" + name + "/" + kind + std::to_string(ranks)).c_str(),
+      (std::string("ranks/") + Space::name() + "/" + name + "/" + kind + std::to_string(times)).c_str(),
       [=](benchmark::State& state) {
         for (auto _ : state) {
           double seconds = 0;
           on_ranks(threads, [&](auto const& all) {
-            double const mine = work(all, space_of<Space>(all));
+            double const mine = work(all, space_of<Space>(all, cores), times);
             if (all.rank() == 0 || threads == 0) seconds = mine;
           });
           state.SetIterationTime(seconds);
@@ -177,10 +181,13 @@ void add(std::string const& name, int threads, int ranks, Work const& work) {
 }
 
 template <class Space>
-void add_all(int threads, int ranks) {
-  add<Space>("copied", threads, ranks, [](auto const& r, Space const& space) { return time_query(r, space, false); });
-  add<Space>("divided", threads, ranks, [](auto const& r, Space const& space) { return time_query(r, space, true); });
-  add<Space>("packed", threads, ranks, [](auto const& r, Space const& space) { return time_step(r, space); });
+void add_all(int threads, int ranks, int cores = 1) {
+  add<Space>("copied", threads, ranks, cores,
+             [](auto const& r, Space const& space, int) { return time_query(r, space, false); });
+  add<Space>("divided", threads, ranks, cores,
+             [](auto const& r, Space const& space, int) { return time_query(r, space, true); });
+  add<Space>("packed", threads, ranks, cores,
+             [](auto const& r, Space const& space, int times) { return time_step(r, space, times); });
 }
 
 }  // namespace
@@ -213,6 +220,7 @@ int main(int argc, char** argv) {
   int const last = static_cast<int>(most);
   for (int n = most == 0 ? 0 : 1; n <= last; ++n) {
     if (!bench::has_gpu()) add_all<collide::host>(n, n == 0 ? of_mpi : n);
+    if (!bench::has_gpu() && n > 1) add_all<collide::host>(1, 1, n);
 #if defined(__CUDACC__)
     if (bench::has_gpu()) add_all<collide::cuda_shared>(n, n == 0 ? of_mpi : n);
 #endif
