@@ -61,32 +61,15 @@ struct particles {
     int const* const n = all.along;
     lower = length * Eigen::Vector3d(rank % n[0], rank / n[0] % n[1], rank / n[0] / n[1]);
     box = length * Eigen::Vector3d(n[0], n[1], n[2]);
-    if (fly) {
-      scatter(rank, side * side * side);
-    } else {
-      pack(static_cast<int>(side));
-    }
+    fill(rank, static_cast<int>(side), fly);
   }
 
  private:
-  void add(Eigen::Vector3d const& x, Eigen::Vector3d const& v) {
-    for (int k = 0; k < 3; ++k)
-      centres.push_back(static_cast<float>(x[k])), velocities.push_back(static_cast<float>(v[k]));
-  }
-  void scatter(int rank, std::size_t n) {
+  /// A cubic lattice that stands askew, so that no layer of it lies along a side. What flies is not quite in its
+  /// places.
+  void fill(int rank, int side, bool fly) {
     std::mt19937 engine(static_cast<unsigned>(rank));
     std::uniform_real_distribution<double> uniform(-1, 1);
-    auto const random = [&] {
-      double const x = uniform(engine), y = uniform(engine), z = uniform(engine);
-      return Eigen::Vector3d(x, y, z);
-    };
-    for (std::size_t i = 0; i < n; ++i) {
-      Eigen::Vector3d const x = lower + length / 2 * (random() + Eigen::Vector3d::Ones());
-      add(x, random());
-    }
-  }
-  /// A cubic lattice that stands askew, so that no layer of it lies along a side.
-  void pack(int side) {
     Eigen::Matrix3d const turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
     Eigen::Vector3d const middle = turn.transpose() * (lower + length / 2 * Eigen::Vector3d::Ones()) / spacing;
     for (int i = -side; i <= side; ++i)
@@ -94,7 +77,11 @@ struct particles {
         for (int k = -side; k <= side; ++k) {
           Eigen::Vector3d const x = spacing * (turn * (middle.array().round().matrix() + Eigen::Vector3d(i, j, k)));
           Eigen::Array3d const in = (x - lower).array();
-          if (in.minCoeff() >= 0 && in.maxCoeff() < length) add(x, Eigen::Vector3d::Zero());
+          if (in.minCoeff() < 0 || in.maxCoeff() >= length) continue;
+          for (int c = 0; c < 3; ++c) {
+            centres.push_back(static_cast<float>(x[c] + (fly ? radius * uniform(engine) : 0)));
+            velocities.push_back(static_cast<float>(fly ? uniform(engine) : 0));
+          }
         }
   }
 };
