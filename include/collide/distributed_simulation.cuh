@@ -152,11 +152,11 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
 
   /// What the particles of all ranks give to each body; see `reaction_sums::read`. Waits.
   std::vector<body_impulse> total(reaction_sums const& mine) const {
-    return mine.impulses(detail::sums_of_ranks(ranks_, [&] { return mine.counts(local().space()); }));
+    return impulses(mine, [&] { return mine.counts(local().space()); });
   }
   /// What the particles of all ranks give to each triangle; see `reaction_sums::read_triangles`. Waits.
   std::vector<body_impulse> total_of_triangles(reaction_sums const& mine) const {
-    return mine.impulses(detail::sums_of_ranks(ranks_, [&] { return mine.triangle_counts(local().space()); }));
+    return impulses(mine, [&] { return mine.triangle_counts(local().space()); });
   }
   /// How many contacts of all ranks are in no sum; see `reaction_sums::refused`. Waits.
   std::uint64_t total_refused(reaction_sums const& mine) const {
@@ -188,6 +188,15 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     if (!is_sound_) {
       throw error("collide: simulation: the last step, set or load has failed on some rank: call set or load");
     }
+  }
+
+  /// The sums over all ranks of the counts that read() gives, as impulses.
+  template <class Read>
+  std::vector<body_impulse> impulses(reaction_sums const& mine, Read const& read) const {
+    std::vector<std::int64_t> const counts = detail::sums_of_ranks(ranks_, read);
+    std::vector<body_impulse> found;
+    together(ranks_, [&] { found = mine.impulses(counts); });
+    return found;
   }
 
   /// A step, until this rank is done: what went wrong here then. All throw what goes wrong before, or has `failed` here
