@@ -7,11 +7,13 @@
 ///   copied   a query of SPHERES spheres of all ranks together, the study's mesh on every rank;
 ///   divided  the same with that mesh divided among the ranks;
 ///   packed   a step of PARTICLES spheres for each rank, that touch each other, with gravity and walls.
-/// Times are of the slowest rank, medians of `repeats`, from when all ranks are ready until all are done.
+/// Times are of the slowest rank, medians of `repeats`, from when all ranks are ready until all are done. The counter
+/// cpu_ms is the time of all cores that this process has taken, which others that run beside it change less.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,23 +58,31 @@ io::scene const& study() {
   return made;
 }
 
-/// Seconds of f() on all ranks: the median.
+/// Seconds on the clock, and of all cores that work.
+struct duration {
+  double seconds = 0, of_cores = 0;
+};
+
+/// How long one of the `parts` of f() takes on all ranks: medians.
 template <class Ranks, class F>
-double time_of(Ranks const& ranks, F const& f) {
-  std::vector<double> seconds;
+duration time_of(Ranks const& ranks, int parts, F const& f) {
+  std::vector<double> seconds, of_cores;
   for (int i = 0; i < repeats; ++i) {
     agree(ranks);
+    std::clock_t const begin = std::clock();
     bench::host_stopwatch watch(0);
     seconds.push_back(watch([&] {
-      f();
-      agree(ranks);
-    }));
+                        f();
+                        agree(ranks);
+                      }) /
+                      parts);
+    of_cores.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / parts);
   }
-  return bench::median(seconds);
+  return {bench::median(seconds), bench::median(of_cores)};
 }
 
 template <class Ranks, class Space>
-double time_query(Ranks const& ranks, Space const& space, bool divides) {
+duration time_query(Ranks const& ranks, Space const& space, bool divides) {
   io::scene const& scene = study();
   share const triangles(ranks, scene.triangle_count()), own(ranks, spheres_in_all);
   std::vector<float> const vertices(scene.vertices.begin(), scene.vertices.end());
@@ -90,7 +100,7 @@ double time_query(Ranks const& ranks, Space const& space, bool divides) {
     detector.build(mesh.view(), collide::on_every_rank);
   }
   collide::pairs found;
-  return time_of(ranks, [&] {
+  return time_of(ranks, 1, [&] {
     detector.query(spheres.view(), found);
     space.synchronize();
   });
@@ -98,7 +108,7 @@ double time_query(Ranks const& ranks, Space const& space, bool divides) {
 
 /// For so many times the particles of a rank.
 template <class Ranks, class Space>
-double time_step(Ranks const& ranks, Space const& space, int times) {
+duration time_step(Ranks const& ranks, Space const& space, int times) {
   using collide::box_walls, collide::gravity, collide::sphere_contact;
   std::size_t const n = particles_of_rank * static_cast<std::size_t>(times);
   auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
@@ -119,12 +129,10 @@ double time_step(Ranks const& ranks, Space const& space, int times) {
     made.set(spheres.view());
   }
   made.steps(3, 1e-4f);
-  return time_of(ranks,
-                 [&] {
-                   made.steps(5, 1e-4f);
-                   space.synchronize();
-                 }) /
-         5;
+  return time_of(ranks, 5, [&] {
+    made.steps(5, 1e-4f);
+    space.synchronize();
+  });
 }
 
 /// What the processes of MPI print but for the first: nothing.
@@ -164,12 +172,13 @@ void add(std::string const& name, int threads, int ranks, int cores, Work const&
       (std::string("ranks/") + Space::name() + "/" + name + "/" + kind + std::to_string(times)).c_str(),
       [=](benchmark::State& state) {
         for (auto _ : state) {
-          double seconds = 0;
+          duration took;
           on_ranks(threads, [&](auto const& all) {
-            double const mine = work(all, space_of<Space>(all, cores), times);
-            if (all.rank() == 0 || threads == 0) seconds = mine;
+            duration const mine = work(all, space_of<Space>(all, cores), times);
+            if (all.rank() == 0 || threads == 0) took = mine;
           });
-          state.SetIterationTime(seconds);
+          state.SetIterationTime(took.seconds);
+          state.counters["cpu_ms"] = 1e3 * took.of_cores;
         }
         state.counters["ranks"] = ranks;
         state.counters["spheres"] = static_cast<double>(spheres_in_all);
