@@ -2,15 +2,18 @@
 /// What many ranks cost and gain: ranks_bench RANKS SPHERES PARTICLES [OPTION OF GOOGLE BENCHMARK...]
 ///
 /// Names are ranks/SPACE/WORK/KIND:RANKS, for threads from 1 to RANKS, a GPU each where there are as many; under mpirun
-/// (RANKS is then 0) for its processes. WORK is
+/// (RANKS is then 0) for its processes. On the host ranks have one thread each; there KIND is also `cores`: one rank
+/// with so many threads. WORK is
 ///   copied   a query of SPHERES spheres of all ranks together, the study's mesh on every rank;
 ///   divided  the same with that mesh divided among the ranks;
 ///   packed   a step of PARTICLES spheres for each rank, that touch each other, with gravity and walls.
-/// Times are of the slowest rank, medians of `repeats`, from when all ranks are ready until all are done.
+/// Times are of the slowest rank, medians of `repeats`, from when all ranks are ready until all are done. The counter
+/// cpu_ms is the time of all cores that this process has taken, which others that run beside it change less.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,23 +58,31 @@ io::scene const& study() {
   return made;
 }
 
-/// Seconds of f() on all ranks: the median.
+/// Seconds on the clock, and of all cores that work.
+struct duration {
+  double seconds = 0, of_cores = 0;
+};
+
+/// How long one of the `parts` of f() takes on all ranks: medians.
 template <class Ranks, class F>
-double time_of(Ranks const& ranks, F const& f) {
-  std::vector<double> seconds;
+duration time_of(Ranks const& ranks, int parts, F const& f) {
+  std::vector<double> seconds, of_cores;
   for (int i = 0; i < repeats; ++i) {
     agree(ranks);
+    std::clock_t const begin = std::clock();
     bench::host_stopwatch watch(0);
     seconds.push_back(watch([&] {
-      f();
-      agree(ranks);
-    }));
+                        f();
+                        agree(ranks);
+                      }) /
+                      parts);
+    of_cores.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / parts);
   }
-  return bench::median(seconds);
+  return {bench::median(seconds), bench::median(of_cores)};
 }
 
 template <class Ranks, class Space>
-double time_query(Ranks const& ranks, Space const& space, bool divides) {
+duration time_query(Ranks const& ranks, Space const& space, bool divides) {
   io::scene const& scene = study();
   share const triangles(ranks, scene.triangle_count()), own(ranks, spheres_in_all);
   std::vector<float> const vertices(scene.vertices.begin(), scene.vertices.end());
@@ -89,16 +100,17 @@ double time_query(Ranks const& ranks, Space const& space, bool divides) {
     detector.build(mesh.view(), collide::on_every_rank);
   }
   collide::pairs found;
-  return time_of(ranks, [&] {
+  return time_of(ranks, 1, [&] {
     detector.query(spheres.view(), found);
     space.synchronize();
   });
 }
 
+/// For so many times the particles of a rank.
 template <class Ranks, class Space>
-double time_step(Ranks const& ranks, Space const& space) {
+duration time_step(Ranks const& ranks, Space const& space, int times) {
   using collide::box_walls, collide::gravity, collide::sphere_contact;
-  std::size_t const n = particles_of_rank * static_cast<std::size_t>(ranks.size());
+  std::size_t const n = particles_of_rank * static_cast<std::size_t>(times);
   auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
   share const own(ranks, n);
   std::vector<float> centres;
@@ -117,12 +129,10 @@ double time_step(Ranks const& ranks, Space const& space) {
     made.set(spheres.view());
   }
   made.steps(3, 1e-4f);
-  return time_of(ranks,
-                 [&] {
-                   made.steps(5, 1e-4f);
-                   space.synchronize();
-                 }) /
-         5;
+  return time_of(ranks, 5, [&] {
+    made.steps(5, 1e-4f);
+    space.synchronize();
+  });
 }
 
 /// What the processes of MPI print but for the first: nothing.
@@ -142,9 +152,9 @@ void on_ranks(int threads, F const& f) {
 
 /// The space of a rank.
 template <class Space, class Ranks>
-Space space_of([[maybe_unused]] Ranks const& ranks) {
+Space space_of([[maybe_unused]] Ranks const& ranks, [[maybe_unused]] int cores) {
   if constexpr (Space::host_accessible) {
-    return Space(1);
+    return Space(cores);
   } else {
 #if defined(__CUDACC__)
     collide::cuda_check(cudaSetDevice(ranks.rank() % collide::cuda_device_count()), "cudaSetDevice");
@@ -153,19 +163,22 @@ Space space_of([[maybe_unused]] Ranks const& ranks) {
   }
 }
 
+/// `threads` ranks, or if that is 0 the `ranks` processes of MPI, with so many cores each.
 template <class Space, class Work>
-void add(std::string const& name, int threads, int ranks, Work const& work) {
-  std::string const kind = threads == 0 ? "mpi:" : "threads:";
+void add(std::string const& name, int threads, int ranks, int cores, Work const& work) {
+  int const times = ranks * cores;
+  std::string const kind = cores > 1 ? "cores:" : threads == 0 ? "mpi:" : "threads:";
   benchmark::RegisterBenchmark(
-      (std::string("ranks/") + Space::name() + "/" + name + "/" + kind + std::to_string(ranks)).c_str(),
+      (std::string("ranks/") + Space::name() + "/" + name + "/" + kind + std::to_string(times)).c_str(),
       [=](benchmark::State& state) {
         for (auto _ : state) {
-          double seconds = 0;
+          duration took;
           on_ranks(threads, [&](auto const& all) {
-            double const mine = work(all, space_of<Space>(all));
-            if (all.rank() == 0 || threads == 0) seconds = mine;
+            duration const mine = work(all, space_of<Space>(all, cores), times);
+            if (all.rank() == 0 || threads == 0) took = mine;
           });
-          state.SetIterationTime(seconds);
+          state.SetIterationTime(took.seconds);
+          state.counters["cpu_ms"] = 1e3 * took.of_cores;
         }
         state.counters["ranks"] = ranks;
         state.counters["spheres"] = static_cast<double>(spheres_in_all);
@@ -177,10 +190,13 @@ void add(std::string const& name, int threads, int ranks, Work const& work) {
 }
 
 template <class Space>
-void add_all(int threads, int ranks) {
-  add<Space>("copied", threads, ranks, [](auto const& r, Space const& space) { return time_query(r, space, false); });
-  add<Space>("divided", threads, ranks, [](auto const& r, Space const& space) { return time_query(r, space, true); });
-  add<Space>("packed", threads, ranks, [](auto const& r, Space const& space) { return time_step(r, space); });
+void add_all(int threads, int ranks, int cores = 1) {
+  add<Space>("copied", threads, ranks, cores,
+             [](auto const& r, Space const& space, int) { return time_query(r, space, false); });
+  add<Space>("divided", threads, ranks, cores,
+             [](auto const& r, Space const& space, int) { return time_query(r, space, true); });
+  add<Space>("packed", threads, ranks, cores,
+             [](auto const& r, Space const& space, int times) { return time_step(r, space, times); });
 }
 
 }  // namespace
@@ -213,6 +229,7 @@ int main(int argc, char** argv) {
   int const last = static_cast<int>(most);
   for (int n = most == 0 ? 0 : 1; n <= last; ++n) {
     if (!bench::has_gpu()) add_all<collide::host>(n, n == 0 ? of_mpi : n);
+    if (!bench::has_gpu() && n > 1) add_all<collide::host>(1, 1, n);
 #if defined(__CUDACC__)
     if (bench::has_gpu()) add_all<collide::cuda_shared>(n, n == 0 ? of_mpi : n);
 #endif

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <collide/detail/ranks/particle_exchange.hpp>
+#include <collide/detail/ranks/sums_of_ranks.hpp>
 #include <collide/distributed.hpp>
 #include <collide/reaction.hpp>
 #include <collide/simulation.cuh>
@@ -90,44 +91,24 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     is_sound_ = true;
   }
 
-  /// The mesh, which is the same on every rank; see `simulation::set_mesh`.
-  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}) {
-    together(ranks_, [&] { part_.simulation().set_mesh(mesh, bodies); });
+  /// The mesh, with its bodies and the velocities of its vertices, which is the same on every rank; see
+  /// `simulation::set_mesh`.
+  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
+    together(ranks_, [&] { part_.simulation().set_mesh(mesh, bodies, velocities); });
   }
 
   /// Advances by the time `dt`; throws what `simulation::step` throws. If it throws after the step has begun somewhere,
   /// particles may be lost, and nothing works until the next `set` or `load`.
-  void step(S dt) {
-    check_sound();
-    std::exception_ptr failure;
-    std::uint64_t mine[2] = {0, 0}, all[2];  // 1: particles must change ranks, 2: something is wrong; has it begun?
-    try {
-      part_.check_step(dt);
-      mine[1] = 1;
-      mine[0] = part_.begin_step(dt) ? 1 : 0;
-      if (meets && mine[0] == 0) exchange_.pack(part_);
-    } catch (...) {
-      failure = std::current_exception();
-      mine[0] = 2;
-    }
-    ranks_.reduce(mine, all, 2, reduction::max);
-    is_sound_ = all[1] == 0;
-    if (all[0] == 2) agree(ranks_, failure);
-    if constexpr (meets) {
-      if (all[0] == 1) exchange_.exchange(ranks_, part_);
-      exchange_.send(ranks_);
-    }
-    together(ranks_, [&] {
-      if constexpr (meets) exchange_.unpack(part_);
-      part_.end_step(dt);
-    });
-    is_sound_ = true;
-    if (size() != 0) reverse_order_ = !reverse_order_;
-  }
+  void step(S dt) { steps(1, dt); }
 
-  /// Advances `n` times by `dt`; throws what `step` throws.
+  /// Advances `n` times by `dt`; throws what `step` throws. Ranks wait for each other once a step, and once more in the
+  /// end.
   void steps(std::size_t n, S dt) {
-    while (n-- > 0) step(dt);
+    check_sound();
+    std::exception_ptr failure;  // of the last step: the others hear of it when the next one begins, or in the end
+    for (std::size_t k = 0; k < n; ++k) failure = try_step(dt, failure);
+    agree(ranks_, failure);
+    is_sound_ = true;
   }
 
   /// The sum of the steps since `set`.
@@ -171,17 +152,18 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
 
   /// What the particles of all ranks give to each body; see `reaction_sums::read`. Waits.
   std::vector<body_impulse> total(reaction_sums const& mine) const {
-    std::vector<std::int64_t> counts;
-    std::vector<std::uint64_t> own, all;
-    together(ranks_, [&] {
-      counts = mine.counts(local().space());
-      own.assign(counts.begin(), counts.end());
-      all.resize(own.size());
-    });
-    ranks_.reduce(own.data(), all.data(), all.size(), reduction::sum);
-    std::vector<body_impulse> found;
-    together(ranks_, [&] { found = mine.impulses({all.begin(), all.end()}); });
-    return found;
+    return impulses(mine, [&] { return mine.counts(local().space()); });
+  }
+  /// What the particles of all ranks give to each triangle; see `reaction_sums::read_triangles`. Waits.
+  std::vector<body_impulse> total_of_triangles(reaction_sums const& mine) const {
+    return impulses(mine, [&] { return mine.triangle_counts(local().space()); });
+  }
+  /// How many contacts of all ranks are in no sum; see `reaction_sums::refused`. Waits.
+  std::uint64_t total_refused(reaction_sums const& mine) const {
+    std::uint64_t own = 0, all = 0;
+    together(ranks_, [&] { own = mine.refused(local().space()); });
+    ranks_.reduce(&own, &all, 1, reduction::sum);
+    return all;
   }
 
   /// The parameters of an effect, which may be changed between steps, on all ranks alike.
@@ -206,6 +188,46 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     if (!is_sound_) {
       throw error("collide: simulation: the last step, set or load has failed on some rank: call set or load");
     }
+  }
+
+  /// The sums over all ranks of the counts that read() gives, as impulses.
+  template <class Read>
+  std::vector<body_impulse> impulses(reaction_sums const& mine, Read const& read) const {
+    std::vector<std::int64_t> const counts = detail::sums_of_ranks(ranks_, read);
+    std::vector<body_impulse> found;
+    together(ranks_, [&] { found = mine.impulses(counts); });
+    return found;
+  }
+
+  /// A step, until this rank is done: what went wrong here then. All throw what goes wrong before, or has `failed` here
+  /// in the last step.
+  std::exception_ptr try_step(S dt, std::exception_ptr failed) {
+    std::uint64_t mine[2] = {0, 0}, all[2];  // 1: particles must change ranks, 2: something is wrong; has it begun?
+    try {
+      if (failed) std::rethrow_exception(failed);
+      part_.check_step(dt);
+      mine[1] = 1;
+      mine[0] = part_.begin_step(dt) ? 1 : 0;
+      if (meets && mine[0] == 0) exchange_.pack(part_);
+    } catch (...) {
+      failed = std::current_exception();
+      mine[0] = 2;
+    }
+    ranks_.reduce(mine, all, 2, reduction::max);
+    is_sound_ = is_sound_ && all[1] == 0;
+    if (all[0] == 2) agree(ranks_, failed);
+    if constexpr (meets) {
+      if (all[0] == 1) exchange_.exchange(ranks_, part_);
+      exchange_.send(ranks_);
+    }
+    try {
+      if constexpr (meets) exchange_.unpack(part_);
+      part_.end_step(dt);
+    } catch (...) {
+      failed = std::current_exception();
+    }
+    if (size() != 0) reverse_order_ = !reverse_order_;
+    return failed;
   }
 
   /// Says with which free places this rank begins.

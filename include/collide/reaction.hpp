@@ -8,6 +8,7 @@
 
 #include <collide/atomic_add.hpp>
 #include <collide/effect.hpp>
+#include <collide/error.hpp>
 #include <collide/memory.hpp>
 
 namespace collide {
@@ -31,10 +32,15 @@ struct impulse_counts {
   std::int64_t count[6];
 };
 
+[[noreturn]] inline void throw_too_many_units() {
+  throw error("collide: reaction_sums: a sum is more than 9e18 units: choose a larger unit, or clear more often");
+}
+
 }  // namespace detail
 
 /// Sums up what the particles' contacts give to each body: minus mass times the change of their velocities. It is made
-/// by `reaction_sums`, which has its memory. An effect for the end of the list: of those behind it it sees nothing.
+/// by `reaction_sums`, which has its memory. An effect for the end of the list: of those behind it it sees nothing. A
+/// contact that gives what is not finite, or 2e18 units or more, is in no sum: `reaction_sums::refused` counts it.
 struct reaction {
   using reads = columns<velocity>;
   using runs_after = effects<bounce, friction, spin, adhesion>;
@@ -48,6 +54,7 @@ struct reaction {
   detail::impulse_counts* sums_of_triangles = nullptr;  ///< memory of the space, of `reaction_sums`
   std::size_t triangles = 0;                            ///< of how many there are sums
   std::size_t bodies = 0;                               ///< of how many there are sums
+  std::int64_t* refused = nullptr;                      ///< memory of the space: contacts that are in no sum
 
   void check_parameters() const {
     detail::check_parameter(density > 0 && unit > 0 && sums != nullptr,
@@ -65,6 +72,11 @@ struct reaction {
     vec3<S> const change = -t.velocity_change(p);
     vec3<double> const impulse = scaled(vec3<double>(change.template cast<double>()), div(mass, unit));
     vec3<double> const moment = cross(vec3<double>(t.point.template cast<double>()), impulse);
+    bool const has_counts = dot(impulse, impulse) + dot(moment, moment) < most_squared;  // false for NaN
+    if (!has_counts) {
+      atomic_add(refused, 1);
+      return;
+    }
     std::size_t const body = t.body == no_id ? 0 : std::size_t{t.body} + 1;
     add(sums[body * copies + p.number() % copies], impulse, moment);
     std::size_t const number = t.triangle;
@@ -72,6 +84,8 @@ struct reaction {
   }
 
  private:
+  static constexpr double most_squared = 0x1p122;  ///< of units: each fits into 64 bits
+
   static COLLIDE_HD_INLINE void add(detail::impulse_counts& to, vec3<double> const& impulse,
                                     vec3<double> const& moment) {
     for (int k = 0; k < 3; ++k) {
@@ -85,8 +99,8 @@ struct reaction {
 };
 
 /// The memory in which `reaction` sums up: of each body, and of what rests; of each triangle, if asked. The same
-/// contacts give the same bits, in any order. Sums overflow at 9e18 units. It must outlive the steps of the simulation
-/// that has its effect.
+/// contacts give the same bits, in any order. Sums hold 9e18 units: `error` if what is read is more, but one of the 256
+/// parts of a sum that alone gets more is wrong. It must outlive the steps of the simulation that has its effect.
 class reaction_sums {
  public:
   /// For so many bodies; a step of a mesh with more is refused (`error`). `unit` is the impulse to which each contact
@@ -101,7 +115,7 @@ class reaction_sums {
 
   /// The effect, for particles of a density.
   reaction effect(double density) const {
-    return {density, unit_, sums_.data(), sums_.data() + of_bodies(), triangles_, bodies_};
+    return {density, unit_, sums_.data(), sums_.data() + of_bodies(), triangles_, bodies_, refused_count()};
   }
 
   /// Begins anew, after the work that is on the stream of a space. Does not wait.
@@ -116,8 +130,15 @@ class reaction_sums {
     return impulses(counts(space));
   }
 
+  /// How many contacts since `clear` are in no sum, because what they gave is not finite, or 2e18 units or more: the
+  /// unit is too small, or particles too fast. Waits.
+  template <class Space>
+  std::uint64_t refused(Space const& space) const {
+    return static_cast<std::uint64_t>(space.read(refused_count()));
+  }
+
   /// What each body has got, and last what rests, as multiples of the unit: six numbers each. Those of several ranks
-  /// may be added. Waits.
+  /// may be added. Throws `error` if one is 9e18 or more. Waits.
   template <class Space>
   std::vector<std::int64_t> counts(Space const& space) const {
     std::vector<detail::impulse_counts> all(of_bodies());
@@ -126,7 +147,10 @@ class reaction_sums {
     for (std::size_t b = 0; b <= bodies_; ++b) {
       auto const* const of = all.data() + (b + 1) % (bodies_ + 1) * reaction::copies;
       for (std::size_t i = 0; i < reaction::copies; ++i) {
-        for (std::size_t k = 0; k < 6; ++k) found[6 * b + k] += of[i].count[k];
+        for (std::size_t k = 0; k < 6; ++k) {
+          std::int64_t& sum = found[6 * b + k];
+          if (__builtin_add_overflow(sum, of[i].count[k], &sum)) detail::throw_too_many_units();
+        }
       }
     }
     return found;
@@ -162,7 +186,8 @@ class reaction_sums {
 
  private:
   std::size_t of_bodies() const { return (bodies_ + 1) * reaction::copies; }
-  std::size_t size() const { return of_bodies() + triangles_; }
+  std::size_t size() const { return of_bodies() + triangles_ + 1; }
+  std::int64_t* refused_count() const { return sums_.data()[of_bodies() + triangles_].count; }
 
   std::size_t bodies_, triangles_;
   double unit_;

@@ -163,8 +163,8 @@ class simulation {
   void step(S dt) {
     check_step(dt);
     time_ += static_cast<double>(dt);
-    if (state_.size == 0) return;
     begin_step(dt);
+    if (state_.size == 0) return;
     if constexpr (effects_type::meets) neighbours_.interact(space_, state_, effects_, dt);
     end_step(dt);
   }

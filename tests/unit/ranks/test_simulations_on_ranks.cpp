@@ -1,6 +1,7 @@
 /// Simulations on ranks that are threads, on the host.
 #include <collide/thread_ranks.hpp>
 
+#include "counted_ranks.hpp"
 #include "ranks/simulations.hpp"
 
 namespace {
@@ -40,6 +41,20 @@ TEST_CASE("simulations on ranks: many sizes, and ways across several bricks") {
 TEST_CASE("simulations on ranks: sources and sinks, what sticks and what sleeps") {
   check_on_threads(tests::snow());
   check_on_threads(tests::dust());
+}
+
+TEST_CASE("simulations on ranks: sources where nobody is, and with fewer places than ranks") {
+  auto snow = tests::snow();
+  auto dust = tests::dust();
+  auto const empty = [](auto& scene) {
+    scene.w.centres.clear();
+    scene.w.velocities.clear();
+    scene.capacity = 5;
+    scene.steps = 60;
+    check_on_threads(scene);
+  };
+  empty(snow);
+  empty(dust);
 }
 
 TEST_CASE("simulations on ranks: bodies that move") {
@@ -100,5 +115,28 @@ TEST_CASE("simulations on ranks: bricks have as many particles, and know who is 
         if (most * static_cast<std::uint64_t>(n) > sum * 6 / 5) throw collide::error("not divided evenly");
       });
     });
+  }
+}
+
+TEST_CASE("simulations on ranks: a step takes one reduction, and steps one more") {
+  using simulation = collide::simulation<tests::discrete<collide::host>, collide::sphere_contact>;
+  using ranks_type = bench::counted_ranks<collide::thread_ranks>;
+  for (int const n : {1, 2, 5}) {
+    std::vector<bench::traffic> sent(static_cast<std::size_t>(n));
+    collide::thread_ranks::run(n, [&](collide::thread_ranks const& threads) {
+      auto& mine = sent[static_cast<std::size_t>(threads.rank())];
+      collide::distributed<simulation, ranks_type> parts(ranks_type(threads, mine), collide::host(1));
+      auto const x = static_cast<float>(threads.rank());
+      float const centre[] = {x, 0, 0};
+      parts.set(collide::spheres_xyz(centre, 1, 0.1f));
+      parts.step(1e-3f);  // makes bricks
+      mine = {};
+      parts.steps(10, 1e-3f);
+    });
+    for (auto const& mine : sent) {
+      CHECK(mine.reductions == 11);
+      CHECK(mine.reduced_bytes == 10 * 16 + 8);
+      CHECK(mine.exchanges == 10);
+    }
   }
 }

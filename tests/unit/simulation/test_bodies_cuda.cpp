@@ -1,5 +1,6 @@
 /// Bodies that move, on the GPU.
 #include "simulation/moving_walls.hpp"
+#include "simulation/reaction.hpp"
 
 using collide::cuda_shared;
 using collide::karabassi;
@@ -45,4 +46,8 @@ TEST_CASE("moving walls: on the GPU, a mesh set again, slow bodies, functions of
   tests::check_work<karabassi<>>(cuda_shared());
   tests::check_momentum_of_turning_box(cuda_shared());
   tests::check_deforming<karabassi<>, float>(cuda_shared());
+}
+
+TEST_CASE("reaction: on the GPU, what sums cannot hold is counted, or an error, and never in them") {
+  tests::check_sums_that_do_not_fit(cuda_shared());
 }

@@ -1,0 +1,62 @@
+/// \file
+/// What `reaction` must do with what its sums cannot hold.
+#pragma once
+
+#include <limits>
+
+#include "simulation/bodies.hpp"
+
+namespace tests {
+
+/// A contact that gives what is not finite, or too much, is counted, and is in no sum; too large a sum is an error.
+template <class Space>
+void check_sums_that_do_not_fit(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, double>, bounce, collide::reaction, moving_bodies<>>;
+  world<double> w;
+  w.radius = 0.1;
+  add_floor(w, 5, 1);
+  for (int i = 0; i < 8; ++i) w.particle(0.1 * i - 0.4, 0.3, 0.05, 0, 0, -1);
+  double const mass = 4.0 / 3 * pi * 1e-3;  // of density 1
+  struct sums_after {
+    std::uint64_t refused;
+    std::vector<std::int64_t> counts, of_triangles;
+    std::string said;
+  };
+  auto const hit = [&](double density, double unit) {
+    collide::reaction_sums sums(space, 1, unit, 2);
+    running_bodies<simulation> made(space, w, one_body(w, {}), bounce{1}, sums.effect(density), moving_bodies<>{});
+    made.simulation.step(1e-6);
+    sums_after found{sums.refused(space), {}, {}, ""};
+    try {
+      found.of_triangles = sums.triangle_counts(space);
+      found.counts = sums.counts(space);
+    } catch (collide::error const& e) {
+      found.said = e.what();
+    }
+    sums.clear(space);
+    CHECK(sums.refused(space) == 0);
+    return found;
+  };
+  auto const fits = hit(1, 2 * mass * 1e-16);
+  CHECK(fits.refused == 0);
+  CHECK(double(fits.counts[2]) == doctest::Approx(-8e16));
+  for (double const unit : {2 * mass * 1e-19, 1e-300}) {
+    auto const small = hit(1, unit);
+    CHECK(small.refused == 8);
+    CHECK(small.counts == std::vector<std::int64_t>(12, 0));
+    CHECK(small.of_triangles == std::vector<std::int64_t>(12, 0));
+  }
+  CHECK(hit(std::numeric_limits<double>::infinity(), 1).refused == 8);
+  w.particle(0, 0.3, 0.05, 0, 0, -1e30);
+  w.particle(0, 0.3, 0.05, 0, 0, -2);
+  auto const fast = hit(1, 2 * mass * 1e-16);
+  CHECK(fast.refused == 0);  // it has gone through the floor
+  CHECK(double(fast.counts[2]) == doctest::Approx(-10e16));
+  auto const many = hit(1, 2 * mass * 8e-19);
+  CHECK(many.refused == 1);  // the one that is twice as fast
+  CHECK(many.said ==
+        "collide: reaction_sums: a sum is more than 9e18 units: choose a larger unit, or clear more often");
+}
+
+}  // namespace tests

@@ -1,0 +1,12 @@
+/// What particles give to bodies, on the host and as blocks of threads go, where sums cannot hold it.
+#include "compositions.hpp"
+#include "simulation/reaction.hpp"
+
+using collide::host;
+using tests::lockstep;
+
+TEST_CASE("reaction: what sums cannot hold is counted, or an error, and never in them") {
+  tests::check_sums_that_do_not_fit(host(1));
+  tests::check_sums_that_do_not_fit(host(2));
+  tests::check_sums_that_do_not_fit(lockstep<256, true>());
+}
