@@ -17,6 +17,7 @@
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/grid/plan.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/detail/query/measure_groups.hpp>
 #include <collide/detail/query/sorted_spheres.hpp>
 #include <collide/detail/query/sphere_major.hpp>
 #include <collide/detector.hpp>
@@ -50,7 +51,7 @@ struct bucket {
 template <class S>
 class bucket::index {
  public:
-  /// One pass over the mesh: boxes, extent, sizes. The grids follow as soon as a radius is known.
+  /// One pass over the mesh: extent, sizes, and boxes, on the host of groups of triangles. The grids follow as soon as a radius is known.
   template <class Space>
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
     if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
@@ -60,11 +61,16 @@ class bucket::index {
     origin_ = origin::none;
     grid_count_ = requested_ = 0;
     queries_ = 0;
+    has_boxes_ = false;
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (bins_spheres<Space>(options)) return measure(space);
+    }
     auto const affords = [&](std::size_t bytes) {
       return options.memory_budget == 0 || bytes <= options.memory_budget;
     };
     if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_aabb<S>))) {
       boxes_.reserve(space.resource(), mesh.size());
+      has_boxes_ = true;
     } else {
       boxes_.release();
     }
@@ -159,15 +165,15 @@ class bucket::index {
         return;
       }
     }
-    detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes_.data()}, lookup(), 0, 0};
+    detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes()}, lookup(), 0, 0};
     body.share(space, spheres.size());
     space.launch(body.blocks, body);
   }
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
   detail::bucket_ref<S> lookup() const {
-    return {{mesh_, boxes_.data()}, grids_.data(), grid_count_,     occupied(),
-            lists_.data(),          lists_total(), entries_.data(), entries_.capacity()};
+    return {{mesh_, boxes()}, grids_.data(), grid_count_,     occupied(),
+            lists_.data(),    lists_total(), entries_.data(), entries_.capacity()};
   }
 
   /// Width of the finest cells in use; 0 if there is no grid.
@@ -203,6 +209,19 @@ class bucket::index {
   static bool can_bin(bucket const& options, std::size_t spheres) {
     return bins_spheres<Space>(options) && spheres <= detail::sorted_spheres<S>::most;
   }
+
+  /// What is known of the mesh before triangles look for spheres.
+  template <class Space>
+  void measure(Space& space) {
+    auto* const groups = groups_.reserve(space.resource(), detail::triangle_group<S>::count(mesh_.size()));
+    auto* const summary = summary_.reserve(space.resource(), 1);
+    detail::mesh_statistics<S>::clear(space, summary);
+    detail::measure_groups<S> const body{mesh_, summary, groups};
+    space.launch(body.blocks(), body);
+  }
+
+  /// The boxes of the triangles; null if there are none.
+  detail::triangle_aabb<S> const* boxes() const { return has_boxes_ ? boxes_.data() : nullptr; }
 
   /// Chooses the algorithm of the next query, and makes what it needs of the mesh.
   template <class Space>
@@ -247,7 +266,7 @@ class bucket::index {
   void make_grids(Space& space, bucket const& options, S const* reaches, int requested, Spheres const& spheres) {
     stage_ = stage::none;  // until all is done: an exception leaves no half-made grid behind
     grid_count_ = requested_ = 0;
-    std::size_t const taken = fixed_bytes + (boxes_.data() != nullptr ? mesh_.size() * sizeof *boxes_.data() : 0);
+    std::size_t const taken = fixed_bytes + (boxes() != nullptr ? mesh_.size() * sizeof *boxes() : 0);
     auto const plan = detail::memory_plan::make(mesh_.size(), spheres.size(), requested, options.cell_width > 0, taken,
                                                 options.memory_budget);
     for (int i = 0; i < detail::max_grids && i < requested; ++i) reaches_[i] = reaches[i];
@@ -267,10 +286,10 @@ class bucket::index {
                                       bucket_tuning<Space>::costs};
       for (int i = 0; i < detail::max_grids; ++i) request.reaches[i] = reaches_[i];
       space.launch(count,
-                   detail::plan_grid<S, Spheres>{mesh_, boxes_.data(), spheres, summary_.data(), grids, request});
+                   detail::plan_grid<S, Spheres>{mesh_, boxes(), spheres, summary_.data(), grids, request});
       if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) {
-          bins_.mark(space, mesh_, boxes_.data(), grids, plan.grids, plan.table_bits);
+          bins_.mark(space, mesh_, groups_.data(), grids, plan.grids, plan.table_bits);
         }
       }
       grid_count_ = plan.grids;
@@ -283,12 +302,19 @@ class bucket::index {
   template <class Space>
   void enter_triangles(Space& space, bucket const& options) {
     std::size_t const n = mesh_.size();
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (bins_spheres<Space>(options) && !has_boxes_) {
+        auto* const boxes = boxes_.reserve(space.resource(), n);
+        space.for_each(detail::triangle_group<S>::count(n), detail::compute_boxes<S>{mesh_, boxes});
+        has_boxes_ = true;
+      }
+    }
     auto* const lists = lists_.reserve(space.resource(), detail::table_size(cells_));
     space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
     auto const enter = [&](auto const& pass) {
       using kernel = detail::enter_triangles<S, std::decay_t<decltype(pass)>>;
       std::size_t const share = kernel::triangles_of_block(n, Space::template block<kernel>::num_threads);
-      space.launch((n + share - 1) / share, kernel{mesh_, boxes_.data(), grids_.data(), grid_count_, pass, share});
+      space.launch((n + share - 1) / share, kernel{mesh_, boxes(), grids_.data(), grid_count_, pass, share});
     };
     enter(detail::count_entries{lists});
     detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
@@ -325,7 +351,9 @@ class bucket::index {
   bool whole_boxes_ = false;           ///< spheres that move look for triangles along their ways
   std::size_t cells_ = 0, entry_limit_ = 0;
   std::uint32_t table_bits_ = 0;
-  buffer<detail::triangle_aabb<S>> boxes_;      ///< empty if the budget has no room for them
+  bool has_boxes_ = false;                      ///< of this mesh
+  buffer<detail::triangle_aabb<S>> boxes_;      ///< empty if the budget has no room for them, or nothing needs them
+  buffer<detail::triangle_aabb<S>> groups_;     ///< around groups of triangles, where spheres are binned
   buffer<detail::mesh_statistics<S>> summary_;  ///< empty if the budget has no room for it
   buffer<detail::size_histogram> radii_;
   buffer<detail::grid<S>> grids_;

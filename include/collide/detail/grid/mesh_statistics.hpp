@@ -41,6 +41,24 @@ struct mesh_statistics {
   COLLIDE_HD S upper_of(int k) const { return from_ordered_bits<S>(upper[k]); }
 };
 
+/// The area of a triangle whose extent is in a bin, as the histogram's sums have it: from 0 to 256; from two edges that
+/// leave a corner, in units of the bin's end.
+COLLIDE_HD_INLINE std::uint32_t relative_area(float const (&u)[3], float const (&v)[3]) {
+  float const x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+  float const area = 0.5f * sqrt_rn(x * x + (y * y + z * z));
+  return area <= 1 ? static_cast<std::uint32_t>(static_cast<std::int32_t>(area * 0x1p8f + 0.5f)) : 0;
+}
+template <class S>
+COLLIDE_HD_INLINE std::uint32_t relative_area(triangle<S> const& t, std::uint32_t bin) {
+  float const scale = 1 / bin_end(bin);
+  float u[3], v[3];
+  for (int k = 0; k < 3; ++k) {
+    u[k] = static_cast<float>(t.b[k] - t.a[k]) * scale;
+    v[k] = static_cast<float>(t.c[k] - t.a[k]) * scale;
+  }
+  return relative_area(u, v);
+}
+
 /// Kernel body: fills the summary, and the boxes of triangles if there is room for them.
 template <class S>
 struct compute_mesh_statistics {
@@ -89,20 +107,6 @@ struct compute_mesh_statistics {
         fetch_max(&summary->upper[k], to_ordered_bits(extent.upper[k]));
       }
     });
-  }
-
- private:
-  /// The area of a triangle whose extent is in a bin, as the histogram's sums have it: from 0 to 256.
-  static COLLIDE_HD_INLINE std::uint32_t relative_area(triangle<S> const& t, std::uint32_t bin) {
-    float const scale = 1 / bin_end(bin);
-    float u[3], v[3];
-    for (int k = 0; k < 3; ++k) {
-      u[k] = static_cast<float>(t.b[k] - t.a[k]) * scale;
-      v[k] = static_cast<float>(t.c[k] - t.a[k]) * scale;
-    }
-    float const x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
-    float const area = 0.5f * sqrt_rn(x * x + (y * y + z * z));
-    return area <= 1 ? static_cast<std::uint32_t>(static_cast<std::int32_t>(area * 0x1p8f + 0.5f)) : 0;
   }
 };
 

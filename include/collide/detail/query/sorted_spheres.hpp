@@ -37,30 +37,38 @@ namespace collide::detail {
 template <class S>
 struct mark_occupied_cells {
   mesh_view<S> mesh;
-  triangle_aabb<S> const* boxes;
+  triangle_aabb<S> const* groups;
   grid<S> const* grids;
   int grid_count;
   std::uint32_t* occupied;
 
   void operator()(std::size_t i) const {
-    constexpr std::size_t n = triangle_group<S>::size;
-    std::size_t const first = i * n, end = smaller(first + n, mesh.size());
-    triangle_group<S> group;
-    bool const whole = end - first == n && group.load(boxes, first);
+    if (groups[i].is_empty()) return;
+    std::uint32_t each = 0;  // bits of grids for which a triangle is not small
     for (int g = 0; g < grid_count; ++g) {
-      if (whole && group.is_small(grids[g])) {
-        group.each_range(grids[g], [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
+      if (!is_small(groups[i], grids[g])) {
+        each |= 1u << g;
         continue;
       }
-      for (std::size_t t = first; t < end; ++t) {
+      each_range_of_group(grids[g], groups[i], [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
+    }
+    if (each != 0) mark_each(i, each);
+  }
+
+ private:
+  void mark_each(std::size_t i, std::uint32_t some) const {
+    triangle_group<S> group;
+    multiversioned([&] { group.load(mesh, i * triangle_group<S>::size); });
+    for (int g = 0; g < grid_count; ++g) {
+      if ((some >> g & 1) == 0) continue;
+      for (std::uint32_t k = 0; k < triangle_group<S>::size; ++k) {
         each_range(
-            grids[g], boxes[t], [&] { return mesh[t]; },
+            grids[g], group.box(k), [&] { return group[k]; },
             [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
       }
     }
   }
 
- private:
   void mark(std::uint32_t first, std::uint32_t n) const {
     for (std::uint32_t const end = first + n; first < end;) {
       std::uint32_t const next = smaller((first / 32 + 1) * 32, end);
@@ -133,9 +141,9 @@ class sorted_spheres {
   /// Marks the cells that triangles touch. To be called for new grids, the cells of each of which begin at a multiple
   /// of 2^table_bits.
   template <class Space>
-  void mark(Space& space, mesh_view<S> const& mesh, triangle_aabb<S> const* boxes, grid<S> const* grids, int grid_count,
-            std::uint32_t table_bits) {
-    boxes_ = boxes;
+  void mark(Space& space, mesh_view<S> const& mesh, triangle_aabb<S> const* groups, grid<S> const* grids,
+            int grid_count, std::uint32_t table_bits) {
+    groups_ = groups;
     grids_ = grids;
     grid_count_ = grid_count;
     auto const last = static_cast<std::size_t>(grid_count - 1);
@@ -143,8 +151,8 @@ class sorted_spheres {
     std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
-    constexpr std::size_t group = triangle_group<S>::size;
-    space.for_each((mesh.size() + group - 1) / group, mark_occupied_cells<S>{mesh, boxes, grids, grid_count, occupied});
+    space.for_each(triangle_group<S>::count(mesh.size()),
+                   mark_occupied_cells<S>{mesh, groups, grids, grid_count, occupied});
   }
 
   /// How far the grid must reach for spheres of one radius that move: the radius of the bounding sphere of each path.
@@ -253,10 +261,10 @@ class sorted_spheres {
     return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids};
   }
 
-  spheres_in_cells<S> in_cells() const { return {boxes_, grids_, grid_count_, columns_, ends_.data(), everywhere()}; }
+  spheres_in_cells<S> in_cells() const { return {groups_, grids_, grid_count_, columns_, ends_.data(), everywhere()}; }
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
 
-  triangle_aabb<S> const* boxes_ = nullptr;
+  triangle_aabb<S> const* groups_ = nullptr;
   grid<S> const* grids_ = nullptr;
   int grid_count_ = 0;
   std::size_t cells_ = 0;

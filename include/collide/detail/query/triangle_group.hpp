@@ -9,6 +9,7 @@
 
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/grid/triangle_cells.hpp>
+#include <collide/mesh.hpp>
 
 // the numbers of elements of small arrays are int
 #pragma GCC diagnostic push
@@ -16,31 +17,66 @@
 
 namespace collide::detail {
 
-/// The boxes of eight triangles, number by number in arrays of their own, and the box around all of them.
+/// Eight triangles that follow each other in a mesh, their boxes, number by number in arrays of their own, and the box
+/// around all of them.
 template <class S>
 struct triangle_group {
   static constexpr std::uint32_t size = 8;
 
+  S corners[3][3][size];  ///< x, y and z of the first corner, of the second, of the third
   S lower[3][size], upper[3][size], padding[size];
   triangle_aabb<S> all;
+  bool is_whole;  ///< there are as many triangles, and all are finite
 
-  /// Takes the boxes of triangles `first` and the next ones. False if one of them is not finite.
-  bool load(triangle_aabb<S> const* boxes, std::size_t first) {
-    all = boxes[first];
-    bool finite = true;
-    for (std::uint32_t i = 0; i < size; ++i) {
-      triangle_aabb<S> const& b = boxes[first + i];
-      finite = finite && !b.is_empty();
-      for (int k = 0; k < 3; ++k) {
-        lower[k][i] = b.lower[k];
-        upper[k][i] = b.upper[k];
-        all.lower[k] = smaller(all.lower[k], b.lower[k]);
-        all.upper[k] = larger(all.upper[k], b.upper[k]);
-      }
-      padding[i] = b.padding;
-      all.padding = larger(all.padding, b.padding);
+  /// How many groups the triangles of a mesh are.
+  static std::size_t count(std::size_t triangles) { return (triangles + size - 1) / size; }
+
+  /// Takes triangles `first` and the next ones of a mesh, as many as there are. The boxes of what is not finite, or not
+  /// there, are empty. Its loops are for the processor's vector unit.
+  void load(mesh_view<S> const& mesh, std::size_t first) {
+    std::size_t const n = smaller(mesh.size() - first, std::size_t{size});
+    for (std::size_t i = 0; i < size; ++i) {
+      triangle<S> const t = mesh[first + smaller(i, n - 1)];
+      for (int k = 0; k < 3; ++k) corners[0][k][i] = t.a[k], corners[1][k][i] = t.b[k], corners[2][k][i] = t.c[k];
     }
-    return finite;
+    uint_for<S> broken[size];
+    for (std::size_t i = 0; i < size; ++i) {
+      uint_for<S> bits = 0;
+      for (auto const& corner : corners) {
+        for (auto const& x : corner) bits = larger(bits, to_bits(x[i]) & ~ieee_traits<S>::sign_mask);
+      }
+      broken[i] = bits >= ieee_traits<S>::exponent_mask || i >= n ? 1 : 0;
+    }
+    constexpr S far = std::numeric_limits<S>::max();
+    uint_for<S> any = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      S extent = 0;
+      for (int k = 0; k < 3; ++k) {
+        S const a = corners[0][k][i], b = corners[1][k][i], c = corners[2][k][i];
+        lower[k][i] = select(broken[i] != 0, far, smaller(smaller(a, b), c));
+        upper[k][i] = select(broken[i] != 0, -far, larger(larger(a, b), c));
+        extent = larger(extent, upper[k][i] - lower[k][i]);
+      }
+      padding[i] = triangle_aabb<S>::padding_of(extent);
+      any |= broken[i];
+    }
+    is_whole = any == 0;
+    all = box(0);
+    for (std::uint32_t i = 1; i < size; ++i) {
+      static_cast<aabb<S>&>(all) = typename aabb<S>::merge{}(all, box(i));
+      all.padding = larger(all.padding, padding[i]);
+    }
+  }
+
+  /// The box of triangle `i`.
+  triangle_aabb<S> box(std::uint32_t i) const {
+    return {{{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}}, padding[i]};
+  }
+
+  /// Triangle `i`.
+  triangle<S> operator[](std::uint32_t i) const {
+    auto const corner = [&](int c) { return vec3<S>{corners[c][0][i], corners[c][1][i], corners[c][2][i]}; };
+    return {corner(0), corner(1), corner(2)};
   }
 
   /// Bit i is whether a sphere can reach what is in box i: as `sphere_soa::reaching` has it. Without branches, for the
@@ -88,22 +124,26 @@ struct triangle_group {
     return looked_at + 8 * near_all <= each;
   }
 
-  /// True if the box around all of the triangles is small against the cells of a grid, and so meets hardly more of them
-  /// than the triangles do.
-  bool is_small(grid<S> const& g) const { return g.levels == 1 && 4 * all.max_extent() <= g.width; }
-
-  /// Calls f(number, n) for the runs of cells that its dilated box meets: no cell twice.
-  template <class F>
-  void each_range(grid<S> const& g, F const& f) const {
-    each_range_of_box(g.level[0], triangle_cells<S>(g, g.level[0], all).range(), f);
-  }
-
  private:
   S outside(int k, std::uint32_t i, S x) const {
     S const distance = larger(lower[k][i] - x, x - upper[k][i]);
     return select(distance > 0, distance, S(0));
   }
 };
+
+/// True if the box around a group is small against the cells of a grid, and so meets hardly more of them than its
+/// triangles do.
+template <class S>
+bool is_small(triangle_aabb<S> const& group, grid<S> const& g) {
+  return g.levels == 1 && 4 * group.max_extent() <= g.width;
+}
+
+/// Calls f(number, n) for the runs of cells, of the one level of a grid, that the dilated box around a group meets: no
+/// cell twice.
+template <class S, class F>
+void each_range_of_group(grid<S> const& g, aabb<S> const& group, F const& f) {
+  each_range_of_box(g.level[0], triangle_cells<S>(g, g.level[0], group).range(), f);
+}
 
 }  // namespace collide::detail
 

@@ -1,0 +1,159 @@
+/// \file
+/// Kernel bodies of one pass over a mesh or over radii, for the CPU: eight at a time, and histograms that are kept close.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include <collide/detail/execution/launch.hpp>
+#include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/detail/query/triangle_group.hpp>
+#include <collide/mesh.hpp>
+#include <collide/spheres.hpp>
+
+namespace collide::detail {
+
+/// The histogram of the sizes that a block of one thread sees.
+struct histogram_of_block {
+  std::uint32_t counts[size_bins], sums[size_bins];
+  std::uint32_t first, end;  ///< of the bins in use
+
+  void clear() {
+    std::memset(counts, 0, sizeof counts);
+    std::memset(sums, 0, sizeof sums);
+    first = size_bins, end = 0;
+  }
+
+  /// Adds `n` sizes of a bin. The sums must fit into 32 bits.
+  void add(std::uint32_t bin, std::uint32_t n, std::uint32_t sum) {
+    counts[bin] += n;
+    sums[bin] += sum;
+    first = smaller(first, bin);
+    end = larger(end, bin + 1);
+  }
+
+  void flush(size_histogram* to) const {
+    for (std::uint32_t b = first; b < end; ++b) {
+      if (counts[b] != 0) to->add(b, counts[b], sums[b]);
+    }
+  }
+};
+
+/// Kernel body of a block of one thread: what `compute_mesh_statistics` finds, and the boxes around groups of triangles.
+template <class S>
+struct measure_groups {
+  static constexpr int items = 4;
+  static constexpr std::size_t share = 128;  ///< groups of a block
+
+  mesh_view<S> mesh;
+  mesh_statistics<S>* summary;
+  triangle_aabb<S>* groups;
+
+  template <class>
+  struct scratch {
+    triangle_group<S> group;
+    histogram_of_block extents;
+    aabb<S> all;
+  };
+
+  /// How many blocks there are.
+  std::size_t blocks() const { return (triangle_group<S>::count(mesh.size()) + share - 1) / share; }
+
+  template <class Block>
+  void operator()(Block& block, scratch<Block>& s) const {
+    static_assert(Block::num_threads == 1, "collide: groups are measured by blocks of one thread");
+    s.extents.clear();
+    multiversioned([&] { measure(s, block.index() * share); });
+    s.extents.flush(&summary->extents);
+    for (int k = 0; k < 3; ++k) {
+      fetch_max(&summary->lower[k], static_cast<uint_for<S>>(~to_ordered_bits(s.all.lower[k])));
+      fetch_max(&summary->upper[k], to_ordered_bits(s.all.upper[k]));
+    }
+  }
+
+ private:
+  template <class Scratch>
+  void measure(Scratch& s, std::size_t begin) const {
+    constexpr std::uint32_t n = triangle_group<S>::size;
+    std::size_t const end = smaller(begin + share, triangle_group<S>::count(mesh.size()));
+    aabb<S> all = aabb<S>::empty();
+    for (std::size_t i = begin; i < end; ++i) {
+      s.group.load(mesh, i * n);
+      groups[i] = s.group.all;
+      all = typename aabb<S>::merge{}(all, s.group.all);
+      std::uint32_t bins[n], areas[n];
+      measure(s.group, bins, areas);
+      for (std::uint32_t k = 0; k < n; ++k) {
+        if (s.group.is_whole || !s.group.box(k).is_empty()) s.extents.add(bins[k], 1, areas[k]);
+      }
+    }
+    s.all = all;
+  }
+
+  /// The bins of the triangles' extents, and their areas. Without branches, for the processor's vector unit.
+  template <std::size_t n>
+  static void measure(triangle_group<S> const& group, std::uint32_t (&bins)[n], std::uint32_t (&areas)[n]) {
+    float scale[n];
+    for (std::size_t i = 0; i < n; ++i) {
+      S extent = 0;
+      for (int k = 0; k < 3; ++k) extent = larger(extent, group.upper[k][i] - group.lower[k][i]);
+      bins[i] = size_bin(extent);
+      scale[i] = 1 / bin_end(bins[i]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      float u[3], v[3];
+      for (int k = 0; k < 3; ++k) {
+        u[k] = static_cast<float>(group.corners[1][k][i] - group.corners[0][k][i]) * scale[i];
+        v[k] = static_cast<float>(group.corners[2][k][i] - group.corners[0][k][i]) * scale[i];
+      }
+      areas[i] = relative_area(u, v);
+    }
+  }
+};
+
+/// Kernel body of `for_each` over groups: the boxes of the triangles.
+template <class S>
+struct compute_boxes {
+  mesh_view<S> mesh;
+  triangle_aabb<S>* boxes;
+
+  void operator()(std::size_t i) const {
+    constexpr std::size_t n = triangle_group<S>::size;
+    triangle_group<S> group;
+    multiversioned([&] { group.load(mesh, i * n); });
+    for (std::size_t k = 0; k < n && i * n + k < mesh.size(); ++k) {
+      boxes[i * n + k] = group.box(static_cast<std::uint32_t>(k));
+    }
+  }
+};
+
+/// Kernel body of a block of one thread: the histogram of the finite, valid radii.
+template <class S>
+struct measure_radii {
+  static constexpr int items = 4;
+  static constexpr std::size_t share = 4096;  ///< spheres of a block
+
+  sphere_view<S> spheres;
+  size_histogram* histogram;
+
+  template <class>
+  struct scratch {
+    histogram_of_block radii;
+  };
+
+  template <class Block>
+  void operator()(Block& block, scratch<Block>& s) const {
+    static_assert(Block::num_threads == 1, "collide: radii are measured by blocks of one thread");
+    s.radii.clear();
+    std::size_t const begin = block.index() * share, end = smaller(begin + share, spheres.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      S const r = spheres.radius(i);
+      if (is_valid_radius(r) && is_finite(r)) s.radii.add(size_bin(r > 0 ? r : S(0)), 1, 0);
+    }
+    s.radii.flush(histogram);
+  }
+};
+
+}  // namespace collide::detail
