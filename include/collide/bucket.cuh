@@ -247,12 +247,26 @@ class bucket::index {
     if (origin_ == origin::radius || summary_.data() == nullptr) return;
     S reaches[detail::max_grids];
     int const n = spheres.one_radius() ? reach_of(spheres.common_radius(), reaches)
-                                       : detail::reaches_of(space, spheres, radii_, reaches);
+                                       : detail::reaches_of(histogram_of(space, spheres), reaches);
     if (n == 0 || (n == requested_ && std::equal(reaches, reaches + n, reaches_))) return;
     origin_ = origin::spheres;
     make_grids(space, options, reaches, n, spheres);
   }
 
+  /// The histogram of the radii. Waits.
+  template <class Space>
+  detail::size_histogram histogram_of(Space& space, sphere_view<S> const& spheres) {
+    auto* const radii = radii_.reserve(space.resource(), 1);
+    detail::size_histogram::clear(space, radii);
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      detail::measure_radii<S> const body{spheres, radii};
+      space.launch(body.blocks(), body);
+    } else {
+      detail::radius_histogram_kernel<S> const body{spheres, radii};
+      space.launch(detail::grid_size<Space>(spheres.size(), body), body);
+    }
+    return space.read(radii);
+  }
   /// The grid of one radius: the one that is there if it is not much too wide.
   int reach_of(S radius, S* reaches) const {
     if (!detail::is_valid_radius(radius) || !detail::is_finite(radius)) return 0;

@@ -151,19 +151,14 @@ struct radius_histogram_kernel {
 };
 
 /// How far the grids of spheres of many radii reach: reaches a factor of 4 or more apart, falling, only where there are
-/// spheres. Returns how many there are. Waits.
-template <class Space, class S>
-int reaches_of(Space& space, sphere_view<S> const& spheres, buffer<size_histogram>& memory, S (&reaches)[max_grids]) {
-  auto* const radii = memory.reserve(space.resource(), 1);
-  size_histogram::clear(space, radii);
-  radius_histogram_kernel<S> const body{spheres, radii};
-  space.launch(grid_size<Space>(spheres.size(), body), body);
-  size_histogram const seen = space.read(radii);
-  if (seen.empty()) return 0;
+/// spheres. Returns how many there are.
+template <class S>
+int reaches_of(size_histogram const& radii, S (&reaches)[max_grids]) {
+  if (radii.empty()) return 0;
   constexpr int bins_per_factor_4 = 8;
   int n = 0;
-  for (int b = seen.last(); b >= seen.first() && n < max_grids; b -= bins_per_factor_4) {
-    while (seen.counts[b] == 0) --b;
+  for (int b = radii.last(); b >= radii.first() && n < max_grids; b -= bins_per_factor_4) {
+    while (radii.counts[b] == 0) --b;
     float const end = bin_end(static_cast<std::uint32_t>(b));
     reaches[n++] = static_cast<S>(smaller(end, std::numeric_limits<float>::max()));
   }

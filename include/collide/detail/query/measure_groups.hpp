@@ -86,7 +86,7 @@ struct measure_groups {
       std::uint32_t bins[n], areas[n];
       measure(s.group, bins, areas);
       for (std::uint32_t k = 0; k < n; ++k) {
-        if (s.group.is_whole || !s.group.box(k).is_empty()) s.extents.add(bins[k], 1, areas[k]);
+        if ((s.group.there >> k & 1) != 0) s.extents.add(bins[k], 1, areas[k]);
       }
     }
     s.all = all;
@@ -137,6 +137,9 @@ struct measure_radii {
 
   sphere_view<S> spheres;
   size_histogram* histogram;
+
+  /// How many blocks there are.
+  std::size_t blocks() const { return (spheres.size() + share - 1) / share; }
 
   template <class>
   struct scratch {

@@ -144,15 +144,13 @@ class sorted_spheres {
   void mark(Space& space, mesh_view<S> const& mesh, triangle_aabb<S> const* groups, grid<S> const* grids,
             int grid_count, std::uint32_t table_bits) {
     groups_ = groups;
-    grids_ = grids;
     grid_count_ = grid_count;
-    auto const last = static_cast<std::size_t>(grid_count - 1);
-    cells_ = (last << table_bits) + space.read(grids + last).cells;  // of many grids some cells are not in use
+    grids_ = number_cells(space, grids, table_bits);
     std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
     space.for_each(triangle_group<S>::count(mesh.size()),
-                   mark_occupied_cells<S>{mesh, groups, grids, grid_count, occupied});
+                   mark_occupied_cells<S>{mesh, groups, grids_, grid_count, occupied});
   }
 
   /// How far the grid must reach for spheres of one radius that move: the radius of the bounding sphere of each path.
@@ -251,6 +249,20 @@ class sorted_spheres {
   }
 
  private:
+  /// Numbers the cells of all grids one after the other, without those that are not in use.
+  template <class Space>
+  grid<S> const* number_cells(Space& space, grid<S> const* grids, std::uint32_t table_bits) {
+    grid<S>* const own = own_grids_.reserve(space.resource(), max_grids);
+    cells_ = 0;
+    for (int g = 0; g < grid_count_; ++g) {
+      own[g] = grids[g];
+      std::uint32_t const begin = static_cast<std::uint32_t>(g) << table_bits;
+      for (int l = 0; l < own[g].levels; ++l) own[g].level[l].first += static_cast<std::uint32_t>(cells_) - begin;
+      cells_ += own[g].cells;
+    }
+    return own;
+  }
+
   template <class Space>
   sphere_soa<S> columns(Space& space, std::size_t n) {
     std::size_t const room = n + sphere_soa<S>::simd_width;
@@ -268,6 +280,7 @@ class sorted_spheres {
   grid<S> const* grids_ = nullptr;
   int grid_count_ = 0;
   std::size_t cells_ = 0;
+  buffer<grid<S>> own_grids_;
   buffer<std::uint32_t> occupied_, ends_, order_;
   buffer<std::uint64_t> total_;
   buffer<uint_for<S>> measures_;

@@ -26,7 +26,7 @@ struct triangle_group {
   S corners[3][3][size];  ///< x, y and z of the first corner, of the second, of the third
   S lower[3][size], upper[3][size], padding[size];
   triangle_aabb<S> all;
-  bool is_whole;  ///< there are as many triangles, and all are finite
+  std::uint32_t there;  ///< bit i: there is a triangle i, and it is finite
 
   /// How many groups the triangles of a mesh are.
   static std::size_t count(std::size_t triangles) { return (triangles + size - 1) / size; }
@@ -35,38 +35,38 @@ struct triangle_group {
   /// there, are empty. Its loops are for the processor's vector unit.
   void load(mesh_view<S> const& mesh, std::size_t first) {
     std::size_t const n = smaller(mesh.size() - first, std::size_t{size});
-    for (std::size_t i = 0; i < size; ++i) {
-      triangle<S> const t = mesh[first + smaller(i, n - 1)];
-      for (int k = 0; k < 3; ++k) corners[0][k][i] = t.a[k], corners[1][k][i] = t.b[k], corners[2][k][i] = t.c[k];
-    }
-    uint_for<S> broken[size];
+    gather(mesh, first, n);
+    uint_for<S> mask = 0;
     for (std::size_t i = 0; i < size; ++i) {
       uint_for<S> bits = 0;
       for (auto const& corner : corners) {
         for (auto const& x : corner) bits = larger(bits, to_bits(x[i]) & ~ieee_traits<S>::sign_mask);
       }
-      broken[i] = bits >= ieee_traits<S>::exponent_mask || i >= n ? 1 : 0;
-    }
-    constexpr S far = std::numeric_limits<S>::max();
-    uint_for<S> any = 0;
-    for (std::size_t i = 0; i < size; ++i) {
+      bool const finite = bits < ieee_traits<S>::exponent_mask;
+      constexpr S far = std::numeric_limits<S>::max();
       S extent = 0;
       for (int k = 0; k < 3; ++k) {
         S const a = corners[0][k][i], b = corners[1][k][i], c = corners[2][k][i];
-        lower[k][i] = select(broken[i] != 0, far, smaller(smaller(a, b), c));
-        upper[k][i] = select(broken[i] != 0, -far, larger(larger(a, b), c));
+        lower[k][i] = select(finite, smaller(smaller(a, b), c), far);
+        upper[k][i] = select(finite, larger(larger(a, b), c), -far);
         extent = larger(extent, upper[k][i] - lower[k][i]);
       }
       padding[i] = triangle_aabb<S>::padding_of(extent);
-      any |= broken[i];
+      mask |= finite ? bit[i] : uint_for<S>(0);
     }
-    is_whole = any == 0;
-    all = box(0);
-    for (std::uint32_t i = 1; i < size; ++i) {
-      static_cast<aabb<S>&>(all) = typename aabb<S>::merge{}(all, box(i));
-      all.padding = larger(all.padding, padding[i]);
+    for (std::size_t i = n; i < size; ++i) {
+      for (int k = 0; k < 3; ++k) lower[k][i] = std::numeric_limits<S>::max(), upper[k][i] = -lower[k][i];
     }
+    there = static_cast<std::uint32_t>(mask) & ((1u << n) - 1);
+    for (int k = 0; k < 3; ++k) {
+      all.lower[k] = least(lower[k], [](S a, S b) { return smaller(a, b); });
+      all.upper[k] = least(upper[k], [](S a, S b) { return larger(a, b); });
+    }
+    all.padding = least(padding, [](S a, S b) { return larger(a, b); });
   }
+
+  /// True if there are as many triangles, and all are finite.
+  bool is_whole() const { return there == (1u << size) - 1; }
 
   /// The box of triangle `i`.
   triangle_aabb<S> box(std::uint32_t i) const {
@@ -82,13 +82,12 @@ struct triangle_group {
   /// Bit i is whether a sphere can reach what is in box i: as `sphere_soa::reaching` has it. Without branches, for the
   /// processor's vector unit.
   std::uint32_t reached_by(S x, S y, S z, S reach) const {
-    constexpr uint_for<S> bit[size] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
     uint_for<S> mask = 0;
     for (std::uint32_t i = 0; i < size; ++i) {
       S const gx = outside(0, i, x), gy = outside(1, i, y), gz = outside(2, i, z), most = reach + padding[i];
       mask |= gx * gx + (gy * gy + gz * gz) <= most * most ? bit[i] : uint_for<S>(0);
     }
-    return static_cast<std::uint32_t>(mask);
+    return static_cast<std::uint32_t>(mask) & there;
   }
 
   /// True if all of the triangles are inside the sphere, whatever is rounded. May be false all the same.
@@ -125,6 +124,24 @@ struct triangle_group {
   }
 
  private:
+  static constexpr uint_for<S> bit[size] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
+
+  /// Reads the corners; of triangles that are not there, those of the last one.
+  void gather(mesh_view<S> const& mesh, std::size_t first, std::size_t n) {
+    for (std::size_t i = 0; i < size; ++i) {
+      triangle<S> const t = mesh[first + smaller(i, n - 1)];
+      for (int k = 0; k < 3; ++k) corners[0][k][i] = t.a[k], corners[1][k][i] = t.b[k], corners[2][k][i] = t.c[k];
+    }
+  }
+
+  /// The least of all values, as `f` of two says.
+  template <class F>
+  static S least(S const (&values)[size], F const& f) {
+    S half[size / 2];
+    for (std::size_t i = 0; i < size / 2; ++i) half[i] = f(values[i], values[i + size / 2]);
+    return f(f(half[0], half[1]), f(half[2], half[3]));
+  }
+
   S outside(int k, std::uint32_t i, S x) const {
     S const distance = larger(lower[k][i] - x, x - upper[k][i]);
     return select(distance > 0, distance, S(0));
@@ -142,7 +159,11 @@ bool is_small(triangle_aabb<S> const& group, grid<S> const& g) {
 /// cell twice.
 template <class S, class F>
 void each_range_of_group(grid<S> const& g, aabb<S> const& group, F const& f) {
-  each_range_of_box(g.level[0], triangle_cells<S>(g, g.level[0], group).range(), f);
+  grid_level<S> const& l = g.level[0];
+  cell_box const r = g.range_of(l, group);
+  bool turns = false;
+  for (int k = 0; k < 3; ++k) turns = turns || r.upper[k] - r.lower[k] > l.mask[k];
+  each_range_of_box(l, turns ? triangle_cells<S>(g, l, group).range() : r, f);
 }
 
 }  // namespace collide::detail

@@ -35,6 +35,7 @@ struct query_triangle_major {
     reached found[room];
     std::uint32_t count;
     triangle_group<S> group;
+    bool is_loaded;  ///< the group: most groups have no sphere near them, and are not read
     candidate_batch<S> batch;
     pipeline_storage<Block> hits;
   };
@@ -53,10 +54,16 @@ struct query_triangle_major {
       if (around.is_empty()) continue;
       std::uint32_t const near = in.grids_near(around);
       if (near == 0 && !some_everywhere) continue;
-      multiversioned([&] { s.group.load(pipeline.mesh, first); });
+      s.is_loaded = false;
       std::uint32_t together = 0;  // bits of grids where the group is compared as a whole
-      for (int g = 0; g < in.grid_count && s.group.is_whole; ++g) {
-        if ((near >> g & 1) != 0) together |= s.group.pays(in.grids[g]) ? 1u << g : 0;
+      for (int g = 0; g < in.grid_count; ++g) {
+        if ((near >> g & 1) != 0 && is_small(around, in.grids[g])) together |= 1u << g;
+      }
+      if (near != together || some_everywhere) {
+        load(s, first);
+        for (int g = 0; g < in.grid_count && s.group.is_whole(); ++g) {
+          if ((near & ~together) >> g & 1) together |= s.group.pays(in.grids[g]) ? 1u << g : 0;
+        }
       }
       if (together != 0) {
         multiversioned([&] { look_together(block, s, first, together); });
@@ -71,6 +78,12 @@ struct query_triangle_major {
   }
 
  private:
+  template <class Scratch>
+  void load(Scratch& s, std::size_t first) const {
+    if (!s.is_loaded) multiversioned([&] { s.group.load(pipeline.mesh, first); });
+    s.is_loaded = true;
+  }
+
   /// Finds the spheres near single triangles of the group, in the grids whose bits are set.
   template <class Block>
   void look(Block& block, scratch<Block>& s, std::size_t first, std::uint32_t some) const {
@@ -98,10 +111,12 @@ struct query_triangle_major {
   /// Finds the spheres near a group, in the grids whose bits are set, and which of its triangles they are near to.
   template <class Block>
   void look_together(Block& block, scratch<Block>& s, std::size_t first, std::uint32_t some) const {
+    triangle_aabb<S> const around = in.groups[first / triangle_group<S>::size];
     auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
       std::uint32_t const last = in.ends[cell + n];
       for (std::uint32_t i = in.ends[cell]; i < last; i += in.spheres.simd_width) {
-        std::uint32_t near = in.spheres.reaching(s.group.all, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+        std::uint32_t near = in.spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+        if (near != 0) load(s, first);
         for (; near != 0; near &= near - 1) {
           std::uint32_t const k = i + static_cast<std::uint32_t>(__builtin_ctz(near));
           std::uint32_t const mask =
@@ -113,7 +128,7 @@ struct query_triangle_major {
       }
     };
     for (int g = 0; g < in.grid_count; ++g) {
-      if ((some >> g & 1) != 0) each_range_of_group(in.grids[g], s.group.all, look_into);
+      if ((some >> g & 1) != 0) each_range_of_group(in.grids[g], around, look_into);
     }
   }
 
