@@ -85,6 +85,12 @@ struct measure_groups {
       all = typename aabb<S>::merge{}(all, s.group.all);
       std::uint32_t bins[n], areas[n];
       measure(s.group, bins, areas);
+      std::uint32_t differ = 0, sum = 0;
+      for (std::uint32_t k = 0; k < n; ++k) differ |= bins[k] ^ bins[0], sum += areas[k];
+      if (differ == 0 && s.group.is_whole()) {  // mostly: a counter that is asked again at once makes it wait
+        s.extents.add(bins[0], n, sum);
+        continue;
+      }
       for (std::uint32_t k = 0; k < n; ++k) {
         if ((s.group.there >> k & 1) != 0) s.extents.add(bins[k], 1, areas[k]);
       }
@@ -95,21 +101,31 @@ struct measure_groups {
   /// The bins of the triangles' extents, and their areas. Without branches, for the processor's vector unit.
   template <std::size_t n>
   static void measure(triangle_group<S> const& group, std::uint32_t (&bins)[n], std::uint32_t (&areas)[n]) {
-    float scale[n];
+    float extents[n];
     for (std::size_t i = 0; i < n; ++i) {
       S extent = 0;
       for (int k = 0; k < 3; ++k) extent = larger(extent, group.upper[k][i] - group.lower[k][i]);
-      bins[i] = size_bin(extent);
-      scale[i] = 1 / bin_end(bins[i]);
+      extents[i] = static_cast<float>(smaller(extent, S(std::numeric_limits<float>::max())));
     }
     for (std::size_t i = 0; i < n; ++i) {
+      bins[i] = to_bits(extents[i]) >> 21;
+      float const scale = 1 / bin_end(bins[i]);
       float u[3], v[3];
       for (int k = 0; k < 3; ++k) {
-        u[k] = static_cast<float>(group.corners[1][k][i] - group.corners[0][k][i]) * scale[i];
-        v[k] = static_cast<float>(group.corners[2][k][i] - group.corners[0][k][i]) * scale[i];
+        u[k] = static_cast<float>(group.corners[1][k][i] - group.corners[0][k][i]) * scale;
+        v[k] = static_cast<float>(group.corners[2][k][i] - group.corners[0][k][i]) * scale;
       }
-      areas[i] = relative_area(u, v);
+      float const x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+      float const area = 0.5f * root(x * x + (y * y + z * z));
+      areas[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(select(area <= 1, area, 0.f) * 0x1p8f + 0.5f));
     }
+  }
+
+  /// A square root to 17 bits: that of the library is called for a negative number, and so not vectorised.
+  static float root(float x) {
+    float inverse = from_bits<float>(0x5f3759df - (to_bits(x) >> 1));
+    for (int k = 0; k < 2; ++k) inverse *= 1.5f - 0.5f * x * inverse * inverse;
+    return x * inverse;
   }
 };
 

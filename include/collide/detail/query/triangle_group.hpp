@@ -128,9 +128,23 @@ struct triangle_group {
 
   /// Reads the corners; of triangles that are not there, those of the last one.
   void gather(mesh_view<S> const& mesh, std::size_t first, std::size_t n) {
-    for (std::size_t i = 0; i < size; ++i) {
-      triangle<S> const t = mesh[first + smaller(i, n - 1)];
-      for (int k = 0; k < 3; ++k) corners[0][k][i] = t.a[k], corners[1][k][i] = t.b[k], corners[2][k][i] = t.c[k];
+    auto const take = [&](std::size_t i, auto const& corner_of) {
+      for (unsigned c = 0; c < 3; ++c) {
+        auto const& p = corner_of(first + smaller(i, n - 1), c);
+        for (int k = 0; k < 3; ++k) corners[c][k][i] = p[k];
+      }
+    };
+    auto const& points = mesh.vertices();
+    if (points.packed() && mesh.indices() != nullptr && mesh.packed_indices()) {  // strides that the compiler knows
+      S const* const x = points.address(0);
+      id const* const numbers = mesh.indices();
+      for (std::size_t i = 0; i < size; ++i) {
+        take(i, [&](std::size_t t, unsigned c) { return x + 3 * std::size_t{numbers[3 * t + c]}; });
+      }
+    } else {
+      for (std::size_t i = 0; i < size; ++i) {
+        take(i, [&](std::size_t t, unsigned c) { return points[mesh.corner(t, c)]; });
+      }
     }
   }
 
@@ -148,11 +162,11 @@ struct triangle_group {
   }
 };
 
-/// True if the box around a group is small against the cells of a grid, and so meets hardly more of them than its
-/// triangles do.
+/// True if the box around a group is not much larger than a cell, and so meets hardly more of them than its triangles
+/// do.
 template <class S>
 bool is_small(triangle_aabb<S> const& group, grid<S> const& g) {
-  return g.levels == 1 && 4 * group.max_extent() <= g.width;
+  return g.levels == 1 && group.max_extent() <= 2 * g.width;
 }
 
 /// Calls f(number, n) for the runs of cells, of the one level of a grid, that the dilated box around a group meets: no
