@@ -51,7 +51,8 @@ struct bucket {
 template <class S>
 class bucket::index {
  public:
-  /// One pass over the mesh: extent, sizes, and boxes, on the host of groups of triangles. The grids follow as soon as a radius is known.
+  /// One pass over the mesh: extent, sizes, and boxes, on the host of groups of triangles. The grids follow as soon as
+  /// a radius is known.
   template <class Space>
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
     if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
@@ -299,8 +300,7 @@ class bucket::index {
                                       plan.table_bits,
                                       bucket_tuning<Space>::costs};
       for (int i = 0; i < detail::max_grids; ++i) request.reaches[i] = reaches_[i];
-      space.launch(count,
-                   detail::plan_grid<S, Spheres>{mesh_, boxes(), spheres, summary_.data(), grids, request});
+      space.launch(count, detail::plan_grid<S, Spheres>{mesh_, boxes(), spheres, summary_.data(), grids, request});
       if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) {
           bins_.mark(space, mesh_, groups_.data(), grids, plan.grids, plan.table_bits);

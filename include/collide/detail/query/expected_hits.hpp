@@ -8,8 +8,8 @@
 #include <cstdint>
 
 #include <collide/detail/execution/atomic.hpp>
-#include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/triangle_cells.hpp>
 #include <collide/detail/narrow_phase/traits.hpp>

@@ -1,5 +1,6 @@
 /// \file
-/// Kernel bodies of one pass over a mesh or over radii, for the CPU: eight at a time, and histograms that are kept close.
+/// Kernel bodies of one pass over a mesh or over radii, for the CPU: eight at a time, and histograms that are kept
+/// close.
 #pragma once
 
 #include <cstddef>
@@ -41,7 +42,8 @@ struct histogram_of_block {
   }
 };
 
-/// Kernel body of a block of one thread: what `compute_mesh_statistics` finds, and the boxes around groups of triangles.
+/// Kernel body of a block of one thread: what `compute_mesh_statistics` finds, and the boxes around groups of
+/// triangles.
 template <class S>
 struct measure_groups {
   static constexpr int items = 4;

@@ -124,7 +124,8 @@ struct triangle_group {
   }
 
  private:
-  static constexpr uint_for<S> bit[size] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
+  static constexpr uint_for<S> bit[size] = {1,  2,  4,  8,
+                                            16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
 
   /// Reads the corners; of triangles that are not there, those of the last one.
   void gather(mesh_view<S> const& mesh, std::size_t first, std::size_t n) {

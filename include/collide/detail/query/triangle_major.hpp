@@ -132,8 +132,8 @@ struct query_triangle_major {
     }
   }
 
-  /// Tests what was found near single triangles of the group. Out of line: `look` is a tight loop that is compiled for two vector
-  /// units.
+  /// Tests what was found near single triangles of the group. Out of line: `look` is a tight loop that is compiled for
+  /// two vector units.
   template <class Block>
   [[gnu::noinline]] void test(Block& block, scratch<Block>& s) const {
     for (std::uint32_t i = 0; i < s.count; ++i) {
