@@ -10,7 +10,7 @@
 #include <limits>
 
 #include <collide/detail/execution/launch.hpp>
-#include <collide/detail/grid/build.hpp>
+#include <collide/detail/grid/cell_lists.hpp>
 #include <collide/detail/grid/grid.hpp>
 #include <collide/detail/grid/grid_ref.hpp>
 #include <collide/detail/grid/memory_plan.hpp>
@@ -64,7 +64,7 @@ class bucket::index {
     queries_ = 0;
     has_boxes_ = false;
     if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (bins_spheres<Space>(options)) return measure(space);
+      if (bins_spheres<Space>(options)) return bins_.measure(space, mesh, clear_summary(space));
     }
     auto const affords = [&](std::size_t bytes) {
       return options.memory_budget == 0 || bytes <= options.memory_budget;
@@ -76,8 +76,7 @@ class bucket::index {
       boxes_.release();
     }
     if (!affords(fixed_bytes)) return summary_.release();
-    auto* const summary = summary_.reserve(space.resource(), 1);
-    detail::mesh_statistics<S>::clear(space, summary);
+    auto* const summary = clear_summary(space);
     detail::compute_mesh_statistics<S> const body{mesh, summary, boxes_.data()};
     space.launch(detail::grid_size<Space>(mesh.size(), body), body);
   }
@@ -173,8 +172,8 @@ class bucket::index {
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
   detail::bucket_ref<S> lookup() const {
-    return {{mesh_, boxes()}, grids_.data(), grid_count_,     occupied(),
-            lists_.data(),    lists_total(), entries_.data(), entries_.capacity()};
+    return {{mesh_, boxes()}, grids_.data(),  grid_count_,      lists_.occupied(),
+            lists_.data(),    lists_.total(), lists_.entries(), lists_.capacity()};
   }
 
   /// Width of the finest cells in use; 0 if there is no grid.
@@ -211,14 +210,11 @@ class bucket::index {
     return bins_spheres<Space>(options) && spheres <= detail::sorted_spheres<S>::most;
   }
 
-  /// What is known of the mesh before triangles look for spheres.
   template <class Space>
-  void measure(Space& space) {
-    auto* const groups = groups_.reserve(space.resource(), detail::triangle_group<S>::count(mesh_.size()));
+  detail::mesh_statistics<S>* clear_summary(Space& space) {
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_statistics<S>::clear(space, summary);
-    detail::measure_groups<S> const body{mesh_, summary, groups};
-    space.launch(body.blocks(), body);
+    return summary;
   }
 
   /// The boxes of the triangles; null if there are none.
@@ -247,27 +243,14 @@ class bucket::index {
   void request_grids(Space& space, bucket const& options, Spheres const& spheres) {
     if (origin_ == origin::radius || summary_.data() == nullptr) return;
     S reaches[detail::max_grids];
-    int const n = spheres.one_radius() ? reach_of(spheres.common_radius(), reaches)
-                                       : detail::reaches_of(histogram_of(space, spheres), reaches);
+    int const n = spheres.one_radius()
+                      ? reach_of(spheres.common_radius(), reaches)
+                      : detail::reaches_of(detail::histogram_of_radii<S>(space, spheres, radii_), reaches);
     if (n == 0 || (n == requested_ && std::equal(reaches, reaches + n, reaches_))) return;
     origin_ = origin::spheres;
     make_grids(space, options, reaches, n, spheres);
   }
 
-  /// The histogram of the radii. Waits.
-  template <class Space>
-  detail::size_histogram histogram_of(Space& space, sphere_view<S> const& spheres) {
-    auto* const radii = radii_.reserve(space.resource(), 1);
-    detail::size_histogram::clear(space, radii);
-    if constexpr (bucket_tuning<Space>::bins_spheres) {
-      detail::measure_radii<S> const body{spheres, radii};
-      space.launch(body.blocks(), body);
-    } else {
-      detail::radius_histogram_kernel<S> const body{spheres, radii};
-      space.launch(detail::grid_size<Space>(spheres.size(), body), body);
-    }
-    return space.read(radii);
-  }
   /// The grid of one radius: the one that is there if it is not much too wide.
   int reach_of(S radius, S* reaches) const {
     if (!detail::is_valid_radius(radius) || !detail::is_finite(radius)) return 0;
@@ -287,7 +270,8 @@ class bucket::index {
     for (int i = 0; i < detail::max_grids && i < requested; ++i) reaches_[i] = reaches[i];
     if (plan.grids != 0) {
       auto const count = static_cast<std::size_t>(plan.grids);
-      if (options.memory_budget != 0 && cells_ != count << plan.table_bits) release_cells();
+      // what is held for another number of cells would come on top of what the budget was planned for
+      if (options.memory_budget != 0 && cells_ != count << plan.table_bits) lists_.release();
       cells_ = count << plan.table_bits;
       entry_limit_ = plan.entries;
       table_bits_ = plan.table_bits;
@@ -303,7 +287,7 @@ class bucket::index {
       space.launch(count, detail::plan_grid<S, Spheres>{mesh_, boxes(), spheres, summary_.data(), grids, request});
       if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) {
-          bins_.mark(space, mesh_, groups_.data(), grids, plan.grids, plan.table_bits);
+          bins_.mark(space, mesh_, grids, plan.grids, plan.table_bits);
         }
       }
       grid_count_ = plan.grids;
@@ -315,43 +299,18 @@ class bucket::index {
   /// Enters the triangles into the cells.
   template <class Space>
   void enter_triangles(Space& space, bucket const& options) {
-    std::size_t const n = mesh_.size();
     if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (bins_spheres<Space>(options) && !has_boxes_) {
-        auto* const boxes = boxes_.reserve(space.resource(), n);
-        space.for_each(detail::triangle_group<S>::count(n), detail::compute_boxes<S>{mesh_, boxes});
-        has_boxes_ = true;
-      }
+      if (bins_spheres<Space>(options) && !has_boxes_) detail::compute_boxes<S>::run(space, mesh_, boxes_);
+      has_boxes_ = has_boxes_ || bins_spheres<Space>(options);
     }
-    auto* const lists = lists_.reserve(space.resource(), detail::table_size(cells_));
-    space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
-    auto const enter = [&](auto const& pass) {
-      using kernel = detail::enter_triangles<S, std::decay_t<decltype(pass)>>;
-      std::size_t const share = kernel::triangles_of_block(n, Space::template block<kernel>::num_threads);
-      space.launch((n + share - 1) / share, kernel{mesh_, boxes(), grids_.data(), grid_count_, pass, share});
-    };
-    enter(detail::count_entries{lists});
-    detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
-                                                 lists,         occupied(),  &lists[cells_].count};
-    space.launch(detail::grid_size<Space>(cells_, allocation), allocation);
-    bool const asks = n > most_unasked || grid_count_ > 1 || options.cell_width > 0;
-    std::size_t const capacity = asks ? std::min<std::size_t>(space.read(lists_total()), entry_limit_) : entry_limit_;
-    entries_.reserve(space.resource(), capacity);
-    enter(detail::fill_entries{lists, entries_.data(), entries_.capacity()});
+    bool const asks = mesh_.size() > most_unasked || grid_count_ > 1 || options.cell_width > 0;
+    lists_.enter(space, mesh_, boxes(), {grids_.data(), grid_count_, table_bits_, cells_}, entry_limit_, asks);
     stage_ = stage::entered;
   }
 
-  std::uint32_t const* lists_total() const { return &lists_.data()[cells_].count; }
-  std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
-
-  // what is held for another number of cells would come on top of what the budget was planned for
-  void release_cells() {
-    lists_.release();
-    entries_.release();
-  }
   void release_grids() {
     boxes_.release();
-    release_cells();
+    lists_.release();
   }
 
   mesh_view<S> mesh_;
@@ -367,12 +326,10 @@ class bucket::index {
   std::uint32_t table_bits_ = 0;
   bool has_boxes_ = false;                      ///< of this mesh
   buffer<detail::triangle_aabb<S>> boxes_;      ///< empty if the budget has no room for them, or nothing needs them
-  buffer<detail::triangle_aabb<S>> groups_;     ///< around groups of triangles, where spheres are binned
   buffer<detail::mesh_statistics<S>> summary_;  ///< empty if the budget has no room for it
   buffer<detail::size_histogram> radii_;
   buffer<detail::grid<S>> grids_;
-  buffer<detail::item_range> lists_;
-  buffer<detail::cell_item> entries_;
+  detail::cell_lists<S> lists_;
   detail::sorted_spheres<S> bins_;
 };
 

@@ -9,8 +9,10 @@
 
 #include <collide/detail/execution/launch.hpp>
 #include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/execution/tuning.hpp>
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/query/triangle_group.hpp>
+#include <collide/memory.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
 
@@ -137,6 +139,12 @@ struct compute_boxes {
   mesh_view<S> mesh;
   triangle_aabb<S>* boxes;
 
+  template <class Space>
+  static void run(Space& space, mesh_view<S> const& mesh, buffer<triangle_aabb<S>>& to) {
+    space.for_each(triangle_group<S>::count(mesh.size()),
+                   compute_boxes{mesh, to.reserve(space.resource(), mesh.size())});
+  }
+
   void operator()(std::size_t i) const {
     constexpr std::size_t n = triangle_group<S>::size;
     triangle_group<S> group;
@@ -176,5 +184,20 @@ struct measure_radii {
     s.radii.flush(histogram);
   }
 };
+
+/// The histogram of the finite, valid radii. Waits.
+template <class S, class Space>
+size_histogram histogram_of_radii(Space& space, sphere_view<S> const& spheres, buffer<size_histogram>& memory) {
+  auto* const radii = memory.reserve(space.resource(), 1);
+  size_histogram::clear(space, radii);
+  if constexpr (bucket_tuning<Space>::bins_spheres) {
+    measure_radii<S> const body{spheres, radii};
+    space.launch(body.blocks(), body);
+  } else {
+    radius_histogram_kernel<S> const body{spheres, radii};
+    space.launch(grid_size<Space>(spheres.size(), body), body);
+  }
+  return space.read(radii);
+}
 
 }  // namespace collide::detail

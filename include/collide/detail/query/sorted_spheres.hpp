@@ -26,58 +26,13 @@
 #include <collide/detail/grid/grid.hpp>
 #include <collide/detail/query/bin_spheres.hpp>
 #include <collide/detail/query/expected_hits.hpp>
+#include <collide/detail/query/mark_cells.hpp>
+#include <collide/detail/query/measure_groups.hpp>
 #include <collide/detail/query/triangle_group.hpp>
 #include <collide/detail/query/triangle_major.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
-
-/// Kernel body of `for_each` over groups of triangles: sets a bit for every cell that a triangle looks into, and
-/// perhaps for some more.
-template <class S>
-struct mark_occupied_cells {
-  mesh_view<S> mesh;
-  triangle_aabb<S> const* groups;
-  grid<S> const* grids;
-  int grid_count;
-  std::uint32_t* occupied;
-
-  void operator()(std::size_t i) const {
-    if (groups[i].is_empty()) return;
-    std::uint32_t each = 0;  // bits of grids for which a triangle is not small
-    for (int g = 0; g < grid_count; ++g) {
-      if (!is_small(groups[i], grids[g])) {
-        each |= 1u << g;
-        continue;
-      }
-      each_range_of_group(grids[g], groups[i], [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
-    }
-    if (each != 0) mark_each(i, each);
-  }
-
- private:
-  void mark_each(std::size_t i, std::uint32_t some) const {
-    triangle_group<S> group;
-    multiversioned([&] { group.load(mesh, i * triangle_group<S>::size); });
-    for (int g = 0; g < grid_count; ++g) {
-      if ((some >> g & 1) == 0) continue;
-      for (std::uint32_t k = 0; k < triangle_group<S>::size; ++k) {
-        each_range(
-            grids[g], group.box(k), [&] { return group[k]; },
-            [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
-      }
-    }
-  }
-
-  void mark(std::uint32_t first, std::uint32_t n) const {
-    for (std::uint32_t const end = first + n; first < end;) {
-      std::uint32_t const next = smaller((first / 32 + 1) * 32, end);
-      std::uint32_t const bits = 0xffffffffu >> (32 - (next - first)) << first % 32;
-      if ((load_relaxed(occupied + first / 32) & bits) != bits) fetch_or(occupied + first / 32, bits);
-      first = next;
-    }
-  }
-};
 
 /// Kernel body of a block of one thread: the longest displacement, squared, and the farthest coordinate, as bits, of
 /// which the larger are those of the larger number. What is NaN does not count, also where the compiler takes it that
@@ -138,19 +93,25 @@ class sorted_spheres {
   /// The most spheres that can be sorted: places have 32 bits, and a sphere may be in a cell of each level.
   static constexpr std::size_t most = std::size_t{0xffffffffu} / max_levels - sphere_soa<S>::simd_width;
 
-  /// Marks the cells that triangles touch. To be called for new grids, the cells of each of which begin at a multiple
-  /// of 2^table_bits.
+  /// Measures a mesh, whose summary is empty yet, and the boxes around groups of its triangles.
   template <class Space>
-  void mark(Space& space, mesh_view<S> const& mesh, triangle_aabb<S> const* groups, grid<S> const* grids,
-            int grid_count, std::uint32_t table_bits) {
-    groups_ = groups;
+  void measure(Space& space, mesh_view<S> const& mesh, mesh_statistics<S>* summary) {
+    auto* const groups = groups_.reserve(space.resource(), triangle_group<S>::count(mesh.size()));
+    measure_groups<S> const body{mesh, summary, groups};
+    space.launch(body.blocks(), body);
+  }
+
+  /// Marks the cells that triangles of the mesh measured last touch. To be called for new grids, the cells of each of
+  /// which begin at a multiple of 2^table_bits.
+  template <class Space>
+  void mark(Space& space, mesh_view<S> const& mesh, grid<S> const* grids, int grid_count, std::uint32_t table_bits) {
     grid_count_ = grid_count;
     grids_ = number_cells(space, grids, table_bits);
     std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
     space.for_each(triangle_group<S>::count(mesh.size()),
-                   mark_occupied_cells<S>{mesh, groups, grids_, grid_count, occupied});
+                   mark_occupied_cells<S>{mesh, groups_.data(), grids_, grid_count, occupied});
   }
 
   /// How far the grid must reach for spheres of one radius that move: the radius of the bounding sphere of each path.
@@ -273,13 +234,15 @@ class sorted_spheres {
     return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids};
   }
 
-  spheres_in_cells<S> in_cells() const { return {groups_, grids_, grid_count_, columns_, ends_.data(), everywhere()}; }
+  spheres_in_cells<S> in_cells() const {
+    return {groups_.data(), grids_, grid_count_, columns_, ends_.data(), everywhere()};
+  }
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
 
-  triangle_aabb<S> const* groups_ = nullptr;
   grid<S> const* grids_ = nullptr;
   int grid_count_ = 0;
   std::size_t cells_ = 0;
+  buffer<triangle_aabb<S>> groups_;
   buffer<grid<S>> own_grids_;
   buffer<std::uint32_t> occupied_, ends_, order_;
   buffer<std::uint64_t> total_;
