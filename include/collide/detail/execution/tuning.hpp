@@ -61,7 +61,7 @@ struct broad_phase_cost_model {
 template <class Space>
 struct broad_phase_costs {
   static constexpr broad_phase_cost_model value = Space::host_accessible
-                                                      ? broad_phase_cost_model{350, 0.137, 4, 24, 1000}
+                                                      ? broad_phase_cost_model{350, 0.137, 4, 40, 1000}
                                                       : broad_phase_cost_model{0, 1.9, 0.012, 0.1, 30000};
 };
 
