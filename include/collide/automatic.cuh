@@ -35,7 +35,8 @@ struct automatic {
 
     template <class Space, class Spheres>
     void prepare(Space& space, automatic const& options, Spheres const& spheres) {
-      uses_grid_ = has_grid_ || wants_grid<Space>(spheres.size());
+      uses_grid_ = has_grid_ ||
+                   (detail::fits_grid(mesh_.size(), options.grid.most_triangles) && wants_grid<Space>(spheres.size()));
       if (uses_grid_) {
         make_grid(space, options);
         grid_.prepare(space, options.grid, spheres);

@@ -10,13 +10,14 @@
 #include <limits>
 
 #include <collide/detail/execution/launch.hpp>
-#include <collide/detail/grid/build.hpp>
+#include <collide/detail/grid/cell_lists.hpp>
 #include <collide/detail/grid/grid.hpp>
 #include <collide/detail/grid/grid_ref.hpp>
 #include <collide/detail/grid/memory_plan.hpp>
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/grid/plan.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/detail/query/measure_groups.hpp>
 #include <collide/detail/query/sorted_spheres.hpp>
 #include <collide/detail/query/sphere_major.hpp>
 #include <collide/detector.hpp>
@@ -31,8 +32,8 @@ namespace collide {
 /// entries of 8 bytes, at most 16 for each triangle (48 where there are fewer spheres) and one for each two spheres,
 /// and cells of 8 bytes, at most 32 for each triangle; several grids only where radii differ by more than a factor
 /// of 4. The host sorts the spheres instead where there are many (detail/query/sorted_spheres.hpp): that takes
-/// O(triangles + spheres) for a query, 8 scalars per triangle, 4 bytes per cell, and about 12 scalars for each sphere
-/// in a cell with triangles, 19 if it moves; no entries.
+/// O(triangles + spheres) for a query, 1 scalar per triangle, 4 bytes per cell, and about 12 scalars for each sphere in
+/// a cell with triangles, 19 if it moves; no entries.
 struct bucket {
   /// Width of the cells, in the units of the coordinates; 0 lets the library choose, which is nearly always right. The
   /// study's was 4 R. They are wider where triangles would meet too many of them.
@@ -42,7 +43,8 @@ struct bucket {
   /// Where it does not suffice for a grid, spheres are tested with every triangle: slower, with the same result.
   std::size_t memory_budget = 0;
 
-  /// The most triangles of a build; more are refused (`error`). A grid has no more: larger meshes go in_passes.
+  /// The most triangles of a build; more are refused (`error`). A grid cannot have more than the default: larger meshes
+  /// go in_passes.
   std::size_t most_triangles = detail::most_triangles_of_grid;
 
   template <class S>
@@ -53,7 +55,8 @@ struct bucket {
 template <class S>
 class bucket::index {
  public:
-  /// One pass over the mesh: boxes, extent, sizes. The grids follow as soon as a radius is known.
+  /// One pass over the mesh: extent, sizes, and boxes, on the host of groups of triangles. The grids follow as soon as
+  /// a radius is known.
   template <class Space>
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
     if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
@@ -64,17 +67,21 @@ class bucket::index {
     origin_ = origin::none;
     grid_count_ = requested_ = 0;
     queries_ = 0;
+    has_boxes_ = false;
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (bins_spheres<Space>(options)) return bins_.measure(space, mesh, clear_summary(space));
+    }
     auto const affords = [&](std::size_t bytes) {
       return options.memory_budget == 0 || bytes <= options.memory_budget;
     };
     if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_aabb<S>))) {
       boxes_.reserve(space.resource(), mesh.size());
+      has_boxes_ = true;
     } else {
       boxes_.release();
     }
     if (!affords(fixed_bytes)) return summary_.release();
-    auto* const summary = summary_.reserve(space.resource(), 1);
-    detail::mesh_statistics<S>::clear(space, summary);
+    auto* const summary = clear_summary(space);
     detail::compute_mesh_statistics<S> const body{mesh, summary, boxes_.data()};
     space.launch(detail::grid_size<Space>(mesh.size(), body), body);
   }
@@ -163,15 +170,15 @@ class bucket::index {
         return;
       }
     }
-    detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes_.data()}, lookup(), 0, 0};
+    detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes()}, lookup(), 0, 0};
     body.share(space, spheres.size());
     space.launch(body.blocks, body);
   }
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
   detail::bucket_ref<S> lookup() const {
-    return {{mesh_, boxes_.data()}, grids_.data(), grid_count_,     occupied(),
-            lists_.data(),          lists_total(), entries_.data(), entries_.capacity()};
+    return {{mesh_, boxes()}, grids_.data(),  grid_count_,      lists_.occupied(),
+            lists_.data(),    lists_.total(), lists_.entries(), lists_.capacity()};
   }
 
   /// Width of the finest cells in use; 0 if there is no grid.
@@ -208,6 +215,16 @@ class bucket::index {
     return bins_spheres<Space>(options) && spheres <= detail::sorted_spheres<S>::most;
   }
 
+  template <class Space>
+  detail::mesh_statistics<S>* clear_summary(Space& space) {
+    auto* const summary = summary_.reserve(space.resource(), 1);
+    detail::mesh_statistics<S>::clear(space, summary);
+    return summary;
+  }
+
+  /// The boxes of the triangles; null if there are none.
+  detail::triangle_aabb<S> const* boxes() const { return has_boxes_ ? boxes_.data() : nullptr; }
+
   /// Chooses the algorithm of the next query, and makes what it needs of the mesh.
   template <class Space>
   void choose(Space& space, bucket const& options, bool bins) {
@@ -231,8 +248,9 @@ class bucket::index {
   void request_grids(Space& space, bucket const& options, Spheres const& spheres) {
     if (origin_ == origin::radius || summary_.data() == nullptr) return;
     S reaches[detail::max_grids];
-    int const n = spheres.one_radius() ? reach_of(spheres.common_radius(), reaches)
-                                       : detail::reaches_of(space, spheres, radii_, reaches);
+    int const n = spheres.one_radius()
+                      ? reach_of(spheres.common_radius(), reaches)
+                      : detail::reaches_of(detail::histogram_of_radii<S>(space, spheres, radii_), reaches);
     if (n == 0 || (n == requested_ && std::equal(reaches, reaches + n, reaches_))) return;
     origin_ = origin::spheres;
     make_grids(space, options, reaches, n, spheres);
@@ -251,13 +269,14 @@ class bucket::index {
   void make_grids(Space& space, bucket const& options, S const* reaches, int requested, Spheres const& spheres) {
     stage_ = stage::none;  // until all is done: an exception leaves no half-made grid behind
     grid_count_ = requested_ = 0;
-    std::size_t const taken = fixed_bytes + (boxes_.data() != nullptr ? mesh_.size() * sizeof *boxes_.data() : 0);
+    std::size_t const taken = fixed_bytes + (boxes() != nullptr ? mesh_.size() * sizeof *boxes() : 0);
     auto const plan = detail::memory_plan::make(mesh_.size(), spheres.size(), requested, options.cell_width > 0, taken,
                                                 options.memory_budget);
     for (int i = 0; i < detail::max_grids && i < requested; ++i) reaches_[i] = reaches[i];
     if (plan.grids != 0) {
       auto const count = static_cast<std::size_t>(plan.grids);
-      if (options.memory_budget != 0 && cells_ != count << plan.table_bits) release_cells();
+      // what is held for another number of cells would come on top of what the budget was planned for
+      if (options.memory_budget != 0 && cells_ != count << plan.table_bits) lists_.release();
       cells_ = count << plan.table_bits;
       entry_limit_ = plan.entries;
       table_bits_ = plan.table_bits;
@@ -270,11 +289,10 @@ class bucket::index {
                                       plan.table_bits,
                                       bucket_tuning<Space>::costs};
       for (int i = 0; i < detail::max_grids; ++i) request.reaches[i] = reaches_[i];
-      space.launch(count,
-                   detail::plan_grid<S, Spheres>{mesh_, boxes_.data(), spheres, summary_.data(), grids, request});
+      space.launch(count, detail::plan_grid<S, Spheres>{mesh_, boxes(), spheres, summary_.data(), grids, request});
       if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) {
-          bins_.mark(space, mesh_, boxes_.data(), grids, plan.grids, plan.table_bits);
+          bins_.mark(space, mesh_, grids, plan.grids, plan.table_bits);
         }
       }
       grid_count_ = plan.grids;
@@ -286,36 +304,18 @@ class bucket::index {
   /// Enters the triangles into the cells.
   template <class Space>
   void enter_triangles(Space& space, bucket const& options) {
-    std::size_t const n = mesh_.size();
-    auto* const lists = lists_.reserve(space.resource(), detail::table_size(cells_));
-    space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
-    auto const enter = [&](auto const& pass) {
-      using kernel = detail::enter_triangles<S, std::decay_t<decltype(pass)>>;
-      std::size_t const share = kernel::triangles_of_block(n, Space::template block<kernel>::num_threads);
-      space.launch((n + share - 1) / share, kernel{mesh_, boxes_.data(), grids_.data(), grid_count_, pass, share});
-    };
-    enter(detail::count_entries{lists});
-    detail::allocate_entries<S> const allocation{grids_.data(), table_bits_, cells_,
-                                                 lists,         occupied(),  &lists[cells_].count};
-    space.launch(detail::grid_size<Space>(cells_, allocation), allocation);
-    bool const asks = n > most_unasked || grid_count_ > 1 || options.cell_width > 0;
-    std::size_t const capacity = asks ? std::min<std::size_t>(space.read(lists_total()), entry_limit_) : entry_limit_;
-    entries_.reserve(space.resource(), capacity);
-    enter(detail::fill_entries{lists, entries_.data(), entries_.capacity()});
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (bins_spheres<Space>(options) && !has_boxes_) detail::compute_boxes<S>::run(space, mesh_, boxes_);
+      has_boxes_ = has_boxes_ || bins_spheres<Space>(options);
+    }
+    bool const asks = mesh_.size() > most_unasked || grid_count_ > 1 || options.cell_width > 0;
+    lists_.enter(space, mesh_, boxes(), {grids_.data(), grid_count_, table_bits_, cells_}, entry_limit_, asks);
     stage_ = stage::entered;
   }
 
-  std::uint32_t const* lists_total() const { return &lists_.data()[cells_].count; }
-  std::uint8_t* occupied() const { return reinterpret_cast<std::uint8_t*>(lists_.data() + cells_ + 1); }
-
-  // what is held for another number of cells would come on top of what the budget was planned for
-  void release_cells() {
-    lists_.release();
-    entries_.release();
-  }
   void release_grids() {
     boxes_.release();
-    release_cells();
+    lists_.release();
   }
 
   mesh_view<S> mesh_;
@@ -329,12 +329,12 @@ class bucket::index {
   bool whole_boxes_ = false;           ///< spheres that move look for triangles along their ways
   std::size_t cells_ = 0, entry_limit_ = 0;
   std::uint32_t table_bits_ = 0;
-  buffer<detail::triangle_aabb<S>> boxes_;      ///< empty if the budget has no room for them
+  bool has_boxes_ = false;                      ///< of this mesh
+  buffer<detail::triangle_aabb<S>> boxes_;      ///< empty if the budget has no room for them, or nothing needs them
   buffer<detail::mesh_statistics<S>> summary_;  ///< empty if the budget has no room for it
   buffer<detail::size_histogram> radii_;
   buffer<detail::grid<S>> grids_;
-  buffer<detail::item_range> lists_;
-  buffer<detail::cell_item> entries_;
+  detail::cell_lists<S> lists_;
   detail::sorted_spheres<S> bins_;
 };
 

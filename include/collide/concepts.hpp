@@ -8,12 +8,14 @@
 ///   - `void store(std::uint64_t slot, Hit const& hit) const`: called once per hit (see hit.hpp);
 ///   - `void end_pass() const`, if it wants to: called once per pass, when all hits are stored.
 ///
-/// `query.mesh` and `query.spheres` are the views, `Query::narrow_phase` and `Query::scalar` are types.
+/// `query.spheres` is the view, `Query::narrow_phase` and `Query::scalar` are types. `query.mesh` has `size()` and
+/// `operator[]`: it is the view, but where a mesh is divided among ranks, or goes to a device in passes, only triangles
+/// that were hit can be read.
 ///
 /// A sink may have a member, for `detector::reserve`, which takes the memory that such a query needs:
 /// `template <class Space> void reserve(Space const& space, std::size_t spheres, std::size_t pairs)`.
 /// A sink that asks hits for nothing but ids may have a member `static constexpr bool keeps_ids_alone = true`:
-/// `distributed` then sends no triangles.
+/// `distributed` and `in_passes` then send no triangles, and none can be read.
 #pragma once
 
 #include <cstddef>

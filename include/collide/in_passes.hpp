@@ -19,14 +19,15 @@
 namespace collide {
 
 /// A detector of a mesh in host memory, however large: a query goes over the mesh in passes. Each builds the detector
-/// of as many triangles as one has room for, and finds their pairs; at last the sink gets the pairs of all. It holds
-/// what it would hold after a query of one detector of the whole mesh; in canonical order, the same bytes.
+/// of some triangles, and finds their pairs; at last the sink gets the pairs of all. It holds what it would hold after
+/// a query of one detector of the whole mesh; in canonical order, the same bytes.
 ///
 /// Memory of the space: what the detector takes for the triangles of a pass, with `bucket`, float and one radius about
-/// 60 bytes each where most are small, and 450 at most, with `all_pairs` 32; what it takes for the spheres; 8 bytes for
-/// each pair, and 8 for each of a pass. On a device, besides, 36 bytes of float or 72 of double for each triangle of a
-/// pass; and, unless the sink keeps ids alone (`keeps_ids_alone`, see concepts.hpp), 40 or 76 for each triangle that is
-/// hit, as much of the host. It is kept between queries. On the host the mesh is read where it lies.
+/// 60 bytes each where most are small, and 450 at most if no cell width is given, with `all_pairs` 32; what it takes
+/// for the spheres; up to 20 bytes for each pair, also where the sink only counts; and what the sink takes. On a
+/// device, besides, 36 bytes of float or 72 of double for each triangle of a pass; and, unless the sink keeps ids alone
+/// (`keeps_ids_alone`, see concepts.hpp), 40 or 80 for each triangle that is hit, up to three times that of the host,
+/// and 8 of the host for each pair of a pass. It is kept between queries. On the host the mesh is read where it lies.
 ///
 /// Where one pass is enough the mesh is built once, and a query is one of the detector. Otherwise each query builds
 /// every part again: give it all spheres at once. One object is for one thread at a time.
@@ -44,19 +45,19 @@ class in_passes {
 
   /// Without a mesh. The stream and the memory resource of the space must outlive it.
   explicit in_passes(execution_space space = execution_space(), typename Detector::broad_phase options = {})
-      : detector_(std::move(space), std::move(options)) {}
+      : most_{most_of(options, 0)}, detector_(std::move(space), std::move(options)) {}
 
   /// Divides the mesh into parts that follow each other in its order, all about as large: passes cost least where
   /// triangles near each other have numbers near each other. If there is one part alone, builds the detector of it.
   ///
   /// \param mesh  triangles in host memory, in any layout, which must stay valid and unchanged until the last query is
   ///              done; a mesh has at most 2^32 - 2
-  /// \param triangles_per_pass  the most that a pass takes; as many as a grid can have, if it is not given
+  /// \param triangles_per_pass  the most that a pass takes
   /// \throws error  if `triangles_per_pass` is 0, or CUDA knows the mesh's memory as device memory
   ///
   /// After an exception there is no mesh, and it can be built again.
   /// \complexity O(1); of one pass alone, O(triangles).
-  void build(mesh_view<scalar> mesh, std::size_t triangles_per_pass = detail::most_triangles_of_grid) {
+  void build(mesh_view<scalar> mesh, std::size_t triangles_per_pass) {
     passes_ = 0;
     if (triangles_per_pass == 0) throw error("collide: in_passes: there are 0 triangles per pass");
     detail::check_memory<host>(mesh, "in_passes: the mesh is", "parts of it are taken from host memory");
@@ -65,6 +66,9 @@ class in_passes {
     if (passes == 1) detector_.build(part(0, mesh.size()));
     passes_ = passes;
   }
+
+  /// In as few passes as the broad phase allows: see `bucket::most_triangles`.
+  void build(mesh_view<scalar> mesh) { build(mesh, most_); }
 
   /// As `detector::query`, of all triangles: every colliding pair goes to the sink, exactly once.
   ///
@@ -98,6 +102,20 @@ class in_passes {
   using narrow_phase = typename Detector::narrow_phase;
   static constexpr bool reads_host = execution_space::host_accessible;
 
+  /// The most triangles of a build.
+  template <class Options>
+  static auto most_of(Options const& options, int) -> decltype(std::size_t{options.most_triangles}) {
+    return std::min(options.most_triangles, detail::most_triangles_of_grid);
+  }
+  template <class Options>
+  static auto most_of(Options const& options, int) -> decltype(std::size_t{options.grid.most_triangles}) {
+    return most_of(options.grid, 0);
+  }
+  template <class Options>
+  static std::size_t most_of(Options const&, long) {
+    return detail::most_triangles_of_grid;
+  }
+
   /// Where pass number `pass` begins.
   std::size_t begin_of(std::size_t pass) const {
     std::size_t const longer = mesh_.size() % passes_;
@@ -126,6 +144,7 @@ class in_passes {
   void find(spheres_type const& spheres, [[maybe_unused]] bool with_triangles) {
     found_.clear();
     hit_.clear();
+    if (spheres.size() == 0) return;
     for (std::size_t pass = 0; pass < passes_; ++pass) {
       std::size_t const first = begin_of(pass), size = begin_of(pass + 1) - first;
       detector_.build(part(first, size));
@@ -169,6 +188,7 @@ class in_passes {
     sink.run(space(), query);
   }
 
+  std::size_t most_;  ///< triangles of a build
   Detector detector_;
   mesh_view<scalar> mesh_;
   std::size_t passes_ = 0;

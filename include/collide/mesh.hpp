@@ -51,7 +51,8 @@ class mesh_view {
     return indices_ == nullptr ? 3 * i + k : indices_[i * triangle_stride_ + std::size_t{corner_stride_} * k];
   }
 
-  /// View of the `n` triangles from number `first` on, with the vertices of all. O(1); the range must exist.
+  /// View of the `n` triangles from number `first` on. An indexed mesh keeps all its vertices, a soup those of the
+  /// range. O(1); the range must exist.
   mesh_view subview(std::size_t first, std::size_t n) const {
     if (indices_ == nullptr) return {vertices_.subview(3 * first, 3 * n), nullptr, n};
     return {vertices_, indices_ + first * triangle_stride_, n, triangle_stride_, corner_stride_};

@@ -1,4 +1,5 @@
 /// Triangles that are compared with spheres eight at a time, and what a sample of the candidates tells of the hits.
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -26,6 +27,18 @@ std::vector<collide::triangle<S>> some_triangles(std::mt19937& random, S around,
   return made;
 }
 
+/// The group of the first eight triangles.
+template <class S>
+triangle_group<S> group_of(std::vector<collide::triangle<S>> const& triangles) {
+  std::vector<S> numbers;
+  for (auto const& t : triangles) {
+    for (auto const& p : {t.a, t.b, t.c}) numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
+  }
+  triangle_group<S> group{};
+  group.load(collide::triangle_soup(numbers.data(), triangles.size()), 0);
+  return group;
+}
+
 template <class S>
 void check_group() {
   std::mt19937 random(1);
@@ -35,8 +48,8 @@ void check_group() {
     auto const triangles = some_triangles<S>(random, S(round % 7), size);
     std::vector<triangle_aabb<S>> boxes;
     for (auto const& t : triangles) boxes.push_back(collide::detail::triangle_aabb_of(t));
-    triangle_group<S> group{};
-    REQUIRE(group.load(boxes.data(), 0));
+    auto const group = group_of<S>(triangles);
+    REQUIRE(group.is_whole());
     std::uniform_real_distribution<S> at(S(round % 7) - 3 * size, S(round % 7) + 3 * size), far(0, 4 * size);
     collide::sphere<S> const ball{{at(random), at(random), at(random)}, far(random)};
     std::uint32_t expected = 0;
@@ -86,15 +99,58 @@ TEST_CASE("a group of triangles: which boxes a sphere reaches is what each box s
 TEST_CASE("a group is certain of nothing where squares overflow, and is none with a triangle that is not finite") {
   float const huge = 3e19f, tiny = 1e-25f;
   for (float const scale : {huge, tiny}) {
-    std::vector<triangle_aabb<float>> boxes(
-        8, collide::detail::triangle_aabb_of(collide::triangle<float>{{0, 0, 0}, {scale, 0, 0}, {0, scale, 0}}));
-    triangle_group<float> group{};
-    REQUIRE(group.load(boxes.data(), 0));
+    std::vector<collide::triangle<float>> triangles(8, {{0, 0, 0}, {scale, 0, 0}, {0, scale, 0}});
+    auto const group = group_of<float>(triangles);
+    REQUIRE(group.is_whole());
     CHECK(!group.is_inside({{0, 0, 0}, scale}));
     CHECK(!group.is_inside({{0, 0, 0}, 0}));
-    boxes[5] = collide::detail::triangle_aabb_of(
-        collide::triangle<float>{{0, 0, 0}, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 1, 0}});
-    CHECK(!group.load(boxes.data(), 0));
+    triangles[5] = {{0, 0, 0}, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 1, 0}};
+    CHECK(group_of<float>(triangles).there == 0xdf);
+  }
+}
+
+TEST_CASE("a group of triangles has the boxes that the triangles have, in any layout, also at the end of a mesh") {
+  constexpr std::size_t n = 13;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> at(-5, 5);
+  std::vector<float> packed, apart;
+  std::vector<collide::id> corners;
+  for (std::size_t i = 0; i < 3 * n; ++i) {
+    for (int k = 0; k < 3; ++k) packed.push_back(at(random));
+    corners.push_back(static_cast<collide::id>(3 * n - 1 - i));
+  }
+  packed[3 * 20 + 1] = std::numeric_limits<float>::infinity();  // of triangle 6
+  for (std::size_t i = 0; i < 3 * n; ++i)
+    apart.insert(apart.end(), {packed[3 * i], packed[3 * i + 1], packed[3 * i + 2], 7});
+  for (auto const& mesh :
+       {collide::indexed_mesh(packed.data(), 3 * n, corners.data(), n), collide::triangle_soup(packed.data(), n),
+        collide::triangle_soup(collide::points(apart.data(), 3 * n, 4))}) {
+    for (std::size_t first : {0u, 8u}) {
+      triangle_group<float> group;
+      group.load(mesh, first);
+      triangle_aabb<float> all{collide::detail::aabb<float>::empty(), 0};
+      for (std::uint32_t i = 0; i < 8; ++i) {
+        bool const there = first + i < n && first + i != 6;
+        CHECK((group.there >> i & 1) == (there ? 1 : 0));
+        CHECK(group.box(i).is_empty() == !there);
+        if (!there) continue;
+        auto const box = collide::detail::triangle_aabb_of(mesh[first + i]), found = group.box(i);
+        for (int k = 0; k < 3; ++k) {
+          CHECK(found.lower[k] == box.lower[k]);
+          CHECK(found.upper[k] == box.upper[k]);
+          all.lower[k] = std::min(all.lower[k], box.lower[k]);
+          all.upper[k] = std::max(all.upper[k], box.upper[k]);
+        }
+        CHECK(found.padding == box.padding);
+        CHECK(group[i].b == mesh[first + i].b);
+        all.padding = std::max(all.padding, box.padding);
+      }
+      for (int k = 0; k < 3; ++k) {
+        CHECK(group.all.lower[k] == all.lower[k]);
+        CHECK(group.all.upper[k] == all.upper[k]);
+      }
+      CHECK(group.all.padding == all.padding);
+    }
   }
 }
 

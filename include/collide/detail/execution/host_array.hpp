@@ -28,7 +28,7 @@ T* make_room(buffer<T>& memory, std::pmr::memory_resource* resource, std::size_t
   return memory.reserve(resource, n <= memory.capacity() ? n : n + n / 4);
 }
 
-/// An array on the host through which values of a space go to other ranks, or come.
+/// An array on the host through which values go to a space, or come from it.
 template <class T>
 class host_array {
  public:

@@ -66,6 +66,9 @@ struct alignas(4 * sizeof(S)) triangle_aabb : aabb<S> {
     return radius * (1 + 16 * S(ieee_traits<float>::unit_roundoff)) + 2 * sqrt_rn(std::numeric_limits<S>::min());
   }
 
+  /// `padding` of a box whose largest side is this.
+  static COLLIDE_HD_INLINE S padding_of(S extent) { return 16 * S(ieee_traits<float>::unit_roundoff) * extent; }
+
   COLLIDE_HD_INLINE bool overlaps(vec3<S> const& c, S radius) const {
     S const x = axis_distance(0, c.x()), y = axis_distance(1, c.y()), z = axis_distance(2, c.z()),
             most = padded_radius(radius) + padding;
@@ -82,7 +85,7 @@ struct alignas(4 * sizeof(S)) triangle_aabb : aabb<S> {
 template <class S>
 COLLIDE_HD_INLINE triangle_aabb<S> triangle_aabb_of(triangle<S> const& t) {
   aabb<S> const b = aabb_of(t);
-  return {b, 16 * S(ieee_traits<float>::unit_roundoff) * b.max_extent()};
+  return {b, triangle_aabb<S>::padding_of(b.max_extent())};
 }
 
 }  // namespace collide::detail

@@ -20,12 +20,17 @@ inline std::size_t table_size(std::size_t cells) { return cells + 1 + cells / 64
 inline constexpr std::size_t most_entries = std::numeric_limits<std::uint32_t>::max();
 inline constexpr std::size_t most_triangles_of_grid = most_entries / 8;
 
-/// Throws `error` if a build has more triangles than `most`, or than a grid has.
+/// True if a build has at most `most` triangles, and no more than a grid can have.
+inline bool fits_grid(std::size_t triangles, std::size_t most) {
+  return triangles <= std::min(most, most_triangles_of_grid);
+}
+
+/// Throws `error` if it has more.
 inline void check_triangles(std::size_t triangles, std::size_t most) {
-  most = std::min(most, most_triangles_of_grid);
-  if (triangles <= most) return;
-  throw error("collide: bucket: " + std::to_string(triangles) + " triangles are more than " + std::to_string(most) +
-              ", the most of one build: query them in_passes, or divide them among ranks");
+  if (fits_grid(triangles, most)) return;
+  throw error("collide: bucket: " + std::to_string(triangles) + " triangles are more than " +
+              std::to_string(std::min(most, most_triangles_of_grid)) +
+              ", the most of one build: build fewer at a time, with in_passes or on more ranks");
 }
 
 /// The grids that are made.

@@ -41,6 +41,24 @@ struct mesh_statistics {
   COLLIDE_HD S upper_of(int k) const { return from_ordered_bits<S>(upper[k]); }
 };
 
+/// The area of a triangle whose extent is in a bin, as the histogram's sums have it: from 0 to 256; from two edges that
+/// leave a corner, in units of the bin's end.
+COLLIDE_HD_INLINE std::uint32_t relative_area(float const (&u)[3], float const (&v)[3]) {
+  float const x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+  float const area = 0.5f * sqrt_rn(x * x + (y * y + z * z));
+  return area <= 1 ? static_cast<std::uint32_t>(static_cast<std::int32_t>(area * 0x1p8f + 0.5f)) : 0;
+}
+template <class S>
+COLLIDE_HD_INLINE std::uint32_t relative_area(triangle<S> const& t, std::uint32_t bin) {
+  float const scale = 1 / bin_end(bin);
+  float u[3], v[3];
+  for (int k = 0; k < 3; ++k) {
+    u[k] = static_cast<float>(t.b[k] - t.a[k]) * scale;
+    v[k] = static_cast<float>(t.c[k] - t.a[k]) * scale;
+  }
+  return relative_area(u, v);
+}
+
 /// Kernel body: fills the summary, and the boxes of triangles if there is room for them.
 template <class S>
 struct compute_mesh_statistics {
@@ -90,20 +108,6 @@ struct compute_mesh_statistics {
       }
     });
   }
-
- private:
-  /// The area of a triangle whose extent is in a bin, as the histogram's sums have it: from 0 to 256.
-  static COLLIDE_HD_INLINE std::uint32_t relative_area(triangle<S> const& t, std::uint32_t bin) {
-    float const scale = 1 / bin_end(bin);
-    float u[3], v[3];
-    for (int k = 0; k < 3; ++k) {
-      u[k] = static_cast<float>(t.b[k] - t.a[k]) * scale;
-      v[k] = static_cast<float>(t.c[k] - t.a[k]) * scale;
-    }
-    float const x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
-    float const area = 0.5f * sqrt_rn(x * x + (y * y + z * z));
-    return area <= 1 ? static_cast<std::uint32_t>(static_cast<std::int32_t>(area * 0x1p8f + 0.5f)) : 0;
-  }
 };
 
 /// The largest coordinate of a mesh, without its sign. Waits.
@@ -147,19 +151,14 @@ struct radius_histogram_kernel {
 };
 
 /// How far the grids of spheres of many radii reach: reaches a factor of 4 or more apart, falling, only where there are
-/// spheres. Returns how many there are. Waits.
-template <class Space, class S>
-int reaches_of(Space& space, sphere_view<S> const& spheres, buffer<size_histogram>& memory, S (&reaches)[max_grids]) {
-  auto* const radii = memory.reserve(space.resource(), 1);
-  size_histogram::clear(space, radii);
-  radius_histogram_kernel<S> const body{spheres, radii};
-  space.launch(grid_size<Space>(spheres.size(), body), body);
-  size_histogram const seen = space.read(radii);
-  if (seen.empty()) return 0;
+/// spheres. Returns how many there are.
+template <class S>
+int reaches_of(size_histogram const& radii, S (&reaches)[max_grids]) {
+  if (radii.empty()) return 0;
   constexpr int bins_per_factor_4 = 8;
   int n = 0;
-  for (int b = seen.last(); b >= seen.first() && n < max_grids; b -= bins_per_factor_4) {
-    while (seen.counts[b] == 0) --b;
+  for (int b = radii.last(); b >= radii.first() && n < max_grids; b -= bins_per_factor_4) {
+    while (radii.counts[b] == 0) --b;
     float const end = bin_end(static_cast<std::uint32_t>(b));
     reaches[n++] = static_cast<S>(smaller(end, std::numeric_limits<float>::max()));
   }

@@ -211,15 +211,47 @@ struct sphere_soa {
   }
 };
 
-/// Spheres that are sorted into the cells of grids, and the boxes of the triangles that look for them.
+/// Spheres that are sorted into the cells of grids, and the boxes around groups of the triangles that look for them.
 template <class S>
 struct spheres_in_cells {
-  triangle_aabb<S> const* boxes;
+  triangle_aabb<S> const* groups;
   grid<S> const* grids;
   int grid_count;
   sphere_soa<S> spheres;
   std::uint32_t const* ends;  ///< the spheres of cell c: ends[c] .. ends[c + 1]
   std::uint32_t everywhere;   ///< number of the cell behind the last
+
+  /// Bit k is whether there may be spheres near a group in grid k: in a cell that the dilated box around it meets.
+  std::uint32_t grids_near(aabb<S> const& group) const {
+    std::uint32_t near = 0;
+    for (int g = 0; g < grid_count; ++g) {
+      bool found = false;
+      for (int l = 0; l < grids[g].levels && !found; ++l) found = has_spheres(grids[g], grids[g].level[l], group);
+      near |= found ? 1u << g : 0;
+    }
+    return near;
+  }
+
+ private:
+  /// True if there are spheres in the cells that a dilated box meets, or if these are many.
+  bool has_spheres(grid<S> const& g, grid_level<S> const& l, aabb<S> const& b) const {
+    cell_box const r = g.range_of(l, b);
+    if (r.upper[0] - r.lower[0] > l.mask[0]) return true;
+    std::uint32_t const rows[2] = {r.upper[1] - r.lower[1], r.upper[2] - r.lower[2]};
+    if (rows[0] > 7 || rows[1] > 7) return true;
+    std::uint32_t const begin = r.lower[0] & l.mask[0], end = (r.upper[0] & l.mask[0]) + 1;
+    for (std::uint32_t k = 0; k <= rows[1]; ++k) {
+      for (std::uint32_t j = 0; j <= rows[0]; ++j) {
+        std::uint32_t const row = l.row(r.lower[1] + j, r.lower[2] + k);
+        if (begin < end) {
+          if (ends[row + begin] != ends[row + end]) return true;
+        } else {  // beyond the last cell of a row its first ones follow
+          if (ends[row + begin] != ends[row + l.mask[0] + 1] || ends[row] != ends[row + end]) return true;
+        }
+      }
+    }
+    return false;
+  }
 };
 
 /// Kernel body of `for_each` over placed spheres: gives each its place in the order of the cells.

@@ -8,11 +8,13 @@
 #include <cstdint>
 
 #include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/triangle_cells.hpp>
 #include <collide/detail/narrow_phase/traits.hpp>
 #include <collide/detail/query/bin_spheres.hpp>
+#include <collide/detail/query/triangle_group.hpp>
 #include <collide/mesh.hpp>
 
 namespace collide::detail {
@@ -34,22 +36,16 @@ struct sample_hits {
 
   template <class Block>
   void operator()(Block& block, nothing&) const {
+    constexpr std::uint32_t n = triangle_group<S>::size;
     std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, mesh.size());
     // where the first one is differs from block to block, whatever these have in common
     std::uint32_t skip = static_cast<std::uint32_t>(block.index()) * 2654435769u >> 24;
     std::uint64_t found = 0;
-    for (std::size_t t = begin; t < end; ++t) {
-      if (in.boxes[t].is_empty()) continue;  // not finite
-      auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
-        std::uint32_t const first = in.ends[cell], size = in.ends[cell + n] - first;
-        for (; skip < size; skip += stride) found += touches(first + skip, t);
-        skip -= size;
-      };
-      for (int g = 0; g < in.grid_count; ++g) {
-        each_range(
-            in.grids[g], in.boxes[t], [&] { return mesh[t]; }, look_into);
-      }
-      look_into(in.everywhere, 1);
+    for (std::size_t first = begin; first < end; first += n) {
+      if (in.groups[first / n].is_empty()) continue;
+      triangle_group<S> group;
+      multiversioned([&] { group.load(mesh, first); });
+      for (std::uint32_t k = 0; k < n; ++k) found += sample(group, k, skip);
     }
     if (found != 0) fetch_add(hits, found);
   }
@@ -62,13 +58,31 @@ struct sample_hits {
   }
 
  private:
-  bool touches(std::uint32_t place, std::size_t t) const {
+  /// How many of the sampled pairs of triangle `k` of a group are hits; `skip` is how many pairs come before the next.
+  std::uint64_t sample(triangle_group<S> const& group, std::uint32_t k, std::uint32_t& skip) const {
+    triangle_aabb<S> const around = group.box(k);
+    if (around.is_empty()) return 0;  // not finite, or not there
+    std::uint64_t found = 0;
+    auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
+      std::uint32_t const first = in.ends[cell], size = in.ends[cell + n] - first;
+      for (; skip < size; skip += stride) found += touches(first + skip, around, group[k]);
+      skip -= size;
+    };
+    for (int g = 0; g < in.grid_count; ++g) {
+      each_range(
+          in.grids[g], around, [&] { return group[k]; }, look_into);
+    }
+    look_into(in.everywhere, 1);
+    return found;
+  }
+
+  bool touches(std::uint32_t place, triangle_aabb<S> const& around, triangle<S> const& t) const {
     sphere<S> const here = in.spheres[place];
-    if (!in.boxes[t].overlaps(here.centre, here.radius)) return false;
+    if (!around.overlaps(here.centre, here.radius)) return false;
     if constexpr (is_discrete<NarrowPhase, S>) {
-      return NarrowPhase::intersects(mesh[t], here);
+      return NarrowPhase::intersects(t, here);
     } else {
-      return NarrowPhase::intersects(mesh[t], in.spheres.moving[place]);
+      return NarrowPhase::intersects(t, in.spheres.moving[place]);
     }
   }
 };

@@ -26,50 +26,13 @@
 #include <collide/detail/grid/grid.hpp>
 #include <collide/detail/query/bin_spheres.hpp>
 #include <collide/detail/query/expected_hits.hpp>
+#include <collide/detail/query/mark_cells.hpp>
+#include <collide/detail/query/measure_groups.hpp>
 #include <collide/detail/query/triangle_group.hpp>
 #include <collide/detail/query/triangle_major.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
-
-/// Kernel body of `for_each` over groups of triangles: sets a bit for every cell that a triangle looks into, and
-/// perhaps for some more.
-template <class S>
-struct mark_occupied_cells {
-  mesh_view<S> mesh;
-  triangle_aabb<S> const* boxes;
-  grid<S> const* grids;
-  int grid_count;
-  std::uint32_t* occupied;
-
-  void operator()(std::size_t i) const {
-    constexpr std::size_t n = triangle_group<S>::size;
-    std::size_t const first = i * n, end = smaller(first + n, mesh.size());
-    triangle_group<S> group;
-    bool const whole = end - first == n && group.load(boxes, first);
-    for (int g = 0; g < grid_count; ++g) {
-      if (whole && group.is_small(grids[g])) {
-        group.each_range(grids[g], [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
-        continue;
-      }
-      for (std::size_t t = first; t < end; ++t) {
-        each_range(
-            grids[g], boxes[t], [&] { return mesh[t]; },
-            [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
-      }
-    }
-  }
-
- private:
-  void mark(std::uint32_t first, std::uint32_t n) const {
-    for (std::uint32_t const end = first + n; first < end;) {
-      std::uint32_t const next = smaller((first / 32 + 1) * 32, end);
-      std::uint32_t const bits = 0xffffffffu >> (32 - (next - first)) << first % 32;
-      if ((load_relaxed(occupied + first / 32) & bits) != bits) fetch_or(occupied + first / 32, bits);
-      first = next;
-    }
-  }
-};
 
 /// Kernel body of a block of one thread: the longest displacement, squared, and the farthest coordinate, as bits, of
 /// which the larger are those of the larger number. What is NaN does not count, also where the compiler takes it that
@@ -130,21 +93,25 @@ class sorted_spheres {
   /// The most spheres that can be sorted: places have 32 bits, and a sphere may be in a cell of each level.
   static constexpr std::size_t most = std::size_t{0xffffffffu} / max_levels - sphere_soa<S>::simd_width;
 
-  /// Marks the cells that triangles touch. To be called for new grids, the cells of each of which begin at a multiple
-  /// of 2^table_bits.
+  /// Measures a mesh, whose summary is empty yet, and the boxes around groups of its triangles.
   template <class Space>
-  void mark(Space& space, mesh_view<S> const& mesh, triangle_aabb<S> const* boxes, grid<S> const* grids, int grid_count,
-            std::uint32_t table_bits) {
-    boxes_ = boxes;
-    grids_ = grids;
+  void measure(Space& space, mesh_view<S> const& mesh, mesh_statistics<S>* summary) {
+    auto* const groups = groups_.reserve(space.resource(), triangle_group<S>::count(mesh.size()));
+    measure_groups<S> const body{mesh, summary, groups};
+    space.launch(body.blocks(), body);
+  }
+
+  /// Marks the cells that triangles of the mesh measured last touch. To be called for new grids, the cells of each of
+  /// which begin at a multiple of 2^table_bits.
+  template <class Space>
+  void mark(Space& space, mesh_view<S> const& mesh, grid<S> const* grids, int grid_count, std::uint32_t table_bits) {
     grid_count_ = grid_count;
-    auto const last = static_cast<std::size_t>(grid_count - 1);
-    cells_ = (last << table_bits) + space.read(grids + last).cells;  // of many grids some cells are not in use
+    grids_ = number_cells(space, grids, table_bits);
     std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
-    constexpr std::size_t group = triangle_group<S>::size;
-    space.for_each((mesh.size() + group - 1) / group, mark_occupied_cells<S>{mesh, boxes, grids, grid_count, occupied});
+    space.for_each(triangle_group<S>::count(mesh.size()),
+                   mark_occupied_cells<S>{mesh, groups_.data(), grids_, grid_count, occupied});
   }
 
   /// How far the grid must reach for spheres of one radius that move: the radius of the bounding sphere of each path.
@@ -243,6 +210,20 @@ class sorted_spheres {
   }
 
  private:
+  /// Numbers the cells of all grids one after the other, without those that are not in use.
+  template <class Space>
+  grid<S> const* number_cells(Space& space, grid<S> const* grids, std::uint32_t table_bits) {
+    grid<S>* const own = own_grids_.reserve(space.resource(), max_grids);
+    cells_ = 0;
+    for (int g = 0; g < grid_count_; ++g) {
+      own[g] = grids[g];
+      std::uint32_t const begin = static_cast<std::uint32_t>(g) << table_bits;
+      for (int l = 0; l < own[g].levels; ++l) own[g].level[l].first += static_cast<std::uint32_t>(cells_) - begin;
+      cells_ += own[g].cells;
+    }
+    return own;
+  }
+
   template <class Space>
   sphere_soa<S> columns(Space& space, std::size_t n) {
     std::size_t const room = n + sphere_soa<S>::simd_width;
@@ -253,13 +234,16 @@ class sorted_spheres {
     return {to, to + room, to + 2 * room, to + 3 * room, to + 4 * room, ids};
   }
 
-  spheres_in_cells<S> in_cells() const { return {boxes_, grids_, grid_count_, columns_, ends_.data(), everywhere()}; }
+  spheres_in_cells<S> in_cells() const {
+    return {groups_.data(), grids_, grid_count_, columns_, ends_.data(), everywhere()};
+  }
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
 
-  triangle_aabb<S> const* boxes_ = nullptr;
   grid<S> const* grids_ = nullptr;
   int grid_count_ = 0;
   std::size_t cells_ = 0;
+  buffer<triangle_aabb<S>> groups_;
+  buffer<grid<S>> own_grids_;
   buffer<std::uint32_t> occupied_, ends_, order_;
   buffer<std::uint64_t> total_;
   buffer<uint_for<S>> measures_;

@@ -9,6 +9,7 @@
 
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/grid/triangle_cells.hpp>
+#include <collide/mesh.hpp>
 
 // the numbers of elements of small arrays are int
 #pragma GCC diagnostic push
@@ -16,43 +17,77 @@
 
 namespace collide::detail {
 
-/// The boxes of eight triangles, number by number in arrays of their own, and the box around all of them.
+/// Eight triangles that follow each other in a mesh, their boxes, number by number in arrays of their own, and the box
+/// around all of them.
 template <class S>
 struct triangle_group {
   static constexpr std::uint32_t size = 8;
 
+  S corners[3][3][size];  ///< x, y and z of the first corner, of the second, of the third
   S lower[3][size], upper[3][size], padding[size];
   triangle_aabb<S> all;
+  std::uint32_t there;  ///< bit i: there is a triangle i, and it is finite
 
-  /// Takes the boxes of triangles `first` and the next ones. False if one of them is not finite.
-  bool load(triangle_aabb<S> const* boxes, std::size_t first) {
-    all = boxes[first];
-    bool finite = true;
-    for (std::uint32_t i = 0; i < size; ++i) {
-      triangle_aabb<S> const& b = boxes[first + i];
-      finite = finite && !b.is_empty();
-      for (int k = 0; k < 3; ++k) {
-        lower[k][i] = b.lower[k];
-        upper[k][i] = b.upper[k];
-        all.lower[k] = smaller(all.lower[k], b.lower[k]);
-        all.upper[k] = larger(all.upper[k], b.upper[k]);
+  /// How many groups the triangles of a mesh are.
+  static std::size_t count(std::size_t triangles) { return (triangles + size - 1) / size; }
+
+  /// Takes triangles `first` and the next ones of a mesh, as many as there are. The boxes of what is not finite, or not
+  /// there, are empty. Its loops are for the processor's vector unit.
+  void load(mesh_view<S> const& mesh, std::size_t first) {
+    std::size_t const n = smaller(mesh.size() - first, std::size_t{size});
+    gather(mesh, first, n);
+    uint_for<S> mask = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      uint_for<S> bits = 0;
+      for (auto const& corner : corners) {
+        for (auto const& x : corner) bits = larger(bits, to_bits(x[i]) & ~ieee_traits<S>::sign_mask);
       }
-      padding[i] = b.padding;
-      all.padding = larger(all.padding, b.padding);
+      bool const finite = bits < ieee_traits<S>::exponent_mask;
+      constexpr S far = std::numeric_limits<S>::max();
+      S extent = 0;
+      for (int k = 0; k < 3; ++k) {
+        S const a = corners[0][k][i], b = corners[1][k][i], c = corners[2][k][i];
+        lower[k][i] = select(finite, smaller(smaller(a, b), c), far);
+        upper[k][i] = select(finite, larger(larger(a, b), c), -far);
+        extent = larger(extent, upper[k][i] - lower[k][i]);
+      }
+      padding[i] = triangle_aabb<S>::padding_of(extent);
+      mask |= finite ? bit[i] : uint_for<S>(0);
     }
-    return finite;
+    for (std::size_t i = n; i < size; ++i) {
+      for (int k = 0; k < 3; ++k) lower[k][i] = std::numeric_limits<S>::max(), upper[k][i] = -lower[k][i];
+    }
+    there = static_cast<std::uint32_t>(mask) & ((1u << n) - 1);
+    for (int k = 0; k < 3; ++k) {
+      all.lower[k] = least(lower[k], [](S a, S b) { return smaller(a, b); });
+      all.upper[k] = least(upper[k], [](S a, S b) { return larger(a, b); });
+    }
+    all.padding = least(padding, [](S a, S b) { return larger(a, b); });
+  }
+
+  /// True if there are as many triangles, and all are finite.
+  bool is_whole() const { return there == (1u << size) - 1; }
+
+  /// The box of triangle `i`.
+  triangle_aabb<S> box(std::uint32_t i) const {
+    return {{{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}}, padding[i]};
+  }
+
+  /// Triangle `i`.
+  triangle<S> operator[](std::uint32_t i) const {
+    auto const corner = [&](int c) { return vec3<S>{corners[c][0][i], corners[c][1][i], corners[c][2][i]}; };
+    return {corner(0), corner(1), corner(2)};
   }
 
   /// Bit i is whether a sphere can reach what is in box i: as `sphere_soa::reaching` has it. Without branches, for the
   /// processor's vector unit.
   std::uint32_t reached_by(S x, S y, S z, S reach) const {
-    constexpr uint_for<S> bit[size] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
     uint_for<S> mask = 0;
     for (std::uint32_t i = 0; i < size; ++i) {
       S const gx = outside(0, i, x), gy = outside(1, i, y), gz = outside(2, i, z), most = reach + padding[i];
       mask |= gx * gx + (gy * gy + gz * gz) <= most * most ? bit[i] : uint_for<S>(0);
     }
-    return static_cast<std::uint32_t>(mask);
+    return static_cast<std::uint32_t>(mask) & there;
   }
 
   /// True if all of the triangles are inside the sphere, whatever is rounded. May be false all the same.
@@ -88,22 +123,63 @@ struct triangle_group {
     return looked_at + 8 * near_all <= each;
   }
 
-  /// True if the box around all of the triangles is small against the cells of a grid, and so meets hardly more of them
-  /// than the triangles do.
-  bool is_small(grid<S> const& g) const { return g.levels == 1 && 4 * all.max_extent() <= g.width; }
+ private:
+  static constexpr uint_for<S> bit[size] = {1,  2,  4,  8,
+                                            16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
 
-  /// Calls f(number, n) for the runs of cells that its dilated box meets: no cell twice.
-  template <class F>
-  void each_range(grid<S> const& g, F const& f) const {
-    each_range_of_box(g.level[0], triangle_cells<S>(g, g.level[0], all).range(), f);
+  /// Reads the corners; of triangles that are not there, those of the last one.
+  void gather(mesh_view<S> const& mesh, std::size_t first, std::size_t n) {
+    auto const take = [&](std::size_t i, auto const& corner_of) {
+      for (unsigned c = 0; c < 3; ++c) {
+        auto const& p = corner_of(first + smaller(i, n - 1), c);
+        for (int k = 0; k < 3; ++k) corners[c][k][i] = p[k];
+      }
+    };
+    auto const& points = mesh.vertices();
+    if (points.packed() && mesh.indices() != nullptr && mesh.packed_indices()) {  // strides that the compiler knows
+      S const* const x = points.address(0);
+      id const* const numbers = mesh.indices();
+      for (std::size_t i = 0; i < size; ++i) {
+        take(i, [&](std::size_t t, unsigned c) { return x + 3 * std::size_t{numbers[3 * t + c]}; });
+      }
+    } else {
+      for (std::size_t i = 0; i < size; ++i) {
+        take(i, [&](std::size_t t, unsigned c) { return points[mesh.corner(t, c)]; });
+      }
+    }
   }
 
- private:
+  /// The least of all values, as `f` of two says.
+  template <class F>
+  static S least(S const (&values)[size], F const& f) {
+    S half[size / 2];
+    for (std::size_t i = 0; i < size / 2; ++i) half[i] = f(values[i], values[i + size / 2]);
+    return f(f(half[0], half[1]), f(half[2], half[3]));
+  }
+
   S outside(int k, std::uint32_t i, S x) const {
     S const distance = larger(lower[k][i] - x, x - upper[k][i]);
     return select(distance > 0, distance, S(0));
   }
 };
+
+/// True if the box around a group is not much larger than a cell, and so meets hardly more of them than its triangles
+/// do.
+template <class S>
+bool is_small(triangle_aabb<S> const& group, grid<S> const& g) {
+  return g.levels == 1 && group.max_extent() <= 2 * g.width;
+}
+
+/// Calls f(number, n) for the runs of cells, of the one level of a grid, that the dilated box around a group meets: no
+/// cell twice.
+template <class S, class F>
+void each_range_of_group(grid<S> const& g, aabb<S> const& group, F const& f) {
+  grid_level<S> const& l = g.level[0];
+  cell_box const r = g.range_of(l, group);
+  bool turns = false;
+  for (int k = 0; k < 3; ++k) turns = turns || r.upper[k] - r.lower[k] > l.mask[k];
+  each_range_of_box(l, turns ? triangle_cells<S>(g, l, group).range() : r, f);
+}
 
 }  // namespace collide::detail
 

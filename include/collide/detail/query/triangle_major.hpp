@@ -35,7 +35,7 @@ struct query_triangle_major {
     reached found[room];
     std::uint32_t count;
     triangle_group<S> group;
-    triangle<S> corners[triangle_group<S>::size];  ///< of the group
+    bool is_loaded;  ///< the group: most groups have no sphere near them, and are not read
     candidate_batch<S> batch;
     pipeline_storage<Block> hits;
   };
@@ -48,43 +48,61 @@ struct query_triangle_major {
     s.count = 0;
     s.batch.size = 0;
     std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, pipeline.mesh.size());
+    bool const some_everywhere = in.ends[in.everywhere] != in.ends[in.everywhere + 1];
     for (std::size_t first = begin; first < end; first += n) {
+      triangle_aabb<S> const& around = in.groups[first / n];
+      if (around.is_empty()) continue;
+      std::uint32_t const near = in.grids_near(around);
+      if (near == 0 && !some_everywhere) continue;
+      s.is_loaded = false;
       std::uint32_t together = 0;  // bits of grids where the group is compared as a whole
-      if (first + n <= end && s.group.load(in.boxes, first)) {
-        for (int g = 0; g < in.grid_count; ++g) together |= s.group.pays(in.grids[g]) ? 1u << g : 0;
+      for (int g = 0; g < in.grid_count; ++g) {
+        if ((near >> g & 1) != 0 && is_small(around, in.grids[g])) together |= 1u << g;
+      }
+      if (near != together || some_everywhere) {
+        load(s, first);
+        for (int g = 0; g < in.grid_count && s.group.is_whole(); ++g) {
+          if ((near & ~together) >> g & 1) together |= s.group.pays(in.grids[g]) ? 1u << g : 0;
+        }
       }
       if (together != 0) {
-        test(block, s);
         multiversioned([&] { look_together(block, s, first, together); });
         test_group(block, s);
       }
-      multiversioned([&] { look(block, s, first, smaller(first + n, end), together); });
+      if (near == together && !some_everywhere) continue;
+      multiversioned([&] { look(block, s, first, near & ~together); });
+      test(block, s);
     }
-    test(block, s);
     if constexpr (in_batches<NarrowPhase, S>) s.batch.decide(pipeline, block, s.hits);
     pipeline.drain(block, s.hits);
   }
 
  private:
-  /// Finds the spheres near single triangles, in the grids whose bits are not set.
+  template <class Scratch>
+  void load(Scratch& s, std::size_t first) const {
+    if (!s.is_loaded) multiversioned([&] { s.group.load(pipeline.mesh, first); });
+    s.is_loaded = true;
+  }
+
+  /// Finds the spheres near single triangles of the group, in the grids whose bits are set.
   template <class Block>
-  void look(Block& block, scratch<Block>& s, std::size_t begin, std::size_t end, std::uint32_t but) const {
-    for (std::size_t t = begin; t < end; ++t) {
-      triangle_aabb<S> const around = in.boxes[t];
-      if (around.is_empty()) continue;  // not finite
+  void look(Block& block, scratch<Block>& s, std::size_t first, std::uint32_t some) const {
+    for (std::uint32_t k = 0; k < triangle_group<S>::size; ++k) {
+      triangle_aabb<S> const around = s.group.box(k);
+      if (around.is_empty()) continue;  // not finite, or not there
       auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
         std::uint32_t const last = in.ends[cell + n];
         for (std::uint32_t i = in.ends[cell]; i < last; i += in.spheres.simd_width) {
           std::uint32_t const here = in.spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
-          s.found[s.count] = {i, static_cast<id>(t), here};
+          s.found[s.count] = {i, static_cast<id>(first) + k, here};
           s.count += here != 0;  // no branch: it would often be mispredicted
           if (s.count == s.room) test(block, s);
         }
       };
       for (int g = 0; g < in.grid_count; ++g) {
-        if ((but >> g & 1) == 0)
-          each_range(
-              in.grids[g], around, [&] { return pipeline.mesh[t]; }, look_into);
+        if ((some >> g & 1) == 0) continue;
+        each_range(
+            in.grids[g], around, [&] { return s.group[k]; }, look_into);
       }
       look_into(in.everywhere, 1);
     }
@@ -93,10 +111,12 @@ struct query_triangle_major {
   /// Finds the spheres near a group, in the grids whose bits are set, and which of its triangles they are near to.
   template <class Block>
   void look_together(Block& block, scratch<Block>& s, std::size_t first, std::uint32_t some) const {
+    triangle_aabb<S> const around = in.groups[first / triangle_group<S>::size];
     auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
       std::uint32_t const last = in.ends[cell + n];
       for (std::uint32_t i = in.ends[cell]; i < last; i += in.spheres.simd_width) {
-        std::uint32_t near = in.spheres.reaching(s.group.all, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+        std::uint32_t near = in.spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+        if (near != 0) load(s, first);
         for (; near != 0; near &= near - 1) {
           std::uint32_t const k = i + static_cast<std::uint32_t>(__builtin_ctz(near));
           std::uint32_t const mask =
@@ -108,17 +128,17 @@ struct query_triangle_major {
       }
     };
     for (int g = 0; g < in.grid_count; ++g) {
-      if ((some >> g & 1) != 0) s.group.each_range(in.grids[g], look_into);
+      if ((some >> g & 1) != 0) each_range_of_group(in.grids[g], around, look_into);
     }
   }
 
-  /// Tests what was found near single triangles. Out of line: `look` is a tight loop that is compiled for two vector
-  /// units.
+  /// Tests what was found near single triangles of the group. Out of line: `look` is a tight loop that is compiled for
+  /// two vector units.
   template <class Block>
   [[gnu::noinline]] void test(Block& block, scratch<Block>& s) const {
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
-      triangle<S> const t = pipeline.mesh[r.triangle];
+      triangle<S> const t = s.group[r.triangle % triangle_group<S>::size];
       for (std::uint32_t rest = r.mask; rest != 0; rest &= rest - 1) {
         test_pair(block, s, r.sphere + static_cast<std::uint32_t>(__builtin_ctz(rest)), r.triangle, t);
       }
@@ -132,7 +152,6 @@ struct query_triangle_major {
     if (s.count == 0) return;
     constexpr std::uint32_t n = triangle_group<S>::size, all = (1u << n) - 1;
     id const first = s.found[0].triangle;
-    for (std::uint32_t k = 0; k < n; ++k) s.corners[k] = pipeline.mesh[first + k];
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
       if constexpr (is_discrete<NarrowPhase, S> && filtered_predicate<NarrowPhase>::value) {
@@ -146,7 +165,7 @@ struct query_triangle_major {
       }
       for (std::uint32_t rest = r.mask; rest != 0; rest &= rest - 1) {
         auto const k = static_cast<std::uint32_t>(__builtin_ctz(rest));
-        test_pair(block, s, r.sphere, first + k, s.corners[k]);
+        test_pair(block, s, r.sphere, first + k, s.group[k]);
       }
     }
     s.count = 0;

@@ -85,6 +85,9 @@ struct found_query {
   pair const* pairs;
   std::size_t size;
 
+  /// How many hits there are.
+  std::uint64_t expected_hits() const { return size; }
+
   template <class Output>
   void operator()(Output const& output) const {
     space.for_each(size, hand_over<NarrowPhase, S, Mesh, Output>{pairs, mesh, spheres, output});

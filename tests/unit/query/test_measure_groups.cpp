@@ -1,0 +1,149 @@
+/// What the host knows of a mesh before triangles look for spheres, and which groups of triangles it leaves out.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory_resource>
+#include <random>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <collide/bucket.cuh>
+
+#include "execution/lockstep.hpp"
+
+using namespace collide::detail;
+
+namespace {
+
+/// Triangles of all sizes, one after the other of about the same, some with a number that is not finite.
+template <class S>
+std::vector<S> triangles(std::size_t n) {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<S> all;
+  for (std::size_t i = 0; i < n; ++i) {
+    double const size = std::exp2(static_cast<double>(i / 50 % 40) - 20), at[3] = {uniform(engine), uniform(engine), 0};
+    for (int k = 0; k < 9; ++k) all.push_back(static_cast<S>(100 * at[k % 3] + size * uniform(engine)));
+    if (i % 170 == 3) all[9 * i + i % 9] = std::numeric_limits<S>::quiet_NaN();
+  }
+  return all;
+}
+
+/// Memory of which it is known how much is taken.
+class counted_memory final : public std::pmr::memory_resource {
+ public:
+  std::size_t taken = 0;
+
+ private:
+  void* do_allocate(std::size_t n, std::size_t alignment) override {
+    taken += n;
+    return std::pmr::new_delete_resource()->allocate(n, alignment);
+  }
+  void do_deallocate(void* p, std::size_t n, std::size_t alignment) override {
+    taken -= n;
+    std::pmr::new_delete_resource()->deallocate(p, n, alignment);
+  }
+  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
+};
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("groups of triangles: the host finds the statistics of a mesh that a device finds", S, float,
+                   double) {
+  for (std::size_t n : {1u, 9u, 3000u}) {
+    auto const all = triangles<S>(n);
+    auto const mesh = collide::triangle_soup(all.data(), n);
+    mesh_statistics<S> seen{}, expected{};
+    tests::lockstep<8, false> const device;
+    compute_mesh_statistics<S> const reference{mesh, &expected, nullptr};
+    device.launch(grid_size<tests::lockstep<8, false>>(n, reference), reference);
+    std::vector<triangle_aabb<S>> groups(triangle_group<S>::count(n));
+    measure_groups<S> const body{mesh, &seen, groups.data()};
+    collide::host(2).launch(body.blocks(), body);
+    for (int k = 0; k < 3; ++k) {
+      CHECK(seen.lower_of(k) == expected.lower_of(k));
+      CHECK(seen.upper_of(k) == expected.upper_of(k));
+    }
+    CHECK(std::equal(seen.extents.counts, seen.extents.counts + size_bins, expected.extents.counts));
+    CHECK(seen.extents.first() == expected.extents.first());
+    CHECK(seen.extents.last() == expected.extents.last());
+    bool close = true;
+    for (std::uint32_t b = 0; b < size_bins; ++b) {
+      auto const apart = static_cast<double>(seen.extents.sums[b]) - static_cast<double>(expected.extents.sums[b]);
+      close = close && std::abs(apart) <= 1 + seen.extents.counts[b] / 64;
+    }
+    CHECK(close);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      triangle_group<S> group;
+      group.load(mesh, 8 * i);
+      CHECK(groups[i].lower[0] == group.all.lower[0]);
+      CHECK(groups[i].padding == group.all.padding);
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("groups of triangles: the histogram of radii that the host finds has those that are valid", S, float,
+                   double) {
+  std::vector<S> radii;
+  for (int i = 0; i < 10000; ++i) radii.push_back(static_cast<S>(std::exp2(i % 23 - 11)));
+  for (S bad : {S(-1), std::numeric_limits<S>::infinity(), std::numeric_limits<S>::quiet_NaN()}) radii.push_back(bad);
+  radii.push_back(S(0)), radii.push_back(S(-0.));
+  std::vector<S> const centres(3 * radii.size());
+  size_histogram seen{};
+  measure_radii<S> const body{collide::spheres_xyz(centres.data(), radii.size(), radii.data()), &seen};
+  collide::host(2).launch(body.blocks(), body);
+  std::vector<std::uint64_t> counts(size_bins, 0);
+  for (S r : radii) {
+    if (r >= 0 && std::isfinite(r)) ++counts[size_bin(r + S(0))];
+  }
+  CHECK(std::equal(counts.begin(), counts.end(), seen.counts));
+}
+
+TEST_CASE("groups of triangles: none is left out that has spheres in its cells, also where cells wrap") {
+  std::mt19937 random(1);
+  for (std::uint32_t const mask : {3u, 15u, (1u << 31) - 1}) {
+    constexpr std::uint32_t side = 16;
+    grid<float> g{};
+    g.levels = 1;
+    g.level[0] = {1, 1, 1e9f, {mask, mask, mask}, {side, side * side}, 0};
+    std::vector<std::uint32_t> ends(side * side * side + 2, 0);
+    spheres_in_cells<float> in{};
+    in.grids = &g;
+    in.grid_count = 1;
+    in.ends = ends.data();
+    in.everywhere = side * side * side;
+    int left_out = 0;
+    for (int round = 0; round < 3000; ++round) {
+      std::fill(ends.begin(), ends.end(), 0u);
+      std::size_t const full = random() % ends.size();  // the cell before has a sphere
+      for (std::size_t c = full; c < ends.size(); ++c) ends[c] = 1;
+      std::uniform_real_distribution<float> at(0, 12.9f), size(0, 3);
+      aabb<float> box;
+      for (int k = 0; k < 3; ++k) box.lower[k] = at(random), box.upper[k] = box.lower[k] + size(random);
+      bool there = false;
+      each_range_of_group(g, box,
+                          [&](std::uint32_t cell, std::uint32_t n) { there = there || ends[cell] != ends[cell + n]; });
+      bool const near = in.grids_near(box) != 0;
+      CHECK((near || !there));
+      left_out += !near;
+    }
+    CHECK(left_out > 100);
+  }
+}
+
+TEST_CASE("groups of triangles: the host keeps no box of each triangle, unless few spheres come again") {
+  constexpr std::size_t n = 50000;
+  auto const numbers = triangles<float>(n);
+  std::vector<float> const centres(3 * 100, 1.0f);
+  counted_memory memory;
+  collide::detector<collide::bucket> detector(collide::host(1, &memory));
+  detector.build(collide::triangle_soup(numbers.data(), n));
+  CHECK(memory.taken < 6 * n);
+  auto const spheres = collide::spheres_xyz(centres.data(), centres.size() / 3, 1.0f);
+  auto const first = detector.query(spheres, collide::pairs(collide::order::canonical)).to_host();
+  CHECK(memory.taken < 12 * n);
+  for (int again = 0; again < 2; ++again) {
+    CHECK((detector.query(spheres, collide::pairs(collide::order::canonical)).to_host() == first));
+  }
+}
