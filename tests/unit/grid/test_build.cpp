@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -14,20 +13,15 @@
 #include <collide/detail/grid/triangle_cells.hpp>
 
 #include "execution/lockstep.hpp"
+#include "random_triangles.hpp"
 
 namespace {
 
 /// Triangles from small to large against the cells, and one that is not finite.
 template <class S>
 std::vector<S> triangles(std::size_t n) {
-  std::mt19937 engine(1);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::vector<S> all;
-  for (std::size_t i = 0; i < n; ++i) {
-    double const size = std::exp2(3 * uniform(engine)),
-                 at[3] = {9 * uniform(engine), 5 * uniform(engine), uniform(engine)};
-    for (int k = 0; k < 9; ++k) all.push_back(static_cast<S>(at[k % 3] + size * uniform(engine)));
-  }
+  auto all =
+      tests::random_triangles<S>(n, {9, 5, 1}, [](std::size_t, auto const& draw) { return std::exp2(3 * draw()); });
   all[9 * (n / 2)] = std::numeric_limits<S>::quiet_NaN();
   return all;
 }

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -11,6 +10,7 @@
 #include <collide/host.hpp>
 
 #include "execution/lockstep.hpp"
+#include "random_triangles.hpp"
 
 using namespace collide::detail;
 
@@ -19,14 +19,10 @@ namespace {
 /// Triangles of all sizes, some with a number that is not finite.
 template <class S>
 std::vector<S> triangles(std::size_t n) {
-  std::mt19937 engine(1);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::vector<S> all;
-  for (std::size_t i = 0; i < n; ++i) {
-    double const size = std::exp2(20 * uniform(engine)), at[3] = {uniform(engine), uniform(engine), uniform(engine)};
-    for (int k = 0; k < 9; ++k) all.push_back(static_cast<S>(100 * at[k % 3] + size * uniform(engine)));
-    if (i % 17 == 3)
-      all[9 * i + i % 9] = i % 2 == 0 ? std::numeric_limits<S>::infinity() : std::numeric_limits<S>::quiet_NaN();
+  auto all = tests::random_triangles<S>(n, {100, 100, 100},
+                                        [](std::size_t, auto const& draw) { return std::exp2(20 * draw()); });
+  for (std::size_t i = 3; i < n; i += 17) {
+    all[9 * i + i % 9] = i % 2 == 0 ? std::numeric_limits<S>::infinity() : std::numeric_limits<S>::quiet_NaN();
   }
   return all;
 }

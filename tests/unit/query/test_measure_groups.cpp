@@ -11,6 +11,7 @@
 #include <collide/bucket.cuh>
 
 #include "execution/lockstep.hpp"
+#include "random_triangles.hpp"
 
 using namespace collide::detail;
 
@@ -19,14 +20,9 @@ namespace {
 /// Triangles of all sizes, one after the other of about the same, some with a number that is not finite.
 template <class S>
 std::vector<S> triangles(std::size_t n) {
-  std::mt19937 engine(1);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::vector<S> all;
-  for (std::size_t i = 0; i < n; ++i) {
-    double const size = std::exp2(static_cast<double>(i / 50 % 40) - 20), at[3] = {uniform(engine), uniform(engine), 0};
-    for (int k = 0; k < 9; ++k) all.push_back(static_cast<S>(100 * at[k % 3] + size * uniform(engine)));
-    if (i % 170 == 3) all[9 * i + i % 9] = std::numeric_limits<S>::quiet_NaN();
-  }
+  auto all = tests::random_triangles<S>(
+      n, {100, 100, 0}, [](std::size_t i, auto const&) { return std::exp2(static_cast<double>(i / 50 % 40) - 20); });
+  for (std::size_t i = 3; i < n; i += 170) all[9 * i + i % 9] = std::numeric_limits<S>::quiet_NaN();
   return all;
 }
 

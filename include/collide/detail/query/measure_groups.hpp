@@ -3,9 +3,11 @@
 /// close.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include <collide/detail/execution/launch.hpp>
 #include <collide/detail/execution/multiversion.hpp>
@@ -120,16 +122,9 @@ struct measure_groups {
         v[k] = static_cast<float>(group.corners[2][k][i] - group.corners[0][k][i]) * scale;
       }
       float const x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
-      float const area = 0.5f * root(x * x + (y * y + z * z));
+      float const area = 0.5f * std::sqrt(x * x + (y * y + z * z));
       areas[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(select(area <= 1, area, 0.f) * 0x1p8f + 0.5f));
     }
-  }
-
-  /// A square root to 17 bits: that of the library is called for a negative number, and so not vectorised.
-  static float root(float x) {
-    float inverse = from_bits<float>(0x5f3759df - (to_bits(x) >> 1));
-    for (int k = 0; k < 2; ++k) inverse *= 1.5f - 0.5f * x * inverse * inverse;
-    return x * inverse;
   }
 };
 
