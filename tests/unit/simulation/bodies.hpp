@@ -273,6 +273,17 @@ void check_drum(Space const& space) {
   CHECK(std::abs(angle_of(rolls)) < 6);
 }
 
+/// How a box turns and shakes.
+inline body_motion shaking(double speed) {
+  body_motion m;
+  m.axis[0] = 0.3, m.axis[1] = -0.5, m.axis[2] = 1;
+  m.rate = 3 * speed;
+  m.amplitude[0] = 0.1 * speed, m.amplitude[2] = 0.2 * speed;
+  m.frequency = 2;
+  m.pivot[0] = 0.2;
+  return m;
+}
+
 /// A closed box that turns and shakes keeps what is in it.
 template <class NarrowPhase, class S, class Space>
 void check_turning_box(Space const& space, double speed, double dt, std::size_t particles, std::size_t steps) {
@@ -285,13 +296,7 @@ void check_turning_box(Space const& space, double speed, double dt, std::size_t 
   for (std::size_t i = 0; i < particles; ++i) {
     w.particle(uniform(engine), uniform(engine), uniform(engine), uniform(engine), uniform(engine), uniform(engine));
   }
-  body_motion m;
-  m.axis[0] = 0.3, m.axis[1] = -0.5, m.axis[2] = 1;
-  m.rate = 3 * speed;
-  m.amplitude[0] = 0.1 * speed, m.amplitude[2] = 0.2 * speed;
-  m.frequency = 2;
-  m.pivot[0] = 0.2;
-  running_bodies<simulation> made(space, w, one_body(w, m), gravity{}, bounce{0.5}, friction{0.3, 0.3},
+  running_bodies<simulation> made(space, w, one_body(w, shaking(speed)), gravity{}, bounce{0.5}, friction{0.3, 0.3},
                                   moving_bodies<>{});
   std::size_t outside = 0;
   for (int part = 0; part < 10; ++part) {
@@ -305,6 +310,71 @@ void check_turning_box(Space const& space, double speed, double dt, std::size_t 
     }
   }
   CHECK(outside == 0);
+}
+
+/// Balls in a corner of a box stay there while it turns by a third of a radian in a step, and hits them several times:
+/// where friction holds them is a place on the box, which goes on between two of these hits. Where such a ball was
+/// seen that got out.
+template <class S, class Space>
+void check_corner_of_turning_box(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi_swept<>, S>, gravity, bounce, friction, moving_bodies<>>;
+  using vector = collide::vec3<double>;
+  constexpr std::size_t balls = 2000;
+  world<S> w;
+  w.radius = S(0.05);
+  add_box(w, 1);
+  for (std::size_t i = 0; i < balls; ++i) w.particle(0, 0, 0);
+  running_bodies<simulation> made(space, w, one_body(w, shaking(10)), gravity{}, bounce{0.5}, friction{0.3, 0.3},
+                                  moving_bodies<>{});
+  made.simulation.step(S(0.94));
+  std::mt19937 engine(11);
+  std::normal_distribution<double> normal;
+  std::vector<S> centres, velocities;
+  auto const before = collide::detail::frame_pose_of(made.bodies()[0].at);
+  for (std::size_t i = 0; i < balls; ++i) {
+    vector const own(0.949992526, 0.950000024, -0.949972961), velocity(19.9148178, -28.1422405, 0.162010446);
+    vector const at = before.to_world(own);
+    for (int k = 0; k < 3; ++k) {
+      centres.push_back(S(at[k] + 1e-5 * normal(engine)));
+      velocities.push_back(S(velocity[k] + 1e-2 * normal(engine)));
+    }
+  }
+  placed<S> const x(space, centres), v(space, velocities);
+  made.simulation.template assign<collide::position>(x.data());
+  made.simulation.template assign<collide::velocity>(v.data());
+  made.simulation.step(S(1e-2));
+  auto const after = collide::detail::frame_pose_of(made.bodies()[0].at);
+  auto const found = made.positions();
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < found.size(); i += 3)
+    outside += after.to_local(vector(found[i], found[i + 1], found[i + 2])).cwiseAbs().maxCoeff() > 1;
+  CHECK(outside == 0);
+}
+
+/// A ball that a falling plate carries down is caught by the floor that the plate falls through. The plate was above
+/// the floor when they touched, but is below it when the ball gets there.
+template <class S, class Space>
+void check_floor_below_falling_plate(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi_swept<>, S>, bounce, moving_bodies<>>;
+  world<S> w;
+  w.radius = S(0.05);
+  add_quad(w, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});
+  std::size_t const plate = triangles_of(w);
+  add_quad(w, {-1, -1, -0.3}, {1, -1, -0.3}, {1, 1, -0.3}, {-1, 1, -0.3});
+  body_motion falling, slow;
+  falling.velocity[2] = -80;
+  slow.velocity[0] = 0.1;
+  for (double const x : {0.3, 0.5}) w.particle(x, 0.1, 0.1, 0, 0, -100);
+  for (bool const floor_moves : {false, true}) {
+    std::vector<body> bodies{body{0, plate, falling}};
+    if (floor_moves) bodies.push_back(body{plate, 2, slow});
+    running_bodies<simulation> made(space, w, bodies, bounce{0}, moving_bodies<>{});
+    made.simulation.step(S(1e-2));
+    auto const x = made.positions();
+    for (std::size_t const i : {std::size_t{2}, std::size_t{5}})
+      CHECK(double(x[i]) == doctest::Approx(-0.25).epsilon(1e-3));
+  }
 }
 
 /// What sticks to a drum goes round with it, until it turns so fast that nothing holds it.

@@ -90,6 +90,14 @@ TEST_CASE_TEMPLATE("bodies: a closed box that turns and shakes keeps what is in 
   tests::check_turning_box<karabassi_swept<>, S>(host(1), 10, 1e-2, 300, 1000);
 }
 
+TEST_CASE_TEMPLATE("bodies: what lies in the corner of a box that turns fast stays there", S, float, double) {
+  tests::check_corner_of_turning_box<S>(host(1));
+}
+
+TEST_CASE_TEMPLATE("bodies: what a falling plate carries is caught by the floor below", S, float, double) {
+  tests::check_floor_below_falling_plate<S>(host(1));
+}
+
 TEST_CASE("hunt: bodies: a closed box that turns and shakes keeps its balls for 1e5 steps") {
   tests::check_turning_box<karabassi<>, float>(host(), 1, 1e-3, 10000, 100000);
   tests::check_turning_box<karabassi_swept<>, float>(host(), 1, 1e-3, 1000, 100000);

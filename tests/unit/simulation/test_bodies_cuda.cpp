@@ -25,9 +25,21 @@ TEST_CASE("bodies: on the GPU, a closed box that turns and shakes keeps what is 
   tests::check_turning_box<karabassi_swept<>, float>(cuda_shared(), 10, 1e-2, 10000, 10000);
 }
 
+TEST_CASE("bodies: on the GPU, what lies in the corner of a box, or on a falling plate") {
+  tests::check_corner_of_turning_box<float>(cuda_shared());
+  tests::check_floor_below_falling_plate<float>(cuda_shared());
+}
+
 TEST_CASE("hunt: bodies: on the GPU, a closed box that turns and shakes keeps 1e6 balls for 1e5 steps") {
   tests::check_turning_box<karabassi<>, float>(cuda_shared(), 1, 1e-3, 1000000, 100000);
+}
+
+TEST_CASE("hunt: bodies: on the GPU, a closed box that turns and shakes keeps 1e6 swept balls for 1e5 steps") {
   tests::check_turning_box<karabassi_swept<>, float>(cuda_shared(), 1, 1e-3, 1000000, 100000);
+}
+
+TEST_CASE("hunt: bodies: on the GPU, a closed box that turns by a third of a radian a step keeps 1e6 swept balls") {
+  tests::check_turning_box<karabassi_swept<>, float>(cuda_shared(), 10, 1e-2, 1000000, 1000);
 }
 
 TEST_CASE("bodies: on the GPU, riding, waking, many bodies, and the same bits on every run") {

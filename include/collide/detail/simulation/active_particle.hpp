@@ -79,6 +79,7 @@ struct seen_from_body {
   vec3<S> own_displacement;  ///< in the frame of the body
   vec3<S> displacement;      ///< turned to the world
   vec3<S> own_point;         ///< where the two may touch, in the frame of the body
+  vec3<S> drift;             ///< in the world, of what moves with the body, since the particle's last contact
   vec3<S> velocity;          ///< in the world
   int frame;
 };
@@ -157,7 +158,10 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
       vec3<S> const moved = scaled(path_seen(seen), time);
       is_same_place = is_same_place && dot(moved, moved) <= S(1e-6) * radius * radius;
     }
-    if (is_same_place) return;
+    if (is_same_place) {
+      if constexpr (IsSwept) carry_start(seen);
+      return;
+    }
     contacts_here = 0;
     for (int k = 0; k < 3; ++k) {
       arrival_velocity[k] = velocity[k];
@@ -194,11 +198,15 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
       if (i >= contact_count) break;
       S above = 0;
       for (int k = 0; k < 3; ++k) above += normals[i][k] * (point[k] - points[i][k]);
-      if constexpr (HasBodies && IsSwept) {
-        if (this->frames[i] == seen.frame) above = own_height(i, seen.own_point);
-      }
       bool leaves = true;
       if constexpr (IsSwept) leaves = !is_approaching_again(i, seen);
+      if constexpr (HasBodies && IsSwept) {
+        if (this->frames[i] == seen.frame) {
+          above = own_height(i, seen.own_point);
+        } else {  // it is one surface if the other body does not come towards the particle either
+          leaves = leaves && !is_approaching(normal_of(i), seen);
+        }
+      }
       is_internal = is_internal || (leaves && above <= contact_tolerance<S> * radius);
     }
     return is_internal;
@@ -279,6 +287,12 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
 
  private:
   COLLIDE_HD_INLINE vec3<S> normal_of(int slot) const { return {normals[slot][0], normals[slot][1], normals[slot][2]}; }
+
+  /// A place on a body moves with it.
+  COLLIDE_HD_INLINE void carry_start(seen_at_rest) {}
+  COLLIDE_HD_INLINE void carry_start(seen_from_body<S> const& seen) {
+    for (int k = 0; k < 3; ++k) start[k] += seen.drift[k];
+  }
 
   COLLIDE_HD_INLINE vec3<S> path_seen(seen_at_rest) const { return this->motion(); }
   COLLIDE_HD_INLINE vec3<S> path_seen(seen_from_body<S> const& seen) const { return seen.displacement; }

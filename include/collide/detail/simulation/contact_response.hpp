@@ -127,7 +127,8 @@ struct contact_response {
       sphere<S> here = sphere_at(whole, time);
       vec3<S> const own = here.centre;
       here.centre = !is_swept ? a.shape().centre : mesh.in_world(frame, own, part);
-      auto const seen = seen_in_world(mesh, a, frame, whole, part);
+      auto seen = seen_in_world(mesh, a, frame, whole, part);
+      if constexpr (is_swept) seen.drift = mesh.in_world(frame, whole.centre, part) - a.shape().centre;
       constexpr bool turns =
           contains<typename effects_type::all, angular_velocity> || contains<typename effects_type::all, adhered>;
       apply_contact_at(p, a, time, here, surface_of<turns, active>(mesh, c, own, here.centre, part), seen);

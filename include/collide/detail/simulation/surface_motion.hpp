@@ -27,7 +27,7 @@ template <class S, class Active, class Shape>
 COLLIDE_HD_INLINE seen_from_body<S> seen_in_world([[maybe_unused]] moving_mesh<S> const& mesh, Active const&, int frame,
                                                   [[maybe_unused]] Shape const& whole, [[maybe_unused]] double part) {
   vec3<S> const none(S(0), S(0), S(0));
-  seen_from_body<S> seen{none, none, none, none, frame};
+  seen_from_body<S> seen{none, none, none, none, none, frame};
   if constexpr (Active::is_swept) {
     seen.own_displacement = seen.displacement = whole.displacement;
     if (frame == 0) return seen;
