@@ -207,8 +207,9 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       if (failed) std::rethrow_exception(failed);
       part_.check_step(dt);
       mine[1] = 1;
-      mine[0] = part_.begin_step(dt) ? 1 : 0;
-      if (meets && mine[0] == 0) exchange_.pack(part_);
+      part_.begin_step(dt);
+      if (meets && part_.knows_others()) exchange_.pack(ranks_, part_);
+      mine[0] = part_.has_moved() ? 1 : 0;
     } catch (...) {
       failed = std::current_exception();
       mine[0] = 2;
@@ -216,12 +217,12 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     ranks_.reduce(mine, all, 2, reduction::max);
     is_sound_ = is_sound_ && all[1] == 0;
     if (all[0] == 2) agree(ranks_, failed);
-    if constexpr (meets) {
-      if (all[0] == 1) exchange_.exchange(ranks_, part_);
-      exchange_.send(ranks_);
-    }
+    if (meets && all[0] == 1) exchange_.exchange(ranks_, part_);
     try {
-      if constexpr (meets) exchange_.unpack(part_);
+      if constexpr (meets) {
+        exchange_.send(ranks_, part_);
+        exchange_.unpack(ranks_, part_);
+      }
       part_.end_step(dt);
     } catch (...) {
       failed = std::current_exception();

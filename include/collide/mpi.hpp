@@ -9,9 +9,13 @@
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include <mpi.h>
+#if __has_include(<mpi-ext.h>)
+#include <mpi-ext.h>
+#endif
 
 #include <collide/ranks.hpp>
 
@@ -48,7 +52,8 @@ class mpi_session {
 
 /// Ranks: the processes of an MPI communicator. Messages go in pieces, so there is no limit of 2^31 bytes. An MPI
 /// library that fails, or a process that dies, ends all processes, with a line that says which: that is MPI's own
-/// default.
+/// default. What is in memory of devices is sent from there if MPI says at run time that it can; if not, by way of
+/// pinned memory of the host.
 class mpi_ranks {
  public:
   /// Takes a communicator of its own, made from `comm`: all processes of `comm` call it. No message is longer than
@@ -83,7 +88,8 @@ class mpi_ranks {
         },
         [&](int r) {
           return message<unsigned char>{to + static_cast<std::size_t>(r) * bytes, bytes};
-        });
+        },
+        [](void* at, void const* own, std::size_t n) { std::memcpy(at, own, n); });
   }
 
   void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, reduction how) const {
@@ -100,14 +106,37 @@ class mpi_ranks {
 
   void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
                 std::size_t bytes) const {
-    auto const* sent = static_cast<unsigned char const*>(from);
-    auto* received = static_cast<unsigned char*>(to);
-    auto const next = [bytes](auto*& at, std::uint64_t items) {
-      message<std::remove_reference_t<decltype(*at)>> const m{at, static_cast<std::size_t>(items) * bytes};
-      if (m.bytes != 0) at += m.bytes;
-      return m;
+    exchange_by([](void* at, void const* own, std::size_t n) { std::memcpy(at, own, n); }, from, to_each, to, of_each,
+                bytes);
+  }
+
+  /// Whether MPI takes pointers to memory of CUDA devices: what MPIX_Query_cuda_support() says, if MPI has that.
+  bool takes_device_memory() const {
+#if defined(MPIX_CUDA_AWARE_SUPPORT)
+    return MPIX_Query_cuda_support() == 1;
+#else
+    return false;
+#endif
+  }
+
+  /// As `exchange`, of memory of devices, which MPI must take. If the space of a rank fails, that one throws.
+  template <class Space>
+  auto exchange_in_space(Space const& space, void const* from, std::uint64_t const* to_each, void* to,
+                         std::uint64_t const* of_each, std::size_t bytes) const
+      -> decltype(space.copy_from_any_device(to, from, bytes)) {
+    std::exception_ptr failure;
+    auto const attempt = [&](auto const& work) noexcept {
+      try {
+        work();
+      } catch (...) {
+        failure = std::current_exception();
+      }
     };
-    transfer([&](int r) { return next(sent, to_each[r]); }, [&](int r) { return next(received, of_each[r]); });
+    attempt([&] { space.synchronize(); });
+    exchange_by(
+        [&](void* at, void const* own, std::size_t n) { attempt([&] { space.copy_from_any_device(at, own, n); }); },
+        from, to_each, to, of_each, bytes);
+    if (failure) std::rethrow_exception(failure);
   }
 
  private:
@@ -129,11 +158,25 @@ class mpi_ranks {
     MPI_Comm comm = MPI_COMM_NULL;
   };
 
+  /// Sends items to each rank and receives some from each; copy(to, from, bytes) copies those to this rank itself.
+  template <class Copy>
+  void exchange_by(Copy const& copy, void const* from, std::uint64_t const* to_each, void* to,
+                   std::uint64_t const* of_each, std::size_t bytes) const {
+    auto const* sent = static_cast<unsigned char const*>(from);
+    auto* received = static_cast<unsigned char*>(to);
+    auto const next = [bytes](auto*& at, std::uint64_t items) {
+      message<std::remove_reference_t<decltype(*at)>> const m{at, static_cast<std::size_t>(items) * bytes};
+      if (m.bytes != 0) at += m.bytes;
+      return m;
+    };
+    transfer([&](int r) { return next(sent, to_each[r]); }, [&](int r) { return next(received, of_each[r]); }, copy);
+  }
+
   /// Sends to each rank and receives from each, in pieces; the two functions give the messages, rank after rank. A
   /// message to this rank itself is copied. Others wait for it already, so without memory for requests the program
   /// ends.
-  template <class Outgoing, class Incoming>
-  void transfer(Outgoing const& outgoing, Incoming const& incoming) const noexcept {
+  template <class Outgoing, class Incoming, class Copy>
+  void transfer(Outgoing const& outgoing, Incoming const& incoming, Copy const& copy) const noexcept {
     auto& requests = *requests_;
     requests.clear();
     message<unsigned char> self{nullptr, 0};
@@ -146,7 +189,7 @@ class mpi_ranks {
     }
     for (int r = 0; r < size_; ++r) {
       message<unsigned char const> const m = outgoing(r);
-      if (r == rank_ && m.bytes != 0) std::memcpy(self.at, m.at, m.bytes);
+      if (r == rank_ && m.bytes != 0) copy(self.at, m.at, m.bytes);
       for (std::size_t i = 0; r != rank_ && i < m.bytes; i += piece_) {
         MPI_Isend(m.at + i, length(m.bytes - i), MPI_BYTE, r, 0, comm_->comm, &requests.emplace_back());
       }

@@ -2,6 +2,7 @@
 /// Ranks that are threads of one process: for machines with several devices, and for tests.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -21,30 +22,43 @@ namespace detail {
 /// Where threads wait for each other, and see what the others have laid out. Who waits for one that has left throws.
 class meeting {
  public:
+  static constexpr std::size_t few = 8;  ///< numbers that a rank can lay out here
+
   explicit meeting(int size) : places_(static_cast<std::size_t>(size)) {}
 
   /// What a rank shows to the others.
   struct place {
     void const* data = nullptr;
     std::uint64_t const* counts = nullptr;
+    std::uint64_t numbers[2][few] = {};  ///< in even and in odd rounds
   };
 
   int size() const { return static_cast<int>(places_.size()); }
   place& of(int rank) { return places_[static_cast<std::size_t>(rank)]; }
 
-  /// Returns when all have called it. Throws `rank_error` if one has left.
+  /// How often all have waited, as a rank sees it that does not wait.
+  std::uint64_t round() const { return round_.load(std::memory_order_relaxed); }
+
+  /// Returns when all have called it. Throws `rank_error` if one has left. Others mostly come soon, and to wake a
+  /// thread takes tens of microseconds, so it looks for a while before it sleeps.
   void wait() {
+    std::uint64_t const before = round();
     std::unique_lock<std::mutex> lock(mutex_);
-    std::uint64_t const round = round_;
     if (!gone_.empty()) throw rank_error(gone_);
     if (++waiting_ == places_.size()) {
       waiting_ = 0;
-      ++round_;
+      round_.store(before + 1, std::memory_order_release);
       changed_.notify_all();
       return;
     }
-    changed_.wait(lock, [&] { return round_ != round || !gone_.empty(); });
-    if (round_ == round) throw rank_error(gone_);
+    lock.unlock();
+    for (int looks = 0; looks < 200; ++looks) {
+      if (round_.load(std::memory_order_acquire) != before) return;
+      std::this_thread::yield();
+    }
+    lock.lock();
+    changed_.wait(lock, [&] { return round() != before || !gone_.empty(); });
+    if (round() == before) throw rank_error(gone_);
   }
 
   /// A rank will not come again, because of `failure` or, if that is null, because it has ended.
@@ -77,7 +91,7 @@ class meeting {
   std::condition_variable changed_;
   std::vector<place> places_;
   std::size_t waiting_ = 0;
-  std::uint64_t round_ = 0;
+  std::atomic<std::uint64_t> round_{0};
   std::string gone_;
   std::exception_ptr failure_;
 };
@@ -113,33 +127,34 @@ class thread_ranks {
   int size() const { return meeting_->size(); }
 
   void all_gather(void const* mine, std::size_t bytes, void* all) const {
-    show({mine, nullptr}, [&] {
+    show(mine, nullptr, [&] {
       for (int r = 0; r < size(); ++r) copy(meeting_->of(r).data, bytes, all, static_cast<std::size_t>(r) * bytes);
     });
   }
 
   void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, reduction how) const {
-    show({mine, nullptr}, [&] {
-      for (int r = 0; r < size(); ++r) {
-        auto const* const theirs = static_cast<std::uint64_t const*>(meeting_->of(r).data);
-        for (std::size_t i = 0; i < n; ++i) {
-          std::uint64_t const before = r == 0 ? 0 : all[i];
-          all[i] = how == reduction::sum ? before + theirs[i] : (before < theirs[i] ? theirs[i] : before);
-        }
-      }
-    });
+    if (n > detail::meeting::few) {
+      return show(mine, nullptr, [&] {
+        combine(all, n, how, [&](int r) { return static_cast<std::uint64_t const*>(meeting_->of(r).data); });
+      });
+    }
+    // few numbers stay where they are until all have waited once more, and so have read them
+    std::uint64_t const parity = meeting_->round() % 2;
+    copy(mine, n * sizeof *mine, meeting_->of(rank_).numbers[parity], 0);
+    meeting_->wait();
+    combine(all, n, how, [&](int r) { return meeting_->of(r).numbers[parity]; });
   }
 
   void exchange_counts(std::uint64_t const* to_each, std::uint64_t* of_each) const {
-    show({nullptr, to_each}, [&] {
+    show(nullptr, to_each, [&] {
       for (int r = 0; r < size(); ++r) of_each[r] = meeting_->of(r).counts[rank_];
     });
   }
 
   void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
                 std::size_t bytes) const {
-    exchange_by([](void* at, void const* theirs, std::size_t n) { std::memcpy(at, theirs, n); }, from, to_each, to,
-                of_each, bytes);
+    exchange_by([](void* at, void const* theirs, std::size_t n) { std::memcpy(at, theirs, n); }, [] {}, from, to_each,
+                to, of_each, bytes);
   }
 
   /// As `exchange`, of memory of the ranks' spaces, which are of devices: from one to the other, not by way of the
@@ -159,7 +174,7 @@ class thread_ranks {
     attempt([&] { space.synchronize(); });
     exchange_by([&](void* at, void const* theirs,
                     std::size_t n) { attempt([&] { space.copy_from_any_device(at, theirs, n); }); },
-                from, to_each, to, of_each, bytes);
+                [&] { attempt([&] { space.synchronize(); }); }, from, to_each, to, of_each, bytes);
     if (failure) std::rethrow_exception(failure);
   }
 
@@ -177,11 +192,11 @@ class thread_ranks {
     meeting.leave(rank, failure);
   }
 
-  /// Calls copy(to, from, bytes) for what comes from each rank.
-  template <class Copy>
-  void exchange_by(Copy const& copy_bytes, void const* from, std::uint64_t const* to_each, void* to,
-                   std::uint64_t const* of_each, std::size_t bytes) const {
-    show({from, to_each}, [&] {
+  /// Calls copy(to, from, bytes) for what comes from each rank, and finish() before others may change what they sent.
+  template <class Copy, class Finish>
+  void exchange_by(Copy const& copy_bytes, Finish const& finish, void const* from, std::uint64_t const* to_each,
+                   void* to, std::uint64_t const* of_each, std::size_t bytes) const {
+    show(from, to_each, [&] {
       std::size_t filled = 0;
       for (int r = 0; r < size(); ++r) {
         detail::meeting::place const theirs = meeting_->of(r);
@@ -194,7 +209,20 @@ class thread_ranks {
         }
         filled += n;
       }
+      finish();
     });
+  }
+
+  /// The sums or maxima of n numbers of each rank.
+  template <class Numbers>
+  void combine(std::uint64_t* all, std::size_t n, reduction how, Numbers const& numbers_of) const {
+    for (int r = 0; r < size(); ++r) {
+      std::uint64_t const* const theirs = numbers_of(r);
+      for (std::size_t i = 0; i < n; ++i) {
+        std::uint64_t const before = r == 0 ? 0 : all[i];
+        all[i] = how == reduction::sum ? before + theirs[i] : (before < theirs[i] ? theirs[i] : before);
+      }
+    }
   }
 
   static void copy(void const* from, std::size_t bytes, void* to, std::size_t at) {
@@ -203,8 +231,9 @@ class thread_ranks {
 
   /// Shows something to the others, calls take(), which looks at what they show, and waits until all have.
   template <class Take>
-  void show(detail::meeting::place const& mine, Take const& take) const {
-    meeting_->of(rank_) = mine;
+  void show(void const* data, std::uint64_t const* counts, Take const& take) const {
+    meeting_->of(rank_).data = data;
+    meeting_->of(rank_).counts = counts;
     meeting_->wait();
     take();
     meeting_->wait();

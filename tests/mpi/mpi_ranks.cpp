@@ -9,6 +9,32 @@
 
 namespace {
 
+/// A space whose memory MPI takes: that of the host.
+struct reachable_space {
+  int* waits;
+  void synchronize() const { ++*waits; }
+  void copy_from_any_device(void* to, void const* from, std::size_t bytes) const { std::memcpy(to, from, bytes); }
+};
+
+/// What goes from space to space is what goes from host to host, once the space is done with it.
+void check_exchange_in_space(collide::mpi_ranks const& ranks, tests::complaints& wrong) {
+  auto const size = static_cast<std::size_t>(ranks.size()), rank = static_cast<std::size_t>(ranks.rank());
+  std::vector<std::uint64_t> to_each(size), of_each(size);
+  std::vector<int> from, to, expected;
+  for (std::size_t q = 0; q < size; ++q) {
+    to_each[q] = rank + 3 * q;
+    of_each[q] = q + 3 * rank;
+    for (std::size_t i = 0; i < to_each[q]; ++i) from.push_back(static_cast<int>(1000 * rank + 100 * q + i));
+    for (std::size_t i = 0; i < of_each[q]; ++i) expected.push_back(static_cast<int>(1000 * q + 100 * rank + i));
+  }
+  to.resize(expected.size());
+  int waits = 0;
+  ranks.exchange_in_space(reachable_space{&waits}, from.data(), to_each.data(), to.data(), of_each.data(), sizeof(int));
+  wrong.expect(waits > 0, "an exchange waits for the space");
+  wrong.expect(to == expected, "an exchange in space");
+  ranks.takes_device_memory();  // whatever it says, it can be asked
+}
+
 /// Short pieces: messages are then longer than one.
 std::string check(std::string const& what) {
   tests::complaints wrong;
@@ -19,6 +45,7 @@ std::string check(std::string const& what) {
     if (what == "members") {
       tests::check_members(ranks, wrong);
       tests::check_agreement(ranks, wrong);
+      check_exchange_in_space(ranks, wrong);
     } else if (piece == 64) {
       tests::check_both(ranks, tests::hard_scene<float>(), {}, wrong);
     } else {

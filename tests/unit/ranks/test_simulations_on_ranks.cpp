@@ -94,16 +94,17 @@ TEST_CASE("simulations on ranks: bricks have as many particles, and know who is 
       }
       collide::detail::bisection bricks;
       bricks.build(ranks, x);
+      auto const lookup = bricks.lookup();
       std::vector<std::uint64_t> mine(static_cast<std::size_t>(n)), all(mine.size());
       std::size_t missing = 0;
       for (std::size_t i = 0; i < x.size(); i += 3) {
-        int const at = bricks.rank_at(x.data() + i);
+        int const at = lookup.rank_at(x.data() + i);
         ++mine[static_cast<std::size_t>(at)];
         for (std::size_t k = 0; k < 30; k += 3) {  // with a neighbour anywhere within reach
           double const reach = 0.3 * static_cast<double>(k),
                        near[] = {x[i] - reach, x[i + 1] + reach, x[i + 2] - reach};
           bool found = false;
-          bricks.for_each_rank(near, reach * (1 + 1e-12), [&](int rank) { found = found || rank == at; });
+          lookup.for_each_rank(near, reach * (1 + 1e-12), [&](int rank) { found = found || rank == at; });
           missing += !found;
         }
       }

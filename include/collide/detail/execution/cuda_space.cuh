@@ -6,7 +6,10 @@
 #error "collide/detail/execution/cuda_space.cuh needs nvcc; without CUDA include the headers of the host space alone"
 #endif
 
+#include <algorithm>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <cuda_runtime.h>
 
@@ -102,12 +105,12 @@ class cuda_space {
     synchronize();
   }
 
-  /// Copies `bytes` bytes to this device from memory of any other of the process, or its own, and waits.
+  /// Copies `bytes` bytes to this device from memory of any other of the process, or its own, in the order of the
+  /// stream.
   void copy_from_any_device(void* to, void const* from, std::size_t bytes) const {
     if (bytes == 0) return;
     read_directly(from);
     cuda_check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream_), "cudaMemcpyAsync");
-    synchronize();
   }
 
  protected:
@@ -118,10 +121,14 @@ class cuda_space {
     int device = 0, can = 0;
     cuda_check(cudaGetDevice(&device), "cudaGetDevice");
     if (memory.type != cudaMemoryTypeDevice || memory.device == device) return;
+    thread_local std::vector<std::pair<int, int>> tried;  // to find out takes longer than a short copy
+    std::pair<int, int> const both(device, memory.device);
+    if (std::find(tried.begin(), tried.end(), both) != tried.end()) return;
     cuda_check(cudaDeviceCanAccessPeer(&can, device, memory.device), "cudaDeviceCanAccessPeer");
     if (can != 0 && cudaDeviceEnablePeerAccess(memory.device, 0) != cudaSuccess) {
       cudaGetLastError();  // it does already, or copies go by way of the host
     }
+    tried.push_back(both);
   }
 
   /// Launches a kernel that begins with `pdl_wait`.

@@ -48,16 +48,6 @@ class host_array {
   std::size_t size_ = 0;
 };
 
-/// Makes an array on the host have so many values.
-template <class Space, class T>
-void resize(Space const& space, host_array<T>& values, std::size_t n) {
-  values.resize(space, n);
-}
-template <class Space, class T>
-void resize(Space const&, std::vector<T>& values, std::size_t n) {
-  values.resize(n);
-}
-
 /// Copies `n` values that `pack(to)` writes in memory of the space to the host.
 template <class S, class Space, class Pack>
 std::vector<S> packed_on_host(Space const& space, std::size_t n, buffer<S>& memory, Pack const& pack) {

@@ -8,11 +8,55 @@
 #include <utility>
 #include <vector>
 
+#include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/numeric/float_bits.hpp>
 #include <collide/ranks.hpp>
 
 namespace collide::detail {
+
+/// A brick of some ranks. If there are several, it is cut: what is below the cut is in brick `child`, the rest in the
+/// next.
+struct brick {
+  int first, ranks, axis;
+  std::uint32_t child;
+  double cut;
+
+  template <class S>
+  COLLIDE_HD_INLINE bool is_below(S const* x) const {
+    return static_cast<double>(x[axis]) < cut;
+  }
+};
+
+/// What a `bisection` says, as a plain value that a kernel takes: it reads the bricks in memory of its space.
+struct brick_lookup {
+  brick const* bricks;
+
+  /// The rank in whose brick a point is.
+  template <class S>
+  COLLIDE_HD int rank_at(S const* x) const {
+    std::size_t i = 0;
+    while (bricks[i].ranks > 1) i = bricks[i].child + (bricks[i].is_below(x) ? 0 : 1);
+    return bricks[i].first;
+  }
+
+  /// Calls f(rank) for all ranks whose bricks a cube around the point meets, from the point up to `reach`, in rising
+  /// order.
+  template <class S, class F>
+  COLLIDE_HD void for_each_rank(S const* x, double reach, F const& f) const {
+    std::uint32_t waiting[32] = {};  // one for each cut, at most
+    for (int n = 1; n > 0;) {
+      brick const& b = bricks[waiting[--n]];
+      if (b.ranks == 1) {
+        f(b.first);
+        continue;
+      }
+      double const at = static_cast<double>(x[b.axis]);
+      if (at + reach >= b.cut) waiting[n++] = b.child + 1;
+      if (at - reach <= b.cut) waiting[n++] = b.child;
+    }
+  }
+};
 
 /// Bricks that cover all of space. A brick of several ranks is cut across its longest side, as often as there are ranks
 /// in it (M. J. Berger and S. H. Bokhari, "A partitioning strategy for nonuniform problems on multiprocessors", IEEE
@@ -36,29 +80,17 @@ class bisection {
     }
   }
 
-  /// The rank in whose brick a point is.
-  template <class S>
-  int rank_at(S const* x) const {
-    std::size_t i = 0;
-    while (nodes_[i].ranks > 1) i = nodes_[i].child + (is_below(x, nodes_[i]) ? 0 : 1);
-    return nodes_[i].first;
-  }
-
-  /// Calls f(rank) for all ranks whose bricks a cube around the point meets, from the point up to `reach`.
-  template <class S, class F>
-  void for_each_rank(S const* x, double reach, F const& f) const {
-    visit(0, x, reach, f);
+  brick_lookup lookup() const { return {nodes_.data()}; }
+  /// For kernels of a space, valid until the bricks are built again; `memory` has them, where the space cannot read
+  /// the host's.
+  template <class Space>
+  brick_lookup lookup(Space const& space, buffer<brick>& memory) const {
+    brick const* const bricks = in_space(space, nodes_, memory);
+    return {bricks};
   }
 
  private:
   static constexpr std::size_t bins = 512;
-
-  /// A brick of some ranks. If there are several, those below the cut are in node `child`, the others in the next.
-  struct node {
-    int first, ranks, axis;
-    std::size_t child;
-    double cut;
-  };
 
   /// How the particles of a node are counted: in bins along its longest side.
   struct ruler {
@@ -70,20 +102,6 @@ class bisection {
     }
     double edge(std::size_t bin) const { return lower + 2 * (half * (static_cast<double>(bin) / bins)); }
   };
-
-  template <class S>
-  static bool is_below(S const* x, node const& n) {
-    return static_cast<double>(x[n.axis]) < n.cut;
-  }
-
-  template <class S, class F>
-  void visit(std::size_t i, S const* x, double reach, F const& f) const {
-    node const& n = nodes_[i];
-    if (n.ranks == 1) return f(n.first);
-    double const at = static_cast<double>(x[n.axis]);
-    if (at - reach <= n.cut) visit(n.child, x, reach, f);
-    if (at + reach >= n.cut) visit(n.child + 1, x, reach, f);
-  }
 
   /// Finds where the nodes of a level are cut.
   template <class Ranks, class S>
@@ -119,7 +137,7 @@ class bisection {
     });
     ranks.reduce(mine.data(), all.data(), all.size(), reduction::sum);
     for (std::size_t const i : level) {
-      node& one = nodes_[i];
+      brick& one = nodes_[i];
       ruler const& along = rulers[i - first];
       one.axis = along.axis;
       one.cut = along.edge(middle_of(all.data() + bins * (i - first), one.ranks));
@@ -155,8 +173,8 @@ class bisection {
                                  std::vector<S> const& centres) {
     std::vector<std::size_t> next;
     for (std::size_t const i : level) {
-      node const whole = nodes_[i];
-      nodes_[i].child = nodes_.size();
+      brick const whole = nodes_[i];
+      nodes_[i].child = static_cast<std::uint32_t>(nodes_.size());
       for (int const upper : {0, 1}) {
         int const below = whole.ranks / 2, ranks = upper == 0 ? below : whole.ranks - below;
         if (ranks > 1) next.push_back(nodes_.size());
@@ -164,14 +182,14 @@ class bisection {
       }
     }
     for (std::size_t i = 0; i < at.size(); ++i) {
-      node const& n = nodes_[at[i]];
-      if (n.child == 0) continue;
-      at[i] = static_cast<std::uint32_t>(n.child + (is_below(centres.data() + 3 * i, n) ? 0 : 1));
+      brick const& b = nodes_[at[i]];
+      if (b.child == 0) continue;
+      at[i] = b.child + (b.is_below(centres.data() + 3 * i) ? 0 : 1);
     }
     return next;
   }
 
-  std::vector<node> nodes_;
+  std::vector<brick> nodes_;
 };
 
 }  // namespace collide::detail

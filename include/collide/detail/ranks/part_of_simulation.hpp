@@ -2,6 +2,7 @@
 /// The particles that a rank has of a simulation: its own, and copies of others' that may meet them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -11,6 +12,8 @@
 #include <collide/detail/ranks/divided_mesh.hpp>
 #include <collide/detail/ranks/particle_places.hpp>
 #include <collide/detail/ranks/particle_rows.hpp>
+#include <collide/detail/ranks/routes.hpp>
+#include <collide/detail/ranks/space_mail.hpp>
 #include <collide/simulation.cuh>
 
 namespace collide::detail {
@@ -110,15 +113,19 @@ class part_of_simulation {
 
   void check_step(S dt) const { simulation_.check_step(dt); }
 
-  /// The first part of a step. True if copies of particles may be missing somewhere in it.
-  bool begin_step(S dt) {
+  /// The first part of a step, before particles meet.
+  void begin_step(S dt) {
     simulation_.time_ += static_cast<double>(dt);
     simulation_.begin_step(dt);
-    if constexpr (meets) {
-      return has_moved();
-    } else {
-      return false;
-    }
+    if (meets && knows_others_ && own() != 0) look_for_moved();
+  }
+  /// Whether there are copies of all that this rank's own particles meet, as long as nothing has moved far.
+  bool knows_others() const { return knows_others_; }
+  /// After `begin_step`: true if copies of particles may be missing somewhere in the step. Waits.
+  bool has_moved() const {
+    if (!meets) return false;
+    if (!knows_others_) return true;
+    return own() != 0 && simulation_.space_.read(flag_.data()) != 0;
   }
 
   /// The rest of a step.
@@ -137,22 +144,62 @@ class part_of_simulation {
     return simulation_.template to_host<Column>();
   }
 
-  /// The columns `List` of particles at places that the host knows.
+  /// The columns `List` of particles at places that the host knows, on the host.
   template <class List>
   void pack(std::vector<std::uint32_t> const& places, rows<List>& to) {
-    row_carrier<S, List>().pack(space(), simulation_.state_, in_space(space(), places, place_memory_), 0, places.size(),
-                                to);
+    listed_places const listed{in_space(space(), places, place_memory_)};
+    detail::pack_on_host(space(), simulation_.state_, listed, places.size(), to);
   }
 
-  /// Takes particles away from places, by rising number, and adds others.
-  void replace(std::vector<std::uint32_t> const& leaving, rows<all_columns> const& coming) {
+  /// How many of its particles are somewhere: there, and at a point that is finite. Waits.
+  std::uint64_t count_somewhere() {
+    std::uint64_t* const count = count_.reserve(space().resource(), 1);
+    space().fill(count, 0, sizeof *count);
+    space().for_each((own() + count_group - 1) / count_group, detail::count_somewhere<S, state_type>{state(), count});
+    return space().read(count);
+  }
+
+  /// Where those are, on the host. Waits.
+  std::vector<S> centres_somewhere() const {
+    std::vector<S> centres = on_host<position>();
+    std::vector<std::uint8_t> there;
+    if constexpr (has_absent) there = on_host<alive>();
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < centres.size() / 3; ++i) {
+      S const* const x = centres.data() + 3 * i;
+      if (!(there.empty() || there[i] != 0) || !is_finite(x[0]) || !is_finite(x[1]) || !is_finite(x[2])) continue;
+      for (std::size_t k = 0; k < 3; ++k) centres[3 * n + k] = x[k];
+      ++n;
+    }
+    centres.resize(3 * n);
+    return centres;
+  }
+
+  /// Finds the particles that are to be on other ranks than `self`. Waits.
+  void find_leaving(brick_lookup const& bricks, int self, int ranks, routes& found) {
+    found.find(space(), detail::find_leaving<S, state_type>{state(), bricks, self, ranks, {}}, own(), ranks);
+  }
+  /// Finds the particles of which other ranks than `self` must have copies. Waits.
+  void find_copied(brick_lookup const& bricks, int self, int ranks, routes& found) {
+    found.find(space(), detail::find_copied<S, state_type>{state(), bricks, reach_, self, {}}, own(), ranks);
+  }
+
+  /// Takes the rows of particles that leave.
+  void pack_all(routes const& leaving, space_mail<particle_row<S, all_columns>>& to) {
+    to.counts = leaving.counts();
+    detail::pack(space(), state(), routed_places{leaving.data()}, leaving.size(), to.resize(space()));
+  }
+
+  /// Takes particles away that have left, and adds others.
+  void replace(routes const& left, space_mail<particle_row<S, all_columns>> const& coming) {
     knows_others_ = false;
+    std::vector<std::uint32_t> const leaving = rising_places(left);
     std::size_t const before = own(), after = before - leaving.size() + coming.size();
     make_room(after);
     std::vector<std::uint32_t> to(
         leaving.begin(), leaving.begin() + static_cast<std::ptrdiff_t>(smaller(leaving.size(), coming.size())));
     for (std::size_t i = before; to.size() < coming.size(); ++i) to.push_back(static_cast<std::uint32_t>(i));
-    unpack(to, coming);
+    unpack(to, coming.data());
     if (coming.size() < leaving.size()) close_gaps(leaving, coming.size(), after);
     resize_own(after);
     space().synchronize();  // the rows go
@@ -170,20 +217,40 @@ class part_of_simulation {
     knows_others_ = true;
   }
 
-  /// What others know of particles at these places, in memory of the space.
-  void pack_seen(std::uint32_t const* places, std::size_t n, host_array<particle_row<S, seen_columns>>& to) {
-    seen_.pack(space(), simulation_.state_, places, 0, n, to);
+  /// Writes what others know of particles.
+  void pack_seen(routes const& copied, particle_row<S, seen_columns>* to) {
+    detail::pack(space(), state(), routed_places{copied.data()}, copied.size(), to);
   }
   /// Takes over what is known of all copies.
-  void unpack_seen(host_array<particle_row<S, seen_columns>> const& from) {
-    seen_.unpack(space(), simulation_.state_, nullptr, own(), from);
+  void unpack_seen(particle_row<S, seen_columns> const* from) {
+    detail::unpack(space(), state(), places_from{own()}, copies_, from);
   }
 
  private:
   static constexpr S skin_fraction = S(0.1);  ///< of the largest diameter
 
-  void unpack(std::vector<std::uint32_t> const& places, rows<all_columns> const& from) {
-    all_.unpack(space(), simulation_.state_, in_space(space(), places, place_memory_), 0, from);
+  state_type const& state() const { return simulation_.state_; }
+
+  /// Puts rows, in memory of the space, to places that the host knows.
+  void unpack(std::vector<std::uint32_t> const& places, particle_row<S, all_columns> const* from) {
+    listed_places const listed{in_space(space(), places, place_memory_)};
+    detail::unpack(space(), state(), listed, places.size(), from);
+  }
+
+  /// The places of particles that go to ranks, by rising number. Those that go to a rank are so already.
+  std::vector<std::uint32_t> rising_places(routes const& of) {
+    std::vector<pair> listed(of.size());
+    if (!listed.empty()) space().copy_to_host(listed.data(), of.data(), listed.size());
+    std::vector<std::uint32_t> places;
+    places.reserve(listed.size());
+    for (pair const& one : listed) places.push_back(one.triangle);
+    std::uint64_t sorted = 0;
+    for (std::uint64_t const more : of.counts()) {
+      auto const middle = places.begin() + static_cast<std::ptrdiff_t>(sorted);
+      std::inplace_merge(places.begin(), middle, middle + static_cast<std::ptrdiff_t>(more));
+      sorted += more;
+    }
+    return places;
   }
 
   /// Numbers the particles, of which `n` are this rank's, and free places behind them.
@@ -211,9 +278,13 @@ class part_of_simulation {
         to.push_back(leaving[gap++]);
       }
     }
-    rows<all_columns> moved;
-    pack<all_columns>(from, moved);
-    unpack(to, moved);
+    buffer<particle_row<S, all_columns>> moved;
+    auto* const rows = moved.reserve(space().resource(), from.size());
+    listed_places const listed{in_space(space(), from, place_memory_)};
+    detail::pack(space(), state(), listed, from.size(), rows);
+    space().synchronize();  // the list goes
+    unpack(to, rows);
+    space().synchronize();  // the rows go
   }
 
   /// Room for so many particles; the rank's own stay.
@@ -222,7 +293,7 @@ class part_of_simulation {
     state_type const old = simulation_.state_;
     double const time = old.time != nullptr ? space().read(old.time) : 0;
     rows<all_columns> kept;
-    all_.pack(space(), old, nullptr, 0, old.own, kept);
+    pack_on_host(space(), old, places_from{0}, old.own, kept);
     std::size_t const room = n + n / 4;
     capacity_ = 0;
     simulation_.reserve(room);
@@ -233,8 +304,7 @@ class part_of_simulation {
       space().copy_from_host(simulation_.state_.time, &time, 1);
     }
     space().for_each(padded_size(room), init_particles<S, all_columns>{simulation_.state_, {}, nullptr});
-    all_.unpack(space(), simulation_.state_, nullptr, 0, kept);
-    space().synchronize();  // the rows go
+    unpack_from_host(space(), state(), places_from{0}, kept);
     simulation_.is_set_ = true;
   }
 
@@ -248,14 +318,11 @@ class part_of_simulation {
   }
   void resize_own(std::size_t n) { simulation_.state_.size = simulation_.state_.placed = simulation_.state_.own = n; }
 
-  bool has_moved() {
-    if (!knows_others_) return true;
-    if (own() == 0) return false;
+  void look_for_moved() {
     std::uint32_t* const flag = flag_.reserve(space().resource(), 1);
     space().fill(flag, 0, sizeof *flag);
     // half of the skin, but for rounding
     space().for_each(own(), find_moved<S, state_type>{simulation_.state_, last(), S(0.495) * skin_, flag});
-    return space().read(flag) != 0;
   }
 
   last_places<S> last() const { return {last_centres_.data(), last_there_.data()}; }
@@ -265,11 +332,10 @@ class part_of_simulation {
   bool knows_others_ = false;  ///< there are copies of all that its own may meet, as long as nothing moves far
   S skin_ = 0;
   double reach_ = 0;
-  row_carrier<S, all_columns> all_;
-  row_carrier<S, seen_columns> seen_;
   buffer<S> last_centres_;
   buffer<std::uint8_t> last_there_;
   buffer<std::uint32_t> flag_, place_memory_;
+  buffer<std::uint64_t> count_;
 };
 
 }  // namespace collide::detail

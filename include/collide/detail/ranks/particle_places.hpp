@@ -9,6 +9,8 @@
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/ranks/bisection.hpp>
+#include <collide/detail/ranks/routes.hpp>
 #include <collide/detail/simulation/effect_list.hpp>
 #include <collide/spheres.hpp>
 
@@ -102,6 +104,77 @@ struct find_moved {
     vec3<S> const moved(now.x() - before[0], now.y() - before[1], now.z() - before[2]);
     bool const stayed = is_finite(moved) && dot(moved, moved) <= mul(most, most);
     if (!stayed) store_relaxed(flag, 1u);
+  }
+};
+
+/// Whether there is a particle at a place.
+template <class State>
+COLLIDE_HD_INLINE bool is_there([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
+  if constexpr (contains<typename State::list, alive>) {
+    return state.at(alive{})[i] != 0;
+  } else {
+    return true;
+  }
+}
+/// Whether it is at a point that is finite, too.
+template <class State>
+COLLIDE_HD_INLINE bool is_somewhere(State const& state, std::size_t i) {
+  auto const* const x = state.at(position{}) + 3 * i;
+  return is_there(state, i) && is_finite(x[0]) && is_finite(x[1]) && is_finite(x[2]);
+}
+
+/// How many particles one call of `count_somewhere` looks at.
+inline constexpr std::size_t count_group = 64;
+
+/// Kernel body of `for_each` over groups of particles: counts those that are somewhere.
+template <class S, class State>
+struct count_somewhere {
+  State state;
+  std::uint64_t* sum;
+
+  COLLIDE_HD void operator()(std::size_t group) const {
+    std::size_t const groups = (state.own + count_group - 1) / count_group;
+    std::uint64_t n = 0;
+    for (std::size_t i = group; i < state.own; i += groups) n += is_somewhere(state, i) ? 1 : 0;
+    if (n != 0) fetch_add(sum, n);
+  }
+};
+
+/// Kernel body of `for_each` over particles: lists those that are to be on other ranks. Free places are on all ranks
+/// alike; what is nowhere stays.
+template <class S, class State>
+struct find_leaving {
+  State state;
+  brick_lookup bricks;
+  int self, ranks;
+  output to;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    int rank = self;
+    if (is_somewhere(state, i)) {
+      rank = bricks.rank_at(state.at(position{}) + 3 * i);
+    } else if (!is_there(state, i)) {
+      std::uint64_t const number = state.at(global_number{})[i];
+      rank = static_cast<int>(number * static_cast<std::uint64_t>(ranks) / state.all_size);
+    }
+    if (rank != self) put_route(to, rank, i);
+  }
+};
+
+/// Kernel body of `for_each` over particles: lists those that are near the bricks of other ranks.
+template <class S, class State>
+struct find_copied {
+  State state;
+  brick_lookup bricks;
+  double reach;
+  int self;
+  output to;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (!is_somewhere(state, i)) return;
+    bricks.for_each_rank(state.at(position{}) + 3 * i, reach, [&](int rank) {
+      if (rank != self) put_route(to, rank, i);
+    });
   }
 };
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include <collide/contact.hpp>
 #include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/simulation/particle.hpp>
 #include <collide/memory.hpp>
@@ -22,80 +23,87 @@ struct particle_row<S, columns<C...>> {
   unsigned char bytes[size];
 };
 
-/// Kernel body of `for_each` over rows: copies particles from their places. `places` null: from `first` on.
-template <class State, class S, class List>
-struct pack_rows;
-template <class State, class S, class... C>
-struct pack_rows<State, S, columns<C...>> {
-  State state;
-  std::uint32_t const* places;
+/// Places of particles that are listed.
+struct listed_places {
+  std::uint32_t const* list;
+  COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return list[i]; }
+};
+/// Those that follow each other.
+struct places_from {
   std::size_t first;
+  COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return first + i; }
+};
+/// Those of particles that go to ranks.
+struct routed_places {
+  pair const* routes;
+  COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return routes[i].triangle; }
+};
+
+/// Kernel body of `for_each` over rows: copies particles from their places.
+template <class State, class Places, class Row>
+struct pack_rows;
+template <class State, class Places, class S, class... C>
+struct pack_rows<State, Places, particle_row<S, columns<C...>>> {
+  State state;
+  Places places;
   particle_row<S, columns<C...>>* rows;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::size_t const place = places != nullptr ? places[i] : first + i;
     unsigned char* to = rows[i].bytes;
-    ((std::memcpy(to, state.at(C{}) + place * std::size_t(column_layout<C, S>::width), column_bytes<C, S>),
+    ((std::memcpy(to, state.at(C{}) + places[i] * std::size_t(column_layout<C, S>::width), column_bytes<C, S>),
       to += column_bytes<C, S>),
      ...);
   }
 };
 
-/// Kernel body of `for_each` over rows: copies particles to their places. `places` null: from `first` on.
-template <class State, class S, class List>
+/// Kernel body of `for_each` over rows: copies particles to their places.
+template <class State, class Places, class Row>
 struct unpack_rows;
-template <class State, class S, class... C>
-struct unpack_rows<State, S, columns<C...>> {
+template <class State, class Places, class S, class... C>
+struct unpack_rows<State, Places, particle_row<S, columns<C...>>> {
   State state;
-  std::uint32_t const* places;
-  std::size_t first;
+  Places places;
   particle_row<S, columns<C...>> const* rows;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::size_t const place = places != nullptr ? places[i] : first + i;
     unsigned char const* from = rows[i].bytes;
-    ((std::memcpy(state.at(C{}) + place * std::size_t(column_layout<C, S>::width), from, column_bytes<C, S>),
+    ((std::memcpy(state.at(C{}) + places[i] * std::size_t(column_layout<C, S>::width), from, column_bytes<C, S>),
       from += column_bytes<C, S>),
      ...);
   }
 };
 
-/// Rows on the host, and memory of a space through which they go.
-template <class S, class List>
-class row_carrier {
- public:
-  using row = particle_row<S, List>;
+/// Copies the particles at some places to rows, all in memory of the space.
+template <class Space, class State, class Places, class Row>
+void pack(Space const& space, State const& state, Places const& places, std::size_t n, Row* rows) {
+  space.for_each(n, pack_rows<State, Places, Row>{state, places, rows});
+}
+/// Copies rows to some places, all in memory of the space.
+template <class Space, class State, class Places, class Row>
+void unpack(Space const& space, State const& state, Places const& places, std::size_t n, Row const* rows) {
+  space.for_each(n, unpack_rows<State, Places, Row>{state, places, rows});
+}
 
-  /// The rows of `n` particles, in a vector or a `host_array`. `places`, in memory of the space: where they are; null:
-  /// from `first` on. Waits.
-  template <class Space, class State, class Rows>
-  void pack(Space const& space, State const& state, std::uint32_t const* places, std::size_t first, std::size_t n,
-            Rows& to) {
-    resize(space, to, n);
-    if constexpr (Space::host_accessible) {
-      space.for_each(n, pack_rows<State, S, List>{state, places, first, to.data()});
-    } else {
-      row* const rows = memory_.reserve(space.resource(), n);
-      space.for_each(n, pack_rows<State, S, List>{state, places, first, rows});
-      space.copy_to_host(to.data(), rows, n);
-    }
+/// Rows of the host, from places of memory of a space. Waits.
+template <class Space, class State, class Places, class Row>
+void pack_on_host(Space const& space, State const& state, Places const& places, std::size_t n, std::vector<Row>& to) {
+  to.resize(n);
+  if constexpr (Space::host_accessible) {
+    pack(space, state, places, n, to.data());
+  } else {
+    buffer<Row> memory;
+    Row* const rows = memory.reserve(space.resource(), n);
+    pack(space, state, places, n, rows);
+    space.copy_to_host(to.data(), rows, n);
   }
+}
 
-  /// Puts rows into their places.
-  template <class Space, class State, class Rows>
-  void unpack(Space const& space, State const& state, std::uint32_t const* places, std::size_t first,
-              Rows const& from) {
-    if constexpr (Space::host_accessible) {
-      space.for_each(from.size(), unpack_rows<State, S, List>{state, places, first, from.data()});
-    } else {
-      row* const rows = memory_.reserve(space.resource(), from.size());
-      space.copy_from_host(rows, from.data(), from.size());
-      space.for_each(from.size(), unpack_rows<State, S, List>{state, places, first, rows});
-    }
-  }
-
- private:
-  buffer<row> memory_;
-};
+/// Puts rows of the host into places of memory of a space. Waits.
+template <class Space, class State, class Places, class Row>
+void unpack_from_host(Space const& space, State const& state, Places const& places, std::vector<Row> const& from) {
+  buffer<Row> memory;
+  unpack(space, state, places, from.size(), in_space(space, from, memory));
+  space.synchronize();  // the memory goes
+}
 
 }  // namespace collide::detail

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -39,36 +40,31 @@ class space_mail {
   std::size_t size() const { return size_; }
   T* data() const { return items_.data(); }
 
-  /// The items on the host, to be sent.
+  /// Copies the items to the host, if that does not see them, and waits.
   template <class Space>
-  T const* to_host(Space const& space) {
-    if constexpr (Space::host_accessible) {
-      return data();
-    } else {
-      on_host_.resize(space, size_);
-      space.copy_to_host(on_host_.data(), data(), size_);
-      return on_host_.data();
-    }
+  void to_host(Space const& space) {
+    make_host_room(space);
+    if constexpr (!Space::host_accessible) space.copy_to_host(on_host_.data(), data(), size_);
   }
-  /// Where items are received on the host, which `from_host` then takes to the space.
-  template <class Space>
-  T* host_room(Space const& space) {
-    if constexpr (Space::host_accessible) {
-      return data();
-    } else {
-      on_host_.resize(space, size_);
-      return on_host_.data();
-    }
-  }
+  /// Copies them from the host. Waits.
   template <class Space>
   void from_host(Space const& space) {
     if constexpr (!Space::host_accessible) space.copy_from_host(data(), on_host_.data(), size_);
   }
+  /// Makes room for them on the host.
+  template <class Space>
+  void make_host_room(Space const& space) {
+    if constexpr (!Space::host_accessible) on_host_.resize(space, size_);
+    host_ = Space::host_accessible ? data() : on_host_.data();
+  }
+  /// Where they are on the host, once there is room.
+  T* on_host() const { return host_; }
 
  private:
   buffer<T> items_;
   std::size_t size_ = 0;
   host_array<T> on_host_;
+  T* host_ = nullptr;
 };
 
 /// The member of ranks that send from one device's memory to another's; not all have it.
@@ -76,28 +72,82 @@ template <class R, class Space>
 using ranks_exchange_in_space = decltype(std::declval<R const&>().exchange_in_space(
     std::declval<Space const&>(), static_cast<void const*>(nullptr), static_cast<std::uint64_t const*>(nullptr),
     static_cast<void*>(nullptr), static_cast<std::uint64_t const*>(nullptr), std::size_t{}));
+/// The member of those that find out at run time whether they can.
+template <class R>
+using ranks_takes_device_memory = decltype(std::declval<R const&>().takes_device_memory());
+
+/// How mail of a space goes from rank to rank: in three parts, as a rank can fail in the first and the last alone. All
+/// ranks call all of them.
+template <class Ranks, class Space>
+class courier {
+ public:
+  courier(Ranks const& ranks, Space const& space) : ranks_{ranks}, space_{space} {}
+
+  /// Makes mail ready to be sent: if it goes by way of the host, it is there. Then it waits.
+  template <class T>
+  void collect(space_mail<T>& out) const {
+    if (!is_direct()) out.to_host(space_);
+  }
+
+  /// Sends `out`, which has been collected, and receives `in`, which has room. All ranks come out of it; if something
+  /// goes wrong on one in the space, that one throws.
+  template <class T>
+  void send(space_mail<T>& out, space_mail<T>& in) const {
+    if constexpr (can_be_direct) {
+      if (is_direct()) {
+        return ranks_.exchange_in_space(space_, out.data(), out.counts.data(), in.data(), in.counts.data(), sizeof(T));
+      }
+    }
+    ranks_.exchange(out.on_host(), out.counts.data(), in.on_host(), in.counts.data(), sizeof(T));
+  }
+
+  /// Brings what was received to the space.
+  template <class T>
+  void distribute(space_mail<T>& in) const {
+    if (!is_direct()) in.from_host(space_);
+  }
+
+  /// Makes room for what is received.
+  template <class T>
+  void expect(space_mail<T>& in) const {
+    in.resize(space_);
+    if (!is_direct()) in.make_host_room(space_);
+  }
+
+ private:
+  static constexpr bool can_be_direct = is_valid<ranks_exchange_in_space, Ranks, Space>;
+
+  bool is_direct() const {
+    if constexpr (can_be_direct && is_valid<ranks_takes_device_memory, Ranks>) {
+      return ranks_.takes_device_memory();
+    } else {
+      return can_be_direct;
+    }
+  }
+
+  Ranks const& ranks_;
+  Space const& space_;
+};
 
 /// Sends `out` and receives `in`, by way of memory of the host unless the ranks can do without. All ranks call it;
 /// where memory is short on one, all throw.
 template <class Ranks, class Space, class T>
 void deliver(Ranks const& ranks, Space const& space, space_mail<T>& out, space_mail<T>& in) {
+  courier<Ranks, Space> const by(ranks, space);
   together(ranks, [&] { in.clear(ranks.size()); });
   ranks.exchange_counts(out.counts.data(), in.counts.data());
-  together(ranks, [&] { in.resize(space); });
-  if constexpr (is_valid<ranks_exchange_in_space, Ranks, Space>) {
-    together(ranks, [&] {
-      ranks.exchange_in_space(space, out.data(), out.counts.data(), in.data(), in.counts.data(), sizeof(T));
-    });
-  } else {
-    T const* from = nullptr;
-    T* to = nullptr;
-    together(ranks, [&] {
-      from = out.to_host(space);
-      to = in.host_room(space);
-    });
-    ranks.exchange(from, out.counts.data(), to, in.counts.data(), sizeof(T));
-    together(ranks, [&] { in.from_host(space); });
+  together(ranks, [&] {
+    by.expect(in);
+    by.collect(out);
+  });
+  std::exception_ptr failure;
+  try {
+    by.send(out, in);
+    by.distribute(in);
+  } catch (...) {
+    failure = std::current_exception();
   }
+  agree(ranks, failure);
 }
 
 }  // namespace collide::detail
