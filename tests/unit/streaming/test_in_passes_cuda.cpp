@@ -20,6 +20,7 @@ TEST_CASE("in passes: memory of the device is that of a part") {
   tests::motion m;
   m.triangles = 400000;
   m.triangle = 0.1;
+  m.radius = 0.05;  // few pairs: these are kept
   auto const made = tests::random_motion<float>(12, m);
   tests::placed_scene<float> const placed(collide::cuda_shared(), made);
   auto const peak = [&](std::size_t most) {
