@@ -60,6 +60,9 @@ class coarse_grid {
 
   COLLIDE_HD aabb<double> const& frame() const { return frame_; }
 
+  /// How many cells of a level one unit is on an axis; 0 if all is in the first.
+  double cells_on(int axis, int level) const { return scale_[axis] / (2 << (finest - level)); }
+
   /// True if the box reaches into the frame.
   COLLIDE_HD bool meets(aabb<double> const& box) const {
     bool so = !frame_.is_empty() && !box.is_empty();
@@ -99,6 +102,9 @@ class coarse_grid {
     return place_of(at[0], at[1], at[2]);
   }
   static constexpr std::size_t places = std::size_t{1} << (3 * finest);
+
+  /// Number of a cell of a level.
+  static std::size_t cell_at(int level, int x, int y, int z) { return first_of(level) + place_of(x, y, z); }
 
   /// Number of the cell that contains a cell, which is not the first of all.
   static constexpr std::size_t parent_of(std::size_t cell) { return (cell - 1) / 8; }

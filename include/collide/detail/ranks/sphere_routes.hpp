@@ -9,7 +9,11 @@
 
 #include <collide/contact.hpp>
 #include <collide/detail/execution/host_array.hpp>
+#include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/geometry/sphere_pack.hpp>
+#include <collide/detail/numeric/exact_number.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/detail/ranks/near_others.hpp>
 #include <collide/detail/ranks/rank_map.hpp>
 #include <collide/detail/sinks/output.hpp>
 #include <collide/moving_spheres.hpp>
@@ -27,15 +31,33 @@ COLLIDE_HD aabb<double> reach_of(moving_sphere_view<S> const& spheres, std::size
   return reach_of(sphere<S>{s.centre, s.radius}, s.displacement, extent);
 }
 
-/// Kernel body of `for_each` over spheres: puts out a pair of each other rank that a sphere goes to, and the sphere.
-template <class Spheres>
+/// Kernel body of `for_each` over so many spheres at a time: puts out a pair of each other rank that a sphere goes to,
+/// and the sphere.
+template <class Spheres, int Items>
 struct find_routes {
+  using S = typename Spheres::scalar;
   Spheres spheres;
   rank_lookup map;
+  near_others<S> quick;
   double extent;
   int self;
   output to;
-  COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_HD void operator()(std::size_t pack) const {
+    std::size_t const first = pack * Items;
+    std::uint32_t near = 0;
+    multiversioned([&] {
+      sphere_batch<S, Items> batch;
+      batch.load(spheres, first);
+      near = quick.mark(batch);
+    });
+    for (; near != 0; near &= near - 1) {
+      std::size_t const i = first + static_cast<std::size_t>(trailing_zeros(near));
+      if (i < spheres.size()) find(i);
+    }
+  }
+
+ private:
+  COLLIDE_HD void find(std::size_t i) const {
     map.for_each_rank(reach_of(spheres, i, extent), [&](int rank) {
       if (rank != self) to.store(to.allocate(1), pair{static_cast<id>(rank), static_cast<id>(i)});
     });
@@ -45,18 +67,19 @@ struct find_routes {
 /// One pass over the spheres, as a `pair_collector` sees a query. Its spheres are ranks, and its triangles spheres.
 template <class Space, class Spheres>
 struct route_query {
+  static constexpr int items = Space::host_accessible ? 32 : 4;
   struct count {
     std::size_t n;
     std::size_t size() const { return n; }
   };
   Space& space;
-  find_routes<Spheres> find;
+  find_routes<Spheres, items> find;
   count spheres, mesh;
 
   void operator()(output const& to) const {
-    find_routes<Spheres> body = find;
+    auto body = find;
     body.to = to;
-    space.for_each(mesh.n, body);
+    space.for_each((mesh.n + items - 1) / items, body);
     space.for_each(1, finish_only<output>{to});
   }
 };
@@ -107,8 +130,9 @@ class sphere_routes {
     ends_.resize(static_cast<std::size_t>(ranks) + 1);
     for (std::size_t r = 0; r < ends_.size(); ++r) ends_[r] = r;
     double const extent = map.grid.meets(map.grid.frame()) ? map.grid.frame().max_extent() : 0;
+    near_others<typename Spheres::scalar> const quick(map, extent, spheres.common_radius());
     route_query<Space, Spheres> const query{
-        space, {spheres, map, extent, self, {}}, {static_cast<std::size_t>(ranks)}, {spheres.size()}};
+        space, {spheres, map, quick, extent, self, {}}, {static_cast<std::size_t>(ranks)}, {spheres.size()}};
     list_.fill(space, query);
     list_.sort(space, query);
     bounds_.find(space, list_.data(), list_.size(), ends_);
