@@ -246,10 +246,11 @@ TEST_CASE_TEMPLATE("sphere routes: the quick test loses none, at borders of cell
   struct frame {
     double at[3], half[3];
   };
+  double const far = 0.9 * static_cast<double>(std::numeric_limits<S>::max());
   // a cube; of no height; a line; a point; far away; so small and so large that numbers would overflow
   for (frame const& f : {frame{{1, 2, 3}, {8, 8, 8}}, frame{{0, 0, 5}, {3, 7, 0}}, frame{{0, 0, 0}, {0, 1, 0}},
                          frame{{4, 4, 4}, {0, 0, 0}}, frame{{9000, -70000, 1}, {1, 4, 0.25}},
-                         frame{{0, 0, 0}, {1e-37, 1e-37, 1e-37}}, frame{{0, 0, 0}, {3e38, 1, 3e38}}}) {
+                         frame{{0, 0, 0}, {1e-37, 1e-37, 1e-37}}, frame{{0, 0, 0}, {far, far, far}}}) {
     for (int const size : {1, 2, 5, 8, 70}) {
       std::atomic<int> wrong{0};
       collide::thread_ranks::run(size, [&](collide::thread_ranks const& ranks) {
@@ -274,6 +275,29 @@ TEST_CASE_TEMPLATE("sphere routes: the quick test loses none, at borders of cell
   }
 }
 
+TEST_CASE_TEMPLATE("sphere routes: the quick test has room for what a reach is longer than a radius", S, float,
+                   double) {
+  std::atomic<int> wrong{0};
+  collide::thread_ranks::run(2, [&](collide::thread_ranks const& ranks) {
+    // thin, so that the reach of spheres is longer by a good part of a cell; rank 1 has a layer of cells, the 11th
+    std::vector<aabb<double>> mine{tests::box_at(0, 0, 0, 0), tests::box_at(4096, 4096, 1, 0)};
+    for (int i = 0; i < 32 * 32 && ranks.rank() == 1; ++i) {
+      mine.push_back(tests::box_at(128 * (i % 32) + 64, 128 * (i / 32) + 64, 10.5 / 32, 0));
+    }
+    test_map const map(ranks, mine);
+    tests::moving_scene<S> made;
+    for (double off = 1; off > 1e-12; off /= 1.1) {
+      made.centres.insert(made.centres.end(), {S(2000), S(2000), static_cast<S>((11.25 + off) / 32)});
+      made.displacements.insert(made.displacements.end(), 3, S(0));
+      made.radii.push_back(S(0.25 / 32));
+    }
+    tally const t = tally_of<S>(map, made.spheres(), ranks);
+    if (!are_right(map, made, 1, ranks)) ++wrong;
+    if (ranks.rank() == 0 && (t.routed == 0 || t.routed == made.radii.size())) ++wrong;
+  });
+  CHECK(wrong == 0);
+}
+
 TEST_CASE("sphere routes: no rank has a triangle, and more ranks than triangles") {
   for (int const triangles : {0, 1}) {
     std::atomic<int> wrong{0};
@@ -287,6 +311,22 @@ TEST_CASE("sphere routes: no rank has a triangle, and more ranks than triangles"
     });
     CHECK(wrong == 0);
   }
+}
+
+TEST_CASE("sphere routes: ranks beyond the 64th are others, too") {
+  constexpr int size = 70;
+  std::atomic<int> wrong{0};
+  collide::thread_ranks::run(size, [&](collide::thread_ranks const& ranks) {
+    tests::moving_scene<float> made;  // a sphere at the box of each rank, where there is no other
+    for (int r = 0; r < size; ++r) {
+      for (int const at : {r % 8, r / 8, 0}) made.centres.push_back(static_cast<float>(at));
+      made.radii.push_back(0.01f);
+      made.displacements.insert(made.displacements.end(), 3, 0.01f);
+    }
+    test_map const map(ranks, {tests::box_at(ranks.rank() % 8, ranks.rank() / 8, 0, 0)});
+    if (!are_right(map, made, 1, ranks) || tally_of<float>(map, made.spheres(), ranks).routed != size - 1) ++wrong;
+  });
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("sphere routes: the quick test passes few more than have routes, of any radius that all have") {
