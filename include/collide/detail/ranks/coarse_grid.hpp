@@ -118,14 +118,15 @@ class coarse_grid {
   }
 
   /// Bits of the coordinates in turn: the eight cells of one cell follow each other.
-  static COLLIDE_HD std::size_t place_of(int x, int y, int z) {
-    std::size_t place = 0;
-    for (int bit = 0; bit < finest; ++bit) {
-      place |= static_cast<std::size_t>((x >> bit) & 1) << (3 * bit);
-      place |= static_cast<std::size_t>((y >> bit) & 1) << (3 * bit + 1);
-      place |= static_cast<std::size_t>((z >> bit) & 1) << (3 * bit + 2);
-    }
-    return place;
+  static COLLIDE_HD std::size_t place_of(int x, int y, int z) { return spread(x) | spread(y) << 1 | spread(z) << 2; }
+
+  /// The bits of a coordinate, each followed by two zeros.
+  static COLLIDE_HD std::size_t spread(int x) {
+    static_assert(finest <= 8, "collide: a coordinate has eight bits at most");
+    auto bits = static_cast<std::uint32_t>(x);
+    bits = (bits | bits << 8) & 0x00f00fu;
+    bits = (bits | bits << 4) & 0x0c30c3u;
+    return (bits | bits << 2) & 0x249249u;
   }
 
   aabb<double> frame_ = aabb<double>::empty();
