@@ -60,6 +60,9 @@ class coarse_grid {
 
   COLLIDE_HD aabb<double> const& frame() const { return frame_; }
 
+  /// How many cells of a level one unit is on an axis; 0 if all is in the first.
+  double cells_on(int axis, int level) const { return scale_[axis] / (2 << (finest - level)); }
+
   /// True if the box reaches into the frame.
   COLLIDE_HD bool meets(aabb<double> const& box) const {
     bool so = !frame_.is_empty() && !box.is_empty();
@@ -100,6 +103,9 @@ class coarse_grid {
   }
   static constexpr std::size_t places = std::size_t{1} << (3 * finest);
 
+  /// Number of a cell of a level.
+  static std::size_t cell_at(int level, int x, int y, int z) { return first_of(level) + place_of(x, y, z); }
+
   /// Number of the cell that contains a cell, which is not the first of all.
   static constexpr std::size_t parent_of(std::size_t cell) { return (cell - 1) / 8; }
 
@@ -112,14 +118,15 @@ class coarse_grid {
   }
 
   /// Bits of the coordinates in turn: the eight cells of one cell follow each other.
-  static COLLIDE_HD std::size_t place_of(int x, int y, int z) {
-    std::size_t place = 0;
-    for (int bit = 0; bit < finest; ++bit) {
-      place |= static_cast<std::size_t>((x >> bit) & 1) << (3 * bit);
-      place |= static_cast<std::size_t>((y >> bit) & 1) << (3 * bit + 1);
-      place |= static_cast<std::size_t>((z >> bit) & 1) << (3 * bit + 2);
-    }
-    return place;
+  static COLLIDE_HD std::size_t place_of(int x, int y, int z) { return spread(x) | spread(y) << 1 | spread(z) << 2; }
+
+  /// The bits of a coordinate, each followed by two zeros.
+  static COLLIDE_HD std::size_t spread(int x) {
+    static_assert(finest <= 8, "collide: a coordinate has eight bits at most");
+    auto bits = static_cast<std::uint32_t>(x);
+    bits = (bits | bits << 8) & 0x00f00fu;
+    bits = (bits | bits << 4) & 0x0c30c3u;
+    return (bits | bits << 2) & 0x249249u;
   }
 
   aabb<double> frame_ = aabb<double>::empty();

@@ -50,7 +50,7 @@ class divided_mesh {
     map_.build(ranks, grid, [&](auto const& mark) {
       for (auto const& t : in.items) mark(t.box());
     });
-    together(ranks, [&] { lookup_ = map_.lookup(space, mask_memory_); });
+    together(ranks, [&] { lookup_ = map_.lookup(space, lookup_memory_); });
   }
 
   /// The triangles of this rank, in memory of the space, by rising number.
@@ -123,7 +123,7 @@ class divided_mesh {
   id const* numbers_in_space_ = nullptr;
   mesh_view<S> view_;
   rank_map map_;
-  buffer<std::uint64_t> mask_memory_;
+  rank_map::lookup_memory lookup_memory_;
   rank_lookup lookup_{};
 };
 

@@ -177,11 +177,11 @@ class part_of_simulation {
 
   /// Finds the particles that are to be on other ranks than `self`. Waits.
   void find_leaving(brick_lookup const& bricks, int self, int ranks, routes& found) {
-    found.find(space(), detail::find_leaving<S, state_type>{state(), bricks, self, ranks, {}}, own(), ranks);
+    found.find(space(), detail::find_leaving<S, state_type>{state(), bricks, self, ranks, {}}, own(), own(), ranks);
   }
   /// Finds the particles of which other ranks than `self` must have copies. Waits.
   void find_copied(brick_lookup const& bricks, int self, int ranks, routes& found) {
-    found.find(space(), detail::find_copied<S, state_type>{state(), bricks, reach_, self, {}}, own(), ranks);
+    found.find(space(), detail::find_copied<S, state_type>{state(), bricks, reach_, self, {}}, own(), own(), ranks);
   }
 
   /// Takes the rows of particles that leave.

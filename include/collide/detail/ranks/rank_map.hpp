@@ -16,6 +16,12 @@ struct rank_lookup {
   coarse_grid grid;
   std::uint64_t const* masks;  ///< of each cell
   std::size_t words;           ///< of a mask
+  /// A bit for each cell of each level: whether ranks other than this one are in it, or in one of the seven next to it
+  /// that are no lower on any axis. Bit x of word first_row_of(level) + y + 2^level z is that of cell x, y, z.
+  std::uint32_t const* others;
+
+  /// Number of the first row of cells of a level in `others`, and with level finest + 1 of all rows.
+  static COLLIDE_HD constexpr std::size_t first_row_of(int level) { return ((std::size_t{1} << (2 * level)) - 1) / 3; }
 
   /// Calls f(rank) for each rank that may have a triangle that meets the box, in rising order.
   template <class F>
@@ -32,7 +38,7 @@ struct rank_lookup {
 };
 
 /// Says to which ranks a box goes. Each rank has a bit in each cell of the coarse grid that its triangles meet, that
-/// has such a cell in it, or that is in such a cell. Takes 37,449 words of 8 bytes for every 64 ranks.
+/// has such a cell in it, or that is in such a cell. Takes 37,449 words of 8 bytes for every 64 ranks, and 5,460 bytes.
 class rank_map {
  public:
   /// All ranks call it; mark(f) calls f(box) for the box of each triangle of this one.
@@ -63,6 +69,7 @@ class rank_map {
     for (std::size_t i = words_; i < masks_.size(); ++i) inherited[i] |= inherited[parent_word(i)];
     for (std::size_t i = masks_.size(); i-- > words_;) masks_[parent_word(i)] |= masks_[i];
     for (std::size_t i = 0; i < masks_.size(); ++i) masks_[i] |= inherited[i];
+    together(ranks, [&] { find_others(static_cast<std::size_t>(ranks.rank())); });
   }
 
   coarse_grid const& grid() const { return grid_; }
@@ -70,14 +77,18 @@ class rank_map {
   /// Calls f(rank) for each rank that may have a triangle that meets the box, in rising order.
   template <class F>
   void for_each_rank(aabb<double> const& box, F const& f) const {
-    rank_lookup{grid_, masks_.data(), words_}.for_each_rank(box, f);
+    rank_lookup{grid_, masks_.data(), words_, others_.data()}.for_each_rank(box, f);
   }
 
-  /// For kernels of a space, valid until the map is built again; `memory` has its masks, where the space cannot read
-  /// the host's.
+  /// What a lookup reads, where the space cannot read the host's memory.
+  struct lookup_memory {
+    buffer<std::uint64_t> masks;
+    buffer<std::uint32_t> others;
+  };
+  /// For kernels of a space, valid until the map is built again.
   template <class Space>
-  rank_lookup lookup(Space const& space, buffer<std::uint64_t>& memory) const {
-    return {grid_, in_space(space, masks_, memory), words_};
+  rank_lookup lookup(Space const& space, lookup_memory& memory) const {
+    return {grid_, in_space(space, masks_, memory.masks), words_, in_space(space, others_, memory.others)};
   }
 
  private:
@@ -86,9 +97,39 @@ class rank_map {
   static constexpr std::uint64_t bit(std::size_t i) { return std::uint64_t{1} << (i % 64); }
   std::size_t parent_word(std::size_t i) const { return coarse_grid::parent_of(i / words_) * words_ + i % words_; }
 
+  /// Whether ranks other than `self` are in a cell.
+  bool has_others(std::size_t cell, std::size_t self) const {
+    std::uint64_t others = 0;
+    for (std::size_t w = 0; w < words_; ++w) others |= masks_[cell * words_ + w] & ~(w == self / 64 ? bit(self) : 0);
+    return others != 0;
+  }
+
+  void find_others(std::size_t self) {
+    static_assert(coarse_grid::cells_across <= 32, "collide: a row of cells has a word");
+    others_.clear();
+    for (int level = 0; level <= coarse_grid::finest; ++level) {
+      int const across = 1 << level;
+      for (int z = 0; z < across; ++z) {
+        for (int y = 0; y < across; ++y) {
+          std::uint32_t row = 0;
+          for (int x = 0; x < across; ++x) {
+            if (has_others(coarse_grid::cell_at(level, x, y, z), self)) row |= std::uint32_t{1} << x;
+          }
+          others_.push_back(row | row >> 1);
+        }
+      }
+      std::uint32_t* const rows = others_.data() + rank_lookup::first_row_of(level);
+      for (int i = 0; i < across * across; ++i) {  // those that follow are as they were
+        if ((i + 1) % across != 0) rows[i] |= rows[i + 1];
+      }
+      for (int i = 0; i < across * (across - 1); ++i) rows[i] |= rows[i + across];
+    }
+  }
+
   coarse_grid grid_;
-  std::vector<std::uint64_t> masks_;  ///< of each cell
-  std::size_t words_ = 1;             ///< of a mask
+  std::vector<std::uint64_t> masks_;   ///< of each cell
+  std::size_t words_ = 1;              ///< of a mask
+  std::vector<std::uint32_t> others_;  ///< of each row of cells
 };
 
 }  // namespace collide::detail

@@ -23,12 +23,13 @@ struct route_query {
   };
   Space& space;
   Find find;
+  std::size_t calls;
   count spheres, mesh;
 
   void operator()(output const& to) const {
     Find body = find;
     body.to = to;
-    space.for_each(mesh.n, body);
+    space.for_each(calls, body);
     space.for_each(1, finish_only<output>{to});
   }
 };
@@ -73,13 +74,13 @@ class pair_bounds {
 /// each, and in the space of a device twice that for the sort.
 class routes {
  public:
-  /// Finds those of `n` things. `find` is a kernel body of `for_each` over them: `put_route(to, rank, thing)`, with its
-  /// member `to`, lists one.
+  /// Finds those of so many things. `find` is a kernel body of `for_each`, which is called so often:
+  /// `put_route(to, rank, thing)`, with its member `to`, lists one.
   template <class Space, class Find>
-  void find(Space& space, Find const& find, std::size_t n, int ranks) {
+  void find(Space& space, Find const& find, std::size_t calls, std::size_t things, int ranks) {
     ends_.resize(static_cast<std::size_t>(ranks) + 1);
     for (std::size_t r = 0; r < ends_.size(); ++r) ends_[r] = r;
-    route_query<Space, Find> const query{space, find, {static_cast<std::size_t>(ranks)}, {n}};
+    route_query<Space, Find> const query{space, find, calls, {static_cast<std::size_t>(ranks)}, {things}};
     list_.fill(space, query);
     list_.sort(space, query);
     bounds_.find(space, list_.data(), list_.size(), ends_);

@@ -3,7 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
+#include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/geometry/sphere_pack.hpp>
+#include <collide/detail/numeric/exact_number.hpp>
+#include <collide/detail/ranks/near_others.hpp>
 #include <collide/detail/ranks/rank_map.hpp>
 #include <collide/detail/ranks/routes.hpp>
 #include <collide/moving_spheres.hpp>
@@ -21,15 +26,33 @@ COLLIDE_HD aabb<double> reach_of(moving_sphere_view<S> const& spheres, std::size
   return reach_of(sphere<S>{s.centre, s.radius}, s.displacement, extent);
 }
 
-/// Kernel body of `for_each` over spheres: puts out a pair of each other rank that a sphere goes to, and the sphere.
-template <class Spheres>
+/// Kernel body of `for_each` over so many spheres at a time: puts out a pair of each other rank that a sphere goes to,
+/// and the sphere.
+template <class Spheres, int Items>
 struct find_routes {
+  using S = typename Spheres::scalar;
   Spheres spheres;
   rank_lookup map;
+  near_others<S> quick;
   double extent;
   int self;
   output to;
-  COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_HD void operator()(std::size_t pack) const {
+    std::size_t const first = pack * Items;
+    std::uint32_t near = 0;
+    multiversioned([&] {
+      sphere_batch<S, Items> batch;
+      batch.load(spheres, first);
+      near = quick.mark(batch);
+    });
+    for (; near != 0; near &= near - 1) {
+      std::size_t const i = first + static_cast<std::size_t>(trailing_zeros(near));
+      if (i < spheres.size()) find(i);
+    }
+  }
+
+ private:
+  COLLIDE_HD void find(std::size_t i) const {
     map.for_each_rank(reach_of(spheres, i, extent), [&](int rank) {
       if (rank != self) put_route(to, rank, i);
     });
@@ -42,8 +65,11 @@ class sphere_routes : public routes {
   /// Finds the routes of spheres to ranks other than `self`.
   template <class Space, class Spheres>
   void find(Space& space, rank_lookup const& map, Spheres const& spheres, int self, int ranks) {
+    constexpr int items = Space::host_accessible ? 32 : 4;
     double const extent = map.grid.meets(map.grid.frame()) ? map.grid.frame().max_extent() : 0;
-    routes::find(space, find_routes<Spheres>{spheres, map, extent, self, {}}, spheres.size(), ranks);
+    near_others<typename Spheres::scalar> const quick(map, extent, spheres.common_radius());
+    routes::find(space, find_routes<Spheres, items>{spheres, map, quick, extent, self, {}},
+                 (spheres.size() + items - 1) / items, spheres.size(), ranks);
   }
 };
 

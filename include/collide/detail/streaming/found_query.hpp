@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include <collide/concepts.hpp>
 #include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/detail/sinks/output.hpp>
 #include <collide/detail/streaming/numbered_triangle.hpp>
 #include <collide/hit.hpp>
 
@@ -69,7 +71,11 @@ struct hand_over {
 #endif
   COLLIDE_HD void operator()(std::size_t i) const {
     std::uint64_t const slot = output.allocate(1);
-    output.store(slot, hit_of<NarrowPhase, S>(pairs[i], mesh, spheres));
+    if constexpr (std::is_same<Output, detail::output>::value) {  // which keeps ids alone: nothing need be looked up
+      output.store(slot, pairs[i]);
+    } else {
+      output.store(slot, hit_of<NarrowPhase, S>(pairs[i], mesh, spheres));
+    }
   }
 };
 
