@@ -28,12 +28,12 @@ struct listed_places {
   std::uint32_t const* list;
   COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return list[i]; }
 };
-/// Those that follow each other.
+/// Places that follow each other.
 struct places_from {
   std::size_t first;
   COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return first + i; }
 };
-/// Those of particles that go to ranks.
+/// Places of particles that go to ranks.
 struct routed_places {
   pair const* routes;
   COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return routes[i].triangle; }
