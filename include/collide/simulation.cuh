@@ -177,9 +177,8 @@ class simulation {
   /// The sum of the steps since `set`. Steps of a CUDA graph that replays them do not count.
   double time() const { return time_; }
 
-  /// Bytes of memory that the particles take in all: columns, room for more, and what steps need for them, such as
-  /// lists of neighbours; and what is known of bodies, a byte a triangle and about 600 bytes a body. What is prepared
-  /// of the mesh to find its triangles is not in it.
+  /// Bytes of memory for the particles: columns, room for more, what steps need, such as lists of neighbours, and what
+  /// is known of bodies: a byte a triangle, about 700 bytes a body. What is prepared of the mesh is not in it.
   std::size_t bytes() const {
     std::size_t lists = 0;
     if constexpr (effects_type::meets) lists = neighbours_.bytes();
@@ -314,9 +313,10 @@ class simulation {
       std::size_t const n = detail::larger(state_.size, std::size_t{is_part});
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_tuning<execution_space> there(space_);
-      bool const tiny = radii_.largest >= 0 && radii_.largest < least_radius_;
-      S const most = detail::larger(radii_.largest, least_radius_);
-      index_.prepare(there, options_, tiny || is_part ? spheres_xyz(state_.at(position{}), n, most) : spheres());
+      S const room = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.room());
+      S const most = detail::larger(radii_.largest, least_radius_) + room;
+      bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < most);
+      index_.prepare(there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }
   }
 

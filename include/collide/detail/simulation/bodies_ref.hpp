@@ -6,6 +6,7 @@
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/triangle_ref.hpp>
 #include <collide/detail/simulation/moving_mesh.hpp>
+#include <collide/detail/simulation/quick_frames.hpp>
 
 namespace collide::detail {
 
@@ -30,11 +31,23 @@ template <class S, class Triangles>
 struct bodies_ref {
   Triangles whole;  ///< the lookup of all triangles, each in its frame
   moving_mesh<S> mesh;
+  quick_frames<S> quick;
 
-  COLLIDE_HD_INLINE bodies_ref opened() const { return {whole.opened(), mesh}; }
+  COLLIDE_HD_INLINE bodies_ref opened() const { return {whole.opened(), mesh, quick}; }
 
-  COLLIDE_HD_INLINE bool has_single_cell_lookup(S) const { return false; }
+  /// True if `mark` can tell of spheres of this radius whether they may touch a triangle.
+  COLLIDE_HD_INLINE bool has_single_cell_lookup(S radius) const {
+    return whole.has_single_cell_lookup(radius + quick.room) && quick.serve(radius);
+  }
   COLLIDE_HD_INLINE auto occupancy() const { return whole.occupancy(); }
+
+  /// Sets near[k] for those of some spheres at rest, of one radius, that may touch a triangle at the end of the step.
+  /// False if that is not known. `marks` is `occupancy()`.
+  template <int N>
+  COLLIDE_HD_INLINE bool mark(occupancy_view<S> const& marks, S const (&x)[N], S const (&y)[N], S const (&z)[N],
+                              S radius, bool (&near)[N]) const {
+    return quick.mark(marks, mesh.first_frame, mesh.frame_count, x, y, z, radius, near);
+  }
 
   /// True if the sphere can touch no triangle in the step.
   template <class Sphere>

@@ -59,6 +59,7 @@ struct advance_bodies {
   body_record const* records;
   body_state* states;
   body_frame<S>* frames;
+  quick_frame<S>* quick;
   body_report* report;
   double const* time;
   double dt;
@@ -81,6 +82,7 @@ struct advance_bodies {
     f.moving = s.moving;
     f.belt = vector_of(s.belt);
     bound(f, records[i]);
+    if (most >= 0) quick[i + 1] = quick_frame<S>::of(f);
   }
 
  private:
@@ -131,7 +133,7 @@ struct advance_bodies {
     vec3<double> const from = f.before.to_world(r.centre), to = f.now.to_world(r.centre), by = to - from;
     f.moves = !(f.before == f.now) || dot(f.belt, f.belt) > 0;
     bool const swept = most < 0;
-    f.centre = (swept ? from : to).template cast<S>();
+    f.centre = rounded_to<S>(swept ? from : to);
     double const reach = swept ? r.radius + 2 * moved : r.radius;
     f.reach = static_cast<S>(mul(reach, 1 + 1e-5) + mul(16 * eps, norm(from) + norm(to)));
     f.shrink = static_cast<S>(swept ? 1 - 1e-5 - turned : 1 - 1e-5);
@@ -180,7 +182,8 @@ class body_memory {
 
   /// Bytes of memory of the space.
   std::size_t bytes() const {
-    return numbers_.bytes() + boxes_.bytes() + records_.bytes() + states_.bytes() + frames_.bytes() + report_.bytes();
+    return numbers_.bytes() + boxes_.bytes() + records_.bytes() + states_.bytes() + frames_.bytes() + quick_.bytes() +
+           report_.bytes();
   }
 
   /// Throws `error` unless these can be bodies of a mesh of so many triangles.
@@ -227,10 +230,16 @@ class body_memory {
         frames,
         body_frame<S>{
             identity(), identity(), {}, {}, {0, 0, 0}, {0, 0, 0}, std::numeric_limits<S>::infinity(), S(0), false});
+    std::vector<quick_frame<S>> quick(frames, quick_frame<S>::at_rest());
+    for (std::size_t k = 1; k < frames; ++k) quick[k].slack = std::numeric_limits<S>::infinity();  // not known yet
+    double extent = 0;
+    for (body_record const& r : records) extent = larger(extent, sqrt_rn(dot(r.centre, r.centre)) + r.radius);
+    room_ = quick_room<S>(extent);
     std::vector<body_state> const states(count_);
     space.copy_from_host(records_.reserve(resource, count_), records.data(), count_);
     space.copy_from_host(states_.reserve(resource, count_), states.data(), count_);
     space.copy_from_host(frames_.reserve(resource, frames), at_rest.data(), frames);
+    space.copy_from_host(quick_.reserve(resource, frames), quick.data(), frames);
     space.fill(report_.reserve(resource, 1), 0, sizeof(body_report));
     space.synchronize();  // the vectors go
     first_ = moving == mesh.size() ? 1 : 0;
@@ -240,15 +249,19 @@ class body_memory {
   template <class Space>
   void advance(Space& space, Motion const& of_all, double const* time, double dt, S most, bool starts) {
     if (count_ == 0) return;
-    space.for_each(count_, advance_bodies<S, Motion>{records_.data(), states_.data(), frames_.data(), report_.data(),
-                                                     time, dt, of_all, most, starts});
+    space.for_each(count_, advance_bodies<S, Motion>{records_.data(), states_.data(), frames_.data(), quick_.data(),
+                                                     report_.data(), time, dt, of_all, most, starts});
   }
 
   template <class Triangles>
   bodies_ref<S, Triangles> lookup(Triangles const& whole, mesh_view<S> const& mesh, S dt) const {
     return {whole,
-            {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt}};
+            {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt},
+            {quick_.data(), room_}};
   }
+
+  /// How much larger than the particles' the radius is that the mesh is to be indexed for.
+  S room() const { return room_; }
 
  private:
   static frame_pose identity() { return {{0, 0, 0}, 1, {0, 0, 0}}; }
@@ -284,6 +297,8 @@ class body_memory {
   buffer<body_record> records_;
   buffer<body_state> states_;
   buffer<body_frame<S>> frames_;
+  buffer<quick_frame<S>> quick_;
+  S room_ = 0;
   buffer<body_report> report_;
 };
 
@@ -293,6 +308,7 @@ struct no_bodies {
 
   static std::size_t bytes() { return 0; }
   static std::size_t size() { return 0; }
+  static int room() { return 0; }
   static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
     if (!bodies.empty() || velocities != nullptr)
       throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");

@@ -107,7 +107,7 @@ struct integration {
 
   /// True if `marks` alone tell whether a particle can touch a triangle.
   COLLIDE_HD_INLINE bool is_single_cell() const {
-    return has_one_radius &&
+    return has_one_radius && !(has_bodies && is_swept) &&
            context.triangles.has_single_cell_lookup(larger(context.state.common_radius, context.least_radius));
   }
 
@@ -127,6 +127,15 @@ struct integration {
     batch.load(
         sphere_view<S>{spheres_xyz(static_cast<S const*>(state.at(position{})), state.size, state.common_radius)},
         first);
+    if constexpr (has_bodies) {
+      bool near[N];
+      bool const known = context.triangles.mark(marks, batch.x, batch.y, batch.z, state.common_radius, near);
+      auto const triangles = context.triangles.opened();
+      for (int k = 0; k < N && first + static_cast<std::size_t>(k) < state.size; ++k) {
+        if (known ? near[k] : !triangles.empty(batch.shape(k))) enqueue(static_cast<id>(first) + static_cast<id>(k));
+      }
+      return;
+    }
     auto const places = marks.places_of(batch.x, batch.y, batch.z);
     for (int k = 0; k < N; ++k) {
       if (places.inside[k] == 0 || !marks.is_occupied(places.cells[k])) continue;
@@ -199,7 +208,9 @@ struct integration {
         batch.dx[k] = d.x(), batch.dy[k] = d.y(), batch.dz[k] = d.z();
       }
     }
-    if constexpr (is_swept) {
+    if constexpr (has_bodies) {
+      return !is_swept && context.triangles.mark(marks, batch.x, batch.y, batch.z, context.state.common_radius, near);
+    } else if constexpr (is_swept) {
       return marks.test_swept(batch, near);
     } else {
       marks.mark(marks.places_of(batch.x, batch.y, batch.z), near);
