@@ -66,8 +66,8 @@ COLLIDE_HD_INLINE contact<S> contact_at_point(measured_contact const& m, vec3<do
   }
   return {no_id,
           no_id,
-          point.template cast<S>(),
-          m.normal.template cast<S>(),
+          rounded_to<S>(point),
+          rounded_to<S>(m.normal),
           static_cast<S>(m.measured.distance),
           static_cast<S>(m.measured.depth),
           m.kind,
@@ -78,8 +78,8 @@ template <class S>
 COLLIDE_HD contact<S> narrow_to(contact<double> const& c) {
   return {c.sphere,
           c.triangle,
-          c.point.template cast<S>(),
-          c.normal.template cast<S>(),
+          rounded_to<S>(c.point),
+          rounded_to<S>(c.normal),
           static_cast<S>(c.distance),
           static_cast<S>(c.depth),
           c.feature,

@@ -98,7 +98,7 @@ struct integration {
     if constexpr (may_ride) {
       if (int const frame = frame_ridden(p)) {
         vec3<double> const x = p[position{}].template cast<double>();
-        p[position{}] = carried(context.triangles.mesh.frames[frame], x).template cast<S>();
+        p[position{}] = rounded_to<S>(carried(context.triangles.mesh.frames[frame], x));
         return;
       }
     }

@@ -105,10 +105,11 @@ struct step_kernel {
       Block::items % 16 == 0 && !Context::is_swept && integration_type::has_one_radius && !effects_type::skips &&
       !effects_type::finishes && Context::kick_after == 0;
 
-  /// The next particles are on their way while a thread moves some. To ask for the cells of motions takes too many
-  /// registers for that.
+  /// The next particles are on their way while a thread moves some. To ask for the cells of motions, or for bodies,
+  /// takes too many registers for that.
   template <class Block>
-  static constexpr bool prefetches = has_many_tiles<Block> && !Context::is_swept && !effects_type::skips;
+  static constexpr bool prefetches = has_many_tiles<Block> && !Context::is_swept && !effects_type::skips &&
+                                     !has_moving_mesh<typename Context::triangles_type>;
 
   /// The number of a block's `k`-th tile.
   template <class Block>
