@@ -21,7 +21,7 @@ class particle_exchange {
   using all_row = particle_row<S, typename Part::all_columns>;
   using seen_row = particle_row<S, typename Part::seen_columns>;
   template <class Ranks>
-  using courier_of = courier<Ranks, typename Part::space_type>;
+  using transport_of = transport<Ranks, typename Part::space_type>;
 
  public:
   /// Forgets the bricks: there are other particles.
@@ -40,7 +40,7 @@ class particle_exchange {
     });
     ranks.exchange_counts(sent_.counts.data(), received_.counts.data());
     together(ranks, [&] {
-      courier_of<Ranks>(ranks, part.space()).expect(received_);
+      transport_of<Ranks>(ranks, part.space()).expect(received_);
       part.expect_copies(received_.size());
       pack(ranks, part);
     });
@@ -50,19 +50,19 @@ class particle_exchange {
   template <class Ranks>
   void pack(Ranks const& ranks, Part& part) {
     part.pack_seen(copied_, sent_.data());
-    courier_of<Ranks>(ranks, part.space()).collect(sent_);
+    transport_of<Ranks>(ranks, part.space()).stage(sent_);
   }
 
   /// Sends it. All ranks come out of it.
   template <class Ranks>
   void send(Ranks const& ranks, Part& part) {
-    courier_of<Ranks>(ranks, part.space()).send(sent_, received_);
+    transport_of<Ranks>(ranks, part.space()).send(sent_, received_);
   }
 
   /// Takes over what the others have sent.
   template <class Ranks>
   void unpack(Ranks const& ranks, Part& part) {
-    courier_of<Ranks>(ranks, part.space()).distribute(received_);
+    transport_of<Ranks>(ranks, part.space()).unstage(received_);
     part.unpack_seen(received_.data());
   }
 

@@ -79,17 +79,17 @@ using ranks_takes_device_memory = decltype(std::declval<R const&>().takes_device
 /// How mail of a space goes from rank to rank: in three parts, as a rank can fail in the first and the last alone. All
 /// ranks call all of them.
 template <class Ranks, class Space>
-class courier {
+class transport {
  public:
-  courier(Ranks const& ranks, Space const& space) : ranks_{ranks}, space_{space} {}
+  transport(Ranks const& ranks, Space const& space) : ranks_{ranks}, space_{space} {}
 
   /// Makes mail ready to be sent: if it goes by way of the host, it is there. Then it waits.
   template <class T>
-  void collect(space_mail<T>& out) const {
+  void stage(space_mail<T>& out) const {
     if (!is_direct()) out.to_host(space_);
   }
 
-  /// Sends `out`, which has been collected, and receives `in`, which has room. All ranks come out of it; if something
+  /// Sends `out`, which has been staged, and receives `in`, which has room. All ranks come out of it; if something
   /// goes wrong on one in the space, that one throws.
   template <class T>
   void send(space_mail<T>& out, space_mail<T>& in) const {
@@ -103,7 +103,7 @@ class courier {
 
   /// Brings what was received to the space.
   template <class T>
-  void distribute(space_mail<T>& in) const {
+  void unstage(space_mail<T>& in) const {
     if (!is_direct()) in.from_host(space_);
   }
 
@@ -133,17 +133,17 @@ class courier {
 /// where memory is short on one, all throw.
 template <class Ranks, class Space, class T>
 void deliver(Ranks const& ranks, Space const& space, space_mail<T>& out, space_mail<T>& in) {
-  courier<Ranks, Space> const by(ranks, space);
+  transport<Ranks, Space> const by(ranks, space);
   together(ranks, [&] { in.clear(ranks.size()); });
   ranks.exchange_counts(out.counts.data(), in.counts.data());
   together(ranks, [&] {
     by.expect(in);
-    by.collect(out);
+    by.stage(out);
   });
   std::exception_ptr failure;
   try {
     by.send(out, in);
-    by.distribute(in);
+    by.unstage(in);
   } catch (...) {
     failure = std::current_exception();
   }
