@@ -159,7 +159,7 @@ class part_of_simulation {
     return space().read(count);
   }
 
-  /// Where those are, on the host. Waits.
+  /// Centres of the particles that are somewhere, on the host. Waits.
   std::vector<S> centres_somewhere() const {
     std::vector<S> centres = on_host<position>();
     std::vector<std::uint8_t> there;
