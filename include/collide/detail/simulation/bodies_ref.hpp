@@ -8,6 +8,10 @@
 #include <collide/detail/simulation/moving_mesh.hpp>
 #include <collide/detail/simulation/quick_frames.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// How far the candidates of a sphere have been gone through.
@@ -128,3 +132,5 @@ template <class S, class Triangles>
 inline constexpr bool has_moving_mesh<bodies_ref<S, Triangles>> = true;
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop
