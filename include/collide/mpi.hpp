@@ -110,7 +110,8 @@ class mpi_ranks {
                 bytes);
   }
 
-  /// Whether MPI takes pointers to memory of CUDA devices: what MPIX_Query_cuda_support() says, if MPI has that.
+  /// Whether MPI takes pointers to memory of CUDA devices: what MPIX_Query_cuda_support() says. False where MPI does
+  /// not define MPIX_CUDA_AWARE_SUPPORT, as Open MPI does.
   bool takes_device_memory() const {
 #if defined(MPIX_CUDA_AWARE_SUPPORT)
     return MPIX_Query_cuda_support() == 1;
@@ -129,13 +130,14 @@ class mpi_ranks {
       try {
         work();
       } catch (...) {
-        failure = std::current_exception();
+        if (!failure) failure = std::current_exception();
       }
     };
     attempt([&] { space.synchronize(); });
     exchange_by(
         [&](void* at, void const* own, std::size_t n) { attempt([&] { space.copy_from_any_device(at, own, n); }); },
         from, to_each, to, of_each, bytes);
+    if (to_each[rank_] != 0) attempt([&] { space.synchronize(); });
     if (failure) std::rethrow_exception(failure);
   }
 

@@ -166,15 +166,18 @@ class thread_ranks {
     std::exception_ptr failure;
     auto const attempt = [&](auto const& work) {
       try {
-        if (!failure) work();
+        work();
       } catch (...) {
-        failure = std::current_exception();
+        if (!failure) failure = std::current_exception();
       }
     };
     attempt([&] { space.synchronize(); });
-    exchange_by([&](void* at, void const* theirs,
-                    std::size_t n) { attempt([&] { space.copy_from_any_device(at, theirs, n); }); },
-                [&] { attempt([&] { space.synchronize(); }); }, from, to_each, to, of_each, bytes);
+    exchange_by(
+        [&](void* at, void const* theirs, std::size_t n) {
+          if (!failure) attempt([&] { space.copy_from_any_device(at, theirs, n); });
+        },
+        [&] { attempt([&] { space.synchronize(); }); },  // also if a copy failed: others may be under way
+        from, to_each, to, of_each, bytes);
     if (failure) std::rethrow_exception(failure);
   }
 

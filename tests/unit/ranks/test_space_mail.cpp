@@ -31,6 +31,18 @@ struct far_space {
   }
 };
 
+/// A space whose copies go on until it waits, and fail after so many.
+struct slow_space {
+  int* under_way;
+  int left;
+  void synchronize() const { *under_way = 0; }
+  void copy_from_any_device(void* to, void const* from, std::size_t bytes) const {
+    if (*under_way == left) throw collide::error("on purpose");
+    std::memcpy(to, from, bytes);
+    ++*under_way;
+  }
+};
+
 /// Ranks that find out at run time whether they send from memory of devices.
 struct asking_ranks : collide::thread_ranks {
   bool can;
@@ -94,4 +106,22 @@ TEST_CASE("space mail: a copy that fails on one rank makes all throw, on either 
     });
     CHECK(thrown == std::vector<int>{2, 1, 2});
   }
+}
+
+TEST_CASE("space mail: copies that are under way are waited for, also where a later one fails") {
+  std::vector<int> under_way(3, 0), thrown(3, 0);
+  collide::thread_ranks::run(3, [&](collide::thread_ranks const& ranks) {
+    auto const r = std::size_t(ranks.rank());
+    slow_space const space{&under_way[r], r == 0 ? 1 : 100};
+    std::vector<std::uint64_t> const each(3, 2);
+    std::vector<int> const from(6, 1);
+    std::vector<int> to(6);
+    try {
+      ranks.exchange_in_space(space, from.data(), each.data(), to.data(), each.data(), sizeof(int));
+    } catch (collide::error const&) {
+      thrown[r] = 1;
+    }
+  });
+  CHECK(thrown == std::vector<int>{1, 0, 0});
+  CHECK(under_way == std::vector<int>(3, 0));
 }

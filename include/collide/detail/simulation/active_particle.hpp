@@ -288,7 +288,7 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
  private:
   COLLIDE_HD_INLINE vec3<S> normal_of(int slot) const { return {normals[slot][0], normals[slot][1], normals[slot][2]}; }
 
-  /// A place on a body moves with it.
+  /// As the surface sees it that it touches now, the particle has stayed at a place: that has moved with the surface.
   COLLIDE_HD_INLINE void carry_start(seen_at_rest) {}
   COLLIDE_HD_INLINE void carry_start(seen_from_body<S> const& seen) {
     for (int k = 0; k < 3; ++k) start[k] += seen.drift[k];
