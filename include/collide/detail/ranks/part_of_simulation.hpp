@@ -279,11 +279,11 @@ class part_of_simulation {
       }
     }
     buffer<particle_row<S, all_columns>> moved;
-    auto* const rows = moved.reserve(space().resource(), from.size());
+    auto* const between = moved.reserve(space().resource(), from.size());
     listed_places const listed{in_space(space(), from, place_memory_)};
-    detail::pack(space(), state(), listed, from.size(), rows);
+    detail::pack(space(), state(), listed, from.size(), between);
     space().synchronize();  // the list goes
-    unpack(to, rows);
+    unpack(to, between);
     space().synchronize();  // the rows go
   }
 
