@@ -135,7 +135,9 @@ struct count_somewhere {
   COLLIDE_HD void operator()(std::size_t group) const {
     std::size_t const groups = (state.own + count_group - 1) / count_group;
     std::uint64_t n = 0;
-    for (std::size_t i = group; i < state.own; i += groups) n += is_somewhere(state, i) ? 1 : 0;
+    for (std::size_t i = group; i < state.own; i += groups) {
+      if (is_somewhere(state, i)) ++n;
+    }
     if (n != 0) fetch_add(sum, n);
   }
 };
