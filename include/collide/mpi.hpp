@@ -125,20 +125,13 @@ class mpi_ranks {
   auto exchange_in_space(Space const& space, void const* from, std::uint64_t const* to_each, void* to,
                          std::uint64_t const* of_each, std::size_t bytes) const
       -> decltype(space.copy_from_any_device(to, from, bytes)) {
-    std::exception_ptr failure;
-    auto const attempt = [&](auto const& work) noexcept {
-      try {
-        work();
-      } catch (...) {
-        if (!failure) failure = std::current_exception();
-      }
-    };
-    attempt([&] { space.synchronize(); });
-    exchange_by(
-        [&](void* at, void const* own, std::size_t n) { attempt([&] { space.copy_from_any_device(at, own, n); }); },
-        from, to_each, to, of_each, bytes);
-    if (to_each[rank_] != 0) attempt([&] { space.synchronize(); });
-    if (failure) std::rethrow_exception(failure);
+    detail::first_failure failure;
+    failure.attempt([&] { space.synchronize(); });
+    exchange_by([&](void* at, void const* own,
+                    std::size_t n) { failure.attempt([&] { space.copy_from_any_device(at, own, n); }); },
+                from, to_each, to, of_each, bytes);
+    if (to_each[rank_] != 0) failure.attempt([&] { space.synchronize(); });
+    failure.rethrow();
   }
 
  private:

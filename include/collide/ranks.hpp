@@ -108,6 +108,28 @@ inline std::string message_of(std::exception_ptr const& failure) {
   }
 }
 
+/// What goes wrong first in work that goes on all the same, as others wait for it.
+class first_failure {
+ public:
+  /// Calls f(), and keeps what it throws.
+  template <class F>
+  void attempt(F const& f) noexcept {
+    try {
+      f();
+    } catch (...) {
+      if (!failure_) failure_ = std::current_exception();
+    }
+  }
+  /// What was thrown first; null if nothing was.
+  std::exception_ptr const& get() const { return failure_; }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::exception_ptr failure_;
+};
+
 }  // namespace detail
 
 /// Makes an exception of one rank one of all: all ranks call it, with what each has caught, or null. A rank that has
@@ -139,13 +161,9 @@ void together(Ranks const& ranks, F const& f) {
   if constexpr (std::is_same<Ranks, one_rank>::value) {
     f();
   } else {
-    std::exception_ptr failure;
-    try {
-      f();
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    agree(ranks, failure);
+    detail::first_failure failure;
+    failure.attempt(f);
+    agree(ranks, failure.get());
   }
 }
 

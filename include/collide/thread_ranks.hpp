@@ -163,22 +163,15 @@ class thread_ranks {
   auto exchange_in_space(Space const& space, void const* from, std::uint64_t const* to_each, void* to,
                          std::uint64_t const* of_each, std::size_t bytes) const
       -> decltype(space.copy_from_any_device(to, from, bytes)) {
-    std::exception_ptr failure;
-    auto const attempt = [&](auto const& work) {
-      try {
-        work();
-      } catch (...) {
-        if (!failure) failure = std::current_exception();
-      }
-    };
-    attempt([&] { space.synchronize(); });
+    detail::first_failure failure;
+    failure.attempt([&] { space.synchronize(); });
     exchange_by(
         [&](void* at, void const* theirs, std::size_t n) {
-          if (!failure) attempt([&] { space.copy_from_any_device(at, theirs, n); });
+          if (!failure.get()) failure.attempt([&] { space.copy_from_any_device(at, theirs, n); });
         },
-        [&] { attempt([&] { space.synchronize(); }); },  // also if a copy failed: others may be under way
+        [&] { failure.attempt([&] { space.synchronize(); }); },  // also if a copy failed: others may be under way
         from, to_each, to, of_each, bytes);
-    if (failure) std::rethrow_exception(failure);
+    failure.rethrow();
   }
 
  private:

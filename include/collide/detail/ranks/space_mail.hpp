@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -140,14 +139,12 @@ void deliver(Ranks const& ranks, Space const& space, space_mail<T>& out, space_m
     by.expect(in);
     by.stage(out);
   });
-  std::exception_ptr failure;
-  try {
+  first_failure failure;
+  failure.attempt([&] {
     by.send(out, in);
     by.unstage(in);
-  } catch (...) {
-    failure = std::current_exception();
-  }
-  agree(ranks, failure);
+  });
+  agree(ranks, failure.get());
 }
 
 }  // namespace collide::detail
