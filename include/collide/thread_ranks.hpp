@@ -40,7 +40,7 @@ class meeting {
   std::uint64_t round() const { return round_.load(std::memory_order_relaxed); }
 
   /// Returns when all have called it. Throws `rank_error` if one has left. Others mostly come soon, and to wake a
-  /// thread takes tens of microseconds, so it looks for a while before it sleeps.
+  /// thread takes some 15 microseconds, so it looks for a while before it sleeps.
   void wait() {
     std::uint64_t const before = round();
     std::unique_lock<std::mutex> lock(mutex_);
