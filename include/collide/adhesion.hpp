@@ -9,12 +9,13 @@
 namespace collide {
 
 /// Adhesion, as of snow and mud: a particle that touches the mesh no faster than `capture_speed` stays where it is,
-/// until forces of more than `max_acceleration`, per unit of mass, pull it off. Forces are what changes the velocity of
-/// effects that come before it in the list, so it comes after those. What sticks to a body that moves (bodies.hpp)
-/// moves with it, and is shaken off by its acceleration.
+/// until forces of more than `max_acceleration`, per unit of mass, pull it off: those of all effects, and of other
+/// particles. What sticks to a body that moves (bodies.hpp) moves with it, and is shaken off by its acceleration. Where
+/// the mesh is set again, what it no longer touches is free.
 struct adhesion {
   using writes = columns<position, velocity, adhered>;
   using runs_after = effects<bounce>;
+  static constexpr bool needs_solid_mesh = true;  ///< an effect with `repels` is in the list, such as `bounce`
 
   double max_acceleration = 20;  ///< length per time squared, not negative: what pulls harder tears the particle off
   double capture_speed = std::numeric_limits<double>::infinity();  ///< length per time, not negative
@@ -25,15 +26,9 @@ struct adhesion {
   }
 
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
-    if (p[adhered{}] == 0) return;
-    auto& v = p[velocity{}];
+  COLLIDE_HD_INLINE bool holds(Particle const&, vec3<S> const& pull, S dt) const {
     S const most = S(max_acceleration) * dt;
-    if (detail::dot(v, v) <= most * most) {
-      v = vec3<S>(S(0), S(0), S(0));
-    } else {
-      p[adhered{}] = 0;
-    }
+    return detail::dot(pull, pull) <= most * most;
   }
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {

@@ -106,12 +106,16 @@ struct body_report {
   /// How often a body of a simulation that is not swept moved in a step by more than the radius of the smallest
   /// particle that `set` has seen, and so may have passed through some.
   std::uint32_t fast_steps = 0;
+  /// How often a body of a simulation that is swept turned by more than 0.05 rad in a step where the smallest radius is
+  /// less than 512 units in the last place of its coordinates: what it encloses may then get through it.
+  std::uint32_t rough_steps = 0;
 };
 
 /// Named in a scene's list: parts of the mesh move, as `simulation::set_mesh(mesh, bodies)` says. `Motion` is
 ///   - `body_motion`, the default: each body has its own, of a small family;
 ///   - a copyable function object of your own: COLLIDE_HD body_state operator()(std::size_t body, double time) const;
-///   - `driven`: kernels of your own write poses and twists to `simulation::bodies()` before each step.
+///   - `driven`: kernels of your own write poses and twists to `simulation::bodies()` before each step. In the first
+///     step after `set_mesh` or `set` a body is all the time where its first pose says.
 ///
 /// At most 64 bodies. Triangles of no body rest. The mesh is indexed once, as it lies in memory: that is each body's
 /// own frame, and nothing is built again while bodies move. O(bodies) more per particle.

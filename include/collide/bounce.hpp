@@ -16,6 +16,7 @@ namespace collide {
 /// no height on average, whatever the step.
 struct bounce {
   using writes = columns<position, velocity>;
+  static constexpr bool repels = true;  ///< the mesh is solid
 
   double restitution = 0.5;  ///< speed after a bounce over speed before it, 0 to 1
 

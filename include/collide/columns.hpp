@@ -17,6 +17,24 @@
 
 namespace collide {
 
+namespace detail {
+
+/// In `slow_steps` from here on: the particle touches, by way of so many others, what moves.
+inline constexpr int carried_by_moving = 128;
+
+/// For how many steps a particle has been slow.
+COLLIDE_HD_INLINE int steps_slow(int slow_steps) { return slow_steps < carried_by_moving ? slow_steps : 0; }
+
+/// How many steps, this one included, are in the mean that `support` is: those since the last power of two.
+COLLIDE_HD_INLINE int steps_in_mean(int slow_steps) {
+  int const slow = steps_slow(slow_steps);
+  int power = 64;
+  while (power > slow && power > 1) power /= 2;
+  return slow == 0 ? 1 : slow - power + 1;
+}
+
+}  // namespace detail
+
 /// A list of columns.
 template <class... Column>
 struct columns {
@@ -55,7 +73,7 @@ struct alive {
   static constexpr std::uint8_t initial = 1;
 };
 
-/// For how many steps the particle has been slow; see `sleep`.
+/// For how many steps the particle has been slow, or 128 and more if it lies on what moves; see `sleep`.
 struct slow_steps {
   template <class S>
   using value = std::uint8_t;
@@ -63,6 +81,40 @@ struct slow_steps {
 
 /// 1 if the particle sticks to what rests of the mesh, 2 + k if to body number k, 0 if it is free; see `adhesion`.
 struct adhered {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+/// 1 if the mesh held the particle at the end of the last step, whose second half kick is then part of the next one.
+/// Scenes have it that name `velocity_verlet` and an effect that touches the mesh.
+struct held {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+/// What other particles add to the velocity, per unit of time, in length per time squared. Scenes have it that name an
+/// effect with `on_pair_contact`, and `velocity_verlet` or `adhesion`.
+struct pair_acceleration {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// The same of the angular velocity, in radians per time squared. Scenes have it that name an effect with
+/// `on_pair_contact`, `velocity_verlet` and `spin`.
+struct pair_angular_acceleration {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// What the mesh adds to the velocity per unit of time, on the mean over the steps in which the particle has been slow:
+/// so a particle that sleeps goes on to press. Scenes have it that name `sleep` and an effect with `on_mesh_impulse`.
+struct support {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// Which surface `support` is of: 0 none, 1 what rests of the mesh, 2 + k body number k.
+struct supported_by {
   template <class S>
   using value = std::uint8_t;
 };

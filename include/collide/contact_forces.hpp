@@ -36,11 +36,10 @@ COLLIDE_HD_INLINE S force_per_change(double density, S radius, S dt) {
 
 /// Sums the forces with which the mesh acts on each particle in a step: mass times what its contacts change of the
 /// velocity, over dt. So it is the mean over the step, of an impact as of what rests: that is pressed by its weight.
-/// What `adhesion` holds between contacts, and what does not happen to particles that `sleep`, is not in it.
+/// What `adhesion` holds is in it, and what presses that sleeps: as it did while it was slow.
 /// `to_host<mesh_force>()` reads it after a step, `data<mesh_force>()` is where it is. An effect for the end of the
 /// list: of those behind it it sees nothing. 3 scalars a particle.
 struct mesh_forces {
-  using reads = columns<velocity>;
   using writes = columns<mesh_force>;
   using runs_after = effects<bounce, friction, spin, adhesion>;
   static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
@@ -52,8 +51,8 @@ struct mesh_forces {
     space.fill(state.at(mesh_force{}), 0, 3 * state.size * sizeof(S));
   }
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
-    p[mesh_force{}] += t.velocity_change(p) * detail::force_per_change(density, p.radius(), dt);
+  COLLIDE_HD_INLINE void on_mesh_impulse(Particle& p, mesh_impulse<S> const& t, S dt) const {
+    p[mesh_force{}] += t.change * detail::force_per_change(density, p.radius(), dt);
   }
 };
 

@@ -105,6 +105,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   /// end.
   void steps(std::size_t n, S dt) {
     check_sound();
+    if (n != 0 && !part_.knows_pair_forces()) meet_first(dt);
     std::exception_ptr failure;  // of the last step: the others hear of it when the next one begins, or in the end
     for (std::size_t k = 0; k < n; ++k) failure = try_step(dt, failure);
     agree(ranks_, failure);
@@ -197,6 +198,17 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     std::vector<body_impulse> found;
     together(ranks_, [&] { found = mine.impulses(counts); });
     return found;
+  }
+
+  /// Particles meet where they begin.
+  void meet_first(S dt) {
+    together(ranks_, [&] { part_.check_step(dt); });
+    exchange_.exchange(ranks_, part_);
+    exchange_.send(ranks_, part_);
+    together(ranks_, [&] {
+      exchange_.unpack(ranks_, part_);
+      part_.meet(dt);
+    });
   }
 
   /// A step, until this rank is done: what went wrong here then. All throw what goes wrong before, or has `failed` here

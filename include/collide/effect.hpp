@@ -6,6 +6,7 @@
 ///     using reads = columns<...>;            // optional: columns that it looks at
 ///     using writes = columns<...>;           // optional: columns that it changes (and may look at)
 ///     using optional_writes = columns<...>;  // optional: columns that it changes where other effects name them
+///     using optional_reads = columns<...>;   // optional: columns that it looks at where other effects name them
 ///     using runs_after = effects<...>;       // optional: effects that must come before it in the scene's list
 ///
 /// and has one or more of these members, each `COLLIDE_HD`, const, and a template over the type of the particle:
@@ -16,9 +17,13 @@
 ///   particles the earliest.
 /// - `after_mesh_contact(particle&, mesh_contact&, dt)`, for the same contact, after the `on_mesh_contact` of all
 ///   effects.
+/// - `on_mesh_impulse(particle&, mesh_impulse const&, dt)`, for all that the mesh gives to a particle: of each contact
+///   what all effects have changed, of what `adhesion` holds or what sleeps what the mesh holds it against.
 /// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it. Only with such an effect
 ///   are neighbours listed.
-/// - `try_wake(particle&, other)`, in place of `on_pair_contact` if the particle is inactive and the other is not.
+/// - `try_wake(particle&, other)`, for each other particle that is active and overlaps it, also if it is not.
+/// - `holds(particle const&, pull, dt)`: true if the mesh holds a particle that is `adhered` against a change of its
+///   velocity by `pull`, relative to the surface, in a step.
 /// - `end_step(particle&, dt)`, at the end of the step.
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
@@ -82,6 +87,18 @@ inline constexpr bool saves_parameters<E, std::void_t<decltype(E::saves_paramete
 
 }  // namespace detail
 
+/// What the mesh gives to a particle, as `on_mesh_impulse` gets it: changes per mass, in the world.
+template <class S>
+struct mesh_impulse {
+  vec3<S> change;       ///< of the velocity
+  vec3<S> spin_change;  ///< of the angular velocity; 0 without `spin` in the scene
+  vec3<S> centre;       ///< of the particle, before
+  vec3<S> shift;        ///< of the centre, out of the surface
+  vec3<S> velocity;     ///< of the particle, after
+  id triangle;          ///< number of the triangle; `no_id` of what is held or sleeps
+  id body;              ///< number of the body whose surface it is; `no_id` of what rests
+};
+
 /// A particle's contact with the mesh, as `on_mesh_contact` gets it. `depth` is how deep the triangle still is in the
 /// sphere, where the particle is now: an effect that pushes the particle out takes off what it pushed.
 ///
@@ -101,7 +118,6 @@ struct mesh_contact : contact<S> {
   bool is_resting;     ///< an effect has found that the particle rests on the surface, or slides on it
   vec3<S> surface_velocity;  ///< of the surface at the point, in the world: 0 of what rests; see bodies.hpp
   id body;                   ///< number of the body whose surface it is; `no_id` of what rests
-  vec3<S> turn;  ///< how the body still turns in the step, of a swept particle: sine of half the angle, times the axis
 
   /// Raises a particle above the surface by `height`.
   COLLIDE_HD_INLINE void move_out(vec3<S>& position, S height) {
@@ -114,17 +130,6 @@ struct mesh_contact : contact<S> {
     S const direct = detail::smaller(change, free_change), wedged = change - direct;
     velocity += this->normal * direct + lift * wedged;
     normal_impulse += direct + wedged * detail::dot(lift, lift);
-  }
-
-  /// What the contact has changed of the particle's velocity so far, in the world. Differences of velocities that an
-  /// effect sees are those when they touch; where particles are swept, what they got turns on with the body.
-  template <class Particle>
-  COLLIDE_HD_INLINE vec3<S> velocity_change(Particle const& p) const {
-    vec3<S> const change = p[velocity{}] - velocity_before;
-    S const sine = detail::dot(turn, turn);
-    if (sine == 0) return change;
-    vec3<S> const twice = detail::scaled(detail::cross(turn, change), S(2));
-    return change + detail::scaled(twice, detail::sqrt_rn(S(1) - sine)) + detail::cross(turn, twice);
   }
 
   /// Stops a particle that something holds: its velocity is 0, and it is where it was when the step began, raised or

@@ -38,11 +38,13 @@ struct impulse_counts {
 
 }  // namespace detail
 
-/// Sums up what the particles' contacts give to each body: minus mass times the change of their velocities. It is made
-/// by `reaction_sums`, which has its memory. An effect for the end of the list: of those behind it it sees nothing. A
-/// contact that gives what is not finite, or 2e18 units or more, is in no sum: `reaction_sums::refused` counts it.
+/// Sums up what the particles give to each body, which touch it, stick to it or sleep on it: minus mass times the
+/// change of their velocities, and minus that of their angular momentum about the origin. So both of particles and
+/// bodies together are conserved; without `spin` particles do not turn, and what would turn them goes to the body. It
+/// is made by `reaction_sums`, which has its memory. An effect for the end of the list: of those behind it it sees
+/// nothing. A contact that gives what is not finite, or 2e18 units or more, is in no sum: `reaction_sums::refused`
+/// counts it.
 struct reaction {
-  using reads = columns<velocity>;
   using runs_after = effects<bounce, friction, spin, adhesion>;
 
   static constexpr bool saves_parameters = false;  ///< what has been summed is not of the state that steps depend on
@@ -66,12 +68,14 @@ struct reaction {
   }
 
   template <class Particle, class S>
-  COLLIDE_HD_INLINE void after_mesh_contact(Particle& p, mesh_contact<S>& t, S) const {
+  COLLIDE_HD_INLINE void on_mesh_impulse(Particle& p, mesh_impulse<S> const& t, S) const {
     using namespace detail;
-    double const mass = sphere_mass(density, static_cast<double>(p.radius()));
-    vec3<S> const change = -t.velocity_change(p);
-    vec3<double> const impulse = scaled(vec3<double>(change.template cast<double>()), div(mass, unit));
-    vec3<double> const moment = cross(vec3<double>(t.point.template cast<double>()), impulse);
+    double const radius = static_cast<double>(p.radius()), mass = div(sphere_mass(density, radius), unit);
+    vec3<double> const change = t.change.template cast<double>(), turn = t.spin_change.template cast<double>();
+    vec3<double> const centre = t.centre.template cast<double>(), shift = t.shift.template cast<double>();
+    vec3<double> const velocity = t.velocity.template cast<double>(), impulse = scaled(change, -mass);
+    vec3<double> const moment = cross(centre, impulse) - scaled(cross(shift, velocity), mass) -
+                                scaled(turn, mul(0.4 * mass, mul(radius, radius)));
     bool const has_counts = dot(impulse, impulse) + dot(moment, moment) < most_squared;  // false for NaN
     if (!has_counts) {
       atomic_add(refused, 1);

@@ -101,7 +101,10 @@ class simulation {
     std::size_t const n = particles.size(), room = detail::larger(n, capacity);
     detail::check_particles<columns>(particles.one_radius(), n, room);
     place(particles, velocities, room);
-    if constexpr (effects_type::meets || sweeps || has_bodies) radii_ = detail::radius_range_of(*this, particles);
+    radii_ = {particles.common_radius(), particles.common_radius()};
+    if (!particles.one_radius()) radii_ = detail::radius_range_of(*this);
+    if (effects_type::touches && n != 0 && radii_.smallest == 0)
+      throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
     if constexpr (effects_type::meets) neighbours_.clear(space_, room, radii_.largest);
     prepare();
   }
@@ -146,6 +149,9 @@ class simulation {
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
     }
     prepare();
+    if constexpr (effects_type::adheres) {
+      if (is_set_) space_.for_each(state_.size, detail::release_adhered{state_, lookup(S(0)), bodies_.are_driven()});
+    }
   }
 
   // Other scalar types end here.
@@ -162,15 +168,18 @@ class simulation {
   /// `set`, and before `set_mesh` if an effect touches the mesh; `cuda_error` if a kernel cannot be launched.
   void step(S dt) {
     check_step(dt);
+    if (!knows_pair_forces_) meet(state_, dt);
     time_ += static_cast<double>(dt);
     begin_step(dt);
     if (state_.size == 0) return;
-    if constexpr (effects_type::meets) neighbours_.interact(space_, state_, effects_, dt);
+    meet(state_, dt);
     end_step(dt);
   }
 
-  /// Advances `n` times by `dt`; throws what `step` throws.
+  /// Advances `n` times by `dt`; throws what `step` throws, and `error` if `n` was negative.
   void steps(std::size_t n, S dt) {
+    if (n > std::numeric_limits<std::size_t>::max() / 2)
+      throw error("collide: simulation: the number of steps is negative");
     while (n-- > 0) step(dt);
   }
 
@@ -211,6 +220,17 @@ class simulation {
     check<Column>();
     space_.for_each(numbers<Column>(),
                     detail::copy_values<detail::column_element<Column, S>>{values, state_.at(Column{})});
+    if constexpr (std::is_same<Column, radius>::value) radii_ = detail::radius_range_of(*this);
+  }
+
+  /// The same from a container such as std::vector or thrust::device_vector, whose memory is that of the space. Throws
+  /// `error` if it has another size than the column.
+  template <class Column, class Container, class = decltype(std::declval<Container const&>().size())>
+  void assign(Container const& values) {
+    if (std::size_t(values.size()) != numbers<Column>())
+      throw error("collide: simulation: assign: there are " + std::to_string(values.size()) + " values for " +
+                  std::to_string(numbers<Column>()) + " numbers of the column");
+    assign<Column>(detail::raw_pointer(values.data()));
   }
 
   /// The particles as spheres, for a query. They move with the steps; valid until the next `set`.
@@ -226,7 +246,17 @@ class simulation {
   /// The parameters of an effect, which may be changed between steps.
   template <class E>
   E& effect() {
+    static_assert((std::is_same<E, Effect>::value || ...),
+                  "collide: effect<E>() gives the parameters of an effect that is in the simulation's list");
     return effects_.template of<E>();
+  }
+
+  /// A step that is good for springs between particles: a twentieth of the shortest time in which two collide; infinite
+  /// if no effect limits steps. See `sphere_contact::longest_step`.
+  friend double largest_time_step(simulation const& of) {
+    double most = std::numeric_limits<double>::infinity();
+    ((most = detail::smaller(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
+    return most;
   }
 
   /// The bodies of the mesh, in a scene with `moving_bodies`: where they are; see `body_memory`.
@@ -265,6 +295,7 @@ class simulation {
       space_.fill(state_.time, 0, sizeof *state_.time);
     }
     time_ = 0;
+    knows_pair_forces_ = !effects_type::ends_after_meeting;
     space_.for_each(detail::padded_size(room), detail::init_particles<S, columns>{state_, particles, velocities});
     is_set_ = true;
   }
@@ -274,10 +305,35 @@ class simulation {
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
+    if constexpr (effects_type::ends_after_meeting) move(dt);
+  }
+
+  /// Particles meet, among them copies of other ranks' in `with_copies`.
+  void meet([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
+    if constexpr (effects_type::meets) {
+      if (state_.size == 0) return;
+      if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
+      neighbours_.interact(space_, with_copies, effects_, dt);
+    }
+    knows_pair_forces_ = true;
+  }
+  template <class... Kick>
+  void forget_pair_kicks(collide::columns<Kick...>) {
+    (space_.fill(state_.at(Kick{}), 0, 3 * state_.size * sizeof(S)), ...);
   }
 
   /// The part of a step after particles have met.
   void end_step(S dt) {
+    if constexpr (effects_type::ends_after_meeting) {
+      space_.for_each(state_.size, detail::end_particles<S, effects_type>{state_, effects_, dt});
+    } else {
+      move(dt);
+    }
+  }
+
+  /// Moves particles, and resolves their contacts with the mesh.
+  void move(S dt) {
+    if (state_.size == 0) return;
     using kernel = detail::step_kernel<step_context<decltype(lookup(dt))>>;
     using block = typename execution_space::template block<kernel>;
     kernel const body{{state_, effects_, lookup(dt), overflow_.data(), dt, reverse_order_, least_radius_},
@@ -291,7 +347,7 @@ class simulation {
     if constexpr (has_bodies) {
       if (state_.time == nullptr) return;
       auto const& motion = effect<moving_bodies<typename bodies_memory::motion>>().motion;
-      bodies_.advance(space_, motion, state_.time, dt, sweeps ? S(-1) : radii_.smallest, start);
+      bodies_.advance(space_, motion, state_.time, dt, radii_.smallest, sweeps, start);
     }
   }
 
@@ -324,8 +380,10 @@ class simulation {
     if (!is_set_) throw error("collide: simulation: step needs particles: call set before it");
     if (effects_type::touches && !has_mesh_)
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
-    if (!detail::is_finite(dt)) throw error("collide: simulation: the time of a step is not finite");
+    if (!(dt > 0) || !detail::is_finite(dt))
+      throw error("collide: simulation: the time dt of a step is finite and above 0");
     ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
+    ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
   }
 
   execution_space space_;
@@ -336,7 +394,8 @@ class simulation {
   detail::column_buffers<S, columns> memory_;
   state_type state_{};
   bool is_set_ = false, has_mesh_ = false;
-  bool reverse_order_ = false;  ///< of the next step
+  bool reverse_order_ = false;     ///< of the next step
+  bool knows_pair_forces_ = true;  ///< what the next step begins with
   double time_ = 0;
   buffer<double> device_time_;  ///< for effects with a member begin_step
   detail::radius_range<S> radii_;

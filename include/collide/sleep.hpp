@@ -12,34 +12,48 @@ namespace collide {
 /// Choose `steps` such that a particle at the top of its flight is not slow for so long: more than 2 speed / (g dt).
 struct sleep {
   using reads = columns<velocity>;
+  using optional_reads = columns<angular_velocity>;
   using writes = columns<slow_steps>;
 
   double speed = 0.01;  ///< length per time, not negative: what is slower is slow
-  int steps = 50;       ///< 1 to 255: for how many steps a particle is slow before it sleeps
+  int steps = 50;       ///< 1 to 127: for how many steps a particle is slow before it sleeps
 
   void check_parameters() const {
     detail::check_parameter(speed >= 0, "sleep: speed is not negative");
-    detail::check_parameter(steps >= 1 && steps <= 255, "sleep: steps are from 1 to 255");
+    detail::check_parameter(steps >= 1 && steps <= 127, "sleep: steps are from 1 to 127");
   }
 
   template <class Particle>
   COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {
-    return p[slow_steps{}] >= steps;
+    return detail::steps_slow(p[slow_steps{}]) >= steps;
   }
   template <class Particle, class S>
   COLLIDE_HD_INLINE void end_step(Particle& p, S) const {
-    p[slow_steps{}] = is_slow(p) ? static_cast<std::uint8_t>(p[slow_steps{}] + 1) : std::uint8_t{0};
+    int const n = p[slow_steps{}];  // what lies on something that moves no longer is slow after all
+    p[slow_steps{}] = static_cast<std::uint8_t>(!is_slow(p) ? 0 : n == 255 ? 1 : n + 1);
   }
   template <class Particle, class Other>
   COLLIDE_HD_INLINE void try_wake(Particle& p, Other const& other) const {
-    if (!is_slow(other)) p[slow_steps{}] = 0;
+    int const n = other[slow_steps{}];
+    if (!is_slow(other)) {
+      p[slow_steps{}] = 0;
+    } else if (n >= detail::carried_by_moving && n < 255 &&
+               !(p[slow_steps{}] >= detail::carried_by_moving && p[slow_steps{}] <= n + 1)) {
+      p[slow_steps{}] = static_cast<std::uint8_t>(n + 1);
+    }
   }
 
  private:
   template <class Particle>
   COLLIDE_HD_INLINE bool is_slow(Particle const& p) const {
     using S = typename Particle::scalar;
-    return detail::dot(p[velocity{}], p[velocity{}]) < S(speed) * S(speed);
+    S const most = S(speed) * S(speed);
+    bool slow = detail::dot(p[velocity{}], p[velocity{}]) < most;
+    if constexpr (Particle::template has<angular_velocity>) {
+      auto const& w = p[angular_velocity{}];
+      slow = slow && detail::dot(w, w) * p.radius() * p.radius() < most;
+    }
+    return slow;
   }
 };
 

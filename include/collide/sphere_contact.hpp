@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/effect.hpp>
@@ -32,6 +33,14 @@ struct sphere_contact {
     detail::check_parameter(stiffness >= 0 && damping >= 0 && friction >= 0 && tangential_damping >= 0,
                             "sphere_contact: stiffness, dampings and friction are not negative");
     detail::check_parameter(density > 0, "sphere_contact: density is above 0");
+  }
+
+  /// The longest step that `simulation::step` takes, a fifth of the time in which the two smallest spheres collide
+  /// without damping: pi sqrt(m / (2 stiffness)) / 5. Infinite without stiffness. `smallest_radius` is above 0.
+  double longest_step(double smallest_radius) const {
+    double const mass = detail::sphere_mass(density, smallest_radius);
+    return stiffness > 0 ? 0.628318530717959 * std::sqrt(mass / (2 * stiffness))
+                         : std::numeric_limits<double>::infinity();
   }
 
   /// The parameters of equal spheres that collide for a given time, and part with a given part of their speed. They

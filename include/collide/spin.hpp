@@ -12,6 +12,7 @@ namespace collide {
 struct spin {
   using writes = columns<position, velocity, angular_velocity>;
   using runs_after = effects<bounce>;
+  static constexpr bool needs_contacts = true;  ///< with a solid mesh, or between particles
 
   double rolling_resistance = 0;  ///< a ratio of forces, not negative
 

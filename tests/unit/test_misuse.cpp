@@ -96,7 +96,7 @@ TEST_CASE("misuse: a step without particles, without a mesh, and of a time that 
   scene.set_mesh({});
   CHECK(step(0.125) == "");
   for (double const dt : {not_a_number, infinity})
-    CHECK(step(dt) == "collide: simulation: the time of a step is not finite");
+    CHECK(step(dt) == "collide: simulation: the time dt of a step is finite and above 0");
   simulation<detector<bucket>, gravity> free;
   free.set(spheres());
   CHECK(said_by([&] { free.step(0.125f); }) == "");

@@ -195,7 +195,7 @@ auto sizes_that_repeat() {
   auto w = packed_cube<float>(500, 0.05, 3);
   for (std::size_t i = 0; i < 500; ++i) w.radii.push_back(i % 50 == 0 ? 0.3f : i % 5 == 0 ? 0.1f : 0.03f);
   return scene_of<simulation<discrete<Space>, velocity_verlet, polydisperse, sphere_contact, greets, periodic_box>>(
-      "sizes", w, 100, 2e-3, velocity_verlet{}, polydisperse{}, sphere_contact{300, 0.01, 0.2, 0.01, 1}, greets{},
+      "sizes", w, 100, 2e-3, velocity_verlet{}, polydisperse{}, sphere_contact{5, 0.01, 0.2, 0.01, 1}, greets{},
       periodic_box{{-1, -1, -1}, {1, 1, 1}});
 }
 
@@ -409,8 +409,11 @@ void check_refusals(Ranks const& ranks, complaints& wrong) {
   }
   expect("collide: simulation: the radii differ", [&] { parts.set(spheres_xyz(centre, 1, radii)); });
   parts.set(ranks.rank() == 0 ? mine(1) : sphere_view<float>());
-  expect("collide: simulation: the time of a step is not finite",
-         [&] { parts.step(std::numeric_limits<float>::infinity()); });
+  for (float const dt : {std::numeric_limits<float>::infinity(), 0.0f, -0.1f}) {
+    expect("collide: simulation: the time dt of a step is finite and above 0", [&] { parts.step(dt); });
+  }
+  expect("collide: simulation: the time dt of a step, 1, is above a fifth of a collision", [&] { parts.step(1); });
+  parts.template effect<sphere_contact>().stiffness = 0.01;
   parts.template effect<sphere_contact>().density = -1;
   expect("collide: sphere_contact: density is above 0", [&] { parts.step(1); });
   parts.template effect<sphere_contact>().density = 1;

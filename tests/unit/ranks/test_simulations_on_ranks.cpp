@@ -130,9 +130,9 @@ TEST_CASE("simulations on ranks: a step takes one reduction, and steps one more"
       auto const x = static_cast<float>(threads.rank());
       float const centre[] = {x, 0, 0};
       parts.set(collide::spheres_xyz(centre, 1, 0.1f));
-      parts.step(1e-3f);  // makes bricks
+      parts.step(1e-4f);  // makes bricks
       mine = {};
-      parts.steps(10, 1e-3f);
+      parts.steps(10, 1e-4f);
     });
     for (auto const& mine : sent) {
       CHECK(mine.reductions == 11);

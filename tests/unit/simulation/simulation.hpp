@@ -421,11 +421,11 @@ void check_memory_of_steps(MakeSpace make, std::pmr::memory_resource* upstream) 
     std::size_t const bytes = counting.bytes;
     made.set_mesh(collide::triangle_soup(corners.data(), w.corners.size() / 9));
     std::size_t const calls = counting.calls;
-    made.steps(5, 1e-3f);
+    made.steps(5, 1e-5f);
     made.space().synchronize();
     CHECK(counting.calls == calls);
     made.set_mesh(collide::triangle_soup(corners.data(), w.corners.size() / 9));
-    made.step(1e-3f);
+    made.step(1e-5f);
     made.space().synchronize();
     CHECK(counting.calls == calls);
     return bytes;

@@ -130,13 +130,17 @@ class part_of_simulation {
 
   /// The rest of a step.
   void end_step(S dt) {
-    if constexpr (meets) {
-      state_type with_copies = simulation_.state_;
-      with_copies.size += copies_;
-      if (own() != 0) simulation_.neighbours_.interact(space(), with_copies, simulation_.effects_, dt);
-    }
+    meet(dt);
     if (own() != 0) simulation_.end_step(dt);
   }
+  /// Particles meet.
+  void meet(S dt) {
+    state_type with_copies = simulation_.state_;
+    if constexpr (meets) with_copies.size += copies_;
+    simulation_.meet(with_copies, dt);
+  }
+  /// Whether the next step knows what particles do to each other where it begins.
+  bool knows_pair_forces() const { return simulation_.knows_pair_forces_; }
 
   /// A column of the rank's own particles on the host.
   template <class Column>

@@ -63,12 +63,13 @@ struct bodies_ref {
     return true;
   }
 
-  /// True if a sphere can touch no body that moves in the step.
+  /// True if a sphere can touch no body that moves in the step, neither when it begins nor when it ends.
   template <class Sphere>
   COLLIDE_HD bool is_left_alone(Sphere const& shape) const {
     COLLIDE_NO_UNROLL
     for (int k = 1; k < mesh.frame_count; ++k) {
-      if (mesh.frames[k].moves && !is_empty_in(k, shape)) return false;
+      if (!mesh.frames[k].moves) continue;
+      if (!is_empty_in(k, shape) || !whole.empty(mesh.seen_from_start(k, shape))) return false;
     }
     return true;
   }

@@ -64,8 +64,9 @@ struct advance_bodies {
   double const* time;
   double dt;
   Motion motion;
-  S most;  ///< a body may move by in a step; negative if particles are swept
-  bool starts;
+  S most;  ///< a body may move by in a step: the radius of the smallest particle
+  bool swept;
+  bool starts, is_placed;  ///< `before` the step it was not where it was told to be last
 
   COLLIDE_HD void operator()(std::size_t i) const {
     body_state s = state_at(i, *time + dt);
@@ -76,13 +77,13 @@ struct advance_bodies {
     }
     states[i] = s;
     frame_pose const now = frame_pose_of(s.at);
-    f.before = starts ? now : f.now;
-    f.moved = starts ? s.moving : f.moving;
+    f.before = is_placed ? f.now : now;
+    f.moved = is_placed ? f.moving : s.moving;
     f.now = now;
     f.moving = s.moving;
     f.belt = vector_of(s.belt);
     bound(f, records[i]);
-    if (most >= 0) quick[i + 1] = quick_frame<S>::of(f);
+    if (!swept) quick[i + 1] = quick_frame<S>::of(f);
   }
 
  private:
@@ -132,14 +133,15 @@ struct advance_bodies {
     double const shifted = sqrt_rn(dot(shift, shift)), moved = shifted + mul(turned, norm(r.centre));
     vec3<double> const from = f.before.to_world(r.centre), to = f.now.to_world(r.centre), by = to - from;
     f.moves = !(f.before == f.now) || dot(f.belt, f.belt) > 0;
-    bool const swept = most < 0;
     f.centre = rounded_to<S>(swept ? from : to);
     double const reach = swept ? r.radius + 2 * moved : r.radius;
     f.reach = static_cast<S>(mul(reach, 1 + 1e-5) + mul(16 * eps, norm(from) + norm(to)));
     f.shrink = static_cast<S>(swept ? 1 - 1e-5 - turned : 1 - 1e-5);
-    if (!swept && norm(by) + mul(turned, r.radius) > static_cast<double>(most) && !starts) {
-      fetch_add(&report->fast_steps, 1u);
-    }
+    if (starts) return;
+    double const radius = static_cast<double>(most);
+    if (!swept && norm(by) + mul(turned, r.radius) > radius) fetch_add(&report->fast_steps, 1u);
+    bool const is_rough = mul(512 * eps, norm(from) + norm(to) + r.radius) > radius;
+    if (swept && is_rough && turned > 0.05) fetch_add(&report->rough_steps, 1u);
   }
 
   static COLLIDE_HD_INLINE double norm(vec3<double> const& x) { return sqrt_rn(dot(x, x)); }
@@ -243,14 +245,17 @@ class body_memory {
     space.fill(report_.reserve(resource, 1), 0, sizeof(body_report));
     space.synchronize();  // the vectors go
     first_ = moving == mesh.size() ? 1 : 0;
+    is_placed_ = false;
   }
 
   /// Moves the bodies to where they are `dt` later; see `advance_bodies`.
   template <class Space>
-  void advance(Space& space, Motion const& of_all, double const* time, double dt, S most, bool starts) {
+  void advance(Space& space, Motion const& of_all, double const* time, double dt, S most, bool swept, bool starts) {
     if (count_ == 0) return;
+    bool const is_placed = is_placed_ && !starts;
+    is_placed_ = !(starts && are_driven());
     space.for_each(count_, advance_bodies<S, Motion>{records_.data(), states_.data(), frames_.data(), quick_.data(),
-                                                     report_.data(), time, dt, of_all, most, starts});
+                                                     report_.data(), time, dt, of_all, most, swept, starts, is_placed});
   }
 
   template <class Triangles>
@@ -259,6 +264,9 @@ class body_memory {
             {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt},
             {quick_.data(), room_}};
   }
+
+  /// True if the caller says where they are.
+  static constexpr bool are_driven() { return std::is_same<Motion, driven>::value; }
 
   /// How much larger than the particles' the radius is that the mesh is to be indexed for.
   S room() const { return room_; }
@@ -299,6 +307,7 @@ class body_memory {
   buffer<body_frame<S>> frames_;
   buffer<quick_frame<S>> quick_;
   S room_ = 0;
+  bool is_placed_ = false;  ///< of bodies that the caller drives: they have begun where the caller wants them
   buffer<body_report> report_;
 };
 
@@ -309,6 +318,7 @@ struct no_bodies {
   static std::size_t bytes() { return 0; }
   static std::size_t size() { return 0; }
   static int room() { return 0; }
+  static constexpr bool are_driven() { return false; }
   static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
     if (!bodies.empty() || velocities != nullptr)
       throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");

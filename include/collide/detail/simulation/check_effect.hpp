@@ -12,8 +12,8 @@ namespace collide::detail {
 
 /// Has a member of each name. What also derives from a class with such a member has two, and its name says nothing.
 struct every_effect_member {
-  int is_inactive, accelerate, on_mesh_contact, after_mesh_contact, on_pair_contact, try_wake, end_step, begin_step,
-      check_parameters;
+  int is_inactive, accelerate, on_mesh_contact, after_mesh_contact, on_mesh_impulse, holds, on_pair_contact, try_wake,
+      end_step, begin_step, check_parameters;
 };
 template <class E>
 struct effect_and_every_member : E, every_effect_member {};
@@ -28,6 +28,10 @@ struct effect_lacks {
   using on_mesh_contact = decltype(&effect_and_every_member<E>::on_mesh_contact);
   template <class E>
   using after_mesh_contact = decltype(&effect_and_every_member<E>::after_mesh_contact);
+  template <class E>
+  using on_mesh_impulse = decltype(&effect_and_every_member<E>::on_mesh_impulse);
+  template <class E>
+  using holds = decltype(&effect_and_every_member<E>::holds);
   template <class E>
   using on_pair_contact = decltype(&effect_and_every_member<E>::on_pair_contact);
   template <class E>
@@ -56,6 +60,11 @@ constexpr bool check_effect() {
     static_assert(settles_in<E, S>::value || is_valid<m::template after_mesh_contact, E>,
                   "collide: an effect's after_mesh_contact is called as after_mesh_contact(particle&, mesh_contact&, "
                   "dt) const, with any particle");
+    static_assert(books_in<E, S>::value || is_valid<m::template on_mesh_impulse, E>,
+                  "collide: an effect's on_mesh_impulse is called as on_mesh_impulse(particle&, mesh_impulse const&, "
+                  "dt) const, with any particle");
+    static_assert(holds_in<E, S>::value || is_valid<m::template holds, E>,
+                  "collide: an effect's holds is called as holds(particle, pull, dt) const, with any particle");
     static_assert(meets_in<E, S>::value || is_valid<m::template on_pair_contact, E>,
                   "collide: an effect's on_pair_contact is called as on_pair_contact(particle&, self, other, dt) "
                   "const, with any particle");
@@ -72,6 +81,20 @@ constexpr bool check_effect() {
   return true;
 }
 
+/// What an effect says of itself: the mesh is solid with it; it needs that, or that or particles that meet.
+template <class E, class = void>
+inline constexpr bool repels = false;
+template <class E>
+inline constexpr bool repels<E, std::void_t<decltype(E::repels)>> = E::repels;
+template <class E, class = void>
+inline constexpr bool needs_solid_mesh = false;
+template <class E>
+inline constexpr bool needs_solid_mesh<E, std::void_t<decltype(E::needs_solid_mesh)>> = E::needs_solid_mesh;
+template <class E, class = void>
+inline constexpr bool needs_contacts = false;
+template <class E>
+inline constexpr bool needs_contacts<E, std::void_t<decltype(E::needs_contacts)>> = E::needs_contacts;
+
 /// Says what is wrong with the effects of a simulation.
 template <class Space, class S, class... Effect>
 constexpr bool check_effects() {
@@ -81,7 +104,14 @@ constexpr bool check_effects() {
                 "classes with at least one of the members that effect.hpp names");
   static_assert((int(is_integrator<Effect>::value) + ... + 0) <= 1, "collide: a simulation has one integrator");
   static_assert(respects_order<Effect...>,
-                "collide: an effect comes after those whose result it uses: name friction after bounce");
+                "collide: an effect comes after those whose result it uses, its runs_after: name friction after "
+                "bounce, and what reads forces (mesh_forces, pair_forces, reaction) behind all that make them");
+  constexpr bool is_solid = (repels<Effect> || ...), meets = (meets_in<Effect, S>::value || ...);
+  static_assert(is_solid || !(needs_solid_mesh<Effect> || ...),
+                "collide: friction and adhesion act where the mesh is solid: name bounce before them, or an effect of "
+                "yours that says static constexpr bool repels = true");
+  static_assert(is_solid || meets || !(needs_contacts<Effect> || ...),
+                "collide: spin needs contacts that turn particles: name bounce or sphere_contact with it");
   return true;
 }
 

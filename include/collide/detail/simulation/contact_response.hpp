@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include <collide/detail/simulation/contact_search.hpp>
-#include <collide/detail/simulation/step_context.hpp>
+#include <collide/detail/simulation/mesh_ledger.hpp>
 
 namespace collide::detail {
 
@@ -37,6 +37,7 @@ struct contact_response {
 
   static constexpr bool is_swept = Context::is_swept;
   static constexpr bool has_bodies = search_type::has_bodies;
+  static constexpr bool spins = contains<typename effects_type::all, angular_velocity>;
   static constexpr int max_contacts_per_step = is_swept ? 8 : 4;  ///< of a particle
 
   Context const& context;
@@ -97,7 +98,7 @@ struct contact_response {
   /// Lets the effects respond to the next contact of a particle. If there is none, or it was the last, its step ends.
   COLLIDE_HD_INLINE void respond(active& a) const {
     bool const has_contact = a.best_key != no_contact;
-    if constexpr (!is_swept && !effects_type::finishes && Context::kick_after == 0) {
+    if constexpr (!is_swept && (!effects_type::finishes && Context::kick_after == 0)) {
       if (!has_contact) {
         a.is_active = false;  // nothing is left to do
         return;
@@ -129,8 +130,7 @@ struct contact_response {
       here.centre = !is_swept ? a.shape().centre : mesh.in_world(frame, own, part);
       auto seen = seen_in_world(mesh, a, frame, whole, part);
       if constexpr (is_swept) seen.drift = mesh.in_world(frame, whole.centre, part) - a.shape().centre;
-      constexpr bool turns =
-          contains<typename effects_type::all, angular_velocity> || contains<typename effects_type::all, adhered>;
+      constexpr bool turns = spins || contains<typename effects_type::all, adhered>;
       apply_contact_at(p, a, time, here, surface_of<turns, active>(mesh, c, own, here.centre, part), seen);
     } else {
       apply_contact_at(p, a, time, sphere_at(a.shape(), time), surface_at_rest{}, seen_at_rest{});
@@ -141,6 +141,8 @@ struct contact_response {
   COLLIDE_HD_INLINE void apply_contact_at(colliding& p, active& a, S time, sphere<S> const& here,
                                           Surface const& surface, Seen seen) const {
     vec3<S> const velocity_before = p[velocity{}];
+    [[maybe_unused]] vec3<S> spin_before;
+    if constexpr (spins) spin_before = p[angular_velocity{}];
     a.arrive(time, velocity_before, is_swept ? here.centre : vec3<S>(here.centre - velocity_before * context.dt), seen);
     if constexpr (is_swept) {
       p[position{}] = here.centre;
@@ -157,6 +159,16 @@ struct contact_response {
     surface.record(a, c);
     if constexpr (has_bodies) a.is_held = p[velocity{}] == vec3<S>(S(0), S(0), S(0));
     surface.leave(p);
+    if constexpr (effects_type::books) {
+      vec3<S> const& v = p[velocity{}];
+      vec3<S> const none(S(0), S(0), S(0)), shift = p[position{}] - here.centre;
+      mesh_impulse<S> given{v - velocity_before, none, here.centre, shift, v, c.triangle, c.body};
+      if constexpr (spins) given.spin_change = p[angular_velocity{}] - spin_before;
+      book(context, p, given);
+    }
+    if constexpr (has_bodies && contains<typename effects_type::all, slow_steps>) {
+      if (context.triangles.mesh.frames[surface.frame].moves) p[slow_steps{}] = carried_by_moving;
+    }
     a.is_active = a.contact_count < max_contacts_per_step;
     if constexpr (is_swept) {
       a.place(p[position{}], p[velocity{}] * a.remaining_time);
@@ -216,12 +228,10 @@ struct contact_response {
   }
 
   COLLIDE_HD_INLINE void end_step(colliding& p, active const& a) const {
-    if constexpr (Context::kick_after != 0) {
-      bool is_held = a.contact_count > 0 && p[velocity{}] == vec3<S>(S(0), S(0), S(0));
-      if constexpr (has_bodies) is_held = a.contact_count > 0 && a.is_held;
-      if (!is_held) context.effects.accelerate(p, Context::kick_after * context.dt);
-    }
-    context.effects.end_step(p, context.dt);
+    bool is_held = a.contact_count > 0 && p[velocity{}] == vec3<S>(S(0), S(0), S(0));
+    if constexpr (has_bodies) is_held = a.contact_count > 0 && a.is_held;
+    end_motion(context, p, is_held);
+    if constexpr (!effects_type::ends_after_meeting) end_particle(context, p);
   }
 };
 

@@ -9,9 +9,8 @@ namespace collide::detail {
 
 /// Sees all that an effect names; only to ask what members the effect has.
 template <class E, class S>
-using archetype =
-    particle<S,
-             union_of<typename reads_of<E>::type, typename writes_of<E>::type, typename optional_writes_of<E>::type>>;
+using archetype = particle<S, union_of<typename reads_of<E>::type, typename writes_of<E>::type,
+                                       typename optional_writes_of<E>::type, typename optional_reads_of<E>::type>>;
 template <class E, class S>
 using archetype_access = particle_access<E, archetype<E, S>>;
 
@@ -42,6 +41,20 @@ template <class E, class S>
 struct settles_in<E, S,
                   std::void_t<decltype(std::declval<E const&>().after_mesh_contact(
                       std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
+    : std::true_type {};
+template <class E, class S, class = void>
+struct books_in : std::false_type {};
+template <class E, class S>
+struct books_in<E, S,
+                std::void_t<decltype(std::declval<E const&>().on_mesh_impulse(
+                    std::declval<archetype_access<E, S>&>(), std::declval<mesh_impulse<S> const&>(), S{}))>>
+    : std::true_type {};
+template <class E, class S, class = void>
+struct holds_in : std::false_type {};
+template <class E, class S>
+struct holds_in<E, S,
+                std::void_t<decltype(std::declval<E const&>().holds(std::declval<archetype_access<E, S> const&>(),
+                                                                    std::declval<vec3<S> const&>(), S{}))>>
     : std::true_type {};
 template <class E, class S, class = void>
 struct meets_in : std::false_type {};
@@ -78,7 +91,7 @@ struct checks_parameters<E, std::void_t<decltype(std::declval<E const&>().check_
 
 /// True for an effect that contacts with the mesh concern.
 template <class E, class S>
-inline constexpr bool touches_mesh_in = touches_in<E, S>::value || settles_in<E, S>::value;
+inline constexpr bool touches_mesh_in = touches_in<E, S>::value || settles_in<E, S>::value || books_in<E, S>::value;
 
 /// An integrator is named in the same list; see integrators.hpp.
 template <class E, class = void>
@@ -93,9 +106,9 @@ inline constexpr bool is_effect = [] {
     return false;
   } else {
     using state = particle_state<S, typename archetype<E, S>::list>;
-    return skips_in<E, S>::value || accelerates_in<E, S>::value || touches_mesh_in<E, S> || meets_in<E, S>::value ||
-           finishes_in<E, S>::value || begins_in<E, Space, state, S>::value || is_integrator<E>::value ||
-           archetype<E, S>::list::size != 0;
+    return skips_in<E, S>::value || accelerates_in<E, S>::value || touches_mesh_in<E, S> || holds_in<E, S>::value ||
+           meets_in<E, S>::value || finishes_in<E, S>::value || begins_in<E, Space, state, S>::value ||
+           is_integrator<E>::value || archetype<E, S>::list::size != 0;
   }
 }();
 
@@ -138,27 +151,52 @@ struct effect_list : effect_slot<E>... {
   static constexpr bool touches = (touches_mesh_in<E, S> || ...);
   static constexpr bool meets = (meets_in<E, S>::value || ...);
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
+  static constexpr bool books = (books_in<E, S>::value || ...);
 
   using base = columns<position, velocity>;
+  using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
+  static constexpr bool adheres = touches && contains<named, adhered>;
+  static constexpr bool has_half_kicks = integrator::kick_after != 0;
+  /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
+  static constexpr bool keeps_pair_forces = meets && (adheres || has_half_kicks);
+  static constexpr bool keeps_pair_torques = meets && has_half_kicks && contains<named, angular_velocity>;
+  /// A step ends once particles have met where they then are.
+  static constexpr bool ends_after_meeting = meets && has_half_kicks;
+  /// What sleeps presses on.
+  static constexpr bool keeps_support = books && contains<named, slow_steps>;
+
+ private:
+  template <bool Needed, class... C>
+  using columns_if = std::conditional_t<Needed, columns<C...>, columns<>>;
+  using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
+                              columns_if<keeps_pair_torques, pair_angular_acceleration>>;
+  using held_columns = columns_if<touches && has_half_kicks, held>;
+  using support_columns = columns_if<keeps_support, support, supported_by>;
+
+ public:
   /// All columns of the simulation.
-  using all = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
+  using all = union_of<named, pair_kicks, held_columns, support_columns>;
 
  private:
   /// What `E` reads or writes in members of which `Has` says whether there is one.
   template <class F, bool Has>
   using reads_if = std::conditional_t<Has,
                                       union_of<typename reads_of<F>::type, typename writes_of<F>::type,
-                                               intersection_of<typename optional_writes_of<F>::type, all>>,
+                                               intersection_of<typename optional_writes_of<F>::type, all>,
+                                               intersection_of<typename optional_reads_of<F>::type, all>>,
                                       columns<>>;
   template <class F, bool Has>
   using writes_if = std::conditional_t<
       Has, union_of<typename writes_of<F>::type, intersection_of<typename optional_writes_of<F>::type, all>>,
       columns<>>;
   template <class F>
-  static constexpr bool is_integrated =
-      accelerates_in<F, S>::value || finishes_in<F, S>::value || skips_in<F, S>::value;
+  static constexpr bool is_integrated = accelerates_in<F, S>::value || finishes_in<F, S>::value ||
+                                        skips_in<F, S>::value || holds_in<F, S>::value ||
+                                        (books_in<F, S>::value && (adheres || keeps_support));
   template <class F>
-  static constexpr bool writes_while_integrated = accelerates_in<F, S>::value || finishes_in<F, S>::value;
+  static constexpr bool writes_while_integrated = accelerates_in<F, S>::value || finishes_in<F, S>::value ||
+                                                  holds_in<F, S>::value ||
+                                                  (books_in<F, S>::value && (adheres || keeps_support));
   template <class F>
   static constexpr bool interacts_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
@@ -170,15 +208,21 @@ struct effect_list : effect_slot<E>... {
   /// What is read to find out which particles are left out.
   using skipping = union_of<own_number, reads_if<E, skips_in<E, S>::value>...>;
   /// What is read and written for every particle,
-  using integration_reads = union_of<base, reads_if<E, is_integrated<E>>..., radius_if<touches>, own_number>;
-  using integration_writes = union_of<columns<position>, writes_if<E, writes_while_integrated<E>>...>;
+  using integration_reads = union_of<base, reads_if<E, is_integrated<E>>..., radius_if<touches>, own_number, pair_kicks,
+                                     columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
+  using integration_writes = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
+                                      columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns,
+                                      writes_if<E, writes_while_integrated<E>>...>;
   /// and for those that may touch the mesh.
   using contact = union_of<integration_reads, reads_if<E, touches_mesh_in<E, S>>...>;
   using contact_writes = union_of<integration_writes, writes_if<E, touches_mesh_in<E, S>>...>;
   /// What is read and written for particles that meet others; what is read is also copied.
   using interaction = union_of<columns<position>, reads_if<E, interacts_or_skips<E>>..., radius_if<meets>, own_number>;
   using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
-  using interaction_writes = union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>;
+  using interaction_writes = difference_of<
+      union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>,
+      union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
+  using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
 
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
@@ -199,12 +243,24 @@ struct effect_list : effect_slot<E>... {
 
   template <class P>
   COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;
+    if constexpr (keeps_pair_torques) p[angular_velocity{}] += p[pair_angular_acceleration{}] * dt;
     (accelerate_by<E>(p, dt), ...);
   }
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_contact(P& p, mesh_contact<S>& t, S dt) const {
     (touch_by<E>(p, t, dt), ...);
     (settle_by<E>(p, t, dt), ...);
+  }
+  /// Tells effects of what the mesh gives to a particle.
+  template <class P>
+  COLLIDE_HD_INLINE void on_mesh_impulse(P& p, mesh_impulse<S> const& given, S dt) const {
+    (book_by<E>(p, given, dt), ...);
+  }
+  /// True if an effect holds a particle that is adhered.
+  template <class P>
+  COLLIDE_HD_INLINE bool holds(P& p, vec3<S> const& pull, S dt) const {
+    return (held_by<E>(p, pull, dt) || ...);
   }
   template <class P>
   COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
@@ -250,6 +306,24 @@ struct effect_list : effect_slot<E>... {
     if constexpr (settles_in<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().after_mesh_contact(seen, t, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void book_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_impulse<S> const& given,
+                                 [[maybe_unused]] S dt) const {
+    if constexpr (books_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().on_mesh_impulse(seen, given, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE bool held_by([[maybe_unused]] P& p, [[maybe_unused]] vec3<S> const& pull,
+                                 [[maybe_unused]] S dt) const {
+    if constexpr (holds_in<F, S>::value) {
+      particle_access<F, P> const seen(p);
+      return of<F>().holds(seen, pull, dt);
+    } else {
+      return false;
     }
   }
   template <class F, class P>

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <sstream>
+#include <string>
 
 #include <collide/detail/simulation/effect_list.hpp>
 #include <collide/spheres.hpp>
@@ -44,6 +46,44 @@ void check_bodies_of(Effects const& effects, std::size_t bodies) {
   if constexpr (keeps_bodies<E>::value) effects.template of<E>().check_bodies(bodies);
 }
 
+/// Throws `error` if a step is too long for an effect, which says `longest_step(smallest radius)`.
+template <class E, class = void>
+struct limits_step : std::false_type {};
+template <class E>
+struct limits_step<E, std::void_t<decltype(std::declval<E const&>().longest_step(0.0))>> : std::true_type {};
+template <class T>
+std::string text_of(T x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
+}
+template <class E, class Effects, class S>
+double longest_step_of(Effects const& effects, S smallest) {
+  if constexpr (limits_step<E>::value) {
+    return effects.template of<E>().longest_step(static_cast<double>(smallest));
+  } else {
+    return std::numeric_limits<double>::infinity();
+  }
+}
+template <class E, class Effects, class S>
+void check_time_step_of(Effects const& effects, S dt, S smallest) {
+  double const most = longest_step_of<E>(effects, smallest);
+  if (!(smallest > 0 && static_cast<double>(dt) > most)) return;
+  throw error("collide: simulation: the time dt of a step, " + text_of(dt) +
+              ", is above a fifth of a collision of the smallest particles, " + text_of(most) +
+              ": take largest_time_step(simulation)");
+}
+
+/// Where a container's elements are.
+template <class T>
+T const* raw_pointer(T const* p) {
+  return p;
+}
+template <class Pointer>
+auto raw_pointer(Pointer const& p) -> decltype(p.get()) {
+  return p.get();
+}
+
 /// Calls an effect's `begin_step`, if it has one.
 template <class E, class Effects, class Space, class State, class S>
 void begin_step_of(Effects& effects, Space& space, State const& state, S dt) {
@@ -57,14 +97,13 @@ struct radius_range {
   S largest = 0;
 };
 
-/// The radii that particles have in the beginning. Waits if they have radii of their own.
-template <class Simulation, class S>
-radius_range<S> radius_range_of(Simulation const& simulation, sphere_view<S> const& particles) {
-  radius_range<S> found{particles.common_radius(), particles.common_radius()};
+/// The radii that particles have of their own. Waits.
+template <class Simulation>
+auto radius_range_of(Simulation const& simulation) {
+  using S = typename Simulation::scalar;
+  radius_range<S> found{std::numeric_limits<S>::infinity(), S(0)};
   if constexpr (contains<typename Simulation::columns, radius>) {
-    if (particles.one_radius()) return found;
     auto const radii = simulation.template to_host<radius>();
-    found.smallest = std::numeric_limits<S>::infinity();
     if (!radii.empty()) found.largest = *std::max_element(radii.begin(), radii.end());
     for (S const r : radii) {
       if (r >= 0) found.smallest = smaller(found.smallest, r);

@@ -8,8 +8,7 @@
 #include <collide/detail/execution/block.hpp>
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/grid/grid_ref.hpp>
-#include <collide/detail/simulation/riding.hpp>
-#include <collide/detail/simulation/step_context.hpp>
+#include <collide/detail/simulation/mesh_ledger.hpp>
 
 // the numbers of elements of small arrays are int
 #pragma GCC diagnostic push
@@ -39,7 +38,7 @@ struct integration {
   static constexpr bool has_one_radius = !contains<typename effects_type::all, radius>;
   static constexpr bool is_swept = Context::is_swept;
   static constexpr bool has_bodies = Context::has_bodies;
-  static constexpr bool may_ride = has_bodies && contains<typename effects_type::all, adhered>;
+  static constexpr bool may_ride = has_bodies && effects_type::adheres;
 
   Context const& context;
 
@@ -64,33 +63,23 @@ struct integration {
   COLLIDE_HD_INLINE void integrate(Block& block, scratch<Block>& s, std::size_t first, integrated (&p)[N],
                                    bool const (&inactive)[N], Filter const& filter) const {
     auto const& state = context.state;
-    auto const& effects = context.effects;
-    S const dt = context.dt;
     bool near[N] = {};
     for (int k = 0; k < N; ++k) {
       if (inactive[k]) continue;
-      if constexpr (Context::kick_before != 0) accelerate(p[k], Context::kick_before * dt);
+      begin_particle(context, p[k]);
       if constexpr (!is_swept) move(p[k]);
     }
     filter(p, inactive, near);
     for (int k = 0; k < N; ++k) {
       if (inactive[k] || near[k]) continue;
-      if constexpr (is_swept) p[k][position{}] += p[k][velocity{}] * dt;
-      if constexpr (Context::kick_after != 0) accelerate(p[k], Context::kick_after * dt);
-      effects.end_step(p[k], dt);
+      if constexpr (is_swept) p[k][position{}] += p[k][velocity{}] * context.dt;
+      end_motion(context, p[k], false);
+      if constexpr (!effects_type::ends_after_meeting) end_particle(context, p[k]);
     }
     for (int k = 0; k < N; k += pack) {
       state.store_group(block, s, p + k, first + static_cast<std::size_t>(k),
                         typename effects_type::integration_writes{});
     }
-  }
-
-  /// Lets the effects accelerate a particle for a part of the step.
-  COLLIDE_HD_INLINE void accelerate(integrated& p, S time) const {
-    if constexpr (may_ride) {
-      if (int const frame = frame_ridden(p)) return accelerate_on_body(context, p, frame, time);
-    }
-    context.effects.accelerate(p, time);
   }
 
   /// Moves a particle of a discrete step.
@@ -160,6 +149,9 @@ struct integration {
         woken[k] = i < context.state.size && inactive[k] && is_woken(skipping[k], i);
         inactive[k] = inactive[k] && !woken[k];
       }
+      if constexpr (effects_type::keeps_support) {
+        if (i < context.state.size && inactive[k] && only_sleeps(skipping[k])) press(i);
+      }
       all = all && inactive[k];
     }
     if (all) return;
@@ -178,9 +170,8 @@ struct integration {
 
   /// True of a particle that sleeps where a body that moves may touch it.
   template <class Skipping>
-  COLLIDE_HD_INLINE bool is_woken(Skipping p, std::size_t i) const {
-    p[slow_steps{}] = 0;
-    if (context.effects.is_skipped(p)) return false;  // it does not only sleep
+  COLLIDE_HD_INLINE bool is_woken(Skipping const& p, std::size_t i) const {
+    if (!only_sleeps(p)) return false;
     S const* const x = context.state.at(position{}) + 3 * i;
     sphere<S> const here{{x[0], x[1], x[2]}, context.state.radius_at(i)};
     if constexpr (is_swept) {
@@ -188,6 +179,21 @@ struct integration {
     } else {
       return !context.triangles.opened().is_left_alone(here);
     }
+  }
+
+  /// True of a particle that is left out, if that is because it sleeps.
+  template <class Skipping>
+  COLLIDE_HD_INLINE bool only_sleeps(Skipping p) const {
+    p[slow_steps{}] = 0;
+    return !context.effects.is_skipped(p);
+  }
+
+  /// A particle that sleeps presses on what it lies on.
+  COLLIDE_HD_INLINE void press(std::size_t i) const {
+    integrated p;
+    context.state.load(p, i);
+    book_sleeping(context, p);
+    context.state.store(p, i, typename effects_type::integration_writes{});
   }
 
   template <class Block, class P, int N>

@@ -128,6 +128,13 @@ struct moving_mesh : mesh_view<S> {
     if (frame == 0) return s;
     return {rounded_to<S>(frames[frame].now.to_local(s.centre.template cast<double>())), s.radius};
   }
+  /// A sphere as a body sees it at the beginning of the step; of one that moves, the whole path.
+  COLLIDE_HD_INLINE sphere<S> seen_from_start(int frame, sphere<S> const& s) const {
+    return {rounded_to<S>(frames[frame].before.to_local(s.centre.template cast<double>())), s.radius};
+  }
+  COLLIDE_HD_INLINE moving_sphere<S> seen_from_start(int frame, moving_sphere<S> const& s) const {
+    return seen_from(frame, s, 0);
+  }
   /// A sphere that moves for the rest of the step from a part of it on, as a body sees it.
   COLLIDE_HD_INLINE moving_sphere<S> seen_from(int frame, moving_sphere<S> const& s, double part) const {
     if (frame == 0) return s;

@@ -39,18 +39,23 @@ struct pair_interaction {
 
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
-    if (!is_skipped(p.self)) {
-      effects.on_pair_contact(p.changed, p.self, other, dt);
-    } else if (!is_skipped(other)) {
-      effects.try_wake(p.changed, other);
-    } else {
-      return;
-    }
-    p.met = true;
+    bool const is_active = !is_skipped(p.self), is_other = !is_skipped(other);
+    if (is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
+    if (is_other) effects.try_wake(p.changed, other);
+    p.met = p.met || is_active || is_other;
   }
 
   COLLIDE_HD_INLINE void store(pair_state const& p) const {
-    if (p.met) state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
+    if (!p.met) return;
+    state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
+    if constexpr (Effects::keeps_pair_forces) {
+      particle<S, typename Effects::interaction_kicks> kicks;
+      kicks[pair_acceleration{}] = (p.changed[velocity{}] - p.self[velocity{}]) * (1 / dt);
+      if constexpr (Effects::keeps_pair_torques) {
+        kicks[pair_angular_acceleration{}] = (p.changed[angular_velocity{}] - p.self[angular_velocity{}]) * (1 / dt);
+      }
+      state.store(kicks, p.self.number, typename Effects::interaction_kicks{});
+    }
   }
 
  private:

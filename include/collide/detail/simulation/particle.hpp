@@ -125,7 +125,7 @@ struct particle_state<S, columns<C...>>
   }
 
   template <class P, class... E>
-  COLLIDE_HD_INLINE void store(P const& p, std::size_t i, columns<E...>) const {
+  COLLIDE_HD_INLINE void store(P const& p, [[maybe_unused]] std::size_t i, columns<E...>) const {
     (store_value(E{}, p[E{}], i), ...);
   }
 

@@ -34,6 +34,14 @@ struct optional_writes_of<E, std::void_t<typename E::optional_writes>> {
   using type = typename E::optional_writes;
 };
 template <class E, class = void>
+struct optional_reads_of {
+  using type = columns<>;
+};
+template <class E>
+struct optional_reads_of<E, std::void_t<typename E::optional_reads>> {
+  using type = typename E::optional_reads;
+};
+template <class E, class = void>
 struct runs_after_of {
   using type = effects<>;
 };
@@ -59,9 +67,10 @@ class particle_access {
     constexpr bool writes = contains<typename writes_of<Effect>::type, C> ||
                             (contains<typename optional_writes_of<Effect>::type, C> && has<C>);
     static_assert(
-        writes || contains<typename reads_of<Effect>::type, C>,
+        writes || contains<typename reads_of<Effect>::type, C> ||
+            (contains<typename optional_reads_of<Effect>::type, C> && has<C>),
         "collide: an effect may use a column only if it names it in its reads or writes, or in its optional_writes "
-        "and the scene has it");
+        "or optional_reads and the scene has it");
     if constexpr (writes) {
       return static_cast<column_value<C, scalar>&>(p_[C{}]);
     } else {

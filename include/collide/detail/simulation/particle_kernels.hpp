@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include <collide/detail/simulation/mesh_contact.hpp>
+#include <collide/detail/simulation/mesh_ledger.hpp>
 #include <collide/detail/simulation/particle.hpp>
 #include <collide/spheres.hpp>
 
@@ -31,6 +33,89 @@ struct init_particles {
     state.store(p, i, All{});
   }
 };
+
+/// Kernel body of `for_each` over particles: ends their step, where particles have met in between.
+template <class S, class Effects>
+struct end_particles {
+  using scalar = S;
+  using effects_type = Effects;
+  static constexpr S kick_after = S(Effects::integrator::kick_after);
+
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+  S dt;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    particle<S, typename Effects::integration_reads> p;
+    state.load(p, i);
+    if constexpr (Effects::skips) {
+      if (effects.is_skipped(p)) return;
+    }
+    end_particle(*this, p);
+    state.store(p, i, typename Effects::integration_writes{});
+  }
+};
+
+/// Kernel body of `for_each` over particles: frees those that stick to the mesh where it no longer is.
+template <class State, class Triangles>
+struct release_adhered {
+  State state;
+  Triangles triangles;
+  bool are_driven;  ///< bodies, which are not where they will be
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::uint8_t& held = state.at(adhered{})[i];
+    if (held == 0 || (are_driven && held > 1)) return;
+    auto const* const x = state.at(position{}) + 3 * i;
+    using S = std::decay_t<decltype(*x)>;
+    vec3<S> const centre(x[0], x[1], x[2]);
+    S const r = state.radius_at(i);
+    held = find(sphere<S>{centre, r + 2 * (contact_tolerance<S> * r + rounding_at(centre))});
+  }
+
+ private:
+  /// What of the mesh a sphere touches, as `adhered` has it: of several triangles the first in memory.
+  template <class S>
+  COLLIDE_HD std::uint8_t find(sphere<S> const& s) const {
+    Triangles const near = triangles.opened();
+    id first = no_id;
+    auto cursor = near.begin(s);
+    candidate_range range{};
+    while (next(near, s, cursor, range)) {
+      for (std::uint32_t k = 0; k < range.count; ++k) {
+        cell_item const e = range.at(k);
+        if (e.triangle < first && touches(near, s, e.triangle)) first = e.triangle;
+      }
+    }
+    if (first == no_id) return 0;
+    if constexpr (has_moving_mesh<Triangles>) {
+      return static_cast<std::uint8_t>(near.mesh.frame_of(first) + 1);
+    } else {
+      return 1;
+    }
+  }
+  template <class S, class Cursor>
+  COLLIDE_HD static bool next(Triangles const& near, sphere<S> const& s, Cursor& cursor, candidate_range& range) {
+    constexpr std::uint32_t most = 1u << 30;
+    if constexpr (has_moving_mesh<Triangles>) {
+      return near.next(s, 1, cursor, most, range);
+    } else {
+      return near.next(s, cursor, most, range);
+    }
+  }
+  template <class S>
+  COLLIDE_HD bool touches(Triangles const& near, sphere<S> const& s, id triangle) const {
+    sphere<S> seen = s;
+    if constexpr (has_moving_mesh<Triangles>) {
+      int const frame = near.mesh.frame_of(triangle);
+      if (are_driven && frame != 0) return false;
+      seen = near.mesh.seen_from(frame, s, 1);
+    }
+    return relaxed_contact(near.mesh[triangle], seen).depth >= 0;
+  }
+};
+template <class State, class Triangles>
+release_adhered(State, Triangles, bool) -> release_adhered<State, Triangles>;
 
 /// Kernel body of `for_each`.
 template <class T>

@@ -55,7 +55,7 @@ struct surface_at_rest {
   }
   template <class S>
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
-    c.surface_velocity = c.turn = vec3<S>(S(0), S(0), S(0));
+    c.surface_velocity = vec3<S>(S(0), S(0), S(0));
     c.body = no_id;
   }
   template <class Active, class S>
@@ -68,21 +68,16 @@ struct surface_at_rest {
   COLLIDE_HD_INLINE void leave(Particle&) const {}
 };
 
-/// How a body turns from one pose to another: the vector part of the quaternion.
-COLLIDE_HD_INLINE vec3<double> turn_between(frame_pose const& a, frame_pose const& b) {
-  vec3<double> const turn = scaled(b.axis, a.w) - scaled(a.axis, b.w) - cross(b.axis, a.axis);
-  return mul(a.w, b.w) + dot(a.axis, b.axis) < 0 ? vec3<double>(-turn) : turn;
-}
-
 /// The surface of a body that moves, or of what deforms, where a particle touches it.
 template <class S, bool IsSwept>
 struct surface_of_body {
   int frame;
-  frame_pose at, now;    ///< when they touch, and at the end of the step
-  vec3<double> carried;  ///< velocity in the world of what has none relative to the surface
-  vec3<double> change;   ///< of the surface's velocity in a step
-  vec3<S> angular;       ///< of the body
-  vec3<S> velocity;      ///< of the surface at the point
+  frame_pose at, before, now;  ///< when they touch, and when the step begins and ends
+  vec3<double> carried;        ///< velocity in the world of what has none relative to the surface
+  vec3<double> change;         ///< of the surface's velocity in a step
+  vec3<double> along;          ///< velocity of what it carries besides that with which the body moves
+  vec3<S> angular;             ///< of the body
+  vec3<S> velocity;            ///< of the surface at the point
   S dt;
   bool rests;
 
@@ -94,8 +89,8 @@ struct surface_of_body {
     if constexpr (IsSwept) {
       return x;
     } else {
-      vec3<double> const mean = carried - scaled(change, 0.5);
-      return rounded_to<S>(x.template cast<double>() + scaled(mean, static_cast<double>(dt)));
+      vec3<double> const from = x.template cast<double>(), to = frame == 0 ? from : now.to_world(before.to_local(from));
+      return rounded_to<S>(to + scaled(along, static_cast<double>(dt)));
     }
   }
   COLLIDE_HD_INLINE vec3<S> acceleration_seen(vec3<S> const& dv) const {
@@ -104,10 +99,6 @@ struct surface_of_body {
   COLLIDE_HD_INLINE void describe(mesh_contact<S>& c) const {
     c.surface_velocity = velocity;
     c.body = frame == 0 ? no_id : static_cast<id>(frame - 1);
-    c.turn = vec3<S>(S(0), S(0), S(0));
-    if constexpr (IsSwept) {
-      if (frame != 0) c.turn = rounded_to<S>(turn_between(at, now));
-    }
   }
 
   template <class Active>
@@ -155,15 +146,20 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
                                                                   double part) {
   using vector = vec3<double>;
   vector const none(0, 0, 0);
-  surface_of_body<S, Active::is_swept> s{mesh.frame_of(c.triangle), {},      {},   none, none, {S(0), S(0), S(0)},
-                                         {S(0), S(0), S(0)},        mesh.dt, false};
+  surface_of_body<S, Active::is_swept> s{};
+  s.frame = mesh.frame_of(c.triangle);
+  s.carried = s.change = s.along = none;
+  s.angular = s.velocity = vec3<S>(S(0), S(0), S(0));
+  s.dt = mesh.dt;
   s.rests = s.frame == 0 && mesh.vertex_velocities == nullptr;
   if (s.frame == 0) {
     if (!s.rests) s.carried = mesh.velocity_of(c.triangle, c.point);
     s.velocity = rounded_to<S>(s.carried);
+    s.along = s.carried;
     return s;
   }
   body_frame<S> const& f = mesh.frames[s.frame];
+  s.before = f.before;
   s.now = f.now;
   s.at = mesh.pose_at(s.frame, part);
   vector const x = centre.template cast<double>(), point = c.point.template cast<double>();
@@ -181,12 +177,12 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
     s.carried = velocity_at(f.moving, f.now, x);
   }
   s.velocity = rounded_to<S>(s.carried + arm + f.belt);
-  vector along = f.belt;
+  s.along = f.belt;
   if constexpr (!Turns) {  // it is dragged as the point is that it touches, and not turned with the body
     vector const n = c.normal.template cast<double>();
-    along += arm - scaled(n, dot(arm, n));
+    s.along += arm - scaled(n, dot(arm, n));
   }
-  s.carried += s.turned(along);
+  s.carried += s.turned(s.along);
   return s;
 }
 

@@ -1,0 +1,55 @@
+/// Where features meet, on the host and as blocks of threads go.
+#include "compositions.hpp"
+#include "simulation/where_features_meet.hpp"
+
+using collide::host;
+using collide::karabassi;
+using collide::karabassi_swept;
+using collide::semi_implicit_euler;
+using collide::velocity_verlet;
+using blocks = tests::lockstep<64, true>;
+
+TEST_CASE("where features meet: what lies on the mesh presses with its weight") {
+  tests::check_weights<karabassi<>, double>(host(1));
+  tests::check_weights<karabassi_swept<>, float>(host(1));
+  tests::check_slope_and_stack<semi_implicit_euler, double>(host(1));
+  tests::check_slope_and_stack<velocity_verlet, double>(host(1));
+  tests::check_slope_and_stack<velocity_verlet, float>(blocks());
+}
+
+TEST_CASE("where features meet: velocity Verlet is of second order with forces between particles") {
+  tests::check_order_of_pair_forces(host(1));
+}
+
+TEST_CASE("where features meet: what sleeps goes with what it lies on, however slowly") {
+  tests::check_slow_support<karabassi<>, double>(host(1));
+  tests::check_slow_support<karabassi<>, float>(blocks());
+  tests::check_slow_support<karabassi_swept<>, float>(host(1));
+}
+
+TEST_CASE("where features meet: what spins does not sleep, and angular momentum closes") {
+  tests::check_sleep_of_what_spins<karabassi<>, double>(host(1));
+  tests::check_sleep_of_what_spins<karabassi_swept<>, float>(host(1));
+  tests::check_angular_momentum<karabassi<>, double>(host(1));
+  tests::check_angular_momentum<karabassi<>, float>(blocks());
+  tests::check_angular_momentum<karabassi_swept<>, float>(host(1));
+}
+
+TEST_CASE("where features meet: adhesion holds against other particles, and a surface that is there") {
+  tests::check_adhesion_and_others<karabassi<>, semi_implicit_euler, double>(host(1));
+  tests::check_adhesion_and_others<karabassi<>, velocity_verlet, float>(blocks());
+  tests::check_adhesion_and_others<karabassi_swept<>, velocity_verlet, double>(host(1));
+  tests::check_adhesion_without_surface<karabassi<>, float>(blocks());
+  tests::check_adhesion_without_surface<karabassi_swept<>, double>(host(1));
+}
+
+TEST_CASE("where features meet: a driven body is nowhere before its first pose, and a turntable carries") {
+  tests::check_first_pose<karabassi<>, float>(blocks());
+  tests::check_first_pose<karabassi_swept<>, double>(host(1));
+  tests::check_turntable(host(1));
+}
+
+TEST_CASE("where features meet: what is nowhere is counted") {
+  tests::check_lost(host(1));
+  tests::check_lost(blocks());
+}

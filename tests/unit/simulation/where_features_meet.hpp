@@ -1,0 +1,324 @@
+/// What must hold where two features meet: weights and momentum of what sticks, sleeps or rests, in each integrator;
+/// what sleeps on what moves; what other particles pull at. Instantiated by test_where_features_meet.cpp and
+/// test_where_features_meet_cuda.cpp.
+#pragma once
+
+#include <collide/adhesion.hpp>
+#include <collide/contact_forces.hpp>
+#include <collide/integrators.hpp>
+#include <collide/lost.hpp>
+#include <collide/sleep.hpp>
+
+#include "simulation/bodies.hpp"
+
+namespace tests {
+
+using collide::adhesion;
+using collide::mesh_forces;
+using collide::semi_implicit_euler;
+using collide::slow_steps;
+using collide::sphere_contact;
+using collide::velocity_verlet;
+
+constexpr double density_of_grains = 2500;
+
+/// Mass of a sphere of `density_of_grains`.
+inline double mass_of_grain(double radius) { return density_of_grains * 4 / 3 * pi * radius * radius * radius; }
+
+/// A floor, and a ball of radius 0.1 that touches it.
+template <class S>
+world<S> ball_on_floor() {
+  world<S> w;
+  w.radius = S(0.1);
+  add_floor(w, 3, 1);
+  w.particle(0, 0, 0.1);
+  return w;
+}
+
+/// What lies on the mesh presses with its weight, on the mesh as on a body, whatever holds it.
+template <class NarrowPhase, class Integrator, class S, class Space, class... Effect>
+void check_weight(Space const& space, Effect... effects) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, Integrator, Effect..., mesh_forces,
+                                         collide::reaction, moving_bodies<>>;
+  auto const w = ball_on_floor<S>();
+  double const weight = mass_of_grain(0.1) * 9.81, dt = 1.0 / 1024;
+  collide::reaction_sums sums(space, 1, weight * 1e-12);
+  running_bodies<simulation> made(space, w, one_body(w, {}), Integrator{}, effects..., mesh_forces{density_of_grains},
+                                  sums.effect(density_of_grains), moving_bodies<>{});
+  made.simulation.steps(300, S(dt));
+  sums.clear(space);
+  made.simulation.steps(128, S(dt));
+  double const rounding = sizeof(S) == 4 ? 1e-5 : 1e-9;
+  auto const of_body = sums.read(space)[0];
+  CHECK(double(made.simulation.template to_host<collide::mesh_force>()[2]) ==
+        doctest::Approx(weight).epsilon(rounding));
+  CHECK(of_body.linear[2] == doctest::Approx(-weight * 128 * dt).epsilon(rounding));
+  CHECK(made.velocities()[2] == 0);
+}
+
+template <class NarrowPhase, class S, class Space>
+void check_weights(Space const& space) {
+  auto const with = [&](auto integrator) {
+    using integrator_type = decltype(integrator);
+    check_weight<NarrowPhase, integrator_type, S>(space, gravity{}, bounce{0.2});
+    check_weight<NarrowPhase, integrator_type, S>(space, gravity{}, bounce{0.2}, adhesion{200});
+    check_weight<NarrowPhase, integrator_type, S>(space, collide::sleep{}, gravity{}, bounce{0.2}, friction{});
+  };
+  with(semi_implicit_euler{});
+  with(velocity_verlet{});
+}
+
+/// On a slope friction holds both components of the weight; at the foot of a stack is the weight of all.
+template <class Integrator, class S, class Space>
+void check_slope_and_stack(Space const& space) {
+  using detector = meets_mesh<Space, collide::karabassi<>, S>;
+  double const weight = mass_of_grain(0.1) * 9.81, rounding = sizeof(S) == 4 ? 1e-4 : 1e-9;
+  running<collide::simulation<detector, Integrator, gravity, bounce, friction, mesh_forces>> slope(
+      space, ball_on_floor<S>(), Integrator{}, gravity{3, 0, -9.81}, bounce{0.2}, friction{0.9, 0.9},
+      mesh_forces{density_of_grains});
+  slope.simulation.steps(200, S(1e-3));
+  auto const f = slope.simulation.template to_host<collide::mesh_force>();
+  CHECK(double(f[0]) == doctest::Approx(-3 / 9.81 * weight).epsilon(rounding));
+  CHECK(double(f[2]) == doctest::Approx(weight).epsilon(rounding));
+
+  auto w = ball_on_floor<S>();
+  for (int i = 1; i < 3; ++i) w.particle(0, 0, 0.1 + 0.1996 * i);
+  sphere_contact contact;
+  contact.stiffness = 1e6;
+  contact.damping = 2000;
+  contact.density = density_of_grains;
+  running<collide::simulation<detector, Integrator, sphere_contact, gravity, bounce, mesh_forces>> stack(
+      space, w, Integrator{}, contact, gravity{}, bounce{0.2}, mesh_forces{density_of_grains});
+  stack.simulation.steps(10000, S(1e-4));
+  CHECK(double(stack.simulation.template to_host<collide::mesh_force>()[2]) ==
+        doctest::Approx(3 * weight).epsilon(sizeof(S) == 4 ? 0.02 : 1e-3));
+  auto const v = stack.velocities();
+  for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(double(v[3 * k + 2])) < 2e-4);
+}
+
+/// Spheres in elastic contact: halving the step divides the error of `velocity_verlet` by four.
+template <class Space>
+void check_order_of_pair_forces(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, double>, velocity_verlet, sphere_contact>;
+  world<double> w;
+  w.radius = 1;
+  w.particle(0, 0, 0, 1, 0, 0);
+  w.particle(1.9, 0, 0);
+  sphere_contact contact;
+  contact.stiffness = 100;
+  auto const end = [&](std::size_t n) {
+    running<simulation> made(space, w, velocity_verlet{}, contact);
+    made.simulation.steps(n, 0.5 / static_cast<double>(n));
+    return std::array<double, 2>{made.positions()[0], made.velocities()[0]};
+  };
+  auto const right = end(16384), coarse = end(32), fine = end(64);
+  for (std::size_t k = 0; k < 2; ++k) {
+    CHECK(std::abs(coarse[k] - right[k]) < 5e-3);
+    CHECK(std::abs(coarse[k] - right[k]) > 3.5 * std::abs(fine[k] - right[k]));
+  }
+}
+
+/// A plate that sinks, or rises, more slowly than what is slow takes along what sleeps on it, and what sleeps on that.
+template <class NarrowPhase, class S, class Space>
+void check_slow_support(Space const& space) {
+  using detector = meets_mesh<Space, NarrowPhase, S>;
+  for (double const speed : {-0.05, -0.004, 0.004}) {
+    auto const w = ball_on_floor<S>();
+    body_motion motion;
+    motion.velocity[2] = speed;
+    running_bodies<collide::simulation<detector, collide::sleep, gravity, bounce, moving_bodies<>>> made(
+        space, w, one_body(w, motion), collide::sleep{}, gravity{}, bounce{0.2}, moving_bodies<>{});
+    made.simulation.steps(2000, S(1e-3));
+    CHECK(double(made.positions()[2]) == doctest::Approx(0.1 + 2 * speed).epsilon(1e-4));
+  }
+  auto w = ball_on_floor<S>();
+  for (int i = 1; i < 4; ++i) w.particle(0, 0, 0.1 + 0.1999 * i);
+  body_motion rising;
+  rising.velocity[2] = 0.004;
+  sphere_contact contact;
+  contact.stiffness = 1e6;
+  contact.damping = 2000;
+  contact.density = density_of_grains;
+  running_bodies<collide::simulation<detector, collide::sleep, sphere_contact, gravity, bounce, moving_bodies<>>> stack(
+      space, w, one_body(w, rising), collide::sleep{}, contact, gravity{}, bounce{0.2}, moving_bodies<>{});
+  stack.simulation.steps(10000, S(2e-4));
+  auto const x = stack.positions();
+  for (std::size_t k = 0; k < 4; ++k)
+    CHECK(double(x[3 * k + 2]) == doctest::Approx(0.1 + 0.1998 * static_cast<double>(k) + 0.008).epsilon(2e-3));
+}
+
+/// What spins in place does not sleep before it has come to rest.
+template <class NarrowPhase, class S, class Space>
+void check_sleep_of_what_spins(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, NarrowPhase, S>, collide::sleep, gravity, bounce, friction, spin>;
+  running<simulation> made(space, ball_on_floor<S>(), collide::sleep{}, gravity{}, bounce{0}, friction{0.5, 0.5},
+                           spin{0.05});
+  placed<S> const turning(made.simulation.space(), {S(0), S(0), S(20)});
+  made.simulation.template assign<collide::angular_velocity>(turning.data());
+  made.simulation.steps(200, S(1e-3));
+  CHECK(made.simulation.template to_host<slow_steps>()[0] == 0);
+  made.simulation.steps(2000, S(1e-3));
+  CHECK(made.simulation.template to_host<slow_steps>()[0] >= 50);
+  CHECK(std::abs(double(made.simulation.template to_host<collide::angular_velocity>()[2])) < 0.1);
+}
+
+/// What a ball loses of its angular momentum the mesh gets, rolling resistance included.
+template <class NarrowPhase, class S, class Space>
+void check_angular_momentum(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, friction, spin, collide::reaction>;
+  double const mass = mass_of_grain(0.1), inertia = 0.4 * mass * 0.01, dt = 1e-3;
+  for (bool const rolls : {false, true}) {
+    auto w = ball_on_floor<S>();
+    if (rolls) w.velocities[0] = S(1);
+    collide::reaction_sums sums(space, 0, 1e-13);
+    running<simulation> made(space, w, gravity{}, bounce{0}, friction{0.9, 0.9}, spin{0.05},
+                             sums.effect(density_of_grains));
+    placed<S> const turning(made.simulation.space(), {S(0), S(rolls ? 10 : 0), S(rolls ? 0 : 20)});
+    made.simulation.template assign<collide::angular_velocity>(turning.data());
+    auto const momentum = [&] {
+      auto const x = made.positions(), v = made.velocities();
+      auto const o = made.simulation.template to_host<collide::angular_velocity>();
+      return std::array<double, 2>{
+          mass * (double(x[2]) * double(v[0]) - double(x[0]) * double(v[2])) + inertia * double(o[1]),
+          inertia * double(o[2])};
+    };
+    auto const before = momentum();
+    double by_gravity = 0;
+    for (int i = 0; i < 500; ++i) {
+      by_gravity += double(made.positions()[0]) * mass * 9.81 * dt;
+      made.simulation.step(S(dt));
+    }
+    auto const after = momentum();
+    auto const got = sums.read(space)[0];
+    double const rounding = sizeof(S) == 4 ? 1e-4 : 1e-8;
+    CHECK(before[0] - after[0] + by_gravity == doctest::Approx(got.angular[1]).epsilon(rounding));
+    CHECK(before[1] - after[1] == doctest::Approx(got.angular[2]).epsilon(rounding));
+    CHECK(std::abs(rolls ? before[0] - after[0] : before[1] - after[1]) > 0.01);
+  }
+}
+
+/// A user's effect: particle 0 is pushed by what overlaps it.
+struct pushes {
+  using writes = collide::columns<velocity>;
+  double x = 0, z = 0;  ///< acceleration
+  template <class Particle, class Seen, class S>
+  COLLIDE_HD void on_pair_contact(Particle& p, Seen const& self, Seen const&, S dt) const {
+    if (self.number() == 0) p[velocity{}] += collide::vec3<S>(S(x), S(0), S(z)) * dt;
+  }
+};
+
+/// What adhesion holds another particle pulls off with more than it holds, and with no less; what is pulled along the
+/// mesh then slides as under gravity.
+template <class NarrowPhase, class Integrator, class S, class Space>
+void check_adhesion_and_others(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, Integrator, pushes, bounce, adhesion>;
+  auto const after = [&](double x, double z, int steps, double dt) {
+    auto w = ball_on_floor<S>();
+    w.radius = S(0.2);
+    w.centres[2] = S(0.2);
+    w.velocities[2] = S(-0.01);
+    w.particle(0.1, 0, 0.55);
+    running<simulation> made(space, w, Integrator{}, pushes{}, bounce{0.2}, adhesion{10});
+    made.simulation.steps(2, S(dt));  // it sticks
+    made.simulation.template effect<pushes>() = {x, z};
+    made.simulation.steps(static_cast<std::size_t>(steps), S(dt));
+    return made.positions();
+  };
+  for (double const pull : {6.0, 9.0}) CHECK(after(0, pull, 20, 1e-3)[2] == S(0.2));
+  CHECK(after(0, 11, 20, 1e-3)[2] > S(0.201));
+  CHECK(after(9, 0, 20, 1e-3)[0] == 0);
+  for (double const dt : {1e-3, 1e-4}) {
+    CHECK(double(after(15, 0, int(std::lround(0.1 / dt)), dt)[0]) == doctest::Approx(0.075).epsilon(0.02));
+  }
+}
+
+/// What stuck to a surface falls where that is gone, and stays where it is not.
+template <class NarrowPhase, class S, class Space>
+void check_adhesion_without_surface(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, adhesion, moving_bodies<>>;
+  auto const w = ball_on_floor<S>();
+  body_motion moves;
+  moves.velocity[0] = 0.5;
+  auto const after = [&](double down, std::vector<body> const& bodies) {
+    running_bodies<simulation> made(space, w, one_body(w, moves), gravity{}, bounce{0.2}, adhesion{20},
+                                    moving_bodies<>{});
+    made.simulation.steps(128, S(1.0 / 1024));
+    auto corners = w.corners;
+    for (std::size_t i = 2; i < corners.size(); i += 3) corners[i] -= S(down);
+    placed<S> const mesh(space, corners);
+    made.simulation.set_mesh(collide::triangle_soup(mesh.data(), mesh.size() / 9), bodies);
+    made.simulation.steps(512, S(1.0 / 1024));
+    auto x = made.positions();
+    x.push_back(S(made.simulation.template to_host<collide::adhered>()[0]));
+    return x;
+  };
+  auto const gone = after(5, {}), rests = after(0, {}), moved = after(0, one_body(w, moves));
+  CHECK(double(gone[2]) == doctest::Approx(0.1 - 9.81 * 0.125).epsilon(0.01));
+  CHECK(gone[3] == 0);
+  CHECK(rests[2] == S(0.1));
+  CHECK(rests[3] == 1);
+  CHECK(double(moved[0] - rests[0]) > 0.2);
+  CHECK(moved[3] == 2);
+}
+
+/// A driven body is never where it lies in memory: not in its first step, nor when the mesh is set again.
+template <class NarrowPhase, class S, class Space>
+void check_first_pose(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, bounce, moving_bodies<collide::driven>>;
+  auto w = ball_on_floor<S>();
+  w.centres[2] = S(2.5);
+  running_bodies<simulation> made(space, w, one_body(w, {}), bounce{0.5}, moving_bodies<collide::driven>{});
+  collide::body_state state;
+  state.at.position[2] = 5;
+  placed<S> const mesh(space, w.corners);
+  for (int i = 0; i < 20; ++i) {
+    if (i == 10) made.simulation.set_mesh(collide::triangle_soup(mesh.data(), 2), one_body(w, {}));
+    made.simulation.space().copy_from_host(made.simulation.bodies().states(), &state, 1);
+    made.simulation.step(S(1e-3));
+    made.simulation.space().synchronize();
+  }
+  CHECK(made.positions()[2] == S(2.5));
+  CHECK(made.velocities()[2] == 0);
+}
+
+/// What friction holds on a turntable goes round with it, to rounding.
+template <class Space>
+void check_turntable(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, double>, gravity, bounce, friction, moving_bodies<>>;
+  auto w = ball_on_floor<double>();
+  w.centres[0] = 0.5;
+  w.velocities[1] = 1;
+  body_motion turns;
+  turns.rate = 2;
+  running_bodies<simulation> made(space, w, one_body(w, turns), gravity{}, bounce{0}, friction{0.6, 0.6},
+                                  moving_bodies<>{});
+  double const dt = 1e-2;
+  made.simulation.steps(100, dt);
+  auto const x = made.positions();
+  made.simulation.steps(5000, dt);
+  auto const y = made.positions();
+  double const c = std::cos(2 * 5000 * dt), s = std::sin(2 * 5000 * dt);
+  CHECK(std::abs(y[0] - (c * x[0] - s * x[1])) < 1e-9);
+  CHECK(std::abs(y[1] - (s * x[0] + c * x[1])) < 1e-9);
+}
+
+/// Particles that are nowhere are counted, and the others go on.
+template <class Space>
+void check_lost(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, gravity, bounce, sphere_contact, collide::lost>;
+  auto w = ball_on_floor<float>();
+  w.particle(1, 0, 0.1);
+  w.particle(std::numeric_limits<double>::quiet_NaN(), 0, 0.1);
+  w.particle(0, 0, 1, 0, std::numeric_limits<double>::infinity(), 0);
+  running<simulation> made(space, w, gravity{}, bounce{0.2}, sphere_contact{}, collide::lost{});
+  CHECK(collide::lost_count(made.simulation) == 0);
+  made.simulation.steps(10, 1e-4f);
+  CHECK(collide::lost_count(made.simulation) == 2);
+  CHECK(made.positions()[5] == doctest::Approx(0.1));
+}
+
+}  // namespace tests
