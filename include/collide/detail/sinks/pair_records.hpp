@@ -16,12 +16,7 @@ struct compute_records {
   Mesh mesh;
   sphere_view_for<NarrowPhase, S> spheres;
   COLLIDE_HD void operator()(std::size_t i) const {
-    hit<NarrowPhase, S> const h = hit_of<NarrowPhase, S>(pairs[i], mesh, spheres);
-    if constexpr (std::is_same<Record, contact<S>>::value) {
-      to[i] = h.contact();
-    } else {
-      to[i] = h.impact();
-    }
+    to[i] = record_of<Record>(hit_of<NarrowPhase, S>(pairs[i], mesh, spheres));
   }
 };
 

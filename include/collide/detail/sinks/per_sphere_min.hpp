@@ -6,18 +6,42 @@
 
 #include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/sinks/output.hpp>
+#include <collide/hit.hpp>
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over spheres: nothing is there yet. Memory of all ones has `no_id` for the triangle
-/// already.
-template <class Entry, class Key>
+/// True if an entry keeps all that is to know of a hit; else it is a triangle and a number.
+template <class Entry, class S>
+inline constexpr bool is_record = std::is_same<Entry, contact<S>>::value || std::is_same<Entry, impact<S>>::value;
+
+/// The entry of a sphere that touches nothing.
+template <class Entry, class S>
+COLLIDE_HD Entry empty_entry([[maybe_unused]] id sphere) {
+  constexpr S infinity = std::numeric_limits<S>::infinity();
+  if constexpr (std::is_same<Entry, contact<S>>::value) {
+    constexpr S nan = std::numeric_limits<S>::quiet_NaN();
+    return {sphere, no_id, {nan, nan, nan}, {nan, nan, nan}, infinity, -infinity, feature::face, 0};
+  } else if constexpr (is_record<Entry, S>) {
+    return {empty_entry<contact<S>, S>(sphere), infinity};
+  } else {
+    return {no_id, infinity};
+  }
+}
+
+template <class Entry>
+COLLIDE_HD id& triangle_of(Entry& entry) {
+  return entry.triangle;
+}
+template <class S>
+COLLIDE_HD id& triangle_of(impact<S>& entry) {
+  return entry.contact.triangle;
+}
+
+/// Kernel body of `for_each` over spheres: nothing is there yet.
+template <class Entry, class S>
 struct reset_best {
   Entry* to;
-  COLLIDE_HD void operator()(std::size_t i) const {
-    auto& number = Key::key_of(to[i]);
-    number = std::numeric_limits<std::decay_t<decltype(number)>>::infinity();
-  }
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = empty_entry<Entry, S>(static_cast<id>(i)); }
 };
 
 /// Kernel body of `for_each` over pairs: the number of each, which takes a contact or an impact to tell, and the
@@ -47,7 +71,19 @@ struct find_best {
   COLLIDE_HD void operator()(std::size_t i) const {
     pair const p = pairs[i];
     Entry& best = to[p.sphere];
-    if (numbers[i] == to_bits(Key::key_of(best))) fetch_min(&best.triangle, p.triangle);
+    if (numbers[i] == to_bits(Key::key_of(best))) fetch_min(&triangle_of(best), p.triangle);
+  }
+};
+
+/// Kernel body of `for_each` over spheres: the contact or impact with the triangle that was found.
+template <class NarrowPhase, class S, class Entry, class Mesh>
+struct record_best {
+  Entry* to;
+  Mesh mesh;
+  sphere_view_for<NarrowPhase, S> spheres;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    pair const p{static_cast<id>(i), triangle_of(to[i])};
+    if (p.triangle != no_id) to[i] = record_of<Entry>(hit_of<NarrowPhase, S>(p, mesh, spheres));
   }
 };
 
@@ -77,19 +113,23 @@ class per_sphere_min : public kept_in_space<Entry> {
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: closest<S> and earliest<S> must have the scalar type of the detector");
-    using reduce = reduce_key<typename Query::narrow_phase, S, Entry, Key, decltype(query.mesh)>;
+    using narrow_phase = typename Query::narrow_phase;
+    using reduce = reduce_key<narrow_phase, S, Entry, Key, decltype(query.mesh)>;
     download_ = host_copier<Entry>(space);
     size_ = query.spheres.size();
     collected_.fill(space, query);
     auto* const to = own_.reserve(space.resource(), size_);
-    space.fill(to, 0xff, size_ * sizeof *to);
-    space.for_each(size_, reset_best<Entry, Key>{to});
+    space.for_each(size_, reset_best<Entry, S>{to});
     std::size_t const pairs = collected_.size();
     std::size_t const room = numbers_.capacity();
     numbers_.reserve(space.resource(), pairs > room ? pairs + pairs / 4 : room);
     pair const* const from = collected_.data();
     space.for_each(pairs, reduce{from, numbers_.data(), to, query.mesh, query.spheres});
     space.for_each(pairs, find_best<S, Entry, Key>{from, numbers_.data(), to});
+    if constexpr (is_record<Entry, S>) {
+      using record = record_best<narrow_phase, S, Entry, decltype(query.mesh)>;
+      if (pairs != 0) space.for_each(size_, record{to, query.mesh, query.spheres});
+    }
   }
 
  private:
