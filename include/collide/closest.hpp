@@ -37,10 +37,11 @@ struct distance_of_contact {
 template <class S = float>
 class closest : public detail::per_sphere_min<closest_triangle<S>, S, detail::distance_of_contact> {};
 
-/// The contact of each sphere with the triangle that `closest` finds: point, normal, distance, depth and feature. Where
-/// a sphere touches nothing, `triangle` is `no_id`, `distance` +infinity, `depth` -infinity, and `point` and `normal`
-/// are NaN. As `closest` otherwise; it computes the contact of each sphere that touches something once more.
+/// The contact of each sphere with the triangle that `closest` finds: point, normal, distance, depth and feature. Of a
+/// sphere that touches nothing `sphere` and `triangle` are `no_id`, `distance` is +infinity, and point, normal and
+/// depth are NaN. As `closest` otherwise; it computes one more contact for each sphere that touches something.
 template <class S = float>
-class closest_contact : public detail::per_sphere_min<contact<S>, S, detail::distance_of_contact> {};
+class closest_contact : public detail::per_sphere_min<closest_triangle<S>, S, detail::distance_of_contact, contact<S>> {
+};
 
 }  // namespace collide

@@ -34,11 +34,10 @@ struct time_of_hit {
 template <class S = float>
 class earliest : public detail::per_sphere_min<first_impact<S>, S, detail::time_of_hit> {};
 
-/// The impact of each moving sphere on the triangle that `earliest` finds: its time, and the contact then. Where a
-/// sphere touches nothing, `contact.triangle` is `no_id`, `time` and `contact.distance` are +infinity, `contact.depth`
-/// -infinity, and `contact.point` and `contact.normal` NaN. As `earliest` otherwise; it computes the impact of each
-/// sphere that touches something once more.
+/// The impact of each moving sphere on the triangle that `earliest` finds: its time, and the contact then. Of a sphere
+/// that touches nothing `contact.sphere` and `contact.triangle` are `no_id`, `time` is +infinity, and the numbers of
+/// the contact are NaN. As `earliest` otherwise; it computes one more impact for each sphere that touches something.
 template <class S = float>
-class earliest_impact : public detail::per_sphere_min<impact<S>, S, detail::time_of_hit> {};
+class earliest_impact : public detail::per_sphere_min<first_impact<S>, S, detail::time_of_hit, impact<S>> {};
 
 }  // namespace collide

@@ -1,6 +1,7 @@
 /// The one list of what is composed and tested. A new policy is tested in every combination by a line here.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 

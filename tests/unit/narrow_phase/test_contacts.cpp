@@ -1,4 +1,5 @@
 /// Contacts by the ways that there are to measure them, against the oracle.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
