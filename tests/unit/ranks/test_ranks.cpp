@@ -1,4 +1,8 @@
 /// Ranks that are threads, on the host, and detectors on them.
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
 #include <collide/thread_ranks.hpp>
 
 #include "ranks/ranks.hpp"
@@ -116,6 +120,19 @@ TEST_CASE("ranks: nobody waits for a rank that has thrown, or ended") {
         }) == "collide: rank 1 of 3 has ended, and others wait for it");
   CHECK_THROWS_AS(collide::thread_ranks::run(3, [](auto const& ranks) { ranks.rank() == 1 ? throw 1 : 0; }), int);
   CHECK(thrown(0, gather) == "collide: thread_ranks: there must be at least one rank");
+}
+
+TEST_CASE("ranks: those of one process share the threads of the host") {
+  int offered = 0;
+  std::thread([&] { offered = collide::host().threads(); }).join();
+  for (int const n : {1, 2, offered, offered + 1}) {
+    std::atomic<int> wrong{0};
+    collide::thread_ranks::run(n, [&](collide::thread_ranks const&) {
+      if (collide::host().threads() != std::max(1, offered / n)) ++wrong;
+      if (collide::host(1).threads() != 1) ++wrong;
+    });
+    CHECK(wrong == 0);
+  }
 }
 
 TEST_CASE("ranks: what makes no sense is refused on all ranks") {
