@@ -39,7 +39,8 @@ class closest : public detail::per_sphere_min<closest_triangle<S>, S, detail::di
 
 /// The contact of each sphere with the triangle that `closest` finds: point, normal, distance, depth and feature. Of a
 /// sphere that touches nothing `sphere` and `triangle` are `no_id`, `distance` is +infinity, and point, normal and
-/// depth are NaN. As `closest` otherwise; it computes one more contact for each sphere that touches something.
+/// depth are NaN. As `closest` otherwise, with memory for a contact of each sphere; one more is computed for each that
+/// touches.
 template <class S = float>
 class closest_contact : public detail::per_sphere_min<closest_triangle<S>, S, detail::distance_of_contact, contact<S>> {
 };

@@ -36,7 +36,8 @@ class earliest : public detail::per_sphere_min<first_impact<S>, S, detail::time_
 
 /// The impact of each moving sphere on the triangle that `earliest` finds: its time, and the contact then. Of a sphere
 /// that touches nothing `contact.sphere` and `contact.triangle` are `no_id`, `time` is +infinity, and the numbers of
-/// the contact are NaN. As `earliest` otherwise; it computes one more impact for each sphere that touches something.
+/// the contact are NaN. As `earliest` otherwise, with memory for an impact of each sphere; one more is computed for
+/// each that touches.
 template <class S = float>
 class earliest_impact : public detail::per_sphere_min<first_impact<S>, S, detail::time_of_hit, impact<S>> {};
 

@@ -67,17 +67,10 @@ std::string difference(std::vector<oracle::id_pair> const& wanted, std::vector<o
 /// Per sphere the contact with the closest triangle, of equally close ones that with the smallest number.
 template <class S>
 std::vector<collide::contact<S>> closest_of(std::vector<collide::contact<S>> const& contacts, std::size_t spheres) {
-  constexpr S nan = std::numeric_limits<S>::quiet_NaN(), infinity = std::numeric_limits<S>::infinity();
-  std::vector<collide::contact<S>> best;
-  for (std::size_t i = 0; i < spheres; ++i)
-    best.push_back({static_cast<collide::id>(i),
-                    collide::no_id,
-                    {nan, nan, nan},
-                    {nan, nan, nan},
-                    infinity,
-                    -infinity,
-                    collide::feature::face,
-                    0});
+  collide::contact<S> none;
+  std::memset(static_cast<void*>(&none), 0xff, sizeof none);
+  none.distance = std::numeric_limits<S>::infinity();
+  std::vector<collide::contact<S>> best(spheres, none);
   for (auto const& c : contacts)  // in canonical order
     if (auto& b = best[c.sphere]; b.triangle == collide::no_id || c.distance < b.distance) b = c;
   return best;

@@ -144,9 +144,9 @@ void check_motion(Space const& space, BroadPhase const& broad, moving_scene<S> c
   for (std::size_t s = 0; s < first.size(); ++s) {
     auto const& i = first_impacts[s];
     different += std::memcmp(&i, &best_impacts[s], sizeof i) != 0;
-    different += i.contact.sphere != s || i.contact.triangle != best[s].triangle || i.time != best[s].time;
-    if (best[s].triangle == collide::no_id)
-      different += !std::isnan(i.contact.point.x()) || i.contact.distance != std::numeric_limits<S>::infinity();
+    bool const touches = best[s].triangle != collide::no_id;
+    different += i.contact.triangle != best[s].triangle || i.time != best[s].time;
+    different += i.contact.sphere != (touches ? s : collide::no_id) || std::isnan(i.contact.point.x()) == touches;
   }
   CHECK(different == 0);
   CHECK(std::equal(first.begin(), first.end(), best.begin(),

@@ -169,7 +169,8 @@ TEST_CASE("ranks: what makes no sense is refused on all ranks") {
           parts.build({}, ranks.rank() == 1 ? -1.0f : 1.0f, collide::on_every_rank);
         }) == "collide: detector: the radius passed to build is negative or NaN");
   CHECK(thrown(3, [](collide::thread_ranks const& ranks) {  // views of which no triangle is read
+          float const some[9] = {};
           collide::distributed<detector, collide::thread_ranks> parts(ranks, collide::host(1));
-          parts.build(collide::triangle_soup(static_cast<float const*>(nullptr), collide::no_id / 2), collide::divided);
+          parts.build(collide::triangle_soup(some, collide::no_id / 2), collide::divided);
         }) == "collide: a mesh has at most 2^32 - 2 triangles, also on many ranks");
 }
