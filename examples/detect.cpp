@@ -181,8 +181,7 @@ void run(Ranks const& ranks, options wish) {
 }
 
 /// Threads that are ranks share the cores and the devices.
-void run_on_threads(int n, options wish) {
-  if (wish.threads == 0) wish.threads = io::threads_for_each(n);
+void run_on_threads(int n, options const& wish) {
   collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
     detection::take_device(wish.space, ranks.rank());
     run(io::any_ranks(ranks), wish);

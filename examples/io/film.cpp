@@ -62,11 +62,9 @@ void on_ranks(film const& wish, F const& f) {
   if (wish.ranks.empty()) return f(wish, nullptr);
   if (wish.space != "host") throw usage_error("--ranks: works with --space host alone");
   if (int const n = threads_of(wish.ranks)) {
-    film of_rank = wish;
-    if (wish.threads == 0) of_rank.threads = threads_for_each(n);
     return collide::thread_ranks::run(n, [&](auto const& ranks) {
       any_ranks const any(ranks);
-      f(of_rank, &any);
+      f(wish, &any);
     });
   }
   if (wish.ranks != "mpi") {

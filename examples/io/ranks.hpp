@@ -2,14 +2,12 @@
 /// What programs on several ranks do with files: each reads a part of a table, and the first writes.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <exception>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <collide/ranks.hpp>
@@ -163,11 +161,6 @@ inline int threads_of(std::string const& text) {
   int n = 0;
   if (text.rfind(name, 0) != 0 || !parse_number(text.substr(name.size()), n) || n < 1 || n > 1024) return 0;
   return n;
-}
-
-/// How many threads of the host each of `ranks` in one process gets.
-inline int threads_for_each(int ranks) {
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks);
 }
 
 }  // namespace io

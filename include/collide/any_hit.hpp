@@ -2,15 +2,13 @@
 /// Sink: one flag per sphere.
 #pragma once
 
-#include <vector>
-
-#include <collide/detail/sinks/output.hpp>
+#include <collide/detail/sinks/array_in_space.hpp>
 
 namespace collide {
 
 /// A flag per sphere: 1 if it touches any triangle, else 0. `query` does not wait for the flags. Memory: one byte per
 /// sphere.
-class any_hit : public detail::kept_in_space<std::uint8_t> {
+class any_hit : public detail::array_in_space<std::uint8_t> {
  public:
   static constexpr bool keeps_ids_alone = true;
 
@@ -19,14 +17,6 @@ class any_hit : public detail::kept_in_space<std::uint8_t> {
   /// The flags are written to the caller's memory (of the space), one byte per sphere: 0 or 1, for all spheres of the
   /// query. It must have room for them, and stay valid as long as this object is used.
   explicit any_hit(std::uint8_t* flags) : external_{flags} {}
-
-  /// The flags, in memory of the space: `size()` bytes, complete when the work on the stream is done. Valid until the
-  /// next query. Null before the first.
-  std::uint8_t const* data() const { return flags_; }
-  /// Number of spheres of the last query.
-  std::size_t size() const { return size_; }
-  /// A copy of the flags on the host; waits for them.
-  std::vector<std::uint8_t> to_host() const { return download_(flags_, size_); }
 
   /// Makes room in memory of `space` for queries of up to so many spheres, whatever they touch: they then allocate
   /// nothing. Number of pairs: of no account.
@@ -38,18 +28,15 @@ class any_hit : public detail::kept_in_space<std::uint8_t> {
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     size_ = query.spheres.size();
-    flags_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), size_);
+    data_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), size_);
     download_ = detail::host_copier<std::uint8_t>(space);
-    space.fill(flags_, 0, size_);
-    query(detail::output{{nullptr, nullptr}, nullptr, 0, flags_});
+    space.fill(data_, 0, size_);
+    query(detail::output{{nullptr, nullptr}, nullptr, 0, data_});
   }
 
  private:
   std::uint8_t* external_ = nullptr;
-  std::uint8_t* flags_ = nullptr;
-  std::size_t size_ = 0;
   buffer<std::uint8_t> own_;
-  detail::host_copier<std::uint8_t> download_;
 };
 
 }  // namespace collide

@@ -1,5 +1,5 @@
 /// \file
-/// Sink: the closest colliding triangle of each sphere.
+/// Sinks: the closest colliding triangle of each sphere, and the contact with it.
 #pragma once
 
 #include <collide/detail/sinks/per_sphere_min.hpp>
@@ -8,7 +8,7 @@ namespace collide {
 
 /// The closest colliding triangle of a sphere.
 template <class S>
-struct nearest {
+struct closest_triangle {
   id triangle;  ///< `no_id` if the sphere touches nothing
   S distance;   ///< from the centre to the triangle; +infinity if the sphere touches nothing
 };
@@ -22,8 +22,8 @@ struct distance_of_contact {
                   "collide: closest is for spheres that rest: of those that move, earliest finds the first impact");
     return h.contact().distance;
   }
-  template <class S>
-  static COLLIDE_HD S& key_of(nearest<S>& entry) {
+  template <class Entry>
+  static COLLIDE_HD auto& key_of(Entry& entry) {
     return entry.distance;
   }
 };
@@ -35,6 +35,14 @@ struct distance_of_contact {
 /// Memory: an entry for each sphere, and a pair and a number for each colliding pair. For spheres at rest; of those
 /// that move, `earliest` finds the first triangle.
 template <class S = float>
-class closest : public detail::per_sphere_min<nearest<S>, S, detail::distance_of_contact> {};
+class closest : public detail::per_sphere_min<closest_triangle<S>, S, detail::distance_of_contact> {};
+
+/// The contact of each sphere with the triangle that `closest` finds: point, normal, distance, depth and feature. Of a
+/// sphere that touches nothing `sphere` and `triangle` are `no_id`, `distance` is +infinity, and point, normal and
+/// depth are NaN. As `closest` otherwise, with memory for a contact of each sphere; one more is computed for each that
+/// touches.
+template <class S = float>
+class closest_contact : public detail::per_sphere_min<closest_triangle<S>, S, detail::distance_of_contact, contact<S>> {
+};
 
 }  // namespace collide

@@ -1,5 +1,5 @@
 /// \file
-/// Sink: the first triangle that each moving sphere hits.
+/// Sinks: the first triangle that each moving sphere hits, and the impact.
 #pragma once
 
 #include <collide/detail/sinks/per_sphere_min.hpp>
@@ -20,8 +20,8 @@ struct time_of_hit {
   static COLLIDE_HD S of(hit<NarrowPhase, S> const& h) {
     return h.impact().time;
   }
-  template <class S>
-  static COLLIDE_HD S& key_of(first_impact<S>& entry) {
+  template <class Entry>
+  static COLLIDE_HD auto& key_of(Entry& entry) {
     return entry.time;
   }
 };
@@ -33,5 +33,12 @@ struct time_of_hit {
 /// detector.
 template <class S = float>
 class earliest : public detail::per_sphere_min<first_impact<S>, S, detail::time_of_hit> {};
+
+/// The impact of each moving sphere on the triangle that `earliest` finds: its time, and the contact then. Of a sphere
+/// that touches nothing `contact.sphere` and `contact.triangle` are `no_id`, `time` is +infinity, and the numbers of
+/// the contact are NaN. As `earliest` otherwise, with memory for an impact of each sphere; one more is computed for
+/// each that touches.
+template <class S = float>
+class earliest_impact : public detail::per_sphere_min<first_impact<S>, S, detail::time_of_hit, impact<S>> {};
 
 }  // namespace collide

@@ -67,6 +67,15 @@ COLLIDE_HD_INLINE hit<NarrowPhase, S> hit_of(pair p, mesh_view<S> const& mesh,
   return {p, mesh, spheres};
 }
 
+/// The contact or the impact of a hit.
+template <class Record, class NarrowPhase, class S>
+COLLIDE_HD_INLINE Record record_of(hit<NarrowPhase, S> const& h) {
+  if constexpr (std::is_same<Record, contact<S>>::value)
+    return h.contact();
+  else
+    return h.impact();
+}
+
 }  // namespace detail
 
 }  // namespace collide

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <exception>
 #include <limits>
@@ -25,8 +26,10 @@ namespace collide {
 /// one, unless nesting is on. An exception of any thread is passed on to the caller.
 class host {
  public:
-  /// `threads`: how many; 0 is as many as OpenMP offers. `resource`: where the library's memory comes from; null is
-  /// std::pmr::get_default_resource(). The resource must outlive everything that was made with the space.
+  /// `threads`: how many; 0 is as many as OpenMP offers where that pays: after a loop in which waiting for others took
+  /// longer than doing their part, the thread that called works alone for eight times what it has lost. `resource`:
+  /// where the library's memory comes from; null is std::pmr::get_default_resource(). The resource must outlive
+  /// everything that was made with the space.
   /// Throws `error` if `threads` is negative, or above 1 where the program is compiled without OpenMP.
   explicit host(int threads = 0, std::pmr::memory_resource* resource = nullptr)
       : threads_{threads}, resource_{resource != nullptr ? resource : std::pmr::get_default_resource()} {
@@ -35,13 +38,12 @@ class host {
     if (threads > 1) {
       throw error(
           "collide: host: several threads need OpenMP: compile and link with -fopenmp (nvcc: -Xcompiler -fopenmp); "
-          "with "
-          "CMake, collide::collide does so where OpenMP is found, unless COLLIDE_OPENMP is OFF");
+          "with CMake, collide::collide does so where OpenMP is found, unless COLLIDE_OPENMP is OFF");
     }
 #endif
   }
 
-  /// How many threads work.
+  /// How many threads work, at most.
   int threads() const {
 #if defined(_OPENMP)
     return threads_ > 0 ? threads_ : omp_get_max_threads();
@@ -122,6 +124,30 @@ class host {
   }
 
  private:
+#if defined(_OPENMP)
+  using clock = std::chrono::steady_clock;
+
+  /// For how long this thread still works alone, as it has waited for others longer than they spared it.
+  inline static thread_local clock::duration alone_for_{};
+
+  /// Works alone as long as that; returns how far it came.
+  template <class Work>
+  static std::size_t begin_alone(std::size_t n, Work const& work) {
+    detail::single_threaded_scope const alone(true);
+    clock::time_point const begin = clock::now();
+    clock::duration passed{};
+    std::size_t done = 0;
+    for (std::size_t step = 1; done < n && passed < alone_for_; step *= 2) {
+      std::size_t const last = std::min(n, done + step);
+      work(done, last);
+      done = last;
+      passed = clock::now() - begin;
+    }
+    alone_for_ -= std::min(alone_for_, passed);
+    return done;
+  }
+#endif
+
   /// Calls work(first, last) for ranges that cover 0 .. n, from all threads; the first exception is passed on. A thread
   /// takes some `shares` ranges, as it gets free: enough that none waits long for the others, and few enough that
   /// memory is read in long stretches.
@@ -129,21 +155,29 @@ class host {
   void run(std::size_t n, Work const& work) const {
 #if defined(_OPENMP)
     if (threads() > 1 && n > 1) {
+      std::size_t const done = threads_ == 0 ? begin_alone(n, work) : 0;
+      if (done == n) return;
       constexpr std::size_t shares = 8;
-      std::size_t const range = (n - 1) / (shares * static_cast<std::size_t>(threads())) + 1;
-      auto const ranges = static_cast<std::ptrdiff_t>((n - 1) / range + 1);
+      std::size_t const range = (n - done - 1) / (shares * static_cast<std::size_t>(threads())) + 1;
+      auto const ranges = static_cast<std::ptrdiff_t>((n - done - 1) / range + 1);
+      clock::rep busy = 0;  // how long all threads work
       std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic) num_threads(threads())
+      clock::time_point const begin = clock::now();
+#pragma omp parallel for schedule(dynamic) num_threads(threads()) reduction(+ : busy)
       for (std::ptrdiff_t r = 0; r < ranges; ++r) {
         detail::single_threaded_scope const together(false);
+        clock::time_point const start = clock::now();
         try {
-          auto const first = static_cast<std::size_t>(r) * range;
+          auto const first = done + static_cast<std::size_t>(r) * range;
           work(first, std::min(n, first + range));
         } catch (...) {
 #pragma omp critical(collide_host_failure)
           if (!failure) failure = std::current_exception();
         }
+        busy += (clock::now() - start).count();
       }
+      clock::duration const lost = clock::now() - begin - clock::duration(busy);
+      if (threads_ == 0) alone_for_ += 8 * std::max(lost, clock::duration{});
       if (failure) std::rethrow_exception(failure);
       return;
     }

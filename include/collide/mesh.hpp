@@ -26,8 +26,8 @@ class mesh_view {
   /// No triangles.
   mesh_view() = default;
   /// `size` triangles. The number of corner k of triangle i is at indices[i * triangle_stride + k * corner_stride], or
-  /// 3 i + k if `indices` is null. Throws `error` if there are more than 2^32 - 2 triangles, or a stride is 2^32 or
-  /// more.
+  /// 3 i + k if `indices` is null. Throws `error` if there are more than 2^32 - 2 triangles, a stride is negative or
+  /// 2^32 or more, or there are vertices whose address is null.
   mesh_view(point_view<S> const& vertices, id const* indices, std::size_t size, std::size_t triangle_stride = 3,
             std::size_t corner_stride = 1)
       : vertices_{vertices},
@@ -36,6 +36,7 @@ class mesh_view {
         triangle_stride_{detail::checked_stride(triangle_stride)},
         corner_stride_{detail::checked_stride(corner_stride)} {
     if (size >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles");
+    vertices.check_addresses("vertices");
   }
 
   /// Number of triangles.
@@ -80,16 +81,15 @@ template <class Index>
 id const* as_ids(Index const* indices, std::size_t triangle_count) {
   static_assert(std::is_integral<Index>::value && sizeof(Index) == sizeof(id),
                 "collide: the indices of an indexed mesh are 32-bit integers");
-  if (indices == nullptr && triangle_count != 0)
-    throw error("collide: indexed_mesh: there are triangles but no indices");
+  check_array(indices, 3 * triangle_count, "indices");
   return reinterpret_cast<id const*>(indices);
 }
 
 }  // namespace detail
 
 /// View of an indexed mesh: `vertices` as `points` gives them, `indices` 3 * `triangle_count` vertex numbers from 0, of
-/// any 32-bit integer type. O(1). Throws `error` if there are more than 2^32 - 2 triangles, or triangles but no index
-/// array.
+/// any 32-bit integer type. O(1). Throws `error` if there are more than 2^32 - 2 triangles, or an address is null where
+/// there are some.
 template <class S, class Index>
 mesh_view<S> indexed_mesh(point_view<S> const& vertices, Index const* indices, std::size_t triangle_count) {
   return {vertices, detail::as_ids(indices, triangle_count), triangle_count};
@@ -97,7 +97,7 @@ mesh_view<S> indexed_mesh(point_view<S> const& vertices, Index const* indices, s
 
 /// View of an indexed mesh with packed vertices: `vertices` holds 3 * `vertex_count` coordinates, `indices` 3 *
 /// `triangle_count` vertex numbers from 0, of any 32-bit integer type. O(1). Throws `error` if there are more than
-/// 2^32 - 2 triangles, or triangles but no index array.
+/// 2^32 - 2 triangles, or an address is null where there are some.
 template <class S, class Index>
 mesh_view<S> indexed_mesh(S const* vertices, std::size_t vertex_count, Index const* indices,
                           std::size_t triangle_count) {
@@ -116,7 +116,7 @@ mesh_view<typename std::decay_t<V>::Scalar> indexed_mesh(V&& vertices, F&& faces
 }
 
 /// View of a triangle soup: `coordinates` holds 9 numbers per triangle, vertex by vertex, each x, y, z. O(1). Throws
-/// `error` if there are more than 2^32 - 2 triangles.
+/// `error` if there are more than 2^32 - 2 triangles, or some at a null address.
 template <class S>
 mesh_view<S> triangle_soup(S const* coordinates, std::size_t triangle_count) {
   return {points(coordinates, 3 * triangle_count), nullptr, triangle_count};

@@ -13,10 +13,12 @@ class moving_sphere_view : public sphere_view<S> {
  public:
   /// No spheres.
   moving_sphere_view() = default;
-  /// The displacement of sphere i is displacements[i]. Throws `error` if there are not as many as spheres.
+  /// The displacement of sphere i is displacements[i]. Throws `error` if there are not as many as spheres, or there are
+  /// some whose address is null.
   moving_sphere_view(sphere_view<S> const& spheres, point_view<S> const& displacements)
       : sphere_view<S>(spheres), displacements_{displacements} {
     if (displacements.size() != spheres.size()) throw error("collide: there are not as many displacements as spheres");
+    displacements.check_addresses("displacements");
   }
 
   /// The displacements of all spheres.
@@ -48,22 +50,23 @@ class moving_sphere_view : public sphere_view<S> {
 
 /// View of moving spheres with displacements as `points` gives them. O(1). Throws `error` if there are not as many as
 /// spheres.
-template <class S>
-moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, point_view<S> const& displacements) {
+template <class S, class R>
+moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, point_view<R> const& displacements) {
+  static_assert(detail::check_scalars<S, R>());
   return {spheres, displacements};
 }
 
 /// View of moving spheres with packed displacements: for n spheres 3 n components x0, y0, z0, x1, ..., in the same kind
 /// of memory. O(1).
-template <class S>
-moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, S const* displacements) {
-  return {spheres, points(displacements, spheres.size())};
+template <class S, class R>
+moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, R const* displacements) {
+  return with_displacements(spheres, points(displacements, spheres.size()));
 }
 
 /// View of moving spheres with the components of their displacements in three arrays of n. O(1).
-template <class S>
-moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, S const* x, S const* y, S const* z) {
-  return {spheres, points(x, y, z, spheres.size())};
+template <class S, class R>
+moving_sphere_view<S> with_displacements(sphere_view<S> const& spheres, R const* x, R const* y, R const* z) {
+  return with_displacements(spheres, points(x, y, z, spheres.size()));
 }
 
 }  // namespace collide

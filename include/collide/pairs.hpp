@@ -2,9 +2,7 @@
 /// Sink: all colliding pairs.
 #pragma once
 
-#include <vector>
-
-#include <collide/detail/sinks/output.hpp>
+#include <collide/detail/sinks/array_in_space.hpp>
 
 namespace collide {
 
@@ -26,7 +24,7 @@ struct copy_pairs {
 ///
 /// The pairs are in memory of the space, which the host may be unable to read: a loop over this object does not
 /// compile. Copy them with `to_host()`, or read `data()` in a kernel on the space's stream.
-class pairs : public detail::kept_in_space<pair> {
+class pairs : public detail::array_in_space<pair> {
  public:
   static constexpr bool keeps_ids_alone = true;
 
@@ -39,15 +37,8 @@ class pairs : public detail::kept_in_space<pair> {
 
   /// How many pairs collide.
   std::uint64_t total() const { return collected_.total(); }
-  /// How many of them are stored.
-  std::size_t size() const { return size_; }
   /// True if all of them are stored.
   bool complete() const { return size() == total(); }
-
-  /// The stored pairs, `size()` of them, in memory of the space. Valid until the next query. Null before the first.
-  pair const* data() const { return data_; }
-  /// A copy of the stored pairs on the host. Waits for them.
-  std::vector<pair> to_host() const { return download_(data(), size()); }
 
   /// Makes room in memory of `space` for queries of up to so many spheres, and `most` pairs: they then allocate
   /// nothing.
@@ -78,13 +69,10 @@ class pairs : public detail::kept_in_space<pair> {
 
  private:
   pair* external_ = nullptr;
-  pair* data_ = nullptr;
-  std::size_t size_ = 0;
   std::size_t capacity_ = 0;
   order order_;
   bool fixed_ = false;
   detail::pair_collector collected_;
-  detail::host_copier<pair> download_;
 };
 
 }  // namespace collide

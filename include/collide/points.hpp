@@ -15,10 +15,19 @@ namespace collide {
 
 namespace detail {
 
-/// A stride as the views keep it: a multiplication with 32 bits is cheap on a GPU. Throws `error` if it is too large.
+/// A stride as the views keep it: a multiplication with 32 bits is cheap on a GPU. Throws `error` if it is negative,
+/// and so seems large, or too large.
 inline unsigned checked_stride(std::size_t stride) {
-  if (stride > std::numeric_limits<unsigned>::max()) throw error("collide: the stride of an array is too large");
+  if (stride > std::numeric_limits<unsigned>::max())
+    throw error("collide: the stride of an array is negative, or 2^32 or more: copy what it holds to a packed array");
   return static_cast<unsigned>(stride);
+}
+
+/// Throws `error` if an array of so many `what` is null.
+inline void check_array(void const* array, std::size_t size, char const* what) {
+  if (array == nullptr && size != 0)
+    throw error("collide: the address of the " + std::string(what) + " is null, but there are " + std::to_string(size) +
+                ": give the address of the first, or a size of 0");
 }
 
 }  // namespace detail
@@ -39,6 +48,11 @@ class point_view {
   /// Coordinates of point i at x[i * stride], y[i * stride], z[i * stride].
   point_view(S const* x, S const* y, S const* z, std::size_t stride, std::size_t size)
       : x_{x}, y_{y}, z_{z}, size_{size}, stride_{detail::checked_stride(stride)} {}
+
+  /// Throws `error` if there are points, and an address is null; it calls them `what`.
+  void check_addresses(char const* what) const {
+    for (S const* const array : {x_, y_, z_}) detail::check_array(array, size_, what);
+  }
 
   /// Number of points.
   COLLIDE_HD std::size_t size() const { return size_; }

@@ -25,10 +25,12 @@ class sphere_view {
   /// No spheres.
   sphere_view() = default;
   /// The radius of sphere i is at radii[i * radius_stride], or `radius` for all if `radii` is null. Throws `error` if
-  /// there are more than 2^32 - 2 spheres, or a stride is 2^32 or more.
+  /// there are more than 2^32 - 2 spheres, a stride is negative or 2^32 or more, or there are centres whose address is
+  /// null.
   sphere_view(point_view<S> const& centres, S const* radii, std::size_t radius_stride, S radius)
       : centres_{centres}, radii_{radii}, radius_stride_{detail::checked_stride(radius_stride)}, radius_{radius} {
     if (centres.size() >= no_id) throw error("collide: a sphere set has at most 2^32 - 2 spheres");
+    centres.check_addresses("centres");
   }
 
   /// Number of spheres.
@@ -72,6 +74,18 @@ class sphere_view {
   S radius_ = 0;
 };
 
+namespace detail {
+
+template <class S, class R>
+constexpr bool check_scalars() {
+  static_assert(std::is_same<S, R>::value,
+                "collide: centres, radii and displacements of spheres have one scalar type, that of the detector: copy "
+                "floats to double, which is exact");
+  return true;
+}
+
+}  // namespace detail
+
 /// Spheres of one radius whose centres are as `points` gives them. O(1). Throws `error` if there are more than 2^32
 /// - 2.
 template <class S>
@@ -81,8 +95,10 @@ sphere_view<S> spheres_at(point_view<S> const& centres, std::common_type_t<S> ra
 
 /// Spheres whose centres are as `points` gives them, with a radius each: every `radius_stride`-th of `radii`. O(1).
 /// Throws `error` if there are more than 2^32 - 2 spheres, or the stride is 2^32 or more.
-template <class S>
-sphere_view<S> spheres_at(point_view<S> const& centres, S const* radii, std::size_t radius_stride = 1) {
+template <class S, class R>
+sphere_view<S> spheres_at(point_view<S> const& centres, R const* radii, std::size_t radius_stride = 1) {
+  static_assert(detail::check_scalars<S, R>());
+  detail::check_array(radii, centres.size(), "radii");
   return {centres, radii, radius_stride, S(0)};
 }
 
@@ -95,9 +111,9 @@ sphere_view<S> spheres_xyz(S const* xyz, std::size_t n, std::common_type_t<S> ra
 
 /// `n` spheres with packed centres and a radius each: `xyz` holds 3 n coordinates x0, y0, z0, x1, ..., and `radii` n
 /// numbers in the same kind of memory. O(1). Throws `error` if there are more than 2^32 - 2 spheres.
-template <class S>
-sphere_view<S> spheres_xyz(S const* xyz, std::size_t n, S const* radii) {
-  return {points(xyz, n), radii, 1, S(0)};
+template <class S, class R>
+sphere_view<S> spheres_xyz(S const* xyz, std::size_t n, R const* radii) {
+  return spheres_at(points(xyz, n), radii);
 }
 
 /// `n` spheres with the coordinates of their centres in three arrays of n, and one radius. O(1). Throws `error` if
@@ -109,9 +125,9 @@ sphere_view<S> spheres_soa(S const* x, S const* y, S const* z, std::size_t n, st
 
 /// `n` spheres with the coordinates of their centres in three arrays of n, and `n` radii. O(1). Throws `error` if there
 /// are more than 2^32 - 2 spheres.
-template <class S>
-sphere_view<S> spheres_soa(S const* x, S const* y, S const* z, std::size_t n, S const* radii) {
-  return {points(x, y, z, n), radii, 1, S(0)};
+template <class S, class R>
+sphere_view<S> spheres_soa(S const* x, S const* y, S const* z, std::size_t n, R const* radii) {
+  return spheres_at(points(x, y, z, n), radii);
 }
 
 /// `n` spheres as quadruples: `xyzr` holds 4 n numbers x0, y0, z0, r0, x1, ..., such as an array of float4. O(1).

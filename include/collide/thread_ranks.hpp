@@ -2,6 +2,7 @@
 /// Ranks that are threads of one process: for machines with several devices, and for tests.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
@@ -13,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include <collide/host.hpp>
 #include <collide/ranks.hpp>
 
 namespace collide {
@@ -99,8 +101,8 @@ class meeting {
 }  // namespace detail
 
 /// Ranks: threads of one process, made by `run`. What they exchange is copied once, from thread to thread. With several
-/// devices each thread takes its own, with cudaSetDevice(ranks.rank()) before it makes a CUDA space; on the host
-/// each gives its space a part of the cores, such as `host(2)`.
+/// devices each thread takes its own, with cudaSetDevice(ranks.rank()) before it makes a CUDA space; on the host they
+/// share the threads that OpenMP offers: a space `host()` has an n-th of them on each rank, and at least one.
 class thread_ranks {
  public:
   /// Calls f(ranks) on `n` threads, and returns when all have ended. If one throws, those that wait for it throw
@@ -179,6 +181,9 @@ class thread_ranks {
 
   template <class F>
   static void work(detail::meeting& meeting, int rank, F const& f) {
+#if defined(_OPENMP)
+    omp_set_num_threads(std::max(1, omp_get_max_threads() / meeting.size()));  // of this thread
+#endif
     std::exception_ptr failure;
     try {
       f(thread_ranks(meeting, rank));

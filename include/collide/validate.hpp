@@ -75,23 +75,14 @@ class report {
   static std::size_t index(problem p) { return static_cast<std::size_t>(p); }
 
   static char const* describe(problem p) {
-    switch (p) {
-      case problem::corner_out_of_range:
-        return " triangle(s) have a corner that is not a vertex of the mesh";
-      case problem::triangle_not_finite:
-        return " triangle(s) have a NaN or infinite coordinate";
-      case problem::triangle_degenerate:
-        return " triangle(s) are degenerate (a segment or a point)";
-      case problem::centre_not_finite:
-        return " sphere(s) have a NaN or infinite coordinate";
-      case problem::radius_nan:
-        return " sphere(s) have a NaN radius";
-      case problem::radius_negative:
-        return " sphere(s) have a negative radius";
-      case problem::radius_infinite:
-        return " sphere(s) have an infinite radius";
-    }
-    return "";
+    static constexpr char const* texts[problem_count] = {" triangle(s) have a corner that is not a vertex of the mesh",
+                                                         " triangle(s) have a NaN or infinite coordinate",
+                                                         " triangle(s) are degenerate (a segment or a point)",
+                                                         " sphere(s) have a NaN or infinite coordinate",
+                                                         " sphere(s) have a NaN radius",
+                                                         " sphere(s) have a negative radius",
+                                                         " sphere(s) have an infinite radius"};
+    return texts[index(p)];
   }
 
   std::array<finding, problem_count> findings_;

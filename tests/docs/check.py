@@ -1,10 +1,11 @@
-"""check.py code|links|examples|glossary|english|numbers: the README, the pages below docs/ and what they promise.
+"""check.py code|links|examples|glossary|members|english|numbers: the README, the pages below docs/ and what they promise.
 
 code      The first block of C++ in the README is examples/minimal.cpp, and every other block of C++ stands word for word in
           the file that the comment before it names (`<!-- from: FILE -->`). Pages that teach have no other C++.
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md is in the file, or in the folder, that it is said to be in; words are in order.
+members   The tables of members in docs/guide.md have all that the headers have, and nothing else.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST.
 numbers   Times and rates in prose of MEASURED are numbers that bench/report has written.
 """
@@ -122,6 +123,34 @@ def glossary():
             yield f"{page}: {word}: there is no {name} in {target}"
 
 
+def members_of(name):
+    """The functions without arguments and the data of a public class, those of its bases in detail/sinks/ included."""
+    for header in [*(ROOT / "include" / "collide").glob("*.hpp"), *(ROOT / "include" / "collide" / "detail" / "sinks").glob("*.hpp")]:
+        found = re.search(rf"^(class|struct) {name}\b(?: : public ([^{{]*))?\s*\{{(.*?)^\}};|^class {name}\s*: public ([^{{]*)\{{",
+                          header.read_text(), flags=re.M | re.S)
+        if not found:
+            continue
+        body = re.split(r"^ (?:private|protected):", found[3] or "", flags=re.M)[0]
+        own = {f"{n}()" for n in re.findall(r"^  .*\b(\w+)\(\) const\b", body, flags=re.M)}
+        own |= set(re.findall(r"^  [\w:<>]+ (\w+); +///<", body, flags=re.M))
+        bases = re.findall(r"(?:detail::)?\b(array_in_space|records|per_sphere_min)<", found[2] or found[4] or "")
+        return own.union(*(members_of(base) for base in bases))
+    return set()
+
+
+def members():
+    page = ROOT / "docs" / "guide.md"
+    section = page.read_text().split("The members of a sink", 1)[1].split("\n**", 1)[0]
+    rows = [[re.findall(r"`([^`]+)`", cell) for cell in line.strip("|").split("|")] for line in section.splitlines() if line.startswith("| `")]
+    if len(rows) < 12:
+        yield f"{page}: only {len(rows)} rows of members"
+    for names, *_, listed in rows:
+        for name in names:
+            there = members_of(name)
+            yield from (f"{page}: {name}: there is no {member}" for member in listed if member not in there)
+            yield from (f"{page}: {name}: {member} is not in the table" for member in sorted(there) if member not in listed)
+
+
 def english():
     """Of all pages but the reference, and not of what scripts have written."""
     for page in PAGES:
@@ -148,7 +177,8 @@ def numbers():
                 yield f"{page}:{line}: {found!r} is not of bench/report"
 
 
-checks = {"numbers": numbers, "english": english, "code": code, "links": links, "examples": examples, "glossary": glossary}
+checks = {"numbers": numbers, "english": english, "code": code, "links": links, "examples": examples, "glossary": glossary,
+          "members": members}
 problems = list(checks[sys.argv[1]]())
 print("\n".join(problems) or "fine")
 sys.exit(bool(problems))

@@ -51,9 +51,11 @@ void ask(mesh_view<S> mesh, typename detector<BroadPhase, NarrowPhase, host, S>:
   parts.query(spheres, total, [](id, count const&) {});
   if constexpr (detail::is_discrete<NarrowPhase, S>) {
     one.query(spheres, closest<S>()).to_host();
+    one.query(spheres, closest_contact<S>()).to_host();
   } else {
     one.query(spheres, impacts<S>()).to_host();
     one.query(spheres, earliest<S>()).to_host();
+    one.query(spheres, earliest_impact<S>()).to_host();
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -193,13 +194,13 @@ void check_sink_interface(Space space) {
   space.copy_to_host(host_flags, to, 5);
   CHECK((std::vector<int>(host_flags, host_flags + 5) == std::vector<int>{1, 1, 0, 1, 9}));
 
-  auto const nearest = detector.query(spheres.view(), collide::closest<>()).to_host();
-  REQUIRE(nearest.size() == 4);
-  CHECK(nearest[0].triangle == 0);
-  CHECK(nearest[0].distance == 0.25f);
-  CHECK(nearest[1].triangle == 0);  // both touch, on the diagonal
-  CHECK(nearest[2].triangle == collide::no_id);
-  CHECK(nearest[2].distance == std::numeric_limits<float>::infinity());
+  auto const closest = detector.query(spheres.view(), collide::closest<>()).to_host();
+  REQUIRE(closest.size() == 4);
+  CHECK(closest[0].triangle == 0);
+  CHECK(closest[0].distance == 0.25f);
+  CHECK(closest[1].triangle == 0);  // both touch, on the diagonal
+  CHECK(closest[2].triangle == collide::no_id);
+  CHECK(closest[2].distance == std::numeric_limits<float>::infinity());
 
   auto const contacts = detector.query(spheres.view(), collide::contacts<>(collide::order::canonical)).to_host();
   REQUIRE(contacts.size() == 4);
@@ -214,6 +215,18 @@ void check_sink_interface(Space space) {
   CHECK(contacts[3].feature == collide::feature::vertex);
   CHECK(contacts[3].feature_index == 2);
   CHECK(contacts[3].depth == 0.125f);
+
+  auto const one_each = detector.query(spheres.view(), collide::closest_contact<>()).to_host();
+  REQUIRE(one_each.size() == 4);
+  CHECK(std::memcmp(&one_each[0], &contacts[0], sizeof contacts[0]) == 0);
+  CHECK(std::memcmp(&one_each[1], &contacts[1], sizeof contacts[1]) == 0);
+  CHECK(std::memcmp(&one_each[3], &contacts[3], sizeof contacts[3]) == 0);
+  CHECK(one_each[2].sphere == collide::no_id);
+  CHECK(one_each[2].triangle == collide::no_id);
+  CHECK(one_each[2].distance == std::numeric_limits<float>::infinity());
+  CHECK(std::isnan(one_each[2].depth));
+  CHECK(std::isnan(one_each[2].point.x()));
+  CHECK(std::isnan(one_each[2].normal.z()));
 
   check_end_of_pass<collide::karabassi<>, Broad>(space);
   check_end_of_pass<collide::karabassi<collide::double_precision>, Broad>(space);

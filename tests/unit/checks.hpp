@@ -36,7 +36,7 @@ template <class S>
 struct findings {
   std::vector<collide::pair> pairs;
   std::vector<collide::contact<S>> contacts;
-  std::vector<nearest<S>> closest;
+  std::vector<collide::contact<S>> closest;
 };
 template <class S>
 findings<S> check_sinks(subject<S>& detector, scene<S> const& made, oracle::expectation const& expected);

@@ -1,6 +1,7 @@
 /// The one list of what is composed and tested. A new policy is tested in every combination by a line here.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -150,11 +151,15 @@ class typed_subject final : public subject<S> {
   std::vector<collide::contact<S>> contacts(collide::order o) override {
     return complete(detector_.query(spheres_, o == collide::order::canonical ? sorted_contacts_ : contacts_));
   }
-  std::vector<nearest<S>> closest() override {
-    std::vector<nearest<S>> copy;
-    for (auto const& entry : detector_.query(spheres_, closest_).to_host())
-      copy.push_back({entry.triangle, entry.distance});
-    return copy;
+  std::vector<collide::contact<S>> closest() override {
+    auto const entries = detector_.query(spheres_, closest_).to_host();
+    auto const found = detector_.query(spheres_, closest_contacts_).to_host();
+    bool const alike =
+        std::equal(entries.begin(), entries.end(), found.begin(), found.end(), [](auto const& e, auto const& c) {
+          return e.triangle == c.triangle && std::memcmp(&e.distance, &c.distance, sizeof(S)) == 0;
+        });
+    if (!alike) throw std::runtime_error("closest and closest_contact differ");
+    return found;
   }
   rows csr(collide::order o) override {
     auto const& sink = detector_.query(spheres_, o == collide::order::canonical ? sorted_rows_ : rows_);
@@ -203,8 +208,8 @@ class typed_subject final : public subject<S> {
   }
 
   void reserve(std::size_t spheres, std::size_t pairs) override {
-    detector_.reserve(spheres, pairs, count_, any_, pairs_, sorted_pairs_, contacts_, sorted_contacts_, closest_, rows_,
-                      sorted_rows_);
+    detector_.reserve(spheres, pairs, count_, any_, pairs_, sorted_pairs_, contacts_, sorted_contacts_, closest_,
+                      closest_contacts_, rows_, sorted_rows_);
   }
 
   double cell_width() override { return detector_.cell_width(); }
@@ -257,6 +262,7 @@ class typed_subject final : public subject<S> {
   collide::pairs pairs_, sorted_pairs_{collide::order::canonical};
   collide::contacts<S> contacts_, sorted_contacts_{collide::order::canonical};
   collide::closest<S> closest_;
+  collide::closest_contact<S> closest_contacts_;
   collide::csr rows_, sorted_rows_{collide::order::canonical};
 };
 

@@ -126,6 +126,9 @@ void check_motion(Space const& space, BroadPhase const& broad, moving_scene<S> c
   auto const first = detector.query(scene.moving, collide::earliest<S>()).to_host();
   REQUIRE(first.size() == made.radii.size());
   std::vector<collide::first_impact<S>> best(first.size(), {collide::no_id, std::numeric_limits<S>::infinity()});
+  auto const first_impacts = detector.query(scene.moving, collide::earliest_impact<S>()).to_host();
+  REQUIRE(first_impacts.size() == first.size());
+  std::vector<collide::impact<S>> best_impacts = first_impacts;  // of those that touch nothing as they are
   std::size_t different = 0;
   for (auto const& i : impacts) {
     auto wanted = NarrowPhase::impact_of(made.mesh()[i.contact.triangle], made.moving()[i.contact.sphere]);
@@ -133,7 +136,17 @@ void check_motion(Space const& space, BroadPhase const& broad, moving_scene<S> c
     wanted.contact.triangle = i.contact.triangle;
     different += std::memcmp(&i, &wanted, sizeof i) != 0;
     auto& b = best[i.contact.sphere];
-    if (i.time < b.time) b = {i.contact.triangle, i.time};
+    if (i.time < b.time) {
+      b = {i.contact.triangle, i.time};
+      best_impacts[i.contact.sphere] = i;
+    }
+  }
+  for (std::size_t s = 0; s < first.size(); ++s) {
+    auto const& i = first_impacts[s];
+    different += std::memcmp(&i, &best_impacts[s], sizeof i) != 0;
+    bool const touches = best[s].triangle != collide::no_id;
+    different += i.contact.triangle != best[s].triangle || i.time != best[s].time;
+    different += i.contact.sphere != (touches ? s : collide::no_id) || std::isnan(i.contact.point.x()) == touches;
   }
   CHECK(different == 0);
   CHECK(std::equal(first.begin(), first.end(), best.begin(),

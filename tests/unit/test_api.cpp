@@ -102,14 +102,14 @@ TEST_CASE("api: views read what they are made of") {
 }
 
 TEST_CASE("api: what cannot be is refused with an error") {
-  float const* const none = nullptr;
-  int const* const no_corners = nullptr;
+  float const some[3] = {};
+  int const corners[3] = {};
   CHECK_THROWS_AS(host(-1), collide::error);
-  CHECK_THROWS_AS(collide::triangle_soup(none, 0xffffffff), collide::error);
-  CHECK_THROWS_AS(collide::indexed_mesh(none, 0, no_corners, 0xffffffff), collide::error);
-  CHECK_THROWS_AS(collide::spheres_xyz(none, 0xffffffff, 1), collide::error);
-  CHECK_THROWS_AS(collide::spheres_xyzr(none, std::size_t{1} << 40), collide::error);
-  CHECK(collide::spheres_xyz(none, 0xfffffffe, 1).size() == 0xfffffffe);
+  CHECK_THROWS_AS(collide::triangle_soup(some, 0xffffffff), collide::error);
+  CHECK_THROWS_AS(collide::indexed_mesh(some, 1, corners, 0xffffffff), collide::error);
+  CHECK_THROWS_AS(collide::spheres_xyz(some, 0xffffffff, 1), collide::error);
+  CHECK_THROWS_AS(collide::spheres_xyzr(some, std::size_t{1} << 40), collide::error);
+  CHECK(collide::spheres_xyz(some, 0xfffffffe, 1).size() == 0xfffffffe);
 }
 
 TEST_CASE("api: a detector is composed by naming the broad phase alone") {

@@ -13,10 +13,12 @@
 #include <collide/emit.hpp>
 #include <collide/friction.hpp>
 #include <collide/gravity.hpp>
+#include <collide/moving_spheres.hpp>
 #include <collide/simulation.cuh>
 #include <collide/sleep.hpp>
 #include <collide/sphere_contact.hpp>
 #include <collide/spin.hpp>
+#include <collide/validate.hpp>
 #include <collide/wind.hpp>
 
 using namespace collide;
@@ -131,6 +133,54 @@ TEST_CASE("misuse: a parameter that changes between steps") {
   scene.step(0.125f);
   scene.effect<bounce>().restitution = not_a_number;
   CHECK(said_by([&] { scene.step(0.125f); }) == "collide: bounce: restitution is from 0 to 1");
+}
+
+TEST_CASE_TEMPLATE("misuse: an address that is null, and a size that is not 0", S, float, double) {
+  S const* const null = nullptr;
+  S const some[12] = {};
+  unsigned const* const no_indices = nullptr;
+  unsigned const indices[3] = {0, 1, 2};
+  struct xyz {
+    S x, y, z;
+  };
+  auto const is_null = [](char const* what, int n) {
+    return "collide: the address of the " + std::string(what) + " is null, but there are " + std::to_string(n) +
+           ": give the address of the first, or a size of 0";
+  };
+  CHECK(said_by([&] { indexed_mesh(null, 4, indices, 1); }) == is_null("vertices", 4));
+  CHECK(said_by([&] { indexed_mesh(some, 4, no_indices, 1); }) == is_null("indices", 3));
+  CHECK(said_by([&] { triangle_soup(null, 2); }) == is_null("vertices", 6));
+  CHECK(said_by([&] { validate(triangle_soup(null, 2)); }) == is_null("vertices", 6));
+  CHECK(said_by([&] { spheres_xyz(null, 4, 1); }) == is_null("centres", 4));
+  CHECK(said_by([&] { spheres_xyz(some, 4, null); }) == is_null("radii", 4));
+  CHECK(said_by([&] { spheres_soa(some, null, some, 4, 1); }) == is_null("centres", 4));
+  CHECK(said_by([&] { spheres_soa(some, some, null, 4, some); }) == is_null("centres", 4));
+  CHECK(said_by([&] { spheres_soa(some, some, some, 4, null); }) == is_null("radii", 4));
+  CHECK(said_by([&] { spheres_xyzr(null, 3); }) == is_null("centres", 3));
+  CHECK(said_by([&] { spheres_at(points(static_cast<xyz const*>(nullptr), 3), 1); }) == is_null("centres", 3));
+  CHECK(said_by([&] { spheres_at(points(some, 4), null); }) == is_null("radii", 4));
+  CHECK(said_by([&] { with_displacements(spheres_xyz(some, 4, 1), null); }) == is_null("displacements", 4));
+  CHECK(said_by([&] { with_displacements(spheres_xyz(some, 4, 1), some, some, null); }) == is_null("displacements", 4));
+
+  CHECK(indexed_mesh(null, 0, no_indices, 0).size() == 0);
+  CHECK(validate(triangle_soup(null, 0)).ok());
+  CHECK(validate(spheres_xyz(null, 0, null)).ok());
+  CHECK(with_displacements(spheres_xyz(null, 0, 1), null).size() == 0);
+}
+
+TEST_CASE("misuse: a stride that is negative, or too large") {
+  char const* const said =
+      "collide: the stride of an array is negative, or 2^32 or more: copy what it holds to a packed array";
+  float const some[12] = {};
+  unsigned const indices[12] = {};
+  for (long const stride : {-3L, -1L, 1L << 32}) {
+    auto const n = static_cast<std::size_t>(stride);
+    CHECK(said_by([&] { points(some, 2, n); }) == said);
+    CHECK(said_by([&] { points(some, some, some, 2, n); }) == said);
+    CHECK(said_by([&] { spheres_at(points(some, 4), some, n); }) == said);
+    CHECK(said_by([&] { mesh_view<float>(points(some, 4), indices, 2, n); }) == said);
+    CHECK(said_by([&] { mesh_view<float>(points(some, 4), indices, 2, 3, n); }) == said);
+  }
 }
 
 TEST_CASE("misuse: threads of the host") {

@@ -66,10 +66,11 @@ void check_spheres_at_rest(int threads) {
   collide::pairs pairs, sorted_pairs(order::canonical);
   collide::contacts<float> contacts, sorted_contacts(order::canonical);
   collide::closest<float> closest;
+  collide::closest_contact<float> closest_contact;
   collide::csr rows, sorted_rows(order::canonical);
   auto const view = [&](std::size_t near) { return scene.view(near); };
   check_no_allocation(detector, memory, scene, view, count, any, pairs, sorted_pairs, contacts, sorted_contacts,
-                      closest, rows, sorted_rows);
+                      closest, closest_contact, rows, sorted_rows);
   for (std::uint64_t const total : {count.total(), pairs.total(), sorted_contacts.total(), rows.total()})
     CHECK(total == crowd::most);
 
@@ -123,10 +124,11 @@ TEST_CASE("allocation: none as spheres that move hit more") {
   collide::detector<collide::bucket, collide::karabassi_swept<>> detector(host(2, &memory));
   collide::impacts<float> impacts, sorted_impacts(order::canonical);
   collide::earliest<float> earliest;
+  collide::earliest_impact<float> earliest_impact;
   auto const view = [&](std::size_t near) {
     return collide::with_displacements(scene.view(near), static_cast<float const*>(scene.ways.data()));
   };
-  check_no_allocation(detector, memory, scene, view, impacts, sorted_impacts, earliest);
+  check_no_allocation(detector, memory, scene, view, impacts, sorted_impacts, earliest, earliest_impact);
   CHECK(earliest.total() == crowd::most);
 }
 

@@ -45,12 +45,6 @@ struct rows {
   bounded<collide::id> triangles;
 };
 
-template <class S>
-struct nearest {
-  collide::id triangle;
-  S distance;
-};
-
 /// Counts what goes through it to another resource.
 class counting_resource final : public std::pmr::memory_resource {
  public:
@@ -94,7 +88,8 @@ class subject {
   virtual std::vector<std::uint8_t> any() = 0;
   virtual std::vector<collide::pair> pairs(collide::order o) = 0;
   virtual std::vector<collide::contact<S>> contacts(collide::order o) = 0;
-  virtual std::vector<nearest<S>> closest() = 0;
+  /// Of `closest_contact`; with the triangles and distances that `closest` gives.
+  virtual std::vector<collide::contact<S>> closest() = 0;
   virtual rows csr(collide::order o) = 0;
   /// What a visitor saw: the contact of each hit, with the ids of the hit itself.
   virtual std::vector<collide::contact<S>> visit() = 0;

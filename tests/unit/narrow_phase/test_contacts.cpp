@@ -1,4 +1,5 @@
 /// Contacts by the ways that there are to measure them, against the oracle.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -138,4 +139,12 @@ TEST_CASE_TEMPLATE("contacts: closest computes that of a pair once", S, float, d
   auto const closest = detector.detect(mesh, spheres, collide::closest<S>());
   CHECK(closest.total() > 60);
   CHECK(static_cast<std::uint64_t>(contacts_computed) == closest.total());
+
+  contacts_computed = 0;
+  auto const contacts = detector.query(spheres, collide::closest_contact<S>());
+  auto const found = contacts.to_host();
+  auto const touching =
+      std::count_if(found.begin(), found.end(), [](auto const& c) { return c.triangle != collide::no_id; });
+  CHECK(touching > 0);
+  CHECK(static_cast<std::uint64_t>(contacts_computed) == contacts.total() + static_cast<std::uint64_t>(touching));
 }

@@ -13,6 +13,7 @@
 #include <new>
 #include <numeric>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <collide/bucket.cuh>
@@ -212,15 +213,31 @@ void check_sinks(Ranks const& ranks, moving_scene<S> const& made, Spheres const&
     }
     wrong.expect(different == 0, what);
   };
+  auto const check_rows = [&](auto const& here, auto const& everywhere, auto const& sphere_of, char const* what) {
+    std::remove_const_t<std::remove_reference_t<decltype(here)>> expected(
+        everywhere.begin() + static_cast<std::ptrdiff_t>(own.first),
+        everywhere.begin() + static_cast<std::ptrdiff_t>(own.first + own.size));
+    for (auto& entry : expected)
+      if (sphere_of(entry) != collide::no_id) sphere_of(entry) -= static_cast<collide::id>(own.first);
+    wrong.expect(equal_bytes(here, expected), what);
+  };
   if constexpr (moves) {
     auto const impacts = of_spheres(whole.query(spheres, collide::impacts<S>(order::canonical)).to_host(), own,
                                     [](collide::impact<S>& i) -> collide::id& { return i.contact.sphere; });
     wrong.expect(equal_bytes(parts.query(mine, collide::impacts<S>(order::canonical)).to_host(), impacts), "impacts");
     check_each(
         collide::earliest<S>(), [](auto const& e) { return e.time; }, "first impacts");
+    auto const first = whole.query(spheres, collide::earliest_impact<S>()).to_host();
+    auto const here = parts.query(mine, collide::earliest_impact<S>()).to_host();
+    check_rows(
+        here, first, [](collide::impact<S>& i) -> collide::id& { return i.contact.sphere; }, "earliest_impact");
   } else {
     check_each(
         collide::closest<S>(), [](auto const& e) { return e.distance; }, "closest");
+    auto const first = whole.query(spheres, collide::closest_contact<S>()).to_host();
+    auto const here = parts.query(mine, collide::closest_contact<S>()).to_host();
+    check_rows(
+        here, first, [](collide::contact<S>& c) -> collide::id& { return c.sphere; }, "closest_contact");
   }
 }
 

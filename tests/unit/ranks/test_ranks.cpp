@@ -1,4 +1,8 @@
 /// Ranks that are threads, on the host, and detectors on them.
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
 #include <collide/thread_ranks.hpp>
 
 #include "ranks/ranks.hpp"
@@ -118,6 +122,19 @@ TEST_CASE("ranks: nobody waits for a rank that has thrown, or ended") {
   CHECK(thrown(0, gather) == "collide: thread_ranks: there must be at least one rank");
 }
 
+TEST_CASE("ranks: those of one process share the threads of the host") {
+  int offered = 0;
+  std::thread([&] { offered = collide::host().threads(); }).join();
+  for (int const n : {1, 2, offered, offered + 1}) {
+    std::atomic<int> wrong{0};
+    collide::thread_ranks::run(n, [&](collide::thread_ranks const&) {
+      if (collide::host().threads() != std::max(1, offered / n)) ++wrong;
+      if (collide::host(1).threads() != 1) ++wrong;
+    });
+    CHECK(wrong == 0);
+  }
+}
+
 TEST_CASE("ranks: what makes no sense is refused on all ranks") {
   using detector = collide::detector<collide::bucket>;
   CHECK(thrown(2, [](collide::thread_ranks const& ranks) {
@@ -152,7 +169,8 @@ TEST_CASE("ranks: what makes no sense is refused on all ranks") {
           parts.build({}, ranks.rank() == 1 ? -1.0f : 1.0f, collide::on_every_rank);
         }) == "collide: detector: the radius passed to build is negative or NaN");
   CHECK(thrown(3, [](collide::thread_ranks const& ranks) {  // views of which no triangle is read
+          float const some[9] = {};
           collide::distributed<detector, collide::thread_ranks> parts(ranks, collide::host(1));
-          parts.build(collide::triangle_soup(static_cast<float const*>(nullptr), collide::no_id / 2), collide::divided);
+          parts.build(collide::triangle_soup(some, collide::no_id / 2), collide::divided);
         }) == "collide: a mesh has at most 2^32 - 2 triangles, also on many ranks");
 }

@@ -44,15 +44,15 @@ void check_device(collide::thread_ranks const& ranks, tests::moving_scene<float>
     wrong.expect(tests::equal_bytes(parts.query(spheres, collide::contacts<float>(order::canonical)).to_host(),
                                     whole.query(spheres, collide::contacts<float>(order::canonical)).to_host()),
                  "contacts");
-    wrong.expect(tests::equal_bytes(parts.query(spheres, collide::closest<float>()).to_host(),
-                                    whole.query(spheres, collide::closest<float>()).to_host()),
-                 "closest");
+    wrong.expect(tests::equal_bytes(parts.query(spheres, collide::closest_contact<float>()).to_host(),
+                                    whole.query(spheres, collide::closest_contact<float>()).to_host()),
+                 "closest_contact");
   } else {
     wrong.expect(tests::equal_bytes(parts.query(spheres, collide::impacts<float>(order::canonical)).to_host(),
                                     whole.query(spheres, collide::impacts<float>(order::canonical)).to_host()),
                  "impacts");
-    wrong.expect(tests::equal_bytes(parts.query(spheres, collide::earliest<float>()).to_host(),
-                                    whole.query(spheres, collide::earliest<float>()).to_host()),
+    wrong.expect(tests::equal_bytes(parts.query(spheres, collide::earliest_impact<float>()).to_host(),
+                                    whole.query(spheres, collide::earliest_impact<float>()).to_host()),
                  "first impacts");
   }
 }

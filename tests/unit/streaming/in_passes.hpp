@@ -44,13 +44,13 @@ void check_same_sinks(Passes& passes, Whole& whole, Spheres const& spheres, bool
   }
   check(collide::contacts<S>(order), "contacts");
   if constexpr (collide::detail::is_discrete<typename Whole::narrow_phase, S>) {
-    auto const nearest = passes.query(spheres, collide::closest<S>()).to_host(),
-               of_all = whole.query(spheres, collide::closest<S>()).to_host();
-    CHECK(equal_bytes(nearest, of_all));
+    auto const closest = passes.query(spheres, collide::closest_contact<S>()).to_host(),
+               of_all = whole.query(spheres, collide::closest_contact<S>()).to_host();
+    CHECK(equal_bytes(closest, of_all));
   } else {
     check(collide::impacts<S>(order), "impacts");
-    auto const earliest = passes.query(spheres, collide::earliest<S>()).to_host(),
-               of_all = whole.query(spheres, collide::earliest<S>()).to_host();
+    auto const earliest = passes.query(spheres, collide::earliest_impact<S>()).to_host(),
+               of_all = whole.query(spheres, collide::earliest_impact<S>()).to_host();
     CHECK(equal_bytes(earliest, of_all));
   }
 }

@@ -124,7 +124,7 @@ void check_streamed(Space const& space, std::pmr::memory_resource* memory) {
     auto const placed = collide::upload(space, spheres);
     auto const pairs = detector.query(placed.view(), collide::pairs(canonical)).to_host();
     auto const contacts = detector.query(placed.view(), collide::contacts<S>(canonical)).to_host();
-    auto const closest = detector.query(placed.view(), collide::closest<S>()).to_host();
+    auto const closest = detector.query(placed.view(), collide::closest_contact<S>()).to_host();
     CHECK(pairs.size() > 100);
     for (std::size_t const chunk : {64, 80, 240, 1 << 30}) {  // 64 leaves a rest, 80 none
       CAPTURE(chunk);
@@ -139,14 +139,16 @@ void check_streamed(Space const& space, std::pmr::memory_resource* memory) {
       });
       CHECK(calls == (240 - 1) / chunk + 1);
       CHECK(total == pairs.size());
-      std::vector<collide::nearest<S>> nearest;
-      collide::closest<S> sink;
+      std::vector<collide::contact<S>> of_chunks;
+      collide::closest_contact<S> sink;
       streamed.query(spheres, sink, [&](collide::id first, auto const& found) {
-        CHECK(first == nearest.size());
-        auto const part = found.to_host();
-        nearest.insert(nearest.end(), part.begin(), part.end());
+        CHECK(first == of_chunks.size());
+        for (auto contact : found.to_host()) {
+          if (contact.triangle != collide::no_id) contact.sphere += first;
+          of_chunks.push_back(contact);
+        }
       });
-      CHECK(same_bytes(nearest, closest));
+      CHECK(same_bytes(of_chunks, closest));
     }
   }
 }

@@ -19,13 +19,6 @@ struct aabb {
     return {{far, far, far}, {-far, -far, -far}};
   }
 
-  COLLIDE_HD void extend(vec3<S> const& p) {
-    for (int k = 0; k < 3; ++k) {
-      lower[k] = smaller(lower[k], p[k]);
-      upper[k] = larger(upper[k], p[k]);
-    }
-  }
-
   /// True of the box of nothing, and of that of a triangle that is not finite.
   COLLIDE_HD_INLINE bool is_empty() const { return !(lower[0] <= upper[0]); }
 

@@ -2,9 +2,7 @@
 /// What sinks share that keep a record of every colliding pair.
 #pragma once
 
-#include <vector>
-
-#include <collide/detail/sinks/output.hpp>
+#include <collide/detail/sinks/array_in_space.hpp>
 
 namespace collide::detail {
 
@@ -16,19 +14,17 @@ struct compute_records {
   Mesh mesh;
   sphere_view_for<NarrowPhase, S> spheres;
   COLLIDE_HD void operator()(std::size_t i) const {
-    hit<NarrowPhase, S> const h = hit_of<NarrowPhase, S>(pairs[i], mesh, spheres);
-    if constexpr (std::is_same<Record, contact<S>>::value) {
-      to[i] = h.contact();
-    } else {
-      to[i] = h.impact();
-    }
+    to[i] = record_of<Record>(hit_of<NarrowPhase, S>(pairs[i], mesh, spheres));
   }
 };
 
 /// Contacts or impacts. The pairs are found first and the records computed from them in a second pass over the pairs
 /// alone, so that a miss costs nothing.
 template <class Record, class S>
-class records : public kept_in_space<Record> {
+class records : public array_in_space<Record> {
+  using base = array_in_space<Record>;
+  using base::data_, base::size_, base::download_;
+
  public:
   /// The records are kept in memory of the space, as many as there are, in the order `o`.
   explicit records(order o = order::unspecified) : order_{o} {}
@@ -40,16 +36,8 @@ class records : public kept_in_space<Record> {
 
   /// How many pairs collide.
   std::uint64_t total() const { return collected_.total(); }
-  /// How many records are stored.
-  std::size_t size() const { return size_; }
   /// True if all of them are stored.
   bool complete() const { return size_ == total(); }
-
-  /// The stored records, `size()` of them, in memory of the space; complete when the work on the stream is done. Valid
-  /// until the next query. Null before the first.
-  Record const* data() const { return data_; }
-  /// A copy of the stored records on the host. Waits for them.
-  std::vector<Record> to_host() const { return download_(data_, size_); }
 
   /// Makes room in memory of `space` for queries of up to so many spheres and pairs: they then allocate nothing.
   template <class Space>
@@ -76,14 +64,11 @@ class records : public kept_in_space<Record> {
 
  private:
   Record* external_ = nullptr;
-  Record* data_ = nullptr;
   std::size_t capacity_ = 0;
-  std::size_t size_ = 0;
   order order_;
   bool fixed_ = false;
   pair_collector collected_;
   buffer<Record> own_;
-  host_copier<Record> download_;
 };
 
 }  // namespace collide::detail

@@ -2,10 +2,9 @@
 /// What sinks share that keep one triangle per sphere: that of the smallest number, and of these the first.
 #pragma once
 
-#include <vector>
-
 #include <collide/detail/numeric/float_bits.hpp>
-#include <collide/detail/sinks/output.hpp>
+#include <collide/detail/sinks/array_in_space.hpp>
+#include <collide/hit.hpp>
 
 namespace collide::detail {
 
@@ -51,25 +50,37 @@ struct find_best {
   }
 };
 
-/// One entry per sphere. `Key::of(hit)` is the number of a pair, `Key::key_of(entry)` that of an entry.
-template <class Entry, class S, class Key>
-class per_sphere_min : public kept_in_space<Entry> {
+/// Kernel body of `for_each` over spheres: the contact or impact with the best triangle. Memory is all ones, so NaN.
+template <class NarrowPhase, class S, class Entry, class Key, class Record, class Mesh>
+struct record_best {
+  Entry const* best;
+  Record* to;
+  Mesh mesh;
+  sphere_view_for<NarrowPhase, S> spheres;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    pair const p{static_cast<id>(i), best[i].triangle};
+    Key::key_of(to[i]) = Key::key_of(best[i]);
+    if (p.triangle != no_id) to[i] = record_of<Record>(hit_of<NarrowPhase, S>(p, mesh, spheres));
+  }
+};
+
+/// One entry per sphere, or in its place a `Record`: a contact or an impact. `Key::of(hit)` is the number of a pair,
+/// `Key::key_of(entry)` that of an entry.
+template <class Entry, class S, class Key, class Record = Entry>
+class per_sphere_min : public array_in_space<Record> {
+  using base = array_in_space<Record>;
+  using base::data_, base::size_, base::download_;
+
  public:
-  /// One entry per sphere, in memory of the space; complete when the work on the stream is done. Valid until the next
-  /// query. Null before the first.
-  Entry const* data() const { return own_.data(); }
-  /// Number of spheres of the last query.
-  std::size_t size() const { return size_; }
   /// How many pairs collide.
   std::uint64_t total() const { return collected_.total(); }
-  /// A copy of the entries on the host. Waits for them.
-  std::vector<Entry> to_host() const { return download_(data(), size_); }
 
   /// Makes room in memory of `space` for queries of up to so many spheres and pairs: they then allocate nothing.
   template <class Space>
   void reserve(Space const& space, std::size_t spheres, std::size_t pairs) {
     collected_.reserve(space, spheres, pairs);
     own_.reserve(space.resource(), spheres);
+    if (with_records) records_.reserve(space.resource(), spheres);
     numbers_.reserve(space.resource(), pairs);
   }
 
@@ -77,8 +88,9 @@ class per_sphere_min : public kept_in_space<Entry> {
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: closest<S> and earliest<S> must have the scalar type of the detector");
-    using reduce = reduce_key<typename Query::narrow_phase, S, Entry, Key, decltype(query.mesh)>;
-    download_ = host_copier<Entry>(space);
+    using narrow_phase = typename Query::narrow_phase;
+    using reduce = reduce_key<narrow_phase, S, Entry, Key, decltype(query.mesh)>;
+    download_ = host_copier<Record>(space);
     size_ = query.spheres.size();
     collected_.fill(space, query);
     auto* const to = own_.reserve(space.resource(), size_);
@@ -90,14 +102,23 @@ class per_sphere_min : public kept_in_space<Entry> {
     pair const* const from = collected_.data();
     space.for_each(pairs, reduce{from, numbers_.data(), to, query.mesh, query.spheres});
     space.for_each(pairs, find_best<S, Entry, Key>{from, numbers_.data(), to});
+    if constexpr (with_records) {
+      using record = record_best<narrow_phase, S, Entry, Key, Record, decltype(query.mesh)>;
+      data_ = records_.reserve(space.resource(), size_);
+      space.fill(data_, 0xff, size_ * sizeof *data_);
+      space.for_each(size_, record{to, data_, query.mesh, query.spheres});
+    } else {
+      data_ = to;
+    }
   }
 
  private:
-  std::size_t size_ = 0;
+  static constexpr bool with_records = !std::is_same<Record, Entry>::value;
+
   pair_collector collected_;
   buffer<uint_for<S>> numbers_;  ///< of the pairs
   buffer<Entry> own_;
-  host_copier<Entry> download_;
+  buffer<Record> records_;
 };
 
 }  // namespace collide::detail
