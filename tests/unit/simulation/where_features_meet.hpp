@@ -227,7 +227,7 @@ void check_adhesion_and_others(Space const& space) {
     made.simulation.steps(static_cast<std::size_t>(steps), S(dt));
     return made.positions();
   };
-  for (double const pull : {6.0, 9.0}) CHECK(after(0, pull, 20, 1e-3)[2] == S(0.2));
+  for (double const pull : {6.0, 9.0}) CHECK(std::abs(double(after(0, pull, 20, 1e-3)[2]) - 0.2) < 1e-5);
   CHECK(after(0, 11, 20, 1e-3)[2] > S(0.201));
   CHECK(after(9, 0, 20, 1e-3)[0] == 0);
   for (double const dt : {1e-3, 1e-4}) {
