@@ -19,7 +19,8 @@
 /// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it. Only with such an effect
 ///   are neighbours listed.
 /// - `try_wake(particle&, other)`, in place of `on_pair_contact` if the particle is inactive and the other is not.
-/// - `end_step(particle&, dt)`, at the end of the step.
+/// - `end_step(particle&, dt)`, at the end of the step; or `end_step(particle&, forces, dt)`, where `forces.change(dt)`
+///   is by how much `accelerate` of all effects changes the velocity.
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
 /// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense. An effect whose

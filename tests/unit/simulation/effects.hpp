@@ -320,6 +320,97 @@ void check_stick(Space const& space) {
   }
   CHECK(std::abs(run(5, {4, 0, -8})[0]) < 1e-4f);        // a slope that pulls less along than it holds
   CHECK(std::abs(run(20, {0, 0, -9.81}, 0)[0]) > 0.1f);  // too fast to be captured: slides on
+  for (double const restitution : {0.0, 0.1, 0.5}) {
+    for (double const speed : {0.5, 0.9, 2.0, 5.0}) {
+      world<float> one;
+      add_floor(one, 4, 8);
+      one.radius = 0.1f;
+      one.particle(0.1, 0.2, 0.105, 0.6 * speed, 0, -0.8 * speed);
+      running<simulation> made(space, one, gravity{0, 0, 0}, bounce{restitution}, collide::adhesion{20, 1});
+      made.simulation.steps(40, 1e-3f);
+      CHECK((made.velocities()[0] == 0) == (speed <= 1));
+      CHECK((made.simulation.template to_host<adhered>()[0] == 1) == (speed <= 1));
+    }
+  }
+}
+
+/// Balls that jump in a box for 20 time units: the energy, in which each velocity is that of the middle of a step, as
+/// the integrator has it.
+template <class S, class Integrator, class Space>
+void check_elastic_walls(Space const& space, S dt) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, gravity, collide::box_walls>;
+  double const g = 9.81, late = Integrator::kick_after == 0 ? -g * double(dt) / 2 : 0;
+  world<S> w;
+  w.radius = S(0.1);
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-0.8, 0.8);
+  for (int i = 0; i < 20; ++i) {
+    w.particle(uniform(engine), uniform(engine), uniform(engine), 2 * uniform(engine), uniform(engine),
+               uniform(engine));
+  }
+  running<simulation> made(space, w, Integrator{}, gravity{0, 0, -g}, collide::box_walls{{-1, -1, -1}, {1, 1, 9}, 1});
+  auto const energy = [&] {
+    double sum = kinetic_energy(made.velocities());
+    auto const x = made.positions(), v = made.velocities();
+    for (std::size_t i = 2; i < x.size(); i += 3) sum += g * (double(x[i]) + 0.9) + late * double(v[i]);
+    return sum;
+  };
+  double const before = energy();
+  made.simulation.steps(static_cast<std::size_t>(20 / double(dt)), dt);
+  CHECK(energy() == doctest::Approx(before).epsilon(sizeof(S) == 4 ? 2e-4 : 1e-6));
+}
+
+/// Without forces a ball is where a mirror image goes on; with some it comes to rest, and keeps its bits.
+template <class S, class Integrator, class Space>
+void check_walls(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, gravity, collide::box_walls>;
+  world<S> w;
+  w.radius = S(0.125);
+  w.particle(0.25, 0, 0, 0.75, 0, -0.5);
+  running<simulation> made(space, w, Integrator{}, gravity{0, 0, 0}, collide::box_walls{{-1, -1, -1}, {1, 1, 1}, 1});
+  made.simulation.steps(1000, S(0.03125));
+  double const far = std::fmod(0.25 + 0.875 + 0.75 * 31.25, 3.5);  // the box is 1.75 wide for its centre
+  CHECK(made.positions()[0] == doctest::Approx((far < 1.75 ? far : 3.5 - far) - 0.875).epsilon(1e-4));
+  made.simulation.template effect<gravity>().z = -9.81;
+  made.simulation.template effect<collide::box_walls>().restitution = 0.5;
+  made.simulation.steps(1000, S(0.03125));
+  auto const x = made.positions(), v = made.velocities();
+  CHECK(x[2] == S(-0.875));
+  CHECK(v[2] == 0);
+  made.simulation.steps(100, S(0.03125));
+  CHECK(made.positions()[2] == x[2]);
+}
+
+/// One step of a particle in a box that repeats, along x: it is at x modulo the length, and in the box.
+template <class S, class Space>
+void check_periodic(Space const& space, double start, double by, double lower, double upper) {
+  world<S> w;
+  w.particle(start, lower, lower, by, 0, 0);
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::periodic_box>;
+  running<simulation> made(space, w, collide::periodic_box{{lower, lower, lower}, {upper, upper, upper}});
+  made.simulation.step(S(1));
+  S const low = S(lower), high = S(upper), x = made.positions()[0], moved = S(start) + S(by);
+  double const length = double(high) - double(low),
+               whole = std::fmod(std::fmod(double(moved), length) - std::fmod(double(low), length), length);
+  CAPTURE(moved);
+  CHECK(x >= low);
+  CHECK(x < high);
+  double const error = std::abs(double(x) - double(low) - (whole < 0 ? whole + length : whole));
+  double const unit = double(std::numeric_limits<S>::epsilon()) * std::max(std::abs(lower), std::abs(upper));
+  CHECK(std::min(error, length - error) <= unit);
+}
+
+template <class S, class Space>
+void check_periodic(Space const& space) {
+  for (double const lower : {0.0, -0.5, 100.0, -1.0}) {
+    for (double const by : {-7.25, -1.5, -1e-9, -1e-18, 0.0, 0.75, 1.0, 3.75, 1e3, 1e6, -1e6, 1e30}) {
+      check_periodic<S>(space, lower + 0.25, by, lower, lower + 1);
+      check_periodic<S>(space, lower, by, lower, lower + 1);
+      check_periodic<S>(space, lower, by, lower, lower + 0.7);
+    }
+  }
 }
 
 template <class Space>
@@ -347,6 +438,20 @@ void check_bounds(Space const& space) {
   CHECK(x[0] == doctest::Approx(-1).epsilon(1e-3));  // 3 on, 4 and a half rounds... modulo 2 from 0 on
   CHECK(x[1] == doctest::Approx(0).scale(1).epsilon(1e-3));
   CHECK(x[2] == 1);
+  check_periodic<float>(space);
+  check_periodic<double>(space);
+  using euler = collide::semi_implicit_euler;
+  using verlet = collide::velocity_verlet;
+  for (double const step : {1e-3, 5e-3}) {
+    check_elastic_walls<float, euler>(space, float(step));
+    check_elastic_walls<float, verlet>(space, float(step));
+    check_elastic_walls<double, euler>(space, step);
+    check_elastic_walls<double, verlet>(space, step);
+  }
+  check_walls<float, euler>(space);
+  check_walls<float, verlet>(space);
+  check_walls<double, euler>(space);
+  check_walls<double, verlet>(space);
 }
 
 template <class Space>

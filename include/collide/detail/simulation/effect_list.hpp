@@ -58,11 +58,43 @@ struct disturbs_in<E, S,
                        std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>()))>>
     : std::true_type {};
 template <class E, class S, class = void>
-struct finishes_in : std::false_type {};
+struct ends_in : std::false_type {};
 template <class E, class S>
-struct finishes_in<
-    E, S, std::void_t<decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}))>>
+struct ends_in<E, S,
+               std::void_t<decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
+
+/// What an effect may ask at the end of a step: what the forces of a list of effects are.
+template <class Effects, class P, class S>
+struct forces_on {
+  static constexpr S kick_after = S(Effects::integrator::kick_after);  ///< part of the step's acceleration that is last
+
+  Effects const& effects;
+  P const& particle;
+
+  /// How much they change the velocity of the particle in the time `dt`.
+  COLLIDE_HD_INLINE vec3<S> change(S dt) const {
+    P next = particle;
+    effects.accelerate(next, dt);
+    return next[velocity{}] - particle[velocity{}];
+  }
+};
+struct no_forces {
+  using integrator = semi_implicit_euler;
+  template <class P, class S>
+  COLLIDE_HD_INLINE void accelerate(P&, S) const {}
+};
+
+template <class E, class S, class = void>
+struct ends_with_forces_in : std::false_type {};
+template <class E, class S>
+struct ends_with_forces_in<E, S,
+                           std::void_t<decltype(std::declval<E const&>().end_step(
+                               std::declval<archetype_access<E, S>&>(),
+                               std::declval<forces_on<no_forces, archetype<E, S>, S> const&>(), S{}))>>
+    : std::true_type {};
+template <class E, class S>
+struct finishes_in : std::bool_constant<ends_in<E, S>::value || ends_with_forces_in<E, S>::value> {};
 template <class E, class Space, class State, class S, class = void>
 struct begins_in : std::false_type {};
 template <class E, class Space, class State, class S>
@@ -271,9 +303,12 @@ struct effect_list : effect_slot<E>... {
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void finish_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (finishes_in<F, S>::value) {
+    if constexpr (ends_in<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().end_step(seen, dt);
+    } else if constexpr (ends_with_forces_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().end_step(seen, forces_on<effect_list, P, S>{*this, p}, dt);
     }
   }
 };
