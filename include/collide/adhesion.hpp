@@ -16,12 +16,13 @@ struct adhesion {
   using writes = columns<position, velocity, adhered>;
   using runs_after = effects<bounce>;
 
-  double max_acceleration = 20;  ///< length per time squared, not negative: what pulls harder tears the particle off
+  double max_acceleration =
+      20;  ///< length per time squared, not negative, finite: what pulls harder tears the particle off
   double capture_speed = std::numeric_limits<double>::infinity();  ///< length per time, not negative
 
   void check_parameters() const {
-    detail::check_parameter(max_acceleration >= 0 && capture_speed >= 0,
-                            "adhesion: max_acceleration and capture_speed are not negative");
+    detail::check_parameter(detail::is_amount(max_acceleration) && capture_speed >= 0,
+                            "adhesion: max_acceleration and capture_speed are not negative, and the first is finite");
   }
 
   template <class Particle, class S>

@@ -23,8 +23,11 @@ struct box_walls {
   double restitution = 0.5;                 ///< speed after a bounce over speed before it, 0 to 1
 
   void check_parameters() const {
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k) {
       detail::check_parameter(lower[k] <= upper[k], "box_walls: no lower bound is above its upper bound");
+      detail::check_parameter(lower[k] < none && upper[k] > -none,
+                              "box_walls: no lower bound is infinite, and no upper bound minus infinite");
+    }
     detail::check_parameter(restitution >= 0 && restitution <= 1, "box_walls: restitution is from 0 to 1");
   }
 
@@ -65,10 +68,12 @@ struct box_walls {
 struct periodic_box {
   using writes = columns<position>;
 
-  double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; each is below that of `upper`
-  double upper[3] = {1, 1, 1};  ///< the corner of the largest coordinates
+  double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; finite, each below that of `upper`
+  double upper[3] = {1, 1, 1};  ///< the corner of the largest coordinates, finite
 
   void check_parameters() const {
+    detail::check_parameter(detail::is_finite(lower) && detail::is_finite(upper),
+                            "periodic_box: the bounds are finite");
     for (int k = 0; k < 3; ++k)
       detail::check_parameter(lower[k] < upper[k], "periodic_box: each lower bound is below its upper bound");
   }

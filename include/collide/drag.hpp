@@ -19,7 +19,8 @@ struct drag {
   double quadratic = 0;  ///< per length, not negative
 
   void check_parameters() const {
-    detail::check_parameter(linear >= 0 && quadratic >= 0, "drag: linear and quadratic are not negative");
+    detail::check_parameter(detail::is_amount(linear) && detail::is_amount(quadratic),
+                            "drag: linear and quadratic are not negative, and finite");
   }
 
   template <class Particle, class S>

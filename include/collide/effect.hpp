@@ -40,10 +40,11 @@
 
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <collide/columns.hpp>
 #include <collide/contact.hpp>
-#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/error.hpp>
 
 namespace collide {
@@ -73,6 +74,22 @@ COLLIDE_HD_INLINE S sphere_mass(double density, S radius) {
 /// Throws `error`, which says what a parameter must be, unless it is that.
 inline void check_parameter(bool is_right, char const* must) {
   if (!is_right) throw error(std::string("collide: ") + must);
+}
+
+/// True of a finite number that is not negative, and of one above 0.
+inline bool is_amount(double x) { return x >= 0 && is_finite(x); }
+inline bool is_positive(double x) { return x > 0 && is_finite(x); }
+inline bool is_finite(double const (&x)[3]) { return is_finite(x[0]) && is_finite(x[1]) && is_finite(x[2]); }
+
+template <class E, class = void>
+struct checks_parameters : std::false_type {};
+template <class E>
+struct checks_parameters<E, std::void_t<decltype(std::declval<E const&>().check_parameters())>> : std::true_type {};
+
+/// Calls `check_parameters` of an effect, or of a part of one, if it has it.
+template <class E>
+void check_parameters_of(E const& effect) {
+  if constexpr (checks_parameters<E>::value) effect.check_parameters();
 }
 
 /// True if what an effect, or a part of it, has in memory means the same in another process.

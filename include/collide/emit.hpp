@@ -17,6 +17,13 @@ struct nozzle {
   double velocity[3] = {0, 0, 0};  ///< the mean velocity, in length per time
   double velocity_spread = 0;      ///< how much the coordinates of the velocity differ from the mean at most
 
+  void check_parameters() const {
+    using detail::is_finite;
+    detail::check_parameter(
+        is_finite(position) && is_finite(half_width) && is_finite(velocity) && is_finite(velocity_spread),
+        "nozzle: position, half_width, velocity and velocity_spread are finite");
+  }
+
   /// Says how particle `number` begins: sets its centre `x` and its velocity `v`. A number always gives the same.
   template <class S>
   COLLIDE_HD void operator()(std::uint64_t number, vec3<S>& x, vec3<S>& v) const {
@@ -93,7 +100,10 @@ struct emit_from {
   double rate = 0;           ///< particles per time, not negative
   Source source = Source();  ///< how they begin
 
-  void check_parameters() const { detail::check_parameter(rate >= 0, "emit: rate is not negative"); }
+  void check_parameters() const {
+    detail::check_parameter(detail::is_amount(rate), "emit: rate is not negative, and finite");
+    detail::check_parameters_of(source);
+  }
 
   template <class Particle>
   COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {

@@ -18,7 +18,7 @@ struct sleep {
   int steps = 50;       ///< 1 to 255: for how many steps a particle is slow before it sleeps
 
   void check_parameters() const {
-    detail::check_parameter(speed >= 0, "sleep: speed is not negative");
+    detail::check_parameter(detail::is_amount(speed), "sleep: speed is not negative, and finite");
     detail::check_parameter(steps >= 1 && steps <= 255, "sleep: steps are from 1 to 255");
   }
 

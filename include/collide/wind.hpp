@@ -15,6 +15,11 @@ struct uniform_field {
   double y = 0;  ///< length per time
   double z = 0;  ///< length per time
 
+  void check_parameters() const {
+    detail::check_parameter(detail::is_finite(x) && detail::is_finite(y) && detail::is_finite(z),
+                            "wind: the velocity of uniform_field is finite");
+  }
+
   /// The velocity, whatever the position.
   template <class S>
   COLLIDE_HD_INLINE vec3<S> operator()(vec3<S> const&) const {
@@ -35,7 +40,9 @@ struct wind {
   Field field = Field();  ///< gives the velocity of the medium, in length per time
 
   void check_parameters() const {
-    detail::check_parameter(linear >= 0 && quadratic >= 0, "wind: linear and quadratic are not negative");
+    detail::check_parameter(detail::is_amount(linear) && detail::is_amount(quadratic),
+                            "wind: linear and quadratic are not negative, and finite");
+    detail::check_parameters_of(field);
   }
 
   template <class Particle, class S>

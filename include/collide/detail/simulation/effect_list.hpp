@@ -103,11 +103,6 @@ struct begins_in<
     std::void_t<decltype(std::declval<E&>().begin_step(std::declval<Space&>(), std::declval<State const&>(), S{}))>>
     : std::true_type {};
 
-template <class E, class = void>
-struct checks_parameters : std::false_type {};
-template <class E>
-struct checks_parameters<E, std::void_t<decltype(std::declval<E const&>().check_parameters())>> : std::true_type {};
-
 /// True for an effect that contacts with the mesh concern.
 template <class E, class S>
 inline constexpr bool touches_mesh_in = touches_in<E, S>::value || settles_in<E, S>::value;

@@ -28,12 +28,6 @@ void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t pla
   check_places(places);
 }
 
-/// Calls an effect's `check_parameters`, if it has one.
-template <class E, class Effects>
-void check_parameters_of(Effects const& effects) {
-  if constexpr (checks_parameters<E>::value) effects.template of<E>().check_parameters();
-}
-
 /// Calls `check_bodies` of an effect that keeps something for each body.
 template <class E, class = void>
 struct keeps_bodies : std::false_type {};
