@@ -65,9 +65,9 @@ class checkpoint {
 
  public:
   /// Writes all blocks. A column is on the host while it is written.
-  static void write(simulated const& from, std::ostream& stream) {
+  static void write(simulated const& from, std::ostream& stream, std::string const& name = "the stream") {
     if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
-    checkpoint_writer to(stream);
+    checkpoint_writer to(stream, name);
     saved_numbers<S> numbers{from.mesh_.size(),    from.state_.size,    from.state_.placed, from.state_.common_radius,
                              from.radii_.smallest, from.radii_.largest, from.time_,         0,
                              from.reverse_order_};
@@ -281,11 +281,11 @@ void save(simulation<Detector, Effect...> const& from, std::ostream& to) {
 }
 
 /// Writes a checkpoint to a file, first under the name `path` + ".part": an older file stays until the new one is
-/// complete.
+/// complete, which has its permissions. If `path` is a link, that is the file that it leads to.
 template <class Detector, class... Effect>
 void save(simulation<Detector, Effect...> const& from, std::string const& path) {
   detail::checkpoint_file file(path);
-  save(from, file.stream());
+  detail::checkpoint<Detector, Effect...>::write(from, file.stream(), path);
   file.complete();
 }
 

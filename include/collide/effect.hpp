@@ -88,7 +88,7 @@ struct checks_parameters<E, std::void_t<decltype(std::declval<E const&>().check_
 
 /// Calls `check_parameters` of an effect, or of a part of one, if it has it.
 template <class E>
-void check_parameters_of(E const& effect) {
+void check_part(E const& effect) {
   if constexpr (checks_parameters<E>::value) effect.check_parameters();
 }
 

@@ -102,7 +102,7 @@ struct emit_from {
 
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(rate), "emit: rate is not negative, and finite");
-    detail::check_parameters_of(source);
+    detail::check_part(source);
   }
 
   template <class Particle>

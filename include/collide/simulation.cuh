@@ -325,9 +325,7 @@ class simulation {
     if (effects_type::touches && !has_mesh_)
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
     if (!detail::is_finite(dt)) throw error("collide: simulation: the time of a step is not finite");
-    ((detail::check_parameters_of(effects_.template of<Effect>()),
-      detail::check_bodies_of<Effect>(effects_, bodies_.size())),
-     ...);
+    ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
   }
 
   execution_space space_;

@@ -42,7 +42,7 @@ struct wind {
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(linear) && detail::is_amount(quadratic),
                             "wind: linear and quadratic are not negative, and finite");
-    detail::check_parameters_of(field);
+    detail::check_part(field);
   }
 
   template <class Particle, class S>

@@ -28,6 +28,12 @@ void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t pla
   check_places(places);
 }
 
+/// Calls an effect's `check_parameters`, if it has one.
+template <class E, class Effects>
+void check_parameters_of(Effects const& effects) {
+  check_part(effects.template of<E>());
+}
+
 /// Calls `check_bodies` of an effect that keeps something for each body.
 template <class E, class = void>
 struct keeps_bodies : std::false_type {};
