@@ -15,6 +15,7 @@ namespace collide {
 struct adhesion {
   using writes = columns<position, velocity, adhered>;
   using runs_after = effects<bounce>;
+  static constexpr bool judges_forces = true;
 
   double max_acceleration =
       20;  ///< length per time squared, not negative, finite: what pulls harder tears the particle off

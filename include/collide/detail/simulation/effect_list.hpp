@@ -3,6 +3,7 @@
 #pragma once
 
 #include <collide/detail/simulation/particle_access.hpp>
+#include <collide/detail/simulation/resistance.hpp>
 #include <collide/integrators.hpp>
 
 namespace collide::detail {
@@ -29,6 +30,20 @@ template <class E, class S>
 struct accelerates_in<
     E, S, std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
+/// Drag and wind: what resists the motion that all others accelerate.
+template <class E, class S, class = void>
+struct resists_in : std::false_type {};
+template <class E, class S>
+struct resists_in<
+    E, S, std::void_t<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()))>>
+    : std::true_type {};
+template <class E, class S>
+inline constexpr bool changes_velocity_in = accelerates_in<E, S>::value || resists_in<E, S>::value;
+/// True for an effect that judges what all others accelerate; see `adhesion`.
+template <class E, class = void>
+inline constexpr bool judges_forces = false;
+template <class E>
+inline constexpr bool judges_forces<E, std::void_t<decltype(E::judges_forces)>> = E::judges_forces;
 template <class E, class S, class = void>
 struct touches_in : std::false_type {};
 template <class E, class S>
@@ -120,7 +135,7 @@ inline constexpr bool is_effect = [] {
     return false;
   } else {
     using state = particle_state<S, typename archetype<E, S>::list>;
-    return skips_in<E, S>::value || accelerates_in<E, S>::value || touches_mesh_in<E, S> || meets_in<E, S>::value ||
+    return skips_in<E, S>::value || changes_velocity_in<E, S> || touches_mesh_in<E, S> || meets_in<E, S>::value ||
            finishes_in<E, S>::value || begins_in<E, Space, state, S>::value || is_integrator<E>::value ||
            archetype<E, S>::list::size != 0;
   }
@@ -165,6 +180,7 @@ struct effect_list : effect_slot<E>... {
   static constexpr bool touches = (touches_mesh_in<E, S> || ...);
   static constexpr bool meets = (meets_in<E, S>::value || ...);
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
+  static constexpr bool resists = (resists_in<E, S>::value || ...);
 
   using base = columns<position, velocity>;
   /// All columns of the simulation.
@@ -182,10 +198,9 @@ struct effect_list : effect_slot<E>... {
       Has, union_of<typename writes_of<F>::type, intersection_of<typename optional_writes_of<F>::type, all>>,
       columns<>>;
   template <class F>
-  static constexpr bool is_integrated =
-      accelerates_in<F, S>::value || finishes_in<F, S>::value || skips_in<F, S>::value;
+  static constexpr bool is_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value || skips_in<F, S>::value;
   template <class F>
-  static constexpr bool writes_while_integrated = accelerates_in<F, S>::value || finishes_in<F, S>::value;
+  static constexpr bool writes_while_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value;
   template <class F>
   static constexpr bool interacts_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
@@ -226,7 +241,16 @@ struct effect_list : effect_slot<E>... {
 
   template <class P>
   COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    (accelerate_by<E>(p, dt), ...);
+    if constexpr (resists) {
+      vec3<S> const before = p[velocity{}];
+      media all(before.template cast<double>());
+      (accelerate_by<E, !judges_forces<E>>(p, dt), ...);
+      (resist_by<E>(p, all), ...);
+      p[velocity{}] = velocity_in(all.sum(), before, p[velocity{}], dt);
+      (accelerate_by<E, judges_forces<E>>(p, dt), ...);
+    } else {
+      (accelerate_by<E, true>(p, dt), ...);
+    }
   }
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_contact(P& p, mesh_contact<S>& t, S dt) const {
@@ -257,8 +281,15 @@ struct effect_list : effect_slot<E>... {
     }
   }
   template <class F, class P>
+  COLLIDE_HD_INLINE void resist_by([[maybe_unused]] P& p, [[maybe_unused]] media& all) const {
+    if constexpr (resists_in<F, S>::value) {
+      particle_access<F, P> const seen(p);
+      all.add(of<F>().resistance(seen));
+    }
+  }
+  template <class F, bool Now, class P>
   COLLIDE_HD_INLINE void accelerate_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (accelerates_in<F, S>::value) {
+    if constexpr (accelerates_in<F, S>::value && Now) {
       particle_access<F, P> seen(p);
       of<F>().accelerate(seen, dt);
     }
