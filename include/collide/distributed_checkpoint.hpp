@@ -39,7 +39,7 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
     });
     on_first([&] {
       to.emplace(*stream, name);
-      auto numbers = from.part_.template saved_numbers_of_all<saved_numbers<S>>(from.reverse_order_);
+      auto numbers = from.part_.template saved_numbers_of_all<typename format::numbers_type>(from.reverse_order_);
       format::begin(*to, numbers, from.part_.effects());
     });
     format::for_each_column([&](auto column) {

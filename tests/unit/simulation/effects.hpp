@@ -553,4 +553,86 @@ void check_emit(Space const& space) {
     CHECK(std::get<2>(many)[3 * i + 2] > 5 - 2 - 9.81f * 0.1f - 0.1f);  // all are young
 }
 
+/// A source keeps the number of its particles when its rate changes, and the oldest while there is room.
+template <class S, class Space>
+void check_rates(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::emit>;
+  auto const make = [&](double rate, std::size_t room) {
+    simulation made(space, collide::emit{rate, {}});
+    made.set(collide::spheres_xyz(static_cast<S const*>(nullptr), 0, S(0.1)), nullptr, room);
+    return made;
+  };
+  auto const present = [](simulation const& made) { return count_present<Space>(made.template to_host<alive>()); };
+  for (double const rate : {50.0, 100.0, 200.0, 0.0}) {
+    auto made = make(100, 300);
+    made.steps(128, S(1) / 128);
+    CHECK(present(made) == 100);
+    made.template effect<collide::emit>().rate = rate;
+    made.steps(128, S(1) / 128);
+    CHECK(present(made) == 100 + static_cast<std::size_t>(rate));
+    made.set(collide::spheres_xyz(static_cast<S const*>(nullptr), 0, S(0.1)), nullptr, 300);
+    made.template effect<collide::emit>().rate = 64;
+    made.steps(64, S(1) / 128);
+    CHECK(present(made) == 32);  // begins anew
+  }
+  auto made = make(100, 110);
+  made.steps(128, S(1) / 128);
+  made.template effect<collide::emit>().source.position[0] = 7;
+  made.template effect<collide::emit>().rate = 110;
+  auto const fresh = [&] {
+    auto const x = made.template to_host<position>();
+    auto const there = made.template to_host<alive>();
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < there.size(); ++i) n += there[i] == 1 && x[3 * i] == S(7);
+    return n;
+  };
+  made.steps(8, S(1) / 128);
+  CHECK(fresh() == 6);  // of 6.875
+  CHECK(present(made) == 106);
+  made.steps(8, S(1) / 128);
+  CHECK(fresh() == 13);
+  CHECK(present(made) == 110);
+  made.step(S(1e6));  // more than there are places
+  CHECK(fresh() == 110);
+  auto often = make(10, 2000);  // 0.1 is no sum of powers of two
+  if (sizeof(S) == 8) {
+    often.steps(1000, S(0.01));
+    CHECK(present(often) == 100);
+  }
+}
+
+/// What a source makes has the radius that it is given, or that of all; none is an error.
+template <class Space>
+void check_source_radius(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, collide::emit, gravity, bounce, collide::polydisperse>;
+  world<float> w;
+  add_floor(w, 4, 8);
+  for (int i = 0; i < 4; ++i) w.particle(-1 + i, 1, 1);
+  collide::nozzle const above{{0.3, 0.2, 2}, 0.1, {0, 0, 0}, 0};
+  auto const lowest = [&](float own, std::vector<float> const& radii) {
+    world<float> here = w;
+    here.radius = 0.125f;
+    here.radii = radii;
+    running<simulation> made(space, w, collide::emit{20, above, own}, gravity{}, bounce{0}, collide::polydisperse{});
+    made.place(here, 24);
+    made.simulation.steps(1500, 1e-3f);
+    auto const x = made.positions(), r = made.simulation.template to_host<collide::radius>();
+    float z = 9;
+    for (std::size_t i = 4; i < 24; ++i) {
+      z = std::min(z, x[3 * i + 2]);
+      CHECK(r[i] == (own > 0 ? own : 0.125f));
+    }
+    return z;
+  };
+  CHECK(lowest(0.25f, {}) == doctest::Approx(0.25));
+  CHECK(lowest(0, {}) == doctest::Approx(0.125));
+  CHECK(lowest(0.3f, {0.1f, 0.1f, 0.2f, 0.1f}) == doctest::Approx(0.3));
+  CHECK_THROWS_WITH_AS(lowest(0, {0.1f, 0.1f, 0.2f, 0.1f}),
+                       "collide: emit: the radii differ: give the source a radius, before set", collide::error);
+  collide::simulation<meets_mesh<Space>, collide::emit> of_one(space, collide::emit{20, above, 0.25});
+  CHECK_THROWS_WITH_AS(of_one.set(collide::spheres_xyz<float>(nullptr, 0, 0.1f), nullptr, 9),
+                       "collide: emit: a source with a radius of its own needs polydisperse in the scene",
+                       collide::error);
+}
+
 }  // namespace tests

@@ -80,6 +80,8 @@ constexpr bool check_effects() {
                 "collide: what follows the detector in a simulation are effects, such as gravity or bounce: copyable "
                 "classes with at least one of the members that effect.hpp names");
   static_assert((int(is_integrator<Effect>::value) + ... + 0) <= 1, "collide: a simulation has one integrator");
+  static_assert((int(is_source<Effect>) + ... + 0) <= 1,
+                "collide: a simulation has one source: give emit_from a Source that begins at several places");
   static_assert(respects_order<Effect...>,
                 "collide: an effect comes after those whose result it uses: name friction after bounce");
   return true;

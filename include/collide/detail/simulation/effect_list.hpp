@@ -146,6 +146,12 @@ inline constexpr bool names = false;
 template <class... F, class E>
 inline constexpr bool names<effects<F...>, E> = (std::is_same<F, E>::value || ...);
 
+/// True for a source of particles.
+template <class E, class = void>
+inline constexpr bool is_source = false;
+template <class E>
+inline constexpr bool is_source<E, std::void_t<decltype(E::makes_particles)>> = E::makes_particles;
+
 /// True if no effect of the list comes before one that it follows.
 template <class... E>
 inline constexpr bool respects_order = true;
@@ -224,6 +230,10 @@ struct effect_list : effect_slot<E>... {
 
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
+  /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
+  double due(double dt) const { return (due_of<E>(dt) + ... + 0.0); }
+  S source_radius() const { return (is_source<E> || ...) ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+
   template <class F>
   COLLIDE_HD_INLINE F const& of() const {
     return static_cast<effect_slot<F> const&>(*this).effect;
@@ -271,6 +281,16 @@ struct effect_list : effect_slot<E>... {
   }
 
  private:
+  template <class F>
+  double due_of([[maybe_unused]] double dt) const {
+    if constexpr (is_source<F>) return of<F>().rate * dt;
+    return 0;
+  }
+  template <class F>
+  S source_radius_of() const {
+    if constexpr (is_source<F>) return static_cast<S>(of<F>().radius);
+    return 0;
+  }
   template <class F, class P>
   COLLIDE_HD_INLINE bool skipped_by([[maybe_unused]] P& p) const {
     if constexpr (skips_in<F, S>::value) {

@@ -16,14 +16,21 @@ inline void check_places(std::uint64_t places) {
   if (places >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
 }
 
-/// Throws `error` unless a simulation with these columns can have such particles, and places for them.
-template <class Columns>
-void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t places) {
+/// Throws `error` unless a simulation with these columns can have such particles, and places for them. `own` is the
+/// radius of what a source makes: 0 for the common radius of all, -1 if there is none.
+template <class Columns, class S>
+void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t places, S own, S common) {
   if (!one_radius && !contains<Columns, radius>) {
     throw error("collide: simulation: the radii differ: name the effect polydisperse in the scene");
   }
+  if (own > 0 && !contains<Columns, radius>) {
+    throw error("collide: emit: a source with a radius of its own needs polydisperse in the scene");
+  }
   if (places > particles && !contains<Columns, alive>) {
     throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
+  }
+  if (places > particles && contains<Columns, radius> && own == 0 && !(common > 0)) {
+    throw error("collide: emit: the radii differ: give the source a radius, before set");
   }
   check_places(places);
 }
@@ -55,14 +62,20 @@ template <class S>
 struct radius_range {
   S smallest = 0;  ///< of those that are not negative; infinite if there are none
   S largest = 0;
+
+  /// With those of what a source makes, if they have one of their own.
+  radius_range with(S own) const {
+    return own > 0 ? radius_range{smaller(smallest, own), larger(largest, own)} : *this;
+  }
 };
 
-/// The radii that particles have in the beginning. Waits if they have radii of their own.
+/// The radii that particles have in the beginning, and those that a source makes, of a radius of its `own`. Waits if
+/// they have radii of their own.
 template <class Simulation, class S>
-radius_range<S> radius_range_of(Simulation const& simulation, sphere_view<S> const& particles) {
+radius_range<S> radius_range_of(Simulation const& simulation, sphere_view<S> const& particles, S own) {
   radius_range<S> found{particles.common_radius(), particles.common_radius()};
   if constexpr (contains<typename Simulation::columns, radius>) {
-    if (particles.one_radius()) return found;
+    if (particles.one_radius()) return found.with(own);
     auto const radii = simulation.template to_host<radius>();
     found.smallest = std::numeric_limits<S>::infinity();
     if (!radii.empty()) found.largest = *std::max_element(radii.begin(), radii.end());
@@ -70,7 +83,7 @@ radius_range<S> radius_range_of(Simulation const& simulation, sphere_view<S> con
       if (r >= 0) found.smallest = smaller(found.smallest, r);
     }
   }
-  return found;
+  return found.with(own);
 }
 
 }  // namespace collide::detail
