@@ -16,6 +16,7 @@ namespace collide {
 /// within six steps is none: the particle rests at the wall. An infinite bound is no wall.
 struct box_walls {
   using writes = columns<position, velocity>;
+  static constexpr bool asks_forces = true;
 
   static constexpr double none = std::numeric_limits<double>::infinity();  ///< a bound that is no wall
   double lower[3] = {-none, -none, -none};  ///< the walls at the smallest coordinates; none is above that of `upper`

@@ -19,14 +19,15 @@
 /// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it. Only with such an effect
 ///   are neighbours listed.
 /// - `try_wake(particle&, other)`, in place of `on_pair_contact` if the particle is inactive and the other is not.
-/// - `end_step(particle&, dt)`, at the end of the step; or `end_step(particle&, forces, dt)`, where `forces.change(dt)`
-///   is by how much `accelerate` of all effects changes the velocity.
+/// - `end_step(particle&, dt)`, at the end of the step.
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
 /// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense. An effect whose
 /// parameters have pointers says `static constexpr bool saves_parameters = false`; see checkpoint.hpp. One whose
 /// `begin_step` does the same to particles wherever they are says `static constexpr bool begins_on_ranks = true`; see
-/// distributed_simulation.cuh.
+/// distributed_simulation.cuh. One with `static constexpr bool asks_forces = true` has `end_step(particle&, forces,
+/// dt)` instead: `forces.change(dt)` is by how much `accelerate` of all effects changes the velocity. With
+/// `judges_forces = true` its `accelerate` sees what `drag` and `wind` leave, which act after that of all others.
 /// `on_pair_contact` is called before the other members but `begin_step`: `self` and `other` are as they were when the
 /// step began, and what changes is `particle`, so that both of a pair see the same.
 ///

@@ -2,8 +2,6 @@
 /// Effect: what rests costs nothing.
 #pragma once
 
-#include <cstdint>
-
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/effect.hpp>
 
@@ -16,8 +14,9 @@ struct sleep {
   using reads = columns<velocity>;
   using writes = columns<slow_steps>;
 
-  double speed = 0.01;      ///< length per time, not negative: what is slower is slow
-  std::int64_t steps = 50;  ///< 1 to 255: for how many steps a particle is slow before it sleeps
+  double speed = 0.01;  ///< length per time, not negative: what is slower is slow
+  int steps = 50;       ///< 1 to 255: for how many steps a particle is slow before it sleeps
+  int unused = 0;       ///< in place of padding, which would be bytes of a checkpoint that no one sets
 
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(speed), "sleep: speed is not negative, and finite");

@@ -94,22 +94,13 @@ struct forces_on {
     return next[velocity{}] - particle[velocity{}];
   }
 };
-struct no_forces {
-  using integrator = semi_implicit_euler;
-  template <class P, class S>
-  COLLIDE_HD_INLINE void accelerate(P&, S) const {}
-};
-
-template <class E, class S, class = void>
-struct ends_with_forces_in : std::false_type {};
+/// True for an effect whose `end_step` asks them.
+template <class E, class = void>
+inline constexpr bool asks_forces = false;
+template <class E>
+inline constexpr bool asks_forces<E, std::void_t<decltype(E::asks_forces)>> = E::asks_forces;
 template <class E, class S>
-struct ends_with_forces_in<E, S,
-                           std::void_t<decltype(std::declval<E const&>().end_step(
-                               std::declval<archetype_access<E, S>&>(),
-                               std::declval<forces_on<no_forces, archetype<E, S>, S> const&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S>
-struct finishes_in : std::bool_constant<ends_in<E, S>::value || ends_with_forces_in<E, S>::value> {};
+struct finishes_in : std::bool_constant<ends_in<E, S>::value || asks_forces<E>> {};
 template <class E, class Space, class State, class S, class = void>
 struct begins_in : std::false_type {};
 template <class E, class Space, class State, class S>
@@ -352,7 +343,7 @@ struct effect_list : effect_slot<E>... {
     if constexpr (ends_in<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().end_step(seen, dt);
-    } else if constexpr (ends_with_forces_in<F, S>::value) {
+    } else if constexpr (asks_forces<F>) {
       particle_access<F, P> seen(p);
       of<F>().end_step(seen, forces_on<effect_list, P, S>{*this, p}, dt);
     }
