@@ -93,6 +93,24 @@ void check_part(E const& effect) {
   if constexpr (checks_parameters<E>::value) effect.check_parameters();
 }
 
+/// True for an effect that judges what all others accelerate; see `adhesion`.
+template <class E, class = void>
+inline constexpr bool judges_forces = false;
+template <class E>
+inline constexpr bool judges_forces<E, std::void_t<decltype(E::judges_forces)>> = E::judges_forces;
+
+/// True for an effect whose `end_step` asks what the forces are.
+template <class E, class = void>
+inline constexpr bool asks_forces = false;
+template <class E>
+inline constexpr bool asks_forces<E, std::void_t<decltype(E::asks_forces)>> = E::asks_forces;
+
+/// True for a source of particles.
+template <class E, class = void>
+inline constexpr bool is_source = false;
+template <class E>
+inline constexpr bool is_source<E, std::void_t<decltype(E::makes_particles)>> = E::makes_particles;
+
 /// True if what an effect, or a part of it, has in memory means the same in another process.
 template <class E, class = void>
 inline constexpr bool saves_parameters = true;

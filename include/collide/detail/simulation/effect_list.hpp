@@ -39,11 +39,6 @@ struct resists_in<
     : std::true_type {};
 template <class E, class S>
 inline constexpr bool changes_velocity_in = accelerates_in<E, S>::value || resists_in<E, S>::value;
-/// True for an effect that judges what all others accelerate; see `adhesion`.
-template <class E, class = void>
-inline constexpr bool judges_forces = false;
-template <class E>
-inline constexpr bool judges_forces<E, std::void_t<decltype(E::judges_forces)>> = E::judges_forces;
 template <class E, class S, class = void>
 struct touches_in : std::false_type {};
 template <class E, class S>
@@ -94,11 +89,6 @@ struct forces_on {
     return next[velocity{}] - particle[velocity{}];
   }
 };
-/// True for an effect whose `end_step` asks them.
-template <class E, class = void>
-inline constexpr bool asks_forces = false;
-template <class E>
-inline constexpr bool asks_forces<E, std::void_t<decltype(E::asks_forces)>> = E::asks_forces;
 template <class E, class S>
 struct finishes_in : std::bool_constant<ends_in<E, S>::value || asks_forces<E>> {};
 template <class E, class Space, class State, class S, class = void>
@@ -136,12 +126,6 @@ template <class List, class E>
 inline constexpr bool names = false;
 template <class... F, class E>
 inline constexpr bool names<effects<F...>, E> = (std::is_same<F, E>::value || ...);
-
-/// True for a source of particles.
-template <class E, class = void>
-inline constexpr bool is_source = false;
-template <class E>
-inline constexpr bool is_source<E, std::void_t<decltype(E::makes_particles)>> = E::makes_particles;
 
 /// True if no effect of the list comes before one that it follows.
 template <class... E>
