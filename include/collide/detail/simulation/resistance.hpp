@@ -64,8 +64,8 @@ COLLIDE_HD_INLINE vec3<double> eased(vec3<double> const& v, vec3<double> const& 
   return scaled(v, d.left) + scaled(push, rate > 0 ? div(d.lost, rate) : 1);
 }
 
-/// The same against any: exact if it is linear, or velocity and push are parallel. Else of second order; never faster
-/// than both at first and in the end.
+/// The velocity after a step against any resistance: exact if it is linear, or velocity and push are parallel. Else of
+/// second order; never faster than both at first and in the end.
 COLLIDE_HD_INLINE vec3<double> resisted(vec3<double> const& v, vec3<double> const& push, double linear,
                                         double quadratic) {
   if (quadratic == 0) return eased(v, push, linear);
