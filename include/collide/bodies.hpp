@@ -53,7 +53,7 @@ struct body_state {
 struct body_motion {
   double pivot[3] = {0, 0, 0};      ///< a point of the body's mesh
   double velocity[3] = {0, 0, 0};   ///< of the pivot
-  double axis[3] = {0, 0, 1};       ///< need not have length 1
+  double axis[3] = {0, 0, 1};       ///< of any length; 0: the body does not turn
   double rate = 0;                  ///< radians per unit of time
   double amplitude[3] = {0, 0, 0};  ///< of the pivot
   double swing = 0;                 ///< amplitude of the angle, radians
@@ -67,14 +67,15 @@ struct body_motion {
     constexpr double two_pi = 6.283185307179586;
     sin_cos const wave = sin_cos_of_turns(mul(frequency, time) + phase);
     double const wave_rate = mul(mul(two_pi, frequency), wave.cos);
-    vec3<double> const direction(axis[0], axis[1], axis[2]);
+    vec3<double> const given(axis[0], axis[1], axis[2]);
+    vec3<double> const direction = scaled(given, inverse_power_of_two(max_component<double>(given.cwiseAbs())));
     double const length = sqrt_rn(dot(direction, direction));
     double const angle = mul(rate, time) + mul(swing, wave.sin), angle_rate = rate + mul(swing, wave_rate);
     sin_cos const half = sin_cos_of_turns(div(angle, 2 * two_pi));
     body_state s;
     s.at.rotation[0] = length > 0 ? half.cos : 1;
     for (int k = 0; k < 3; ++k) {
-      double const along = length > 0 ? div(axis[k], length) : 0;
+      double const along = length > 0 ? div(direction[k], length) : 0;
       s.at.rotation[k + 1] = mul(along, half.sin);
       s.moving.angular[k] = mul(along, angle_rate);
       s.belt[k] = belt[k];

@@ -2,17 +2,21 @@
 /// Effects: a box that particles do not leave.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
-#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/effect.hpp>
 
 namespace collide {
 
-/// Walls of a box, which needs no mesh. A particle that is beyond a wall at the end of a step is put back to it, and
-/// its velocity turns around, times `restitution`. An infinite bound is no wall.
+/// Walls of a box, which needs no mesh. A particle that has gone through a wall in a step bounces off it: it is as far
+/// inside as it was outside, times `restitution`, with the speed of the impact, times `restitution`, and what forces do
+/// on the way back. So an elastic bounce loses or gains no energy, with either integrator. One that would be over
+/// within six steps is none: the particle rests at the wall. An infinite bound is no wall.
 struct box_walls {
   using writes = columns<position, velocity>;
+  static constexpr bool asks_forces = true;
 
   static constexpr double none = std::numeric_limits<double>::infinity();  ///< a bound that is no wall
   double lower[3] = {-none, -none, -none};  ///< the walls at the smallest coordinates; none is above that of `upper`
@@ -20,37 +24,57 @@ struct box_walls {
   double restitution = 0.5;                 ///< speed after a bounce over speed before it, 0 to 1
 
   void check_parameters() const {
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k) {
       detail::check_parameter(lower[k] <= upper[k], "box_walls: no lower bound is above its upper bound");
+      detail::check_parameter(lower[k] < none && upper[k] > -none,
+                              "box_walls: no lower bound is infinite, and no upper bound minus infinite");
+    }
     detail::check_parameter(restitution >= 0 && restitution <= 1, "box_walls: restitution is from 0 to 1");
   }
 
-  template <class Particle, class S>
-  COLLIDE_HD_INLINE void end_step(Particle& p, S) const {
+  template <class Particle, class Forces, class S>
+  COLLIDE_HD_INLINE void end_step(Particle& p, Forces const& forces, S dt) const {
     for (int k = 0; k < 3; ++k) {
       S& x = p[position{}][k];
-      S& v = p[velocity{}][k];
       S const low = S(lower[k]) + p.radius(), high = S(upper[k]) - p.radius();
       if (x < low) {
-        x = low;
-        v = v < 0 ? -S(restitution) * v : v;
+        x = detail::smaller(reflect(p, k, S(1), low - x, forces, dt) + low, detail::larger(low, high));
       } else if (x > high) {
-        x = high;
-        v = v > 0 ? -S(restitution) * v : v;
+        x = detail::larger(high - reflect(p, k, S(-1), x - high, forces, dt), detail::smaller(low, high));
       }
     }
   }
+
+ private:
+  /// Turns a coordinate of the velocity around that points into the box along `inward`, of a particle that is outside
+  /// by `depth`. Returns how far inside it is then. Both integrators keep v^2 / 2 - a x / dt for the velocity v in the
+  /// middle of a step, if half the step's acceleration a is added to it.
+  template <class Particle, class Forces, class S>
+  COLLIDE_HD_INLINE S reflect(Particle& p, int k, S inward, S depth, Forces const& forces, S dt) const {
+    S const e = S(restitution), a = inward * forces.change(dt)[k], late = Forces::kick_after * a;
+    S const v = inward * p[velocity{}][k] - late;
+    if (!(v < 0)) return S(0);
+    S const part = detail::smaller(depth / (-v * dt), S(1)), there = v + a / 2, lift = -2 * a * v * part;
+    S const speed = e * detail::sqrt_rn(there * there + lift);  // after the impact, at the wall
+    bool const rests = speed <= -3 * a;
+    S const square = speed * speed + e * lift;  // 0 or less: it does not come as high
+    S const leaves = square > 0 ? detail::sqrt_rn(square) : speed;
+    p[velocity{}][k] = rests ? S(0) : inward * (leaves - a / 2 + late);
+    return rests || !(square > 0) ? S(0) : e * part * -v * dt;
+  }
 };
 
-/// A box that repeats: a particle that leaves on one side comes in on the other. Neither the mesh nor contacts between
-/// spheres repeat.
+/// A box that repeats: a particle that leaves on one side comes in on the other, however far it is outside. At the end
+/// of a step each coordinate is in [lower, upper). Neither the mesh nor contacts between spheres repeat.
 struct periodic_box {
   using writes = columns<position>;
 
-  double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; each is below that of `upper`
-  double upper[3] = {1, 1, 1};  ///< the corner of the largest coordinates
+  double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; finite, each below that of `upper`
+  double upper[3] = {1, 1, 1};  ///< the corner of the largest coordinates, finite
 
   void check_parameters() const {
+    detail::check_parameter(detail::is_finite(lower) && detail::is_finite(upper),
+                            "periodic_box: the bounds are finite");
     for (int k = 0; k < 3; ++k)
       detail::check_parameter(lower[k] < upper[k], "periodic_box: each lower bound is below its upper bound");
   }
@@ -60,12 +84,21 @@ struct periodic_box {
     for (int k = 0; k < 3; ++k) {
       S& x = p[position{}][k];
       S const low = S(lower[k]), high = S(upper[k]);
-      if (x < low) {
-        x = detail::smaller(x + (high - low), high);
-      } else if (x >= high) {
-        x = detail::larger(x - (high - low), low);
-      }
+      if (x < low || x >= high) x = wrapped(x, low, high);
     }
+  }
+
+ private:
+  template <class S>
+  COLLIDE_HD static S wrapped(S x, S low, S high) {
+    double const from = static_cast<double>(low), length = static_cast<double>(high) - from;
+    double at = static_cast<double>(x), lengths;
+    do {  // more than once if the number of lengths is not exact
+      lengths = std::floor(detail::div(at - from, length));
+      at = detail::fma_rn(-lengths, length, at);
+    } while (lengths > 0x1p51 || lengths < -0x1p51);
+    S const inside = detail::larger(static_cast<S>(at), low);
+    return inside >= high ? detail::next_below(high) : inside;
   }
 };
 

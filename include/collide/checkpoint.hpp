@@ -34,11 +34,11 @@ std::string type_name() {
 }
 
 /// What a simulation knows besides its columns and the parameters of its effects.
-template <class S>
+template <class S, bool HasSource>
 struct saved_numbers {
   std::uint64_t triangles = 0, places = 0, placed = 0;
   S common_radius = 0, smallest_radius = 0, largest_radius = 0;
-  double time = 0, device_time = 0;
+  double time = 0, clock[clock_size] = {};
   std::uint8_t reverse_order = 0;
 
   /// Writes or reads all of them.
@@ -51,7 +51,9 @@ struct saved_numbers {
     archive.value("smallest radius", smallest_radius);
     archive.value("largest radius", largest_radius);
     archive.value("time", time);
-    archive.value("time on the device", device_time);
+    archive.value("time on the device", clock[0]);
+    if (HasSource) archive.value("particles of the source", clock[1]);
+    if (HasSource) archive.value("part of its next one", clock[2]);
     archive.value("reverse order", reverse_order);
   }
 };
@@ -64,14 +66,15 @@ class checkpoint {
   using column_list = typename simulated::columns;
 
  public:
+  using numbers_type = saved_numbers<S, (is_source<Effect> || ...)>;
   /// Writes all blocks. A column is on the host while it is written.
-  static void write(simulated const& from, std::ostream& stream) {
+  static void write(simulated const& from, std::ostream& stream, std::string const& name = "the stream") {
     if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
-    checkpoint_writer to(stream);
-    saved_numbers<S> numbers{from.mesh_.size(),    from.state_.size,    from.state_.placed, from.state_.common_radius,
-                             from.radii_.smallest, from.radii_.largest, from.time_,         0,
-                             from.reverse_order_};
-    if constexpr (simulated::has_begin_step) numbers.device_time = from.space_.read(from.state_.time);
+    checkpoint_writer to(stream, name);
+    numbers_type numbers{from.mesh_.size(),    from.state_.size,    from.state_.placed, from.state_.common_radius,
+                         from.radii_.smallest, from.radii_.largest, from.time_,         {},
+                         from.reverse_order_};
+    if constexpr (simulated::has_begin_step) from.space_.copy_to_host(numbers.clock, from.state_.time, clock_size);
     begin(to, numbers, from.effects_);
     for_each_column(
         [&](auto column) { write_column<decltype(column)>(to, from.template to_host<decltype(column)>()); });
@@ -80,7 +83,7 @@ class checkpoint {
 
   /// Writes what is before the columns; then each column follows, and `end`.
   template <class Effects>
-  static void begin(checkpoint_writer& to, saved_numbers<S>& numbers, Effects const& effects) {
+  static void begin(checkpoint_writer& to, numbers_type& numbers, Effects const& effects) {
     pass_types(to);
     numbers.pass(to);
     (write_parameters<Effect>(to, effects), ...);
@@ -128,7 +131,7 @@ class checkpoint {
     from.finish();
   }
 
-  saved_numbers<S> const& numbers() const { return numbers_; }
+  numbers_type const& numbers() const { return numbers_; }
   template <class C>
   std::vector<column_element<C, S>> const& column() const {
     return std::get<column_of<C>>(columns_).values;
@@ -142,10 +145,10 @@ class checkpoint {
     auto state = to.memory_.state(places, static_cast<std::size_t>(numbers_.placed), numbers_.common_radius);
     if constexpr (simulated::has_begin_step) {
       state.time = to.device_time_.data();
-      space.copy_from_host(state.time, &numbers_.device_time, 1);
+      space.copy_from_host(state.time, numbers_.clock, clock_size);
     }
-    space.for_each(padded_size(places),
-                   init_particles<S, column_list>{state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr});
+    space.for_each(padded_size(places), init_particles<S, column_list>{
+                                            state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr, S(0)});
     restore_columns(space, state, 0, 0, places);
     restore_parameters(to);
     to.state_ = state;
@@ -257,7 +260,7 @@ class checkpoint {
     using type = std::tuple<column_of<C>...>;
   };
 
-  saved_numbers<S> numbers_;
+  numbers_type numbers_;
   std::tuple<bytes_of<Effect>...> parameters_;
   std::vector<std::vector<unsigned char>> bodies_;  ///< poses, and what else is known of them
   typename table_of<column_list>::type columns_;
@@ -281,11 +284,11 @@ void save(simulation<Detector, Effect...> const& from, std::ostream& to) {
 }
 
 /// Writes a checkpoint to a file, first under the name `path` + ".part": an older file stays until the new one is
-/// complete.
+/// complete, which has its permissions. If `path` is a link, that is the file that it leads to.
 template <class Detector, class... Effect>
 void save(simulation<Detector, Effect...> const& from, std::string const& path) {
   detail::checkpoint_file file(path);
-  save(from, file.stream());
+  detail::checkpoint<Detector, Effect...>::write(from, file.stream(), path);
   file.complete();
 }
 

@@ -44,7 +44,11 @@ struct mesh_forces {
   using runs_after = effects<bounce, friction, spin, adhesion>;
   static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
-  double density = 1;  ///< mass per volume: a particle has the mass of a solid sphere
+  double density = 1;  ///< mass per volume, above 0: a particle has the mass of a solid sphere
+
+  void check_parameters() const {
+    detail::check_parameter(detail::is_positive(density), "mesh_forces: density is above 0, and finite");
+  }
 
   template <class Space, class State, class S>
   void begin_step(Space& space, State const& state, S) const {
@@ -66,7 +70,11 @@ struct pair_forces {
   using runs_after = effects<sphere_contact>;
   static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
-  double density = 1;  ///< mass per volume: that of `sphere_contact`
+  double density = 1;  ///< mass per volume, above 0: that of `sphere_contact`
+
+  void check_parameters() const {
+    detail::check_parameter(detail::is_positive(density), "pair_forces: density is above 0, and finite");
+  }
 
   template <class Space, class State, class S>
   void begin_step(Space& space, State const& state, S) const {

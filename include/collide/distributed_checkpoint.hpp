@@ -26,7 +26,7 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
 
  public:
   /// `stream` is of the first rank alone.
-  static void write(simulated& from, std::ostream* stream) {
+  static void write(simulated& from, std::ostream* stream, std::string const& name = "the stream") {
     Ranks const& ranks = from.ranks_;
     std::optional<checkpoint_writer> to;
     auto const on_first = [&](auto const& f) {
@@ -38,8 +38,8 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
       if (!from.part_.is_set()) throw error("collide: save: the simulation has no particles: call set before it");
     });
     on_first([&] {
-      to.emplace(*stream);
-      auto numbers = from.part_.template saved_numbers_of_all<saved_numbers<S>>(from.reverse_order_);
+      to.emplace(*stream, name);
+      auto numbers = from.part_.template saved_numbers_of_all<typename format::numbers_type>(from.reverse_order_);
       format::begin(*to, numbers, from.part_.effects());
     });
     format::for_each_column([&](auto column) {
@@ -91,7 +91,7 @@ void save(distributed<simulation<Detector, Effect...>, Ranks>& from, std::ostrea
   detail::distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>>::write(from, &to);
 }
 
-/// Writes a checkpoint to a file, which the first rank does. An older file stays until the new one is complete.
+/// Writes a checkpoint to a file, which the first rank does; see `save` of checkpoint.hpp.
 template <class Detector, class... Effect, class Ranks>
 void save(distributed<simulation<Detector, Effect...>, Ranks>& from, std::string const& path) {
   std::optional<detail::checkpoint_file> file;
@@ -99,7 +99,7 @@ void save(distributed<simulation<Detector, Effect...>, Ranks>& from, std::string
     if (from.ranks().rank() == 0) file.emplace(path);
   });
   detail::distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>>::write(
-      from, file ? &file->stream() : nullptr);
+      from, file ? &file->stream() : nullptr, path);
   together(from.ranks(), [&] {
     if (file) file->complete();
   });

@@ -78,8 +78,11 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     ranks_.reduce(&n, &all.placed, 1, reduction::sum);
     all.size = std::max(all.placed, std::uint64_t{capacity});
     share_free(all);
-    together(ranks_, [&] { detail::check_particles<columns>(true, all.placed, all.size); });
-    detail::radii_of_all<S> const radii = find_radii(mine);
+    S const own = part_.effects().source_radius();
+    detail::radii_of_all<S> radii = find_radii(mine);
+    radii.range = radii.range.with(own);
+    radii.widest = std::max(radii.widest, own);
+    together(ranks_, [&] { detail::check_particles<columns>(true, all.placed, all.size, own, radii.common); });
     is_sound_ = false;
     exchange_.clear();
     together(ranks_, [&] {
@@ -284,7 +287,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     S const most = ask(mine.common_radius(), has_say).second, least = -ask(-mine.common_radius(), has_say).second;
     bool const several =
         ask(S(0), has_say && !mine.one_radius()).first || detail::to_bits(most) != detail::to_bits(least);
-    detail::check_particles<columns>(!several, 0, 0);
+    detail::check_particles<columns>(!several, 0, 0, S(0), S(0));
     S const least_of_all = -ask(-smallest, has_say).second;
     return {several ? S(0) : most,
             {several ? least_of_all : most, ask(largest, has_say).second},

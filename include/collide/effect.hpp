@@ -30,7 +30,9 @@
 /// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense. An effect whose
 /// parameters have pointers says `static constexpr bool saves_parameters = false`; see checkpoint.hpp. One whose
 /// `begin_step` does the same to particles wherever they are says `static constexpr bool begins_on_ranks = true`; see
-/// distributed_simulation.cuh.
+/// distributed_simulation.cuh. One with `static constexpr bool asks_forces = true` has `end_step(particle&, forces,
+/// dt)` instead: `forces.change(dt)` is by how much `accelerate` of all effects changes the velocity. One
+/// that makes the mesh solid says `static constexpr bool repels = true`.
 /// `on_pair_contact` is called before the other members but `begin_step`: `self` and `other` are as they were when the
 /// step began, and what changes is `particle`, so that both of a pair see the same.
 ///
@@ -44,10 +46,11 @@
 
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <collide/columns.hpp>
 #include <collide/contact.hpp>
-#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/error.hpp>
 
 namespace collide {
@@ -78,6 +81,34 @@ COLLIDE_HD_INLINE S sphere_mass(double density, S radius) {
 inline void check_parameter(bool is_right, char const* must) {
   if (!is_right) throw error(std::string("collide: ") + must);
 }
+
+/// True of a finite number that is not negative, and of one above 0.
+inline bool is_amount(double x) { return x >= 0 && is_finite(x); }
+inline bool is_positive(double x) { return x > 0 && is_finite(x); }
+inline bool is_finite(double const (&x)[3]) { return is_finite(x[0]) && is_finite(x[1]) && is_finite(x[2]); }
+
+template <class E, class = void>
+struct checks_parameters : std::false_type {};
+template <class E>
+struct checks_parameters<E, std::void_t<decltype(std::declval<E const&>().check_parameters())>> : std::true_type {};
+
+/// Calls `check_parameters` of an effect, or of a part of one, if it has it.
+template <class E>
+void check_part(E const& effect) {
+  if constexpr (checks_parameters<E>::value) effect.check_parameters();
+}
+
+/// True for an effect whose `end_step` asks what the forces are.
+template <class E, class = void>
+inline constexpr bool asks_forces = false;
+template <class E>
+inline constexpr bool asks_forces<E, std::void_t<decltype(E::asks_forces)>> = E::asks_forces;
+
+/// True for a source of particles.
+template <class E, class = void>
+inline constexpr bool is_source = false;
+template <class E>
+inline constexpr bool is_source<E, std::void_t<decltype(E::makes_particles)>> = E::makes_particles;
 
 /// True if what an effect, or a part of it, has in memory means the same in another process.
 template <class E, class = void>

@@ -16,11 +16,13 @@ struct friction {
   static constexpr bool needs_solid_mesh = true;  ///< an effect with `repels` is in the list, such as `bounce`
 
   double static_coefficient = 0.5;   ///< of what rests: a ratio of forces, not negative
-  double kinetic_coefficient = 0.5;  ///< of what slides: a ratio of forces, not negative
+  double kinetic_coefficient = 0.5;  ///< of what slides: not negative, nor above that of what rests
 
   void check_parameters() const {
-    detail::check_parameter(static_coefficient >= 0 && kinetic_coefficient >= 0,
-                            "friction: coefficients are not negative");
+    detail::check_parameter(detail::is_amount(static_coefficient) && detail::is_amount(kinetic_coefficient),
+                            "friction: coefficients are not negative, and finite");
+    detail::check_parameter(kinetic_coefficient <= static_coefficient,
+                            "friction: kinetic_coefficient is not above static_coefficient");
   }
 
   template <class Particle, class S>

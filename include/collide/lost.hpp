@@ -14,8 +14,9 @@ struct is_lost {
 };
 
 /// Marks particles whose position or velocity is NaN or infinite at the end of a step. Such a particle touches nothing
-/// from then on, neither the mesh nor others, and stays what it is; the others go on. `lost_count(simulation)` reads how
-/// many there are, at any time between steps. `step` itself does not wait. A byte a particle, in scenes that name it.
+/// from then on, neither the mesh nor others, and stays what it is; the others go on. `lost_count(simulation)` reads
+/// how many there are, at any time between steps. `step` itself does not wait. A byte a particle, in scenes that name
+/// it.
 struct lost {
   using reads = columns<position, velocity>;
   using writes = columns<is_lost>;

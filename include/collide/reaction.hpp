@@ -59,8 +59,8 @@ struct reaction {
   std::int64_t* refused = nullptr;                      ///< memory of the space: contacts that are in no sum
 
   void check_parameters() const {
-    detail::check_parameter(density > 0 && unit > 0 && sums != nullptr,
-                            "reaction: density is positive, and reaction_sums makes the effect");
+    detail::check_parameter(detail::is_positive(density) && detail::is_positive(unit) && sums != nullptr,
+                            "reaction: density is above 0, and finite, and reaction_sums makes the effect");
   }
   /// Of the bodies of a simulation's mesh.
   void check_bodies(std::size_t of_mesh) const {

@@ -99,12 +99,14 @@ class simulation {
   /// scene fills, and radii that differ without `polydisperse` in the scene. O(particles). Allocates; may wait.
   void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
     std::size_t const n = particles.size(), room = detail::larger(n, capacity);
-    detail::check_particles<columns>(particles.one_radius(), n, room);
+    S const own = effects_.source_radius();
+    detail::check_particles<columns>(particles.one_radius(), n, room, own, particles.common_radius());
     place(particles, velocities, room);
     radii_ = {particles.common_radius(), particles.common_radius()};
     if (!particles.one_radius()) radii_ = detail::radius_range_of(*this);
     if (effects_type::touches && n != 0 && radii_.smallest == 0)
       throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
+    radii_ = radii_.with(own);
     if constexpr (effects_type::meets) neighbours_.clear(space_, room, radii_.largest);
     prepare();
   }
@@ -117,7 +119,7 @@ class simulation {
     is_set_ = false;
     auto* const resource = space_.resource();
     memory_.reserve(resource, detail::padded_size(particles));
-    if constexpr (has_begin_step) device_time_.reserve(resource, 1);
+    if constexpr (has_begin_step) device_time_.reserve(resource, detail::clock_size);
     if constexpr (effects_type::touches) {
       using kernel = detail::step_kernel<step_context<decltype(lookup(S{}))>>;
       if constexpr (kernel::template has_many_tiles<typename execution_space::template block<kernel>>) {
@@ -292,11 +294,11 @@ class simulation {
     state_ = memory_.state(room, particles.size(), particles.common_radius());
     if constexpr (has_begin_step) {
       state_.time = device_time_.data();
-      space_.fill(state_.time, 0, sizeof *state_.time);
+      space_.fill(state_.time, 0, detail::clock_size * sizeof(double));
     }
     time_ = 0;
     knows_pair_forces_ = !effects_type::ends_after_meeting;
-    space_.for_each(detail::padded_size(room), detail::init_particles<S, columns>{state_, particles, velocities});
+    space_.for_each(detail::padded_size(room), detail::initial(state_, particles, velocities, effects_));
     is_set_ = true;
   }
 
@@ -304,7 +306,7 @@ class simulation {
   void begin_step(S dt) {
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
     advance_bodies(static_cast<double>(dt), false);
-    if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, static_cast<double>(dt)});
+    if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(dt)});
     if constexpr (effects_type::ends_after_meeting) move(dt);
   }
 
@@ -393,9 +395,8 @@ class simulation {
   index index_;
   detail::column_buffers<S, columns> memory_;
   state_type state_{};
-  bool is_set_ = false, has_mesh_ = false;
-  bool reverse_order_ = false;     ///< of the next step
-  bool knows_pair_forces_ = true;  ///< what the next step begins with
+  bool is_set_ = false, has_mesh_ = false, reverse_order_ = false;  ///< the last one is of the next step
+  bool knows_pair_forces_ = true;                                   ///< what the next step begins with
   double time_ = 0;
   buffer<double> device_time_;  ///< for effects with a member begin_step
   detail::radius_range<S> radii_;

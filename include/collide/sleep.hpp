@@ -17,9 +17,10 @@ struct sleep {
 
   double speed = 0.01;  ///< length per time, not negative: what is slower is slow
   int steps = 50;       ///< 1 to 127: for how many steps a particle is slow before it sleeps
+  int unused = 0;       ///< in place of padding, which would be bytes of a checkpoint that no one sets
 
   void check_parameters() const {
-    detail::check_parameter(speed >= 0, "sleep: speed is not negative");
+    detail::check_parameter(detail::is_amount(speed), "sleep: speed is not negative, and finite");
     detail::check_parameter(steps >= 1 && steps <= 127, "sleep: steps are from 1 to 127");
   }
 

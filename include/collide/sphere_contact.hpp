@@ -30,9 +30,11 @@ struct sphere_contact {
   double density = 1;             ///< mass per volume, above 0: a particle has the mass of a solid sphere
 
   void check_parameters() const {
-    detail::check_parameter(stiffness >= 0 && damping >= 0 && friction >= 0 && tangential_damping >= 0,
-                            "sphere_contact: stiffness, dampings and friction are not negative");
-    detail::check_parameter(density > 0, "sphere_contact: density is above 0");
+    using detail::is_amount;
+    detail::check_parameter(
+        is_amount(stiffness) && is_amount(damping) && is_amount(friction) && is_amount(tangential_damping),
+        "sphere_contact: stiffness, dampings and friction are not negative, and finite");
+    detail::check_parameter(detail::is_positive(density), "sphere_contact: density is above 0, and finite");
   }
 
   /// The longest step that `simulation::step` takes, a fifth of the time in which the two smallest spheres collide
@@ -53,12 +55,15 @@ struct sphere_contact {
   /// \param duration     of a collision, above 0; a step should be a twentieth of it at most
   /// \param radius       of the spheres, above 0
   /// \param density      mass per volume, above 0
-  /// \param friction     coefficient of Coulomb friction
-  /// \throws error  if one of the first four is out of its range
+  /// \param friction     coefficient of Coulomb friction, not negative
+  /// \throws error  if one is out of its range, or infinite
   static sphere_contact from_restitution(double restitution, double duration, double radius, double density,
                                          double friction = 0) {
-    detail::check_parameter(restitution >= 0 && restitution <= 1 && duration > 0 && radius > 0 && density > 0,
-                            "from_restitution: restitution is from 0 to 1, duration, radius and density are above 0");
+    using detail::is_positive;
+    detail::check_parameter(restitution >= 0 && restitution <= 1 && is_positive(duration) && is_positive(radius) &&
+                                is_positive(density) && detail::is_amount(friction),
+                            "from_restitution: restitution is from 0 to 1, duration, radius and density are above 0, "
+                            "friction is not negative, and all are finite");
     double const pi = 3.14159265358979323846, reduced_mass = density * pi * radius * radius * radius * 2 / 3;
     double a = 0, most = pi / 2;
     for (int i = 0; i < 60; ++i) {

@@ -17,7 +17,8 @@ struct spin {
   double rolling_resistance = 0;  ///< a ratio of forces, not negative
 
   void check_parameters() const {
-    detail::check_parameter(rolling_resistance >= 0, "spin: rolling_resistance is not negative");
+    detail::check_parameter(detail::is_amount(rolling_resistance),
+                            "spin: rolling_resistance is not negative, and finite");
   }
 
   template <class Particle, class S>

@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/simulation/resistance.hpp>
 #include <collide/effect.hpp>
 
 namespace collide {
@@ -14,6 +14,11 @@ struct uniform_field {
   double x = 0;  ///< length per time
   double y = 0;  ///< length per time
   double z = 0;  ///< length per time
+
+  void check_parameters() const {
+    detail::check_parameter(detail::is_finite(x) && detail::is_finite(y) && detail::is_finite(z),
+                            "wind: the velocity of uniform_field is finite");
+  }
 
   /// The velocity, whatever the position.
   template <class S>
@@ -35,17 +40,18 @@ struct wind {
   Field field = Field();  ///< gives the velocity of the medium, in length per time
 
   void check_parameters() const {
-    detail::check_parameter(linear >= 0 && quadratic >= 0, "wind: linear and quadratic are not negative");
+    detail::check_parameter(detail::is_amount(linear) && detail::is_amount(quadratic),
+                            "wind: linear and quadratic are not negative, and finite");
+    detail::check_part(field);
   }
 
-  template <class Particle, class S>
-  COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
+  template <class Particle>
+  COLLIDE_HD_INLINE detail::medium resistance(Particle const& p) const {
+    using S = typename Particle::scalar;
     static_assert(std::is_invocable_r<vec3<S>, Field const&, vec3<S> const&>::value,
                   "collide: a field of wind is called as field(position) const, and returns a velocity");
-    vec3<S> const there = field(p[position{}]);
-    vec3<S> const v = p[velocity{}] - there;
-    S const k = S(linear) + S(quadratic) * detail::sqrt_rn(detail::dot(v, v));
-    p[velocity{}] = there + v * (1 / (1 + k * dt));
+    vec3<S> const flow = field(p[position{}]);
+    return {linear, quadratic, flow.template cast<double>()};
   }
 };
 

@@ -54,9 +54,11 @@ __device__ __forceinline__ void accelerated(quadruple& v, float3 g, float dt) {
   v.b.z += g.x * dt, v.b.w += g.y * dt, v.c.x += g.z * dt;
   v.c.y += g.x * dt, v.c.z += g.y * dt, v.c.w += g.z * dt;
 }
-__device__ __forceinline__ void slowed(float& x, float& y, float& z, float linear, float quadratic, float dt) {
-  float const factor = 1 / (1 + (linear + quadratic * sqrtf(x * x + y * y + z * z)) * dt);
-  x *= factor, y *= factor, z *= factor;
+__device__ __forceinline__ void fallen(float& x, float& y, float& z, float3 g, collide::detail::medium const& m,
+                                       float dt) {
+  collide::vec3<float> const before(x, y, z), pushed(x + g.x * dt, y + g.y * dt, z + g.z * dt);
+  collide::vec3<float> const after = collide::detail::velocity_in(m, before, pushed, dt);
+  x = after.x(), y = after.y(), z = after.z();
 }
 
 /// Particles that move in straight lines. `n` are groups of four.
@@ -83,12 +85,12 @@ __global__ void __launch_bounds__(256)
   if (i - threadIdx.x % 32 >= n) return;
   quadruple place = load(x, i, n), u = load(v, i, n);
   place = exchanged(place), u = exchanged(u);
-  accelerated(u, {float(g.x), float(g.y), float(g.z)}, dt);
-  float const a = float(linear), b = float(quadratic);
-  slowed(u.a.x, u.a.y, u.a.z, a, b, dt);
-  slowed(u.a.w, u.b.x, u.b.y, a, b, dt);
-  slowed(u.b.z, u.b.w, u.c.x, a, b, dt);
-  slowed(u.c.y, u.c.z, u.c.w, a, b, dt);
+  float3 const by{float(g.x), float(g.y), float(g.z)};
+  collide::detail::medium const m{linear, quadratic, {0, 0, 0}};
+  fallen(u.a.x, u.a.y, u.a.z, by, m, dt);
+  fallen(u.a.w, u.b.x, u.b.y, by, m, dt);
+  fallen(u.b.z, u.b.w, u.c.x, by, m, dt);
+  fallen(u.c.y, u.c.z, u.c.w, by, m, dt);
   store(x, i, n, moved(place, u, dt));
   store(v, i, n, u);
 }

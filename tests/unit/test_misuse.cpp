@@ -9,6 +9,7 @@
 #include <collide/bounce.hpp>
 #include <collide/bounds.hpp>
 #include <collide/bucket.cuh>
+#include <collide/contact_forces.hpp>
 #include <collide/drag.hpp>
 #include <collide/emit.hpp>
 #include <collide/friction.hpp>
@@ -108,15 +109,54 @@ TEST_CASE("misuse: parameters of effects") {
   CHECK(said_with(bounce{3}) == "collide: bounce: restitution is from 0 to 1");
   CHECK(said_with(bounce{not_a_number}) != "");
   CHECK(said_with(bounce{1}) == "");
-  CHECK(said_with<bounce>(friction{-0.1, 0.1}) == "collide: friction: coefficients are not negative");
-  CHECK(said_with<bounce>(spin{not_a_number}) == "collide: spin: rolling_resistance is not negative");
-  CHECK(said_with<bounce>(adhesion{-1}) == "collide: adhesion: max_acceleration and capture_speed are not negative");
-  CHECK(said_with(drag{-1, 0}) == "collide: drag: linear and quadratic are not negative");
-  CHECK(said_with(wind<>{0, not_a_number, {}}) == "collide: wind: linear and quadratic are not negative");
-  CHECK(said_with(gravity{0, 0, not_a_number}) == "collide: gravity: the acceleration is finite");
+  CHECK(said_with<bounce>(friction{0.1, 0.2}) ==
+        "collide: friction: kinetic_coefficient is not above static_coefficient");
+  for (double const x : {-0.1, not_a_number, infinity}) {
+    CHECK(said_with<bounce>(friction{x, 0.1}) == "collide: friction: coefficients are not negative, and finite");
+    CHECK(said_with<bounce>(friction{0.1, x}) == "collide: friction: coefficients are not negative, and finite");
+    CHECK(said_with<bounce>(spin{x}) == "collide: spin: rolling_resistance is not negative, and finite");
+    CHECK(said_with<bounce>(adhesion{x}) ==
+          "collide: adhesion: max_acceleration and capture_speed are not negative, and the first is finite");
+    CHECK(said_with(drag{x, 0}) == "collide: drag: linear and quadratic are not negative, and finite");
+    CHECK(said_with(drag{0, x}) == "collide: drag: linear and quadratic are not negative, and finite");
+    CHECK(said_with(wind<>{x, 0, {}}) == "collide: wind: linear and quadratic are not negative, and finite");
+    CHECK(said_with(wind<>{0, x, {}}) == "collide: wind: linear and quadratic are not negative, and finite");
+    CHECK(said_with(emit{x, {}}) == "collide: emit: rate is not negative, and finite");
+    CHECK(said_with(sleep{x, 3}) == "collide: sleep: speed is not negative, and finite");
+    CHECK(said_with(mesh_forces{x}) == "collide: mesh_forces: density is above 0, and finite");
+    CHECK(said_with<sphere_contact>(pair_forces{x}) == "collide: pair_forces: density is above 0, and finite");
+    for (int k = 0; k < 4; ++k) {
+      double values[4] = {1000, 0, 0, 0};
+      values[k] = x;
+      CHECK(said_with(sphere_contact{values[0], values[1], values[2], values[3], 1}) ==
+            "collide: sphere_contact: stiffness, dampings and friction are not negative, and finite");
+      double range[4] = {1, 1, 1, 1};
+      range[k] = x;
+      CHECK(said_by([&] { sphere_contact::from_restitution(range[0], range[1], range[2], range[3]); }) != "");
+    }
+    CHECK(said_with(sphere_contact{1000, 0, 0, 0, x}) == "collide: sphere_contact: density is above 0, and finite");
+  }
+  CHECK(said_with<bounce>(adhesion{1, not_a_number}) != "");
+  CHECK(said_with<bounce>(adhesion{1, infinity}) == "");
+  CHECK(said_with(mesh_forces{0}) == "collide: mesh_forces: density is above 0, and finite");
+  CHECK(said_with<sphere_contact>(pair_forces{0}) == "collide: pair_forces: density is above 0, and finite");
+  CHECK(said_with(sphere_contact{1000, 0, 0, 0, 0}) == "collide: sphere_contact: density is above 0, and finite");
   CHECK(said_with(sleep{0.01, 300}) == "collide: sleep: steps are from 1 to 255");
-  CHECK(said_with(emit{-1, {}}) == "collide: emit: rate is not negative");
-  CHECK(said_with(sphere_contact{1000, 0, 0, 0, 0}) == "collide: sphere_contact: density is above 0");
+  for (double const x : {not_a_number, infinity, -infinity}) {
+    CHECK(said_with(gravity{0, 0, x}) == "collide: gravity: the acceleration is finite");
+    CHECK(said_with(wind<>{1, 0, {0, x, 0}}) == "collide: wind: the velocity of uniform_field is finite");
+    for (nozzle const& n :
+         {nozzle{{0, x, 0}, 0, {}, 0}, nozzle{{}, x, {}, 0}, nozzle{{}, 0, {x, 0, 0}, 0}, nozzle{{}, 0, {}, x}}) {
+      CHECK(said_with(emit{1, n}) == "collide: nozzle: position, half_width, velocity and velocity_spread are finite");
+    }
+    CHECK(said_with(periodic_box{{x, 0, 0}, {1, 1, 1}}) == "collide: periodic_box: the bounds are finite");
+    CHECK(said_with(periodic_box{{0, 0, 0}, {1, 1, x}}) == "collide: periodic_box: the bounds are finite");
+  }
+  CHECK(said_with(box_walls{{infinity, 0, 0}, {infinity, 1, 1}}) ==
+        "collide: box_walls: no lower bound is infinite, and no upper bound minus infinite");
+  CHECK(said_with(box_walls{{-infinity, 0, 0}, {-infinity, 1, 1}}) ==
+        "collide: box_walls: no lower bound is infinite, and no upper bound minus infinite");
+  CHECK(said_with(box_walls{{0, not_a_number, 0}, {1, 1, 1}}) != "");
   CHECK(said_with(box_walls{{0, 0, 1}, {1, 1, 0}}) == "collide: box_walls: no lower bound is above its upper bound");
   CHECK(said_with(box_walls{}) == "");
   CHECK(said_with(periodic_box{{0, 0, 0}, {1, 1, 0}}) ==

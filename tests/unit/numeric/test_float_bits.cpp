@@ -74,3 +74,11 @@ TEST_CASE_TEMPLATE("float bits: select takes the number that it is told, whateve
   CHECK(saturate(S(7)) == S(1));
   CHECK(saturate(nan) == S(0));
 }
+
+TEST_CASE_TEMPLATE("float bits: the next number below", S, float, double) {
+  using collide::detail::next_below;
+  for (S const x : {S(1), S(-1), S(0.7), S(101), S(-100), std::numeric_limits<S>::max()})
+    CHECK(next_below(x) == std::nextafter(x, -std::numeric_limits<S>::infinity()));
+  CHECK(next_below(S(0)) == -std::numeric_limits<S>::min());
+  CHECK(next_below(S(-0.0)) == -std::numeric_limits<S>::min());
+}

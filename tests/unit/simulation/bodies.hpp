@@ -273,6 +273,32 @@ void check_drum(Space const& space) {
   CHECK(std::abs(angle_of(rolls)) < 6);
 }
 
+/// Axes of any length turn a body alike.
+template <class Space>
+void check_axes(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, moving_bodies<>>;
+  world<float> w;
+  add_box(w, 1);
+  body_motion turning;
+  turning.rate = 0.7;
+  auto const poses = [&](double x, double z) {
+    turning.axis[0] = x, turning.axis[2] = z;
+    running_bodies<simulation> made(space, w, one_body(w, turning), moving_bodies<>{});
+    made.simulation.steps(10, 0.125f);
+    CHECK(made.simulation.bodies().report(space).refused_poses == 0);
+    auto const at = made.bodies()[0].at;
+    return std::vector<double>(at.rotation, at.rotation + 4);
+  };
+  auto const as_usual = poses(3, 4);
+  CHECK(as_usual[0] == doctest::Approx(std::cos(0.7 * 1.25 / 2)));
+  CHECK(as_usual[1] == doctest::Approx(0.6 * std::sin(0.7 * 1.25 / 2)));
+  for (double const unit : {0x1p-1060, 0x1p-700, 0x1p-20, 0x1p30, 0x1p700, 0x1p1020})
+    CHECK((poses(3 * unit, 4 * unit) == as_usual));
+  for (double const unit : {1e-170, 1e170, 1e-300, 1e300, 5e-324})
+    CHECK(poses(0, unit)[3] == doctest::Approx(std::sin(0.7 * 1.25 / 2)));
+  CHECK(poses(0, 0)[0] == 1);
+}
+
 /// How a box turns and shakes.
 inline body_motion shaking(double speed) {
   body_motion m;

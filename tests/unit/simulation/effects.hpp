@@ -28,25 +28,70 @@ using collide::gravity;
 using collide::slow_steps;
 using collide::sphere_contact;
 
-/// Falling with drag: on the way, and in the end.
+/// Falling with drag, from rest or thrown up: on the way, and in the end. The closed form, whatever the step.
+template <class S, class Integrator, class Space, class... Effect>
+void check_drag_of(Space const& space, collide::effects<Effect...>) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, Effect...>;
+  double const g = 9.81, rounding = sizeof(S) == 4 ? 2e-5 : 1e-12;
+  auto const velocity_after = [&](drag const& d, double thrown, std::size_t steps, double dt) {
+    world<S> w;
+    w.particle(0, 0, 0, 0, 0, thrown);
+    running<simulation> made(space, w);
+    made.simulation.template effect<gravity>().z = -g;
+    made.simulation.template effect<drag>() = d;
+    made.simulation.steps(steps, S(dt));
+    return double(made.velocities()[2]);
+  };
+  for (double const k : {0.1, 1.0, 10.0, 1000.0}) {  // times dt
+    for (std::size_t const steps : {1, 5}) {
+      double const time = 0.0625 * double(steps), rate = k / 0.0625;
+      double const left = std::exp(-rate * time);
+      CHECK(velocity_after({rate, 0}, 3, steps, 0.0625) ==
+            doctest::Approx(3 * left - g / rate * (1 - left)).epsilon(rounding).scale(0));
+      double const quadratic = rate * rate / g, slow = g / rate;  // tanh(rate t)
+      CHECK(velocity_after({0, quadratic}, 0, steps, 0.0625) ==
+            doctest::Approx(-slow * std::tanh(rate * time)).epsilon(rounding).scale(0));
+      double const stops = std::atan(3 / slow) / rate;  // what is thrown up
+      CHECK(velocity_after({0, quadratic}, 3, steps, 0.0625) ==
+            doctest::Approx(time < stops ? slow * std::tan(rate * (stops - time))
+                                         : -slow * std::tanh(rate * (time - stops)))
+                .epsilon(rounding)
+                .scale(0));
+    }
+  }
+  CHECK(velocity_after({0, 0.5}, 0, 20000, 0.015625) == doctest::Approx(-std::sqrt(g / 0.5)).epsilon(rounding));
+  CHECK(std::isfinite(velocity_after({1e6, 1e6}, 1e3, 100, 1)));  // however strong
+  CHECK(velocity_after({0, 0}, 3, 1, 0.125) == doctest::Approx(3 - g / 8).epsilon(1e-6));
+}
+
 template <class Space>
 void check_drag(Space const& space) {
-  using simulation = collide::simulation<meets_mesh<Space>, gravity, drag>;
+  using euler = collide::semi_implicit_euler;
+  using verlet = collide::velocity_verlet;
+  check_drag_of<float, euler>(space, collide::effects<gravity, drag>());
+  check_drag_of<float, verlet>(space, collide::effects<drag, gravity>());
+  check_drag_of<double, euler>(space, collide::effects<drag, gravity>());
+  check_drag_of<double, verlet>(space, collide::effects<gravity, drag>());
+  // with a medium that does not move, too, and what sticks does so: it judges what has been resisted
+  using simulation = collide::simulation<meets_mesh<Space>, bounce, collide::adhesion, drag, gravity, collide::wind<>>;
   world<float> w;
-  w.particle(0, 0, 0);
-  float const dt = 1e-3f;
-  double const g = 9.81;
-  auto const speed_after = [&](drag const& d, std::size_t steps) {
-    running<simulation> made(space, w, gravity{}, d);
-    made.simulation.steps(steps, dt);
-    return -double(made.velocities()[2]);
-  };
-  CHECK(speed_after({2, 0}, 500) == doctest::Approx(g / 2 * (1 - std::exp(-2 * 0.5))).epsilon(2e-3));
-  CHECK(speed_after({2, 0}, 20000) == doctest::Approx(g / 2).epsilon(1e-4));
-  CHECK(speed_after({0, 0.5}, 300) ==
-        doctest::Approx(std::sqrt(g / 0.5) * std::tanh(0.3 * std::sqrt(g * 0.5))).epsilon(2e-3));
-  CHECK(speed_after({0, 0.5}, 20000) == doctest::Approx(std::sqrt(g / 0.5)).epsilon(2e-3));
-  CHECK(std::isfinite(speed_after({1e6, 1e6}, 100)));  // however strong
+  add_floor(w, 4, 8);
+  w.radius = 0.1f;
+  w.particle(0.1, 0.2, 9, 0, 0, 0);
+  w.particle(0.1, 0.2, 0.1, 0, 0, 0);
+  running<simulation> made(space, w, bounce{0}, collide::adhesion{}, drag{0, 0.25}, gravity{},
+                           collide::wind<>{0, 0.25, {}});
+  made.simulation.steps(80, 0.015625f);
+  CHECK(double(made.velocities()[2]) ==
+        doctest::Approx(-std::sqrt(9.81 / 0.5) * std::tanh(1.25 * std::sqrt(9.81 * 0.5))).epsilon(1e-5));
+  auto const x = made.positions();
+  CHECK(x[5] == 0.1f);
+  made.simulation.template effect<collide::wind<>>().field.x = 8;  // 16 in all: less than adhesion holds
+  made.simulation.steps(10, 0.0625f);
+  CHECK(made.positions()[3] == x[3]);
+  made.simulation.template effect<collide::wind<>>().field.x = 20;
+  made.simulation.steps(10, 0.0625f);
+  CHECK(made.positions()[3] > x[3] + 0.5f);
 }
 
 /// A field that a user might write: air that turns around the z axis.
@@ -320,6 +365,97 @@ void check_stick(Space const& space) {
   }
   CHECK(std::abs(run(5, {4, 0, -8})[0]) < 1e-4f);        // a slope that pulls less along than it holds
   CHECK(std::abs(run(20, {0, 0, -9.81}, 0)[0]) > 0.1f);  // too fast to be captured: slides on
+  for (double const restitution : {0.0, 0.1, 0.5}) {
+    for (double const speed : {0.5, 0.9, 2.0, 5.0}) {
+      world<float> one;
+      add_floor(one, 4, 8);
+      one.radius = 0.1f;
+      one.particle(0.1, 0.2, 0.105, 0.6 * speed, 0, -0.8 * speed);
+      running<simulation> made(space, one, gravity{0, 0, 0}, bounce{restitution}, collide::adhesion{20, 1});
+      made.simulation.steps(40, 1e-3f);
+      CHECK((made.velocities()[0] == 0) == (speed <= 1));
+      CHECK((made.simulation.template to_host<adhered>()[0] == 1) == (speed <= 1));
+    }
+  }
+}
+
+/// Balls that jump in a box for 20 time units: the energy, in which each velocity is that of the middle of a step, as
+/// the integrator has it.
+template <class S, class Integrator, class Space>
+void check_elastic_walls(Space const& space, S dt) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, gravity, collide::box_walls>;
+  double const g = 9.81, late = Integrator::kick_after == 0 ? -g * double(dt) / 2 : 0;
+  world<S> w;
+  w.radius = S(0.1);
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-0.8, 0.8);
+  for (int i = 0; i < 20; ++i) {
+    w.particle(uniform(engine), uniform(engine), uniform(engine), 2 * uniform(engine), uniform(engine),
+               uniform(engine));
+  }
+  running<simulation> made(space, w, Integrator{}, gravity{0, 0, -g}, collide::box_walls{{-1, -1, -1}, {1, 1, 9}, 1});
+  auto const energy = [&] {
+    double sum = kinetic_energy(made.velocities());
+    auto const x = made.positions(), v = made.velocities();
+    for (std::size_t i = 2; i < x.size(); i += 3) sum += g * (double(x[i]) + 0.9) + late * double(v[i]);
+    return sum;
+  };
+  double const before = energy();
+  made.simulation.steps(static_cast<std::size_t>(20 / double(dt)), dt);
+  CHECK(energy() == doctest::Approx(before).epsilon(sizeof(S) == 4 ? 2e-4 : 1e-6));
+}
+
+/// Without forces a ball is where a mirror image goes on; with some it comes to rest, and keeps its bits.
+template <class S, class Integrator, class Space>
+void check_walls(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, gravity, collide::box_walls>;
+  world<S> w;
+  w.radius = S(0.125);
+  w.particle(0.25, 0, 0, 0.75, 0, -0.5);
+  running<simulation> made(space, w, Integrator{}, gravity{0, 0, 0}, collide::box_walls{{-1, -1, -1}, {1, 1, 1}, 1});
+  made.simulation.steps(1000, S(0.03125));
+  double const far = std::fmod(0.25 + 0.875 + 0.75 * 31.25, 3.5);  // the box is 1.75 wide for its centre
+  CHECK(made.positions()[0] == doctest::Approx((far < 1.75 ? far : 3.5 - far) - 0.875).epsilon(1e-4));
+  made.simulation.template effect<gravity>().z = -9.81;
+  made.simulation.template effect<collide::box_walls>().restitution = 0.5;
+  made.simulation.steps(1000, S(0.03125));
+  auto const x = made.positions(), v = made.velocities();
+  CHECK(x[2] == S(-0.875));
+  CHECK(v[2] == 0);
+  made.simulation.steps(100, S(0.03125));
+  CHECK(made.positions()[2] == x[2]);
+}
+
+/// One step of a particle in a box that repeats, along x: it is at x modulo the length, and in the box.
+template <class S, class Space>
+void check_periodic(Space const& space, double start, double by, double lower, double upper) {
+  world<S> w;
+  w.particle(start, lower, lower, by, 0, 0);
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::periodic_box>;
+  running<simulation> made(space, w, collide::periodic_box{{lower, lower, lower}, {upper, upper, upper}});
+  made.simulation.step(S(1));
+  S const low = S(lower), high = S(upper), x = made.positions()[0], moved = S(start) + S(by);
+  double const length = double(high) - double(low),
+               whole = std::fmod(std::fmod(double(moved), length) - std::fmod(double(low), length), length);
+  CAPTURE(moved);
+  CHECK(x >= low);
+  CHECK(x < high);
+  double const error = std::abs(double(x) - double(low) - (whole < 0 ? whole + length : whole));
+  double const unit = double(std::numeric_limits<S>::epsilon()) * std::max(std::abs(lower), std::abs(upper));
+  CHECK(std::min(error, length - error) <= unit);
+}
+
+template <class S, class Space>
+void check_periodic(Space const& space) {
+  for (double const lower : {0.0, -0.5, 100.0, -1.0}) {
+    for (double const by : {-7.25, -1.5, -1e-9, -1e-18, 0.0, 0.75, 1.0, 3.75, 1e3, 1e6, -1e6, 1e30}) {
+      check_periodic<S>(space, lower + 0.25, by, lower, lower + 1);
+      check_periodic<S>(space, lower, by, lower, lower + 1);
+      check_periodic<S>(space, lower, by, lower, lower + 0.7);
+    }
+  }
 }
 
 template <class Space>
@@ -347,6 +483,20 @@ void check_bounds(Space const& space) {
   CHECK(x[0] == doctest::Approx(-1).epsilon(1e-3));  // 3 on, 4 and a half rounds... modulo 2 from 0 on
   CHECK(x[1] == doctest::Approx(0).scale(1).epsilon(1e-3));
   CHECK(x[2] == 1);
+  check_periodic<float>(space);
+  check_periodic<double>(space);
+  using euler = collide::semi_implicit_euler;
+  using verlet = collide::velocity_verlet;
+  for (double const step : {1e-3, 5e-3}) {
+    check_elastic_walls<float, euler>(space, float(step));
+    check_elastic_walls<float, verlet>(space, float(step));
+    check_elastic_walls<double, euler>(space, step);
+    check_elastic_walls<double, verlet>(space, step);
+  }
+  check_walls<float, euler>(space);
+  check_walls<float, verlet>(space);
+  check_walls<double, euler>(space);
+  check_walls<double, verlet>(space);
 }
 
 template <class Space>
@@ -401,6 +551,88 @@ void check_emit(Space const& space) {
   CHECK(count_present<Space>(std::get<0>(many)) == 100);
   for (std::size_t i = 2; i < 100; ++i)
     CHECK(std::get<2>(many)[3 * i + 2] > 5 - 2 - 9.81f * 0.1f - 0.1f);  // all are young
+}
+
+/// A source keeps the number of its particles when its rate changes, and the oldest while there is room.
+template <class S, class Space>
+void check_rates(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::emit>;
+  auto const make = [&](double rate, std::size_t room) {
+    simulation made(space, collide::emit{rate, {}});
+    made.set(collide::spheres_xyz(static_cast<S const*>(nullptr), 0, S(0.1)), nullptr, room);
+    return made;
+  };
+  auto const present = [](simulation const& made) { return count_present<Space>(made.template to_host<alive>()); };
+  for (double const rate : {50.0, 100.0, 200.0, 0.0}) {
+    auto made = make(100, 300);
+    made.steps(128, S(1) / 128);
+    CHECK(present(made) == 100);
+    made.template effect<collide::emit>().rate = rate;
+    made.steps(128, S(1) / 128);
+    CHECK(present(made) == 100 + static_cast<std::size_t>(rate));
+    made.set(collide::spheres_xyz(static_cast<S const*>(nullptr), 0, S(0.1)), nullptr, 300);
+    made.template effect<collide::emit>().rate = 64;
+    made.steps(64, S(1) / 128);
+    CHECK(present(made) == 32);  // begins anew
+  }
+  auto made = make(100, 110);
+  made.steps(128, S(1) / 128);
+  made.template effect<collide::emit>().source.position[0] = 7;
+  made.template effect<collide::emit>().rate = 110;
+  auto const fresh = [&] {
+    auto const x = made.template to_host<position>();
+    auto const there = made.template to_host<alive>();
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < there.size(); ++i) n += there[i] == 1 && x[3 * i] == S(7);
+    return n;
+  };
+  made.steps(8, S(1) / 128);
+  CHECK(fresh() == 6);  // of 6.875
+  CHECK(present(made) == 106);
+  made.steps(8, S(1) / 128);
+  CHECK(fresh() == 13);
+  CHECK(present(made) == 110);
+  made.step(S(1e6));  // more than there are places
+  CHECK(fresh() == 110);
+  auto often = make(10, 2000);  // 0.1 is no sum of powers of two
+  if (sizeof(S) == 8) {
+    often.steps(1000, S(0.01));
+    CHECK(present(often) == 100);
+  }
+}
+
+/// What a source makes has the radius that it is given, or that of all; none is an error.
+template <class Space>
+void check_source_radius(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, collide::emit, gravity, bounce, collide::polydisperse>;
+  world<float> w;
+  w.radius = 0.125f;
+  add_floor(w, 4, 8);
+  for (int i = 0; i < 4; ++i) w.particle(-1 + i, 1, 1);
+  collide::nozzle const above{{0.3, 0.2, 2}, 0.1, {0, 0, 0}, 0};
+  auto const lowest = [&](float own, std::vector<float> const& radii) {
+    world<float> here = w;
+    here.radii = radii;
+    running<simulation> made(space, w, collide::emit{20, above, own}, gravity{}, bounce{0}, collide::polydisperse{});
+    made.place(here, 24);
+    made.simulation.steps(1500, 1e-3f);
+    auto const x = made.positions(), r = made.simulation.template to_host<collide::radius>();
+    float z = 9;
+    for (std::size_t i = 4; i < 24; ++i) {
+      z = std::min(z, x[3 * i + 2]);
+      CHECK(r[i] == (own > 0 ? own : 0.125f));
+    }
+    return z;
+  };
+  CHECK(lowest(0.25f, {}) == doctest::Approx(0.25));
+  CHECK(lowest(0, {}) == doctest::Approx(0.125));
+  CHECK(lowest(0.3f, {0.1f, 0.1f, 0.2f, 0.1f}) == doctest::Approx(0.3));
+  CHECK_THROWS_WITH_AS(lowest(0, {0.1f, 0.1f, 0.2f, 0.1f}),
+                       "collide: emit: the radii differ: give the source a radius, before set", collide::error);
+  collide::simulation<meets_mesh<Space>, collide::emit> of_one(space, collide::emit{20, above, 0.25});
+  CHECK_THROWS_WITH_AS(of_one.set(collide::spheres_xyz<float>(nullptr, 0, 0.1f), nullptr, 9),
+                       "collide: emit: a source with a radius of its own needs polydisperse in the scene",
+                       collide::error);
 }
 
 }  // namespace tests

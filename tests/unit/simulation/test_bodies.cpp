@@ -84,6 +84,8 @@ TEST_CASE("bodies: a drum carries what slides up to the angle of friction, and n
   tests::check_drum<karabassi_swept<>>(host(1));
 }
 
+TEST_CASE("bodies: turn around axes of any length") { tests::check_axes(host(1)); }
+
 TEST_CASE_TEMPLATE("bodies: a closed box that turns and shakes keeps what is in it", S, float, double) {
   tests::check_turning_box<karabassi<>, S>(host(1), 1, 1e-3, 300, 3000);
   tests::check_turning_box<karabassi_swept<>, S>(host(1), 1, 1e-3, 300, 1000);

@@ -17,6 +17,7 @@ TEST_CASE("bodies: on the GPU, a floor that is shaken, a turntable and a drum") 
   tests::check_vibrated_floor<karabassi<>>(cuda_shared());
   tests::check_turntable<karabassi<>>(cuda_shared());
   tests::check_turntable<karabassi_swept<>>(cuda_shared());
+  tests::check_axes(cuda_shared());
   tests::check_drum<karabassi<>>(cuda_shared());
 }
 

@@ -1,5 +1,6 @@
 /// Checkpoints on the host.
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "compositions.hpp"
@@ -155,7 +156,7 @@ TEST_CASE("checkpoint: several in a stream, and one that takes nothing") {
   std::ostringstream full;
   full.setstate(std::ios::badbit);
   CHECK_THROWS_WITH_AS(collide::save(s.first.simulation, full),
-                       "collide: save: the stream does not take what is written", collide::error);
+                       "collide: save: the stream does not take what is written: is it full?", collide::error);
 }
 
 TEST_CASE("checkpoint: files") {
@@ -181,4 +182,34 @@ TEST_CASE("checkpoint: files") {
                        "collide: load: test_checkpoint.file goes on behind the checkpoint", collide::error);
   CHECK(tests::bits_of(s.next.simulation) == s.before);
   std::remove(path.c_str());
+}
+
+TEST_CASE("checkpoint: files behind links, with permissions, and on a full disk") {
+  namespace fs = std::filesystem;
+  two_simulations s;
+  fs::path const folder = "test_checkpoint.links";
+  fs::remove_all(folder);
+  fs::create_directories(folder / "far");
+  fs::create_symlink("middle", folder / "link");
+  fs::create_symlink(fs::path("far") / "file", folder / "middle");
+  std::string const link = (folder / "link").string(), file = (folder / "far" / "file").string();
+  collide::save(s.first.simulation, link);  // there is no file yet
+  CHECK(read_file(file) == s.file);
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  collide::save(s.next.simulation, link);
+  CHECK(read_file(file) == tests::saved(s.next.simulation));
+  CHECK(fs::is_symlink(link));
+  CHECK(fs::is_symlink(folder / "middle"));
+  CHECK(fs::status(file).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+  CHECK(!fs::exists(file + ".part"));
+  collide::load(s.next.simulation, link);
+  if (fs::exists("/dev/full")) {
+    fs::create_symlink("/dev/full", folder / "full");
+    std::string const full = (folder / "full").string();
+    CHECK_THROWS_WITH_AS(collide::save(s.first.simulation, full),
+                         ("collide: save: " + full + " does not take what is written: is it full?").c_str(),
+                         collide::error);
+    CHECK(fs::is_character_file("/dev/full"));
+  }
+  fs::remove_all(folder);
 }

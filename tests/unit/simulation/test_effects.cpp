@@ -118,3 +118,14 @@ TEST_CASE("effects: particles vanish in sinks") {
 }
 
 TEST_CASE("effects: particles come out of sources") { tests::check_emit(host(1)); }
+
+TEST_CASE_TEMPLATE("effects: a source keeps the number of its particles when its rate changes", S, float, double) {
+  tests::check_rates<S>(host(1));
+  tests::check_rates<S>(reversed());
+  tests::check_rates<S>(lockstep<64, true>());
+}
+
+TEST_CASE("effects: the radius of what comes out of a source") {
+  tests::check_source_radius(host(1));
+  tests::check_source_radius(lockstep<64, true>());
+}

@@ -41,4 +41,6 @@ TEST_CASE("effects: on the GPU, bounds, sinks and sources") {
   tests::check_bounds(cuda_shared());
   tests::check_absorb<karabassi<>>(cuda_shared());
   tests::check_emit(cuda_shared());
+  tests::check_rates<float>(cuda_shared());
+  tests::check_source_radius(cuda_shared());
 }

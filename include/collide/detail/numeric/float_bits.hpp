@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 #include <collide/detail/numeric/rounding.hpp>
@@ -111,6 +112,12 @@ COLLIDE_HD_INLINE uint_for<T> to_ordered_bits(T x) {
 template <class T>
 COLLIDE_HD_INLINE T from_ordered_bits(uint_for<T> u) {
   return from_bits<T>((u & ieee_traits<T>::sign_mask) != 0 ? (u & ~ieee_traits<T>::sign_mask) : ~u);
+}
+
+/// The next number below a finite one; below 0, where subnormal numbers may be flushed, the normal one next to it.
+template <class T>
+COLLIDE_HD_INLINE T next_below(T x) {
+  return x == T(0) ? -std::numeric_limits<T>::min() : from_ordered_bits<T>(to_ordered_bits(x) - 1);
 }
 
 /// The power of two 2^-e with 2^e <= |x| < 2^(e+1), kept normal; 2^(bias - 1) for zero and subnormal x.

@@ -67,13 +67,13 @@ class part_of_simulation {
   Numbers saved_numbers_of_all(bool reverse_order) const {
     auto const& s = simulation_;
     Numbers numbers{
-        s.mesh_.size(), s.state_.all_size, s.state_.all_placed, s.state_.common_radius, S(0), S(0), s.time_, 0,
+        s.mesh_.size(), s.state_.all_size, s.state_.all_placed, s.state_.common_radius, S(0), S(0), s.time_, {},
         reverse_order};
     if constexpr (meets || Simulation::sweeps || Simulation::has_bodies) {
       numbers.smallest_radius = s.radii_.smallest;
       numbers.largest_radius = s.radii_.largest;
     }
-    if constexpr (Simulation::has_begin_step) numbers.device_time = s.space_.read(s.state_.time);
+    if constexpr (Simulation::has_begin_step) s.space_.copy_to_host(numbers.clock, s.state_.time, clock_size);
     return numbers;
   }
   std::size_t triangles() const { return simulation_.mesh_.size(); }
@@ -97,7 +97,7 @@ class part_of_simulation {
     auto const& state = simulation_.state_;
     saved.restore_columns(space(), state, 0, static_cast<std::size_t>(all.first), mine);
     saved.restore_columns(space(), state, mine, static_cast<std::size_t>(all.first_free), free);
-    if constexpr (Simulation::has_begin_step) space().copy_from_host(state.time, &numbers.device_time, 1);
+    if constexpr (Simulation::has_begin_step) space().copy_from_host(state.time, numbers.clock, clock_size);
     saved.restore_parameters(simulation_);
     simulation_.time_ = numbers.time;
     simulation_.prepare();
@@ -295,7 +295,8 @@ class part_of_simulation {
   void make_room(std::size_t n) {
     if (n <= capacity_) return;
     state_type const old = simulation_.state_;
-    double const time = old.time != nullptr ? space().read(old.time) : 0;
+    double clock[clock_size] = {};
+    if (old.time != nullptr) space().copy_to_host(clock, old.time, clock_size);
     rows<all_columns> kept;
     pack_on_host(space(), old, places_from{0}, old.own, kept);
     std::size_t const room = n + n / 4;
@@ -305,9 +306,9 @@ class part_of_simulation {
     describe(old.own, old.all_size, old.all_placed, old.common_radius);
     if constexpr (Simulation::has_begin_step) {
       simulation_.state_.time = simulation_.device_time_.data();
-      space().copy_from_host(simulation_.state_.time, &time, 1);
+      space().copy_from_host(simulation_.state_.time, clock, clock_size);
     }
-    space().for_each(padded_size(room), init_particles<S, all_columns>{simulation_.state_, {}, nullptr});
+    space().for_each(padded_size(room), init_particles<S, all_columns>{simulation_.state_, {}, nullptr, S(0)});
     unpack_from_host(space(), state(), places_from{0}, kept);
     simulation_.is_set_ = true;
   }

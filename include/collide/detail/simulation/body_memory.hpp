@@ -132,7 +132,7 @@ struct advance_bodies {
     double const turned = 2 * norm(sine);  // |R x - x| / |x|
     double const shifted = sqrt_rn(dot(shift, shift)), moved = shifted + mul(turned, norm(r.centre));
     vec3<double> const from = f.before.to_world(r.centre), to = f.now.to_world(r.centre), by = to - from;
-    f.moves = !(f.before == f.now) || dot(f.belt, f.belt) > 0;
+    f.moves = !(f.before == f.now) || dot(f.belt, f.belt) > 0 ? 1 : 0;
     f.centre = rounded_to<S>(swept ? from : to);
     double const reach = swept ? r.radius + 2 * moved : r.radius;
     f.reach = static_cast<S>(mul(reach, 1 + 1e-5) + mul(16 * eps, norm(from) + norm(to)));
@@ -229,9 +229,8 @@ class body_memory {
     std::vector<body_record> records;
     for (std::size_t k = 0; k < count_; ++k) records.push_back(record_of(bodies[k], found[k + 1]));
     std::vector<body_frame<S>> at_rest(
-        frames,
-        body_frame<S>{
-            identity(), identity(), {}, {}, {0, 0, 0}, {0, 0, 0}, std::numeric_limits<S>::infinity(), S(0), false});
+        frames, body_frame<S>{
+                    identity(), identity(), {}, {}, {0, 0, 0}, {0, 0, 0}, std::numeric_limits<S>::infinity(), S(0), 0});
     std::vector<quick_frame<S>> quick(frames, quick_frame<S>::at_rest());
     for (std::size_t k = 1; k < frames; ++k) quick[k].slack = std::numeric_limits<S>::infinity();  // not known yet
     double extent = 0;

@@ -103,9 +103,12 @@ constexpr bool check_effects() {
                 "collide: what follows the detector in a simulation are effects, such as gravity or bounce: copyable "
                 "classes with at least one of the members that effect.hpp names");
   static_assert((int(is_integrator<Effect>::value) + ... + 0) <= 1, "collide: a simulation has one integrator");
-  static_assert(respects_order<Effect...>,
-                "collide: an effect comes after those whose result it uses, its runs_after: name friction after "
-                "bounce, and what reads forces (mesh_forces, pair_forces, reaction) behind all that make them");
+  static_assert((int(is_source<Effect>) + ... + 0) <= 1,
+                "collide: a simulation has one source: give emit_from a Source that begins at several places");
+  static_assert(
+      respects_order<Effect...>,
+      "collide: an effect comes after those whose result it uses: name friction after bounce, and what reads forces "
+      "(mesh_forces, pair_forces, reaction) behind what makes them");
   constexpr bool is_solid = (repels<Effect> || ...), meets = (meets_in<Effect, S>::value || ...);
   static_assert(is_solid || !(needs_solid_mesh<Effect> || ...),
                 "collide: friction and adhesion act where the mesh is solid: name bounce before them, or an effect of "

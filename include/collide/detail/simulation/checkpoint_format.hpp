@@ -13,10 +13,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <istream>
 #include <ostream>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <collide/error.hpp>
@@ -42,7 +45,8 @@ class fnv1a {
 /// Writes a checkpoint, block by block. Throws `error` as soon as the stream does not take it.
 class checkpoint_writer {
  public:
-  explicit checkpoint_writer(std::ostream& to) : to_(to) {
+  /// `name` is that of the stream, for errors.
+  checkpoint_writer(std::ostream& to, std::string name) : to_(to), name_(std::move(name)) {
     put(checkpoint_magic, sizeof checkpoint_magic);
     put(checkpoint_version);
     put(checkpoint_byte_order);
@@ -81,10 +85,11 @@ class checkpoint_writer {
     check();
   }
   void check() const {
-    if (!to_) throw error("collide: save: the stream does not take what is written");
+    if (!to_) throw error("collide: save: " + name_ + " does not take what is written: is it full?");
   }
 
   std::ostream& to_;
+  std::string name_;
   fnv1a checksum_;
 };
 
@@ -181,30 +186,46 @@ class checkpoint_reader {
   fnv1a checksum_;
 };
 
-/// A file that is written under the name `path` + ".part" until it is complete: an older one stays until then.
+/// A file that is written with ".part" behind its name until it is complete: an older one stays until then, and the new
+/// one has its permissions. Of a link it is the file that it leads to. What is no file, such as a pipe, is written as
+/// it is.
 class checkpoint_file {
  public:
-  explicit checkpoint_file(std::string const& path)
-      : path_(path), part_(path + ".part"), file_(part_, std::ios::binary | std::ios::trunc) {
+  explicit checkpoint_file(std::string const& path) : path_(path), target_(end_of_links(path)) {
+    std::error_code none;
+    auto const old = std::filesystem::status(target_, none);
+    bool const is_other = std::filesystem::exists(old) && !std::filesystem::is_regular_file(old);
+    part_ = is_other ? target_ : target_ + ".part";
+    file_.open(part_, std::ios::binary | std::ios::trunc);
     if (!file_) fail();
+    if (std::filesystem::is_regular_file(old)) std::filesystem::permissions(part_, old.permissions(), none);
+    if (none && std::filesystem::is_regular_file(old)) fail();
   }
   checkpoint_file(checkpoint_file const&) = delete;
   checkpoint_file& operator=(checkpoint_file const&) = delete;
   ~checkpoint_file() {
-    if (!is_complete_) std::remove(part_.c_str());
+    if (!is_complete_ && part_ != target_) std::remove(part_.c_str());
   }
 
   std::ostream& stream() { return file_; }
   void complete() {
     file_.close();
-    if (!file_ || std::rename(part_.c_str(), path_.c_str()) != 0) fail();
+    if (!file_ || (part_ != target_ && std::rename(part_.c_str(), target_.c_str()) != 0)) fail();
     is_complete_ = true;
   }
 
  private:
   [[noreturn]] void fail() const { throw error("collide: save: " + path_ + " cannot be written"); }
 
-  std::string path_, part_;
+  static std::string end_of_links(std::filesystem::path path) {
+    std::error_code none;
+    for (int i = 0; i < 40 && std::filesystem::is_symlink(path, none); ++i) {
+      path = path.parent_path() / std::filesystem::read_symlink(path, none);
+    }
+    return path.string();
+  }
+
+  std::string path_, target_, part_;
   std::ofstream file_;
   bool is_complete_ = false;
 };

@@ -2,139 +2,10 @@
 /// The effects of a simulation, the columns that they need, and how they are called.
 #pragma once
 
-#include <collide/detail/simulation/particle_access.hpp>
-#include <collide/integrators.hpp>
+#include <collide/detail/simulation/effect_traits.hpp>
+#include <collide/detail/simulation/resistance.hpp>
 
 namespace collide::detail {
-
-/// Sees all that an effect names; only to ask what members the effect has.
-template <class E, class S>
-using archetype = particle<S, union_of<typename reads_of<E>::type, typename writes_of<E>::type,
-                                       typename optional_writes_of<E>::type, typename optional_reads_of<E>::type>>;
-template <class E, class S>
-using archetype_access = particle_access<E, archetype<E, S>>;
-
-// ---- what an effect has
-
-template <class E, class S, class = void>
-struct skips_in : std::false_type {};
-template <class E, class S>
-struct skips_in<
-    E, S, std::void_t<decltype(std::declval<E const&>().is_inactive(std::declval<archetype_access<E, S> const&>()))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct accelerates_in : std::false_type {};
-template <class E, class S>
-struct accelerates_in<
-    E, S, std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<archetype_access<E, S>&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct touches_in : std::false_type {};
-template <class E, class S>
-struct touches_in<E, S,
-                  std::void_t<decltype(std::declval<E const&>().on_mesh_contact(
-                      std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct settles_in : std::false_type {};
-template <class E, class S>
-struct settles_in<E, S,
-                  std::void_t<decltype(std::declval<E const&>().after_mesh_contact(
-                      std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct books_in : std::false_type {};
-template <class E, class S>
-struct books_in<E, S,
-                std::void_t<decltype(std::declval<E const&>().on_mesh_impulse(
-                    std::declval<archetype_access<E, S>&>(), std::declval<mesh_impulse<S> const&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct holds_in : std::false_type {};
-template <class E, class S>
-struct holds_in<E, S,
-                std::void_t<decltype(std::declval<E const&>().holds(std::declval<archetype_access<E, S> const&>(),
-                                                                    std::declval<vec3<S> const&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct meets_in : std::false_type {};
-template <class E, class S>
-struct meets_in<E, S,
-                std::void_t<decltype(std::declval<E const&>().on_pair_contact(
-                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
-                    std::declval<archetype_access<E, S> const&>(), S{}))>> : std::true_type {};
-template <class E, class S, class = void>
-struct disturbs_in : std::false_type {};
-template <class E, class S>
-struct disturbs_in<E, S,
-                   std::void_t<decltype(std::declval<E const&>().try_wake(
-                       std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>()))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct finishes_in : std::false_type {};
-template <class E, class S>
-struct finishes_in<
-    E, S, std::void_t<decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}))>>
-    : std::true_type {};
-template <class E, class Space, class State, class S, class = void>
-struct begins_in : std::false_type {};
-template <class E, class Space, class State, class S>
-struct begins_in<
-    E, Space, State, S,
-    std::void_t<decltype(std::declval<E&>().begin_step(std::declval<Space&>(), std::declval<State const&>(), S{}))>>
-    : std::true_type {};
-
-template <class E, class = void>
-struct checks_parameters : std::false_type {};
-template <class E>
-struct checks_parameters<E, std::void_t<decltype(std::declval<E const&>().check_parameters())>> : std::true_type {};
-
-/// True for an effect that contacts with the mesh concern.
-template <class E, class S>
-inline constexpr bool touches_mesh_in = touches_in<E, S>::value || settles_in<E, S>::value || books_in<E, S>::value;
-
-/// An integrator is named in the same list; see integrators.hpp.
-template <class E, class = void>
-struct is_integrator : std::false_type {};
-template <class E>
-struct is_integrator<E, std::void_t<decltype(E::kick_before), decltype(E::kick_after)>> : std::true_type {};
-
-/// True for what may be in a simulation's list.
-template <class E, class Space, class S>
-inline constexpr bool is_effect = [] {
-  if constexpr (!std::is_class<E>::value || !std::is_copy_constructible<E>::value) {
-    return false;
-  } else {
-    using state = particle_state<S, typename archetype<E, S>::list>;
-    return skips_in<E, S>::value || accelerates_in<E, S>::value || touches_mesh_in<E, S> || holds_in<E, S>::value ||
-           meets_in<E, S>::value || finishes_in<E, S>::value || begins_in<E, Space, state, S>::value ||
-           is_integrator<E>::value || archetype<E, S>::list::size != 0;
-  }
-}();
-
-template <class List, class E>
-inline constexpr bool names = false;
-template <class... F, class E>
-inline constexpr bool names<effects<F...>, E> = (std::is_same<F, E>::value || ...);
-
-/// True if no effect of the list comes before one that it follows.
-template <class... E>
-inline constexpr bool respects_order = true;
-template <class E, class... Later>
-inline constexpr bool respects_order<E, Later...> =
-    !(names<typename runs_after_of<E>::type, Later> || ...) && respects_order<Later...>;
-
-template <class... E>
-struct integrator_of {
-  using type = semi_implicit_euler;
-};
-template <class E, class... Later>
-struct integrator_of<E, Later...> {
-  using type =
-      typename std::conditional_t<is_integrator<E>::value, std::enable_if<true, E>, integrator_of<Later...>>::type;
-};
-
-// ---- the list of effects
 
 /// An effect's parameters, in a base class that is found by the effect's type.
 template <class E>
@@ -152,6 +23,7 @@ struct effect_list : effect_slot<E>... {
   static constexpr bool meets = (meets_in<E, S>::value || ...);
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
   static constexpr bool books = (books_in<E, S>::value || ...);
+  static constexpr bool resists = (resists_in<E, S>::value || ...);
 
   using base = columns<position, velocity>;
   using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
@@ -190,11 +62,11 @@ struct effect_list : effect_slot<E>... {
       Has, union_of<typename writes_of<F>::type, intersection_of<typename optional_writes_of<F>::type, all>>,
       columns<>>;
   template <class F>
-  static constexpr bool is_integrated = accelerates_in<F, S>::value || finishes_in<F, S>::value ||
+  static constexpr bool is_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value ||
                                         skips_in<F, S>::value || holds_in<F, S>::value ||
                                         (books_in<F, S>::value && (adheres || keeps_support));
   template <class F>
-  static constexpr bool writes_while_integrated = accelerates_in<F, S>::value || finishes_in<F, S>::value ||
+  static constexpr bool writes_while_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value ||
                                                   holds_in<F, S>::value ||
                                                   (books_in<F, S>::value && (adheres || keeps_support));
   template <class F>
@@ -226,6 +98,10 @@ struct effect_list : effect_slot<E>... {
 
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
+  /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
+  double due(double dt) const { return (due_of<E>(dt) + ... + 0.0); }
+  S source_radius() const { return (is_source<E> || ...) ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+
   template <class F>
   COLLIDE_HD_INLINE F const& of() const {
     return static_cast<effect_slot<F> const&>(*this).effect;
@@ -243,9 +119,15 @@ struct effect_list : effect_slot<E>... {
 
   template <class P>
   COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;
-    if constexpr (keeps_pair_torques) p[angular_velocity{}] += p[pair_angular_acceleration{}] * dt;
-    (accelerate_by<E>(p, dt), ...);
+    if constexpr (resists) {
+      vec3<S> const before = p[velocity{}];
+      media all(before.template cast<double>());
+      push(p, dt);
+      (resist_by<E>(p, all), ...);
+      p[velocity{}] = velocity_in(all.sum(), before, p[velocity{}], dt);
+    } else {
+      push(p, dt);
+    }
   }
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_contact(P& p, mesh_contact<S>& t, S dt) const {
@@ -276,6 +158,16 @@ struct effect_list : effect_slot<E>... {
   }
 
  private:
+  template <class F>
+  double due_of([[maybe_unused]] double dt) const {
+    if constexpr (is_source<F>) return of<F>().rate * dt;
+    return 0;
+  }
+  template <class F>
+  S source_radius_of() const {
+    if constexpr (is_source<F>) return static_cast<S>(of<F>().radius);
+    return 0;
+  }
   template <class F, class P>
   COLLIDE_HD_INLINE bool skipped_by([[maybe_unused]] P& p) const {
     if constexpr (skips_in<F, S>::value) {
@@ -284,6 +176,20 @@ struct effect_list : effect_slot<E>... {
     } else {
       return false;
     }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void resist_by([[maybe_unused]] P& p, [[maybe_unused]] media& all) const {
+    if constexpr (resists_in<F, S>::value) {
+      particle_access<F, P> const seen(p);
+      all.add(of<F>().resistance(seen));
+    }
+  }
+  /// What all accelerate but those that resist.
+  template <class P>
+  COLLIDE_HD_INLINE void push([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;
+    if constexpr (keeps_pair_torques) p[angular_velocity{}] += p[pair_angular_acceleration{}] * dt;
+    (accelerate_by<E>(p, dt), ...);
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void accelerate_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
@@ -345,9 +251,12 @@ struct effect_list : effect_slot<E>... {
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void finish_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (finishes_in<F, S>::value) {
+    if constexpr (ends_in<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().end_step(seen, dt);
+    } else if constexpr (asks_forces<F>) {
+      particle_access<F, P> seen(p);
+      of<F>().end_step(seen, forces_on<effect_list, P, S>{*this, p}, dt);
     }
   }
 };

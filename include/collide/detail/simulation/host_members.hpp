@@ -18,14 +18,21 @@ inline void check_places(std::uint64_t places) {
   if (places >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
 }
 
-/// Throws `error` unless a simulation with these columns can have such particles, and places for them.
-template <class Columns>
-void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t places) {
+/// Throws `error` unless a simulation with these columns can have such particles, and places for them. `own` is the
+/// radius of what a source makes: 0 for the common radius of all, -1 if there is none.
+template <class Columns, class S>
+void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t places, S own, S common) {
   if (!one_radius && !contains<Columns, radius>) {
     throw error("collide: simulation: the radii differ: name the effect polydisperse in the scene");
   }
+  if (own > 0 && !contains<Columns, radius>) {
+    throw error("collide: emit: a source with a radius of its own needs polydisperse in the scene");
+  }
   if (places > particles && !contains<Columns, alive>) {
     throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
+  }
+  if (places > particles && contains<Columns, radius> && own == 0 && !(common > 0)) {
+    throw error("collide: emit: the radii differ: give the source a radius, before set");
   }
   check_places(places);
 }
@@ -33,7 +40,7 @@ void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t pla
 /// Calls an effect's `check_parameters`, if it has one.
 template <class E, class Effects>
 void check_parameters_of(Effects const& effects) {
-  if constexpr (checks_parameters<E>::value) effects.template of<E>().check_parameters();
+  check_part(effects.template of<E>());
 }
 
 /// Calls `check_bodies` of an effect that keeps something for each body.
@@ -95,6 +102,11 @@ template <class S>
 struct radius_range {
   S smallest = 0;  ///< of those that are not negative; infinite if there are none
   S largest = 0;
+
+  /// With those of what a source makes, if they have one of their own.
+  radius_range with(S own) const {
+    return own > 0 ? radius_range{smaller(smallest, own), larger(largest, own)} : *this;
+  }
 };
 
 /// The radii that particles have of their own. Waits.

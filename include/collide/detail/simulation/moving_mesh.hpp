@@ -63,10 +63,10 @@ struct body_frame {
   frame_pose before, now;  ///< when the step begins, and ends
   twist moved, moving;     ///< its twists at these times
   vec3<double> belt;
-  vec3<S> centre;  ///< of a bounding sphere of the body when the step begins; if not `swept`, when it ends
-  S reach;         ///< no particle of radius r that moves by d can touch the body in the step if `shrink` times its
-  S shrink;        ///< distance from the centre is above reach + r + d
-  bool moves;      ///< in this step
+  vec3<S> centre;     ///< of a bounding sphere of the body when the step begins; if not `swept`, when it ends
+  S reach;            ///< no particle of radius r that moves by d can touch the body in the step if `shrink` times its
+  S shrink;           ///< distance from the centre is above reach + r + d
+  uint_for<S> moves;  ///< not 0: in this step. So large that no byte of a checkpoint is padding
 
   template <class Vector>
   COLLIDE_HD_INLINE bool is_far(Vector const& x, S r, S path) const {

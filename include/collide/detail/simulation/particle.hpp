@@ -2,6 +2,8 @@
 /// Particles in registers, and their columns in memory.
 #pragma once
 
+#include <cmath>
+
 #include <collide/detail/simulation/attributes.hpp>
 
 // the numbers of elements of small arrays are int
@@ -85,6 +87,15 @@ struct share_of_all {
 };
 struct all_of_all {};
 
+/// Numbers at `particle_state::time`.
+inline constexpr std::size_t clock_size = 3;
+
+/// How many particles a source makes in a step in which `due` are due. A part of 1e-9 of one is put down to rounding.
+COLLIDE_HD_INLINE std::uint64_t begin_in_step(double const* time, double due) {
+  double const whole = std::floor(time[2] + due + 1e-9);
+  return static_cast<std::uint64_t>(whole < 0x1p53 ? whole : 0x1p53);
+}
+
 template <class S, class List>
 struct particle_state;
 template <class S, class... C>
@@ -95,7 +106,8 @@ struct particle_state<S, columns<C...>>
   std::size_t size;    ///< number of particles, or of places for them
   std::size_t placed;  ///< how many of them `set` has placed; effects that make particles use the others
   S common_radius;     ///< if there is no column for it
-  double* time;        ///< since `set`, when the step begins; null unless an effect has a member begin_step
+  double* time;        ///< since `set`, when the step begins; null unless an effect has a member begin_step. Behind it:
+                       ///< how many particles a source has made, and what part of the next one is due
 
   template <class D>
   COLLIDE_HD_INLINE column_element<D, S>* at(D) const {

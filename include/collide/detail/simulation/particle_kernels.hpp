@@ -17,6 +17,7 @@ struct init_particles {
   particle_state<S, All> state;
   sphere_view<S> spheres;
   S const* velocities;  ///< null: they rest
+  S source_radius;      ///< of what a source makes; 0: the common one
 
   COLLIDE_HD void operator()(std::size_t i) const {
     particle<S, All> p;
@@ -28,7 +29,8 @@ struct init_particles {
         p[velocity{}] = vec3<S>(velocities[3 * i], velocities[3 * i + 1], velocities[3 * i + 2]);
       }
     }
-    if constexpr (contains<All, radius>) p[radius{}] = there ? spheres.radius(i) : spheres.common_radius();
+    if constexpr (contains<All, radius>)
+      p[radius{}] = there ? spheres.radius(i) : source_radius > 0 ? source_radius : spheres.common_radius();
     if constexpr (contains<All, alive>) p[alive{}] = there;
     state.store(p, i, All{});
   }
@@ -117,6 +119,12 @@ struct release_adhered {
 template <class State, class Triangles>
 release_adhered(State, Triangles, bool) -> release_adhered<State, Triangles>;
 
+template <class S, class All, class Effects>
+init_particles<S, All> initial(particle_state<S, All> const& state, sphere_view<S> const& spheres, S const* velocities,
+                               Effects const& effects) {
+  return {state, spheres, velocities, effects.source_radius()};
+}
+
 /// Kernel body of `for_each`.
 template <class T>
 struct copy_values {
@@ -128,8 +136,13 @@ struct copy_values {
 /// Kernel body of `for_each` over one item.
 struct advance_time {
   double* time;
-  double dt;
-  COLLIDE_HD void operator()(std::size_t) const { *time += dt; }
+  double dt, due;  ///< of a source; see `begin_in_step`
+  COLLIDE_HD void operator()(std::size_t) const {
+    auto const begun = static_cast<double>(begin_in_step(time, due));
+    time[0] += dt;
+    time[1] += begun;
+    time[2] += due - begun;
+  }
 };
 
 }  // namespace collide::detail

@@ -1,0 +1,10 @@
+// expect: gives the parameters of an effect that is in the simulation
+#include <collide/bounce.hpp>
+#include <collide/bucket.cuh>
+#include <collide/friction.hpp>
+#include <collide/simulation.cuh>
+
+void run() {
+  collide::simulation<collide::detector<collide::bucket>, collide::bounce> scene;
+  scene.effect<collide::friction>().static_coefficient = 1;
+}

@@ -1,0 +1,10 @@
+// expect: collide: friction and adhesion act where the mesh is solid
+#include <collide/bucket.cuh>
+#include <collide/friction.hpp>
+#include <collide/gravity.hpp>
+#include <collide/simulation.cuh>
+
+void run() {
+  collide::simulation<collide::detector<collide::bucket>, collide::gravity, collide::friction> scene;
+  scene.step(0.001f);
+}

@@ -1,0 +1,9 @@
+// expect: collide: spin needs contacts that turn particles
+#include <collide/bucket.cuh>
+#include <collide/simulation.cuh>
+#include <collide/spin.hpp>
+
+void run() {
+  collide::simulation<collide::detector<collide::bucket>, collide::spin> scene;
+  scene.step(0.001f);
+}
