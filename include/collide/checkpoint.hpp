@@ -39,7 +39,7 @@ struct saved_numbers {
   std::uint64_t triangles = 0, places = 0, placed = 0;
   S common_radius = 0, smallest_radius = 0, largest_radius = 0;
   double time = 0, clock[clock_size] = {};
-  std::uint8_t reverse_order = 0;
+  std::uint8_t reverse_order = 0, knows_pair_forces = 0;
 
   /// Writes or reads all of them.
   template <class Archive>
@@ -55,6 +55,7 @@ struct saved_numbers {
     if (HasSource) archive.value("particles of the source", clock[1]);
     if (HasSource) archive.value("part of its next one", clock[2]);
     archive.value("reverse order", reverse_order);
+    archive.value("pair forces are known", knows_pair_forces);
   }
 };
 
@@ -71,9 +72,9 @@ class checkpoint {
   static void write(simulated const& from, std::ostream& stream, std::string const& name = "the stream") {
     if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
     checkpoint_writer to(stream, name);
-    numbers_type numbers{from.mesh_.size(),    from.state_.size,    from.state_.placed, from.state_.common_radius,
-                         from.radii_.smallest, from.radii_.largest, from.time_,         {},
-                         from.reverse_order_};
+    numbers_type numbers{from.mesh_.size(),    from.state_.size,       from.state_.placed, from.state_.common_radius,
+                         from.radii_.smallest, from.radii_.largest,    from.time_,         {},
+                         from.reverse_order_,  from.knows_pair_forces_};
     if constexpr (simulated::has_begin_step) from.space_.copy_to_host(numbers.clock, from.state_.time, clock_size);
     begin(to, numbers, from.effects_);
     for_each_column(
@@ -154,6 +155,7 @@ class checkpoint {
     to.state_ = state;
     to.time_ = numbers_.time;
     to.reverse_order_ = numbers_.reverse_order != 0;
+    to.knows_pair_forces_ = numbers_.knows_pair_forces != 0;
     to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius};
     if constexpr (simulated::effects_type::meets) to.neighbours_.clear(space, places, to.radii_.largest);
     to.is_set_ = true;

@@ -1,4 +1,5 @@
 /// Calls in the wrong order, and numbers that make no sense: what the errors say.
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -98,11 +99,39 @@ TEST_CASE("misuse: a step without particles, without a mesh, and of a time that 
   CHECK(step(0.125) == "collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
   scene.set_mesh({});
   CHECK(step(0.125) == "");
-  for (double const dt : {not_a_number, infinity})
+  for (double const dt : {not_a_number, infinity, 0.0, -0.125})
     CHECK(step(dt) == "collide: simulation: the time dt of a step is finite and above 0");
   simulation<detector<bucket>, gravity> free;
   free.set(spheres());
   CHECK(said_by([&] { free.step(0.125f); }) == "");
+  int const back = -5;
+  CHECK(said_by([&] { free.steps(static_cast<std::size_t>(back), 0.125f); }) ==
+        "collide: simulation: the number of steps is negative");
+}
+
+TEST_CASE("misuse: steps that are too long for springs, radii of 0, and values that do not fit a column") {
+  simulation<detector<bucket>, sphere_contact> springs(collide::host(1), sphere_contact{1000, 0, 0, 0, 1});
+  springs.set(spheres());  // pi sqrt(m / (2 k)) / 5, of a sphere of mass m
+  double const r = double(spheres().radius(0)),
+               fifth = 0.2 * std::sqrt(r * r * r * 2 / 3 * std::pow(3.14159265358979, 3) / 1000);
+  CHECK(largest_time_step(springs) == doctest::Approx(fifth / 4));
+  CHECK(said_by([&] { springs.step(float(0.99 * fifth)); }) == "");
+  CHECK(said_by([&] { springs.step(float(1.01 * fifth)); }).find("is above a fifth of a collision") !=
+        std::string::npos);
+  simulation<detector<bucket>, gravity> free;
+  CHECK(largest_time_step(free) == infinity);
+
+  float const centre[] = {0, 0, 0};
+  simulation<detector<bucket>, bounce> touches;
+  CHECK(said_by([&] { touches.set(collide::spheres_xyz(centre, 1, 0.0f)); }) ==
+        "collide: simulation: set: radii of particles that touch a mesh are above 0");
+
+  free.set(collide::spheres_xyz(centre, 1, 1.0f));
+  free.assign<collide::velocity>(std::vector<float>{1, 2, 3});
+  CHECK(free.to_host<collide::velocity>() == std::vector<float>{1, 2, 3});
+  CHECK(said_by([&] {
+          free.assign<collide::velocity>(std::vector<float>{1, 2});
+        }) == "collide: simulation: assign: there are 2 values for 3 numbers of the column");
 }
 
 TEST_CASE("misuse: parameters of effects") {
@@ -141,7 +170,7 @@ TEST_CASE("misuse: parameters of effects") {
   CHECK(said_with(mesh_forces{0}) == "collide: mesh_forces: density is above 0, and finite");
   CHECK(said_with<sphere_contact>(pair_forces{0}) == "collide: pair_forces: density is above 0, and finite");
   CHECK(said_with(sphere_contact{1000, 0, 0, 0, 0}) == "collide: sphere_contact: density is above 0, and finite");
-  CHECK(said_with(sleep{0.01, 300}) == "collide: sleep: steps are from 1 to 255");
+  CHECK(said_with(sleep{0.01, 300}) == "collide: sleep: steps are from 1 to 127");
   for (double const x : {not_a_number, infinity, -infinity}) {
     CHECK(said_with(gravity{0, 0, x}) == "collide: gravity: the acceleration is finite");
     CHECK(said_with(wind<>{1, 0, {0, x, 0}}) == "collide: wind: the velocity of uniform_field is finite");

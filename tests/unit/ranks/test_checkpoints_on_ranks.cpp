@@ -89,14 +89,14 @@ TEST_CASE("checkpoints on ranks: files, and what is refused") {
   collide::thread_ranks::run(3, [&](collide::thread_ranks const& ranks) {
     parts_type parts(ranks, collide::host(1));
     parts.set(collide::spheres_xyz(centre, 1, 0.1f));
-    parts.step(0.001f);
+    parts.step(0.0005f);
     collide::save(parts, path);
     parts_type later(ranks, collide::host(1));
     collide::load(later, path);
     collide::together(ranks, [&] {
       if (later.size() != 3 || later.time() != parts.time()) throw collide::error("something else was loaded");
     });
-    later.step(0.001f);
+    later.step(0.0005f);
   });
   CHECK(thrown([&](collide::thread_ranks const& ranks) {
           parts_type parts(ranks, collide::host(1));

@@ -163,6 +163,11 @@ void check_scenes_go_on(Space const& space) {
         space, layers<double>(4, 2, 0.05), 0, 2e-3, velocity_verlet{}, gravity{}, bounce{0.8}, friction{0.4, 0.3},
         lost_motion{});
   }
+  SUBCASE("half kicks, of other particles too") {
+    check_goes_on<at_rest, velocity_verlet, sleep, gravity, sphere_contact, bounce, adhesion, mesh_forces>(
+        space, w, 0, 1e-3, velocity_verlet{}, sleep{0.05, 20}, gravity{}, soft, bounce{0.1}, adhesion{3},
+        mesh_forces{100});
+  }
   SUBCASE("radii that differ") {
     auto mixed = w;
     for (std::size_t i = 0; i < mixed.size(); ++i) mixed.radii.push_back(0.02f + 0.03f * static_cast<float>(i % 7) / 6);

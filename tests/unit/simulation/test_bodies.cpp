@@ -170,6 +170,19 @@ TEST_CASE("bodies: what makes no sense is an error that says so, or is counted")
   made.simulation.steps(3, 1e-3);
   CHECK(made.simulation.bodies().report(made.simulation.space()).fast_steps == 3);
 
+  using swept = collide::simulation<collide::detector<collide::bucket, karabassi_swept<>, host, double>,
+                                    collide::bounce, collide::moving_bodies<>>;
+  for (double const radius : {1e-13, 1e-10}) {  // 512 units in the last place are 1.3e-13 and more here
+    w.radius = radius;
+    wild.motion = {};
+    wild.motion.rate = 100;
+    tests::running_bodies<swept> turns(host(1), w, {wild}, collide::bounce{}, collide::moving_bodies<>{});
+    turns.simulation.steps(3, 1e-3);
+    CHECK(turns.report().rough_steps == (radius < 1e-12 ? 3 : 0));
+    CHECK(turns.report().fast_steps == 0);
+  }
+  w.radius = 0.1;
+
   using mixed = collide::simulation<collide::detector<collide::bucket, karabassi<>, host, double>, collide::bounce,
                                     collide::polydisperse, collide::moving_bodies<>>;
   w.particle(0.5, 0, 0);

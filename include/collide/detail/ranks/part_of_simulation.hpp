@@ -66,13 +66,16 @@ class part_of_simulation {
   template <class Numbers>
   Numbers saved_numbers_of_all(bool reverse_order) const {
     auto const& s = simulation_;
-    Numbers numbers{
-        s.mesh_.size(), s.state_.all_size, s.state_.all_placed, s.state_.common_radius, S(0), S(0), s.time_, {},
-        reverse_order};
-    if constexpr (meets || Simulation::sweeps || Simulation::has_bodies) {
-      numbers.smallest_radius = s.radii_.smallest;
-      numbers.largest_radius = s.radii_.largest;
-    }
+    Numbers numbers{s.mesh_.size(),
+                    s.state_.all_size,
+                    s.state_.all_placed,
+                    s.state_.common_radius,
+                    s.radii_.smallest,
+                    s.radii_.largest,
+                    s.time_,
+                    {},
+                    reverse_order,
+                    s.knows_pair_forces_};
     if constexpr (Simulation::has_begin_step) s.space_.copy_to_host(numbers.clock, s.state_.time, clock_size);
     return numbers;
   }
@@ -100,6 +103,7 @@ class part_of_simulation {
     if constexpr (Simulation::has_begin_step) space().copy_from_host(state.time, numbers.clock, clock_size);
     saved.restore_parameters(simulation_);
     simulation_.time_ = numbers.time;
+    simulation_.knows_pair_forces_ = numbers.knows_pair_forces != 0;
     simulation_.prepare();
     saved.restore_bodies(simulation_);
     space().synchronize();
