@@ -159,7 +159,7 @@ def english():
         blank = lambda match: "\n" * match[0].count("\n")
         text = re.sub(r"<!-- table: .*?<!-- end -->|^```.*?^```|<!-- [^\n]*? -->", blank, page.read_text(), flags=re.M | re.S)
         for line, words in enumerate(text.splitlines(), 1):
-            if len(words) > LONGEST and not words.startswith(("|", "![", "[![", "    ")):
+            if len(words) > LONGEST and not words.startswith(("|", "   |", "![", "[![", "    ")):
                 yield f"{page}:{line}: {len(words)} characters in a line"
             prose = "" if words.startswith("    ") else re.sub(r"`[^`]*`|\]\([^)]*\)", "", words)
             for pattern, instead in FOREIGN.items():
