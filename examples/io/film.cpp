@@ -107,8 +107,9 @@ void add_options(CLI::App& app, film& wish) {
 
 void report(film const& of, film_cost const& cost) {
   std::cout << of.name << ": " << of.particles << " particles, " << cost.steps << " steps of " << of.dt << " s, "
-            << cost.milliseconds_per_step << " ms a step, " << cost.bytes_per_particle << " bytes a particle, "
-            << (cost.ranks > 1 ? std::to_string(cost.ranks) + " ranks, " : "") << of.space << " (" << cost.device
+            << cost.milliseconds_per_step << " ms a step, " << cost.bytes_per_particle
+            << " bytes a particle in columns, " << (cost.ranks > 1 ? std::to_string(cost.ranks) + " ranks, " : "")
+            << of.space << " (" << cost.device
             << (cost.threads > 1 ? ", " + std::to_string(cost.threads) + " threads" : "") << ")\n";
   if (of.report.empty()) return;
   output_file report(of.report);
