@@ -27,7 +27,7 @@
 #include <collide/sphere_contact.hpp>
 #include <collide/thread_ranks.hpp>
 #include <collide/upload.hpp>
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
 #include <collide/mpi.hpp>
 #endif
 
@@ -144,7 +144,7 @@ class silence final : public benchmark::BenchmarkReporter {
 /// Calls f(ranks) on so many threads, or on the processes of MPI if that is 0.
 template <class F>
 void on_ranks(int threads, F const& f) {
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
   if (threads == 0) return f(collide::mpi_ranks());
 #endif
   collide::thread_ranks::run(threads, f);
@@ -202,11 +202,11 @@ void add_all(int threads, int ranks, int cores = 1) {
 }  // namespace
 
 int main(int argc, char** argv) {
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
   collide::mpi_session const session(argc, argv);
 #endif
   int of_mpi = 1, rank = 0;
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
   of_mpi = collide::mpi_ranks().size();
   rank = collide::mpi_ranks().rank();
 #endif

@@ -297,12 +297,12 @@ void add_all(suite<Space> const& scene) {
   scene.template add<karabassi_swept<>>("swept: gravity, bounce", gravity{}, bounce{});
   scene.add("gravity, drag", gravity{}, drag{0.1, 0.01});
   scene.add("gravity, wind", gravity{}, wind<>{0.1, 0.01, {1, 0, 0}});
-  scene.add("gravity, bounds", gravity{}, box_walls{});
-  scene.add("gravity, periodic", gravity{}, periodic_box{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}});
+  scene.add("gravity, box_walls", gravity{}, box_walls{});
+  scene.add("gravity, periodic_box", gravity{}, periodic_box{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}});
   scene.add("gravity, bounce, polydisperse", gravity{}, bounce{}, polydisperse{});
   scene.add("gravity, bounce, friction", gravity{}, bounce{}, friction{});
   scene.add("gravity, bounce, friction, spin", gravity{}, bounce{}, friction{}, spin{});
-  scene.add("gravity, bounce, stick", gravity{}, bounce{}, adhesion{});
+  scene.add("gravity, bounce, adhesion", gravity{}, bounce{}, adhesion{});
   scene.add("sleep, gravity, bounce", collide::sleep{}, gravity{}, bounce{});
   scene.add("sleep, gravity, bounce: all asleep", collide::sleep{1e30, 5}, gravity{}, bounce{});
   scene.add("gravity, absorb", gravity{}, absorb{});
@@ -313,11 +313,12 @@ void add_all(suite<Space> const& scene) {
   scene.add_bodies("16 bodies: gravity, bounce", 16, gravity{}, bounce{});
   scene.add_bodies("1 body: gravity, bounce, reaction", 1, gravity{}, bounce{}, scene.reaction());
   auto const contact = sphere_contact::from_restitution(0.5, 2e-3, double(scene.radius()), 1);
-  scene.add("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
+  auto const soft = sphere_contact::from_restitution(0.5, 0.2, double(scene.radius()), 1);  // as its steps are longer
+  scene.add("sphere_contact, gravity, bounce", soft, gravity{}, bounce{});
   scene.add_packed("sphere_contact, gravity", contact, gravity{});
   scene.add_packed("sphere_contact, gravity, bounce", contact, gravity{}, bounce{});
-  scene.add_mixing("packed, mixing: sphere_contact, gravity, bounds", 10, contact, gravity{}, scene.around_packed());
-  scene.add_mixing("packed, fast: sphere_contact, gravity, bounds", 2000, contact, gravity{}, scene.around_packed());
+  scene.add_mixing("packed, mixing: sphere_contact, gravity, box_walls", 10, contact, gravity{}, scene.around_packed());
+  scene.add_mixing("packed, fast: sphere_contact, gravity, box_walls", 2000, contact, gravity{}, scene.around_packed());
 }
 
 /// Kernel body of `for_each` over spheres that fill space.

@@ -9,5 +9,6 @@ function(collide_find_mpi)
   if(MPI_CXX_FOUND AND NOT TARGET collide::mpi)
     add_library(collide::mpi INTERFACE IMPORTED GLOBAL)
     target_link_libraries(collide::mpi INTERFACE collide::collide MPI::MPI_CXX)
+    target_compile_definitions(collide::mpi INTERFACE COLLIDE_HAS_MPI)  # for programs that run with MPI and without
   endif()
 endfunction()

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
 #include <collide/mpi.hpp>
 #endif
 
@@ -191,7 +191,7 @@ void run_on_threads(int n, options const& wish) {
 void run(options const& wish) {
   if (wish.ranks.empty()) return run(collide::one_rank(), wish);
   if (int const n = io::threads_of(wish.ranks)) return run_on_threads(n, wish);
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
   io::any_ranks const ranks{collide::mpi_ranks()};
   detection::take_device(wish.space, ranks.rank());
   run(ranks, wish);
@@ -216,7 +216,7 @@ void check(options& wish) {
   if (!wish.ranks.empty() && wish.ranks != "mpi" && io::threads_of(wish.ranks) == 0) {
     throw io::usage_error("--ranks: " + io::quoted(wish.ranks) + " is neither mpi nor threads:N, N from 1 to 1024");
   }
-#if !defined(COLLIDE_PROGRAM_HAS_MPI)
+#if !defined(COLLIDE_HAS_MPI)
   if (wish.ranks == "mpi") throw io::usage_error("--ranks: this program was built without MPI");
 #endif
   if (wish.scalar.empty() && wish.precision == "double") wish.scalar = "double";
@@ -262,12 +262,12 @@ int main(int argc, char** argv) {
       ->type_name("RANKS");
   app.add_option("--repeat", wish.repeat, "how often to measure")->check(CLI::Range(1, 1'000'000))->type_name("N");
   app.footer("`detect MESH SPHERES RADIUS OUTPUT` is the short form.");
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
   std::optional<collide::mpi_session> session;  // until all has been said
 #endif
   return io::run_program(app, {argv + 1, argv + argc}, [&] {
     check(wish);
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
     if (wish.ranks == "mpi") session.emplace(argc, argv);
 #endif
     run(wish);

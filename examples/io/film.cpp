@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <collide/thread_ranks.hpp>
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
 #include <collide/mpi.hpp>
 #endif
 
@@ -70,7 +70,7 @@ void on_ranks(film const& wish, F const& f) {
   if (wish.ranks != "mpi") {
     throw usage_error("--ranks: " + io::quoted(wish.ranks) + " is neither mpi nor threads:N, N from 1 to 1024");
   }
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
   any_ranks const any{collide::mpi_ranks()};
   f(wish, &any);
 #else
@@ -107,8 +107,9 @@ void add_options(CLI::App& app, film& wish) {
 
 void report(film const& of, film_cost const& cost) {
   std::cout << of.name << ": " << of.particles << " particles, " << cost.steps << " steps of " << of.dt << " s, "
-            << cost.milliseconds_per_step << " ms a step, " << cost.bytes_per_particle << " bytes a particle, "
-            << (cost.ranks > 1 ? std::to_string(cost.ranks) + " ranks, " : "") << of.space << " (" << cost.device
+            << cost.milliseconds_per_step << " ms a step, " << cost.bytes_per_particle
+            << " bytes a particle in columns, " << (cost.ranks > 1 ? std::to_string(cost.ranks) + " ranks, " : "")
+            << of.space << " (" << cost.device
             << (cost.threads > 1 ? ", " + std::to_string(cost.threads) + " threads" : "") << ")\n";
   if (of.report.empty()) return;
   output_file report(of.report);
@@ -162,7 +163,7 @@ int run_film(int argc, char** argv, film wish, std::function<void(film const&)> 
              std::function<void(film const&, any_ranks const*)> const& shoot) {
   CLI::App app(wish.about, wish.name);
   add_options(app, wish);
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
   std::optional<collide::mpi_session> session;
   for (int i = 1; i < argc; ++i) {
     if (std::string(argv[i]) == "mpi" || std::string(argv[i]) == "--ranks=mpi") session.emplace(argc, argv);

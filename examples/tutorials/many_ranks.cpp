@@ -12,7 +12,7 @@
 #include <collide/distributed.hpp>
 #include <collide/thread_ranks.hpp>
 #include <collide/upload.hpp>
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
 #include <collide/mpi.hpp>
 #endif
 
@@ -106,7 +106,7 @@ int main(int argc, char** argv) try {
     collide::thread_ranks::run(std::atoi(how.c_str()), [](auto const& ranks) { start(ranks); });
     return 0;
   }
-#if defined(COLLIDE_PROGRAM_HAS_MPI)
+#if defined(COLLIDE_HAS_MPI)
   collide::mpi_session const session(argc, argv);
   start(collide::mpi_ranks());
   return 0;

@@ -33,8 +33,9 @@
 /// distributed_simulation.cuh. One with `static constexpr bool asks_forces = true` has `end_step(particle&, forces,
 /// dt)` instead: `forces.change(dt)` is by how much `accelerate` of all effects changes the velocity. One
 /// that makes the mesh solid says `static constexpr bool repels = true`.
-/// `on_pair_contact` is called before the other members but `begin_step`: `self` and `other` are as they were when the
-/// step began, and what changes is `particle`, so that both of a pair see the same.
+/// `on_pair_contact` is called before the other members but `begin_step`, with `velocity_verlet` when all particles
+/// have moved: `self` and `other` are as they were then. What changes is `particle`, so that both of a pair see the
+/// same.
 ///
 /// `accelerate` of every effect is called once more for each contact with the mesh, on a copy of the particle, to learn
 /// `mesh_contact::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.

@@ -109,7 +109,8 @@ class reaction_sums {
  public:
   /// For so many bodies; a step of a mesh with more is refused (`error`). `unit` is the impulse to which each contact
   /// is rounded, and the moment: a sum may be off by half a unit for each contact of a step. `triangles`: for how many
-  /// of the mesh, from the first on, there are sums too. Allocates 12 KB a body and 48 bytes a triangle in the space.
+  /// of the mesh, from the first on, there are sums too. Allocates 12 KB a body, as much for what rests, and 48 bytes a
+  /// triangle in the space.
   template <class Space>
   reaction_sums(Space const& space, std::size_t bodies, double unit, std::size_t triangles = 0)
       : bodies_{bodies}, triangles_{triangles}, unit_{unit} {

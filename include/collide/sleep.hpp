@@ -7,7 +7,7 @@
 
 namespace collide {
 
-/// A particle that has been slower than `speed` for `steps` steps (at most 255) sleeps: it is left out until another
+/// A particle that has been slower than `speed` for `steps` steps (at most 127) sleeps: it is left out until another
 /// particle that is awake and faster than that overlaps it, or the mesh changes, and costs the byte that says so.
 /// Choose `steps` such that a particle at the top of its flight is not slow for so long: more than 2 speed / (g dt).
 struct sleep {

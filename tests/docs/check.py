@@ -7,7 +7,7 @@ examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md is in the file, or in the folder, that it is said to be in; words are in order.
 members   The tables of members in docs/guide.md have all that the headers have, and nothing else.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST.
-numbers   Times and rates in prose of MEASURED are numbers that bench/report has written.
+numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
 import re
@@ -21,7 +21,7 @@ PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"
 TAUGHT = [ROOT / "README.md", ROOT / "docs" / "guide.md", ROOT / "docs" / "simulation.md", *(ROOT / "docs" / "tutorials").glob("*.md")]
 
 # Pages in which no one writes measured numbers by hand.
-MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "simulation"))]
+MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "simulation", "guide", "ranks", "gallery"))]
 
 # Words that readers of English do not use for what is meant, and what to write instead. Patterns, in any case.
 FOREIGN = {
@@ -159,7 +159,7 @@ def english():
         blank = lambda match: "\n" * match[0].count("\n")
         text = re.sub(r"<!-- table: .*?<!-- end -->|^```.*?^```|<!-- [^\n]*? -->", blank, page.read_text(), flags=re.M | re.S)
         for line, words in enumerate(text.splitlines(), 1):
-            if len(words) > LONGEST and not words.startswith(("|", "![", "[![", "    ")):
+            if len(words) > LONGEST and not words.startswith(("|", "   |", "![", "[![", "    ")):
                 yield f"{page}:{line}: {len(words)} characters in a line"
             prose = "" if words.startswith("    ") else re.sub(r"`[^`]*`|\]\([^)]*\)", "", words)
             for pattern, instead in FOREIGN.items():
@@ -173,7 +173,7 @@ def numbers():
         blank = lambda match: "\n" * match[0].count("\n")
         text = re.sub(r"<!-- (?:table|compile-cost|number).*?<!-- end[^>]*-->|^```.*?^```", blank, page.read_text(), flags=re.M | re.S)
         for line, words in enumerate(text.splitlines(), 1):
-            for found in re.findall(r"\b\d[\d.,]* ?(?:ms|µs|us|ns|ps|GB/s|times as (?:long|fast))", words):
+            for found in re.findall(r"\b\d[\d.,]* ?(?:(?:ms|µs|us|ns|ps|[GM]B(?:/s)?)\b|times as (?:long|fast|slow)|%)", words):
                 yield f"{page}:{line}: {found!r} is not of bench/report"
 
 
