@@ -99,8 +99,8 @@ struct pair_acceleration {
   using value = vec3<S>;
 };
 
-/// The same of the angular velocity, in radians per time squared. Scenes have it that name an effect with
-/// `on_pair_contact`, `velocity_verlet` and `spin`.
+/// What other particles add to the angular velocity, per unit of time, in radians per time squared. Scenes have it that
+/// name an effect with `on_pair_contact`, `velocity_verlet` and `spin`.
 struct pair_angular_acceleration {
   template <class S>
   using value = vec3<S>;

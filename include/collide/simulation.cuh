@@ -225,8 +225,8 @@ class simulation {
     if constexpr (std::is_same<Column, radius>::value) radii_ = detail::radius_range_of(*this);
   }
 
-  /// The same from a container such as std::vector or thrust::device_vector, whose memory is that of the space. Throws
-  /// `error` if it has another size than the column.
+  /// Gives all particles a column's values, from a container such as std::vector or thrust::device_vector, whose memory
+  /// is that of the space. Throws `error` if it has another size than the column.
   template <class Column, class Container, class = decltype(std::declval<Container const&>().size())>
   void assign(Container const& values) {
     if (std::size_t(values.size()) != numbers<Column>())

@@ -1,5 +1,4 @@
-// expect: collide: an effect may use a column only if it names it in its reads or writes, or in its optional_writes and
-// the scene has it
+// expect: collide: an effect may use a column only if it names it in its reads or writes, or in its optional_writes
 #include <collide/bucket.cuh>
 #include <collide/simulation.cuh>
 

@@ -21,7 +21,7 @@ std::size_t beyond(std::vector<S> const& x, std::size_t axis, S least, S most) {
 }
 
 /// Radii, in units in the last place of the coordinates.
-inline constexpr double small_radii[] = {0, 1e-30, 0.25, 0.5, 0.75, 1};
+inline constexpr double small_radii[] = {1e-30, 0.25, 0.5, 0.75, 1};
 
 /// Particles that are smaller than the rounding of their coordinates fall on a plane, of either winding.
 template <class S, class Space>

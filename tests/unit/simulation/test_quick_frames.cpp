@@ -181,7 +181,7 @@ TEST_CASE_TEMPLATE("quick frames: steps with them have the bits of steps without
   std::size_t hits = 0;
   for (std::size_t const count : {1, 16, 64}) {
     for (double const far : {0.0, 3.0, 1e4, 1e7}) {
-      for (double const r : {0.0, 1e-30, 1e-3, 0.05, 0.5, 30.0, 1e20, -1.0}) {
+      for (double const r : {1e-30, 1e-3, 0.05, 0.5, 30.0, 1e20, -1.0}) {
         bool const rests = static_cast<int>(r * 1e4) % 7 == 3 || far > 3;
         boxes_scene<S> const s(static_cast<unsigned>(count + 7), count, far, r, rests);
         // a scene with radii of their own, all the same, goes the way without quick frames

@@ -121,10 +121,10 @@ struct effect_list : effect_slot<E>... {
   COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (resists) {
       vec3<S> const before = p[velocity{}];
-      media all(before.template cast<double>());
+      media around(before.template cast<double>());
       push(p, dt);
-      (resist_by<E>(p, all), ...);
-      p[velocity{}] = velocity_in(all.sum(), before, p[velocity{}], dt);
+      (resist_by<E>(p, around), ...);
+      p[velocity{}] = velocity_in(around.sum(), before, p[velocity{}], dt);
     } else {
       push(p, dt);
     }
@@ -178,10 +178,10 @@ struct effect_list : effect_slot<E>... {
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void resist_by([[maybe_unused]] P& p, [[maybe_unused]] media& all) const {
+  COLLIDE_HD_INLINE void resist_by([[maybe_unused]] P& p, [[maybe_unused]] media& around) const {
     if constexpr (resists_in<F, S>::value) {
       particle_access<F, P> const seen(p);
-      all.add(of<F>().resistance(seen));
+      around.add(of<F>().resistance(seen));
     }
   }
   /// What all accelerate but those that resist.
