@@ -39,7 +39,7 @@ struct saved_numbers {
   std::uint64_t triangles = 0, places = 0, placed = 0;
   S common_radius = 0, smallest_radius = 0, largest_radius = 0;
   double time = 0, clock[clock_size] = {};
-  std::uint8_t reverse_order = 0, knows_pair_forces = 0;
+  std::uint8_t reverse_order = 0, knows_pair_forces = 0, bodies_are_placed = 0;
 
   /// Writes or reads all of them.
   template <class Archive>
@@ -56,6 +56,7 @@ struct saved_numbers {
     if (HasSource) archive.value("part of its next one", clock[2]);
     archive.value("reverse order", reverse_order);
     archive.value("pair forces are known", knows_pair_forces);
+    archive.value("bodies are placed", bodies_are_placed);
   }
 };
 
@@ -72,9 +73,17 @@ class checkpoint {
   static void write(simulated const& from, std::ostream& stream, std::string const& name = "the stream") {
     if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
     checkpoint_writer to(stream, name);
-    numbers_type numbers{from.mesh_.size(),    from.state_.size,       from.state_.placed, from.state_.common_radius,
-                         from.radii_.smallest, from.radii_.largest,    from.time_,         {},
-                         from.reverse_order_,  from.knows_pair_forces_};
+    numbers_type numbers{from.mesh_.size(),
+                         from.state_.size,
+                         from.state_.placed,
+                         from.state_.common_radius,
+                         from.radii_.smallest,
+                         from.radii_.largest,
+                         from.time_,
+                         {},
+                         from.reverse_order_,
+                         from.knows_pair_forces_,
+                         from.bodies_.are_placed()};
     if constexpr (simulated::has_begin_step) from.space_.copy_to_host(numbers.clock, from.state_.time, clock_size);
     begin(to, numbers, from.effects_);
     for_each_column(
@@ -161,6 +170,7 @@ class checkpoint {
     to.is_set_ = true;
     to.prepare();
     restore_bodies(to);
+    to.bodies_.place(numbers_.bodies_are_placed != 0);
   }
 
   /// Gives places from `place` on the columns of `n` particles from number `first` on.

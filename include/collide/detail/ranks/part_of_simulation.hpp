@@ -75,7 +75,8 @@ class part_of_simulation {
                     s.time_,
                     {},
                     reverse_order,
-                    s.knows_pair_forces_};
+                    s.knows_pair_forces_,
+                    s.bodies_.are_placed()};
     if constexpr (Simulation::has_begin_step) s.space_.copy_to_host(numbers.clock, s.state_.time, clock_size);
     return numbers;
   }
@@ -106,6 +107,7 @@ class part_of_simulation {
     simulation_.knows_pair_forces_ = numbers.knows_pair_forces != 0;
     simulation_.prepare();
     saved.restore_bodies(simulation_);
+    simulation_.bodies_.place(numbers.bodies_are_placed != 0);
     space().synchronize();
   }
 
@@ -265,7 +267,8 @@ class part_of_simulation {
   void start(std::size_t n, numbers_of_all const& all, radii_of_all<S> const& radii) {
     std::size_t const room = n + static_cast<std::size_t>(all.free_size);
     describe(room, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), radii.common);
-    space().for_each(room, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free});
+    space().for_each(room, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free,
+                                                        simulation_.effects_.source_radius()});
     S const widest = radii.widest;
     simulation_.radii_ = radii.range;
     skin_ = skin_fraction * 2 * widest;

@@ -56,12 +56,13 @@ struct number_places {
   State state;
   std::size_t placed;
   std::uint64_t first, first_free;
+  decltype(State::common_radius) free_radius;  ///< of what a source makes; not above 0: the common one
 
   COLLIDE_HD void operator()(std::size_t i) const {
     bool const is_free = i >= placed;
     state.at(global_number{})[i] = static_cast<id>(is_free ? first_free + (i - placed) : first + i);
     if constexpr (contains<typename State::list, radius>) {
-      if (is_free) state.at(radius{})[i] = state.common_radius;
+      if (is_free) state.at(radius{})[i] = free_radius > 0 ? free_radius : state.common_radius;
     }
   }
 };

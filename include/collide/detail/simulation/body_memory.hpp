@@ -264,6 +264,10 @@ class body_memory {
             {quick_.data(), room_}};
   }
 
+  /// Whether they have begun where the caller drives them.
+  bool are_placed() const { return is_placed_; }
+  void place(bool placed) { is_placed_ = placed; }
+
   /// True if the caller says where they are.
   static constexpr bool are_driven() { return std::is_same<Motion, driven>::value; }
 
@@ -318,6 +322,8 @@ struct no_bodies {
   static std::size_t size() { return 0; }
   static int room() { return 0; }
   static constexpr bool are_driven() { return false; }
+  static constexpr bool are_placed() { return false; }
+  static void place(bool) {}
   static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
     if (!bodies.empty() || velocities != nullptr)
       throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
