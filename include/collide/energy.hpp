@@ -38,7 +38,7 @@ energy_sums energy(simulation<Detector, Effect...>& of, double density = 0) {
   if constexpr (detail::contains<list, radius>) r = of.template to_host<radius>();
   if constexpr (detail::contains<list, angular_velocity>) w = of.template to_host<angular_velocity>();
   if constexpr (detail::contains<list, alive>) is_there = of.template to_host<alive>();
-  auto const at = [](auto const& all, std::size_t i) {
+  auto const at = [](auto const& all, std::size_t i) -> vec3<double> {
     return vec3<S>(all[i], all[i + 1], all[i + 2]).template cast<double>();
   };
   energy_sums sum;

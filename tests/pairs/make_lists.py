@@ -166,6 +166,9 @@ def print_pairs(lists, name):
         if name is None or name in one:
             of = [n for n, (effects, factors) in enumerate(lists, 1) if one in covered(effects, factors)]
             print(f"{one[0]}, {one[1]}: {', '.join(map(str, of))}")
+    for effect, of in NEEDS.items():
+        print(f"{effect}: does not compile without {' or '.join(of)}, or an effect of a user's that does the same")
+    print("two integrators, two sources: do not compile")
     print("An effect stands with moving_bodies where it does with body, driven_body or deforming.")
 
 

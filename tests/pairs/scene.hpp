@@ -48,7 +48,7 @@ constexpr std::size_t steps = 400, newborns = 12;
 
 /// The parameters of an effect in all scenes.
 template <class E>
-E parameters(collide::reaction_sums const& sums) {
+E parameters(collide::reaction_sums const& sums, bool several_sizes) {
   if constexpr (std::is_same<E, collide::drag>::value) {
     return {0.5, 0.5};
   } else if constexpr (std::is_same<E, collide::wind<>>::value) {
@@ -64,7 +64,7 @@ E parameters(collide::reaction_sums const& sums) {
   } else if constexpr (std::is_same<E, collide::sleep>::value) {
     return {0.02, 20};
   } else if constexpr (std::is_same<E, collide::emit>::value) {
-    return {40, {{0, 0, 0.6}, 0.1, {0, 0, -1}, 0.2}, small_grain_radius};
+    return {40, {{0, 0, 0.6}, 0.1, {0, 0, -1}, 0.2}, several_sizes ? small_grain_radius : 0};
   } else if constexpr (std::is_same<E, collide::absorbing_box>::value) {
     return {{-0.3, -0.3, 0}, {-0.1, -0.1, 0.12}};
   } else if constexpr (std::is_same<E, collide::box_walls>::value) {
