@@ -42,7 +42,7 @@ FIRST = [
     ("velocity_verlet gravity sphere_contact bounce friction spin reaction", ("body", "karabassi_swept", "double")),
     ("gravity sphere_contact bounce adhesion mesh_forces pair_forces reaction", ("driven_body", "karabassi", "float")),
     ("polydisperse sphere_contact gravity bounce friction spin sleep reaction", ("at_rest", "karabassi", "float")),
-    ("velocity_verlet gravity sphere_contact bounce adhesion lost reaction", ("deforming", "karabassi_swept", "double")),
+    ("velocity_verlet gravity bounce adhesion lost reaction", ("deforming", "karabassi_swept", "double")),
     ("velocity_verlet gravity sphere_contact bounce polydisperse reaction", ("at_rest", "karabassi_swept", "double")),
 ]
 
