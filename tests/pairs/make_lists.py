@@ -27,7 +27,9 @@ SCALARS = ["float", "double"]
 FACTORS = [SURFACES, NARROW_PHASES, SCALARS]
 
 # One of these must be in the list, too; what a simulation without them says is in tests/compile_fail.
-NEEDS = {"friction": ["bounce"], "adhesion": ["bounce"], "spin": ["bounce", "sphere_contact"]}
+REQUIRED = {"friction": ["bounce"], "adhesion": ["bounce"], "spin": ["bounce", "sphere_contact"]}
+# A user's effect between particles that changes no velocity does not compile alone with velocity_verlet or adhesion.
+NEEDS = {**REQUIRED, "warms": ["sphere_contact"]}
 # runs_after of the effects; pair_forces sees nothing of a user's effect that comes after it.
 AFTER = {
     "friction": ["bounce"],
@@ -166,7 +168,7 @@ def print_pairs(lists, name):
         if name is None or name in one:
             of = [n for n, (effects, factors) in enumerate(lists, 1) if one in covered(effects, factors)]
             print(f"{one[0]}, {one[1]}: {', '.join(map(str, of))}")
-    for effect, of in NEEDS.items():
+    for effect, of in REQUIRED.items():
         print(f"{effect}: does not compile without {' or '.join(of)}, or an effect of a user's that does the same")
     print("two integrators, two sources: do not compile")
     print("An effect stands with moving_bodies where it does with body, driven_body or deforming.")
