@@ -1,5 +1,6 @@
 /// What must hold of any list of effects: all numbers are finite, and the same on the host, as blocks of threads go, on
-/// one rank and on three, and through save and load in the middle.
+/// one rank and on three, and through save and load in the middle; where nothing else takes momentum, what particles
+/// lose bodies get, and where nothing brings energy, it does not grow.
 #pragma once
 
 #include <sstream>
@@ -288,7 +289,7 @@ class checked_list<scene_list<Surface, NarrowPhase, S, Effect...>> {
     wrong.expect(equal_bytes(parts.total(sums), given_), "what bodies have got");
   }
 
-  /// All particles are somewhere, and those that are placed have moved.
+  /// No number of any particle is NaN or infinite.
   static void check_finite(values const& of) {
     std::size_t bad = 0;
     auto const count = [&](auto const& column) {
