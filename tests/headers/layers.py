@@ -29,7 +29,7 @@ LAYERS = {
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh extend.hpp",
     "effect interface": "bodies.hpp columns.hpp effect.hpp integrators.hpp",
     "simulation": "detail/simulation/ checkpoint.hpp simulation.cuh",
-    "effects": "absorb.hpp bounce.hpp bounds.hpp contact_forces.hpp drag.hpp emit.hpp friction.hpp gravity.hpp lost.hpp lost_motion.hpp polydisperse.hpp reaction.hpp sleep.hpp "
+    "effects": "absorb.hpp bounce.hpp bounds.hpp contact_forces.hpp drag.hpp emit.hpp energy.hpp friction.hpp gravity.hpp lost.hpp lost_motion.hpp polydisperse.hpp reaction.hpp sleep.hpp "
                "sphere_contact.hpp spin.hpp adhesion.hpp wind.hpp",
     "streaming": "detail/streaming/ in_passes.hpp streamed.cuh",
     "ranks": "detail/ranks/ distributed.hpp distributed_checkpoint.hpp distributed_simulation.cuh mpi.hpp ranks.hpp thread_ranks.hpp",
