@@ -85,8 +85,9 @@ struct adhered {
   using value = std::uint8_t;
 };
 
-/// 1 if the mesh held the particle at the end of the last step, whose second half kick is then part of the next one.
-/// Scenes have it that name `velocity_verlet` and an effect that touches the mesh.
+/// 1 if the mesh held the particle at the end of the last step, whose second half kick is then part of the next one; 2
+/// if it stuck to the mesh all the time. Scenes have it that name `velocity_verlet` and an effect that touches the
+/// mesh.
 struct held {
   template <class S>
   using value = std::uint8_t;

@@ -312,12 +312,13 @@ class simulation {
 
   /// Particles meet, among them copies of other ranks' in `with_copies`.
   void meet([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
-    if constexpr (effects_type::meets) {
-      if (state_.size == 0) return;
-      if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
-      neighbours_.interact(space_, with_copies, effects_, dt);
-    }
+    [[maybe_unused]] bool const is_first = !knows_pair_forces_;
     knows_pair_forces_ = true;
+    if (state_.size == 0) return;
+    if constexpr (effects_type::meets) {
+      if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
+      neighbours_.interact(space_, with_copies, effects_, dt, is_first);
+    }
   }
   template <class... Kick>
   void forget_pair_kicks(collide::columns<Kick...>) {

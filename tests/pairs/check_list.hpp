@@ -204,10 +204,7 @@ class checked_list<scene_list<Surface, NarrowPhase, S, Effect...>> {
   static constexpr bool has = (is_among<E, Effect...> || ...);
   static constexpr bool momentum_closes =
       has<collide::reaction> &&
-      !has<collide::drag, collide::wind<>, collide::box_walls, collide::emit, collide::absorb,
-           collide::absorbing_box> &&
-      // What adhesion holds gets the forces of the beginning of a step where others get half those of its end.
-      !(has<collide::velocity_verlet> && has<collide::adhesion> && simulation<host>::effects_type::meets);
+      !has<collide::drag, collide::wind<>, collide::box_walls, collide::emit, collide::absorb, collide::absorbing_box>;
   static constexpr bool energy_falls = Surface == surface::at_rest && !has<collide::wind<>, collide::emit> &&
                                        !(has<collide::gravity> && has<collide::periodic_box>);
   static constexpr bool energy_stays = energy_falls && has<collide::velocity_verlet> && has<collide::gravity> &&
@@ -278,8 +275,6 @@ class checked_list<scene_list<Surface, NarrowPhase, S, Effect...>> {
     scene.play(parts, steps / 2, steps);
     found.read(parts);
     wrong.expect(equal(found, end_.part(own.first, own.size)), "in the end");
-    // What stuck to a body, and has gone to another rank, may be summed up once more where it was.
-    if (has<collide::adhesion> && Surface != surface::at_rest) return;
     wrong.expect(equal_bytes(parts.total(sums), given_), "what bodies have got");
   }
 

@@ -40,6 +40,7 @@ TEST_CASE("where features meet: adhesion holds against other particles, and a su
   tests::check_adhesion_and_others<karabassi<>, velocity_verlet, float>(blocks());
   tests::check_adhesion_and_others<karabassi_swept<>, velocity_verlet, double>(host(1));
   tests::check_adhesion_without_surface<karabassi<>, float>(blocks());
+  tests::check_pairs_without_forces(host(1));
   tests::check_adhesion_without_surface<karabassi_swept<>, double>(host(1));
 }
 

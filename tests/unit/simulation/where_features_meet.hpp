@@ -210,6 +210,30 @@ struct pushes {
   }
 };
 
+/// A user's effect between particles that leaves velocities alone.
+struct cools {
+  using writes = collide::columns<temperature>;
+  template <class Particle, class Seen, class S>
+  COLLIDE_HD void on_pair_contact(Particle& p, Seen const&, Seen const& other, S) const {
+    p[temperature{}] = other[temperature{}];
+  }
+};
+
+/// Effects between particles need not change velocities, whatever is kept of those that do.
+template <class Space>
+void check_pairs_without_forces(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space>, velocity_verlet, cools, gravity, bounce, friction, spin, adhesion>;
+  auto w = ball_on_floor<float>();
+  w.particle(0.15, 0, 0.1);
+  running<simulation> made(space, w, velocity_verlet{}, cools{}, gravity{}, bounce{}, friction{}, spin{}, adhesion{});
+  placed<float> const warm(made.simulation.space(), {1, 2});
+  made.simulation.template assign<temperature>(warm.data());
+  made.simulation.step(1e-3f);
+  CHECK(made.simulation.template to_host<temperature>()[0] == 2);  // once in a step
+  CHECK(made.velocities()[0] == 0);
+}
+
 /// What adhesion holds another particle pulls off with more than it holds, and with no less; what is pulled along the
 /// mesh then slides as under gravity.
 template <class NarrowPhase, class Integrator, class S, class Space>

@@ -89,7 +89,9 @@ struct effect_list : effect_slot<E>... {
   using contact = union_of<integration_reads, reads_if<E, touches_mesh_in<E, S>>...>;
   using contact_writes = union_of<integration_writes, writes_if<E, touches_mesh_in<E, S>>...>;
   /// What is read and written for particles that meet others; what is read is also copied.
-  using interaction = union_of<columns<position>, reads_if<E, interacts_or_skips<E>>..., radius_if<meets>, own_number>;
+  using interaction = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
+                               columns_if<keeps_pair_torques, angular_velocity>, reads_if<E, interacts_or_skips<E>>...,
+                               radius_if<meets>, own_number>;
   using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
   using interaction_writes = difference_of<
       union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>,

@@ -86,6 +86,14 @@ COLLIDE_HD_INLINE auto first_kick([[maybe_unused]] Particle const& p) {
   }
 }
 
+/// Tells the effects what the mesh gives to a particle that sticks to it.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void book_held(Context const& context, Particle& p, vec3<typename Context::scalar> const& change) {
+  using S = typename Context::scalar;
+  vec3<S> const none(S(0), S(0), S(0));
+  book(context, p, {change, none, p[position{}], none, p[velocity{}], no_id, body_of_frame(frame_ridden(p))});
+}
+
 /// Lets the mesh hold a particle that sticks to it, against what would change its velocity in the step. False if that
 /// pulls it off: then it is free.
 template <class Context, class Particle>
@@ -101,15 +109,10 @@ COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p) {
     p[adhered{}] = 0;
     return false;
   }
-  S kicks = 1;
-  if constexpr (contains<typename Particle::list, held>) {
-    if (p[held{}] == 1) kicks += Context::kick_after;
-    p[held{}] = 2;
-  }
-  vec3<double> const given = surface.after - own - scaled(by, static_cast<double>(kicks));
-  vec3<S> const none(S(0), S(0), S(0));
+  vec3<double> const given = surface.after - own - scaled(by, static_cast<double>(first_kick<Context>(p)));
   v = rounded_to<S>(surface.drift);
-  book(context, p, {rounded_to<S>(given), none, p[position{}], none, v, no_id, body_of_frame(frame_ridden(p))});
+  if (p.number < context.state.size) book_held(context, p, rounded_to<S>(given));  // behind are places of none
+  if constexpr (contains<typename Particle::list, held>) p[held{}] = 2;
   return true;
 }
 
@@ -143,7 +146,7 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
   }
   if constexpr (contains<typename Particle::list, held>) {
     if constexpr (Context::effects_type::adheres) {
-      if (p[held{}] == 2 && p[adhered{}] != 0) return;  // it got all of the acceleration at the beginning
+      if (p[held{}] == 2 && p[adhered{}] != 0) return;  // it stuck all the time
     }
     p[held{}] = holds;
   }
@@ -153,9 +156,16 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void end_particle(Context const& context, Particle& p) {
   if constexpr (Context::kick_after != 0) {
-    bool is_free = true;
-    if constexpr (contains<typename Particle::list, held>) is_free = p[held{}] == 0;
-    if (is_free) context.effects.accelerate(p, Context::kick_after * context.dt);
+    int by = 0;
+    if constexpr (contains<typename Particle::list, held>) by = p[held{}];
+    if (by == 0) context.effects.accelerate(p, Context::kick_after * context.dt);
+    if constexpr (Context::effects_type::adheres) {
+      if (by == 2) {
+        Particle next = p;
+        context.effects.accelerate(next, Context::kick_after * context.dt);
+        book_held(context, p, p[velocity{}] - next[velocity{}]);
+      }
+    }
   }
   context.effects.end_step(p, context.dt);
 }

@@ -17,6 +17,7 @@ struct pair_interaction {
   sorted_particles<S, Effects> order;
   Effects effects;
   S dt;
+  bool only_kicks;  ///< nothing else is written of what they do to each other
 
  protected:
   using interaction = typename sorted_particles<S, Effects>::interaction;
@@ -47,7 +48,7 @@ struct pair_interaction {
 
   COLLIDE_HD_INLINE void store(pair_state const& p) const {
     if (!p.met) return;
-    state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
+    if (!only_kicks) state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
     if constexpr (Effects::keeps_pair_forces) {
       particle<S, typename Effects::interaction_kicks> kicks;
       kicks[pair_acceleration{}] = (p.changed[velocity{}] - p.self[velocity{}]) * (1 / dt);

@@ -70,9 +70,10 @@ class verlet_list {
            references_.bytes() + known_.bytes() + memory_.bytes();
   }
 
-  /// One pass of `on_pair_contact` over all pairs.
+  /// One pass of `on_pair_contact` over all pairs; if `only_kicks`, to know what they do to each other's velocities.
   template <class Space>
-  void interact(Space& space, particle_state<S, typename Effects::all> const& state, Effects const& effects, S dt) {
+  void interact(Space& space, particle_state<S, typename Effects::all> const& state, Effects const& effects, S dt,
+                bool only_kicks) {
     order const o{cells_,          ends_.data(),
                   header_.data(),  numbers_.data(),
                   spheres_.data(), references_.data(),
@@ -88,8 +89,8 @@ class verlet_list {
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
-    space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt}});
-    for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt}});
+    space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, only_kicks}});
+    for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, only_kicks}});
   }
 
  private:
