@@ -29,7 +29,7 @@ struct bounce {
     S const e = S(restitution), speed = -detail::dot(p[velocity{}], t.normal);
     S back = detail::larger(t.depth, S(0));
     if (speed > 0) {
-      S const rebound = e * detail::larger(t.approach_speed, S(0));
+      S const rebound = e * detail::larger(detail::smaller(t.approach_speed, speed), S(0));
       t.is_resting = rebound <= 3 * -detail::dot(t.force_dv, t.normal);
       t.repel(p[velocity{}], t.is_resting ? speed : speed + rebound);
       if (!t.is_resting) back += rebound * detail::smaller(back / speed, dt);

@@ -92,9 +92,11 @@ struct sphere_contact {
     S const inverse_mass = S(0.238732414637843) / (S(density) * r * r * r);  // 3 / (4 pi)
     vec3<S> force = n * normal_force;
     if (friction > 0) {
+      // the point of contact divides the distance as the radii are: the arms of both torques are the whole of it
+      [[maybe_unused]] S const part = distance / (self.radius() + other.radius());
       if constexpr (spins) {
         approach -=
-            detail::cross(vec3<S>(self[angular_velocity{}] * r + other[angular_velocity{}] * other.radius()), n);
+            detail::cross(vec3<S>(self[angular_velocity{}] * r + other[angular_velocity{}] * other.radius()), n) * part;
       }
       vec3<S> const slip = approach - n * along;
       S const speed = detail::sqrt_rn(detail::dot(slip, slip));
@@ -102,7 +104,7 @@ struct sphere_contact {
         S const tangential_force = detail::smaller(S(tangential_damping) * speed, S(friction) * normal_force);
         vec3<S> const drag = slip * (tangential_force / speed);
         force -= drag;
-        if constexpr (spins) p[angular_velocity{}] += detail::cross(n, drag) * (S(2.5) * inverse_mass / r * dt);
+        if constexpr (spins) p[angular_velocity{}] += detail::cross(n, drag) * (S(2.5) * inverse_mass / r * part * dt);
       }
     }
     p[velocity{}] += force * (inverse_mass * dt);

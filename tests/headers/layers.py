@@ -11,7 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = ROOT / "include" / "collide"
 PAGE = ROOT / "docs" / "design.md"
 LONGEST = 350  # lines of a header
-TOO_LONG = {"simulation.cuh"}  # headers still to be split; what is here must be too long
+TOO_LONG = {"simulation.cuh", "detail/ranks/part_of_simulation.hpp", "detail/simulation/body_memory.hpp"}  # headers still to be split; what is here must be too long
 
 # From the lowest to the highest: the headers of a layer, and the folders of which all headers are its own.
 LAYERS = {

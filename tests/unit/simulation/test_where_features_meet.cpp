@@ -35,6 +35,14 @@ TEST_CASE("where features meet: what spins does not sleep, and angular momentum 
   tests::check_angular_momentum<karabassi_swept<>, float>(host(1));
 }
 
+TEST_CASE("where features meet: spin and friction give no energy in a corner, and keep angular momentum") {
+  tests::check_energy_in_a_corner<karabassi<>, double>(host(1));
+  tests::check_energy_in_a_corner<karabassi<>, float>(blocks());
+  tests::check_energy_in_a_corner<karabassi_swept<>, float>(host(1));
+  tests::check_arms_of_spheres<double>(host(1));
+  tests::check_arms_of_spheres<float>(blocks());
+}
+
 TEST_CASE("where features meet: adhesion holds against other particles, and a surface that is there") {
   tests::check_adhesion_and_others<karabassi<>, semi_implicit_euler, double>(host(1));
   tests::check_adhesion_and_others<karabassi<>, velocity_verlet, float>(blocks());

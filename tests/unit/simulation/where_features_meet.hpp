@@ -200,6 +200,63 @@ void check_angular_momentum(Space const& space) {
   }
 }
 
+/// Where balls that spin touch both walls of a corner, friction at one wall takes speed from the way to the other: no
+/// elastic bounce gives it back.
+template <class NarrowPhase, class S, class Space>
+void check_energy_in_a_corner(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, bounce, friction, spin>;
+  world<S> w;
+  w.radius = S(0.1);
+  for (double side : {-9.0, 9.0}) {
+    w.triangle({0, -9, 0, side, -9, 9, side, 9, 9});
+    w.triangle({0, -9, 0, side, 9, 9, 0, 9, 0});
+  }
+  for (int i = 0; i < 200; ++i) w.particle(0.0005 * (i - 100), 0.02 * i - 2, 0.45, 0.003 * (i - 100), 0.3, -3);
+  running<simulation> made(space, w, bounce{1}, friction{0.4, 0.4}, spin{0});
+  made.simulation.steps(60, S(5e-3));
+  auto const v = made.velocities(), turning = made.simulation.template to_host<collide::angular_velocity>();
+  double most = 0;  // of what energy is to what it was
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    double before = 0, after = 0;
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
+      before += double(w.velocities[k]) * double(w.velocities[k]);
+      after += double(v[k]) * double(v[k]) + 0.004 * double(turning[k]) * double(turning[k]);
+    }
+    most = std::max(most, after / before);
+  }
+  CHECK(most < 1 + 1e-5);
+  CHECK(most > 0.5);
+}
+
+/// Friction between spheres that overlap keeps the angular momentum of the two: its arms are the distance.
+template <class S, class Space>
+void check_arms_of_spheres(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, spin, sphere_contact>;
+  world<S> w;
+  w.triangle({100, 0, 0, 101, 0, 0, 101, 1, 0});
+  w.radii = {S(0.1), S(0.05)};
+  w.particle(0, 0, 0, 1, 0, 0);
+  w.particle(0.15, 0.06, 0, -2, 0.3, 0);
+  running<simulation> made(space, w, collide::polydisperse{}, spin{0},
+                           sphere_contact::from_restitution(0.8, 0.02, 0.1, density_of_grains, 0.4));
+  auto const momentum = [&] {
+    auto const x = made.positions(), v = made.velocities();
+    auto const turning = made.simulation.template to_host<collide::angular_velocity>();
+    double sum = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      double const r = double(w.radii[i]), m = mass_of_grain(r);
+      sum += m * (double(x[3 * i]) * double(v[3 * i + 1]) - double(x[3 * i + 1]) * double(v[3 * i])) +
+             0.4 * m * r * r * double(turning[3 * i + 2]);
+    }
+    return sum;
+  };
+  double const before = momentum();
+  made.simulation.steps(500, S(2e-4));
+  CHECK(std::abs(double(made.simulation.template to_host<collide::angular_velocity>()[2])) > 1);
+  CHECK(momentum() == doctest::Approx(before).epsilon(sizeof(S) == 4 ? 1e-4 : 1e-11));
+}
+
 /// A user's effect: particle 0 is pushed by what overlaps it.
 struct pushes {
   using writes = collide::columns<velocity>;
