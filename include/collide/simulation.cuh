@@ -306,7 +306,8 @@ class simulation {
   void begin_step(S dt) {
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
     advance_bodies(static_cast<double>(dt), false);
-    if constexpr (has_begin_step) space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(dt)});
+    if constexpr (has_begin_step)
+      space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
     if constexpr (effects_type::ends_after_meeting) move(dt);
   }
 
