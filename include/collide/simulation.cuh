@@ -152,7 +152,9 @@ class simulation {
     }
     prepare();
     if constexpr (effects_type::adheres) {
-      if (is_set_) space_.for_each(state_.size, detail::release_adhered{state_, lookup(S(0)), bodies_.are_driven()});
+      if (is_set_)
+        space_.for_each(state_.size,
+                        detail::release_adhered{state_, lookup(S(0)), bodies_.are_driven(), bodies_.size()});
     }
   }
 

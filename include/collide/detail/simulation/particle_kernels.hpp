@@ -64,9 +64,11 @@ struct release_adhered {
   State state;
   Triangles triangles;
   bool are_driven;  ///< bodies, which are not where they will be
+  std::size_t bodies;
 
   COLLIDE_HD void operator()(std::size_t i) const {
     std::uint8_t& held = state.at(adhered{})[i];
+    if (are_driven && std::size_t{held} > bodies + 1) held = 0;  // there is no such body any more
     if (held == 0 || (are_driven && held > 1)) return;
     auto const* const x = state.at(position{}) + 3 * i;
     using S = std::decay_t<decltype(*x)>;
@@ -117,7 +119,7 @@ struct release_adhered {
   }
 };
 template <class State, class Triangles>
-release_adhered(State, Triangles, bool) -> release_adhered<State, Triangles>;
+release_adhered(State, Triangles, bool, std::size_t) -> release_adhered<State, Triangles>;
 
 template <class S, class All, class Effects>
 init_particles<S, All> initial(particle_state<S, All> const& state, sphere_view<S> const& spheres, S const* velocities,
