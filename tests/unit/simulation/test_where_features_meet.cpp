@@ -53,6 +53,7 @@ TEST_CASE("where features meet: adhesion holds against other particles, and a su
 }
 
 TEST_CASE("where features meet: a driven body is nowhere before its first pose, and a turntable carries") {
+  tests::check_driven_body_that_is_gone(host(1));
   tests::check_first_pose<karabassi<>, float>(blocks());
   tests::check_first_pose<karabassi_swept<>, double>(host(1));
   tests::check_turntable(host(1));

@@ -345,6 +345,20 @@ void check_adhesion_without_surface(Space const& space) {
   CHECK(moved[3] == 2);
 }
 
+/// What stuck to a driven body is free where the next list of bodies does not have that.
+template <class Space>
+void check_driven_body_that_is_gone(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, gravity, bounce, adhesion, moving_bodies<collide::driven>>;
+  auto const w = ball_on_floor<float>();
+  running_bodies<simulation> made(space, w, {body{0, 0, {}}, body{0, 2, {}}}, gravity{}, bounce{0.2}, adhesion{20},
+                                  moving_bodies<collide::driven>{});
+  made.simulation.steps(100, 1e-3f);
+  CHECK(made.simulation.template to_host<collide::adhered>()[0] == 3);
+  placed<float> const mesh(space, w.corners);
+  made.simulation.set_mesh(collide::triangle_soup(mesh.data(), 2), {body{0, 2, {}}});
+  CHECK(made.simulation.template to_host<collide::adhered>()[0] == 0);
+}
+
 /// A driven body is never where it lies in memory: not in its first step, nor when the mesh is set again.
 template <class NarrowPhase, class S, class Space>
 void check_first_pose(Space const& space) {
