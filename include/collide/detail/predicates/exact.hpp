@@ -64,6 +64,13 @@ COLLIDE_HD_NOINLINE inline exact_numbers exact_numbers_of(exact_numbers table, t
   return table;
 }
 
+/// x * 2^n, also where 2^n is beyond the range.
+COLLIDE_HD inline double times_power(double x, int n) {
+  for (; n > 1000; n -= 1000) x *= 0x1p1000;
+  for (; n < -1000; n += 1000) x *= 0x1p-1000;
+  return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
+}
+
 /// How a point lies to a sphere: the distance from the centre, and how deep that is inside.
 struct separation {
   double distance, depth;
@@ -127,6 +134,32 @@ class exact_triangle {
     } else {
       add_determinant_squared(sum, weight, v, e, edge(1));
     }
+  }
+
+  /// The values of these two.
+  COLLIDE_HD_NOINLINE scaled_double length(int foot) const {
+    exact_products sum;
+    add_length(sum, foot);
+    return exact_sum::of(numbers_, sum);
+  }
+  COLLIDE_HD_NOINLINE scaled_double distance_squared(int foot) const {
+    exact_products sum;
+    add_distance_squared(sum, 1, foot);
+    return exact_sum::of(numbers_, sum);
+  }
+
+  /// How far along edge i the centre projects, multiplied by the `length` of the edge.
+  COLLIDE_HD_NOINLINE scaled_double place_on_edge(int i) const {
+    exact_products sum;
+    add_dot(sum, -1, corner(i), edge(i));
+    return exact_sum::of(numbers_, sum);
+  }
+  /// The weight, at the foot on the face, of the corner that is opposite edge i, multiplied by the `length` of the
+  /// face.
+  COLLIDE_HD_NOINLINE scaled_double weight_against_edge(int i) const {
+    exact_products sum;
+    add_cross_dot_cross(sum, corner(i), edge(i), edge(0), edge(1));
+    return exact_sum::of(numbers_, sum);
   }
 
   /// The foot that is the closest point, and how it lies to the sphere. `l` is the same triangle in doubles,
@@ -200,18 +233,6 @@ class exact_triangle {
     exact_products height;
     add_determinant(height, 1, corner(0), edge(0), edge(1));
     return exact_sum::sign_of(numbers_, height);
-  }
-
-  COLLIDE_HD_NOINLINE scaled_double length(int foot) const {
-    exact_products sum;
-    add_length(sum, foot);
-    return exact_sum::of(numbers_, sum);
-  }
-
-  COLLIDE_HD_NOINLINE scaled_double distance_squared(int foot) const {
-    exact_products sum;
-    add_distance_squared(sum, 1, foot);
-    return exact_sum::of(numbers_, sum);
   }
 
   /// What the square of the radius is above that of the distance, multiplied by `length`; or only a number of its sign.
@@ -293,13 +314,6 @@ class exact_triangle {
       add_cross(sum, 1, k, edge(0), edge(1));
     }
     return exact_sum::of(numbers_, sum);
-  }
-
-  /// x * 2^n, also where 2^n is beyond the range.
-  static COLLIDE_HD double times_power(double x, int n) {
-    for (; n > 1000; n -= 1000) x *= 0x1p1000;
-    for (; n < -1000; n += 1000) x *= 0x1p-1000;
-    return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
   }
 };
 
