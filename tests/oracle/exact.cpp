@@ -329,4 +329,29 @@ int compare_distances(triangle const& s, triangle const& t, point const& p) {
   return left.compare(right) < 0 ? -1 : left.compare(right) > 0;
 }
 
+bool inside(std::vector<triangle> const& mesh, point const& p) {
+  if (!finite(p)) return false;
+  for (auto const& t : mesh)
+    if (hit(t, {p, 0})) return true;
+  for (int attempt = 0;; ++attempt) {
+    vec<mp::cpp_int> const ray{104729 + 1299709 * attempt, 7919 - 15485863 * attempt, 86028121 + attempt};
+    bool odd = false, generic = true;
+    for (auto const& t : mesh) {
+      if (!finite(t.a) || !finite(t.b) || !finite(t.c)) continue;
+      auto const v = scaled(t, p, 0).local<mp::cpp_int>();
+      int sides[3];
+      for (unsigned i = 0; i < 3; ++i) sides[i] = dot(ray, cross(v[i], v[(i + 1) % 3])).sign();
+      auto const normal = cross(vec<mp::cpp_int>(v[1] - v[0]), vec<mp::cpp_int>(v[2] - v[0]));
+      if (dot(normal, normal) == 0) continue;  // no ray that meets no edge crosses it
+      int const facing = dot(ray, normal).sign(), ahead = dot(v[0], normal).sign() * facing;
+      bool const crosses = sides[0] == sides[1] && sides[1] == sides[2] && sides[0] != 0;
+      bool const beside =
+          (sides[0] > 0 || sides[1] > 0 || sides[2] > 0) && (sides[0] < 0 || sides[1] < 0 || sides[2] < 0);
+      generic = generic && (crosses || beside);
+      odd = odd != (crosses && ahead > 0);
+    }
+    if (generic) return odd;
+  }
+}
+
 }  // namespace oracle

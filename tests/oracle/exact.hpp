@@ -2,6 +2,8 @@
 /// numbers as they are. Shares no code, and no type, with the library.
 #pragma once
 
+#include <vector>
+
 namespace oracle {
 
 struct point {
@@ -64,5 +66,8 @@ double distance(triangle const& t, point const& p, point const& move);
 
 /// -1, 0 or 1: is p nearer to s than to t, as near, or farther? Exact.
 int compare_distances(triangle const& s, triangle const& t, point const& p);
+
+/// Is p in the closed mesh, or on its surface? Exact: triangles that a ray crosses, in a direction that meets no edge.
+bool inside(std::vector<triangle> const& mesh, point const& p);
 
 }  // namespace oracle
