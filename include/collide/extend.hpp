@@ -135,8 +135,11 @@ struct per_sphere {
 
     template <class NarrowPhase, class Space, class Output>
     void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) const {
-      detail::per_sphere_query<S, NarrowPhase, Output, decltype(index_.ref())> const kernel{{mesh_, spheres, output},
-                                                                                            index_.ref()};
+      using ref_type = decltype(index_.ref());
+      using shared = detail::per_sphere_query<S, NarrowPhase, Output, ref_type>;
+      using batched = detail::batched_per_sphere_query<S, NarrowPhase, Output, ref_type>;
+      constexpr bool batches = Space::host_accessible && Space::template block<batched>::num_threads == 1;
+      std::conditional_t<batches, batched, shared> const kernel{{mesh_, spheres, output}, index_.ref()};
       space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);
     }
 
