@@ -191,9 +191,10 @@ struct batched_per_sphere_query {
       auto const own = pipeline.spheres[i];
       if constexpr (resumes<Ref, S>::value) {
         auto const around = swept_bounding_sphere(own);
-        auto at = ref.begin(around);
-        for (bool more = true; more;) {
+        decltype(ref.begin(around)) at;
+        for (bool more = true, begins = true; more; begins = false) {
           multiversioned([&] {
+            if (begins) at = ref.begin(around);
             s.size = 0;
             more = next_candidates(ref, around, at, s.room, [&](id t) { s.found[s.size++] = t; });
           });

@@ -10,6 +10,7 @@
 
 #include <collide/detail/execution/algorithms.hpp>
 #include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/tree/tree_node.hpp>
 #include <collide/memory.hpp>
 
@@ -19,44 +20,64 @@
 
 namespace collide::detail {
 
+/// A box as what is largest of it: -lower, a gap, upper, a gap. So a loop of one kind merges two.
+struct box_ends {
+  static constexpr int size = 8;
+  float ends[size];
+
+  static box_ends empty() {
+    constexpr float far = -std::numeric_limits<float>::infinity();
+    return {{far, far, far, far, far, far, far, far}};
+  }
+  static box_ends of(aabb<float> const& b) {
+    return {{-b.lower[0], -b.lower[1], -b.lower[2], 0, b.upper[0], b.upper[1], b.upper[2], 0}};
+  }
+  aabb<float> box() const { return {{-ends[0], -ends[1], -ends[2]}, {ends[4], ends[5], ends[6]}}; }
+
+  void add(box_ends const& other) {
+    for (int k = 0; k < size; ++k) ends[k] = larger(ends[k], other.ends[k]);
+  }
+
+  /// Twice the middle on an axis.
+  float middle(int axis) const { return ends[4 + axis] - ends[axis]; }
+
+  /// Half the surface; 0 of nothing.
+  float half_surface() const {
+    float const x = ends[0] + ends[4], y = ends[1] + ends[5], z = ends[2] + ends[6];
+    return x >= 0 ? x * y + (y * z + z * x) : 0.0f;
+  }
+};
+
 /// A triangle while the tree is made.
 struct boxed_triangle {
-  aabb<float> box;
+  box_ends box;
   id triangle;
 
-  /// Twice the middle of the box on an axis.
-  float middle(int axis) const { return box.lower[axis] + box.upper[axis]; }
+  float middle(int axis) const { return box.middle(axis); }
 };
 
 /// Triangles that follow each other, and the boxes around them and around the middles of theirs.
 struct triangle_range {
   std::uint32_t begin, end;
-  aabb<float> box, middles;
+  box_ends box, middles;
 
   std::uint32_t size() const { return end - begin; }
 
-  void add(boxed_triangle const& t) {
-    box = aabb<float>::merge{}(box, t.box);
-    for (int k = 0; k < 3; ++k) {
-      float const m = t.middle(k);
-      middles.lower[k] = smaller(middles.lower[k], m);
-      middles.upper[k] = larger(middles.upper[k], m);
-    }
-  }
-
   static triangle_range of(boxed_triangle const* from, std::uint32_t begin, std::uint32_t end) {
-    triangle_range r{begin, end, aabb<float>::empty(), aabb<float>::empty()};
-    for (std::uint32_t i = begin; i < end; ++i) r.add(from[i]);
+    triangle_range r{begin, end, box_ends::empty(), box_ends::empty()};
+    multiversioned([&] {
+      for (std::uint32_t i = begin; i < end; ++i) {
+        box_ends const& b = from[i].box;
+        r.box.add(b);
+        box_ends middle;
+        for (int k = 0; k < 4; ++k) middle.ends[k + 4] = b.ends[k + 4] - b.ends[k];
+        for (int k = 0; k < 4; ++k) middle.ends[k] = -middle.ends[k + 4];
+        r.middles.add(middle);
+      }
+    });
     return r;
   }
 };
-
-/// Half the surface of a box; 0 of an empty one.
-inline float half_surface(aabb<float> const& b) {
-  if (b.is_empty()) return 0;
-  float const x = b.upper[0] - b.lower[0], y = b.upper[1] - b.lower[1], z = b.upper[2] - b.lower[2];
-  return x * y + (y * z + z * x);
-}
 
 /// Divides ranges of triangles. Nodes at the lowest level get as many as they have room for.
 class range_divider {
@@ -70,7 +91,7 @@ class range_divider {
     std::uint32_t middle = range.begin + range.size() / 2;
     if (p.axis >= 0) {
       auto* const found = std::partition(all_ + range.begin, all_ + range.end,
-                                         [&](boxed_triangle const& t) { return p.bin_of(t) <= p.bin; });
+                                         [&](boxed_triangle const& t) { return p.bin_of(t, p.axis) <= p.bin; });
       middle = static_cast<std::uint32_t>(found - all_);
     }
     if (middle == range.begin || middle == range.end) middle = range.begin + range.size() / 2;
@@ -89,40 +110,51 @@ class range_divider {
     int bin;   ///< the last one before the plane
     float first, scale;
 
-    int bin_of(boxed_triangle const& t) const {
-      return smaller(static_cast<int>((t.middle(axis) - first) * scale), bins - 1);
+    int bin_of(boxed_triangle const& t, int of_axis) const {
+      float const x = (t.middle(of_axis) - first) * scale;
+      return static_cast<int>(select(x > 0, smaller(x, float(bins - 1)), 0.0f));  // 0 where it is NaN
     }
   };
 
   /// The plane where nodes are, of all in the range, least likely to be visited.
   plane best_plane(triangle_range const& range) const {
+    plane planes[3];
+    std::uint32_t counts[3][bins] = {};
+    box_ends boxes[3][bins];
+    for (int axis = 0; axis < 3; ++axis) {
+      float const first = -range.middles.ends[axis], extent = range.middles.ends[4 + axis] - first;
+      float const scale = bins * (1 - 0x1p-20f) / extent;
+      bool const divides = extent > 0 && is_finite(extent) && is_finite(scale);
+      planes[axis] = {divides ? axis : -1, 0, first, divides ? scale : 0};
+      for (auto& box : boxes[axis]) box = box_ends::empty();
+    }
+    multiversioned([&] {
+      for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        boxed_triangle const& t = all_[i];
+        for (int axis = 0; axis < 3; ++axis) {
+          int const b = planes[axis].bin_of(t, axis);
+          ++counts[axis][b];
+          boxes[axis][b].add(t.box);
+        }
+      }
+    });
     plane best{-1, 0, 0, 0};
     float least = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
-      float const first = range.middles.lower[axis], extent = range.middles.upper[axis] - first;
-      float const scale = bins * (1 - 0x1p-20f) / extent;
-      if (!(extent > 0) || !is_finite(extent) || !is_finite(scale)) continue;
-      plane p{axis, 0, first, scale};
-      std::uint32_t counts[bins] = {};
-      aabb<float> boxes[bins];
-      for (auto& box : boxes) box = aabb<float>::empty();
-      for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        int const b = p.bin_of(all_[i]);
-        ++counts[b];
-        boxes[b] = aabb<float>::merge{}(boxes[b], all_[i].box);
-      }
+      plane p = planes[axis];
+      if (p.axis < 0) continue;
       float behind[bins];  // what is behind a plane costs
-      aabb<float> box = aabb<float>::empty();
+      box_ends box = box_ends::empty();
       std::uint32_t n = 0;
       for (int b = bins - 1; b > 0; --b) {
-        box = aabb<float>::merge{}(box, boxes[b]);
-        behind[b - 1] = cost(box, n += counts[b]);
+        box.add(boxes[axis][b]);
+        behind[b - 1] = cost(box, n += counts[axis][b]);
       }
-      box = aabb<float>::empty();
+      box = box_ends::empty();
       n = 0;
       for (p.bin = 0; p.bin < bins - 1; ++p.bin) {
-        box = aabb<float>::merge{}(box, boxes[p.bin]);
-        float const all = cost(box, n += counts[p.bin]) + behind[p.bin];
+        box.add(boxes[axis][p.bin]);
+        float const all = cost(box, n += counts[axis][p.bin]) + behind[p.bin];
         if (n == 0 || n == range.size() || !(all < least)) continue;
         least = all;
         best = p;
@@ -131,8 +163,8 @@ class range_divider {
     return best;
   }
 
-  static float cost(aabb<float> const& box, std::uint32_t n) {
-    return half_surface(box) * static_cast<float>((n + tree_node::width - 1) / tree_node::width);
+  static float cost(box_ends const& box, std::uint32_t n) {
+    return box.half_surface() * static_cast<float>((n + tree_node::width - 1) / tree_node::width);
   }
 
   /// Moves the end of the left part to where full nodes end, and triangles next to the plane to the other side.
@@ -161,8 +193,8 @@ class sah_tree {
     std::size_t const n = mesh.size();
     all_ = triangles_.reserve(space.resource(), n);
     vec3<S> const origin = tree_origin(mesh);
-    space.for_each(n, [&](std::size_t i) { all_[i] = {tree_box_of(mesh[i], origin), static_cast<id>(i)}; });
-    auto const* const end = std::partition(all_, all_ + n, [](boxed_triangle const& t) { return !t.box.is_empty(); });
+    space.for_each(n, [&](std::size_t i) { all_[i] = {box_ends::of(tree_box_of(mesh[i], origin)), static_cast<id>(i)}; });
+    auto const* const end = std::partition(all_, all_ + n, [](boxed_triangle const& t) { return !t.box.box().is_empty(); });
     auto const finite = static_cast<std::uint32_t>(end - all_);
     if (finite == 0) return false;
     nodes_ = memory.reserve(space.resource(), most_nodes(finite));
@@ -201,13 +233,13 @@ class sah_tree {
     int n = 0;
     if (t.range.size() <= width) {
       for (std::uint32_t i = t.range.begin; i < t.range.end; ++i)
-        node.set(n++, all_[i].box, all_[i].triangle | tree_node::leaf);
+        node.set(n++, all_[i].box.box(), all_[i].triangle | tree_node::leaf);
     } else {
       n = divide(t, parts);
       for (int k = 0; k < n; ++k) {
         bool const one = parts[k].size() == 1;
         std::uint32_t const child = one ? all_[parts[k].begin].triangle | tree_node::leaf : fetch_add(&used_, 1u);
-        node.set(k, parts[k].box, child);
+        node.set(k, parts[k].box.box(), child);
       }
     }
     node.there = (1u << n) - 1;
@@ -231,7 +263,7 @@ class sah_tree {
       float most = -1;
       for (int k = 0; k < n; ++k) {
         if (parts[k].size() <= width) continue;
-        float const size = halves ? static_cast<float>(parts[k].size()) : half_surface(parts[k].box);
+        float const size = halves ? static_cast<float>(parts[k].size()) : parts[k].box.half_surface();
         if (size > most || chosen < 0) most = size, chosen = k;
       }
       if (chosen < 0) break;

@@ -109,13 +109,8 @@ struct alignas(32) tree_node {
 
   /// The squared distance of box k, with a few roundings.
   COLLIDE_HD_INLINE float distance_squared(int k, tree_point const& p) const {
-    float sum = 0;
-    for (int i = 0; i < 3; ++i) {
-      float const outside = larger(lower[i][k] - p.upper[i], p.lower[i] - upper[i][k]);
-      float const gap = select(outside > 0, outside, 0.0f);
-      sum += gap * gap;
-    }
-    return sum;
+    float const x = gap(0, k, p), y = gap(1, k, p), z = gap(2, k, p);
+    return x * x + (y * y + z * z);
   }
 
   /// Bit k: box k is within a distance, given as its square. Without branches, for the processor's vector unit.
@@ -126,8 +121,6 @@ struct alignas(32) tree_node {
     for (int k = 0; k < width; ++k) mask |= distance_squared(k, p) <= reach_squared ? 1u << k : 0u;
     return mask & there;
 #else
-    // a sum of bits in each lane: SSE cannot shift lanes by different amounts
-    constexpr std::uint32_t bit[width] = {1, 2, 4, 8, 16, 32, 64, 128};
     std::uint32_t mask = 0;
     for (int k = 0; k < width; ++k) mask |= distance_squared(k, p) <= reach_squared ? bit[k] : 0u;
     return mask & there;
@@ -137,10 +130,9 @@ struct alignas(32) tree_node {
   /// The squared distances of boxes as numbers that sort like them, rounded down so far that rounding cannot make one
   /// larger than it is; the number of the box is in the lowest bits. `none` for boxes that are not in `boxes`.
   COLLIDE_HD_INLINE void find_keys(tree_point const& p, std::uint32_t boxes, std::uint32_t (&keys)[width]) const {
-    constexpr std::uint32_t bit[width] = {1, 2, 4, 8, 16, 32, 64, 128};
     for (int k = 0; k < width; ++k) {
       std::uint32_t const key = (to_bits(distance_squared(k, p)) & ~7u) | static_cast<std::uint32_t>(k);
-      keys[k] = (boxes & bit[k]) != 0 ? key : none;
+      keys[k] = key | ((boxes >> k & 1) - 1);
     }
   }
   static COLLIDE_HD_INLINE std::uint32_t least(std::uint32_t const (&keys)[width]) {
@@ -162,6 +154,15 @@ struct alignas(32) tree_node {
   }
 
   static constexpr std::uint32_t none = 0xffffffffu;
+
+ private:
+  /// SSE cannot shift lanes by different amounts.
+  static constexpr std::uint32_t bit[width] = {1, 2, 4, 8, 16, 32, 64, 128};
+
+  COLLIDE_HD_INLINE float gap(int axis, int k, tree_point const& p) const {
+    float const outside = larger(lower[axis][k] - p.upper[axis], p.lower[axis] - upper[axis][k]);
+    return select(outside > 0, outside, 0.0f);
+  }
 };
 
 }  // namespace collide::detail

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/tree/tree_node.hpp>
 
 // the numbers of elements of small arrays are int
@@ -164,7 +165,7 @@ struct tree_ref {
       }
       tree_node const& node = nodes[here.node];
       std::uint32_t keys[tree_node::width], left = here.boxes & node.there;
-      node.find_keys(p, left, keys);
+      multiversioned([&] { node.find_keys(p, left, keys); });
       for (;;) {
         std::uint32_t const key = tree_node::least(keys), k = key % tree_node::width;
         if (key > most) {
