@@ -13,9 +13,9 @@ namespace collide::detail {
 
 /// A weight times some numbers.
 struct exact_product {
-  static constexpr int most_factors = 6;
+  static constexpr int most_factors = 10;
 
-  std::int8_t weight;  ///< -2, -1, 1 or 2
+  std::int8_t weight;  ///< -4, -2, -1, 1, 2 or 4
   std::uint8_t count;
   std::uint8_t factors[most_factors];
 };
@@ -41,6 +41,49 @@ class exact_products {
  private:
   exact_product products_[30];
   int count_ = 0;
+};
+
+/// a * b - c * d, where each is a sum of products: a list of products that are made as they are asked for.
+class difference_of_products {
+ public:
+  COLLIDE_HD difference_of_products(exact_products const& a, exact_products const& b, exact_products const& c,
+                                    exact_products const& d)
+      : factors_{{a.begin(), a.end()}, {b.begin(), b.end()}, {c.begin(), c.end()}, {d.begin(), d.end()}} {}
+
+  class iterator {
+   public:
+    COLLIDE_HD iterator(difference_of_products const* of, int side)
+        : of_(of), side_(side), first_(of->factors_[side].begin), second_(of->factors_[side + 1].begin) {}
+
+    COLLIDE_HD exact_product operator*() const {
+      exact_product both = *first_;
+      both.weight = static_cast<std::int8_t>(both.weight * (side_ == 0 ? second_->weight : -second_->weight));
+      for (int i = 0; i < second_->count; ++i) both.factors[both.count++] = second_->factors[i];
+      return both;
+    }
+
+    COLLIDE_HD iterator& operator++() {
+      if (++second_ != of_->factors_[side_ + 1].end) return *this;
+      second_ = of_->factors_[side_ + 1].begin;
+      if (++first_ == of_->factors_[side_].end && side_ == 0) *this = iterator(of_, 2);
+      return *this;
+    }
+    COLLIDE_HD bool operator!=(exact_product const* end) const { return first_ != end; }
+
+   private:
+    difference_of_products const* of_;
+    int side_;  ///< 0 in a * b, 2 in c * d
+    exact_product const *first_, *second_;
+  };
+
+  COLLIDE_HD iterator begin() const { return {this, 0}; }
+  COLLIDE_HD exact_product const* end() const { return factors_[2].end; }
+
+ private:
+  struct range {
+    exact_product const *begin, *end;
+  };
+  range factors_[4];  ///< none is empty
 };
 
 /// p.q

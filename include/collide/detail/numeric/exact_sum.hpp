@@ -15,6 +15,7 @@ namespace collide::detail {
 struct scaled_double {
   double value = 0;
   int exponent = 0;
+  double rest = 0;  ///< value + rest has an error below 2^-63
 };
 
 /// Sums products into a window of the digits of the sum.
@@ -22,12 +23,13 @@ class exact_sum {
  public:
   /// The sum; -1 for one that is negative, if only the sign is wanted. With all combinations of the components of
   /// factors, at most 2^20 products.
-  COLLIDE_HD_NOINLINE static scaled_double of(exact_numbers const& numbers, exact_products const& products,
+  template <class Products>
+  COLLIDE_HD_NOINLINE static scaled_double of(exact_numbers const& numbers, Products const& products,
                                               bool with_value = true) {
-    exact_sum sum(numbers, products);
+    exact_sum sum(numbers);
     for (exact_product const& product : products) sum.extend_exponent_range(product);
     bool negative = false;
-    while (sum.accumulate(negative ? -1 : 1)) {
+    while (sum.accumulate(products, negative ? -1 : 1)) {
       if (!with_value) return {-1, 0};
       negative = true;
     }
@@ -35,12 +37,15 @@ class exact_sum {
     int const zeros = leading_zeros(sum.top_) - 32;
     std::uint64_t const leading = (std::uint64_t{sum.top_} << 32 | sum.below_top_[0]) << zeros |
                                   static_cast<std::uint32_t>((std::uint64_t{sum.below_top_[1]} << zeros) >> 32);
-    auto const value = static_cast<double>(leading);
-    return {negative ? -value : value, sum.top_exponent_ - 32 - zeros};
+    constexpr std::uint64_t below_double = 0x7ff;
+    auto const high = static_cast<double>(leading & ~below_double), low = static_cast<double>(leading & below_double);
+    double const value = opaque_value(high + low), of_low = opaque_value(value - high), rest = low - of_low;
+    return {negative ? -value : value, sum.top_exponent_ - 32 - zeros, negative ? -rest : rest};
   }
 
   /// -1, 0 or 1.
-  static COLLIDE_HD int sign_of(exact_numbers const& numbers, exact_products const& products) {
+  template <class Products>
+  static COLLIDE_HD int sign_of(exact_numbers const& numbers, Products const& products) {
     double const sum = of(numbers, products, false).value;
     return sum < 0 ? -1 : (sum > 0 ? 1 : 0);
   }
@@ -50,18 +55,16 @@ class exact_sum {
   static constexpr int carry_bits = 24;     ///< bits for the sum of many products, and its sign
 
   exact_numbers const& numbers_;
-  exact_products const& products_;
   int lowest_ = 1 << 30, highest_ = -(1 << 30);  ///< exponents of the lowest bit, and above the highest, of any product
   int begin_;                                    ///< number of the window's first digit
   std::int64_t digits_[window_digits];           ///< not yet carried: may be negative, or longer than 32 bits
   std::uint32_t top_, below_top_[2];             ///< the highest digit that is not 0, and the two below it
   int top_exponent_;
 
-  COLLIDE_HD exact_sum(exact_numbers const& numbers, exact_products const& products)
-      : numbers_(numbers), products_(products) {}
+  COLLIDE_HD explicit exact_sum(exact_numbers const& numbers) : numbers_(numbers) {}
 
   COLLIDE_HD void extend_exponent_range(exact_product const& product) {
-    int low = 0, high = 1;  // for a weight of 2
+    int low = 0, high = 2;  // for a weight of 4
     for (int i = 0; i < product.count; ++i) {
       components_view const f = numbers_[product.factors[i]];
       if (f.count == 0) return;
@@ -78,14 +81,15 @@ class exact_sum {
   }
 
   /// Adds all up, times `sign`. Returns true if the sum is negative; if not, its highest digits are known.
-  COLLIDE_HD bool accumulate(int sign) {
+  template <class Products>
+  COLLIDE_HD bool accumulate(Products const& products, int sign) {
     int const count = highest_ < lowest_ ? 0 : (highest_ - lowest_ + carry_bits) / 32 + 1;
     std::int64_t carry = 0;
     std::uint32_t below[2] = {0, 0};
     top_ = 0;
     for (begin_ = 0; begin_ < count; begin_ += window_digits) {
       for (int i = 0; i < window_digits; ++i) digits_[i] = 0;
-      for (exact_product const& product : products_) add(product, sign * product.weight);
+      for (exact_product const& product : products) add(product, sign * product.weight);
       for (int i = 0; i < window_digits; ++i) {
         std::int64_t const sum = digits_[i] + carry;
         carry = sum >> 32;
@@ -105,10 +109,11 @@ class exact_sum {
 
   /// Adds the products of all combinations of the components of the factors.
   COLLIDE_HD void add(exact_product const& of, int weight) {
+    int const magnitude = weight < 0 ? -weight : weight, magnitude_exponent = magnitude / 2;  // 0, 1, 2 of 1, 2, 4
     int combinations = 1;
     for (int i = 0; i < of.count; ++i) combinations *= numbers_[of.factors[i]].count;
     for (int c = 0; c < combinations; ++c) {
-      int rest = c, exponent = -lowest_ + (weight == 2 || weight == -2 ? 1 : 0), words = 1;
+      int rest = c, exponent = -lowest_ + magnitude_exponent, words = 1;
       bool negative = weight < 0;
       std::uint32_t product[2 * exact_product::most_factors + 1] = {1};
       for (int i = 0; i < of.count; ++i) {

@@ -44,19 +44,31 @@ COLLIDE_HD_NOINLINE inline void add_corners(exact_numbers& table, triangle<doubl
   }
 }
 
-/// Fills the table for a sphere where it is at that time. Finite coordinates and a finite radius, not below 0.
-COLLIDE_HD_NOINLINE inline exact_numbers exact_numbers_of(exact_numbers table, triangle<double> const& t,
-                                                          moving_sphere<double> const& s, dyadic time) {
-  add_corners(table, t, s, time);
+/// Adds the edges, from each corner to the next.
+COLLIDE_HD_NOINLINE inline void add_edges(exact_numbers& table, triangle<double> const& t) {
   for (int i = 0; i < 9; ++i) {
     int const k = i % 3;
     table.begin_number();
     table.add(decoded((i < 3 ? t.b : (i < 6 ? t.c : t.a))[k]));
     table.subtract(decoded((i < 3 ? t.a : (i < 6 ? t.b : t.c))[k]));
   }
+}
+
+/// Fills the table for a sphere where it is at that time. Finite coordinates and a finite radius, not below 0.
+COLLIDE_HD_NOINLINE inline exact_numbers exact_numbers_of(exact_numbers table, triangle<double> const& t,
+                                                          moving_sphere<double> const& s, dyadic time) {
+  add_corners(table, t, s, time);
+  add_edges(table, t);
   table.begin_number();
   table.add(decoded(s.radius));
   return table;
+}
+
+/// x * 2^n, also where 2^n is beyond the range.
+COLLIDE_HD inline double times_power(double x, int n) {
+  for (; n > 1000; n -= 1000) x *= 0x1p1000;
+  for (; n < -1000; n += 1000) x *= 0x1p-1000;
+  return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
 }
 
 /// How a point lies to a sphere: the distance from the centre, and how deep that is inside.
@@ -68,9 +80,10 @@ struct separation {
 /// 5, the face 6.
 class exact_triangle {
  public:
-  /// `corners` is the place of the first one.
-  COLLIDE_HD explicit exact_triangle(exact_numbers const& numbers, int corners = exact_slot::corner)
-      : numbers_(numbers), corners_(corners) {}
+  /// `corners` and `edges` are the places of the first ones.
+  COLLIDE_HD explicit exact_triangle(exact_numbers const& numbers, int corners = exact_slot::corner,
+                                     int edges = exact_slot::edge)
+      : numbers_(numbers), corners_(corners), edges_(edges) {}
 
   static COLLIDE_HD feature feature_of(int foot) {
     return foot < 3 ? feature::vertex : (foot < 6 ? feature::edge : feature::face);
@@ -84,6 +97,69 @@ class exact_triangle {
       if (exists(foot) && excess(foot, false).value >= 0) return true;
     }
     return false;
+  }
+
+  /// The foot that is the closest point, by signs alone: the face or an edge if the centre projects into its interior,
+  /// else a corner.
+  COLLIDE_HD int closest_foot() const {
+    if (exists(face)) return face;
+    for (int i = 0; i < 3; ++i) {
+      if (exists(3 + i) && side_of_edge(i) <= 0) return 3 + i;
+    }
+    int i = 0;
+    while (i < 2 && !(along(i, i, -1) <= 0 && along((i + 2) % 3, i, 1) <= 0)) ++i;
+    return i;
+  }
+
+  /// The square of the distance of a foot is a quotient of two sums of products. This one is the denominator: the
+  /// squared length of the edge or of the normal, or 1.
+  COLLIDE_HD void add_length(exact_products& sum, int foot) const {
+    int const e = edge(feature_index_of(foot));
+    if (foot < 3) {
+      sum.add(1);
+    } else if (foot < face) {
+      add_dot(sum, 1, e, e);
+    } else {
+      add_cross_squared(sum, 1, e, edge(1));
+    }
+  }
+
+  /// And this one is the numerator.
+  COLLIDE_HD void add_distance_squared(exact_products& sum, int weight, int foot) const {
+    int const v = corner(feature_index_of(foot)), e = edge(feature_index_of(foot));
+    if (foot < 3) {
+      add_dot(sum, weight, v, v);
+    } else if (foot < face) {
+      add_cross_squared(sum, weight, v, e);
+    } else {
+      add_determinant_squared(sum, weight, v, e, edge(1));
+    }
+  }
+
+  /// The values of these two.
+  COLLIDE_HD_NOINLINE scaled_double length(int foot) const {
+    exact_products sum;
+    add_length(sum, foot);
+    return exact_sum::of(numbers_, sum);
+  }
+  COLLIDE_HD_NOINLINE scaled_double distance_squared(int foot) const {
+    exact_products sum;
+    add_distance_squared(sum, 1, foot);
+    return exact_sum::of(numbers_, sum);
+  }
+
+  /// How far along edge i the centre projects, multiplied by the `length` of the edge.
+  COLLIDE_HD_NOINLINE scaled_double place_on_edge(int i) const {
+    exact_products sum;
+    add_dot(sum, -1, corner(i), edge(i));
+    return exact_sum::of(numbers_, sum);
+  }
+  /// The weight, at the foot on the face, of the corner that is opposite edge i, multiplied by the `length` of the
+  /// face.
+  COLLIDE_HD_NOINLINE scaled_double weight_against_edge(int i) const {
+    exact_products sum;
+    add_cross_dot_cross(sum, corner(i), edge(i), edge(0), edge(1));
+    return exact_sum::of(numbers_, sum);
   }
 
   /// The foot that is the closest point, and how it lies to the sphere. `l` is the same triangle in doubles,
@@ -121,10 +197,10 @@ class exact_triangle {
   static constexpr unsigned all_feet = 0x7f;  ///< a bit for each
 
   exact_numbers numbers_;
-  int corners_;
+  int corners_, edges_;
 
   COLLIDE_HD int corner(int i) const { return corners_ + 3 * i; }
-  COLLIDE_HD int edge(int i) const { return exact_slot::edge + 3 * i; }
+  COLLIDE_HD int edge(int i) const { return edges_ + 3 * i; }
 
   // Each formula has its list of products in a function of its own, out of line, so that there is memory for one.
 
@@ -157,42 +233,6 @@ class exact_triangle {
     exact_products height;
     add_determinant(height, 1, corner(0), edge(0), edge(1));
     return exact_sum::sign_of(numbers_, height);
-  }
-
-  /// The squared length of the edge or of the normal, or 1.
-  COLLIDE_HD void add_length(exact_products& sum, int foot) const {
-    int const e = edge(feature_index_of(foot));
-    if (foot < 3) {
-      sum.add(1);
-    } else if (foot < face) {
-      add_dot(sum, 1, e, e);
-    } else {
-      add_cross_squared(sum, 1, e, edge(1));
-    }
-  }
-
-  /// The squared distance, multiplied by `add_length`.
-  COLLIDE_HD void add_distance_squared(exact_products& sum, int weight, int foot) const {
-    int const v = corner(feature_index_of(foot)), e = edge(feature_index_of(foot));
-    if (foot < 3) {
-      add_dot(sum, weight, v, v);
-    } else if (foot < face) {
-      add_cross_squared(sum, weight, v, e);
-    } else {
-      add_determinant_squared(sum, weight, v, e, edge(1));
-    }
-  }
-
-  COLLIDE_HD_NOINLINE scaled_double length(int foot) const {
-    exact_products sum;
-    add_length(sum, foot);
-    return exact_sum::of(numbers_, sum);
-  }
-
-  COLLIDE_HD_NOINLINE scaled_double distance_squared(int foot) const {
-    exact_products sum;
-    add_distance_squared(sum, 1, foot);
-    return exact_sum::of(numbers_, sum);
   }
 
   /// What the square of the radius is above that of the distance, multiplied by `length`; or only a number of its sign.
@@ -274,13 +314,6 @@ class exact_triangle {
       add_cross(sum, 1, k, edge(0), edge(1));
     }
     return exact_sum::of(numbers_, sum);
-  }
-
-  /// x * 2^n, also where 2^n is beyond the range.
-  static COLLIDE_HD double times_power(double x, int n) {
-    for (; n > 1000; n -= 1000) x *= 0x1p1000;
-    for (; n < -1000; n += 1000) x *= 0x1p-1000;
-    return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
   }
 };
 
