@@ -171,6 +171,9 @@ struct all_pairs {
     /// What a kernel asks for the triangles near a single sphere; valid until the next build.
     detail::all_pairs_ref<S> lookup() const { return {{mesh_, nullptr}}; }
 
+    /// What a kernel asks for the triangles near a point; valid until the next build.
+    detail::all_pairs_ref<S> ref() const { return lookup(); }
+
     template <class Space>
     double cell_width(Space&) const {
       return 0;

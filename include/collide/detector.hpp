@@ -149,6 +149,15 @@ class detector {
     return std::forward<Sink>(sink);
   }
 
+  /// As above, of points, which are spheres of radius 0: for sinks such as `nearest`.
+  template <class Sink>
+  Sink query(point_view<Scalar> const& points, Sink&& sink) {
+    static_assert(std::is_same<spheres_type, sphere_view<Scalar>>::value,
+                  "collide: this narrow phase judges spheres that move: give query a moving_sphere_view, see "
+                  "`with_displacements`");
+    return query(spheres_type(points, nullptr, 0, Scalar(0)), std::forward<Sink>(sink));
+  }
+
   /// `build(mesh)` and `query(spheres, sink)` in one call; each says what it needs, takes and throws.
   ///
   /// \param mesh     as for `build`
@@ -178,6 +187,10 @@ class detector {
                   "`with_displacements`");
   }
   template <class S, class Sink>
+  Sink query(point_view<S> const&, Sink&&) {
+    reject<S>();
+  }
+  template <class S, class Sink>
   Sink query(moving_sphere_view<S> const&, Sink&&) {
     reject<S>();
     static_assert(
@@ -192,6 +205,7 @@ class detector {
                   "collide: the first argument of build is a mesh, such as indexed_mesh or triangle_soup gives");
   }
   template <class T, class Sink, class = detail::if_not_made_of<sphere_view, T, spheres_type>,
+            class = detail::if_not_made_of<point_view, T, spheres_type>,
             class = detail::if_not_made_of<moving_sphere_view, T, spheres_type>>
   Sink query(T const&, Sink&&) {
     static_assert(sizeof(T) == 0,

@@ -106,8 +106,17 @@ class mesh_bounds {
 ///     runs where the space is, so it is `COLLIDE_HD`. For a sphere that moves it is called with a sphere around all of
 ///     its motion, unless it takes a `moving_sphere<S>` too.
 ///
-/// A query takes O(spheres * enumeration); in spaces with threads that work together an enumeration is made for every 8
-/// candidates of a sphere, in simulations for every candidate.
+/// A query takes O(spheres * enumeration). In spaces with threads that work together an enumeration is made for every 8
+/// candidates of a sphere, in simulations for every candidate, unless the value can go on where it was left. Then it
+/// has also
+///   - `begin(sphere<S>) const`: a trivially copyable value of at most 12 bytes, with a default constructor, that says
+///     how far the candidates of the sphere have been gone through;
+///   - `next(sphere<S>, value&, id& triangle) const`: gives the next candidate, or returns false if there is none.
+///
+/// For the sink `nearest` it has
+///   - `for_each_nearer(vec3<S> point, S bound, F f) const`, which calls bound = f(triangle) for all triangles whose
+///     squared distance from the point is at most `bound`, and for others as it likes. The bound only falls: to begin
+///     with what is near saves most.
 template <class Policy>
 struct per_sphere {
   Policy policy{};  ///< its options
@@ -135,13 +144,19 @@ struct per_sphere {
 
     template <class NarrowPhase, class Space, class Output>
     void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) const {
-      detail::per_sphere_query<S, NarrowPhase, Output, decltype(index_.ref())> const kernel{{mesh_, spheres, output},
-                                                                                            index_.ref()};
+      using ref_type = decltype(index_.ref());
+      using shared = detail::per_sphere_query<S, NarrowPhase, Output, ref_type>;
+      using batched = detail::batched_per_sphere_query<S, NarrowPhase, Output, ref_type>;
+      constexpr bool batches = Space::host_accessible && Space::template block<batched>::num_threads == 1;
+      std::conditional_t<batches, batched, shared> const kernel{{mesh_, spheres, output}, index_.ref()};
       space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);
     }
 
     /// What a kernel of a simulation asks for the triangles near a single sphere; valid until the next build.
     auto lookup() const { return detail::per_sphere_lookup<S, decltype(index_.ref())>{{mesh_, nullptr}, index_.ref()}; }
+
+    /// What a kernel asks for the triangles near a point, see `nearest`; valid until the next build.
+    auto ref() const { return index_.ref(); }
 
     template <class Space>
     double cell_width(Space&) const {

@@ -7,6 +7,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
 #include <collide/sinks/any_hit.hpp>
 #include <collide/sinks/closest.hpp>
 #include <collide/sinks/contacts.hpp>
@@ -23,7 +24,7 @@ namespace tests {
 template <class... T>
 struct list {};
 
-using broad_phases = list<collide::all_pairs, collide::bucket>;
+using broad_phases = list<collide::all_pairs, collide::bucket, collide::bvh>;
 
 using host_spaces = list<collide::host, lockstep<256, false>, lockstep<64, true>>;
 #if defined(__CUDACC__)
@@ -32,11 +33,13 @@ using cuda_spaces = list<collide::cuda, collide::cuda_shared>;
 
 inline char const* name_of(list<collide::all_pairs>) { return "all_pairs"; }
 inline char const* name_of(list<collide::bucket>) { return "bucket"; }
+inline char const* name_of(list<collide::bvh>) { return "bvh"; }
 inline char const* name_of(list<collide::single_precision>) { return "single"; }
 inline char const* name_of(list<collide::double_precision>) { return "double"; }
 inline char const* name_of(list<collide::exact>) { return "exact"; }
 
 inline collide::all_pairs configure(list<collide::all_pairs>, options const&) { return {}; }
+inline collide::bvh configure(list<collide::bvh>, options const&) { return {}; }
 inline collide::bucket configure(list<collide::bucket>, options const& o) { return {o.cell_width, o.memory_budget}; }
 
 /// Device memory or host memory, as the space has it.

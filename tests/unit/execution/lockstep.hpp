@@ -175,6 +175,10 @@ namespace collide {
 template <int Lanes, bool Reversed>
 struct bucket_tuning<tests::lockstep<Lanes, Reversed>> : device_bucket_tuning {};
 template <int Lanes, bool Reversed>
+struct bvh_tuning<tests::lockstep<Lanes, Reversed>> {
+  static constexpr bool divides_by_area = false;
+};
+template <int Lanes, bool Reversed>
 struct query_tuning<tests::lockstep<Lanes, Reversed>> {
   static constexpr bool defers_exact_tests = true;
 };

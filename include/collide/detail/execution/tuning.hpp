@@ -40,6 +40,14 @@ struct default_bucket_tuning<false> : device_bucket_tuning {};
 template <class Space>
 struct bucket_tuning : detail::default_bucket_tuning<Space::host_accessible> {};
 
+/// How `bvh` makes its tree in a space.
+template <class Space>
+struct bvh_tuning {
+  /// True if triangles are divided by the areas of boxes, which takes longer and finds faster than to sort them, and is
+  /// for hosts. Needs memory that the host can access.
+  static constexpr bool divides_by_area = Space::host_accessible;
+};
+
 /// How a query works in a space.
 template <class Space>
 struct query_tuning {

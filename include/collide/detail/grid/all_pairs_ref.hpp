@@ -2,6 +2,7 @@
 /// What a kernel asks where there is no grid: every triangle is a candidate. The members are those of triangle_ref.hpp.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include <collide/detail/grid/occupancy.hpp>
@@ -27,6 +28,12 @@ struct all_pairs_ref : triangle_ref<S> {
   template <class Sphere>
   COLLIDE_HD bool next(Sphere const&, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
     return this->next_of_all(c, most, range);
+  }
+
+  /// Calls f(triangle) for every triangle, whatever the bound is that it returns.
+  template <class F>
+  COLLIDE_HD void for_each_nearer(vec3<S> const&, S, F const& f) const {
+    for (std::size_t t = 0; t < this->mesh.size(); ++t) f(static_cast<id>(t));
   }
 };
 

@@ -4,12 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 #include <utility>
 
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/occupancy.hpp>
 #include <collide/detail/grid/triangle_ref.hpp>
+#include <collide/detail/query/candidate_batch.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
 
 namespace collide::detail {
@@ -44,11 +46,59 @@ COLLIDE_HD_INLINE void for_each_candidate(Ref const& ref, Sphere const& s, F con
   }
 }
 
-/// Kernel functor: a thread has a sphere. Where threads work together a sphere's candidates are enumerated again for
-/// each `items_per_thread` of them, as there is room for only so many.
+/// True if a reference can go on with an enumeration where it was left: its members `begin` and `next`.
+template <class Ref, class S, class = void>
+struct resumes : std::false_type {};
+template <class Ref, class S>
+struct resumes<Ref, S,
+               std::void_t<decltype(std::declval<Ref const&>().next(
+                   std::declval<sphere<S> const&>(),
+                   std::declval<decltype(std::declval<Ref const&>().begin(std::declval<sphere<S> const&>()))&>(),
+                   std::declval<id&>()))>> : std::true_type {};
+
+/// How far the candidates of a sphere have been gone through, of a reference that cannot go on by itself: how many
+/// there were.
+struct enumeration_count {
+  std::uint32_t seen;
+};
+
+template <class Ref, class S>
+COLLIDE_HD_INLINE auto begin_candidates([[maybe_unused]] Ref const& ref, [[maybe_unused]] sphere<S> const& s) {
+  if constexpr (resumes<Ref, S>::value) {
+    return ref.begin(s);
+  } else {
+    return enumeration_count{0};
+  }
+}
+
+/// Calls f(triangle) for at most `most` more candidates; false if it has come to the end. What cannot go on enumerates
+/// all that it has had once more.
+template <class Ref, class Sphere, class Cursor, class F>
+COLLIDE_HD_INLINE bool next_candidates(Ref const& ref, Sphere const& s, Cursor& c, std::uint32_t most, F const& f) {
+  if constexpr (std::is_same<Cursor, enumeration_count>::value) {
+    std::uint32_t number = 0;
+    for_each_candidate(ref, s, [&](id t) {
+      if (number >= c.seen && number - c.seen < most) f(t);
+      ++number;
+    });
+    c.seen += most;
+    return number > c.seen;
+  } else {
+    auto const& around = swept_bounding_sphere(s);
+    id t;
+    for (std::uint32_t n = 0; n < most; ++n) {
+      if (!ref.next(around, c, t)) return false;
+      f(t);
+    }
+    return true;
+  }
+}
+
+/// Kernel functor: a thread has a sphere after the other, and looks at some of its candidates at a time, as there is
+/// room for only so many.
 template <class S, class NarrowPhase, class Output, class Ref>
 struct per_sphere_query {
-  static constexpr int items = 1;
+  static constexpr int items = 4;
   static constexpr int items_per_thread = 8;
 
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
@@ -57,89 +107,191 @@ struct per_sphere_query {
   template <class Block>
   struct scratch {
     pipeline_storage<Block, items_per_thread> hits;
-    std::uint32_t unfinished;  ///< how often a sphere had more candidates; only rises
+    std::uint32_t unfinished;  ///< how often a thread had more to do; only rises
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    typename Block::template thread_private<progress> own;
+    std::size_t const base = block.index() * Block::num_threads * Block::items;
     block.for_each_thread([&](int thread_rank) {
       pipeline.reset(s.hits, thread_rank);
       if (thread_rank == 0) s.unfinished = 0;
+      own[thread_rank].k = 0;
+      start(own[thread_rank], base + static_cast<std::size_t>(thread_rank), Block::num_threads, Block::items);
     });
-    std::size_t const base = block.index() * Block::num_threads * Block::items;
-    std::uint32_t seen = 0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(Block::items); ++k) {
-      std::size_t const first = base + k * Block::num_threads;
-      if constexpr (Block::num_threads == 1) {
-        if (first < pipeline.spheres.size()) test_all(block, s, first);
-        pipeline.drain_if_full(block, s.hits);
-      } else {
-        for (std::uint32_t skip = 0;; skip += items_per_thread) {
-          block.for_each_thread([&](int thread_rank) {
-            std::size_t const i = first + static_cast<std::size_t>(thread_rank);
-            if (i < pipeline.spheres.size()) test_some(block, s, i, skip);
+    for (std::uint32_t seen = 0;;) {
+      block.for_each_thread([&](int thread_rank) {
+        progress& p = own[thread_rank];
+        std::size_t const first = base + static_cast<std::size_t>(thread_rank);
+        for (std::uint32_t room = items_per_thread; room != 0 && p.k < Block::items;) {
+          std::size_t const i = first + static_cast<std::size_t>(p.k) * Block::num_threads;
+          auto const sphere = pipeline.spheres[i];
+          bool const more = next_candidates(ref, sphere, p.at, room, [&](id t) {
+            pipeline.push(block, s.hits, {static_cast<id>(i), t}, sphere);
+            --room;
           });
-          pipeline.drain_if_full(block, s.hits);
-          std::uint32_t const unfinished = block.broadcast(s.unfinished);
-          if (unfinished == seen) break;
-          seen = unfinished;
+          if (more) break;
+          ++p.k;
+          start(p, first, Block::num_threads, Block::items);
         }
-      }
+        if (p.k < Block::items) block.add(s.unfinished, 1);
+      });
+      pipeline.drain_if_full(block, s.hits);
+      std::uint32_t const unfinished = block.broadcast(s.unfinished);
+      if (unfinished == seen) break;
+      seen = unfinished;
     }
     pipeline.drain(block, s.hits);
   }
 
  private:
-  template <class Block>
-  COLLIDE_HD_INLINE void test_all(Block& block, scratch<Block>& s, std::size_t i) const {
-    auto const own = pipeline.spheres[i];
-    for_each_candidate(ref, own, [&](id t) { pipeline.push(block, s.hits, {static_cast<id>(i), t}, own); });
-  }
+  /// How far a thread is: with its sphere number `k`.
+  struct progress {
+    int k;
+    decltype(begin_candidates(std::declval<Ref const&>(), std::declval<sphere<S> const&>())) at;
+  };
 
-  /// Candidates number `skip` and the next ones.
-  template <class Block>
-  COLLIDE_HD_INLINE void test_some(Block& block, scratch<Block>& s, std::size_t i, std::uint32_t skip) const {
-    std::uint32_t number = 0;
-    for_each_candidate(ref, pipeline.spheres[i], [&](id t) {
-      if (number >= skip && number - skip < items_per_thread) pipeline.push(block, s.hits, {static_cast<id>(i), t});
-      ++number;
-    });
-    if (number > skip + items_per_thread) block.add(s.unfinished, 1);
+  /// Begins with sphere k of a thread, unless there is none.
+  COLLIDE_HD_INLINE void start(progress& p, std::size_t first, std::size_t stride, int all) const {
+    if (p.k >= all) return;
+    std::size_t const i = first + static_cast<std::size_t>(p.k) * stride;
+    if (i >= pipeline.spheres.size()) {
+      p.k = all;
+      return;
+    }
+    p.at = begin_candidates(ref, swept_bounding_sphere(pipeline.spheres[i]));
   }
 };
 
-/// What a kernel asks for the triangles near a single sphere; the members are those of triangle_ref.hpp. A cursor is
-/// the number of a triangle: the next candidate is that of the least number from there on, for which all are
-/// enumerated.
+/// Kernel functor of a host, for blocks of one thread: candidates are decided many at a time, in the lanes of the
+/// processor's vector unit.
+template <class S, class NarrowPhase, class Output, class Ref>
+struct batched_per_sphere_query {
+  static constexpr int items = 4;
+
+  candidate_pipeline<S, NarrowPhase, Output> pipeline;
+  Ref ref;
+
+  template <class Block>
+  struct scratch {
+    static constexpr std::uint32_t room = 64;
+    pipeline_storage<Block> hits;
+    candidate_batch<S> batch;
+    id found[room];
+    std::uint32_t size;
+  };
+
+  template <class Block>
+  void operator()(Block& block, scratch<Block>& s) const {
+    pipeline.reset(s.hits, 0);
+    s.batch.size = 0;
+    std::size_t const begin = block.index() * Block::items, size = pipeline.spheres.size();
+    for (std::size_t i = begin; i < begin + Block::items && i < size; ++i) {
+      auto const own = pipeline.spheres[i];
+      if constexpr (resumes<Ref, S>::value) {
+        auto const around = swept_bounding_sphere(own);
+        decltype(ref.begin(around)) at;
+        for (bool more = true, begins = true; more; begins = false) {
+          multiversioned([&] {
+            if (begins) at = ref.begin(around);
+            s.size = 0;
+            more = next_candidates(ref, around, at, s.room, [&](id t) { s.found[s.size++] = t; });
+          });
+          for (std::uint32_t k = 0; k < s.size; ++k) take(block, s, {static_cast<id>(i), s.found[k]}, own);
+        }
+      } else {
+        for_each_candidate(ref, own, [&](id t) { take(block, s, {static_cast<id>(i), t}, own); });
+      }
+      // of spheres that move the batch has the address
+      if constexpr (!is_discrete<NarrowPhase, S>) flush(block, s);
+    }
+    flush(block, s);
+    pipeline.drain(block, s.hits);
+  }
+
+ private:
+  template <class Block, class Sphere>
+  void take(Block& block, scratch<Block>& s, pair p, Sphere const& own) const {
+    if constexpr (in_batches<NarrowPhase, S>) {
+      s.batch.add(p, pipeline.mesh[p.triangle], own);
+      if (s.batch.size == s.batch.room) flush(block, s);
+    } else {
+      pipeline.push(block, s.hits, p, own);
+      pipeline.drain_if_full(block, s.hits);
+    }
+  }
+
+  template <class Block>
+  void flush(Block& block, scratch<Block>& s) const {
+    if constexpr (in_batches<NarrowPhase, S>) {
+      if (s.batch.size != 0) s.batch.decide(pipeline, block, s.hits);
+    }
+  }
+};
+
+/// What a kernel asks for the triangles near a single sphere; the members are those of triangle_ref.hpp. Where the
+/// reference cannot go on by itself a cursor is the number of a triangle: the next candidate is that of the least
+/// number from there on, for which all are enumerated.
 template <class S, class Ref>
 struct per_sphere_lookup : triangle_ref<S> {
   Ref ref;
 
   COLLIDE_HD per_sphere_lookup const& opened() const { return *this; }
   template <class Sphere>
-  COLLIDE_HD bool empty(Sphere const&) const {
-    return this->mesh.size() == 0;
+  COLLIDE_HD bool empty([[maybe_unused]] Sphere const& s) const {
+    if (this->mesh.size() == 0) return true;
+    if constexpr (resumes<Ref, S>::value) {
+      auto const& around = swept_bounding_sphere(s);
+      auto at = ref.begin(around);
+      id t;
+      return !ref.next(around, at, t);
+    } else {
+      return false;
+    }
   }
   COLLIDE_HD bool has_single_cell_lookup(S) const { return false; }
   COLLIDE_HD occupancy_view<S> occupancy() const { return {}; }
   template <class Sphere>
-  COLLIDE_HD candidate_cursor begin(Sphere const&) const {
-    return {0, 0, 0, 0};
+  COLLIDE_HD candidate_cursor begin([[maybe_unused]] Sphere const& s) const {
+    candidate_cursor c{0, 0, 0, 0};
+    if constexpr (resumes<Ref, S>::value) {
+      if (this->mesh.size() != 0) keep(ref.begin(swept_bounding_sphere(s)), c);
+    }
+    return c;
   }
   template <class Sphere>
   COLLIDE_HD bool next(Sphere const& s, candidate_cursor& c, std::uint32_t, candidate_range& range) const {
     if (c.at_end() || this->mesh.size() == 0) return false;
-    id least = no_id;
-    for_each_candidate(ref, s, [&](id t) {
-      if (t >= c.skip && t < least) least = t;
-    });
-    if (least == no_id) {
+    id found = no_id;
+    if constexpr (resumes<Ref, S>::value) {
+      auto const& around = swept_bounding_sphere(s);
+      auto at = ref.begin(around);
+      std::memcpy(static_cast<void*>(&at), &c.level, sizeof at);
+      if (!ref.next(around, at, found)) found = no_id;
+      keep(at, c);
+    } else {
+      for_each_candidate(ref, s, [&](id t) {
+        if (t >= c.skip && t < found) found = t;
+      });
+      c.skip = found + 1;
+    }
+    if (found == no_id) {
       c.grid = candidate_cursor::ended;
       return false;
     }
-    range = {nullptr, least, 1, cell_coverage::full_query};
-    c.skip = least + 1;
+    range = {nullptr, found, 1, cell_coverage::full_query};
     return true;
+  }
+
+ private:
+  /// Keeps a cursor of the reference in what there is besides the number of a grid.
+  template <class Cursor>
+  static COLLIDE_HD_INLINE void keep(Cursor const& at, candidate_cursor& c) {
+    static_assert(std::is_trivially_copyable<Cursor>::value && sizeof(Cursor) <= sizeof c - sizeof c.grid,
+                  "collide: what begin() of a per_sphere reference returns is a trivially copyable value of at most 12 "
+                  "bytes");
+    std::memcpy(&c.level, &at, sizeof at);
   }
 };
 

@@ -31,7 +31,16 @@ struct query_pass {
 
   /// About how many hits there are, rather too many; 0 if the index cannot tell.
   std::uint64_t expected_hits() const;
+
+  /// Calls f(i, sphere, mesh, search) for every sphere i, from many threads, where search(bound, consider) calls bound =
+  /// consider(triangle) for all triangles whose squared distance from the centre is at most `bound`, which only falls.
+  template <class F>
+  void search(F const& f) const;
 };
+
+template <class Index, class S>
+using index_for_each_nearer = decltype(std::declval<Index const&>().ref().for_each_nearer(
+    std::declval<vec3<S> const&>(), S(), std::declval<S (&)(id)>()));
 
 template <class Index, class NarrowPhase, class Space, class Spheres>
 using index_expected_hits = decltype(std::declval<Index&>().template expected_hits<NarrowPhase>(
@@ -43,6 +52,31 @@ std::uint64_t query_pass<Index, NarrowPhase, Space, S>::expected_hits() const {
     if (mesh.size() != 0 && spheres.size() != 0) return index.template expected_hits<NarrowPhase>(space, spheres);
   }
   return 0;
+}
+
+/// Kernel body of `for_each` over spheres.
+template <class S, class Ref, class F>
+struct search_of_sphere {
+  Ref ref;
+  mesh_view<S> mesh;
+  sphere_view<S> spheres;
+  F f;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    sphere<S> const own = spheres[i];
+    f(i, own, mesh, [&](S bound, auto const& consider) { ref.for_each_nearer(own.centre, bound, consider); });
+  }
+};
+
+template <class Index, class NarrowPhase, class Space, class S>
+template <class F>
+void query_pass<Index, NarrowPhase, Space, S>::search(F const& f) const {
+  static_assert(is_valid<index_for_each_nearer, Index, S>,
+                "collide: nearest needs a broad phase that begins with what is near, at any distance: bvh, or all_pairs");
+  static_assert(is_discrete<NarrowPhase, S>, "collide: nearest is for points and spheres that rest");
+  using ref_type = decltype(index.ref());
+  ref_type const ref = mesh.size() != 0 ? index.ref() : ref_type{};
+  space.for_each(spheres.size(), search_of_sphere<S, ref_type, F>{ref, mesh, spheres, f});
 }
 
 template <class Index, class NarrowPhase, class Space, class S>

@@ -1,0 +1,55 @@
+/// \file
+/// Broad phase: a tree of boxes. Includes the detector and everything to use it with: with nvcc the CUDA spaces too.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/tree/pack_tree.hpp>
+#include <collide/detail/tree/sah_tree.hpp>
+#include <collide/detail/tree/tree_ref.hpp>
+#include <collide/extend.hpp>
+
+namespace collide {
+
+namespace detail {
+
+/// The enumerating part of `bvh`.
+struct tree_policy {
+  template <class S>
+  class index {
+   public:
+    template <class Space>
+    void build(Space& space, tree_policy const&, mesh_view<S> mesh) {
+      if (mesh.size() >= tree_node::leaf) throw error("collide: bvh: a mesh has at most 2^31 - 1 triangles");
+      mesh_ = mesh;
+      has_tree_ = false;
+      if constexpr (bvh_tuning<Space>::divides_by_area) {
+        has_tree_ = divided_.build(space, mesh, nodes_);
+      } else {
+        packed_.build(space, mesh, nodes_);
+        has_tree_ = true;
+      }
+    }
+
+    tree_ref<S> ref() const { return {mesh_, has_tree_ ? nodes_.data() : nullptr}; }
+
+   private:
+    mesh_view<S> mesh_;
+    bool has_tree_ = false;
+    buffer<tree_node> nodes_;
+    sah_tree<S> divided_;
+    packed_tree<S> packed_;
+  };
+};
+
+}  // namespace detail
+
+/// Broad phase: a tree of boxes around the triangles, eight to a node, in float, rounded outward. For meshes that a
+/// grid does not suit: long thin triangles, a few that are very large beside many small ones, spheres of very different
+/// sizes; and to find the nearest triangle. The host divides the triangles by the surface area heuristic, O(n log n);
+/// devices sort them along Hilbert's curve, O(n). Query O(spheres * (log(triangles) + candidates)). Memory: at most 72
+/// bytes for each triangle on a device, 100 on the host. A mesh has at most 2^31 - 1 triangles.
+struct bvh : per_sphere<detail::tree_policy> {};
+
+}  // namespace collide

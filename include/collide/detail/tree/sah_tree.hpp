@@ -1,0 +1,287 @@
+/// \file
+/// A tree of boxes for the host: triangles are divided where that costs a query least by the surface area heuristic, of
+/// which some planes are tried (I. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <collide/detail/execution/algorithms.hpp>
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/tree/tree_node.hpp>
+#include <collide/memory.hpp>
+
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
+namespace collide::detail {
+
+/// A box as what is largest of it: -lower, a gap, upper, a gap. So a loop of one kind merges two.
+struct box_ends {
+  static constexpr int size = 8;
+  float ends[size];
+
+  static box_ends empty() {
+    constexpr float far = -std::numeric_limits<float>::infinity();
+    return {{far, far, far, far, far, far, far, far}};
+  }
+  static box_ends of(aabb<float> const& b) {
+    return {{-b.lower[0], -b.lower[1], -b.lower[2], 0, b.upper[0], b.upper[1], b.upper[2], 0}};
+  }
+  aabb<float> box() const { return {{-ends[0], -ends[1], -ends[2]}, {ends[4], ends[5], ends[6]}}; }
+
+  void add(box_ends const& other) {
+    for (int k = 0; k < size; ++k) ends[k] = larger(ends[k], other.ends[k]);
+  }
+
+  /// Twice the middle on an axis.
+  float middle(int axis) const { return ends[4 + axis] - ends[axis]; }
+
+  /// Half the surface; 0 of nothing.
+  float half_surface() const {
+    float const x = ends[0] + ends[4], y = ends[1] + ends[5], z = ends[2] + ends[6];
+    return x >= 0 ? x * y + (y * z + z * x) : 0.0f;
+  }
+};
+
+/// A triangle while the tree is made.
+struct boxed_triangle {
+  box_ends box;
+  id triangle;
+
+  float middle(int axis) const { return box.middle(axis); }
+};
+
+/// Triangles that follow each other, and the boxes around them and around the middles of theirs.
+struct triangle_range {
+  std::uint32_t begin, end;
+  box_ends box, middles;
+
+  std::uint32_t size() const { return end - begin; }
+
+  static triangle_range of(boxed_triangle const* from, std::uint32_t begin, std::uint32_t end) {
+    triangle_range r{begin, end, box_ends::empty(), box_ends::empty()};
+    multiversioned([&] {
+      for (std::uint32_t i = begin; i < end; ++i) {
+        box_ends const& b = from[i].box;
+        r.box.add(b);
+        box_ends middle;
+        for (int k = 0; k < 4; ++k) middle.ends[k + 4] = b.ends[k + 4] - b.ends[k];
+        for (int k = 0; k < 4; ++k) middle.ends[k] = -middle.ends[k + 4];
+        r.middles.add(middle);
+      }
+    });
+    return r;
+  }
+};
+
+/// Divides ranges of triangles. Nodes at the lowest level get as many as they have room for.
+class range_divider {
+ public:
+  explicit range_divider(boxed_triangle* triangles) : all_{triangles} {}
+
+  /// Divides a range of more triangles than a node has room for; `halves`: at its middle, however that is.
+  void divide(triangle_range const& range, bool halves, triangle_range& left, triangle_range& right) {
+    plane p{-1, 0, 0, 0};
+    if (!halves) p = best_plane(range);
+    std::uint32_t middle = range.begin + range.size() / 2;
+    if (p.axis >= 0) {
+      auto* const found = std::partition(all_ + range.begin, all_ + range.end,
+                                         [&](boxed_triangle const& t) { return p.bin_of(t, p.axis) <= p.bin; });
+      middle = static_cast<std::uint32_t>(found - all_);
+    }
+    if (middle == range.begin || middle == range.end) middle = range.begin + range.size() / 2;
+    constexpr std::uint32_t few = 8 * tree_node::width;
+    bool const large = range.size() > 8 * few && middle - range.begin >= few && range.end - middle >= few;
+    if (!large || p.axis < 0) middle = fill_nodes(range, middle, larger(p.axis, 0));
+    left = triangle_range::of(all_, range.begin, middle);
+    right = triangle_range::of(all_, middle, range.end);
+  }
+
+ private:
+  static constexpr int bins = 16;
+
+  struct plane {
+    int axis;  ///< -1: none
+    int bin;   ///< the last one before the plane
+    float first, scale;
+
+    int bin_of(boxed_triangle const& t, int of_axis) const {
+      float const x = (t.middle(of_axis) - first) * scale;
+      return static_cast<int>(select(x > 0, smaller(x, float(bins - 1)), 0.0f));  // 0 where it is NaN
+    }
+  };
+
+  /// The plane where nodes are, of all in the range, least likely to be visited.
+  plane best_plane(triangle_range const& range) const {
+    plane planes[3];
+    std::uint32_t counts[3][bins] = {};
+    box_ends boxes[3][bins];
+    for (int axis = 0; axis < 3; ++axis) {
+      float const first = -range.middles.ends[axis], extent = range.middles.ends[4 + axis] - first;
+      float const scale = bins * (1 - 0x1p-20f) / extent;
+      bool const divides = extent > 0 && is_finite(extent) && is_finite(scale);
+      planes[axis] = {divides ? axis : -1, 0, first, divides ? scale : 0};
+      for (auto& box : boxes[axis]) box = box_ends::empty();
+    }
+    multiversioned([&] {
+      for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        boxed_triangle const& t = all_[i];
+        for (int axis = 0; axis < 3; ++axis) {
+          int const b = planes[axis].bin_of(t, axis);
+          ++counts[axis][b];
+          boxes[axis][b].add(t.box);
+        }
+      }
+    });
+    plane best{-1, 0, 0, 0};
+    float least = std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      plane p = planes[axis];
+      if (p.axis < 0) continue;
+      float behind[bins];  // what is behind a plane costs
+      box_ends box = box_ends::empty();
+      std::uint32_t n = 0;
+      for (int b = bins - 1; b > 0; --b) {
+        box.add(boxes[axis][b]);
+        behind[b - 1] = cost(box, n += counts[axis][b]);
+      }
+      box = box_ends::empty();
+      n = 0;
+      for (p.bin = 0; p.bin < bins - 1; ++p.bin) {
+        box.add(boxes[axis][p.bin]);
+        float const all = cost(box, n += counts[axis][p.bin]) + behind[p.bin];
+        if (n == 0 || n == range.size() || !(all < least)) continue;
+        least = all;
+        best = p;
+      }
+    }
+    return best;
+  }
+
+  static float cost(box_ends const& box, std::uint32_t n) {
+    return box.half_surface() * static_cast<float>((n + tree_node::width - 1) / tree_node::width);
+  }
+
+  /// Moves the end of the left part to where full nodes end, and triangles next to the plane to the other side.
+  std::uint32_t fill_nodes(triangle_range const& range, std::uint32_t middle, int axis) {
+    constexpr std::uint32_t n = tree_node::width;
+    std::uint32_t const wanted = larger((middle - range.begin + n / 2) / n, 1u) * n, most = (range.size() - 1) / n * n;
+    std::uint32_t const to = range.begin + smaller(wanted, most);
+    if (to == middle) return to;
+    auto const before = [&](boxed_triangle const& a, boxed_triangle const& b) { return a.middle(axis) < b.middle(axis); };
+    bool const from_left = to < middle;
+    std::nth_element(all_ + (from_left ? range.begin : middle), all_ + to, all_ + (from_left ? middle : range.end),
+                     before);
+    return to;
+  }
+
+  boxed_triangle* all_;
+};
+
+/// Makes the tree.
+template <class S>
+class sah_tree {
+ public:
+  /// Returns false if no triangle is finite: there is no tree then.
+  template <class Space>
+  bool build(Space& space, mesh_view<S> const& mesh, buffer<tree_node>& memory) {
+    std::size_t const n = mesh.size();
+    all_ = triangles_.reserve(space.resource(), n);
+    vec3<S> const origin = tree_origin(mesh);
+    space.for_each(n, [&](std::size_t i) { all_[i] = {box_ends::of(tree_box_of(mesh[i], origin)), static_cast<id>(i)}; });
+    auto const* const end = std::partition(all_, all_ + n, [](boxed_triangle const& t) { return !t.box.box().is_empty(); });
+    auto const finite = static_cast<std::uint32_t>(end - all_);
+    if (finite == 0) return false;
+    nodes_ = memory.reserve(space.resource(), most_nodes(finite));
+    used_ = 1;
+    tasks_ = 0;
+    nodes_[0].parent = nodes_[0].slot = 0;
+    most_at_once_ = larger(finite / 64, 4096u);
+    task const root{triangle_range::of(all_, 0, finite), 0, 0};
+    build_node(root, true);
+    for_each_block(space, tasks_, [&](std::size_t i) { build_node(waiting_[i], false); });
+    return true;
+  }
+
+ private:
+  static constexpr int width = tree_node::width, most_tasks = 1024, most_uneven = 40;  // levels
+
+  /// A node to be made.
+  struct task {
+    triangle_range range;
+    std::uint32_t node;
+    int level;
+  };
+
+  /// Of the parts of ranges that are divided anywhere, of at least 64 triangles, one node each is not full; and a node
+  /// above the lowest level has at least two below.
+  static std::size_t most_nodes(std::size_t triangles) { return triangles / 4 + triangles / 32 + 16; }
+
+  /// Makes a node and all below. `postpones`: what has few triangles waits until threads do it.
+  void build_node(task const& t, bool postpones) {
+    if (postpones && t.range.size() <= most_at_once_ && tasks_ < most_tasks) {
+      waiting_[tasks_++] = t;
+      return;
+    }
+    tree_node& node = nodes_[t.node];
+    triangle_range parts[width];
+    int n = 0;
+    if (t.range.size() <= width) {
+      for (std::uint32_t i = t.range.begin; i < t.range.end; ++i)
+        node.set(n++, all_[i].box.box(), all_[i].triangle | tree_node::leaf);
+    } else {
+      n = divide(t, parts);
+      for (int k = 0; k < n; ++k) {
+        bool const one = parts[k].size() == 1;
+        std::uint32_t const child = one ? all_[parts[k].begin].triangle | tree_node::leaf : fetch_add(&used_, 1u);
+        node.set(k, parts[k].box.box(), child);
+      }
+    }
+    node.there = (1u << n) - 1;
+    for (int k = n; k < width; ++k) node.set(k, aabb<float>::empty(), 0);
+    for (int k = 0; k < n; ++k) {
+      std::uint32_t const child = node.child[k];
+      if ((child & tree_node::leaf) != 0) continue;
+      nodes_[child].parent = t.node;
+      nodes_[child].slot = static_cast<std::uint32_t>(k);
+      build_node({parts[k], child, t.level + 1}, postpones);
+    }
+  }
+
+  /// Divides a range into as many as a node has room for, always the one with the largest surface.
+  int divide(task const& t, triangle_range (&parts)[width]) {
+    bool const halves = t.level >= most_uneven;
+    parts[0] = t.range;
+    int n = 1;
+    for (; n < width; ++n) {
+      int chosen = -1;
+      float most = -1;
+      for (int k = 0; k < n; ++k) {
+        if (parts[k].size() <= width) continue;
+        float const size = halves ? static_cast<float>(parts[k].size()) : parts[k].box.half_surface();
+        if (size > most || chosen < 0) most = size, chosen = k;
+      }
+      if (chosen < 0) break;
+      triangle_range const whole = parts[chosen];
+      range_divider(all_).divide(whole, halves, parts[chosen], parts[n]);
+    }
+    return n;
+  }
+
+  buffer<boxed_triangle> triangles_;
+  boxed_triangle* all_ = nullptr;
+  tree_node* nodes_ = nullptr;
+  std::uint32_t used_ = 0;
+  std::uint32_t most_at_once_ = 0;
+  task waiting_[most_tasks];
+  std::size_t tasks_ = 0;
+};
+
+}  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -1,0 +1,193 @@
+/// \file
+/// How a tree of boxes is gone through: the triangles that a sphere could touch, one after the other, and those near a
+/// point, the nearest boxes first.
+#pragma once
+
+#include <cstdint>
+
+#include <collide/detail/execution/multiversion.hpp>
+#include <collide/detail/tree/tree_node.hpp>
+
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
+namespace collide::detail {
+
+/// The most levels of nodes that a tree has: on a device they are full.
+#if defined(__CUDA_ARCH__)
+inline constexpr int most_tree_levels = 12;
+#else
+inline constexpr int most_tree_levels = 64;
+#endif
+
+/// The number of the lowest bit that is set.
+COLLIDE_HD_INLINE int lowest_bit(std::uint32_t mask) {
+#if defined(__CUDA_ARCH__)
+  return __ffs(static_cast<int>(mask)) - 1;
+#else
+  return __builtin_ctz(mask);
+#endif
+}
+
+/// How far the triangles that a sphere could touch have been gone through: a node, and which of its boxes, and of those
+/// of the nodes above it, are still to be looked into. Of more nodes than there is room for that is found out again.
+class tree_cursor {
+ public:
+  /// At a node, with nothing above it.
+  COLLIDE_HD_INLINE static tree_cursor at(std::uint32_t node, std::uint32_t boxes) { return {node, boxes, 0}; }
+  COLLIDE_HD_INLINE static tree_cursor ended() { return {none, 0, 0}; }
+
+  COLLIDE_HD_INLINE bool at_end() const { return node_ == none; }
+  COLLIDE_HD_INLINE std::uint32_t node() const { return node_; }
+  COLLIDE_HD_INLINE bool has_box() const { return (low_ & 0xff) != 0; }
+
+  /// The next box of the node.
+  COLLIDE_HD_INLINE int take() {
+    int const k = lowest_bit(low_ & 0xff);
+    low_ &= low_ - 1;
+    return k;
+  }
+
+  COLLIDE_HD_INLINE void descend(std::uint32_t node, std::uint32_t boxes) {
+    std::uint32_t const kept = high_ >> 24;
+    high_ = ((high_ << 8 | low_ >> 24) & 0xffffffu) | (kept < most_kept ? kept + 1 : most_kept) << 24;
+    low_ = low_ << 8 | boxes;
+    node_ = node;
+  }
+
+  /// Goes back to a node above; false if it is not known any more which of its boxes are left.
+  COLLIDE_HD_INLINE bool ascend(std::uint32_t node) {
+    std::uint32_t const kept = high_ >> 24;
+    node_ = node;
+    if (kept == 0) return false;
+    low_ = low_ >> 8 | high_ << 24;
+    high_ = (high_ >> 8 & 0xffffu) | (kept - 1) << 24;
+    return true;
+  }
+
+  COLLIDE_HD_INLINE tree_cursor() = default;
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffffu, most_kept = 6;
+
+  COLLIDE_HD_INLINE tree_cursor(std::uint32_t node, std::uint32_t low, std::uint32_t high)
+      : node_{node}, low_{low}, high_{high} {}
+
+  std::uint32_t node_;
+  std::uint32_t low_, high_;  ///< 8 bits for the boxes of each node, those of this one lowest; then how many are kept
+};
+
+/// A tree of boxes of the triangles of a mesh, as kernels have it. The members are those of a `per_sphere` policy.
+template <class S>
+struct tree_ref {
+  mesh_view<S> mesh;
+  tree_node const* nodes;  ///< the root first; null if there are none
+
+  using cursor = tree_cursor;
+
+  /// A sphere as the boxes see it.
+  struct reach {
+    tree_point centre;
+    float squared;
+
+    COLLIDE_HD_INLINE reach(sphere<S> const& s, vec3<S> const& origin) : centre(s.centre, origin) {
+      float radius;
+      if constexpr (sizeof(S) == sizeof(float)) {
+        radius = triangle_aabb<S>::padded_radius(s.radius);
+      } else {
+        radius = triangle_aabb<float>::padded_radius(float_above(s.radius));
+      }
+      squared = radius * radius;
+    }
+  };
+
+  COLLIDE_HD_INLINE bool is_place(sphere<S> const& s) const {
+    return nodes != nullptr && is_valid_radius(s.radius) && is_finite(s.centre);
+  }
+
+  COLLIDE_HD_INLINE cursor begin(sphere<S> const& s) const {
+    return is_place(s) ? begin(reach(s, tree_origin(mesh))) : cursor::ended();
+  }
+  COLLIDE_HD_INLINE bool next(sphere<S> const& s, cursor& c, id& triangle) const {
+    return !c.at_end() && next(reach(s, tree_origin(mesh)), c, triangle);
+  }
+
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_candidate(sphere<S> const& s, F const& f) const {
+    if (!is_place(s)) return;
+    reach const r(s, tree_origin(mesh));
+    cursor c = begin(r);
+    for (id triangle; next(r, c, triangle);) f(triangle);
+  }
+
+  COLLIDE_HD_INLINE cursor begin(reach const& r) const { return cursor::at(0, nodes[0].reached(r.centre, r.squared)); }
+
+  /// Moves on to the next triangle; false if there is none.
+  COLLIDE_HD_INLINE bool next(reach const& r, cursor& c, id& triangle) const {
+    for (;;) {
+      while (c.has_box()) {
+        std::uint32_t const child = nodes[c.node()].child[c.take()];
+        if ((child & tree_node::leaf) != 0) {
+          triangle = child & ~tree_node::leaf;
+          return true;
+        }
+        c.descend(child, nodes[child].reached(r.centre, r.squared));
+      }
+      if (c.node() == 0) {
+        c = cursor::ended();
+        return false;
+      }
+      tree_node const& here = nodes[c.node()];
+      std::uint32_t const behind = 0xfeu << here.slot, above = here.parent;
+      if (!c.ascend(above)) c = cursor::at(above, nodes[above].reached(r.centre, r.squared) & behind & 0xff);
+    }
+  }
+
+  /// Calls bound = f(triangle) for triangles near a point, the nearest boxes first: at least for all whose squared
+  /// distance is at most `bound`, which only falls. Nothing if it is negative, or the point is not finite.
+  template <class F>
+  COLLIDE_HD void for_each_nearer(vec3<S> const& point, S bound, F const& f) const {
+    if (nodes == nullptr || !(bound >= 0) || !is_finite(point)) return;
+    tree_point const p(point, tree_origin(mesh));
+    struct level {
+      std::uint32_t node, boxes;  ///< those still to be looked into
+      std::uint32_t nearest;      ///< the least key of these
+    };
+    level stack[most_tree_levels];
+    stack[0] = {0, 0xff, 0};
+    std::uint32_t most = tree_node::key_of(bound);
+    for (int top = 0; top >= 0;) {
+      level& here = stack[top];
+      if (here.nearest > most) {
+        --top;
+        continue;
+      }
+      tree_node const& node = nodes[here.node];
+      std::uint32_t keys[tree_node::width], left = here.boxes & node.there;
+      multiversioned([&] { node.find_keys(p, left, keys); });
+      for (;;) {
+        std::uint32_t const key = tree_node::least(keys), k = key % tree_node::width;
+        if (key > most) {
+          --top;
+          break;
+        }
+        tree_node::remove(keys, key);
+        left &= ~(1u << k);
+        std::uint32_t const child = node.child[k];
+        if ((child & tree_node::leaf) != 0) {
+          most = tree_node::key_of(f(child & ~tree_node::leaf));
+          continue;
+        }
+        here.boxes = left;
+        here.nearest = tree_node::least(keys);
+        stack[++top] = {child, 0xff, key};
+        break;
+      }
+    }
+  }
+};
+
+}  // namespace collide::detail
+
+#pragma GCC diagnostic pop

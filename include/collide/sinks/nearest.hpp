@@ -1,0 +1,94 @@
+/// \file
+/// Sink: the nearest triangle of each point or sphere, at any distance.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+
+#include <collide/concepts.hpp>
+#include <collide/detail/nearest/nearest_search.hpp>
+#include <collide/detail/sinks/array_in_space.hpp>
+#include <collide/karabassi.hpp>
+#include <collide/nearest_triangle.hpp>
+
+namespace collide {
+
+namespace detail {
+
+/// How sure a narrow phase is which triangle is nearest.
+template <class NarrowPhase>
+struct nearest_precision {
+  using type = exact;
+};
+template <class Precision>
+struct nearest_precision<karabassi<Precision>> {
+  using type = std::conditional_t<std::is_same<Precision, baseline>::value, single_precision, Precision>;
+};
+
+/// What `nearest` does for each sphere.
+template <class S, class Precision>
+struct find_nearest {
+  S max_distance;
+  nearest_triangle<S>* to;
+
+  template <class Search>
+  COLLIDE_HD void operator()(std::size_t i, sphere<S> const& s, mesh_view<S> const& mesh, Search const& search) const {
+    // of what has no radius nothing is in reach
+    nearest_search<S, Precision> best(s.centre, is_valid_radius(s.radius) ? max_distance + s.radius : S(-1));
+    search(best.squared_bound(), [&](id t) {
+      best.consider(mesh[t], t);
+      return best.squared_bound();
+    });
+    to[i] = best.result();
+    if (to[i].triangle != no_id && s.radius != 0) to[i].distance -= s.radius;
+  }
+};
+
+}  // namespace detail
+
+/// The nearest triangle of each point, wherever it is, and where on it: `nearest_triangle`, one for each point. Of
+/// equally near ones it is that with the smallest id. `query` takes points, or spheres: of these it is the triangle
+/// nearest to the centre, and `distance` is that from the surface, negative where the two touch. What is not finite, or
+/// farther than the largest distance, has `no_id` and a distance of +infinity.
+///
+/// Which triangle is nearest is decided as the precision of the narrow phase says: with `karabassi<>`, which is exact,
+/// as in real arithmetic. Needs a broad phase that finds what is near at any distance: `bvh`, or `all_pairs`. O(log
+/// triangles) for a point near the mesh with `bvh`. `query` does not wait. `S` is the scalar of the detector. Memory: an
+/// entry for each point.
+template <class S = float>
+class nearest : public detail::array_in_space<nearest_triangle<S>> {
+  using base = detail::array_in_space<nearest_triangle<S>>;
+  using base::data_, base::size_, base::download_;
+
+ public:
+  /// Triangles count up to `max_distance` from a point, or the surface of a sphere, inclusive. Throws `error` if it is
+  /// negative or NaN.
+  explicit nearest(std::common_type_t<S> max_distance = std::numeric_limits<S>::infinity())
+      : max_distance_{max_distance} {
+    if (!(max_distance >= 0)) throw error("collide: nearest: the largest distance is negative or NaN");
+  }
+
+  /// Makes room in memory of `space` for queries of up to so many points: they then allocate nothing.
+  template <class Space>
+  void reserve(Space const& space, std::size_t points, std::size_t /*pairs*/) {
+    own_.reserve(space.resource(), points);
+  }
+
+  template <class Space, class Query>
+  void run(Space& space, Query const& query) {
+    static_assert(std::is_same<S, typename Query::scalar>::value,
+                  "collide: nearest<S> must have the scalar type of the detector");
+    using precision = typename detail::nearest_precision<typename Query::narrow_phase>::type;
+    download_ = detail::host_copier<nearest_triangle<S>>(space);
+    size_ = query.spheres.size();
+    data_ = own_.reserve(space.resource(), size_);
+    query.search(detail::find_nearest<S, precision>{max_distance_, data_});
+  }
+
+ private:
+  S max_distance_;
+  buffer<nearest_triangle<S>> own_;
+};
+
+}  // namespace collide
