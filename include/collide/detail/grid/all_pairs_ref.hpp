@@ -35,6 +35,13 @@ struct all_pairs_ref : triangle_ref<S> {
   COLLIDE_HD void for_each_nearer(vec3<S> const&, S, F const& f) const {
     for (std::size_t t = 0; t < this->mesh.size(); ++t) f(static_cast<id>(t));
   }
+
+  /// Calls f(triangle) for every triangle, as long as that returns true.
+  template <class F>
+  COLLIDE_HD void for_each_on_ray(vec3<S> const&, F const& f) const {
+    for (std::size_t t = 0; t < this->mesh.size() && f(static_cast<id>(t)); ++t) {
+    }
+  }
 };
 
 }  // namespace collide::detail

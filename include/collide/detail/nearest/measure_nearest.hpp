@@ -57,6 +57,7 @@ COLLIDE_HD_NOINLINE inline measured_foot measure_foot_exactly(triangle<double> c
     int const exponent = square.exponent - by.exponent, half = exponent / 2;
     double_double const quotient = digits_of_scaled(square) / digits_of_scaled(by);
     found.distance = times_power(root(scaled(quotient, times_power(1, exponent - 2 * half))).high, half);
+    found.distance = larger(found.distance, std::numeric_limits<double>::denorm_min());  // 0 only on the triangle
   }
   if (foot < 3) {
     set_weights(found, foot, {}, {});

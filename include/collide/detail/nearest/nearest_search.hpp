@@ -75,7 +75,7 @@ class exact_nearest_search {
     auto const weight = [&](int i) { return larger(there.weight[i].high, 0.0); };
     return {rounded_to<S>(point_of_weights(t, there.weight)),
             rounded_to<S>({weight(0), weight(1), weight(2)}),
-            static_cast<S>(there.distance),
+            rounded_distance(there.distance),
             number_,
             exact_triangle::feature_of(foot),
             static_cast<std::uint32_t>(exact_triangle::feature_index_of(foot))};
@@ -90,6 +90,12 @@ class exact_nearest_search {
   bool certain_ = false;  ///< the foot is exact
   triangle<S> corners_;
   id number_ = no_id;
+
+  /// 0 only on the triangle, however small the distance is.
+  static COLLIDE_HD S rounded_distance(double distance) {
+    auto const rounded = static_cast<S>(distance);
+    return rounded == 0 && distance > 0 ? std::numeric_limits<S>::denorm_min() : rounded;
+  }
 
   COLLIDE_HD_NOINLINE int compare(triangle<S> const& with) const { return compare_distances(with, corners_, point_); }
 

@@ -16,18 +16,18 @@ class ray_parity {
  public:
   COLLIDE_HD explicit ray_parity(vec3<S> const& point) : point_(point), done_(!is_finite(point)) {}
 
-  /// Looks at a triangle; one that is not finite is not there.
-  COLLIDE_HD void consider(triangle<S> const& t) {
-    if (done_ || !box_meets_ray(t) || !is_finite(t)) return;
+  /// Looks at a triangle; one that is not finite is not there. False if nothing that is still to come makes a
+  /// difference.
+  COLLIDE_HD bool consider(triangle<S> const& t) {
+    if (done_ || !box_meets_ray(t) || !is_finite(t)) return !done_;
     bool on_line;
     ray_crossing const crossing = cross(t, on_line);
     if (crossing == ray_crossing::above) odd_ = !odd_;
     if (crossing == ray_crossing::at_point || (on_line && intersects_exact(t, sphere<S>{point_, 0}).hit))
       on_surface_ = done_ = true;
+    return !done_;
   }
 
-  /// True if nothing that is still to come makes a difference.
-  COLLIDE_HD bool done() const { return done_; }
   /// True if the point is on a triangle.
   COLLIDE_HD bool on_surface() const { return on_surface_; }
   /// True if the point is inside or on the surface.

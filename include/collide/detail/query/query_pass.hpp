@@ -32,8 +32,10 @@ struct query_pass {
   /// About how many hits there are, rather too many; 0 if the index cannot tell.
   std::uint64_t expected_hits() const;
 
-  /// Calls f(i, sphere, mesh, search) for every sphere i, from many threads, where search(bound, consider) calls bound =
-  /// consider(triangle) for all triangles whose squared distance from the centre is at most `bound`, which only falls.
+  /// Calls f(i, sphere, mesh, search) for every sphere i, from many threads, where search(bound, consider) calls bound
+  /// = consider(triangle) for all triangles whose squared distance from the centre is at most `bound`, which only
+  /// falls, and search.on_ray(consider) calls consider(triangle) for all triangles whose box the ray from the centre
+  /// along +z meets, as long as that returns true.
   template <class F>
   void search(F const& f) const;
 };
@@ -41,6 +43,10 @@ struct query_pass {
 template <class Index, class S>
 using index_for_each_nearer = decltype(std::declval<Index const&>().ref().for_each_nearer(
     std::declval<vec3<S> const&>(), S(), std::declval<S (&)(id)>()));
+
+template <class Index, class S>
+using index_for_each_on_ray = decltype(std::declval<Index const&>().ref().for_each_on_ray(
+    std::declval<vec3<S> const&>(), std::declval<bool (&)(id)>()));
 
 template <class Index, class NarrowPhase, class Space, class Spheres>
 using index_expected_hits = decltype(std::declval<Index&>().template expected_hits<NarrowPhase>(
@@ -54,6 +60,22 @@ std::uint64_t query_pass<Index, NarrowPhase, Space, S>::expected_hits() const {
   return 0;
 }
 
+/// The triangles near a point, or above it.
+template <class S, class Ref>
+struct mesh_search {
+  Ref const& ref;
+  vec3<S> const& point;
+
+  template <class F>
+  COLLIDE_HD void operator()(S bound, F const& consider) const {
+    ref.for_each_nearer(point, bound, consider);
+  }
+  template <class F>
+  COLLIDE_HD void on_ray(F const& consider) const {
+    ref.for_each_on_ray(point, consider);
+  }
+};
+
 /// Kernel body of `for_each` over spheres.
 template <class S, class Ref, class F>
 struct search_of_sphere {
@@ -64,16 +86,18 @@ struct search_of_sphere {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     sphere<S> const own = spheres[i];
-    f(i, own, mesh, [&](S bound, auto const& consider) { ref.for_each_nearer(own.centre, bound, consider); });
+    f(i, own, mesh, mesh_search<S, Ref>{ref, own.centre});
   }
 };
 
 template <class Index, class NarrowPhase, class Space, class S>
 template <class F>
 void query_pass<Index, NarrowPhase, Space, S>::search(F const& f) const {
-  static_assert(is_valid<index_for_each_nearer, Index, S>,
-                "collide: nearest needs a broad phase that begins with what is near, at any distance: bvh, or all_pairs");
-  static_assert(is_discrete<NarrowPhase, S>, "collide: nearest is for points and spheres that rest");
+  static_assert(is_valid<index_for_each_nearer, Index, S> && is_valid<index_for_each_on_ray, Index, S>,
+                "collide: nearest, contains and signed_distance need a broad phase that finds what is near, at any "
+                "distance: bvh, or all_pairs");
+  static_assert(is_discrete<NarrowPhase, S>,
+                "collide: nearest, contains and signed_distance are for points and spheres that rest");
   using ref_type = decltype(index.ref());
   ref_type const ref = mesh.size() != 0 ? index.ref() : ref_type{};
   space.for_each(spheres.size(), search_of_sphere<S, ref_type, F>{ref, mesh, spheres, f});

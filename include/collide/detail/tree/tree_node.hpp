@@ -127,6 +127,17 @@ struct alignas(32) tree_node {
 #endif
   }
 
+  /// Bit k: the ray from the point along +z meets box k.
+  COLLIDE_HD_INLINE std::uint32_t on_ray(tree_point const& p) const {
+    std::uint32_t mask = 0;
+    for (int k = 0; k < width; ++k) {
+      bool const beside = (lower[0][k] > p.upper[0]) | (upper[0][k] < p.lower[0]) | (lower[1][k] > p.upper[1]) |
+                          (upper[1][k] < p.lower[1]) | (upper[2][k] < p.lower[2]);
+      mask |= beside ? 0u : 1u << k;
+    }
+    return mask & there;
+  }
+
   /// The squared distances of boxes as numbers that sort like them, rounded down so far that rounding cannot make one
   /// larger than it is; the number of the box is in the lowest bits. `none` for boxes that are not in `boxes`.
   COLLIDE_HD_INLINE void find_keys(tree_point const& p, std::uint32_t boxes, std::uint32_t (&keys)[width]) const {

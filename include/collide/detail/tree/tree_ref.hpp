@@ -186,6 +186,32 @@ struct tree_ref {
       }
     }
   }
+
+  /// Calls f(triangle) for all triangles whose box the ray from a point along +z meets, as long as that returns true.
+  template <class F>
+  COLLIDE_HD void for_each_on_ray(vec3<S> const& point, F const& f) const {
+    if (nodes == nullptr || !is_finite(point)) return;
+    tree_point const p(point, tree_origin(mesh));
+    struct level {
+      std::uint32_t node, boxes;  ///< those still to be looked into
+    };
+    level stack[most_tree_levels];
+    stack[0] = {0, nodes[0].on_ray(p)};
+    for (int top = 0; top >= 0;) {
+      level& here = stack[top];
+      if (here.boxes == 0) {
+        --top;
+        continue;
+      }
+      std::uint32_t const child = nodes[here.node].child[lowest_bit(here.boxes)];
+      here.boxes &= here.boxes - 1;
+      if ((child & tree_node::leaf) == 0) {
+        stack[++top] = {child, nodes[child].on_ray(p)};
+      } else if (!f(child & ~tree_node::leaf)) {
+        return;
+      }
+    }
+  }
 };
 
 }  // namespace collide::detail

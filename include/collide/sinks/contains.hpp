@@ -1,0 +1,74 @@
+/// \file
+/// Sink: which points are inside a closed mesh.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/nearest/ray_parity.hpp>
+#include <collide/detail/sinks/array_in_space.hpp>
+
+namespace collide {
+
+namespace detail {
+
+/// Whether a point is inside the mesh. `Search` is a `mesh_search`.
+template <class S, class Search>
+COLLIDE_HD ray_parity<S> parity_of(vec3<S> const& point, mesh_view<S> const& mesh, Search const& search) {
+  ray_parity<S> parity(point);
+  search.on_ray([&](id t) { return parity.consider(mesh[t]); });
+  return parity;
+}
+
+/// What `contains` does for each point.
+struct find_inside {
+  std::uint8_t* to;
+
+  template <class S, class Search>
+  COLLIDE_HD void operator()(std::size_t i, sphere<S> const& s, mesh_view<S> const& mesh, Search const& search) const {
+    to[i] = parity_of(s.centre, mesh, search).inside() ? 1 : 0;
+  }
+};
+
+}  // namespace detail
+
+/// A flag per point: 1 if it is inside the mesh or on its surface, else 0. Of spheres it is that of the centre. A point
+/// that is not finite is outside.
+///
+/// It is inside if a ray from it crosses the mesh an odd number of times: exactly, whatever the precision of the narrow
+/// phase, and with no special case for rays through edges and corners. Of a closed mesh that is the inside, however its
+/// triangles are oriented, and triangle soups are meshes whose corners are one where their coordinates are equal. Where
+/// a mesh is not closed the result depends on which way the ray goes, along +z: see `validate_closed`, and
+/// `winding_number`.
+///
+/// Needs a broad phase that finds what is above a point: `bvh`, or `all_pairs`. O(triangles above or below the point)
+/// with `bvh`, and more where these are near each other. `query` does not wait for the flags. Memory: one byte per
+/// point.
+class contains : public detail::array_in_space<std::uint8_t> {
+ public:
+  /// The flags are kept in memory of the space.
+  contains() = default;
+  /// The flags are written to the caller's memory (of the space), one byte per point: 0 or 1, for all points of the
+  /// query. It must have room for them, and stay valid as long as this object is used.
+  explicit contains(std::uint8_t* flags) : external_{flags} {}
+
+  /// Makes room in memory of `space` for queries of up to so many points: they then allocate nothing.
+  template <class Space>
+  void reserve(Space const& space, std::size_t points, std::size_t /*pairs*/ = 0) {
+    if (external_ == nullptr) own_.reserve(space.resource(), points);
+  }
+
+  template <class Space, class Query>
+  void run(Space& space, Query const& query) {
+    size_ = query.spheres.size();
+    data_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), size_);
+    download_ = detail::host_copier<std::uint8_t>(space);
+    query.search(detail::find_inside{data_});
+  }
+
+ private:
+  std::uint8_t* external_ = nullptr;
+  buffer<std::uint8_t> own_;
+};
+
+}  // namespace collide
