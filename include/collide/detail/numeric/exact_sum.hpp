@@ -23,7 +23,7 @@ class exact_sum {
  public:
   /// The sum; -1 for one that is negative, if only the sign is wanted. With all combinations of the components of
   /// factors, at most 2^20 products.
-  template <class Products>
+  template <class Products = exact_products>
   COLLIDE_HD_NOINLINE static scaled_double of(exact_numbers const& numbers, Products const& products,
                                               bool with_value = true) {
     exact_sum sum(numbers);
@@ -44,7 +44,7 @@ class exact_sum {
   }
 
   /// -1, 0 or 1.
-  template <class Products>
+  template <class Products = exact_products>
   static COLLIDE_HD int sign_of(exact_numbers const& numbers, Products const& products) {
     double const sum = of(numbers, products, false).value;
     return sum < 0 ? -1 : (sum > 0 ? 1 : 0);
