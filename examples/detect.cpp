@@ -37,9 +37,13 @@ scene<S> read(Ranks const& ranks, options const& wish, std::string_view mesh, st
     from.spheres = io::read_csv<S>(wish.spheres, spheres, ranks.rank(), ranks.size());
     from.tally = from.mesh.tally;
     if (!from.spheres.has_radii) {
-      if (wish.radius.empty()) throw io::usage_error("--radius: is required, as " + wish.spheres + " has no column r");
-      io::parse_number(wish.radius, from.radius, from.tally);
-      smallest = from.radius;
+      if (wish.radius.empty() && !wish.asks_points()) {
+        throw io::usage_error("--radius: is required, as " + wish.spheres + " has no column r");
+      }
+      if (!wish.radius.empty()) {
+        io::parse_number(wish.radius, from.radius, from.tally);
+        smallest = from.radius;
+      }
     }
     auto const& radii = from.spheres.radii;
     if (!radii.empty()) smallest = *std::min_element(radii.begin(), radii.end());
@@ -81,7 +85,11 @@ void write(options const& wish, scene<S> const& from, findings<S>& found, nlohma
     fill(files.emplace_back(path));
     files.back().close();
   };
-  to(wish.output, [&](auto& out) { io::write_pairs(out, found.pairs); });
+  to(wish.output, [&](auto& out) {
+    if (wish.inside) return io::write_inside(out, found.inside);
+    if (wish.asks_points()) return io::write_nearest(out, found.nearest);
+    io::write_pairs(out, found.pairs);
+  });
   to(wish.contacts, [&](auto& out) { io::write_contacts(out, found.contacts); });
   to(wish.ply, [&](auto& out) { io::write_ply(out, from.mesh, from.spheres, from.radius, found.pairs); });
   to(wish.report, [&](auto& out) { out << report.dump(2) << "\n"; });
@@ -99,7 +107,11 @@ void summarise(options const& wish, scene<S> const& from, findings<S> const& fou
     return;
   }
   auto const median = [&](char const* what) { return report[what]["median"].template get<double>(); };
-  std::cout << found.total << " colliding pairs of " << from.all_spheres << " spheres and " << from.mesh.size()
+  std::cout << found.total
+            << (wish.inside          ? " points inside, of "
+                : wish.asks_points() ? " points with a nearest triangle, of "
+                                     : " colliding pairs of ")
+            << from.all_spheres << (wish.asks_points() ? " points and " : " spheres and ") << from.mesh.size()
             << " triangles\n"
             << wish.broad << " on " << wish.space << " (" << found.device << "), " << wish.precision << " precision";
   if (found.cell_width > 0) std::cout << ", cells of width " << found.cell_width;
@@ -119,6 +131,8 @@ void gather(Ranks const& ranks, options const& wish, scene<S>& from, findings<S>
   for (auto& c : found.contacts) c.sphere += first;
   io::gather_to_first(ranks, found.pairs);
   io::gather_to_first(ranks, found.contacts);
+  io::gather_to_first(ranks, found.nearest);
+  io::gather_to_first(ranks, found.inside);
   found.total = io::sum(ranks, found.total);
   if (wish.ply.empty()) return;
   io::gather_to_first(ranks, from.spheres.xyz);
@@ -134,7 +148,10 @@ void run(Ranks const& ranks, options const& wish, scene<S>& from, double read_ms
   collide::together(ranks, [&] {
     if (ranks.rank() != 0) return;
     nlohmann::ordered_json report{
-        {"pairs", found.total},
+        {wish.inside          ? "inside"
+         : wish.asks_points() ? "nearest"
+                              : "pairs",
+         found.total},
         {"build_ms", statistics(found.build_ms)},
         {"query_ms", statistics(found.query_ms)},
         {"total_ms", statistics(found.total_ms)},
@@ -219,7 +236,19 @@ void check(options& wish) {
 #if !defined(COLLIDE_HAS_MPI)
   if (wish.ranks == "mpi") throw io::usage_error("--ranks: this program was built without MPI");
 #endif
-  if (wish.scalar.empty() && wish.precision == "double") wish.scalar = "double";
+  if (wish.asks_points()) {
+    std::string const asked = wish.nearest ? "--nearest" : wish.signed_distance ? "--signed-distance" : "--inside";
+    if (wish.nearest + wish.signed_distance + wish.inside > 1)
+      throw io::usage_error(asked + ": points are asked one thing at a time");
+    if (wish.broad == "bucket")
+      throw io::usage_error("--broad: bucket cannot find what is far away: " + asked + " takes bvh or all_pairs");
+    if (wish.triangles_per_pass != 0) throw io::usage_error("--triangles-per-pass: is not for " + asked);
+    if (!wish.contacts.empty()) throw io::usage_error("--contacts: is not for " + asked);
+    if (!wish.ply.empty()) throw io::usage_error("--ply: is not for " + asked);
+  }
+  if (wish.broad.empty()) wish.broad = wish.asks_points() ? "bvh" : "bucket";
+  // of points near a surface all digits count
+  if (wish.scalar.empty() && (wish.precision == "double" || wish.asks_points())) wish.scalar = "double";
   io::check_outputs(
       {{"MESH", wish.mesh}, {"SPHERES", wish.spheres}},
       {{"--output", wish.output}, {"--contacts", wish.contacts}, {"--ply", wish.ply}, {"--report", wish.report}});
@@ -241,12 +270,18 @@ int main(int argc, char** argv) {
   file("--contacts", wish.contacts, "contacts (CSV): point, normal, depth and feature touched");
   file("--ply", wish.ply, "picture of the hits (PLY) for ParaView or MeshLab");
   file("--report", wish.report, "measurements (JSON)");
-  io::add_choice(app, "--broad", wish.broad, {"all_pairs", "bucket"}, "broad phase");
+  app.add_flag("--nearest", wish.nearest,
+               "the nearest triangle of each point instead (CSV: point, triangle, x, y, z, distance); a radius counts");
+  app.add_flag("--signed-distance", wish.signed_distance,
+               "the same of a closed mesh, with distances that are negative inside; a radius does not count");
+  app.add_flag("--inside", wish.inside, "which points are inside a closed mesh instead (CSV: point, inside)");
+  io::add_choice(app, "--broad", wish.broad, {"all_pairs", "bucket", "bvh"},
+                 "broad phase; if not given bucket, of points bvh");
   io::add_choice(app, "--space", wish.space, {"host", "cuda", "cuda_shared"}, "execution space");
   io::add_choice(app, "--precision", wish.precision, {"exact", "single", "double"}, "how sure verdicts are");
-  io::add_choice(
-      app, "--scalar", wish.scalar, {"float", "double"},
-      "type of the coordinates; double if not given with --precision double or where float is too coarse, else float");
+  io::add_choice(app, "--scalar", wish.scalar, {"float", "double"},
+                 "type of the coordinates; double if not given with --precision double, for points, or where float is "
+                 "too coarse; else float");
   app.add_flag("--strict", wish.strict,
                "refuse a mesh with faces that would be left out, or lines that may be a mistake");
   app.add_option("--threads", wish.threads, "threads of the host; 0 for all")

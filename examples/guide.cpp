@@ -6,9 +6,11 @@
 #include <vector>
 
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/csr.hpp>
 #include <collide/sinks/earliest.hpp>
+#include <collide/sinks/nearest.hpp>
 #include <collide/validate.hpp>
 
 namespace {
@@ -55,6 +57,14 @@ void use_sinks() {
     std::printf("room for %d of %d\n", static_cast<int>(pairs.size()), static_cast<int>(pairs.total()));
 }
 
+void use_nearest() {
+  float const places[] = {0.2f, 0.2f, 7, -3, 0, 0};
+  collide::detector<collide::bvh> tree;
+  tree.build(mesh);
+  for (auto const& found : tree.query(collide::points(places, 2), collide::nearest()).to_host())
+    std::printf("triangle %u, %g away\n", found.triangle, static_cast<double>(found.distance));
+}
+
 void use_moving_spheres() {
   float const centres[] = {0.5f, 0.25f, 5, 3, 3, 5}, displacements[] = {0, 0, -10, 0, 0, -10};
   auto const falling = collide::with_displacements(collide::spheres_xyz(centres, 2, 0.5f), displacements);
@@ -76,6 +86,7 @@ void check_input() {
 int main() {
   use_layouts();
   use_sinks();
+  use_nearest();
   use_moving_spheres();
   check_input();
 }

@@ -8,7 +8,11 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
 #include <collide/in_passes.hpp>
+#include <collide/sinks/contains.hpp>
+#include <collide/sinks/nearest.hpp>
+#include <collide/sinks/signed_distance.hpp>
 
 #include "../io/choose.hpp"
 #include "../io/counting.hpp"
@@ -127,6 +131,38 @@ void measure(options const& wish, Detector& detector, Input const& in, Sink& sin
   }
 }
 
+/// Asks about points what the options say. `run(sink, keep)` measures it.
+template <class S, class Run>
+void ask_points(options const& wish, findings<S>& out, Run const& run) {
+  auto const find_nearest = [&](auto sink) {
+    run(std::move(sink), [&](auto const& found, std::size_t) {
+      for (auto const& n : found.to_host()) {
+        out.nearest.push_back(n);
+        out.total += n.triangle != collide::no_id;
+      }
+    });
+  };
+  if (wish.nearest) {
+    find_nearest(collide::nearest<S>());
+  } else if (wish.signed_distance) {
+    find_nearest(collide::signed_distance<S>());
+  } else {
+    run(collide::contains(), [&](auto const& found, std::size_t) {
+      for (auto const flag : found.to_host()) {
+        out.inside.push_back(flag);
+        out.total += flag;
+      }
+    });
+  }
+}
+
+/// True for broad phases that can be asked about points, of one mesh.
+template <class Detector>
+inline constexpr bool answers_points = false;
+template <class Broad, class Narrow, class Space, class S>
+inline constexpr bool answers_points<collide::detector<Broad, Narrow, Space, S>> =
+    !std::is_same<Broad, collide::bucket>::value;
+
 /// The width of cells; in passes each has its own.
 template <class Detector>
 double cell_width(Detector const& detector) {
@@ -152,7 +188,9 @@ findings<S> detect_with(options const& wish, scene<S> const& from, Broad const& 
                  from.mesh.corners.size() * sizeof(collide::id));
     }
     auto const run = [&](auto sink, auto const& keep) { measure(wish, detector, in, sink, out, keep); };
-    if (!wish.contacts.empty()) {
+    if (wish.asks_points()) {
+      if constexpr (answers_points<Detector>) ask_points(wish, out, run);
+    } else if (!wish.contacts.empty()) {
       run(collide::contacts<S>(collide::order::canonical),
           [&](auto const& sink, std::size_t first) { append(sink, first, out.contacts); });
       out.total = out.contacts.size();
@@ -206,7 +244,7 @@ findings<S> detect(options const& wish, scene<S> const& from) {
                                                                                                                   from);
               });
             },
-            named<collide::all_pairs>{"all_pairs"}, named<collide::bucket>{"bucket"});
+            named<collide::all_pairs>{"all_pairs"}, named<collide::bucket>{"bucket"}, named<collide::bvh>{"bvh"});
       },
       named<collide::exact>{"exact"}, named<collide::single_precision>{"single"},
       named<collide::double_precision>{"double"});

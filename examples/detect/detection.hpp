@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <collide/contact.hpp>
+#include <collide/nearest_triangle.hpp>
 
 #include "../io/csv.hpp"
 #include "../io/obj.hpp"
@@ -21,7 +22,8 @@ inline double milliseconds(clock::duration d) { return std::chrono::duration<dou
 
 struct options {
   std::string mesh, spheres, radius;
-  std::string broad = "bucket", space = "host", precision = "exact", scalar;
+  std::string broad, space = "host", precision = "exact", scalar;
+  bool nearest = false, signed_distance = false, inside = false;  ///< what is asked of points, in place of pairs
   std::string output, contacts, ply, report;
   std::string ranks;
   double cell_width = 0;
@@ -29,6 +31,9 @@ struct options {
   int threads = 0;
   int repeat = 1;
   bool strict = false;
+
+  /// True if points are asked about, and not pairs.
+  bool asks_points() const { return nearest || signed_distance || inside; }
 };
 
 /// The files' contents.
@@ -43,12 +48,15 @@ struct scene {
   std::size_t all_spheres = 0;   ///< of all ranks
 };
 
-/// What a detection gives: the pairs or the contacts, if somebody wants them, and what it cost.
+/// What a detection gives: the pairs, the contacts or what is asked about points, if somebody wants them, and what it
+/// cost.
 template <class S>
 struct findings {
-  std::uint64_t total = 0;
+  std::uint64_t total = 0;  ///< pairs; points that are inside, or have a nearest triangle
   std::vector<collide::pair> pairs;
   std::vector<collide::contact<S>> contacts;
+  std::vector<collide::nearest_triangle<S>> nearest;  ///< of each point; signed or not
+  std::vector<std::uint8_t> inside;                   ///< of each point
   std::vector<double> build_ms, query_ms, total_ms;
   std::size_t peak_bytes = 0;
   int threads = 1;

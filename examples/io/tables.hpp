@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <collide/contact.hpp>
+#include <collide/nearest_triangle.hpp>
 
 #include "output.hpp"
 #include "progress.hpp"
@@ -39,6 +40,27 @@ void write_contacts(output_file& out, std::vector<collide::contact<S>> const& co
     for (auto const* v : {&c.point, &c.normal}) out << "," << v->x() << "," << v->y() << "," << v->z();
     out << "," << c.depth << "," << features[static_cast<int>(c.feature)] << "," << c.feature_index;
   });
+}
+
+/// Writes the nearest triangle of each point: its number, the closest point on it, and the distance. Where there is
+/// none the number and the point are left out, and the distance is inf.
+template <class S>
+void write_nearest(output_file& out, std::vector<collide::nearest_triangle<S>> const& nearest) {
+  std::size_t point = 0;
+  write_table(out, "point,triangle,x,y,z,distance", nearest, [&](collide::nearest_triangle<S> const& n) {
+    out << point++ << ",";
+    if (n.triangle == collide::no_id) {
+      out << ",,,," << (n.distance < 0 ? "-inf" : "inf");
+    } else {
+      out << n.triangle << "," << n.point.x() << "," << n.point.y() << "," << n.point.z() << "," << n.distance;
+    }
+  });
+}
+
+/// Writes for each point whether it is inside: 1 or 0.
+inline void write_inside(output_file& out, std::vector<std::uint8_t> const& inside) {
+  std::size_t point = 0;
+  write_table(out, "point,inside", inside, [&](std::uint8_t flag) { out << point++ << "," << (flag != 0 ? 1 : 0); });
 }
 
 }  // namespace io

@@ -149,7 +149,7 @@ class detector {
     return std::forward<Sink>(sink);
   }
 
-  /// As above, of points, which are spheres of radius 0: for sinks such as `nearest`.
+  /// Queries points, which are spheres of radius 0, for sinks such as `nearest`; as for spheres otherwise.
   template <class Sink>
   Sink query(point_view<Scalar> const& points, Sink&& sink) {
     static_assert(std::is_same<spheres_type, sphere_view<Scalar>>::value,

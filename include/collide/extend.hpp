@@ -117,7 +117,8 @@ class mesh_bounds {
 ///   - `for_each_nearer(vec3<S> point, S bound, F f) const`, which calls bound = f(triangle) for all triangles whose
 ///     squared distance from the point is at most `bound`, and for others as it likes. The bound only falls: to begin
 ///     with what is near saves most;
-///   - `for_each_on_ray(vec3<S> point, F f) const`, which calls f(triangle) for all triangles whose box the ray from the
+///   - `for_each_on_ray(vec3<S> point, F f) const`, which calls f(triangle) for all triangles whose box the ray from
+///   the
 ///     point along +z meets, each once, and for others as it likes, as long as that returns true.
 template <class Policy>
 struct per_sphere {

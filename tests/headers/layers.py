@@ -13,18 +13,18 @@ PAGE = ROOT / "docs" / "design.md"
 
 # From the lowest to the highest: the headers of a layer, and the folders of which all headers are its own.
 LAYERS = {
-    "vocabulary": "config.hpp contact.hpp error.hpp geometry.hpp impact.hpp memory.hpp precision.hpp version.hpp",
+    "vocabulary": "config.hpp contact.hpp error.hpp geometry.hpp impact.hpp memory.hpp nearest_triangle.hpp precision.hpp version.hpp",
     "views": "mesh.hpp moving_spheres.hpp points.hpp spheres.hpp",
     "execution": "detail/execution/ atomic_add.hpp cuda.cuh cuda_memory.cuh host.hpp upload.hpp",
     "numeric": "detail/numeric/",
     "geometry": "detail/geometry/",
     "predicates": "detail/predicates/",
-    "narrow phase": "detail/narrow_phase/ karabassi.hpp karabassi_swept.hpp",
-    "grid": "detail/grid/",
+    "narrow phase": "detail/narrow_phase/ detail/nearest/ karabassi.hpp karabassi_swept.hpp",
+    "grid": "detail/grid/ detail/tree/",
     "query": "detail/query/ concepts.hpp hit.hpp",
     "sinks": "detail/sinks/ sinks/",
     "detector": "compiled.hpp detector.hpp validate.hpp",
-    "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh extend.hpp",
+    "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh bvh.cuh extend.hpp",
     "effect interface": "bodies.hpp columns.hpp effect.hpp integrators.hpp",
     "particles": "detail/particles/",
     "bodies": "detail/bodies/",

@@ -54,8 +54,8 @@ struct find_nearest {
 ///
 /// Which triangle is nearest is decided as the precision of the narrow phase says: with `karabassi<>`, which is exact,
 /// as in real arithmetic. Needs a broad phase that finds what is near at any distance: `bvh`, or `all_pairs`. O(log
-/// triangles) for a point near the mesh with `bvh`. `query` does not wait. `S` is the scalar of the detector. Memory: an
-/// entry for each point.
+/// triangles) for a point near the mesh with `bvh`. `query` does not wait. `S` is the scalar of the detector. Memory:
+/// an entry for each point.
 template <class S = float>
 class nearest : public detail::array_in_space<nearest_triangle<S>> {
   using base = detail::array_in_space<nearest_triangle<S>>;

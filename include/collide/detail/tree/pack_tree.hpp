@@ -51,8 +51,8 @@ COLLIDE_HD_INLINE std::uint64_t place_on_curve(std::uint32_t (&x)[3]) {
 /// Kernel body of `for_each` over triangles: where each is on the curve, and its number.
 template <class S>
 struct find_places {
-  static constexpr int bits = 16;                             ///< of a coordinate
-  static constexpr std::uint64_t none = 1ull << (3 * bits);   ///< of what is not finite
+  static constexpr int bits = 16;                            ///< of a coordinate
+  static constexpr std::uint64_t none = 1ull << (3 * bits);  ///< of what is not finite
 
   mesh_view<S> mesh;
   mesh_statistics<S> const* summary;
@@ -166,7 +166,7 @@ class packed_tree {
  private:
   /// The numbers of the triangles in the order of the curve; of equal places the lowest first.
   template <class Space>
-  id const* sort(Space& space, std::uint64_t* places, id* ids, std::size_t n) {
+  id const* sort([[maybe_unused]] Space& space, std::uint64_t* places, id* ids, std::size_t n) {
     if constexpr (Space::host_accessible) {
       std::stable_sort(ids, ids + n, [&](id a, id b) { return places[a] < places[b]; });
       return ids;

@@ -173,7 +173,9 @@ class range_divider {
     std::uint32_t const wanted = larger((middle - range.begin + n / 2) / n, 1u) * n, most = (range.size() - 1) / n * n;
     std::uint32_t const to = range.begin + smaller(wanted, most);
     if (to == middle) return to;
-    auto const before = [&](boxed_triangle const& a, boxed_triangle const& b) { return a.middle(axis) < b.middle(axis); };
+    auto const before = [&](boxed_triangle const& a, boxed_triangle const& b) {
+      return a.middle(axis) < b.middle(axis);
+    };
     bool const from_left = to < middle;
     std::nth_element(all_ + (from_left ? range.begin : middle), all_ + to, all_ + (from_left ? middle : range.end),
                      before);
@@ -193,8 +195,11 @@ class sah_tree {
     std::size_t const n = mesh.size();
     all_ = triangles_.reserve(space.resource(), n);
     vec3<S> const origin = tree_origin(mesh);
-    space.for_each(n, [&](std::size_t i) { all_[i] = {box_ends::of(tree_box_of(mesh[i], origin)), static_cast<id>(i)}; });
-    auto const* const end = std::partition(all_, all_ + n, [](boxed_triangle const& t) { return !t.box.box().is_empty(); });
+    space.for_each(n, [&](std::size_t i) {
+      all_[i] = {box_ends::of(tree_box_of(mesh[i], origin)), static_cast<id>(i)};
+    });
+    auto const* const end =
+        std::partition(all_, all_ + n, [](boxed_triangle const& t) { return !t.box.box().is_empty(); });
     auto const finite = static_cast<std::uint32_t>(end - all_);
     if (finite == 0) return false;
     nodes_ = memory.reserve(space.resource(), most_nodes(finite));

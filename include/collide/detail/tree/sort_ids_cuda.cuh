@@ -25,8 +25,9 @@ inline void sort_ids_on_device(cudaStream_t stream, std::pmr::memory_resource* r
                                buffer<unsigned char>& scratch) {
   std::size_t bytes = 0;
   auto const sort = [&](void* temporary) {
-    cuda_check(cub::DeviceRadixSort::SortPairs(temporary, bytes, keys, sorted_keys, ids, sorted_ids, n, 0, bits, stream),
-               "cub::DeviceRadixSort::SortPairs");
+    cuda_check(
+        cub::DeviceRadixSort::SortPairs(temporary, bytes, keys, sorted_keys, ids, sorted_ids, n, 0, bits, stream),
+        "cub::DeviceRadixSort::SortPairs");
   };
   sort(nullptr);
   sort(scratch.reserve(resource, bytes));

@@ -1,0 +1,9 @@
+// expect: collide: nearest, contains and signed_distance are for points and spheres that rest
+#include <collide/bvh.cuh>
+#include <collide/karabassi_swept.hpp>
+#include <collide/sinks/nearest.hpp>
+
+int main() {
+  collide::detector<collide::bvh, collide::karabassi_swept<>> detector;
+  detector.query(collide::moving_sphere_view<float>(), collide::nearest());
+}

@@ -1,0 +1,44 @@
+/// The sink `nearest` on the host.
+#include "execution/lockstep.hpp"
+#include "nearest/nearest_queries.hpp"
+
+using collide::all_pairs, collide::bvh, collide::host;
+using in_lockstep = tests::lockstep<64, false>;
+
+TEST_CASE_TEMPLATE("nearest: what a loop over all triangles finds, to the last bit", S, float, double) {
+  tests::check_nearest<bvh, host, S>(host(2));
+  tests::check_nearest<bvh, in_lockstep, S>(in_lockstep(1));
+  tests::check_nearest<all_pairs, host, S>(host(1));
+}
+
+TEST_CASE("nearest: plain arithmetic finds what is about as near") {
+  tests::check_plain_nearest<collide::single_precision, host, float>(host(1));
+  tests::check_plain_nearest<collide::double_precision, host, float>(host(1));
+  tests::check_plain_nearest<collide::double_precision, host, double>(host(1));
+}
+
+TEST_CASE("nearest: nothing is allocated once there is room") {
+  tests::counting_resource memory(std::pmr::new_delete_resource());
+  tests::check_nearest_allocates_once<bvh>(host(2, &memory), memory);
+  tests::check_nearest_allocates_once<bvh>(in_lockstep(1, &memory), memory);
+  tests::check_nearest_allocates_once<all_pairs>(host(1, &memory), memory);
+}
+
+TEST_CASE("nearest: a largest distance that is none is refused") {
+  CHECK_THROWS_WITH_AS(collide::nearest<float>(-1), "collide: nearest: the largest distance is negative or NaN",
+                       collide::error);
+  CHECK_THROWS_AS(collide::nearest<double>(std::nan("")), collide::error);
+}
+
+TEST_CASE("nearest: points go to other sinks as spheres of radius 0") {
+  float const corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, at[] = {0.25f, 0.25f, 0, 0.25f, 0.25f, 1e-30f};
+  collide::detector<bvh> detector;
+  detector.build(collide::triangle_soup(corners, 1));
+  auto const points = collide::points(at, 2);
+  CHECK(detector.query(points, collide::count()).total() == 1);
+  auto const found = detector.query(points, collide::nearest()).to_host();
+  CHECK(found[0].distance == 0);
+  CHECK(found[1].distance == 1e-30f);
+  CHECK(found[1].feature == collide::feature::face);
+  CHECK(found[1].barycentric == collide::vec3<float>(0.5f, 0.25f, 0.25f));
+}

@@ -1,0 +1,204 @@
+/// Trees of boxes: each triangle is in it once, in boxes that contain it; what goes through it leaves out nothing.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <collide/bvh.cuh>
+
+#include "execution/lockstep.hpp"
+#include "hard_meshes.hpp"
+
+using namespace collide::detail;
+using collide::host, collide::id;
+
+namespace {
+
+using in_lockstep = tests::lockstep<64, false>;
+
+/// A tree of a mesh, made in a space.
+template <class S, class Space>
+struct tree {
+  Space space{2};
+  tree_policy::index<S> index;
+  tree_ref<S> ref{};
+
+  explicit tree(collide::mesh_view<S> const& mesh) {
+    index.build(space, tree_policy(), mesh);
+    ref = index.ref();
+  }
+};
+
+/// All triangles below a node whose boxes are all in `around`, and what is wrong.
+template <class S>
+struct walk {
+  tree_ref<S> const& ref;
+  std::vector<id> triangles;
+  int levels = 0;
+  bool boxes_contain = true, parents_fit = true;
+
+  void visit(std::uint32_t number, std::uint32_t parent, std::uint32_t slot, aabb<float> const& around, int level) {
+    tree_node const& node = ref.nodes[number];
+    levels = std::max(levels, level + 1);
+    parents_fit = parents_fit && node.parent == parent && node.slot == slot;
+    for (std::uint32_t k = 0; k < 8; ++k) {
+      if ((node.there >> k & 1) == 0) continue;
+      aabb<float> box;
+      for (int i = 0; i < 3; ++i) {
+        box.lower[i] = node.lower[i][k], box.upper[i] = node.upper[i][k];
+        if (!box.is_empty())
+          boxes_contain = boxes_contain && box.lower[i] >= around.lower[i] && box.upper[i] <= around.upper[i];
+      }
+      std::uint32_t const child = node.child[k];
+      if ((child & tree_node::leaf) == 0) {
+        visit(child, number, k, box, level + 1);
+        continue;
+      }
+      id const t = child & ~tree_node::leaf;
+      triangles.push_back(t);
+      if (!is_finite(ref.mesh[t])) continue;
+      auto const exact = triangle_aabb_of(ref.mesh[t]);
+      auto const origin = tree_origin(ref.mesh);
+      for (int i = 0; i < 3; ++i) {
+        using wide = long double;
+        wide const from = wide(exact.lower[i]) - wide(origin[i]), to = wide(exact.upper[i]) - wide(origin[i]);
+        boxes_contain = boxes_contain && wide(box.lower[i]) <= from - wide(exact.padding) &&
+                        wide(box.upper[i]) >= to + wide(exact.padding);
+      }
+    }
+  }
+};
+
+template <class S, class Space>
+void check_tree(tests::hard_mesh<S> const& made) {
+  CAPTURE(made.name);
+  CAPTURE(Space::name());
+  tree<S, Space> const t(made.view());
+  std::vector<id> finite;
+  for (id i = 0; i < made.size(); ++i) {
+    if (is_finite(made.view()[i])) finite.push_back(i);
+  }
+  if (t.ref.nodes == nullptr) {
+    CHECK(finite.empty());
+    return;
+  }
+  walk<S> seen{t.ref, {}};
+  constexpr float far = std::numeric_limits<float>::infinity();
+  seen.visit(0, 0, 0, {{-far, -far, -far}, {far, far, far}}, 0);
+  CHECK(seen.boxes_contain);
+  CHECK(seen.parents_fit);
+  CHECK(seen.levels <= most_tree_levels);
+  std::sort(seen.triangles.begin(), seen.triangles.end());
+  std::vector<id> found;  // what is not finite may be there too
+  std::copy_if(seen.triangles.begin(), seen.triangles.end(), std::back_inserter(found),
+               [&](id i) { return is_finite(made.view()[i]); });
+  CHECK(found == finite);
+  CHECK(std::adjacent_find(seen.triangles.begin(), seen.triangles.end()) == seen.triangles.end());
+
+  S const extent = made.extent();
+  for (std::size_t i = 0; i < 200 && !finite.empty(); ++i) {
+    auto const draw = [n = std::uint32_t(i) * 7919u](int k) {
+      return S(((n + std::uint32_t(k)) * 2654435761u) >> 8) / S(0x800000) - 1;
+    };
+    collide::vec3<S> const centre = i % 2 == 0 ? collide::vec3<S>(extent * draw(0), extent * draw(1), extent * draw(2))
+                                               : made.view()[finite[i % finite.size()]].b;
+    collide::sphere<S> const s{centre, extent * (1 + draw(3)) / (i % 4 == 0 ? 2 : 100)};
+    std::vector<id> all, one_by_one;
+    t.ref.for_each_candidate(s, [&](id k) { all.push_back(k); });
+    auto at = t.ref.begin(s);
+    for (id k; t.ref.next(s, at, k);) one_by_one.push_back(k);
+    CHECK(at.at_end());
+    CHECK(one_by_one == all);
+    std::sort(all.begin(), all.end());
+    CHECK(std::adjacent_find(all.begin(), all.end()) == all.end());
+    std::size_t missing = 0;
+    for (id const k : finite) {
+      if (collide::karabassi<>::intersects(made.view()[k], s))
+        missing += !std::binary_search(all.begin(), all.end(), k);
+    }
+    CHECK(missing == 0);
+  }
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("tree: each finite triangle is in it once, in boxes that contain it, and no hit is left out", S,
+                   float, double) {
+  for (auto const& made : tests::hard_meshes<S>(700)) {
+    check_tree<S, host>(made);
+    check_tree<S, in_lockstep>(made);
+  }
+}
+
+TEST_CASE("tree: where more levels are above than a cursor keeps, it finds out again what is left") {
+  // each triangle half as large and half as far as the one before: as deep a tree as there is
+  std::vector<float> corners;
+  for (int i = 0; i < 4000; ++i) {
+    float const x = std::ldexp(1.0f, -(i % 120)) * (1 + 1e-3f * static_cast<float>(i / 120));
+    corners.insert(corners.end(), {x, 0, 0, x, x / 8, 0, x, 0, x / 8});
+  }
+  tree<float, host> const t(collide::triangle_soup(corners.data(), 4000));
+  walk<float> seen{t.ref, {}};
+  constexpr float far = std::numeric_limits<float>::infinity();
+  seen.visit(0, 0, 0, {{-far, -far, -far}, {far, far, far}}, 0);
+  CHECK(seen.levels > 7);
+  CHECK(seen.levels <= most_tree_levels);
+  std::vector<id> all;
+  t.ref.for_each_candidate({{0, 0, 0}, 10}, [&](id k) { all.push_back(k); });
+  CHECK(all.size() == 4000);
+  std::sort(all.begin(), all.end());
+  CHECK(std::unique(all.begin(), all.end()) == all.end());
+}
+
+TEST_CASE("tree: near triangles come first, and most others never") {
+  auto const made = tests::hard_meshes<float>(5000)[3];
+  auto const check = [&](auto const& t) {
+    std::size_t looked_at = 0, wrong = 0;
+    auto const mesh = made.view();
+    for (std::size_t i = 0; i < 200; ++i) {
+      collide::vec3<float> const p = mesh[i].a + collide::vec3<float>(0.01f, -0.02f, 0.03f);
+      auto const squared = [&](id k) { return (mesh[k].a - p).squaredNorm(); };  // any number will do that is not below
+      auto const to_box = [&](id k) {
+        auto const box = aabb_of(mesh[k]);
+        float sum = 0;
+        for (int c = 0; c < 3; ++c) {
+          float const gap = std::max({box.lower[c] - p[c], p[c] - box.upper[c], 0.0f});
+          sum += gap * gap;
+        }
+        return sum;
+      };
+      float best = std::numeric_limits<float>::infinity(), least = best;
+      t.ref.for_each_nearer(p, best, [&](id k) {
+        ++looked_at;
+        return best = std::min(best, squared(k));
+      });
+      for (id k = 0; k < mesh.size(); ++k) {
+        if (to_box(k) <= best) least = std::min(least, squared(k));
+      }
+      wrong += best != least;
+    }
+    CHECK(wrong == 0);
+    CHECK(looked_at < 200 * 300);
+  };
+  check(tree<float, host>(made.view()));
+  check(tree<float, in_lockstep>(made.view()));
+}
+
+TEST_CASE("tree: nothing is near a place that is none, or within less than no distance") {
+  auto const made = tests::hard_meshes<double>(100)[3];
+  tree<double, host> const t(made.view());
+  auto const count = [&](collide::vec3<double> const& p, double bound) {
+    int n = 0;
+    t.ref.for_each_nearer(p, bound, [&](id) {
+      ++n;
+      return bound;
+    });
+    return n;
+  };
+  CHECK(count({0, 0, 0}, std::numeric_limits<double>::infinity()) == 100);
+  CHECK(count({0, 0, 0}, -1) == 0);
+  CHECK(count({0, 0, 0}, std::nan("")) == 0);
+  CHECK(count({0, std::nan(""), 0}, 1) == 0);
+  CHECK(count({0, std::numeric_limits<double>::infinity(), 0}, 1) == 0);
+}
