@@ -94,7 +94,7 @@ MUTATIONS = {
     "product-carry": ("numeric/exact_sum.hpp", "the carry within a product", "stages", "plain",
                       [("carry = (carry >> 32) + (first >> 32)", "carry = (first >> 32)")]),
     "product-room": ("numeric/exact_sum.hpp", "memory for a product of six", "stages", "checked",
-                     [("product[2 * exact_product::most_factors + 1]", "product[2 * 6 - 1]")]),
+                     [("product[2 * Product::most_factors + 1]", "product[2 * Product::most_factors - 1]")]),
     "spare": ("numeric/exact_sum.hpp", "digits for the sign of the sum: 32 bits fewer", "stages", "plain",
               [("carry_bits = 24", "carry_bits = -8")]),
     "sign": ("numeric/exact_sum.hpp", "the signs of factors", "stages", "plain",
