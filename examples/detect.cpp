@@ -13,6 +13,7 @@
 #if defined(COLLIDE_HAS_MPI)
 #include <collide/ranks/mpi.hpp>
 #endif
+#include <collide/validate_closed.hpp>
 
 #include "detect/detection.hpp"
 #include "io/output.hpp"
@@ -101,6 +102,12 @@ template <class S>
 void summarise(options const& wish, scene<S> const& from, findings<S> const& found,
                nlohmann::ordered_json const& report, std::string const& roundings) {
   for (auto const& remark : from.mesh.remarks) std::cerr << "detect: " << remark << "\n";
+  if (wish.asks_for_sides()) {
+    auto const seams = collide::validate_closed(collide::indexed_mesh<S>(
+        from.mesh.vertices.data(), from.mesh.vertices.size() / 3, from.mesh.corners.data(), from.mesh.size()));
+    if (!seams.closed())
+      std::cerr << "detect: the mesh is not closed, so sides mean little: " << seams.message() << "\n";
+  }
   for (auto const& path : {wish.output, wish.contacts, wish.ply, wish.report}) {
     if (path.empty() || !io::output_file::is_standard_output(path)) continue;
     if (from.tally.rounded > 0) std::cerr << "detect: " << roundings << "\n";

@@ -34,6 +34,7 @@ struct options {
 
   /// True if points are asked about, and not pairs.
   bool asks_points() const { return nearest || signed_distance || inside; }
+  bool asks_for_sides() const { return signed_distance || inside; }
 };
 
 /// The files' contents.

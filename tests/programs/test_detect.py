@@ -129,6 +129,68 @@ class Answers(ProgramTest):
         self.assertEqual(self.detect(*call, "--precision", "double", "--scalar", "float"), [(0, 0)])
 
 
+class Points(ProgramTest):
+    """What is nearest to points, and on which side of a closed mesh they are."""
+
+    def table(self, header, *args):
+        self.succeed("detect", "mesh.obj", "spheres.csv", "--output", "out.csv", *args)
+        first, *lines = self.read("out.csv").decode().splitlines()
+        self.assertEqual(first, header)
+        rows = [line.split(",") for line in lines]
+        self.assertEqual([int(row[0]) for row in rows], list(range(len(rows))), "points by rising number")
+        return [row[1:] for row in rows]
+
+    def setUp(self):
+        super().setUp()
+        rng = random.Random(3)
+        number = lambda: rng.choice([-1, 0, 0.25, 0.5, 1, 2, 1 - 2.0**-53, 2.0**-70, round(rng.uniform(-1, 2), 3)])
+        self.points = [[number() for _ in range(3)] for _ in range(300)]
+        self.scene(*CUBE, self.points)
+        corners = [[[Fraction(x) for x in CUBE[0][i]] for i in t] for t in CUBE[1]]
+        self.squares = [[programs.squared_distance([Fraction(x) for x in p], t) for t in corners] for p in self.points]
+        self.inside = [all(0 <= x <= 1 for x in p) for p in self.points]
+
+    def test_inside(self):
+        for broad in ("bvh", "all_pairs"):
+            self.assertEqual(self.table("point,inside", "--inside", "--broad", broad), [["1" if i else "0"] for i in self.inside])
+        self.assertIn(f"{sum(self.inside)} points inside, of {len(self.points)} points",
+                      self.succeed("detect", "mesh.obj", "spheres.csv", "--inside"))
+
+    def test_nearest_and_signed_distance(self):
+        for args in ((), ("--broad", "all_pairs"), ("--threads", 1), ("--ranks", "threads:3")):
+            plain = self.table("point,triangle,x,y,z,distance", "--nearest", *args)
+            signed = self.table("point,triangle,x,y,z,distance", "--signed-distance", *args)
+            for p, squares, inside, row, side in zip(self.points, self.squares, self.inside, plain, signed):
+                least = min(squares)
+                self.assertEqual(int(row[0]), squares.index(least), p)
+                distance = float(row[4])
+                self.assertTrue(Fraction(math.nextafter(distance, 0))**2 <= least <= Fraction(math.nextafter(distance, 9))**2, p)
+                self.assertEqual(side[:4], row[:4], p)
+                self.assertEqual(float(side[4]), -distance if inside else distance, p)
+                self.assertAlmostEqual(math.dist(p, [float(x) for x in row[1:4]]), distance, delta=1e-15)
+
+    def test_a_radius_counts_for_the_nearest(self):
+        self.scene(*CUBE, [(3, 0.5, 0.5)], [0.5])
+        self.assertEqual(self.table("point,triangle,x,y,z,distance", "--nearest")[0][4], "1.5")
+        self.assertEqual(self.table("point,triangle,x,y,z,distance", "--signed-distance")[0][4], "2")
+
+    def test_a_mesh_with_a_hole(self):
+        self.scene(CUBE[0], CUBE[1][:-1], self.points)
+        for asked in ("--inside", "--signed-distance"):
+            done = self.run_program("detect", "mesh.obj", "spheres.csv", asked)
+            self.assertEqual(done.returncode, 0)
+            self.assertRegex(done.stderr.decode(), r"\Adetect: the mesh is not closed, so sides mean little: 3 open edge\(s\)[^\n]*\n\Z")
+        self.succeed("detect", "mesh.obj", "spheres.csv", "--nearest")
+
+    def test_what_does_not_go_together(self):
+        for args, words in ((("--inside", "--nearest"), ["one thing at a time"]),
+                            (("--inside", "--broad", "bucket"), ["bucket", "bvh"]),
+                            (("--nearest", "--contacts", "c.csv"), ["--contacts"]),
+                            (("--signed-distance", "--ply", "c.ply"), ["--ply"]),
+                            (("--inside", "--triangles-per-pass", 5), ["--triangles-per-pass"])):
+            self.fail_with(2, words, "detect", "mesh.obj", "spheres.csv", *args)
+
+
 class ObjTest(ProgramTest):
     """The plate 0 <= x <= 4, 0 <= y <= 4, and where the triangles of a mesh are."""
 
