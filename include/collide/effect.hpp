@@ -8,6 +8,7 @@
 ///     using optional_writes = columns<...>;  // optional: columns that it changes where other effects name them
 ///     using optional_reads = columns<...>;   // optional: columns that it looks at where other effects name them
 ///     using runs_after = effects<...>;       // optional: effects that must come before it in the scene's list
+///     using remembers = contact_columns<...>;  // optional: what each contact keeps from step to step
 ///
 /// and has one or more of these members, each `COLLIDE_HD`, const, and a template over the type of the particle:
 ///
@@ -21,6 +22,12 @@
 ///   what all effects have changed, of what `adhesion` holds or what sleeps what the mesh holds it against.
 /// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it. Only with such an effect
 ///   are neighbours listed.
+/// - `on_mesh_overlap(particle&, self, mesh_overlap const&, dt)`, for each point of the mesh that a particle presses on,
+///   when particles meet: forces that grow with the overlap, in place of the impulses of `on_mesh_contact`.
+/// - With `remembers`, these two get what the contact remembers before `dt`, and return true if the contact goes on:
+///   `memory[column{}]` is a value, which begins as a particle's would, and `memory.elapsed()` the time since the contact
+///   was looked at before. `on_pair_contact` is then called as long as the contact goes on, also of particles that no
+///   longer overlap.
 /// - `try_wake(particle&, other)`, for each other particle that is active and overlaps it, also if it is not.
 /// - `holds(particle const&, pull, dt)`: true if the mesh holds a particle that is `adhered` against a change of its
 ///   velocity by `pull`, relative to the surface, in a step.
@@ -129,6 +136,17 @@ struct mesh_impulse {
   vec3<S> velocity;     ///< of the particle, after
   id triangle;          ///< number of the triangle; `no_id` of what is held or sleeps
   id body;              ///< number of the body whose surface it is; `no_id` of what rests
+};
+
+/// A surface of the mesh that a particle overlaps, as `on_mesh_overlap` gets it: a point of it that is nearest to the
+/// centre among all around.
+template <class S>
+struct mesh_overlap {
+  vec3<S> normal;            ///< unit vector to the centre
+  S overlap;                 ///< radius minus distance, above 0
+  vec3<S> surface_velocity;  ///< of the surface at the point, in the world: 0 of what rests
+  id triangle;               ///< number of the triangle
+  id body;                   ///< number of the body whose surface it is; `no_id` of what rests
 };
 
 /// A particle's contact with the mesh, as `on_mesh_contact` gets it. `depth` is how deep the triangle still is in the

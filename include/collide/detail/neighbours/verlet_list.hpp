@@ -47,6 +47,8 @@ class verlet_list {
     references_.reserve(resource, n);
     if constexpr (order::has_absent) known_.reserve(resource, n);
     lists_.reserve(resource, order::listed * n);
+    runs_.reserve(resource, n);
+    contacts_.reserve(resource, n, order::listed, n);
   }
 
   /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet.
@@ -62,12 +64,13 @@ class verlet_list {
     space.fill(header, 0, sizeof *header);
     space.fill(&header->rebuild, 1, sizeof header->rebuild);
     if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
+    contacts_.clear(space, n);
   }
 
   /// What it has taken of the resource.
   std::size_t bytes() const {
     return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
-           references_.bytes() + known_.bytes() + memory_.bytes();
+           references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + contacts_.bytes();
   }
 
   /// One pass of `on_pair_contact` over all pairs; if `only_kicks`, to know what they do to each other's velocities.
@@ -78,11 +81,14 @@ class verlet_list {
                   header_.data(),  numbers_.data(),
                   spheres_.data(), references_.data(),
                   known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
-                  lists_.data(),   state.size};
+                  lists_.data(),   state.size,
+                  runs_.data(),    runs_.capacity(),
+                  contacts_.ref()};
     std::size_t const n = state.size;
     std::uint32_t const *const rebuild = &o.header->rebuild, *const overflowed = &o.header->overflowed;
     // half of the skin, but for rounding
     space.for_each(n, update_and_check_skin<S, Effects>{state, o, S(0.495) * skin_});
+    if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
     for_each_if_nonzero(space, rebuild, blocks_, scan_cells<S, Effects>{o});
@@ -110,12 +116,13 @@ class verlet_list {
   S skin_{};
   std::size_t blocks_ = 0;
   buffer<list_state> header_;
-  buffer<std::uint32_t> ends_, lists_;
+  buffer<std::uint32_t> ends_, lists_, runs_;
   buffer<id> numbers_;
   buffer<packed_sphere<S>> spheres_;
   buffer<reference<S, contains<typename Effects::all, radius>>> references_;
   buffer<column_element<alive, S>> known_;
   column_buffers<S, typename Effects::interaction_copies> memory_;
+  contact_memory<S, typename Effects::remembered> contacts_;
 };
 
 }  // namespace collide::detail
