@@ -89,6 +89,11 @@ class checkpoint {
     for_each_column(
         [&](auto column) { write_column<decltype(column)>(to, from.template to_host<decltype(column)>()); });
     end(to, from);
+    if constexpr (remembers_pairs)
+      write_contacts(to, "contacts between particles", from.neighbours_.save_contacts(from.space_, from.state_.size));
+    if constexpr (remembers_surfaces)
+      write_contacts(to, "contacts with the mesh", from.surfaces_.save_contacts(from.space_, from.state_.size));
+    to.finish();
   }
 
   /// Writes what is before the columns; then each column follows, and `end`.
@@ -115,7 +120,6 @@ class checkpoint {
         to.block(name, copy.data(), copy.size());
       });
     }
-    to.finish();
   }
 
   checkpoint(simulated const& into, std::istream& stream) : checkpoint(into.mesh_.size(), into, stream) {}
@@ -125,7 +129,7 @@ class checkpoint {
     checkpoint_reader from(stream);
     pass_types(from);
     numbers_.pass(from);
-    if (simulated::effects_type::touches && numbers_.triangles != triangles) {
+    if (simulated::asks_mesh && numbers_.triangles != triangles) {
       from.refuse("triangles", "the file has " + std::to_string(numbers_.triangles) + ", the mesh of the simulation " +
                                    std::to_string(triangles));
     }
@@ -138,6 +142,9 @@ class checkpoint {
         bodies_.push_back(from.block<unsigned char>(name, n * sizeof(*elements)));
       });
     }
+    if constexpr (remembers_pairs) read_contacts(from, "contacts between particles", contact_width, pair_contacts_);
+    if constexpr (remembers_surfaces)
+      read_contacts(from, "contacts with the mesh", contact_width + 3, surface_contacts_);
     from.finish();
   }
 
@@ -171,6 +178,8 @@ class checkpoint {
     to.prepare();
     restore_bodies(to);
     to.bodies_.place(numbers_.bodies_are_placed != 0);
+    if constexpr (remembers_pairs) to.neighbours_.restore_contacts(space, pair_contacts_);
+    if constexpr (remembers_surfaces) to.surfaces_.restore_contacts(space, surface_contacts_);
   }
 
   /// Gives places from `place` on the columns of `n` particles from number `first` on.
@@ -247,6 +256,25 @@ class checkpoint {
     }
   }
 
+  using remembered = typename simulated::effects_type::remembered;
+  static constexpr bool remembers_pairs = remembered::size != 0 && simulated::effects_type::meets;
+  static constexpr bool remembers_surfaces = remembered::size != 0 && simulated::effects_type::overlaps;
+  static constexpr std::uint64_t contact_width = std::uint64_t(contact_values<S, remembered>::width);
+
+  static void write_contacts(checkpoint_writer& to, std::string const& name, saved_contacts<S> const& saved) {
+    to.block(name, saved.counts.data(), saved.counts.size());
+    to.block("others of " + name, saved.others.data(), saved.others.size());
+    to.block("values of " + name, saved.values.data(), saved.values.size());
+  }
+  void read_contacts(checkpoint_reader& from, std::string const& name, std::uint64_t width,
+                     saved_contacts<S>& saved) const {
+    saved.counts = from.block<std::uint32_t>(name, numbers_.places);
+    std::uint64_t all = 0;
+    for (std::uint32_t const count : saved.counts) all += count;
+    saved.others = from.block<id>("others of " + name, all);
+    saved.values = from.block<S>("values of " + name, all * width);
+  }
+
   template <class... C, class F>
   static void for_each_in(columns<C...>, F const& f) {
     (f(C{}), ...);
@@ -273,6 +301,7 @@ class checkpoint {
   };
 
   numbers_type numbers_;
+  saved_contacts<S> pair_contacts_, surface_contacts_;
   std::tuple<bytes_of<Effect>...> parameters_;
   std::vector<std::vector<unsigned char>> bodies_;  ///< poses, and what else is known of them
   typename table_of<column_list>::type columns_;

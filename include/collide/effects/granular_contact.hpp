@@ -53,21 +53,25 @@ struct granular_contact {
                 "law, or dashpot and sjkr with linear");
 
   static constexpr bool turns = !std::is_same<Tangential, none>::value || !std::is_same<Rolling, none>::value;
-  static constexpr bool repels = true;          ///< the mesh is solid
+  static constexpr bool repels = true;  ///< the mesh is solid
 
   using reads = detail::union_of<columns<position>, typename Materials::reads>;
   using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;
-  using remembers = typename detail::contact_columns_of<
-      detail::union_of<columns<>, typename detail::remembers_of<Tangential>::type, typename detail::remembers_of<Rolling>::type,
-                       typename detail::remembers_of<Cohesion>::type>>::type;
+  using remembers =
+      typename detail::contact_columns_of<detail::union_of<columns<>, typename detail::remembers_of<Tangential>::type,
+                                                           typename detail::remembers_of<Rolling>::type,
+                                                           typename detail::remembers_of<Cohesion>::type>>::type;
 
   static constexpr bool is_memoryless = remembers::list::size == 0;
 
-  Materials made_of{};      ///< Young's moduli, densities, coefficients
-  Normal normal{};          ///< parameters of the laws
+  Materials made_of{};  ///< Young's moduli, densities, coefficients
+  Normal normal{};      ///< parameters of the laws
   Tangential tangential{};
   Rolling rolling{};
   Cohesion cohesion{};
+  /// Torques have the arm radius - arm_shortening overlap: 0.5 in LIGGGHTS and MercuryDPM, 0 in MUSEN, and in LAMMPS at
+  /// walls.
+  double arm_shortening = 0.5;
 
   void check_parameters() const {
     made_of.check_parameters();
@@ -190,7 +194,7 @@ struct granular_contact {
     if constexpr (turns) {
       vec3<S> const aside = tangential.force(c, of, n, memory), resistance = rolling.torque(c, of, n, memory);
       force += aside;
-      S const arm = c.own_radius - S(0.5) * c.overlap;
+      S const arm = c.own_radius - S(arm_shortening) * c.overlap;
       vec3<S> const torque = detail::cross(aside, c.normal) * arm + resistance;
       p[angular_velocity{}] += torque * (S(2.5) * impulse / (c.own_radius * c.own_radius));
     }

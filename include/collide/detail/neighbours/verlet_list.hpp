@@ -22,6 +22,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include <collide/detail/execution/algorithms.hpp>
 #include <collide/detail/neighbours/build_lists.hpp>
@@ -67,6 +68,44 @@ class verlet_list {
     contacts_.clear(space, n);
   }
 
+  /// What contacts remember, for a checkpoint. Waits.
+  template <class Space>
+  saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
+    saved_contacts<S> saved;
+    saved.counts.assign(n, 0);
+    list_state const header = copied(space, header_.data(), 1)[0];
+    if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
+    auto const numbers = copied(space, numbers_.data(), header.count);
+    auto const lists = copied(space, lists_.data(), order::listed * n),
+               runs = copied(space, runs_.data(), runs_.capacity());
+    auto const memory = contacts_.template copied<order::listed>(space, n, header.count, runs.size());
+    std::vector<std::uint32_t> place_of(n, order::overflow_mark);
+    for (std::uint32_t i = 0; i < header.count; ++i) place_of[numbers[i]] = i;
+    for (std::size_t number = 0; number < n; ++number) {
+      std::uint32_t const i = place_of[number];
+      if (i == order::overflow_mark) continue;
+      auto const add = [&](std::uint32_t place, std::size_t item) {
+        saved.others.push_back(numbers[place]);
+        memory.append(saved.values, item);
+        ++saved.counts[number];
+      };
+      if (lists[i] != order::overflow_mark) {
+        for (std::uint32_t k = 0; k < order::listed; ++k)
+          if ((memory.touching[i] >> k & 1) != 0) add(lists[k * n + i], k * n + i);
+      } else if (lists[n + i] != order::overflow_mark) {
+        std::size_t const first = lists[n + i], size = lists[2 * n + i];
+        for (std::size_t k = first; k < first + size; ++k)
+          if (memory.run_touching[k] != 0) add(runs[k], order::listed * n + k);
+      }
+    }
+    return saved;
+  }
+  /// After `clear`: lists that are made have what was saved. May wait.
+  template <class Space>
+  void restore_contacts(Space& space, saved_contacts<S> const& saved) {
+    contacts_.restore(space, saved);
+  }
+
   /// What it has taken of the resource.
   std::size_t bytes() const {
     return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
@@ -104,6 +143,13 @@ class verlet_list {
   using cells = spatial_hash<S>;
 
   static constexpr S skin_fraction = S(0.1);
+
+  template <class Space, class T>
+  static std::vector<T> copied(Space const& space, T const* from, std::size_t n) {
+    std::vector<T> copy(n);
+    if (n != 0) space.copy_to_host(copy.data(), from, n);
+    return copy;
+  }
 
   /// How many blocks of cells there are for so many particles.
   static std::size_t blocks_for(std::size_t n) {

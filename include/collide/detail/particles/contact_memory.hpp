@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <collide/detail/particles/attributes.hpp>
 #include <collide/memory.hpp>
@@ -92,18 +93,86 @@ struct kept_range {
 template <class S, class List>
 struct contact_memory_ref {
   contact_record<S, List>* records;
-  std::uint32_t* touching;         ///< of the particle at each place, a bit for each item of its list
-  std::uint8_t* run_touching;      ///< of each item of runs
-  kept_contact<S, List>* kept;     ///< while lists are made anew
-  kept_range* kept_of;             ///< of each particle, by its number
+  std::uint32_t* touching;      ///< of the particle at each place, a bit for each item of its list
+  std::uint8_t* run_touching;   ///< of each item of runs
+  kept_contact<S, List>* kept;  ///< while lists are made anew
+  kept_range* kept_of;          ///< of each particle, by its number
 };
 template <class S>
 struct contact_memory_ref<S, columns<>> {};
+
+/// What contacts remember, for a checkpoint: how many contacts each particle has, the numbers of the others, by rising
+/// numbers, and the values of each contact.
+template <class S>
+struct saved_contacts {
+  std::vector<std::uint32_t> counts;
+  std::vector<id> others;
+  std::vector<S> values;
+};
 
 /// The memory of contacts.
 template <class S, class List>
 class contact_memory {
  public:
+  using record = contact_record<S, List>;
+  static constexpr int width = contact_values<S, List>::width;
+
+  /// All of it on the host.
+  struct on_host {
+    std::vector<record> records;
+    std::vector<std::uint32_t> touching;
+    std::vector<std::uint8_t> run_touching;
+
+    void append(std::vector<S>& to, std::size_t item) const {
+      to.insert(to.end(), records[item].numbers, records[item].numbers + width);
+    }
+  };
+  template <std::size_t Listed, class Space>
+  on_host copied(Space const& space, std::size_t particles, std::size_t places, std::size_t in_runs) const {
+    on_host all{std::vector<record>(Listed * particles + in_runs), std::vector<std::uint32_t>(places),
+                std::vector<std::uint8_t>(in_runs)};
+    space.copy_to_host(all.records.data(), records_.data(), all.records.size());
+    space.copy_to_host(all.touching.data(), touching_.data(), places);
+    if (in_runs != 0) space.copy_to_host(all.run_touching.data(), run_touching_.data(), in_runs);
+    return all;
+  }
+  /// What waits for lists to be made.
+  template <class Space>
+  saved_contacts<S> saved_for_lists(Space const& space, std::size_t n) const {
+    std::vector<kept_range> ranges(n);
+    if (n != 0) space.copy_to_host(ranges.data(), kept_of_.data(), n);
+    std::size_t all = 0;
+    for (auto const& r : ranges) all = r.first + r.count > all ? r.first + r.count : all;
+    std::vector<kept_contact<S, List>> kept(all);
+    if (all != 0) space.copy_to_host(kept.data(), kept_.data(), all);
+    saved_contacts<S> saved;
+    for (auto const& r : ranges) {
+      saved.counts.push_back(r.count);
+      for (std::size_t k = r.first; k < std::size_t{r.first} + r.count; ++k) {
+        saved.others.push_back(kept[k].other);
+        saved.values.insert(saved.values.end(), kept[k].record.numbers, kept[k].record.numbers + width);
+      }
+    }
+    return saved;
+  }
+  template <class Space>
+  void restore(Space& space, saved_contacts<S> const& saved) {
+    std::vector<kept_range> ranges;
+    std::vector<kept_contact<S, List>> kept(saved.others.size());
+    std::uint32_t first = 0;
+    for (std::uint32_t const count : saved.counts) {
+      ranges.push_back({first, count});
+      first += count;
+    }
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      kept[k].other = saved.others[k];
+      for (std::size_t w = 0; w < std::size_t(width); ++w)
+        kept[k].record.numbers[w] = saved.values[k * std::size_t(width) + w];
+    }
+    if (!ranges.empty()) space.copy_from_host(kept_of_.data(), ranges.data(), ranges.size());
+    if (!kept.empty()) space.copy_from_host(kept_.data(), kept.data(), kept.size());
+  }
+
   void reserve(std::pmr::memory_resource* resource, std::size_t particles, std::size_t listed, std::size_t in_runs) {
     std::size_t const items = listed * particles + in_runs;
     records_.reserve(resource, items);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <collide/detail/bodies/bodies_ref.hpp>
 #include <collide/detail/particles/contact_memory.hpp>
@@ -49,7 +50,50 @@ class surface_memory {
   std::size_t bytes() const { return records_.bytes() + counts_.bytes(); }
   surface_memory_ref<S, List> ref(std::size_t n) const { return {records_.data(), counts_.data(), n}; }
 
+  /// For a checkpoint: the contacts of each of `n` particles; the others are bodies. Waits.
+  template <class Space>
+  saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
+    std::vector<surface_record<S, List>> records(room * n);
+    std::vector<std::uint8_t> counts(n);
+    if (n != 0) space.copy_to_host(records.data(), records_.data(), records.size());
+    if (n != 0) space.copy_to_host(counts.data(), counts_.data(), n);
+    saved_contacts<S> saved;
+    for (std::size_t i = 0; i < n; ++i) {
+      saved.counts.push_back(counts[i]);
+      for (std::size_t k = 0; k < counts[i]; ++k) {
+        auto const& r = records[k * n + i];
+        saved.others.push_back(r.body);
+        saved.values.insert(saved.values.end(), r.normal, r.normal + 3);
+        saved.values.insert(saved.values.end(), r.record.numbers, r.record.numbers + width);
+      }
+    }
+    return saved;
+  }
+  /// May wait.
+  template <class Space>
+  void restore_contacts(Space& space, saved_contacts<S> const& saved) {
+    std::size_t const n = saved.counts.size();
+    std::vector<surface_record<S, List>> records(room * n);
+    std::vector<std::uint8_t> counts;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      counts.push_back(static_cast<std::uint8_t>(saved.counts[i]));
+      for (std::size_t k = 0; k < saved.counts[i]; ++k, ++at) {
+        auto& r = records[k * n + i];
+        S const* from = saved.values.data() + at * std::size_t(saved_width);
+        r.body = saved.others[at];
+        for (int c = 0; c < 3; ++c) r.normal[c] = *from++;
+        for (int c = 0; c < width; ++c) r.record.numbers[c] = *from++;
+      }
+    }
+    if (n == 0) return;
+    space.copy_from_host(records_.data(), records.data(), records.size());
+    space.copy_from_host(counts_.data(), counts.data(), n);
+  }
+  static constexpr int width = contact_values<S, List>::width, saved_width = width + 3;
+
  private:
+  static constexpr std::size_t room = surface_memory_ref<S, List>::room;
   buffer<surface_record<S, List>> records_;
   buffer<std::uint8_t> counts_;
 };
@@ -122,8 +166,7 @@ struct press_on_mesh {
         auto const corners = open.mesh[e.triangle];
         if (!is_finite(corners.a) || !is_finite(corners.b) || !is_finite(corners.c)) continue;
         nearest_of_triangle const n = nearest_to(corners, seen.centre);
-        if (n.distance < static_cast<double>(shape.radius))
-          near.add({n.distance, e.triangle, frame, n.kind, n.index});
+        if (n.distance < static_cast<double>(shape.radius)) near.add({n.distance, e.triangle, frame, n.kind, n.index});
       }
     }
   }
@@ -170,7 +213,8 @@ struct press_on_mesh {
       vec3<S> turned = none;
       if constexpr (contains<typename integrated::list, angular_velocity>)
         turned = p[angular_velocity{}] - before[angular_velocity{}];
-      book(*this, p, {p[velocity{}] - before[velocity{}], turned, self[position{}], none, p[velocity{}], o.triangle, o.body});
+      book(*this, p,
+           {p[velocity{}] - before[velocity{}], turned, self[position{}], none, p[velocity{}], o.triangle, o.body});
     }
     return goes_on;
   }
@@ -249,7 +293,8 @@ struct press_on_mesh {
     }
   }
   template <class Cursor>
-  static COLLIDE_HD_INLINE bool next(Triangles const& open, sphere<S> const& s, Cursor& cursor, candidate_range& range) {
+  static COLLIDE_HD_INLINE bool next(Triangles const& open, sphere<S> const& s, Cursor& cursor,
+                                     candidate_range& range) {
     constexpr std::uint32_t all = 1u << 30;
     if constexpr (has_moving_mesh<Triangles>) {
       return open.next(s, 1, cursor, all, range);

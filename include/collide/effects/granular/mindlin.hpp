@@ -27,8 +27,8 @@ enum class slip_test {
 };
 
 /// A spring of stiffness 8 G* a that grows with slip, turns with the contact, and slides at Coulomb's limit: R. D.
-/// Mindlin, Journal of Applied Mechanics 16, 1949; A. Di Renzo and F. P. Di Maio, Chemical Engineering Science 59, 2004.
-/// As it is by default, it is that of LIGGGHTS and MUSEN; the members are where codes differ.
+/// Mindlin, Journal of Applied Mechanics 16, 1949; A. Di Renzo and F. P. Di Maio, Chemical Engineering Science 59,
+/// 2004. As it is by default, it is that of LIGGGHTS and MUSEN; the members are where codes differ.
 struct mindlin {
   using remembers = contact_columns<tangential_displacement>;
   static constexpr bool needs_hertz = true;
@@ -36,7 +36,7 @@ struct mindlin {
   double stiffness_factor = 1;  ///< of 8 G* a, above 0; 2/3 in A. Di Renzo and F. P. Di Maio, 2005, equation 37
   tangential_damping damping = tangential_damping::of_tangent;  ///< the dashpot
   slip_test test = slip_test::spring;                           ///< what slides
-  bool keeps_length = false;  ///< the spring does not become shorter where it turns with the contact: LAMMPS, MUSEN
+  int keeps_length = 0;  ///< the spring does not become shorter where it turns with the contact: LAMMPS, MUSEN
 
   void check_parameters() const {
     detail::check_parameter(detail::is_positive(stiffness_factor), "mindlin: stiffness_factor is above 0, and finite");
@@ -67,9 +67,9 @@ struct mindlin {
   /// Turns the spring into the plane of contact.
   template <class S>
   COLLIDE_HD_INLINE void turn(vec3<S>& spring, vec3<S> const& normal) const {
-    S const before = keeps_length ? detail::dot(spring, spring) : S(0);
+    S const before = keeps_length != 0 ? detail::dot(spring, spring) : S(0);
     spring -= normal * detail::dot(spring, normal);
-    if (!keeps_length) return;
+    if (keeps_length == 0) return;
     S const after = detail::dot(spring, spring);
     if (after > 0) spring = spring * detail::sqrt_rn(before / after);
   }
