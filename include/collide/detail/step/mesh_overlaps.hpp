@@ -123,29 +123,30 @@ struct press_on_mesh {
   bool only_kicks;  ///< nothing else is written
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    integrated p;
-    state.load(p, i);
     if constexpr (Effects::skips) {
+      particle<S, typename Effects::skipping> p;
+      state.load(p, i);
       if (effects.is_skipped(p)) return;
     }
-    vec3<S> const& centre = p[position{}];
+    particle<S, where> at;
+    state.load(at, i);
+    sphere<S> const shape{at[position{}], at.the_radius};
     int before = 0;
     if constexpr (has_memory) before = memory.counts[i];
-    overlap_list near;
     Triangles const open = triangles.opened();
-    sphere<S> const shape{centre, p.the_radius};
-    if (is_finite(centre) && !open.empty(shape)) find(open, shape, near);
-    if (near.size == 0) {
-      if constexpr (has_memory) {
-        if (before != 0) memory.counts[i] = 0;
-      }
-      return;
+    if (is_finite(shape.centre) && !open.empty(shape)) {
+      overlap_list near;
+      find(open, shape, near);
+      if (near.size != 0) return press(open, i, near, before);
     }
-    press(open, i, p, near, before);
+    if constexpr (has_memory) {
+      if (before != 0) memory.counts[i] = 0;
+    }
   }
 
  private:
   using integrated = particle<S, typename Effects::overlap_reads>;
+  using where = union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>;
   using values_type = contact_values<S, remembered>;
   static constexpr int most = surface_memory_ref<S, remembered>::room;
 
@@ -164,15 +165,16 @@ struct press_on_mesh {
         }
         if (!range.passes_coverage(e) || !open.near(seen, e.triangle)) continue;
         auto const corners = open.mesh[e.triangle];
-        if (!is_finite(corners.a) || !is_finite(corners.b) || !is_finite(corners.c)) continue;
+        if (!triangle_aabb_of(corners).overlaps(seen.centre, seen.radius)) continue;  // nor what is not finite
         nearest_of_triangle const n = nearest_to(corners, seen.centre);
         if (n.distance < static_cast<double>(shape.radius)) near.add({n.distance, e.triangle, frame, n.kind, n.index});
       }
     }
   }
 
-  COLLIDE_HD void press(Triangles const& open, std::size_t i, integrated& p, overlap_list const& near,
-                        int before) const {
+  COLLIDE_HD void press(Triangles const& open, std::size_t i, overlap_list const& near, int before) const {
+    integrated p;
+    state.load(p, i);
     integrated const self = p;
     vec3<S> normals[overlap_list::room] = {};
     id bodies[overlap_list::room] = {};
