@@ -235,24 +235,51 @@ class checkpoint {
     return saves_parameters<E> && !std::is_empty<E>::value;
   }();
 
+  /// The bytes of an effect's parameters, or of their parts if there is padding between them.
+  template <class E>
+  static std::vector<unsigned char> bytes_of_parameters(E effect) {
+    std::vector<unsigned char> bytes;
+    for_each_part_of(effect, [&](auto const& part) {
+      auto const* const first = reinterpret_cast<unsigned char const*>(&part);
+      bytes.insert(bytes.end(), first, first + sizeof part);
+    });
+    return bytes;
+  }
+  template <class E>
+  static std::size_t size_of_parameters() {
+    if constexpr (gives_parts<E, no_part>::value) {
+      return bytes_of_parameters(E()).size();
+    } else {
+      return sizeof(E);
+    }
+  }
+  struct no_part {
+    template <class Part>
+    void operator()(Part&) const {}
+  };
+
   template <class E, class Effects>
   static void write_parameters(checkpoint_writer& to, Effects const& effects) {
     if constexpr (has_bytes<E>) {
-      E const& effect = effects.template of<E>();
-      to.block(parameters_name<E>(), reinterpret_cast<unsigned char const*>(&effect), sizeof(E));
+      auto const bytes = bytes_of_parameters(effects.template of<E>());
+      to.block(parameters_name<E>(), bytes.data(), bytes.size());
     }
   }
   template <class E>
   void read_parameters(checkpoint_reader& from) {
     if constexpr (has_bytes<E>) {
-      std::get<bytes_of<E>>(parameters_).values = from.block<unsigned char>(parameters_name<E>(), sizeof(E));
+      std::get<bytes_of<E>>(parameters_).values =
+          from.block<unsigned char>(parameters_name<E>(), size_of_parameters<E>());
     }
   }
   template <class E, class Simulation>
   void restore_parameters_of(Simulation& to) const {
     if constexpr (has_bytes<E>) {
-      std::memcpy(static_cast<void*>(&to.template effect<E>()), std::get<bytes_of<E>>(parameters_).values.data(),
-                  sizeof(E));
+      unsigned char const* from = std::get<bytes_of<E>>(parameters_).values.data();
+      for_each_part_of(to.template effect<E>(), [&](auto& part) {
+        std::memcpy(static_cast<void*>(&part), from, sizeof part);
+        from += sizeof part;
+      });
     }
   }
 

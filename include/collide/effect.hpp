@@ -22,12 +22,13 @@
 ///   what all effects have changed, of what `adhesion` holds or what sleeps what the mesh holds it against.
 /// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it. Only with such an effect
 ///   are neighbours listed.
-/// - `on_mesh_overlap(particle&, self, mesh_overlap const&, dt)`, for each point of the mesh that a particle presses on,
+/// - `on_mesh_overlap(particle&, self, mesh_overlap const&, dt)`, for each point of the mesh that a particle presses
+/// on,
 ///   when particles meet: forces that grow with the overlap, in place of the impulses of `on_mesh_contact`.
 /// - With `remembers`, these two get what the contact remembers before `dt`, and return true if the contact goes on:
-///   `memory[column{}]` is a value, which begins as a particle's would, and `memory.elapsed()` the time since the contact
-///   was looked at before. `on_pair_contact` is then called as long as the contact goes on, also of particles that no
-///   longer overlap.
+///   `memory[column{}]` is a value, which begins as a particle's would, and `memory.elapsed()` the time since the
+///   contact was looked at before. `on_pair_contact` is then called as long as the contact goes on, also of particles
+///   that no longer overlap.
 /// - `try_wake(particle&, other)`, for each other particle that is active and overlaps it, also if it is not.
 /// - `holds(particle const&, pull, dt)`: true if the mesh holds a particle that is `adhered` against a change of its
 ///   velocity by `pull`, relative to the surface, in a step.
@@ -35,7 +36,8 @@
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
 /// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense. An effect whose
-/// parameters have pointers says `static constexpr bool saves_parameters = false`; see checkpoint.hpp. One whose
+/// parameters have pointers says `static constexpr bool saves_parameters = false`; one with padding between them has
+/// `for_each_part(f)`, which calls f with each of them; see checkpoint.hpp. One whose
 /// `begin_step` does the same to particles wherever they are says `static constexpr bool begins_on_ranks = true`; see
 /// distributed_simulation.cuh. One with `static constexpr bool asks_forces = true` has `end_step(particle&, forces,
 /// dt)` instead: `forces.change(dt)` is by how much `accelerate` of all effects changes the velocity. One
@@ -123,6 +125,24 @@ template <class E, class = void>
 inline constexpr bool saves_parameters = true;
 template <class E>
 inline constexpr bool saves_parameters<E, std::void_t<decltype(E::saves_parameters)>> = E::saves_parameters;
+
+/// f(part) for each part of an effect's parameters that has no padding, for checkpoints: what its `for_each_part(f)`
+/// gives, or all of it. Nothing of what is empty, or of what says that it is not saved.
+template <class E, class F, class = void>
+struct gives_parts : std::false_type {};
+template <class E, class F>
+struct gives_parts<E, F, std::void_t<decltype(std::declval<E&>().for_each_part(std::declval<F const&>()))>>
+    : std::true_type {};
+template <class E, class F>
+void for_each_part_of(E& of, F const& f) {
+  if constexpr (std::is_class<E>::value && !saves_parameters<E>) {
+    return;
+  } else if constexpr (gives_parts<E, F>::value) {
+    of.for_each_part(f);
+  } else if constexpr (!std::is_empty<E>::value) {
+    f(of);
+  }
+}
 
 }  // namespace detail
 

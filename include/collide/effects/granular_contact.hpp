@@ -81,6 +81,16 @@ struct granular_contact {
     detail::check_part(cohesion);
   }
 
+  template <class F>
+  void for_each_part(F const& f) {
+    detail::for_each_part_of(made_of, f);
+    detail::for_each_part_of(normal, f);
+    detail::for_each_part_of(tangential, f);
+    detail::for_each_part_of(rolling, f);
+    detail::for_each_part_of(cohesion, f);
+    f(arm_shortening);
+  }
+
   /// The longest step that `simulation::step` takes. With `hertz` the time in which a wave crosses the smallest sphere
   /// (Lord Rayleigh): pi r sqrt(density / G) / (0.1631 nu + 0.8766); with `linear` a fifth of a collision of two such.
   double longest_step(double smallest_radius) const {

@@ -43,7 +43,7 @@ inline mindlin mindlin_of_lammps(bool dashpot) {
   mindlin law;
   law.damping = dashpot ? collide::tangential_damping::of_normal : collide::tangential_damping::none;
   law.test = collide::slip_test::spring_and_dashpot;
-  law.keeps_length = 1;
+  law.keeps_length = true;
   return law;
 }
 
@@ -240,6 +240,60 @@ void check_same_grains(Space const& space) {
   };
   check(falling_grains<S>(4, false), 1600, gravity{}, by, velocity_verlet{});
   check(falling_grains<S>(5, true), 1000, collide::polydisperse{}, gravity{}, by, velocity_verlet{});
+}
+
+/// A ball that is laid on a belt, or on a plate that moves, rolls at 2/7 of its speed once it no longer slides; what it
+/// has got the body has lost, and its weight.
+template <class S, class Space>
+void check_moving_walls(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, gravity, law, collide::reaction,
+                                         velocity_verlet, moving_bodies<>>;
+  law const by{collide::one_material({1e7, 0.2, 2500}, {0.3, 0.3})};
+  double const speed = 0.1, dt = 2e-5, mass = 2500 * 4 / 3 * pi * 1e-6;
+  for (bool const is_belt : {false, true}) {
+    world<S> w;
+    w.radius = S(0.01);
+    add_divided_floor(w, 1, 4);
+    w.particle(0, 0, 0.01);
+    body_motion motion{};
+    (is_belt ? motion.belt : motion.velocity)[0] = speed;
+    collide::reaction_sums sums(space, 1, mass * 1e-12);
+    running_bodies<simulation> made(space, w, one_body(w, motion), gravity{}, by, sums.effect(2500), velocity_verlet{},
+                                    moving_bodies<>{});
+    made.simulation.steps(10000, S(dt));
+    double const u = double(made.velocities()[0]);
+    CHECK(u == doctest::Approx(speed * 2 / 7).epsilon(2e-3));
+    CHECK(double(made.simulation.template to_host<angular_velocity>()[1]) ==
+          doctest::Approx((u - speed) / 0.01).epsilon(2e-3));
+    auto const given = sums.read(space)[0];
+    CHECK(given.linear[0] == doctest::Approx(-mass * u).epsilon(1e-3));
+    CHECK(given.linear[2] == doctest::Approx(-mass * 9.81 * 10000 * dt).epsilon(1e-2));
+  }
+}
+
+/// Grains that have come to rest sleep, keep their bits, and press with their weight.
+template <class S, class Space>
+void check_sleeping_grains(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::sleep, gravity, law,
+                                         collide::reaction, velocity_verlet>;
+  law const by{collide::one_material({1e7, 0.2, 2500}, {0.2, 0.5, 0.1})};
+  world<S> w;
+  w.radius = S(0.01);
+  add_divided_floor(w, 1, 4);
+  for (int k = 0; k < 4; ++k) w.particle(0.0199 * (k % 2), 0.0199 * (k / 2), 0.01);
+  w.particle(0.00995, 0.00995, 0.0242);
+  double const mass = 5 * 2500 * 4 / 3 * pi * 1e-6, dt = 2e-5;
+  collide::reaction_sums sums(space, 0, mass * 1e-12);
+  running<simulation> made(space, w, collide::sleep{1e-3, 100}, gravity{}, by, sums.effect(2500), velocity_verlet{});
+  made.simulation.steps(40000, S(dt));
+  auto const x = made.positions(), turn = made.simulation.template to_host<angular_velocity>();
+  for (auto const slow : made.simulation.template to_host<collide::slow_steps>()) CHECK(int(slow) >= 100);
+  sums.clear(space);
+  made.simulation.steps(10000, S(dt));
+  CHECK(std::memcmp(x.data(), made.positions().data(), x.size() * sizeof(S)) == 0);
+  CHECK(sums.read(space)[0].linear[2] == doctest::Approx(-mass * 9.81 * 10000 * dt).epsilon(1e-2));
 }
 
 }  // namespace tests

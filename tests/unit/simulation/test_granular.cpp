@@ -20,3 +20,10 @@ TEST_CASE("granular contact: contacts remember the same everywhere, and after a 
   tests::check_same_grains<double>(host(2));
   tests::check_same_grains<float>(blocks());
 }
+
+TEST_CASE("granular contact: walls that move take grains along, and feel them") {
+  tests::check_moving_walls<double>(host(1));
+  tests::check_moving_walls<float>(blocks());
+}
+
+TEST_CASE("granular contact: grains sleep and press on") { tests::check_sleeping_grains<double>(host(1)); }

@@ -36,10 +36,19 @@ struct mindlin {
   double stiffness_factor = 1;  ///< of 8 G* a, above 0; 2/3 in A. Di Renzo and F. P. Di Maio, 2005, equation 37
   tangential_damping damping = tangential_damping::of_tangent;  ///< the dashpot
   slip_test test = slip_test::spring;                           ///< what slides
-  int keeps_length = 0;  ///< the spring does not become shorter where it turns with the contact: LAMMPS, MUSEN
+  bool keeps_length = false;  ///< the spring does not become shorter where it turns with the contact: LAMMPS, MUSEN
 
   void check_parameters() const {
     detail::check_parameter(detail::is_positive(stiffness_factor), "mindlin: stiffness_factor is above 0, and finite");
+  }
+
+  /// f(parameter) for each, for checkpoints: there is padding between them.
+  template <class F>
+  void for_each_part(F const& f) {
+    f(stiffness_factor);
+    f(damping);
+    f(test);
+    f(keeps_length);
   }
 
   template <class S, class Memory>
@@ -67,9 +76,9 @@ struct mindlin {
   /// Turns the spring into the plane of contact.
   template <class S>
   COLLIDE_HD_INLINE void turn(vec3<S>& spring, vec3<S> const& normal) const {
-    S const before = keeps_length != 0 ? detail::dot(spring, spring) : S(0);
+    S const before = keeps_length ? detail::dot(spring, spring) : S(0);
     spring -= normal * detail::dot(spring, normal);
-    if (keeps_length == 0) return;
+    if (!keeps_length) return;
     S const after = detail::dot(spring, spring);
     if (after > 0) spring = spring * detail::sqrt_rn(before / after);
   }
