@@ -158,18 +158,30 @@ struct press_on_mesh {
       if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
       sphere<S> const seen = seen_from(open, frame, shape);
       COLLIDE_NO_UNROLL
-      for (std::uint32_t k = 0; k < range.count; ++k) {
-        cell_item const e = range.at(k);
-        if constexpr (has_moving_mesh<Triangles>) {
-          if (open.mesh.frame_of(e.triangle) != frame) continue;
+      for (std::uint32_t k = 0; k < range.count; k += together) {
+        id triangles_near[together];
+        bool overlaps[together];
+        for (std::uint32_t j = 0; j < together; ++j) {  // all are on their way at once
+          cell_item const e = range.at(smaller(k + j, range.count - 1));
+          triangles_near[j] = e.triangle;
+          overlaps[j] = k + j < range.count && range.passes_coverage(e) &&
+                        triangle_aabb_of(open.mesh[e.triangle]).overlaps(seen.centre, seen.radius);
         }
-        if (!range.passes_coverage(e) || !open.near(seen, e.triangle)) continue;
-        auto const corners = open.mesh[e.triangle];
-        if (!triangle_aabb_of(corners).overlaps(seen.centre, seen.radius)) continue;  // nor what is not finite
-        nearest_of_triangle const n = nearest_to(corners, seen.centre);
-        if (n.distance < static_cast<double>(shape.radius)) near.add({n.distance, e.triangle, frame, n.kind, n.index});
+        COLLIDE_NO_UNROLL
+        for (std::uint32_t j = 0; j < together; ++j)
+          if (overlaps[j]) add(open, triangles_near[j], frame, seen, near);
       }
     }
+  }
+  static constexpr std::uint32_t together = 4;
+
+  COLLIDE_HD_INLINE void add(Triangles const& open, id triangle, int frame, sphere<S> const& seen,
+                             overlap_list& near) const {
+    if constexpr (has_moving_mesh<Triangles>) {
+      if (open.mesh.frame_of(triangle) != frame) return;
+    }
+    nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
+    if (n.distance < static_cast<double>(seen.radius)) near.add({n.distance, triangle, frame, n.kind, n.index});
   }
 
   COLLIDE_HD void press(Triangles const& open, std::size_t i, overlap_list const& near, int before) const {
