@@ -46,7 +46,7 @@ struct pair_interaction {
     p.met = p.met || is_active || is_other;
   }
 
-  /// The same with what the contact remembers in `record`, if it `was` there. True if there is something to remember.
+  /// A meeting with what the contact remembers in `record`, if it `was` there. True if there is something to remember.
   template <class Record>
   COLLIDE_HD_INLINE bool interact(pair_state& p, std::uint32_t place, bool overlap, bool was, Record& record) const {
     interaction other = order.load(place);

@@ -43,7 +43,7 @@ struct contact_values<S, columns<C...>> : contact_value<C, S>... {
   }
 };
 
-/// The same in memory, to be read at once.
+/// What a contact remembers, in memory: to be read at once.
 template <class S, class List>
 struct alignas(contact_values<S, List>::width > 2 ? 4 * sizeof(S) : sizeof(S)) contact_record {
   S numbers[contact_values<S, List>::width];

@@ -30,8 +30,8 @@ struct dmt {
 };
 
 /// Soft grains that stick: K. L. Johnson, K. Kendall and A. D. Roberts, Proceedings of the Royal Society A 324, 1971.
-/// With x^2 = a, the overlap is x^4 / R* - 2 x sqrt(pi gamma / E*), and the force 4 E* a^3 / (3 R*) - 4 sqrt(pi gamma E*
-/// a^3). They hold each other by up to 3 pi gamma R*, also a little apart, once they have touched.
+/// With x^2 = a, the overlap is x^4 / R* - 2 x sqrt(pi gamma / E*), and the force 4 E* a^3 / (3 R*) - 4 sqrt(pi gamma
+/// E* a^3). They hold each other by up to 3 pi gamma R*, also a little apart, once they have touched.
 struct jkr {
   using remembers = contact_columns<contact_radius>;
   static constexpr bool needs_hertz = true;
@@ -61,8 +61,8 @@ struct jkr {
   /// parted.
   template <class S>
   static COLLIDE_HD_INLINE S root(S r, S k, S overlap) {
-    S x = detail::sqrt_rn(detail::sqrt_rn(r * detail::larger(overlap, S(0)))) ;
-    S least = detail::sqrt_rn(detail::sqrt_rn(k * r)) ;  // grows until it is above the root
+    S x = detail::sqrt_rn(detail::sqrt_rn(r * detail::larger(overlap, S(0))));
+    S least = detail::sqrt_rn(detail::sqrt_rn(k * r));  // grows until it is above the root
     x = detail::larger(x, least);
     while (x * x * x * x / r - 2 * k * x < overlap) x *= 2;
     COLLIDE_NO_UNROLL

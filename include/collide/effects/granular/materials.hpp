@@ -36,8 +36,8 @@ namespace detail {
 
 /// Two solids and their surfaces as laws of contact need them.
 struct contact_material {
-  double young = 0;  ///< effective: 1/E* = (1 - nu_i^2) / E_i + (1 - nu_j^2) / E_j; 0: nobody has said
-  double shear = 0;  ///< effective: 1/G* = (2 - nu_i) / G_i + (2 - nu_j) / G_j
+  double young = 0;    ///< effective: 1/E* = (1 - nu_i^2) / E_i + (1 - nu_j^2) / E_j; 0: nobody has said
+  double shear = 0;    ///< effective: 1/G* = (2 - nu_i) / G_i + (2 - nu_j) / G_j
   double damping = 0;  ///< beta = -ln e / sqrt(ln^2 e + pi^2), 0 to 1
   double friction = 0, rolling_friction = 0, cohesion = 0;
 
@@ -116,10 +116,10 @@ class materials {
  public:
   using reads = columns<material>;
 
-  int wall_material = 0;                                ///< of the mesh, 0 to N - 1
-  std::uint8_t const* triangle_materials = nullptr;     ///< of each triangle, in memory of the space; null: all the same
-  std::uint8_t const* body_materials = nullptr;         ///< of each body, in memory of the space; null: all the same
-  static constexpr bool saves_parameters = false;       ///< they may have pointers
+  int wall_material = 0;                             ///< of the mesh, 0 to N - 1
+  std::uint8_t const* triangle_materials = nullptr;  ///< of each triangle, in memory of the space; null: all the same
+  std::uint8_t const* body_materials = nullptr;      ///< of each body, in memory of the space; null: all the same
+  static constexpr bool saves_parameters = false;    ///< they may have pointers
 
   /// Says what solid number `i` is. Throws `error` if a number is out of its range.
   void set(int i, solid const& s) {
@@ -139,7 +139,8 @@ class materials {
 
   /// Throws `error`, which names the solid or the pair that nobody has set.
   void check_parameters() const {
-    detail::check_parameter(wall_material >= 0 && wall_material < N, "materials: wall_material is the number of a solid");
+    detail::check_parameter(wall_material >= 0 && wall_material < N,
+                            "materials: wall_material is the number of a solid");
     for (int i = 0; i < N; ++i) {
       for (int j = i; j < N; ++j) {
         if (pairs_[place(i, j)].young > 0) continue;
@@ -184,9 +185,11 @@ class materials {
     detail::check_parameter(i >= 0 && i < N, "materials: the number of a solid is from 0 to N - 1");
   }
 
-  solid solids_[N] = {};
-  bool is_set_[N] = {};
-  detail::contact_material pairs_[N * (N + 1) / 2];
+  static constexpr std::size_t number = N;
+
+  solid solids_[number] = {};
+  bool is_set_[number] = {};
+  detail::contact_material pairs_[number * (number + 1) / 2];
 };
 
 }  // namespace collide

@@ -24,9 +24,9 @@ struct constant_torque {
   }
 };
 
-/// A spring and dashpot against rolling, up to rolling friction times R* times the normal force: EPSD, model C of J. Ai,
-/// J.-F. Chen, J. M. Rotter and J. Y. Ooi, Powder Technology 206, 2011. The stiffness is 2.25 k_n (mu_r R*)^2, with k_n
-/// that of the secant. So piles stand still.
+/// A spring and dashpot against rolling, up to rolling friction times R* times the normal force: EPSD, model C of J.
+/// Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi, Powder Technology 206, 2011. The stiffness is 2.25 k_n (mu_r R*)^2, with
+/// k_n that of the secant. So piles stand still.
 struct epsd {
   using remembers = contact_columns<rolling_torque>;
 
