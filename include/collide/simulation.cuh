@@ -130,7 +130,11 @@ class simulation {
       }
     }
     if constexpr (effects_type::meets) neighbours_.reserve(resource, particles);
-    if constexpr (effects_type::overlaps) surfaces_.reserve(resource, particles);
+    if constexpr (effects_type::overlaps) {
+      surfaces_.reserve(resource, particles);
+      pressing_.reserve(resource, particles);
+      pressing_count_.reserve(resource, 1);
+    }
   }
 
   /// The mesh that particles touch, not copied: it must stay as it is while it is used. Call it again when the mesh has
@@ -199,7 +203,7 @@ class simulation {
   std::size_t bytes() const {
     std::size_t lists = 0;
     if constexpr (effects_type::meets) lists = neighbours_.bytes();
-    if constexpr (effects_type::overlaps) lists += surfaces_.bytes();
+    if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes();
     return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
 
@@ -285,8 +289,9 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   using neighbour_lists =
       std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, detail::null_ref>;
-  using surface_memory = std::conditional_t<effects_type::overlaps,
-                                            detail::surface_memory<S, typename effects_type::remembered>, detail::null_ref>;
+  using surface_memory =
+      std::conditional_t<effects_type::overlaps, detail::surface_memory<S, typename effects_type::remembered>,
+                         detail::null_ref>;
   /// What a step asks for the triangles near a particle, if it `asks`.
   template <bool Asks = effects_type::touches>
   auto lookup([[maybe_unused]] S dt) const {
@@ -335,9 +340,15 @@ class simulation {
     if constexpr (effects_type::overlaps) {
       auto const memory = surfaces_.ref(state_.size);
       auto const triangles = lookup<true>(dt);
-      using kernel =
-          detail::press_on_mesh<S, effects_type, std::decay_t<decltype(triangles)>, std::decay_t<decltype(memory)>>;
-      space_.for_each(state_.size, kernel{state_, effects_, triangles, memory, dt, is_first});
+      using mesh_type = std::decay_t<decltype(triangles)>;
+      using memory_type = std::decay_t<decltype(memory)>;
+      constexpr std::size_t lanes = execution_space::host_accessible ? 1 : 8;
+      detail::pressing_list const pressing{pressing_count_.data(), pressing_.data()};
+      space_.fill(pressing.count, 0, sizeof *pressing.count);
+      space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
+                                       state_, effects_, triangles, memory, pressing});
+      space_.for_each(state_.size, detail::press_on_mesh<S, effects_type, mesh_type, memory_type, lanes>{
+                                       state_, effects_, triangles, memory, pressing, dt, is_first});
     }
   }
   template <class... Kick>
@@ -426,6 +437,8 @@ class simulation {
   neighbour_lists neighbours_;
   surface_memory surfaces_;
   buffer<id> overflow_;
+  buffer<id> pressing_;  ///< particles that may press on the mesh, and how many they are
+  buffer<std::uint32_t> pressing_count_;
   bodies_memory bodies_;
 };
 

@@ -107,8 +107,41 @@ class surface_memory<S, columns<>> {
   null_ref ref(std::size_t) const { return {}; }
 };
 
-/// Kernel body of `for_each` over particles.
+/// Which particles may press on the mesh, in any order.
+struct pressing_list {
+  std::uint32_t* count;
+  id* numbers;
+};
+
+/// Kernel body of `for_each` over particles: lists those that may press on the mesh. These are few, and much work.
 template <class S, class Effects, class Triangles, class Memory>
+struct list_pressing {
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+  Triangles triangles;
+  Memory memory;
+  pressing_list found;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if constexpr (Effects::skips) {
+      particle<S, typename Effects::skipping> p;
+      state.load(p, i);
+      if (effects.is_skipped(p)) return;
+    }
+    particle<S, union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>> p;
+    state.load(p, i);
+    sphere<S> const shape{p[position{}], p.the_radius};
+    if (is_finite(shape.centre) && !triangles.opened().empty(shape)) {
+      found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
+    } else if constexpr (Effects::remembered::size != 0) {
+      if (memory.counts[i] != 0) memory.counts[i] = 0;
+    }
+  }
+};
+
+/// Kernel body of `for_each` over particles, of which every `Lanes`-th works on the list: threads of a warp would wait
+/// for each other.
+template <class S, class Effects, class Triangles, class Memory, std::size_t Lanes>
 struct press_on_mesh {
   using effects_type = Effects;
   using scalar = S;
@@ -119,36 +152,35 @@ struct press_on_mesh {
   Effects effects;
   Triangles triangles;
   Memory memory;
+  pressing_list pressing;
   S dt;
   bool only_kicks;  ///< nothing else is written
 
-  COLLIDE_HD void operator()(std::size_t i) const {
-    if constexpr (Effects::skips) {
-      particle<S, typename Effects::skipping> p;
-      state.load(p, i);
-      if (effects.is_skipped(p)) return;
-    }
-    particle<S, where> at;
-    state.load(at, i);
-    sphere<S> const shape{at[position{}], at.the_radius};
-    int before = 0;
-    if constexpr (has_memory) before = memory.counts[i];
-    Triangles const open = triangles.opened();
-    if (is_finite(shape.centre) && !open.empty(shape)) {
-      overlap_list near;
-      find(open, shape, near);
-      if (near.size != 0) return press(open, i, near, before);
-    }
-    if constexpr (has_memory) {
-      if (before != 0) memory.counts[i] = 0;
-    }
+  COLLIDE_HD void operator()(std::size_t thread) const {
+    if (thread % Lanes != 0) return;
+    std::size_t const count = *pressing.count, stride = (state.size + Lanes - 1) / Lanes;
+    COLLIDE_NO_UNROLL
+    for (std::size_t k = thread / Lanes; k < count; k += stride) press_with(pressing.numbers[k]);
   }
 
  private:
   using integrated = particle<S, typename Effects::overlap_reads>;
-  using where = union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>;
   using values_type = contact_values<S, remembered>;
   static constexpr int most = surface_memory_ref<S, remembered>::room;
+
+  COLLIDE_HD_INLINE void press_with(std::size_t i) const {
+    S const* const x = state.at(position{}) + 3 * i;
+    vec3<S> const centre(x[0], x[1], x[2]);
+    Triangles const open = triangles.opened();
+    overlap_list near;
+    find(open, sphere<S>{centre, state.radius_at(i)}, near);
+    int before = 0;
+    if constexpr (has_memory) before = memory.counts[i];
+    if (near.size != 0) return press(open, i, near, before);
+    if constexpr (has_memory) {
+      if (before != 0) memory.counts[i] = 0;
+    }
+  }
 
   COLLIDE_HD void find(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
     auto cursor = open.begin(shape);

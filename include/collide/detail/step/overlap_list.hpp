@@ -31,10 +31,10 @@ struct nearest_of_triangle {
 /// The nearest point of a finite triangle. Where it lies in an edge or a corner, but straight below the centre to
 /// rounding, normal and distance are those of the triangle's plane, which all triangles of a flat wall have in common.
 template <class S>
-COLLIDE_HD inline nearest_of_triangle nearest_to(triangle<S> const& t, vec3<S> const& centre) {
+COLLIDE_HD_NOINLINE nearest_of_triangle nearest_to(triangle<S> const& t, vec3<S> const& centre) {
   constexpr double straight = 1e-14;  // square of an angle
   sphere<S> const at{centre, S(0)};
-  local_triangle<double> const l = to_unit_range(to_local<double>(t, at), t, at);
+  local_triangle<double> const l = to_local<double>(t, at);
   vec3<double> face = cross<double>(l.b - l.a, l.c - l.a);
   closest_point<double> const foot = closest_to_origin(l, face);
   vec3<double> normal = -foot.point;
@@ -45,7 +45,7 @@ COLLIDE_HD inline nearest_of_triangle nearest_to(triangle<S> const& t, vec3<S> c
     vec3<double> const aside = cross(face, normal);
     if (foot.kind == feature::face || dot(aside, aside) <= mul(straight, foot.distance_squared)) {
       double const height = -dot(l.a, face);
-      return {height < 0 ? vec3<double>(-face) : face, div(height < 0 ? -height : height, l.scale), foot.kind, foot.index};
+      return {height < 0 ? vec3<double>(-face) : face, height < 0 ? -height : height, foot.kind, foot.index};
     }
   }
   if (distance > 0) {
@@ -53,7 +53,7 @@ COLLIDE_HD inline nearest_of_triangle nearest_to(triangle<S> const& t, vec3<S> c
   } else {
     normal = area > 0 ? face : vec3<double>(0, 0, 1);
   }
-  return {normal, div(distance, l.scale), foot.kind, foot.index};
+  return {normal, distance, foot.kind, foot.index};
 }
 
 /// The triangles that a sphere overlaps, the nearest first; of more than there is room for, those.
