@@ -342,12 +342,11 @@ class simulation {
       auto const triangles = lookup<true>(dt);
       using mesh_type = std::decay_t<decltype(triangles)>;
       using memory_type = std::decay_t<decltype(memory)>;
-      constexpr std::size_t lanes = execution_space::host_accessible ? 1 : 8;
       detail::pressing_list const pressing{pressing_count_.data(), pressing_.data()};
       space_.fill(pressing.count, 0, sizeof *pressing.count);
       space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
                                        state_, effects_, triangles, memory, pressing});
-      space_.for_each(state_.size, detail::press_on_mesh<S, effects_type, mesh_type, memory_type, lanes>{
+      space_.for_each(state_.size, detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
                                        state_, effects_, triangles, memory, pressing, dt, is_first});
     }
   }

@@ -139,9 +139,8 @@ struct list_pressing {
   }
 };
 
-/// Kernel body of `for_each` over particles, of which every `Lanes`-th works on the list: threads of a warp would wait
-/// for each other.
-template <class S, class Effects, class Triangles, class Memory, std::size_t Lanes>
+/// Kernel body of `for_each` over as many as there are particles: those on the list press on the mesh.
+template <class S, class Effects, class Triangles, class Memory>
 struct press_on_mesh {
   using effects_type = Effects;
   using scalar = S;
@@ -156,11 +155,8 @@ struct press_on_mesh {
   S dt;
   bool only_kicks;  ///< nothing else is written
 
-  COLLIDE_HD void operator()(std::size_t thread) const {
-    if (thread % Lanes != 0) return;
-    std::size_t const count = *pressing.count, stride = (state.size + Lanes - 1) / Lanes;
-    COLLIDE_NO_UNROLL
-    for (std::size_t k = thread / Lanes; k < count; k += stride) press_with(pressing.numbers[k]);
+  COLLIDE_HD void operator()(std::size_t k) const {
+    if (k < *pressing.count) press_with(pressing.numbers[k]);
   }
 
  private:
