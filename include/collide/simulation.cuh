@@ -263,6 +263,14 @@ class simulation {
     return most;
   }
 
+  /// What a source has made since `set`; see `birth_counts`. Waits.
+  birth_counts births() const {
+    static_assert(effects_type::makes, "collide: simulation: births: no effect of the scene makes particles");
+    double clock[detail::clock_size] = {};
+    if (state_.time != nullptr) space_.copy_to_host(clock, state_.time, detail::clock_size);
+    return detail::births_of(clock);
+  }
+
   /// The bodies of the mesh, in a scene with `moving_bodies`: where they are; see `body_memory`.
   bodies_memory const& bodies() const { return bodies_; }
 
@@ -320,7 +328,16 @@ class simulation {
     if (state_.size == 0) return;
     if constexpr (effects_type::meets) {
       if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
+      neighbours_.renew(space_, with_copies);
+      settle_births(with_copies, dt);
       neighbours_.interact(space_, with_copies, effects_, dt, is_first);
+    }
+  }
+  /// Says which of those that a source has made overlap others, once the lists are renewed.
+  void settle_births([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
+    if constexpr (effects_type::makes) {
+      if (effects_.due(static_cast<double>(dt)) > 0)
+        neighbours_.settle_births(space_, with_copies, effects_.makes_only_where_free());
     }
   }
   template <class... Kick>
@@ -390,6 +407,8 @@ class simulation {
       throw error("collide: simulation: the time dt of a step is finite and above 0");
     ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
     ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
+    if (!effects_type::meets && effects_.makes_only_where_free())
+      throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
   }
 
   execution_space space_;

@@ -102,7 +102,10 @@ struct effect_list : effect_slot<E>... {
 
   /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
   double due(double dt) const { return (due_of<E>(dt) + ... + 0.0); }
-  S source_radius() const { return (is_source<E> || ...) ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+  static constexpr bool makes = (is_source<E> || ...);
+  /// Whether what a source makes where something is, is not born.
+  bool makes_only_where_free() const { return (is_careful<E>() || ...); }
+  S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
 
   template <class F>
   COLLIDE_HD_INLINE F const& of() const {
@@ -164,6 +167,11 @@ struct effect_list : effect_slot<E>... {
   double due_of([[maybe_unused]] double dt) const {
     if constexpr (is_source<F>) return of<F>().rate * dt;
     return 0;
+  }
+  template <class F>
+  bool is_careful() const {
+    if constexpr (is_source<F>) return of<F>().only_where_free;
+    return false;
   }
   template <class F>
   S source_radius_of() const {
