@@ -307,6 +307,7 @@ class simulation {
   /// The part of a step before particles meet.
   void begin_step(S dt) {
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
+    effects_.prepare(dt);
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step)
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});

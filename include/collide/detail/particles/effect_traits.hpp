@@ -3,6 +3,7 @@
 #pragma once
 
 #include <collide/detail/particles/particle_access.hpp>
+#include <collide/detail/particles/resistance.hpp>
 #include <collide/integrators.hpp>
 
 namespace collide::detail {
@@ -35,6 +36,15 @@ template <class E, class S>
 struct resists_in<
     E, S, std::void_t<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()))>>
     : std::true_type {};
+/// Wind: what resists motion in a medium that may move.
+template <class E, class S, class = void>
+struct flows_in : std::false_type {};
+template <class E, class S>
+struct flows_in<
+    E, S, std::void_t<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()))>>
+    : std::bool_constant<
+          !std::is_same<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>())),
+                        medium_at_rest>::value> {};
 template <class E, class S>
 inline constexpr bool changes_velocity_in = accelerates_in<E, S>::value || resists_in<E, S>::value;
 template <class E, class S, class = void>

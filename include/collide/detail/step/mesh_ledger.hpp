@@ -116,9 +116,10 @@ COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p) {
   return true;
 }
 
-/// The beginning of a particle's step: the first kick.
+/// The beginning of a particle's step. Returns for how long all accelerate it in the first kick: 0 if the mesh holds
+/// it.
 template <class Context, class Particle>
-COLLIDE_HD_INLINE void begin_particle(Context const& context, Particle& p) {
+COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
   using S = typename Context::scalar;
   if constexpr (Context::effects_type::keeps_support) {
     auto const n = S(steps_in_mean(p[slow_steps{}]));
@@ -126,11 +127,16 @@ COLLIDE_HD_INLINE void begin_particle(Context const& context, Particle& p) {
     p[supported_by{}] = 0;
   }
   if constexpr (Context::effects_type::adheres) {
-    if (p[adhered{}] != 0 && hold_adhered(context, p)) return;
+    if (p[adhered{}] != 0 && hold_adhered(context, p)) return S(0);
   }
-  auto const kick = first_kick<Context>(p);
-  if (kick != 0) context.effects.accelerate(p, kick * context.dt);
+  S const kick = first_kick<Context>(p);
   if constexpr (contains<typename Particle::list, held>) p[held{}] = 0;
+  return kick;
+}
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void begin_particle(Context const& context, Particle& p) {
+  auto const kick = begin_with_kick(context, p);
+  if (kick != 0) context.effects.accelerate(p, kick * context.dt);
 }
 
 /// Says that a particle has come to the end of its step, and whether the mesh `holds` it there.
