@@ -52,7 +52,9 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
                               columns_if<keeps_pair_torques, pair_angular_acceleration>>;
   using held_columns = columns_if<touches && has_half_kicks, held>;
-  using support_columns = columns_if<keeps_support, support, supported_by>;
+  using support_columns = union_of<columns_if<keeps_support, support, supported_by>,
+                                   columns_if<keeps_support && (is_moving_bodies<E> || ...), second_support,
+                                              second_supported_by, third_support, third_supported_by>>;
 
  public:
   /// All columns of the simulation.

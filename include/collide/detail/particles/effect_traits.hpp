@@ -2,6 +2,7 @@
 /// Which members an effect has, and where it may be in the list.
 #pragma once
 
+#include <collide/bodies.hpp>
 #include <collide/detail/particles/particle_access.hpp>
 #include <collide/detail/particles/resistance.hpp>
 #include <collide/integrators.hpp>
@@ -29,6 +30,10 @@ template <class E, class S>
 struct accelerates_in<
     E, S, std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
+template <class Effect>
+inline constexpr bool is_moving_bodies = false;
+template <class Motion>
+inline constexpr bool is_moving_bodies<moving_bodies<Motion>> = true;
 /// Drag and wind: what resists the motion that all others accelerate.
 template <class E, class S, class = void>
 struct resists_in : std::false_type {};

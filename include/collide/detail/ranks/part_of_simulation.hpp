@@ -102,7 +102,7 @@ class part_of_simulation {
     saved.restore_columns(space(), state, 0, static_cast<std::size_t>(all.first), mine);
     saved.restore_columns(space(), state, mine, static_cast<std::size_t>(all.first_free), free);
     if constexpr (Simulation::has_begin_step) space().copy_from_host(state.time, numbers.clock, clock_size);
-    saved.restore_parameters(simulation_);
+    saved.restore_parameters(simulation_.effects_);
     simulation_.time_ = numbers.time;
     simulation_.knows_pair_forces_ = numbers.knows_pair_forces != 0;
     simulation_.prepare();
