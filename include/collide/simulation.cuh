@@ -147,9 +147,7 @@ class simulation {
     if constexpr (sweeps) {
       least_radius_ = 8 * std::numeric_limits<S>::epsilon() * detail::largest_coordinate(space_, mesh, mesh_summary_);
     }
-    if constexpr (detail::contains<columns, slow_steps>) {  // what slept may have lost its support
-      if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
-    }
+    wake_all();  // what slept may have lost its support
     prepare();
     if constexpr (effects_type::adheres) {
       if (is_set_)
@@ -247,11 +245,18 @@ class simulation {
     }
   }
 
-  /// The parameters of an effect, which may be changed between steps.
+  /// The parameters of an effect, to be changed between steps. All that sleeps is woken, as what holds it may be
+  /// another then; but not by a source, or by `moving_bodies`, which wake what they touch.
   template <class E>
   E& effect() {
-    static_assert((std::is_same<E, Effect>::value || ...),
-                  "collide: effect<E>() gives the parameters of an effect that is in the simulation's list");
+    check_effect<E>();
+    if constexpr (!detail::is_source<E> && !detail::is_moving_bodies<E>) wake_all();
+    return effects_.template of<E>();
+  }
+  /// The parameters of an effect, to be read.
+  template <class E>
+  E const& effect() const {
+    check_effect<E>();
     return effects_.template of<E>();
   }
 
@@ -315,6 +320,7 @@ class simulation {
   /// The part of a step before particles meet.
   void begin_step(S dt) {
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
+    effects_.prepare(dt);
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step)
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
@@ -365,15 +371,26 @@ class simulation {
     space_.launch(body.blocks, body);
   }
 
+  void wake_all() {
+    if constexpr (detail::contains<columns, slow_steps>) {
+      if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
+    }
+  }
+
   /// Moves the bodies on by `dt`, or, if they start, to where they are at this time.
   void advance_bodies(double dt, bool start) {
     if constexpr (has_bodies) {
       if (state_.time == nullptr) return;
-      auto const& motion = effect<moving_bodies<typename bodies_memory::motion>>().motion;
+      auto const& motion = effects_.template of<moving_bodies<typename bodies_memory::motion>>().motion;
       bodies_.advance(space_, motion, state_.time, dt, radii_.smallest, sweeps, start);
     }
   }
 
+  template <class E>
+  static constexpr void check_effect() {
+    static_assert((std::is_same<E, Effect>::value || ...),
+                  "collide: effect<E>() gives the parameters of an effect that is in the simulation's list");
+  }
   template <class Column>
   static constexpr void check() {
     static_assert(detail::contains<columns, Column>,

@@ -17,6 +17,18 @@ TEST_CASE("where features meet: what lies on the mesh presses with its weight") 
   tests::check_slope_and_stack<velocity_verlet, float>(blocks());
 }
 
+TEST_CASE("where features meet: in the corner of bodies each has its share of the weight, asleep or not") {
+  tests::check_weight_in_a_corner<karabassi<>, semi_implicit_euler, double>(host(1));
+  tests::check_weight_in_a_corner<karabassi<>, velocity_verlet, float>(host(1));
+  tests::check_weight_in_a_corner<karabassi<>, semi_implicit_euler, float>(blocks());
+  tests::check_weight_in_a_corner<karabassi_swept<>, velocity_verlet, double>(host(1));
+}
+
+TEST_CASE("where features meet: what sleeps is woken where a parameter changes") {
+  tests::check_waking_by_parameters<double>(host(1));
+  tests::check_waking_by_parameters<float>(blocks());
+}
+
 TEST_CASE("where features meet: velocity Verlet is of second order with forces between particles") {
   tests::check_order_of_pair_forces(host(1));
 }

@@ -9,6 +9,8 @@ using collide::velocity_verlet;
 
 TEST_CASE("where features meet: on a GPU") {
   tests::check_weights<karabassi<>, float>(cuda_shared());
+  tests::check_weight_in_a_corner<karabassi<>, velocity_verlet, float>(cuda_shared());
+  tests::check_waking_by_parameters<float>(cuda_shared());
   tests::check_slope_and_stack<velocity_verlet, double>(cuda_shared());
   tests::check_order_of_pair_forces(cuda_shared());
   tests::check_slow_support<karabassi<>, double>(cuda_shared());

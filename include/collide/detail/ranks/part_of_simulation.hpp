@@ -108,7 +108,7 @@ class part_of_simulation {
       if (!has_sums) clock[clock_overlapping] = clock[clock_not_born] = 0;
       space().copy_from_host(state.time, clock, clock_size);
     }
-    saved.restore_parameters(simulation_);
+    saved.restore_parameters(simulation_.effects_);
     simulation_.time_ = numbers.time;
     simulation_.knows_pair_forces_ = numbers.knows_pair_forces != 0;
     simulation_.prepare();
