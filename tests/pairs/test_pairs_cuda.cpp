@@ -1,5 +1,9 @@
 /// Lists of each kind of mesh on a GPU, with the bits of the host: two of those with bodies, and one with a fixed mesh.
+#include <collide/cuda.cuh>
+
 #include "lists.hpp"
+
+int cuda_devices() { return collide::cuda_device_count(); }
 
 namespace {
 
