@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include <collide/ranks.hpp>
+#include <collide/ranks/ranks.hpp>
 
 namespace bench {
 

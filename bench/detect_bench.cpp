@@ -14,8 +14,8 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
-#include <collide/csr.hpp>
 #include <collide/memory.hpp>
+#include <collide/sinks/csr.hpp>
 #include <collide/upload.hpp>
 
 #include "io/scenes.hpp"

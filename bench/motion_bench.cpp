@@ -24,9 +24,9 @@
 #include <benchmark/benchmark.h>
 
 #include <collide/bucket.cuh>
-#include <collide/impacts.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
+#include <collide/sinks/impacts.hpp>
 #include <collide/upload.hpp>
 
 #include "motion_scenes.hpp"

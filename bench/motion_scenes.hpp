@@ -11,9 +11,9 @@
 
 #include <Eigen/Geometry>
 
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 
 #include "io/scenes.hpp"

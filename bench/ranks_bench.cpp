@@ -20,15 +20,15 @@
 
 #include <benchmark/benchmark.h>
 
-#include <collide/bounds.hpp>
 #include <collide/bucket.cuh>
-#include <collide/distributed_simulation.cuh>
-#include <collide/gravity.hpp>
-#include <collide/sphere_contact.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/sphere_contact.hpp>
+#include <collide/ranks/distributed_simulation.cuh>
+#include <collide/ranks/thread_ranks.hpp>
 #include <collide/upload.hpp>
 #if defined(COLLIDE_HAS_MPI)
-#include <collide/mpi.hpp>
+#include <collide/ranks/mpi.hpp>
 #endif
 
 #include "io/scenes.hpp"

@@ -20,25 +20,25 @@
 
 #include <benchmark/benchmark.h>
 
-#include <collide/absorb.hpp>
-#include <collide/adhesion.hpp>
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
-#include <collide/bounds.hpp>
 #include <collide/bucket.cuh>
-#include <collide/drag.hpp>
-#include <collide/emit.hpp>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
+#include <collide/effects/absorb.hpp>
+#include <collide/effects/adhesion.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/drag.hpp>
+#include <collide/effects/emit.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/polydisperse.hpp>
+#include <collide/effects/reaction.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/effects/sphere_contact.hpp>
+#include <collide/effects/spin.hpp>
+#include <collide/effects/wind.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/polydisperse.hpp>
-#include <collide/reaction.hpp>
 #include <collide/simulation.cuh>
-#include <collide/sleep.hpp>
-#include <collide/sphere_contact.hpp>
-#include <collide/spin.hpp>
 #include <collide/upload.hpp>
-#include <collide/wind.hpp>
 
 #include "io/scenes.hpp"
 #include "program.hpp"

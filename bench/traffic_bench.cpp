@@ -20,12 +20,12 @@
 #include <Eigen/Geometry>
 #include <benchmark/benchmark.h>
 
-#include <collide/bounds.hpp>
 #include <collide/bucket.cuh>
-#include <collide/distributed_simulation.cuh>
-#include <collide/gravity.hpp>
-#include <collide/sphere_contact.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/sphere_contact.hpp>
+#include <collide/ranks/distributed_simulation.cuh>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "counted_ranks.hpp"
 #include "io/scenes.hpp"

@@ -1,4 +1,4 @@
-# collide::mpi: what collide/mpi.hpp needs, for programs whose ranks are processes of MPI. An installed package includes this
+# collide::mpi: what collide/ranks/mpi.hpp needs, for programs whose ranks are processes of MPI. An installed package includes this
 # file too, for find_package(collide COMPONENTS mpi), as what is found is a matter of the machine that compiles.
 
 # collide_find_mpi(): makes the target collide::mpi where CMake finds MPI.

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 
 using namespace collide;

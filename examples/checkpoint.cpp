@@ -3,10 +3,10 @@
 
 #include <cstdio>
 
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
 #include <collide/checkpoint.hpp>
-#include <collide/gravity.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
 
 using balls = collide::simulation<collide::detector<collide::bucket>, collide::gravity, collide::bounce>;
 

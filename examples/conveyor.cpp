@@ -2,10 +2,10 @@
 /// A belt lifts grains, throws them onto another one, and that heaps them up on a table that turns.
 
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
-#include <collide/sphere_contact.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/sphere_contact.hpp>
 
 #include "io/film_program.hpp"
 #include "io/scenes/solids.hpp"

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #if defined(COLLIDE_HAS_MPI)
-#include <collide/mpi.hpp>
+#include <collide/ranks/mpi.hpp>
 #endif
 
 #include "detect/detection.hpp"

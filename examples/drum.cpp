@@ -2,11 +2,11 @@
 /// Grains of two colours are poured into a drum with lifters, which turns on two rollers and mixes them.
 
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
-#include <collide/bounds.hpp>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
-#include <collide/sphere_contact.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/sphere_contact.hpp>
 
 #include "io/film_program.hpp"
 #include "io/scenes/solids.hpp"

@@ -1,10 +1,10 @@
 /// \file
 /// Dust is blown over a plain, around boulders. The particles do not know of each other.
 
-#include <collide/absorb.hpp>
-#include <collide/bounce.hpp>
-#include <collide/gravity.hpp>
-#include <collide/wind.hpp>
+#include <collide/effects/absorb.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/wind.hpp>
 
 #include "io/film_program.hpp"
 #include "io/scenes/surfaces.hpp"

@@ -1,8 +1,8 @@
 #include <cstdio>
 
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 
 int main() {

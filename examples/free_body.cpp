@@ -5,10 +5,10 @@
 #include <vector>
 
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
-#include <collide/reaction.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/reaction.hpp>
 #include <collide/simulation.cuh>
 
 using namespace collide;

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <collide/bucket.cuh>
-#include <collide/csr.hpp>
-#include <collide/earliest.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
 #include <collide/validate.hpp>
 
 namespace {

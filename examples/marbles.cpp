@@ -1,11 +1,11 @@
 /// \file
 /// Marbles roll down a helter-skelter into a bowl, and circle there until they come to rest.
 
-#include <collide/bounce.hpp>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
-#include <collide/sphere_contact.hpp>
-#include <collide/spin.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/sphere_contact.hpp>
+#include <collide/effects/spin.hpp>
 
 #include "io/film_program.hpp"
 #include "io/scenes/surfaces.hpp"

@@ -1,12 +1,12 @@
 /// \file
 /// Mud is thrown at a slope, splats, and slides down; what is left on it sticks.
 
-#include <collide/adhesion.hpp>
-#include <collide/bounce.hpp>
-#include <collide/bounds.hpp>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
-#include <collide/sphere_contact.hpp>
+#include <collide/effects/adhesion.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/sphere_contact.hpp>
 
 #include "io/cohesion.hpp"
 #include "io/film_program.hpp"

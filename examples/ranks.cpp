@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <collide/bucket.cuh>
-#include <collide/distributed.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/distributed.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 /// What a rank does: it has some triangles of a floor, and one sphere above the floor of another rank.
 template <class Ranks>

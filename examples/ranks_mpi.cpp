@@ -6,8 +6,8 @@
 #include <exception>
 
 #include <collide/bucket.cuh>
-#include <collide/distributed.hpp>
-#include <collide/mpi.hpp>
+#include <collide/ranks/distributed.hpp>
+#include <collide/ranks/mpi.hpp>
 
 int main(int argc, char** argv) try {
   collide::mpi_session const session(argc, argv);

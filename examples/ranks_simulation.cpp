@@ -4,13 +4,13 @@
 #include <cstdio>
 #include <vector>
 
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/distributed_simulation.cuh>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
-#include <collide/sphere_contact.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/sphere_contact.hpp>
+#include <collide/ranks/distributed_simulation.cuh>
+#include <collide/ranks/thread_ranks.hpp>
 
 using grains = collide::simulation<collide::detector<collide::bucket>, collide::sphere_contact, collide::gravity,
                                    collide::bounce, collide::friction>;

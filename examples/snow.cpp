@@ -1,13 +1,13 @@
 /// \file
 /// Snow falls on hilly ground and a statue, sticks to them and piles up.
 
-#include <collide/adhesion.hpp>
-#include <collide/bounce.hpp>
-#include <collide/bounds.hpp>
-#include <collide/drag.hpp>
-#include <collide/gravity.hpp>
-#include <collide/sleep.hpp>
-#include <collide/sphere_contact.hpp>
+#include <collide/effects/adhesion.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/drag.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/effects/sphere_contact.hpp>
 
 #include "io/cohesion.hpp"
 #include "io/film_program.hpp"

@@ -9,9 +9,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 #if defined(COLLIDE_HAS_MPI)
-#include <collide/mpi.hpp>
+#include <collide/ranks/mpi.hpp>
 #endif
 
 #include "output.hpp"

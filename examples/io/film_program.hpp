@@ -8,8 +8,8 @@
 #include <utility>
 
 #include <collide/bucket.cuh>
-#include <collide/distributed_checkpoint.hpp>
-#include <collide/emit.hpp>
+#include <collide/effects/emit.hpp>
+#include <collide/ranks/distributed_checkpoint.hpp>
 #include <collide/simulation.cuh>
 #include <collide/upload.hpp>
 

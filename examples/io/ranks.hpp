@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <collide/ranks.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/ranks.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "error.hpp"
 #include "number.hpp"

@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <vector>
 
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/earliest.hpp>
+#include <collide/effects/bounce.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
+#include <collide/sinks/earliest.hpp>
 
 namespace {
 

@@ -7,13 +7,13 @@
 #include <cstdio>
 #include <vector>
 
-#include <collide/bounce.hpp>
-#include <collide/bounds.hpp>
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
-#include <collide/polydisperse.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/polydisperse.hpp>
+#include <collide/effects/sphere_contact.hpp>
 #include <collide/simulation.cuh>
-#include <collide/sphere_contact.hpp>
 
 namespace {
 

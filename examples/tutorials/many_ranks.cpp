@@ -9,11 +9,11 @@
 #include <vector>
 
 #include <collide/bucket.cuh>
-#include <collide/distributed.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/distributed.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 #include <collide/upload.hpp>
 #if defined(COLLIDE_HAS_MPI)
-#include <collide/mpi.hpp>
+#include <collide/ranks/mpi.hpp>
 #endif
 
 namespace {

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
-#include <collide/bounds.hpp>
 #include <collide/bucket.cuh>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
-#include <collide/reaction.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/reaction.hpp>
+#include <collide/effects/sphere_contact.hpp>
+#include <collide/effects/spin.hpp>
 #include <collide/simulation.cuh>
-#include <collide/sphere_contact.hpp>
-#include <collide/spin.hpp>
 
 namespace {
 

@@ -16,7 +16,7 @@
 
 #include <cxxabi.h>
 
-#include <collide/detail/simulation/checkpoint_format.hpp>
+#include <collide/detail/particles/checkpoint_format.hpp>
 #include <collide/simulation.cuh>
 
 namespace collide {

@@ -5,19 +5,19 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/any_hit.hpp>
-#include <collide/closest.hpp>
 #include <collide/concepts.hpp>
-#include <collide/contacts.hpp>
-#include <collide/count.hpp>
 #include <collide/detail/query/query_pass.hpp>
 #include <collide/error.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/mesh.hpp>
-#include <collide/pairs.hpp>
+#include <collide/sinks/any_hit.hpp>
+#include <collide/sinks/closest.hpp>
+#include <collide/sinks/contacts.hpp>
+#include <collide/sinks/count.hpp>
+#include <collide/sinks/pairs.hpp>
+#include <collide/sinks/visit.hpp>
 #include <collide/spheres.hpp>
-#include <collide/visit.hpp>
 #if defined(__CUDACC__)
 #include <collide/cuda.cuh>
 #else

@@ -2,9 +2,9 @@
 /// The energy of a simulation's particles.
 #pragma once
 
-#include <collide/gravity.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/sphere_contact.hpp>
 #include <collide/simulation.cuh>
-#include <collide/sphere_contact.hpp>
 
 namespace collide {
 

@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include <collide/detail/bodies/body_memory.hpp>
 #include <collide/detail/grid/mesh_statistics.hpp>
-#include <collide/detail/simulation/arguments.hpp>
-#include <collide/detail/simulation/body_memory.hpp>
-#include <collide/detail/simulation/check_effect.hpp>
-#include <collide/detail/simulation/host_members.hpp>
-#include <collide/detail/simulation/lookup_tuning.hpp>
-#include <collide/detail/simulation/particle_kernels.hpp>
-#include <collide/detail/simulation/step.hpp>
-#include <collide/detail/simulation/verlet_list.hpp>
+#include <collide/detail/neighbours/verlet_list.hpp>
+#include <collide/detail/particles/arguments.hpp>
+#include <collide/detail/particles/check_effect.hpp>
+#include <collide/detail/particles/host_members.hpp>
+#include <collide/detail/step/lookup_tuning.hpp>
+#include <collide/detail/step/particle_kernels.hpp>
+#include <collide/detail/step/step.hpp>
 #include <collide/detector.hpp>
 
 namespace collide {
@@ -66,7 +66,7 @@ class simulation {
   using columns = typename effects_type::all;
   /// Bytes of state of each particle: its columns; `bytes()` is what all takes.
   static constexpr std::size_t bytes_per_particle = detail::column_buffers<S, columns>::bytes_per_particle;
-  /// Pointers to all columns, for kernels; see detail/simulation/particle.hpp.
+  /// Pointers to all columns, for kernels; see detail/particles/particle.hpp.
   using state_type = detail::particle_state<S, columns>;
 
   /// Without particles, with effects as they are by default. Stream and resource of the space must outlive it.

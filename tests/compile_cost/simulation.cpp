@@ -1,9 +1,9 @@
 // Ten lines for scripts/compile-cost: a ball that falls on a triangle and bounces.
 #include <iostream>
 
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 
 int main() {

@@ -1,7 +1,7 @@
 // expect: collide: particles, their velocities and the mesh must have the scalar type
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bounce.hpp>
 #include <collide/simulation.cuh>
 
 int main() {

@@ -1,6 +1,6 @@
 // expect: collide: no effect of this simulation names the column, so it does not have it
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 
 int main() {

@@ -1,7 +1,7 @@
 // expect: collide: an effect's begin_step sees the places of one rank alone
 #include <collide/bucket.cuh>
-#include <collide/distributed_simulation.cuh>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/distributed_simulation.cuh>
+#include <collide/ranks/thread_ranks.hpp>
 
 struct clears {
   using writes = collide::columns<collide::velocity>;

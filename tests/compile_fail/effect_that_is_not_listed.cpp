@@ -1,7 +1,7 @@
 // expect: gives the parameters of an effect that is in the simulation
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/friction.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/friction.hpp>
 #include <collide/simulation.cuh>
 
 void run() {

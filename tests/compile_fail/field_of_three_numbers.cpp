@@ -1,7 +1,7 @@
 // expect: collide: a field of wind is called as field(position) const, and returns a velocity
 #include <collide/bucket.cuh>
+#include <collide/effects/wind.hpp>
 #include <collide/simulation.cuh>
-#include <collide/wind.hpp>
 
 struct breeze {
   float operator()(float x, float, float) const { return x; }

@@ -1,6 +1,6 @@
 // expect: collide: an effect comes after those whose result it uses: name friction after bounce
 #include <collide/bucket.cuh>
-#include <collide/friction.hpp>
+#include <collide/effects/friction.hpp>
 #include <collide/simulation.cuh>
 
 int main() { collide::simulation<collide::detector<collide::bucket>, collide::friction, collide::bounce> simulation; }

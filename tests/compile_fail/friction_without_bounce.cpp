@@ -1,7 +1,7 @@
 // expect: collide: friction and adhesion act where the mesh is solid
 #include <collide/bucket.cuh>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 
 void run() {

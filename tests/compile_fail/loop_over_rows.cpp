@@ -1,6 +1,6 @@
 // expect: collide: results are in memory of the space, which the host may be unable to read: use to_host()
 #include <collide/bucket.cuh>
-#include <collide/csr.hpp>
+#include <collide/sinks/csr.hpp>
 
 /// The host, but it says of its memory what the CUDA spaces say of theirs.
 struct device : collide::host {

@@ -1,7 +1,7 @@
 // expect: collide: a motion of moving_bodies is called as motion(body, time) const
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bounce.hpp>
 #include <collide/simulation.cuh>
 
 struct mine {

@@ -1,6 +1,6 @@
 // expect: collide: ranks have a const member all_gather(mine, bytes, all)
 #include <collide/bucket.cuh>
-#include <collide/distributed.hpp>
+#include <collide/ranks/distributed.hpp>
 
 struct no_ranks {
   int rank() const { return 0; }

@@ -1,6 +1,6 @@
 // expect: collide: ranks have a const member exchange(from, to_each, to, of_each, bytes)
 #include <collide/bucket.cuh>
-#include <collide/distributed.hpp>
+#include <collide/ranks/distributed.hpp>
 
 struct no_ranks {
   int rank() const { return 0; }

@@ -1,6 +1,6 @@
 // expect: collide: ranks have a const member exchange_counts(to_each, of_each)
 #include <collide/bucket.cuh>
-#include <collide/distributed.hpp>
+#include <collide/ranks/distributed.hpp>
 
 struct no_ranks {
   int rank() const { return 0; }

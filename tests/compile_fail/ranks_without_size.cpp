@@ -1,6 +1,6 @@
 // expect: collide: ranks have const members rank() and size(), such as one_rank, thread_ranks and mpi_ranks
 #include <collide/bucket.cuh>
-#include <collide/distributed.hpp>
+#include <collide/ranks/distributed.hpp>
 
 struct no_ranks {
   int rank() const { return 0; }

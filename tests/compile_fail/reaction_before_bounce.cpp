@@ -1,8 +1,8 @@
 // expect: collide: an effect comes after those whose result it uses
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/reaction.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/reaction.hpp>
 #include <collide/simulation.cuh>
 
 collide::simulation<collide::detector<collide::bucket>, collide::reaction, collide::bounce, collide::moving_bodies<>>

@@ -1,6 +1,6 @@
 // expect: collide: particles, their velocities and the mesh must have the scalar type of the simulation's detector
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 
 int main() {

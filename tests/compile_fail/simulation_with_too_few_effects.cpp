@@ -1,7 +1,7 @@
 // expect: collide: a simulation is made of a space, the options of the broad phase if there are any, and the parameters
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 
 int main() {

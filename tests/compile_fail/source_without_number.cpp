@@ -1,6 +1,6 @@
 // expect: collide: a source of emit_from is called as source(number, position&, velocity&) const
 #include <collide/bucket.cuh>
-#include <collide/emit.hpp>
+#include <collide/effects/emit.hpp>
 #include <collide/simulation.cuh>
 
 struct spring_water {

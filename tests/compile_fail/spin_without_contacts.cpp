@@ -1,7 +1,7 @@
 // expect: collide: spin needs contacts that turn particles
 #include <collide/bucket.cuh>
+#include <collide/effects/spin.hpp>
 #include <collide/simulation.cuh>
-#include <collide/spin.hpp>
 
 void run() {
   collide::simulation<collide::detector<collide::bucket>, collide::spin> scene;

@@ -1,7 +1,7 @@
 // expect: collide: effects that touch the mesh need a broad phase whose index has a member lookup(), such as bucket or
 // all_pairs
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bounce.hpp>
 #include <collide/simulation.cuh>
 
 struct blind : collide::bucket {

@@ -1,7 +1,7 @@
 // expect: collide: a simulation has one effect moving_bodies
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bounce.hpp>
 #include <collide/simulation.cuh>
 
 collide::simulation<collide::detector<collide::bucket>, collide::bounce, collide::moving_bodies<>,

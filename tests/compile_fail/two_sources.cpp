@@ -1,6 +1,6 @@
 // expect: collide: a simulation has one source
 #include <collide/bucket.cuh>
-#include <collide/emit.hpp>
+#include <collide/effects/emit.hpp>
 #include <collide/simulation.cuh>
 
 struct sprinkler {

@@ -125,7 +125,8 @@ def glossary():
 
 def members_of(name):
     """The functions without arguments and the data of a public class, those of its bases in detail/sinks/ included."""
-    for header in [*(ROOT / "include" / "collide").glob("*.hpp"), *(ROOT / "include" / "collide" / "detail" / "sinks").glob("*.hpp")]:
+    folders = ["", "sinks", "ranks", "detail/sinks"]
+    for header in [h for folder in folders for h in (ROOT / "include" / "collide" / folder).glob("*.hpp")]:
         found = re.search(rf"^(class|struct) {name}\b(?: : public ([^{{]*))?\s*\{{(.*?)^\}};|^class {name}\s*: public ([^{{]*)\{{",
                           header.read_text(), flags=re.M | re.S)
         if not found:

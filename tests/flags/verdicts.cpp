@@ -19,7 +19,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
-#include <collide/pairs.hpp>
+#include <collide/sinks/pairs.hpp>
 #include <collide/upload.hpp>
 
 #if defined(__CUDACC__)

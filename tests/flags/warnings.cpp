@@ -1,36 +1,36 @@
 /// \file
 /// Uses what there is, so that its templates are made and a compiler can warn of them: nothing is run.
-#include <collide/absorb.hpp>
-#include <collide/adhesion.hpp>
 #include <collide/atomic_add.hpp>
 #include <collide/automatic.cuh>
-#include <collide/bounce.hpp>
-#include <collide/bounds.hpp>
 #include <collide/checkpoint.hpp>
-#include <collide/distributed.hpp>
-#include <collide/distributed_checkpoint.hpp>
-#include <collide/drag.hpp>
-#include <collide/earliest.hpp>
-#include <collide/emit.hpp>
+#include <collide/effects/absorb.hpp>
+#include <collide/effects/adhesion.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/drag.hpp>
+#include <collide/effects/emit.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/lost_motion.hpp>
+#include <collide/effects/polydisperse.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/effects/sphere_contact.hpp>
+#include <collide/effects/spin.hpp>
+#include <collide/effects/wind.hpp>
 #include <collide/extend.hpp>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
-#include <collide/impacts.hpp>
 #include <collide/in_passes.hpp>
 #include <collide/integrators.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/lost_motion.hpp>
 #include <collide/moving_spheres.hpp>
-#include <collide/polydisperse.hpp>
+#include <collide/ranks/distributed.hpp>
+#include <collide/ranks/distributed_checkpoint.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 #include <collide/simulation.cuh>
-#include <collide/sleep.hpp>
-#include <collide/sphere_contact.hpp>
-#include <collide/spin.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/streamed.cuh>
-#include <collide/thread_ranks.hpp>
 #include <collide/upload.hpp>
 #include <collide/validate.hpp>
-#include <collide/wind.hpp>
 
 using namespace collide;
 

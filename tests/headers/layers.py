@@ -10,8 +10,6 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = ROOT / "include" / "collide"
 PAGE = ROOT / "docs" / "design.md"
-LONGEST = 350  # lines of a header
-TOO_LONG = {"simulation.cuh", "detail/ranks/part_of_simulation.hpp", "detail/simulation/body_memory.hpp"}  # headers still to be split; what is here must be too long
 
 # From the lowest to the highest: the headers of a layer, and the folders of which all headers are its own.
 LAYERS = {
@@ -24,15 +22,18 @@ LAYERS = {
     "narrow phase": "detail/narrow_phase/ karabassi.hpp karabassi_swept.hpp",
     "grid": "detail/grid/",
     "query": "detail/query/ concepts.hpp hit.hpp",
-    "sinks": "detail/sinks/ any_hit.hpp closest.hpp contacts.hpp count.hpp csr.hpp earliest.hpp impacts.hpp pairs.hpp visit.hpp",
+    "sinks": "detail/sinks/ sinks/",
     "detector": "compiled.hpp detector.hpp validate.hpp",
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh extend.hpp",
     "effect interface": "bodies.hpp columns.hpp effect.hpp integrators.hpp",
-    "simulation": "detail/simulation/ checkpoint.hpp simulation.cuh",
-    "effects": "absorb.hpp bounce.hpp bounds.hpp contact_forces.hpp drag.hpp emit.hpp energy.hpp friction.hpp gravity.hpp lost.hpp lost_motion.hpp polydisperse.hpp reaction.hpp sleep.hpp "
-               "sphere_contact.hpp spin.hpp adhesion.hpp wind.hpp",
+    "particles": "detail/particles/",
+    "bodies": "detail/bodies/",
+    "neighbours": "detail/neighbours/",
+    "step": "detail/step/",
+    "simulation": "checkpoint.hpp simulation.cuh",
+    "effects": "effects/ energy.hpp",
     "streaming": "detail/streaming/ in_passes.hpp streamed.cuh",
-    "ranks": "detail/ranks/ distributed.hpp distributed_checkpoint.hpp distributed_simulation.cuh mpi.hpp ranks.hpp thread_ranks.hpp",
+    "ranks": "detail/ranks/ ranks/",
 }
 
 
@@ -102,25 +103,13 @@ def self_test():
         "include each other": {**sound, "geometry.hpp": ["config.hpp"], "config.hpp": ["geometry.hpp"]},
     }
     yield from problems(sound)
-    if not list(length_problems({"mesh.hpp": LONGEST + 1})) or list(length_problems({"mesh.hpp": LONGEST})):
-        yield f"{LONGEST} lines are few enough, and one more is too many"
     for sentence, headers in plants.items():
         if not any(sentence in problem for problem in problems(headers)):
             yield f"a planted fault was not found: {sentence}"
 
 
-def length_problems(lengths):
-    for header, lines in lengths.items():
-        if lines > LONGEST and header not in TOO_LONG:
-            yield f"{header} has {lines} lines, more than {LONGEST}: it does several things, split it"
-        if lines <= LONGEST and header in TOO_LONG:
-            yield f"{header} is no longer too long: take it from TOO_LONG in tests/headers/layers.py"
-
-
 def check():
-    headers = read_headers()
-    yield from problems(headers)
-    yield from length_problems({header: (INCLUDE / header).read_text().count("\n") for header in headers})
+    yield from problems(read_headers())
     if pictured_layers() != list(LAYERS):
         yield f"docs/design.md shows other layers: {', '.join(pictured_layers())}"
 

@@ -1,7 +1,7 @@
 /// Steps of simulations, and kernels written by hand that do the same: compare.py compiles this and compares them.
 #include <collide/bucket.cuh>
-#include <collide/drag.hpp>
-#include <collide/gravity.hpp>
+#include <collide/effects/drag.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 
 namespace {

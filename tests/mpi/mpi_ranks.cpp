@@ -3,7 +3,7 @@
 #include <csignal>
 #include <iostream>
 
-#include <collide/mpi.hpp>
+#include <collide/ranks/mpi.hpp>
 
 #include "ranks/simulations.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <collide/checkpoint.hpp>
 #include <collide/energy.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "execution/lockstep.hpp"
 #include "scene.hpp"

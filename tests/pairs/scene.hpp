@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <vector>
 
-#include <collide/lost.hpp>
-#include <collide/lost_motion.hpp>
+#include <collide/effects/lost.hpp>
+#include <collide/effects/lost_motion.hpp>
 
 #include "ranks/simulations.hpp"
 

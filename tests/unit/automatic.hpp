@@ -7,7 +7,7 @@
 
 #include <collide/automatic.cuh>
 #include <collide/karabassi_swept.hpp>
-#include <collide/pairs.hpp>
+#include <collide/sinks/pairs.hpp>
 #include <collide/upload.hpp>
 
 #include "io/scenes.hpp"

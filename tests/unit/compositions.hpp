@@ -6,14 +6,14 @@
 #include <type_traits>
 
 #include <collide/all_pairs.cuh>
-#include <collide/any_hit.hpp>
 #include <collide/bucket.cuh>
-#include <collide/closest.hpp>
-#include <collide/contacts.hpp>
-#include <collide/count.hpp>
-#include <collide/csr.hpp>
-#include <collide/pairs.hpp>
-#include <collide/visit.hpp>
+#include <collide/sinks/any_hit.hpp>
+#include <collide/sinks/closest.hpp>
+#include <collide/sinks/contacts.hpp>
+#include <collide/sinks/count.hpp>
+#include <collide/sinks/csr.hpp>
+#include <collide/sinks/pairs.hpp>
+#include <collide/sinks/visit.hpp>
 
 #include "execution/lockstep.hpp"
 #include "type_erased_detector.hpp"

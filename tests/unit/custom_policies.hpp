@@ -9,9 +9,9 @@
 #include <doctest/doctest.h>
 
 #include <collide/all_pairs.cuh>
-#include <collide/bounce.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
 #include <collide/extend.hpp>
-#include <collide/gravity.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
 #include <collide/upload.hpp>

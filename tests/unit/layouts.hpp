@@ -10,9 +10,9 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/impacts.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/moving_spheres.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/upload.hpp>
 
 #include "compositions.hpp"

@@ -14,9 +14,9 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
-#include <collide/earliest.hpp>
-#include <collide/impacts.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 
 namespace tests {
 

@@ -6,10 +6,10 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
-#include <collide/csr.hpp>
-#include <collide/earliest.hpp>
-#include <collide/impacts.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 
 #include "counted_new.hpp"
 #include "type_erased_detector.hpp"

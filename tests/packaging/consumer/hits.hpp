@@ -1,7 +1,7 @@
 #pragma once
 
 #include <collide/bucket.cuh>
-#include <collide/count.hpp>
+#include <collide/sinks/count.hpp>
 #include <collide/upload.hpp>
 
 #if defined(__CUDACC__)

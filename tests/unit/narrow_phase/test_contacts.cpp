@@ -6,12 +6,12 @@
 #include <limits>
 
 #include <collide/all_pairs.cuh>
-#include <collide/closest.hpp>
 #include <collide/detector.hpp>
-#include <collide/earliest.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/sinks/closest.hpp>
+#include <collide/sinks/earliest.hpp>
 
 #include "checks.hpp"
 #include "narrow_phase/narrow_phase.hpp"

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include <collide/detail/simulation/mesh_contact.hpp>
+#include <collide/detail/step/mesh_contact.hpp>
 #include <collide/host.hpp>
 
 #include "checks.hpp"

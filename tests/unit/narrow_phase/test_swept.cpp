@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/simulation/mesh_contact.hpp>
+#include <collide/detail/step/mesh_contact.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
 

@@ -17,11 +17,11 @@
 #include <vector>
 
 #include <collide/bucket.cuh>
-#include <collide/csr.hpp>
-#include <collide/distributed.hpp>
-#include <collide/earliest.hpp>
-#include <collide/impacts.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/ranks/distributed.hpp>
+#include <collide/sinks/csr.hpp>
+#include <collide/sinks/earliest.hpp>
+#include <collide/sinks/impacts.hpp>
 
 #include "swept_queries.hpp"
 

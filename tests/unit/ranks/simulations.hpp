@@ -5,21 +5,21 @@
 
 #include <tuple>
 
-#include <collide/absorb.hpp>
-#include <collide/adhesion.hpp>
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
-#include <collide/bounds.hpp>
-#include <collide/contact_forces.hpp>
-#include <collide/distributed_simulation.cuh>
-#include <collide/drag.hpp>
-#include <collide/emit.hpp>
-#include <collide/friction.hpp>
-#include <collide/gravity.hpp>
-#include <collide/reaction.hpp>
-#include <collide/sleep.hpp>
-#include <collide/spin.hpp>
-#include <collide/wind.hpp>
+#include <collide/effects/absorb.hpp>
+#include <collide/effects/adhesion.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/contact_forces.hpp>
+#include <collide/effects/drag.hpp>
+#include <collide/effects/emit.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/reaction.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/effects/spin.hpp>
+#include <collide/effects/wind.hpp>
+#include <collide/ranks/distributed_simulation.cuh>
 
 #include "ranks/ranks.hpp"
 #include "simulation/neighbours.hpp"

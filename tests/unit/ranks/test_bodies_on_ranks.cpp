@@ -2,8 +2,8 @@
 #include <cmath>
 #include <sstream>
 
-#include <collide/distributed_checkpoint.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/distributed_checkpoint.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "ranks/simulations.hpp"
 

@@ -1,8 +1,8 @@
 /// Simulations on ranks that are saved and loaded, on the host.
 #include <sstream>
 
-#include <collide/distributed_checkpoint.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/distributed_checkpoint.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "ranks/simulations.hpp"
 

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <thread>
 
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "ranks/ranks.hpp"
 

@@ -1,5 +1,5 @@
 /// Ranks that are threads, with spheres and triangles in memory of a device.
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "ranks/ranks.hpp"
 

@@ -1,5 +1,5 @@
 /// Simulations on ranks that are threads, on the host.
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "counted_ranks.hpp"
 #include "ranks/simulations.hpp"

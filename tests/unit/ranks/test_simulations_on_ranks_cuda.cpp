@@ -1,5 +1,5 @@
 /// Simulations on ranks that are threads, with particles in memory of a device.
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "ranks/simulations.hpp"
 

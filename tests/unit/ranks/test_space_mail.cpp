@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <collide/detail/ranks/space_mail.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 namespace {
 

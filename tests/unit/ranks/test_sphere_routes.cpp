@@ -11,9 +11,9 @@
 #include <doctest/doctest.h>
 
 #include <collide/bucket.cuh>
-#include <collide/count.hpp>
-#include <collide/distributed.hpp>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/distributed.hpp>
+#include <collide/ranks/thread_ranks.hpp>
+#include <collide/sinks/count.hpp>
 
 #include "ranks/boxes.hpp"
 #include "swept_queries.hpp"

@@ -1,12 +1,12 @@
 /// Bodies that move in a space, against closed forms; instantiated by test_bodies.cpp and test_bodies_cuda.cpp.
 #pragma once
 
-#include <collide/adhesion.hpp>
 #include <collide/bodies.hpp>
-#include <collide/friction.hpp>
-#include <collide/reaction.hpp>
-#include <collide/sleep.hpp>
-#include <collide/spin.hpp>
+#include <collide/effects/adhesion.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/reaction.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/effects/spin.hpp>
 
 #include "simulation/simulation.hpp"
 

@@ -5,18 +5,18 @@
 #include <sstream>
 #include <string>
 
-#include <collide/absorb.hpp>
-#include <collide/adhesion.hpp>
-#include <collide/bounds.hpp>
 #include <collide/checkpoint.hpp>
-#include <collide/contact_forces.hpp>
-#include <collide/drag.hpp>
-#include <collide/emit.hpp>
-#include <collide/friction.hpp>
-#include <collide/lost_motion.hpp>
-#include <collide/sleep.hpp>
-#include <collide/spin.hpp>
-#include <collide/wind.hpp>
+#include <collide/effects/absorb.hpp>
+#include <collide/effects/adhesion.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/contact_forces.hpp>
+#include <collide/effects/drag.hpp>
+#include <collide/effects/emit.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/lost_motion.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/effects/spin.hpp>
+#include <collide/effects/wind.hpp>
 
 #include "simulation/bodies.hpp"
 #include "simulation/simulation.hpp"

@@ -1,8 +1,8 @@
 /// Forces of contacts as columns, in a space; instantiated by test_simulation.cpp and test_simulation_cuda.cpp.
 #pragma once
 
-#include <collide/contact_forces.hpp>
-#include <collide/friction.hpp>
+#include <collide/effects/contact_forces.hpp>
+#include <collide/effects/friction.hpp>
 
 #include "simulation/simulation.hpp"
 

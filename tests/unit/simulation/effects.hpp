@@ -3,16 +3,16 @@
 
 #include <numeric>
 
-#include <collide/absorb.hpp>
-#include <collide/adhesion.hpp>
-#include <collide/bounds.hpp>
-#include <collide/drag.hpp>
-#include <collide/emit.hpp>
-#include <collide/friction.hpp>
-#include <collide/sleep.hpp>
-#include <collide/sphere_contact.hpp>
-#include <collide/spin.hpp>
-#include <collide/wind.hpp>
+#include <collide/effects/absorb.hpp>
+#include <collide/effects/adhesion.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/drag.hpp>
+#include <collide/effects/emit.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/effects/sphere_contact.hpp>
+#include <collide/effects/spin.hpp>
+#include <collide/effects/wind.hpp>
 
 #include "simulation/simulation.hpp"
 

@@ -3,10 +3,10 @@
 /// rounding. Instantiated by test_hard_contacts*.cpp.
 #pragma once
 
-#include <collide/friction.hpp>
+#include <collide/effects/friction.hpp>
+#include <collide/effects/lost_motion.hpp>
+#include <collide/effects/spin.hpp>
 #include <collide/integrators.hpp>
-#include <collide/lost_motion.hpp>
-#include <collide/spin.hpp>
 
 #include "simulation/simulation.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <initializer_list>
 
-#include <collide/emit.hpp>
-#include <collide/sleep.hpp>
-#include <collide/sphere_contact.hpp>
+#include <collide/effects/emit.hpp>
+#include <collide/effects/sleep.hpp>
+#include <collide/effects/sphere_contact.hpp>
 
 #include "simulation/simulation.hpp"
 

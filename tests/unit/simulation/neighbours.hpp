@@ -2,8 +2,8 @@
 /// test_effects_cuda.cpp.
 #pragma once
 
-#include <collide/bounds.hpp>
-#include <collide/emit.hpp>
+#include <collide/effects/bounds.hpp>
+#include <collide/effects/emit.hpp>
 
 #include "simulation/simulation.hpp"
 

@@ -13,13 +13,13 @@
 #include <doctest/doctest.h>
 
 #include <collide/all_pairs.cuh>
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/polydisperse.hpp>
+#include <collide/effects/sphere_contact.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/polydisperse.hpp>
 #include <collide/simulation.cuh>
-#include <collide/sphere_contact.hpp>
 
 namespace tests {
 

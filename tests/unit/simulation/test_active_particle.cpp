@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/simulation/active_particle.hpp>
+#include <collide/detail/step/active_particle.hpp>
 
 namespace {
 

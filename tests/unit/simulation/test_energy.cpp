@@ -1,7 +1,7 @@
 /// The energy of particles, against numbers found by hand.
-#include <collide/absorb.hpp>
+#include <collide/effects/absorb.hpp>
+#include <collide/effects/spin.hpp>
 #include <collide/energy.hpp>
-#include <collide/spin.hpp>
 
 #include "simulation/simulation.hpp"
 

@@ -9,10 +9,10 @@
 #include <doctest/doctest.h>
 
 #include <collide/bodies.hpp>
-#include <collide/bounce.hpp>
 #include <collide/bucket.cuh>
-#include <collide/gravity.hpp>
-#include <collide/polydisperse.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/effects/gravity.hpp>
+#include <collide/effects/polydisperse.hpp>
 #include <collide/simulation.cuh>
 
 #include "execution/lockstep.hpp"

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/simulation/resistance.hpp>
+#include <collide/detail/particles/resistance.hpp>
 
 namespace {
 

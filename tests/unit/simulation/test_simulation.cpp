@@ -1,5 +1,5 @@
 /// Simulations on the host.
-#include <collide/absorb.hpp>
+#include <collide/effects/absorb.hpp>
 
 #include "compositions.hpp"
 #include "simulation/contact_forces.hpp"

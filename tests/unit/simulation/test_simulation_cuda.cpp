@@ -1,5 +1,5 @@
 /// Simulations on the GPU.
-#include <collide/absorb.hpp>
+#include <collide/effects/absorb.hpp>
 
 #include "simulation/contact_forces.hpp"
 #include "simulation/memory.hpp"

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/simulation/spatial_hash.hpp>
+#include <collide/detail/neighbours/spatial_hash.hpp>
 
 TEST_CASE_TEMPLATE("spatial hash: coordinates are rounded down, and what is too far away is somewhere", S, float,
                    double) {

@@ -3,11 +3,11 @@
 /// test_where_features_meet_cuda.cpp.
 #pragma once
 
-#include <collide/adhesion.hpp>
-#include <collide/contact_forces.hpp>
+#include <collide/effects/adhesion.hpp>
+#include <collide/effects/contact_forces.hpp>
+#include <collide/effects/lost.hpp>
+#include <collide/effects/sleep.hpp>
 #include <collide/integrators.hpp>
-#include <collide/lost.hpp>
-#include <collide/sleep.hpp>
 
 #include "simulation/bodies.hpp"
 

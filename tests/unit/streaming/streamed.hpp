@@ -11,8 +11,8 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
-#include <collide/impacts.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/sinks/impacts.hpp>
 #include <collide/streamed.cuh>
 #include <collide/upload.hpp>
 

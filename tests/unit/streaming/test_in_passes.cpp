@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 
 #include <collide/automatic.cuh>
-#include <collide/thread_ranks.hpp>
+#include <collide/ranks/thread_ranks.hpp>
 
 #include "compositions.hpp"
 #include "streaming/in_passes.hpp"

@@ -11,7 +11,7 @@
 #include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/numeric/float_bits.hpp>
-#include <collide/ranks.hpp>
+#include <collide/ranks/ranks.hpp>
 
 namespace collide::detail {
 

@@ -8,7 +8,7 @@
 
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/moving_spheres.hpp>
-#include <collide/ranks.hpp>
+#include <collide/ranks/ranks.hpp>
 
 namespace collide::detail {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <collide/ranks.hpp>
+#include <collide/ranks/ranks.hpp>
 
 namespace collide::detail {
 

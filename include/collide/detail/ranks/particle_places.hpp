@@ -9,9 +9,9 @@
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/particles/effect_list.hpp>
 #include <collide/detail/ranks/bisection.hpp>
 #include <collide/detail/ranks/routes.hpp>
-#include <collide/detail/simulation/effect_list.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {

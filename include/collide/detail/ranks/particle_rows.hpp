@@ -9,7 +9,7 @@
 
 #include <collide/contact.hpp>
 #include <collide/detail/execution/host_array.hpp>
-#include <collide/detail/simulation/particle.hpp>
+#include <collide/detail/particles/particle.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {

@@ -13,7 +13,7 @@
 #include <collide/detail/ranks/sphere_routes.hpp>
 #include <collide/detail/streaming/pair_list.hpp>
 #include <collide/detector.hpp>
-#include <collide/pairs.hpp>
+#include <collide/sinks/pairs.hpp>
 
 namespace collide::detail {
 

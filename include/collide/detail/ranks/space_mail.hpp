@@ -12,7 +12,7 @@
 #include <collide/concepts.hpp>
 #include <collide/detail/execution/host_array.hpp>
 #include <collide/memory.hpp>
-#include <collide/ranks.hpp>
+#include <collide/ranks/ranks.hpp>
 
 namespace collide::detail {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <collide/error.hpp>
-#include <collide/ranks.hpp>
+#include <collide/ranks/ranks.hpp>
 
 namespace collide::detail {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <collide/detail/execution/host_array.hpp>
-#include <collide/pairs.hpp>
+#include <collide/sinks/pairs.hpp>
 
 namespace collide::detail {
 

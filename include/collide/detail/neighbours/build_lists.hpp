@@ -1,0 +1,157 @@
+/// \file
+/// Kernel bodies that keep the neighbour lists: what has moved far, cells, lists.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/neighbours/first_neighbours.hpp>
+#include <collide/detail/neighbours/particle_order.hpp>
+#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/particles/effect_list.hpp>
+
+namespace collide::detail {
+
+/// Kernel body of `for_each` over particles, and places in the order: copies what particles must know of each other,
+/// and asks for new lists if these may lack something: where a particle has come, or has moved too far.
+template <class S, class Effects>
+struct update_and_check_skin {
+  particle_state<S, typename Effects::all> state;
+  sorted_particles<S, Effects> order;
+  S most;  ///< that a particle may have moved
+
+  using ordered = sorted_particles<S, Effects>;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if constexpr (ordered::has_absent) {
+      if (is_there(i) && order.known[i] == 0) order.ask_to_rebuild();
+    }
+    if (i >= order.header->count) return;
+    id const number = order.numbers[i];
+    if constexpr (ordered::has_absent) {
+      if (!is_there(number)) return order.deactivate(i);
+    }
+    typename ordered::interaction p;
+    state.load(p, number);
+    if (!is_finite(p[position{}])) return order.deactivate(i);
+    packed_sphere<S> const now = order.store(i, p);
+    auto const before = order.references[i];
+    vec3<S> const moved(now.x - before.x, now.y - before.y, now.z - before.z);
+    S const left = most - before.growth(now);
+    bool const stayed = dot(moved, moved) < mul(left, left) && left > 0;
+    if (!stayed) order.ask_to_rebuild();
+  }
+
+ private:
+  COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(alive{})[number] != 0; }
+};
+
+/// Kernel body of `for_each_if_nonzero` over the table: empties it.
+template <class S, class Effects>
+struct clear_cells {
+  sorted_particles<S, Effects> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    order.ends[i] = 0;
+    if (i == 0) order.header->overflowed = order.header->count = 0;
+  }
+};
+
+/// Kernel body of `for_each_if_nonzero` over particles: counts them into cells, or, once blocks have their share of the
+/// order, fills in their numbers.
+template <class S, class Effects, bool Fill>
+struct count_or_scatter {
+  particle_state<S, typename Effects::all> state;
+  sorted_particles<S, Effects> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    using placing = union_of<columns<position>, intersection_of<columns<alive>, typename Effects::all>>;
+    particle<S, placing> p;
+    state.load(p, i);
+    if constexpr (contains<placing, alive>) {
+      if constexpr (Fill) order.known[i] = p[alive{}];
+      if (p[alive{}] == 0) return;
+    }
+    vec3<S> const& c = p[position{}];
+    std::uint32_t const slot = fetch_add(order.ends + order.cells.number(order.cells.of(c.x(), c.y(), c.z())) + 1, 1u);
+    if constexpr (Fill) order.numbers[slot] = static_cast<id>(i);
+  }
+};
+
+/// Kernel body of `for_each_if_nonzero` over blocks: counts become where cells begin.
+template <class S, class Effects>
+struct scan_cells {
+  sorted_particles<S, Effects> order;
+
+  COLLIDE_HD void operator()(std::size_t b) const {
+    constexpr std::uint32_t n = spatial_hash<S>::cells_per_brick;
+    std::uint32_t* const ends = order.ends + b * order.cells.stride;
+    std::uint32_t counts[n], sum = 0;  // all are on their way at once
+    for (std::uint32_t c = 0; c < n; ++c) counts[c] = ends[c + 1];
+    for (std::uint32_t c = 0; c < n; ++c) sum += counts[c];
+    if (sum == 0) return;
+    std::uint32_t next = fetch_add(&order.header->count, sum);
+    ends[0] = next;
+    for (std::uint32_t c = 0; c < n; ++c) {
+      ends[c + 1] = next;
+      next += counts[c];
+    }
+  }
+};
+
+/// Kernel body of `for_each_if_nonzero` over places in the order: copies particles there.
+template <class S, class Effects>
+struct gather {
+  particle_state<S, typename Effects::all> state;
+  sorted_particles<S, Effects> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (i >= order.header->count) return;
+    typename sorted_particles<S, Effects>::interaction p;
+    state.load(p, order.numbers[i]);
+    order.references[i].set(order.store(i, p));
+  }
+};
+
+/// Kernel body of `for_each_if_nonzero` over places in the order: lists what is near.
+template <class S, class Effects>
+struct build_lists {
+  sorted_particles<S, Effects> order;
+  S skin;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (i < order.header->count) list(static_cast<std::uint32_t>(i));
+  }
+
+ private:
+  static constexpr std::uint32_t room = sorted_particles<S, Effects>::listed;
+
+  COLLIDE_HD_INLINE void list(std::uint32_t i) const {
+    std::uint32_t places[room], found = 0;
+    std::uint8_t rows[room];
+    order.for_each_overlapping(i, skin, [&](std::uint32_t k, int row) {
+      if (found < room) {
+        places[found] = k;
+        rows[found] = static_cast<std::uint8_t>(row);
+      }
+      ++found;
+    });
+    if (found > room) {
+      order.list(0, i) = order.overflow_mark;
+      store_relaxed(&order.header->overflowed, 1u);
+      return;
+    }
+    first_neighbours<room> near;
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t n = 0; n < found; ++n) {
+      if (order.is_in_row(places[n], i, rows[n])) near.add(order.number_at(places[n]), places[n]);
+    }
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];
+    if (near.size < room) order.list(near.size, i) = i;
+  }
+};
+
+}  // namespace collide::detail

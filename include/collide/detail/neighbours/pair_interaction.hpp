@@ -1,0 +1,138 @@
+/// \file
+/// Kernel bodies in which particles that overlap each other meet.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/neighbours/first_neighbours.hpp>
+#include <collide/detail/neighbours/particle_order.hpp>
+
+namespace collide::detail {
+
+/// What happens where particles meet.
+template <class S, class Effects>
+struct pair_interaction {
+  particle_state<S, typename Effects::all> state;
+  sorted_particles<S, Effects> order;
+  Effects effects;
+  S dt;
+  bool only_kicks;  ///< nothing else is written of what they do to each other
+
+ protected:
+  using interaction = typename sorted_particles<S, Effects>::interaction;
+
+  /// A particle before and after.
+  struct pair_state {
+    interaction self, changed;
+    bool met = false;
+    COLLIDE_HD_INLINE explicit pair_state(interaction const& p) : self(p), changed(p) {}
+  };
+
+  /// True at the places of copies of particles of other ranks, which meet their neighbours there.
+  COLLIDE_HD_INLINE bool is_of_another([[maybe_unused]] std::size_t place) const {
+    if constexpr (contains<typename Effects::all, global_number>) {
+      return order.numbers[place] >= state.own;
+    } else {
+      return false;
+    }
+  }
+
+  COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
+    interaction other = order.load(place);
+    bool const is_active = !is_skipped(p.self), is_other = !is_skipped(other);
+    if (is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
+    if (is_other) effects.try_wake(p.changed, other);
+    p.met = p.met || is_active || is_other;
+  }
+
+  COLLIDE_HD_INLINE void store(pair_state const& p) const {
+    if (!p.met) return;
+    if (!only_kicks) state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
+    if constexpr (Effects::keeps_pair_forces) {
+      particle<S, typename Effects::interaction_kicks> kicks;
+      kicks[pair_acceleration{}] = (p.changed[velocity{}] - p.self[velocity{}]) * (1 / dt);
+      if constexpr (Effects::keeps_pair_torques) {
+        kicks[pair_angular_acceleration{}] = (p.changed[angular_velocity{}] - p.self[angular_velocity{}]) * (1 / dt);
+      }
+      state.store(kicks, p.self.number, typename Effects::interaction_kicks{});
+    }
+  }
+
+ private:
+  COLLIDE_HD_INLINE bool is_skipped(interaction& p) const {
+    if constexpr (Effects::skips) {
+      return effects.is_skipped(p);
+    } else {
+      return false;
+    }
+  }
+};
+
+/// Kernel body of `for_each` over places in the order: a particle meets those on its list that overlap it.
+template <class S, class Effects>
+struct interact_listed : pair_interaction<S, Effects> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& places = this->order;
+    if (i == 0) places.header->rebuild = 0;  // not read again in this step
+    if (i >= places.header->count || this->is_of_another(i)) return;
+    auto const self = static_cast<std::uint32_t>(i);
+    if (places.list(0, i) == places.overflow_mark) return;
+    typename pair_interaction<S, Effects>::pair_state p(places.load(i));
+    packed_sphere<S> const own = places.spheres[i];
+    for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other) {
+      if (places.within_skin(own, other, S(0))) this->interact(p, place);
+    });
+    this->store(p);
+  }
+
+ private:
+  /// f(place, sphere) for each on the list of a particle. While one is looked at, the next and the list's item behind
+  /// it are on their way (docs/development/experiments.md).
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, F const& f) const {
+    auto const& places = this->order;
+    auto const item = [&](std::uint32_t before, std::uint32_t n) {
+      return before != self && n < sorted_particles<S, Effects>::listed ? places.list(n, self) : self;
+    };
+    std::uint32_t next = places.list(0, self), behind = item(next, 1);
+    packed_sphere<S> next_sphere = places.spheres[next];
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t n = 2; next != self; ++n) {
+      std::uint32_t const place = next;
+      packed_sphere<S> const sphere = next_sphere;
+      next = behind;
+      next_sphere = places.spheres[next];
+      behind = item(next, n);
+      f(place, sphere);
+    }
+  }
+};
+
+/// Kernel body of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have room
+/// for meet those that overlap them. As many as can be held at a time are found, by rising numbers.
+template <class S, class Effects>
+struct interact_overflowed : pair_interaction<S, Effects> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& places = this->order;
+    if (i >= places.header->count || places.list(0, i) != places.overflow_mark) return;
+    if (this->is_of_another(i)) return;
+    auto const self = static_cast<std::uint32_t>(i);
+    typename pair_interaction<S, Effects>::pair_state p(places.load(i));
+    id last = 0;
+    for (bool first = true, complete = false; !complete; first = false) {
+      first_neighbours<16> near;
+      places.for_each_overlapping(self, S(0), [&](std::uint32_t k, int row) {
+        id const number = places.number_at(k);
+        if ((first || number > last) && places.is_in_row(k, self, row)) near.add(number, k);
+      });
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t k = 0; k < near.size; ++k) this->interact(p, near.places[k]);
+      complete = near.complete;
+      if (!complete) last = near.numbers[near.size - 1];
+    }
+    this->store(p);
+  }
+};
+
+}  // namespace collide::detail

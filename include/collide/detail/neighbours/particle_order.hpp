@@ -1,0 +1,155 @@
+/// \file
+/// Particles in the order of the cells of a grid, and who is near whom; verlet_list.hpp explains it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/neighbours/spatial_hash.hpp>
+#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/particles/particle.hpp>
+
+namespace collide::detail {
+
+/// What decides whether two particles overlap, to be read at once.
+template <class S>
+struct alignas(4 * sizeof(S)) packed_sphere {
+  S x, y, z, radius;
+};
+
+/// Where a particle was when the lists were made, and how large, if that may change.
+template <class S, bool HasRadius>
+struct reference {
+  S x, y, z;
+  COLLIDE_HD_INLINE void set(packed_sphere<S> const& s) { x = s.x, y = s.y, z = s.z; }
+  COLLIDE_HD_INLINE S growth(packed_sphere<S> const&) const { return S(0); }
+};
+template <class S>
+struct reference<S, true> : packed_sphere<S> {
+  COLLIDE_HD_INLINE void set(packed_sphere<S> const& s) { static_cast<packed_sphere<S>&>(*this) = s; }
+  /// By how much it has grown; 0 if it has shrunk.
+  COLLIDE_HD_INLINE S growth(packed_sphere<S> const& s) const { return larger(s.radius - this->radius, S(0)); }
+};
+
+/// What all particles in the order have in common.
+struct list_state {
+  std::uint32_t rebuild;     ///< not 0: the lists are to be made anew
+  std::uint32_t overflowed;  ///< not 0: some particles have more neighbours than lists have room for
+  std::uint32_t count;       ///< how many particles are in the order
+};
+
+/// The particles in the order of the grid, with all that they must know of each other.
+template <class S, class Effects>
+struct sorted_particles {
+  using all = typename Effects::all;
+  using copied = typename Effects::interaction_copies;
+  using interaction = particle<S, typename Effects::interaction>;
+  using cell = typename spatial_hash<S>::cell;
+  static constexpr bool has_absent = contains<all, alive>;
+
+  spatial_hash<S> cells;
+  std::uint32_t* ends;  ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
+  list_state* header;
+  id* numbers;
+  packed_sphere<S>* spheres;                        ///< as they are in this step
+  reference<S, contains<all, radius>>* references;  ///< as they were when the lists were made
+  column_element<alive, S>* known;                  ///< whether particles are in the order, by numbers
+  particle_state<S, copied> copies;
+
+  static constexpr std::uint32_t listed = 16;  ///< the most neighbours that a list has
+  static constexpr std::uint32_t overflow_mark = 0xffffffffu;
+  std::uint32_t* lists;  ///< places, in the order of numbers; the particle's own behind the last; or too_many
+  std::size_t capacity;  ///< of each of `listed` arrays
+
+  COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
+
+  COLLIDE_HD_INLINE packed_sphere<S> store(std::size_t i, interaction const& p) const {
+    vec3<S> const& c = p[position{}];
+    copies.store(p, i, copied{});
+    return spheres[i] = {c.x(), c.y(), c.z(), p.the_radius};
+  }
+
+  COLLIDE_HD_INLINE interaction load(std::size_t i) const {
+    interaction p;
+    p.number = numbers[i];
+    packed_sphere<S> const s = spheres[i];
+    p[position{}] = vec3<S>(s.x, s.y, s.z);
+    p.the_radius = s.radius;
+    if constexpr (contains<typename Effects::interaction, radius>) p[radius{}] = s.radius;
+    copies.load(p, i, copied{});
+    return p;
+  }
+
+  /// The number of the particle at a place, in the order of which its neighbours meet it.
+  COLLIDE_HD_INLINE id number_at(std::uint32_t place) const {
+    if constexpr (contains<copied, global_number>) {
+      return copies.at(global_number{})[place];
+    } else {
+      return numbers[place];
+    }
+  }
+
+  /// True if the surfaces of two particles are less than `skin` apart.
+  static COLLIDE_HD_INLINE bool within_skin(packed_sphere<S> const& a, packed_sphere<S> const& b, S skin) {
+    vec3<S> const between(a.x - b.x, a.y - b.y, a.z - b.z);
+    S const reach = a.radius + b.radius + skin;
+    return dot(between, between) < mul(reach, reach);
+  }
+
+  /// Puts a particle that is not there, or nowhere, so far away, and makes it so small, that it is near nothing, not
+  /// even its like. When it is back it has moved far.
+  COLLIDE_HD_INLINE void deactivate(std::size_t i) const {
+    constexpr S far = std::numeric_limits<S>::max();  // squares of distances overflow
+    references[i].set(spheres[i] = {far, far, far, S(0)});
+  }
+
+  COLLIDE_HD_INLINE void ask_to_rebuild() const { store_relaxed(&header->rebuild, 1u); }
+
+  /// f(place, row) for those less than `skin` away from particle i, of which `is_in_row` must still be asked. That
+  /// takes a while, in which threads that run together would wait for the one that has found something.
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_overlapping(std::uint32_t i, S skin, F const& f) const {
+    packed_sphere<S> const self = spheres[i];
+    cell const here = cell_of(i);
+    COLLIDE_NO_UNROLL
+    for (int row = 0; row < 9; ++row) {
+      cell const from = first_of(here, row);
+      std::int32_t const together = smaller(3, 16 - (from.x & 15));  // those in the same block follow each other
+      std::uint32_t const first = cells.number(from);
+      std::uint32_t const begin = ends[first], size = ends[first + static_cast<std::uint32_t>(together)] - begin;
+      std::uint32_t jump = 0, both = size;
+      if (together < 3) {
+        std::uint32_t const rest = cells.number({from.x + together, from.y, from.z});
+        jump = ends[rest];
+        both += ends[rest + static_cast<std::uint32_t>(3 - together)] - jump;
+        jump -= size;
+      }
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t n = 0; n < both; ++n) {
+        std::uint32_t const k = n + (n < size ? begin : jump);
+        if (within_skin(self, spheres[k], skin) && k != i) f(k, row);
+      }
+    }
+  }
+
+  /// True if particle k is in a row of cells around particle i, and not in others at the same place of the table.
+  COLLIDE_HD_INLINE bool is_in_row(std::uint32_t k, std::uint32_t i, int row) const {
+    cell const from = first_of(cell_of(i), row), there = cell_of(k);
+    return there.y == from.y && there.z == from.z && there.x >= from.x && there.x <= from.x + 2;
+  }
+
+ private:
+  /// The first of three cells along x next to a cell.
+  static COLLIDE_HD_INLINE cell first_of(cell here, int row) {
+    return {here.x - 1, here.y + row % 3 - 1, here.z + row / 3 - 1};
+  }
+
+  COLLIDE_HD_INLINE cell cell_of(std::uint32_t i) const {
+    auto const& from = references[i];
+    return cells.of(from.x, from.y, from.z);
+  }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,121 @@
+/// \file
+/// Which particles overlap each other: lists of neighbours, which are kept while nothing has moved far.
+///
+/// A list has what is within reach of a particle or a little farther away: by the skin, of which each of two particles
+/// may cross a half before something can be missing (L. Verlet, "Computer experiments on classical fluids I", Physical
+/// Review 159(1), 1967). Until then a step only copies the particles' columns in the order of the last grid, and tries
+/// what is listed. It is found out on the device whether that is so: kernels that renew the lists end at once if not.
+/// Where something has come, or moved far, all lists are made anew. What is no longer there is left out.
+///
+/// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. They lie in a
+/// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
+/// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
+/// particles, and each particle looks into the 27 cells around it. What has too many neighbours for its list does so in
+/// each step.
+///
+/// Distances must be such that their squares neither overflow nor vanish: with floats, radii from 1e-17 to 1e18.
+///
+/// Neighbours meet in the order of their numbers: so sums over them do not depend on which thread was first, nor on
+/// when the lists were made.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <collide/detail/execution/algorithms.hpp>
+#include <collide/detail/neighbours/build_lists.hpp>
+#include <collide/detail/neighbours/pair_interaction.hpp>
+#include <collide/detail/neighbours/particle_order.hpp>
+#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/particles/attribute_buffers.hpp>
+#include <collide/memory.hpp>
+
+namespace collide::detail {
+
+/// The lists, the grid and their memory.
+template <class S, class Effects>
+class verlet_list {
+ public:
+  /// Takes all memory that steps of up to `n` particles need.
+  void reserve(std::pmr::memory_resource* resource, std::size_t n) {
+    header_.reserve(resource, 1);
+    ends_.reserve(resource, blocks_for(n) * cells::stride);
+    numbers_.reserve(resource, n);
+    memory_.reserve(resource, n);
+    spheres_.reserve(resource, n);
+    references_.reserve(resource, n);
+    if constexpr (order::has_absent) known_.reserve(resource, n);
+    lists_.reserve(resource, order::listed * n);
+  }
+
+  /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet.
+  template <class Space>
+  void clear(Space& space, std::size_t n, S radius) {
+    blocks_ = blocks_for(n);
+    skin_ = skin_fraction * 2 * radius;
+    // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
+    // away from the origin
+    S const width = larger((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
+    cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
+    list_state* const header = header_.data();
+    space.fill(header, 0, sizeof *header);
+    space.fill(&header->rebuild, 1, sizeof header->rebuild);
+    if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
+  }
+
+  /// What it has taken of the resource.
+  std::size_t bytes() const {
+    return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
+           references_.bytes() + known_.bytes() + memory_.bytes();
+  }
+
+  /// One pass of `on_pair_contact` over all pairs; if `only_kicks`, to know what they do to each other's velocities.
+  template <class Space>
+  void interact(Space& space, particle_state<S, typename Effects::all> const& state, Effects const& effects, S dt,
+                bool only_kicks) {
+    order const o{cells_,          ends_.data(),
+                  header_.data(),  numbers_.data(),
+                  spheres_.data(), references_.data(),
+                  known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
+                  lists_.data(),   state.size};
+    std::size_t const n = state.size;
+    std::uint32_t const *const rebuild = &o.header->rebuild, *const overflowed = &o.header->overflowed;
+    // half of the skin, but for rounding
+    space.for_each(n, update_and_check_skin<S, Effects>{state, o, S(0.495) * skin_});
+    for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
+    for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
+    for_each_if_nonzero(space, rebuild, blocks_, scan_cells<S, Effects>{o});
+    for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
+    for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
+    for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
+    space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, only_kicks}});
+    for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, only_kicks}});
+  }
+
+ private:
+  using order = sorted_particles<S, Effects>;
+  using cells = spatial_hash<S>;
+
+  static constexpr S skin_fraction = S(0.1);
+
+  /// How many blocks of cells there are for so many particles.
+  static std::size_t blocks_for(std::size_t n) {
+    std::uint32_t bits = 0;
+    while (bits < 22 && (std::size_t{cells::cells_per_brick} << bits) < 2 * n) ++bits;
+    return std::size_t{1} << bits;
+  }
+
+  cells cells_{};
+  S skin_{};
+  std::size_t blocks_ = 0;
+  buffer<list_state> header_;
+  buffer<std::uint32_t> ends_, lists_;
+  buffer<id> numbers_;
+  buffer<packed_sphere<S>> spheres_;
+  buffer<reference<S, contains<typename Effects::all, radius>>> references_;
+  buffer<column_element<alive, S>> known_;
+  column_buffers<S, typename Effects::interaction_copies> memory_;
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,266 @@
+/// \file
+/// The effects of a simulation, the columns that they need, and how they are called.
+#pragma once
+
+#include <collide/detail/particles/effect_traits.hpp>
+#include <collide/detail/particles/resistance.hpp>
+
+namespace collide::detail {
+
+/// An effect's parameters, in a base class that is found by the effect's type.
+template <class E>
+struct effect_slot {
+  E effect;
+};
+
+/// The effects of a simulation and what follows from their list at compile time.
+template <class S, class... E>
+struct effect_list : effect_slot<E>... {
+  using integrator = typename integrator_of<E...>::type;
+
+  static constexpr bool skips = (skips_in<E, S>::value || ...);
+  static constexpr bool touches = (touches_mesh_in<E, S> || ...);
+  static constexpr bool meets = (meets_in<E, S>::value || ...);
+  static constexpr bool finishes = (finishes_in<E, S>::value || ...);
+  static constexpr bool books = (books_in<E, S>::value || ...);
+  static constexpr bool resists = (resists_in<E, S>::value || ...);
+
+  using base = columns<position, velocity>;
+  using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
+  static constexpr bool adheres = touches && contains<named, adhered>;
+  static constexpr bool has_half_kicks = integrator::kick_after != 0;
+  /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
+  static constexpr bool keeps_pair_forces = meets && (adheres || has_half_kicks);
+  static constexpr bool keeps_pair_torques = meets && has_half_kicks && contains<named, angular_velocity>;
+  /// A step ends once particles have met where they then are.
+  static constexpr bool ends_after_meeting = meets && has_half_kicks;
+  /// What sleeps presses on.
+  static constexpr bool keeps_support = books && contains<named, slow_steps>;
+
+ private:
+  template <bool Needed, class... C>
+  using columns_if = std::conditional_t<Needed, columns<C...>, columns<>>;
+  using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
+                              columns_if<keeps_pair_torques, pair_angular_acceleration>>;
+  using held_columns = columns_if<touches && has_half_kicks, held>;
+  using support_columns = columns_if<keeps_support, support, supported_by>;
+
+ public:
+  /// All columns of the simulation.
+  using all = union_of<named, pair_kicks, held_columns, support_columns>;
+
+ private:
+  /// What `E` reads or writes in members of which `Has` says whether there is one.
+  template <class F, bool Has>
+  using reads_if = std::conditional_t<Has,
+                                      union_of<typename reads_of<F>::type, typename writes_of<F>::type,
+                                               intersection_of<typename optional_writes_of<F>::type, all>,
+                                               intersection_of<typename optional_reads_of<F>::type, all>>,
+                                      columns<>>;
+  template <class F, bool Has>
+  using writes_if = std::conditional_t<
+      Has, union_of<typename writes_of<F>::type, intersection_of<typename optional_writes_of<F>::type, all>>,
+      columns<>>;
+  template <class F>
+  static constexpr bool is_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value ||
+                                        skips_in<F, S>::value || holds_in<F, S>::value ||
+                                        (books_in<F, S>::value && (adheres || keeps_support));
+  template <class F>
+  static constexpr bool writes_while_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value ||
+                                                  holds_in<F, S>::value ||
+                                                  (books_in<F, S>::value && (adheres || keeps_support));
+  template <class F>
+  static constexpr bool interacts_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
+  using own_radius = intersection_of<columns<radius>, all>;
+  using own_number = intersection_of<columns<global_number>, all>;
+  template <bool Needed>
+  using radius_if = std::conditional_t<Needed, own_radius, columns<>>;
+
+ public:
+  /// What is read to find out which particles are left out.
+  using skipping = union_of<own_number, reads_if<E, skips_in<E, S>::value>...>;
+  /// What is read and written for every particle,
+  using integration_reads = union_of<base, reads_if<E, is_integrated<E>>..., radius_if<touches>, own_number, pair_kicks,
+                                     columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
+  using integration_writes = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
+                                      columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns,
+                                      writes_if<E, writes_while_integrated<E>>...>;
+  /// and for those that may touch the mesh.
+  using contact = union_of<integration_reads, reads_if<E, touches_mesh_in<E, S>>...>;
+  using contact_writes = union_of<integration_writes, writes_if<E, touches_mesh_in<E, S>>...>;
+  /// What is read and written for particles that meet others; what is read is also copied.
+  using interaction = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
+                               columns_if<keeps_pair_torques, angular_velocity>, reads_if<E, interacts_or_skips<E>>...,
+                               radius_if<meets>, own_number>;
+  using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
+  using interaction_writes = difference_of<
+      union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>,
+      union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
+  using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
+
+  explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
+
+  /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
+  double due(double dt) const { return (due_of<E>(dt) + ... + 0.0); }
+  S source_radius() const { return (is_source<E> || ...) ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+
+  template <class F>
+  COLLIDE_HD_INLINE F const& of() const {
+    return static_cast<effect_slot<F> const&>(*this).effect;
+  }
+  template <class F>
+  F& of() {
+    return static_cast<effect_slot<F>&>(*this).effect;
+  }
+
+  /// Of two scenes' worth of reasons to leave a particle out, one suffices.
+  template <class P>
+  COLLIDE_HD_INLINE bool is_skipped([[maybe_unused]] P& p) const {
+    return (skipped_by<E>(p) || ...);
+  }
+
+  template <class P>
+  COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (resists) {
+      vec3<S> const before = p[velocity{}];
+      media around(before.template cast<double>());
+      push(p, dt);
+      (resist_by<E>(p, around), ...);
+      p[velocity{}] = velocity_in(around.sum(), before, p[velocity{}], dt);
+    } else {
+      push(p, dt);
+    }
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void on_mesh_contact(P& p, mesh_contact<S>& t, S dt) const {
+    (touch_by<E>(p, t, dt), ...);
+    (settle_by<E>(p, t, dt), ...);
+  }
+  /// Tells effects of what the mesh gives to a particle.
+  template <class P>
+  COLLIDE_HD_INLINE void on_mesh_impulse(P& p, mesh_impulse<S> const& given, S dt) const {
+    (book_by<E>(p, given, dt), ...);
+  }
+  /// True if an effect holds a particle that is adhered.
+  template <class P>
+  COLLIDE_HD_INLINE bool holds(P& p, vec3<S> const& pull, S dt) const {
+    return (held_by<E>(p, pull, dt) || ...);
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
+    (meet_by<E>(p, self, other, dt), ...);
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void try_wake(P& p, P& other) const {
+    (disturb_by<E>(p, other), ...);
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void end_step([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    (finish_by<E>(p, dt), ...);
+  }
+
+ private:
+  template <class F>
+  double due_of([[maybe_unused]] double dt) const {
+    if constexpr (is_source<F>) return of<F>().rate * dt;
+    return 0;
+  }
+  template <class F>
+  S source_radius_of() const {
+    if constexpr (is_source<F>) return static_cast<S>(of<F>().radius);
+    return 0;
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE bool skipped_by([[maybe_unused]] P& p) const {
+    if constexpr (skips_in<F, S>::value) {
+      particle_access<F, P> const seen(p);
+      return of<F>().is_inactive(seen);
+    } else {
+      return false;
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void resist_by([[maybe_unused]] P& p, [[maybe_unused]] media& around) const {
+    if constexpr (resists_in<F, S>::value) {
+      particle_access<F, P> const seen(p);
+      around.add(of<F>().resistance(seen));
+    }
+  }
+  /// What all accelerate but those that resist.
+  template <class P>
+  COLLIDE_HD_INLINE void push([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;
+    if constexpr (keeps_pair_torques) p[angular_velocity{}] += p[pair_angular_acceleration{}] * dt;
+    (accelerate_by<E>(p, dt), ...);
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void accelerate_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (accelerates_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().accelerate(seen, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void touch_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
+                                  [[maybe_unused]] S dt) const {
+    if constexpr (touches_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().on_mesh_contact(seen, t, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void settle_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
+                                   [[maybe_unused]] S dt) const {
+    if constexpr (settles_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().after_mesh_contact(seen, t, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void book_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_impulse<S> const& given,
+                                 [[maybe_unused]] S dt) const {
+    if constexpr (books_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().on_mesh_impulse(seen, given, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE bool held_by([[maybe_unused]] P& p, [[maybe_unused]] vec3<S> const& pull,
+                                 [[maybe_unused]] S dt) const {
+    if constexpr (holds_in<F, S>::value) {
+      particle_access<F, P> const seen(p);
+      return of<F>().holds(seen, pull, dt);
+    } else {
+      return false;
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void meet_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
+                                 [[maybe_unused]] S dt) const {
+    if constexpr (meets_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_self(self), seen_other(other);
+      of<F>().on_pair_contact(seen, seen_self, seen_other, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void disturb_by([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {
+    if constexpr (disturbs_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_other(other);
+      of<F>().try_wake(seen, seen_other);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void finish_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (ends_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().end_step(seen, dt);
+    } else if constexpr (asks_forces<F>) {
+      particle_access<F, P> seen(p);
+      of<F>().end_step(seen, forces_on<effect_list, P, S>{*this, p}, dt);
+    }
+  }
+};
+
+}  // namespace collide::detail

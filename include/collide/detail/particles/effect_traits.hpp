@@ -1,0 +1,159 @@
+/// \file
+/// Which members an effect has, and where it may be in the list.
+#pragma once
+
+#include <collide/detail/particles/particle_access.hpp>
+#include <collide/integrators.hpp>
+
+namespace collide::detail {
+
+/// Sees all that an effect names; only to ask what members the effect has.
+template <class E, class S>
+using archetype = particle<S, union_of<typename reads_of<E>::type, typename writes_of<E>::type,
+                                       typename optional_writes_of<E>::type, typename optional_reads_of<E>::type>>;
+template <class E, class S>
+using archetype_access = particle_access<E, archetype<E, S>>;
+
+// ---- what an effect has
+
+template <class E, class S, class = void>
+struct skips_in : std::false_type {};
+template <class E, class S>
+struct skips_in<
+    E, S, std::void_t<decltype(std::declval<E const&>().is_inactive(std::declval<archetype_access<E, S> const&>()))>>
+    : std::true_type {};
+template <class E, class S, class = void>
+struct accelerates_in : std::false_type {};
+template <class E, class S>
+struct accelerates_in<
+    E, S, std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<archetype_access<E, S>&>(), S{}))>>
+    : std::true_type {};
+/// Drag and wind: what resists the motion that all others accelerate.
+template <class E, class S, class = void>
+struct resists_in : std::false_type {};
+template <class E, class S>
+struct resists_in<
+    E, S, std::void_t<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()))>>
+    : std::true_type {};
+template <class E, class S>
+inline constexpr bool changes_velocity_in = accelerates_in<E, S>::value || resists_in<E, S>::value;
+template <class E, class S, class = void>
+struct touches_in : std::false_type {};
+template <class E, class S>
+struct touches_in<E, S,
+                  std::void_t<decltype(std::declval<E const&>().on_mesh_contact(
+                      std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
+    : std::true_type {};
+template <class E, class S, class = void>
+struct settles_in : std::false_type {};
+template <class E, class S>
+struct settles_in<E, S,
+                  std::void_t<decltype(std::declval<E const&>().after_mesh_contact(
+                      std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
+    : std::true_type {};
+template <class E, class S, class = void>
+struct books_in : std::false_type {};
+template <class E, class S>
+struct books_in<E, S,
+                std::void_t<decltype(std::declval<E const&>().on_mesh_impulse(
+                    std::declval<archetype_access<E, S>&>(), std::declval<mesh_impulse<S> const&>(), S{}))>>
+    : std::true_type {};
+template <class E, class S, class = void>
+struct holds_in : std::false_type {};
+template <class E, class S>
+struct holds_in<E, S,
+                std::void_t<decltype(std::declval<E const&>().holds(std::declval<archetype_access<E, S> const&>(),
+                                                                    std::declval<vec3<S> const&>(), S{}))>>
+    : std::true_type {};
+template <class E, class S, class = void>
+struct meets_in : std::false_type {};
+template <class E, class S>
+struct meets_in<E, S,
+                std::void_t<decltype(std::declval<E const&>().on_pair_contact(
+                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+                    std::declval<archetype_access<E, S> const&>(), S{}))>> : std::true_type {};
+template <class E, class S, class = void>
+struct disturbs_in : std::false_type {};
+template <class E, class S>
+struct disturbs_in<E, S,
+                   std::void_t<decltype(std::declval<E const&>().try_wake(
+                       std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>()))>>
+    : std::true_type {};
+template <class E, class S, class = void>
+struct ends_in : std::false_type {};
+template <class E, class S>
+struct ends_in<E, S,
+               std::void_t<decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}))>>
+    : std::true_type {};
+
+/// What an effect may ask at the end of a step: what the forces of a list of effects are.
+template <class Effects, class P, class S>
+struct forces_on {
+  static constexpr S kick_after = S(Effects::integrator::kick_after);  ///< part of the step's acceleration that is last
+
+  Effects const& effects;
+  P const& particle;
+
+  /// How much they change the velocity of the particle in the time `dt`.
+  COLLIDE_HD_INLINE vec3<S> change(S dt) const {
+    P next = particle;
+    effects.accelerate(next, dt);
+    return next[velocity{}] - particle[velocity{}];
+  }
+};
+template <class E, class S>
+struct finishes_in : std::bool_constant<ends_in<E, S>::value || asks_forces<E>> {};
+template <class E, class Space, class State, class S, class = void>
+struct begins_in : std::false_type {};
+template <class E, class Space, class State, class S>
+struct begins_in<
+    E, Space, State, S,
+    std::void_t<decltype(std::declval<E&>().begin_step(std::declval<Space&>(), std::declval<State const&>(), S{}))>>
+    : std::true_type {};
+
+/// True for an effect that contacts with the mesh concern.
+template <class E, class S>
+inline constexpr bool touches_mesh_in = touches_in<E, S>::value || settles_in<E, S>::value || books_in<E, S>::value;
+
+/// An integrator is named in the same list; see integrators.hpp.
+template <class E, class = void>
+struct is_integrator : std::false_type {};
+template <class E>
+struct is_integrator<E, std::void_t<decltype(E::kick_before), decltype(E::kick_after)>> : std::true_type {};
+
+/// True for what may be in a simulation's list.
+template <class E, class Space, class S>
+inline constexpr bool is_effect = [] {
+  if constexpr (!std::is_class<E>::value || !std::is_copy_constructible<E>::value) {
+    return false;
+  } else {
+    using state = particle_state<S, typename archetype<E, S>::list>;
+    return skips_in<E, S>::value || changes_velocity_in<E, S> || touches_mesh_in<E, S> || holds_in<E, S>::value ||
+           meets_in<E, S>::value || finishes_in<E, S>::value || begins_in<E, Space, state, S>::value ||
+           is_integrator<E>::value || archetype<E, S>::list::size != 0;
+  }
+}();
+
+template <class List, class E>
+inline constexpr bool names = false;
+template <class... F, class E>
+inline constexpr bool names<effects<F...>, E> = (std::is_same<F, E>::value || ...);
+
+/// True if no effect of the list comes before one that it follows.
+template <class... E>
+inline constexpr bool respects_order = true;
+template <class E, class... Later>
+inline constexpr bool respects_order<E, Later...> =
+    !(names<typename runs_after_of<E>::type, Later> || ...) && respects_order<Later...>;
+
+template <class... E>
+struct integrator_of {
+  using type = semi_implicit_euler;
+};
+template <class E, class... Later>
+struct integrator_of<E, Later...> {
+  using type =
+      typename std::conditional_t<is_integrator<E>::value, std::enable_if<true, E>, integrator_of<Later...>>::type;
+};
+
+}  // namespace collide::detail

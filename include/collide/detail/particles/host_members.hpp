@@ -1,0 +1,127 @@
+/// \file
+/// What a simulation does on the host with effects and columns.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include <collide/detail/particles/effect_list.hpp>
+#include <collide/spheres.hpp>
+
+namespace collide::detail {
+
+/// Throws `error` if these are more places than a simulation may have.
+inline void check_places(std::uint64_t places) {
+  if (places >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
+}
+
+/// Throws `error` unless a simulation with these columns can have such particles, and places for them. `own` is the
+/// radius of what a source makes: 0 for the common radius of all, -1 if there is none.
+template <class Columns, class S>
+void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t places, S own, S common) {
+  if (!one_radius && !contains<Columns, radius>) {
+    throw error("collide: simulation: the radii differ: name the effect polydisperse in the scene");
+  }
+  if (own > 0 && !contains<Columns, radius>) {
+    throw error("collide: emit: a source with a radius of its own needs polydisperse in the scene");
+  }
+  if (places > particles && !contains<Columns, alive>) {
+    throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
+  }
+  if (places > particles && contains<Columns, radius> && own == 0 && !(common > 0)) {
+    throw error("collide: emit: the radii differ: give the source a radius, before set");
+  }
+  check_places(places);
+}
+
+/// Calls an effect's `check_parameters`, if it has one.
+template <class E, class Effects>
+void check_parameters_of(Effects const& effects) {
+  check_part(effects.template of<E>());
+}
+
+/// Calls `check_bodies` of an effect that keeps something for each body.
+template <class E, class = void>
+struct keeps_bodies : std::false_type {};
+template <class E>
+struct keeps_bodies<E, std::void_t<decltype(std::declval<E const&>().check_bodies(std::size_t{}))>> : std::true_type {};
+template <class E, class Effects>
+void check_bodies_of(Effects const& effects, std::size_t bodies) {
+  if constexpr (keeps_bodies<E>::value) effects.template of<E>().check_bodies(bodies);
+}
+
+/// Throws `error` if a step is too long for an effect, which says `longest_step(smallest radius)`.
+template <class E, class = void>
+struct limits_step : std::false_type {};
+template <class E>
+struct limits_step<E, std::void_t<decltype(std::declval<E const&>().longest_step(0.0))>> : std::true_type {};
+template <class T>
+std::string text_of(T x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
+}
+template <class E, class Effects, class S>
+double longest_step_of(Effects const& effects, S smallest) {
+  if constexpr (limits_step<E>::value) {
+    return effects.template of<E>().longest_step(static_cast<double>(smallest));
+  } else {
+    return std::numeric_limits<double>::infinity();
+  }
+}
+template <class E, class Effects, class S>
+void check_time_step_of(Effects const& effects, S dt, S smallest) {
+  double const most = longest_step_of<E>(effects, smallest);
+  if (!(smallest > 0 && static_cast<double>(dt) > most)) return;
+  throw error("collide: simulation: the time dt of a step, " + text_of(dt) +
+              ", is above a fifth of a collision of the smallest particles, " + text_of(most) +
+              ": take largest_time_step(simulation)");
+}
+
+/// Where a container's elements are.
+template <class T>
+T const* raw_pointer(T const* p) {
+  return p;
+}
+template <class Pointer>
+auto raw_pointer(Pointer const& p) -> decltype(p.get()) {
+  return p.get();
+}
+
+/// Calls an effect's `begin_step`, if it has one.
+template <class E, class Effects, class Space, class State, class S>
+void begin_step_of(Effects& effects, Space& space, State const& state, S dt) {
+  if constexpr (begins_in<E, Space, State, S>::value) effects.template of<E>().begin_step(space, state, dt);
+}
+
+/// The radii of a simulation's particles.
+template <class S>
+struct radius_range {
+  S smallest = 0;  ///< of those that are not negative; infinite if there are none
+  S largest = 0;
+
+  /// With those of what a source makes, if they have one of their own.
+  radius_range with(S own) const {
+    return own > 0 ? radius_range{smaller(smallest, own), larger(largest, own)} : *this;
+  }
+};
+
+/// The radii that particles have of their own. Waits.
+template <class Simulation>
+auto radius_range_of(Simulation const& simulation) {
+  using S = typename Simulation::scalar;
+  radius_range<S> found{std::numeric_limits<S>::infinity(), S(0)};
+  if constexpr (contains<typename Simulation::columns, radius>) {
+    auto const radii = simulation.template to_host<radius>();
+    if (!radii.empty()) found.largest = *std::max_element(radii.begin(), radii.end());
+    for (S const r : radii) {
+      if (r >= 0) found.smallest = smaller(found.smallest, r);
+    }
+  }
+  return found;
+}
+
+}  // namespace collide::detail

@@ -1,0 +1,173 @@
+/// \file
+/// What the mesh gives to particles, whether they touch it, stick to it, or sleep on it: the one place where effects
+/// are told of it. And the half kicks of a step.
+#pragma once
+
+#include <collide/detail/bodies/moving_mesh.hpp>
+#include <collide/detail/step/step_context.hpp>
+
+namespace collide::detail {
+
+/// Number of the body of a frame.
+COLLIDE_HD_INLINE id body_of_frame(int frame) { return frame == 0 ? no_id : static_cast<id>(frame - 1); }
+
+/// Tells the effects what the mesh gives to a particle, and keeps a mean of it for when the particle sleeps.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void book(Context const& context, Particle& p, mesh_impulse<typename Context::scalar> const& given) {
+  using S = typename Context::scalar;
+  context.effects.on_mesh_impulse(p, given, context.dt);
+  if constexpr (Context::effects_type::keeps_support) {
+    p[support{}] += given.change * (1 / (S(steps_in_mean(p[slow_steps{}])) * context.dt));
+    if (p[supported_by{}] != 0 || dot(given.change, given.change) == 0) return;
+    p[supported_by{}] = given.body == no_id ? std::uint8_t{1} : static_cast<std::uint8_t>(given.body + 2);
+  }
+}
+
+/// Tells the effects how a particle presses that sleeps: as it did while it was slow.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void book_sleeping(Context const& context, Particle& p) {
+  using S = typename Context::scalar;
+  int const by = p[supported_by{}];
+  if (by == 0) return;
+  vec3<S> const none(S(0), S(0), S(0)), change = p[support{}] * context.dt;
+  mesh_impulse<S> const given{change, none, p[position{}], none, none, no_id, body_of_frame(by - 1)};
+  context.effects.on_mesh_impulse(p, given, context.dt);
+}
+
+/// The frame of the body that a particle sticks to; 0 if it is free, or sticks to what rests. See `adhesion`.
+template <class Particle>
+COLLIDE_HD_INLINE int frame_ridden([[maybe_unused]] Particle const& p) {
+  if constexpr (contains<typename Particle::list, adhered>) {
+    int const held = p[adhered{}];
+    return held > 1 ? held - 1 : 0;
+  } else {
+    return 0;
+  }
+}
+
+/// Where a body takes a point of space in the step that it has at the beginning.
+template <class S>
+COLLIDE_HD_INLINE vec3<double> carried(body_frame<S> const& f, vec3<double> const& x) {
+  return f.now.to_world(f.before.to_local(x));
+}
+
+/// How the surface moves that a particle sticks to.
+struct ridden_surface {
+  vec3<double> before, after;  ///< its velocity when the step begins, and ends
+  vec3<double> drift;          ///< velocity on the straight line on which it takes the particle in the step
+};
+template <class Context>
+COLLIDE_HD_INLINE ridden_surface surface_ridden([[maybe_unused]] Context const& context,
+                                                [[maybe_unused]] vec3<typename Context::scalar> const& position,
+                                                [[maybe_unused]] int frame) {
+  vec3<double> const none(0, 0, 0);
+  ridden_surface s{none, none, none};
+  if constexpr (Context::has_bodies) {
+    if (frame == 0) return s;
+    auto const& f = context.triangles.mesh.frames[frame];
+    vec3<double> const x = position.template cast<double>(), to = carried(f, x);
+    s = {velocity_at(f.moved, f.before, x), velocity_at(f.moving, f.now, to), none};
+    double const dt = static_cast<double>(context.dt);
+    s.drift = !Context::is_swept
+                  ? s.after
+                  : vec3<double>(div(to.x() - x.x(), dt), div(to.y() - x.y(), dt), div(to.z() - x.z(), dt));
+  }
+  return s;
+}
+
+/// The part of a step's acceleration with which it begins: what the mesh held at the end of the last step still has to
+/// get the second half of that.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE auto first_kick([[maybe_unused]] Particle const& p) {
+  if constexpr (contains<typename Particle::list, held>) {
+    return p[held{}] == 1 ? Context::kick_before + Context::kick_after : Context::kick_before;
+  } else {
+    return Context::kick_before;
+  }
+}
+
+/// Tells the effects what the mesh gives to a particle that sticks to it.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void book_held(Context const& context, Particle& p, vec3<typename Context::scalar> const& change) {
+  using S = typename Context::scalar;
+  vec3<S> const none(S(0), S(0), S(0));
+  book(context, p, {change, none, p[position{}], none, p[velocity{}], no_id, body_of_frame(frame_ridden(p))});
+}
+
+/// Lets the mesh hold a particle that sticks to it, against what would change its velocity in the step. False if that
+/// pulls it off: then it is free.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p) {
+  using S = typename Context::scalar;
+  auto& v = p[velocity{}];
+  ridden_surface const surface = surface_ridden(context, p[position{}], frame_ridden(p));
+  Particle next = p;
+  context.effects.accelerate(next, context.dt);
+  vec3<double> const own = v.template cast<double>(), by = vec3<S>(next[velocity{}] - v).template cast<double>();
+  vec3<S> const pull = rounded_to<S>(vec3<double>(own + by - surface.after));
+  if (!context.effects.holds(p, pull, context.dt)) {
+    p[adhered{}] = 0;
+    return false;
+  }
+  vec3<double> const given = surface.after - own - scaled(by, static_cast<double>(first_kick<Context>(p)));
+  v = rounded_to<S>(surface.drift);
+  if (p.number < context.state.size) book_held(context, p, rounded_to<S>(given));  // behind are places of none
+  if constexpr (contains<typename Particle::list, held>) p[held{}] = 2;
+  return true;
+}
+
+/// The beginning of a particle's step: the first kick.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void begin_particle(Context const& context, Particle& p) {
+  using S = typename Context::scalar;
+  if constexpr (Context::effects_type::keeps_support) {
+    auto const n = S(steps_in_mean(p[slow_steps{}]));
+    p[support{}] = p[support{}] * ((n - 1) / n);
+    p[supported_by{}] = 0;
+  }
+  if constexpr (Context::effects_type::adheres) {
+    if (p[adhered{}] != 0 && hold_adhered(context, p)) return;
+  }
+  auto const kick = first_kick<Context>(p);
+  if (kick != 0) context.effects.accelerate(p, kick * context.dt);
+  if constexpr (contains<typename Particle::list, held>) p[held{}] = 0;
+}
+
+/// Says that a particle has come to the end of its step, and whether the mesh `holds` it there.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[maybe_unused]] Particle& p,
+                                  [[maybe_unused]] bool holds) {
+  if constexpr (Context::effects_type::adheres && Context::has_bodies && Context::is_swept) {
+    if (int const frame = frame_ridden(p)) {
+      auto const& f = context.triangles.mesh.frames[frame];
+      using S = typename Context::scalar;
+      p[velocity{}] = rounded_to<S>(velocity_at(f.moving, f.now, p[position{}].template cast<double>()));
+    }
+  }
+  if constexpr (contains<typename Particle::list, held>) {
+    if constexpr (Context::effects_type::adheres) {
+      if (p[held{}] == 2 && p[adhered{}] != 0) return;  // it stuck all the time
+    }
+    p[held{}] = holds;
+  }
+}
+
+/// The end of a particle's step: the second kick, and what effects do last.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void end_particle(Context const& context, Particle& p) {
+  if constexpr (Context::kick_after != 0) {
+    int by = 0;
+    if constexpr (contains<typename Particle::list, held>) by = p[held{}];
+    if (by == 0) context.effects.accelerate(p, Context::kick_after * context.dt);
+    if constexpr (Context::effects_type::adheres) {
+      if (by == 2) {
+        Particle next = p;
+        context.effects.accelerate(next, Context::kick_after * context.dt);
+        book_held(context, p, p[velocity{}] - next[velocity{}]);
+      }
+    }
+  }
+  context.effects.end_step(p, context.dt);
+}
+
+}  // namespace collide::detail

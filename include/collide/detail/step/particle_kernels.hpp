@@ -1,0 +1,150 @@
+/// \file
+/// Kernel bodies for what is done with particles besides a step.
+#pragma once
+
+#include <cstddef>
+
+#include <collide/detail/particles/particle.hpp>
+#include <collide/detail/step/mesh_contact.hpp>
+#include <collide/detail/step/mesh_ledger.hpp>
+#include <collide/spheres.hpp>
+
+namespace collide::detail {
+
+/// Kernel body of `for_each` over places of particles: what each begins with.
+template <class S, class All>
+struct init_particles {
+  particle_state<S, All> state;
+  sphere_view<S> spheres;
+  S const* velocities;  ///< null: they rest
+  S source_radius;      ///< of what a source makes; 0: the common one
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    particle<S, All> p;
+    set_initial_values(p);
+    bool const there = i < spheres.size();
+    if (there) {
+      p[position{}] = spheres.centre(i);
+      if (velocities != nullptr) {
+        p[velocity{}] = vec3<S>(velocities[3 * i], velocities[3 * i + 1], velocities[3 * i + 2]);
+      }
+    }
+    if constexpr (contains<All, radius>)
+      p[radius{}] = there ? spheres.radius(i) : source_radius > 0 ? source_radius : spheres.common_radius();
+    if constexpr (contains<All, alive>) p[alive{}] = there;
+    state.store(p, i, All{});
+  }
+};
+
+/// Kernel body of `for_each` over particles: ends their step, where particles have met in between.
+template <class S, class Effects>
+struct end_particles {
+  using scalar = S;
+  using effects_type = Effects;
+  static constexpr S kick_after = S(Effects::integrator::kick_after);
+
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+  S dt;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    particle<S, typename Effects::integration_reads> p;
+    state.load(p, i);
+    if constexpr (Effects::skips) {
+      if (effects.is_skipped(p)) return;
+    }
+    end_particle(*this, p);
+    state.store(p, i, typename Effects::integration_writes{});
+  }
+};
+
+/// Kernel body of `for_each` over particles: frees those that stick to the mesh where it no longer is.
+template <class State, class Triangles>
+struct release_adhered {
+  State state;
+  Triangles triangles;
+  bool are_driven;  ///< bodies, which are not where they will be
+  std::size_t bodies;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::uint8_t& held = state.at(adhered{})[i];
+    if (are_driven && std::size_t{held} > bodies + 1) held = 0;  // there is no such body any more
+    if (held == 0 || (are_driven && held > 1)) return;
+    auto const* const x = state.at(position{}) + 3 * i;
+    using S = std::decay_t<decltype(*x)>;
+    vec3<S> const centre(x[0], x[1], x[2]);
+    S const r = state.radius_at(i);
+    held = find(sphere<S>{centre, r + 2 * (contact_tolerance<S> * r + rounding_at(centre))});
+  }
+
+ private:
+  /// What of the mesh a sphere touches, as `adhered` has it: of several triangles the first in memory.
+  template <class S>
+  COLLIDE_HD std::uint8_t find(sphere<S> const& s) const {
+    Triangles const near = triangles.opened();
+    id first = no_id;
+    auto cursor = near.begin(s);
+    candidate_range range{};
+    while (next(near, s, cursor, range)) {
+      for (std::uint32_t k = 0; k < range.count; ++k) {
+        cell_item const e = range.at(k);
+        if (e.triangle < first && touches(near, s, e.triangle)) first = e.triangle;
+      }
+    }
+    if (first == no_id) return 0;
+    if constexpr (has_moving_mesh<Triangles>) {
+      return static_cast<std::uint8_t>(near.mesh.frame_of(first) + 1);
+    } else {
+      return 1;
+    }
+  }
+  template <class S, class Cursor>
+  COLLIDE_HD static bool next(Triangles const& near, sphere<S> const& s, Cursor& cursor, candidate_range& range) {
+    constexpr std::uint32_t most = 1u << 30;
+    if constexpr (has_moving_mesh<Triangles>) {
+      return near.next(s, 1, cursor, most, range);
+    } else {
+      return near.next(s, cursor, most, range);
+    }
+  }
+  template <class S>
+  COLLIDE_HD bool touches(Triangles const& near, sphere<S> const& s, id triangle) const {
+    sphere<S> seen = s;
+    if constexpr (has_moving_mesh<Triangles>) {
+      int const frame = near.mesh.frame_of(triangle);
+      if (are_driven && frame != 0) return false;
+      seen = near.mesh.seen_from(frame, s, 1);
+    }
+    return relaxed_contact(near.mesh[triangle], seen).depth >= 0;
+  }
+};
+template <class State, class Triangles>
+release_adhered(State, Triangles, bool, std::size_t) -> release_adhered<State, Triangles>;
+
+template <class S, class All, class Effects>
+init_particles<S, All> initial(particle_state<S, All> const& state, sphere_view<S> const& spheres, S const* velocities,
+                               Effects const& effects) {
+  return {state, spheres, velocities, effects.source_radius()};
+}
+
+/// Kernel body of `for_each`.
+template <class T>
+struct copy_values {
+  T const* from;
+  T* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
+};
+
+/// Kernel body of `for_each` over one item.
+struct advance_time {
+  double* time;
+  double dt, due;  ///< of a source; see `begin_in_step`
+  COLLIDE_HD void operator()(std::size_t) const {
+    auto const begun = static_cast<double>(begin_in_step(time, due));
+    time[0] += dt;
+    time[1] += begun;
+    time[2] += due - begun;
+  }
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,134 @@
+/// \file
+/// Effect: a source of particles.
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+
+#include <collide/detail/particles/particle.hpp>
+#include <collide/effect.hpp>
+
+namespace collide {
+
+/// A nozzle: particles begin in a cube around a place, with about the same velocity.
+struct nozzle {
+  double position[3] = {0, 0, 0};  ///< the middle of the cube
+  double half_width = 0;           ///< half the length of the cube's edges
+  double velocity[3] = {0, 0, 0};  ///< the mean velocity, in length per time
+  double velocity_spread = 0;      ///< how much the coordinates of the velocity differ from the mean at most
+
+  void check_parameters() const {
+    using detail::is_finite;
+    detail::check_parameter(
+        is_finite(position) && is_finite(half_width) && is_finite(velocity) && is_finite(velocity_spread),
+        "nozzle: position, half_width, velocity and velocity_spread are finite");
+  }
+
+  /// Says how particle `number` begins: sets its centre `x` and its velocity `v`. A number always gives the same.
+  template <class S>
+  COLLIDE_HD void operator()(std::uint64_t number, vec3<S>& x, vec3<S>& v) const {
+    for (int k = 0; k < 3; ++k) {
+      x[k] = S(position[k] + half_width * random(6 * number + static_cast<std::uint64_t>(k)));
+      v[k] = S(velocity[k] + velocity_spread * random(6 * number + 3 + static_cast<std::uint64_t>(k)));
+    }
+  }
+
+ private:
+  /// Between -1 and 1, always the same for a number: splitmix64 by S. Vigna.
+  static COLLIDE_HD double random(std::uint64_t number) {
+    std::uint64_t z = (number + 1) * 0x9e3779b97f4a7c15u;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-52 - 1;
+  }
+};
+
+namespace detail {
+
+/// Kernel body of `for_each` over the particles of a step, the latest first.
+template <class S, class State, class Source>
+struct emit_particles {
+  State state;
+  Source source;
+  double due;  ///< particles in the step
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::uint64_t const begin = begun(), end = begin + begin_in_step(state.time, due), room = state.size - state.placed;
+    if (i >= end - begin) return;
+    std::uint64_t const number = end - 1 - i;
+    store_at(state.placed + static_cast<std::size_t>(number % room), number);
+  }
+
+ protected:
+  COLLIDE_HD_INLINE std::uint64_t begun() const { return static_cast<std::uint64_t>(state.time[1]); }
+  COLLIDE_HD_INLINE void store_at(std::size_t place, std::uint64_t number) const {
+    particle<S, typename State::list> p;
+    set_initial_values(p);
+    if constexpr (contains<typename State::list, radius>) p[radius{}] = state.at(radius{})[place];
+    source(number, p[position{}], p[velocity{}]);
+    if constexpr (contains<typename State::list, global_number>) p[global_number{}] = state.at(global_number{})[place];
+    state.store(p, place, typename State::list{});
+  }
+};
+
+/// Kernel body of `for_each` over the places of a rank: particles of a step that begin there.
+template <class S, class State, class Source>
+struct emit_at_places : emit_particles<S, State, Source> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    State const& here = this->state;
+    std::uint64_t const begin = this->begun(), end = begin + begin_in_step(here.time, this->due);
+    std::uint64_t const room = here.all_size - here.all_placed, place = here.at(global_number{})[i];
+    if (begin == end || place < here.all_placed) return;
+    std::uint64_t const last = end - 1;  // of all particles for this place the latest stays
+    std::uint64_t const back = (last % room + room - (place - here.all_placed)) % room;
+    if (back < end - begin) this->store_at(i, last - back);
+  }
+};
+
+}  // namespace detail
+
+/// A source: `rate` particles per unit of time, in the places that `simulation::set` got as capacity beyond the
+/// particles that it placed. Where all are taken, the oldest make room. A scene has one at most. `Source` is a copyable
+/// function object: COLLIDE_HD source(number, position&, velocity&) const says how particle number 0, 1, ... begins.
+template <class Source = nozzle>
+struct emit_from {
+  using writes = columns<position, velocity, alive>;
+  static constexpr bool saves_parameters = detail::saves_parameters<Source>;
+  static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
+  static constexpr bool makes_particles = true;
+
+  double rate = 0;           ///< particles per time, not negative; may change between steps
+  Source source = Source();  ///< how they begin
+  double radius = 0;         ///< theirs, with `polydisperse`, as it is when `set` is called; 0: that of all in `set`
+
+  void check_parameters() const {
+    detail::check_parameter(detail::is_amount(rate), "emit: rate is not negative, and finite");
+    detail::check_parameter(detail::is_amount(radius), "emit: radius is not negative, and finite");
+    detail::check_part(source);
+  }
+
+  template <class Particle>
+  COLLIDE_HD_INLINE bool is_inactive(Particle const& p) const {
+    return p[alive{}] == 0;
+  }
+  template <class Space, class State, class S>
+  void begin_step(Space& space, State const& state, S dt) const {
+    static_assert(std::is_invocable<Source const&, std::uint64_t, vec3<S>&, vec3<S>&>::value,
+                  "collide: a source of emit_from is called as source(number, position&, velocity&) const");
+    double const due = rate * static_cast<double>(dt);
+    if (!(due > 0)) return;
+    if constexpr (detail::contains<typename State::list, collide::global_number>) {
+      using places = detail::emit_at_places<S, State, Source>;
+      if (state.all_size != state.all_placed) space.for_each(state.size, places{{state, source, due}});
+    } else {
+      std::size_t const room = state.size - state.placed;
+      std::size_t const most = due < static_cast<double>(room) ? static_cast<std::size_t>(due) + 2 : room;
+      space.for_each(detail::smaller(most, room), detail::emit_particles<S, State, Source>{state, source, due});
+    }
+  }
+};
+
+/// A source that is a nozzle.
+using emit = emit_from<>;
+
+}  // namespace collide

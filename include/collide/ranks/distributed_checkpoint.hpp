@@ -1,0 +1,124 @@
+/// \file
+/// Saves a simulation on many ranks to a file, and goes on from it on any number of ranks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <istream>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <collide/checkpoint.hpp>
+#include <collide/ranks/distributed_simulation.cuh>
+
+namespace collide {
+
+namespace detail {
+
+/// The checkpoints of a simulation on ranks are those of one rank.
+template <class Detector, class... Effect, class Ranks>
+class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>> {
+  using simulated = distributed<simulation<Detector, Effect...>, Ranks>;
+  using S = typename simulated::scalar;
+  using format = checkpoint<Detector, Effect...>;
+
+ public:
+  /// `stream` is of the first rank alone.
+  static void write(simulated& from, std::ostream* stream, std::string const& name = "the stream") {
+    Ranks const& ranks = from.ranks_;
+    std::optional<checkpoint_writer> to;
+    auto const on_first = [&](auto const& f) {
+      together(ranks, [&] {
+        if (ranks.rank() == 0) f();
+      });
+    };
+    together(ranks, [&] {
+      if (!from.part_.is_set()) throw error("collide: save: the simulation has no particles: call set before it");
+    });
+    on_first([&] {
+      to.emplace(*stream, name);
+      auto numbers = from.part_.template saved_numbers_of_all<typename format::numbers_type>(from.reverse_order_);
+      format::begin(*to, numbers, from.part_.effects());
+    });
+    format::for_each_column([&](auto column) {
+      using type = decltype(column);
+      mail<column_element<type, S>> mine, all;
+      auto const values = from.template to_host<type>();
+      together(ranks, [&] {
+        mine.clear(ranks.size());
+        mine.items = values;
+        mine.counts[0] = values.size();
+      });
+      deliver(ranks, mine, all);
+      on_first([&] { format::template write_column<type>(*to, all.items); });
+    });
+    on_first([&] { format::end(*to, from.local()); });
+  }
+
+  /// All ranks read the same.
+  template <class Read>
+  static void restore(simulated& to, Read const& read) {
+    Ranks const& ranks = to.ranks_;
+    auto const n = static_cast<std::uint64_t>(ranks.size());
+    std::optional<format> found;
+    std::vector<std::uint64_t> starts;
+    together(ranks, [&] {
+      found.emplace(read([&](std::istream& from) { return format(to.part_.triangles(), to.local(), from); }));
+      for (std::uint64_t r = 0; r <= n; ++r) starts.push_back(found->numbers().placed * r / n);
+    });
+    to.is_sound_ = false;
+    to.starts_ = std::move(starts);
+    std::uint64_t const first = to.starts_[static_cast<std::size_t>(ranks.rank())],
+                        end = to.starts_[static_cast<std::size_t>(ranks.rank()) + 1];
+    numbers_of_all all{first, found->numbers().placed, found->numbers().places, 0, 0};
+    to.share_free(all);
+    to.reverse_order_ = found->numbers().reverse_order != 0;
+    to.exchange_.clear();
+    together(ranks, [&] { to.part_.restore(*found, static_cast<std::size_t>(end - first), all); });
+    to.is_sound_ = true;
+  }
+};
+
+}  // namespace detail
+
+/// Writes the checkpoint that `save` writes of the same simulation on one rank to a stream of the first rank: others'
+/// are not touched. All ranks call it. Columns come to the first rank one after the other, which takes
+/// memory of its host for one column of all. Throws what that `save` throws, on all ranks.
+template <class Detector, class... Effect, class Ranks>
+void save(distributed<simulation<Detector, Effect...>, Ranks>& from, std::ostream& to) {
+  detail::distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>>::write(from, &to);
+}
+
+/// Writes a checkpoint to a file, which the first rank does; see `save` of checkpoint.hpp.
+template <class Detector, class... Effect, class Ranks>
+void save(distributed<simulation<Detector, Effect...>, Ranks>& from, std::string const& path) {
+  std::optional<detail::checkpoint_file> file;
+  together(from.ranks(), [&] {
+    if (from.ranks().rank() == 0) file.emplace(path);
+  });
+  detail::distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>>::write(
+      from, file ? &file->stream() : nullptr, path);
+  together(from.ranks(), [&] {
+    if (file) file->complete();
+  });
+}
+
+/// Gives a simulation on ranks the state that `save` has written, of one rank or of any number of them: see `load` of
+/// checkpoint.hpp. All ranks call it, and each reads a stream of its own with all of the checkpoint; then each has an
+/// equal part of the particles, which `to_host` returns. Takes memory of each rank's host for a copy of all columns.
+template <class Detector, class... Effect, class Ranks>
+void load(distributed<simulation<Detector, Effect...>, Ranks>& into, std::istream& from) {
+  detail::distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>>::restore(
+      into, [&](auto const& read) { return read(from); });
+}
+
+/// Reads a checkpoint from a file that all ranks see, which has nothing else in it.
+template <class Detector, class... Effect, class Ranks>
+void load(distributed<simulation<Detector, Effect...>, Ranks>& into, std::string const& path) {
+  detail::distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>>::restore(
+      into, [&](auto const& read) { return detail::read_checkpoint_file(path, read); });
+}
+
+}  // namespace collide

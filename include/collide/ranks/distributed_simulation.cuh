@@ -1,0 +1,311 @@
+/// \file
+/// A simulation on many ranks: each has some of the particles, and all have the mesh.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <collide/detail/ranks/particle_exchange.hpp>
+#include <collide/detail/ranks/sums_of_ranks.hpp>
+#include <collide/effects/reaction.hpp>
+#include <collide/ranks/distributed.hpp>
+#include <collide/simulation.cuh>
+
+namespace collide {
+
+namespace detail {
+
+/// Saves and restores a simulation on ranks; see distributed_checkpoint.hpp.
+template <class Distributed>
+class distributed_checkpoint;
+
+}  // namespace detail
+
+/// A simulation on many ranks, which gives the bits of one rank, on any number of them. Each rank puts some particles
+/// into it; from then on the library moves them to where their neighbours are. The mesh is the same on every rank. All
+/// ranks call all members, in the same order, with the same parameters of effects and the same `dt`. What one throws
+/// makes all throw: see `together`; then `set` begins anew.
+///
+/// Where particles meet each other, each rank has the particles of a brick of space, and copies of those that are near
+/// it. All tell each other in each step where copies are, and whether a particle has moved so far that some may be
+/// missing: then particles change ranks, and where many more are on one rank than on others, new bricks are cut. So a
+/// step waits for the other ranks, and with CUDA for the device. Where particles do not meet, they stay where they are.
+///
+/// \tparam Detector  that of the simulation
+/// \tparam Effect    those of the simulation. An effect of your own with a member `begin_step` sees the places of one
+///                   rank: it says `static constexpr bool begins_on_ranks = true` if that is enough.
+/// \tparam Ranks     `one_rank`, `thread_ranks` or `mpi_ranks`
+template <class Detector, class... Effect, class Ranks>
+class distributed<simulation<Detector, Effect...>, Ranks> {
+  static_assert(detail::check_ranks<Ranks>());
+
+ public:
+  using scalar = typename Detector::scalar;                                   ///< type of all numbers: float or double
+  using execution_space = typename Detector::execution_space;                 ///< that of the detector
+  using simulation_type = simulation<Detector, Effect..., detail::on_ranks>;  ///< what each rank runs
+  using columns = typename simulation<Detector, Effect...>::columns;          ///< the state that a particle has
+  static constexpr std::size_t bytes_per_particle = simulation_type::bytes_per_particle;  ///< of state, on its rank
+
+ private:
+  using S = scalar;
+  using part_type = detail::part_of_simulation<simulation_type>;
+  using broad_phase = typename Detector::broad_phase;
+  static constexpr bool meets = part_type::meets;
+  static_assert((detail::check_on_ranks<Effect, execution_space, typename simulation_type::state_type, S>() && ...));
+
+ public:
+  /// With effects as they are by default.
+  explicit distributed(Ranks ranks = Ranks(), execution_space space = execution_space(), broad_phase options = {})
+      : ranks_(std::move(ranks)), part_(std::move(space), std::move(options)) {}
+
+  /// With parameters of all effects, in the order of the list.
+  template <class... E, class = std::enable_if_t<detail::are_all_of<std::tuple<Effect...>, E...>>>
+  distributed(Ranks ranks, execution_space space, E... effects)
+      : ranks_(std::move(ranks)), part_(std::move(space), std::move(effects)..., detail::on_ranks()) {}
+
+  /// Copies this rank's particles, perhaps none, as `simulation::set`. One after the other, the ranks' particles have
+  /// the numbers of all. `capacity` is for how many particles there is room on all ranks together: the same number on
+  /// each. There are at most 2^32 - 2 on all ranks.
+  void set(sphere_view<S> const& mine, S const* velocities = nullptr, std::size_t capacity = 0) {
+    detail::numbers_of_all all{count_before(ranks_, mine.size()), 0, 0, 0, 0};
+    std::uint64_t const n = mine.size();
+    ranks_.reduce(&n, &all.placed, 1, reduction::sum);
+    all.size = std::max(all.placed, std::uint64_t{capacity});
+    share_free(all);
+    S const own = part_.effects().source_radius();
+    detail::radii_of_all<S> radii = find_radii(mine);
+    radii.range = radii.range.with(own);
+    radii.widest = std::max(radii.widest, own);
+    together(ranks_, [&] { detail::check_particles<columns>(true, all.placed, all.size, own, radii.common); });
+    is_sound_ = false;
+    exchange_.clear();
+    together(ranks_, [&] {
+      starts_.resize(static_cast<std::size_t>(ranks_.size()) + 1);
+      part_.set(mine, velocities, all, radii);
+    });
+    ranks_.all_gather(&all.first, sizeof all.first, starts_.data());
+    starts_.back() = all.placed;
+    is_sound_ = true;
+  }
+
+  /// The mesh, with its bodies and the velocities of its vertices, which is the same on every rank; see
+  /// `simulation::set_mesh`.
+  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
+    together(ranks_, [&] { part_.simulation().set_mesh(mesh, bodies, velocities); });
+  }
+
+  /// Advances by the time `dt`; throws what `simulation::step` throws. If it throws after the step has begun somewhere,
+  /// particles may be lost, and nothing works until the next `set` or `load`.
+  void step(S dt) { steps(1, dt); }
+
+  /// Advances `n` times by `dt`; throws what `step` throws. Ranks wait for each other once a step, and once more in the
+  /// end.
+  void steps(std::size_t n, S dt) {
+    check_sound();
+    if (n != 0 && !part_.knows_pair_forces()) meet_first(dt);
+    std::exception_ptr failure;  // of the last step: the others hear of it when the next one begins, or in the end
+    for (std::size_t k = 0; k < n; ++k) failure = try_step(dt, failure);
+    agree(ranks_, failure);
+    is_sound_ = true;
+  }
+
+  /// The sum of the steps since `set`.
+  double time() const { return part_.simulation().time(); }
+  /// Number of particles on all ranks, or of places for them.
+  std::size_t size() const { return part_.all_size(); }
+
+  /// A column of the particles that this rank has `set`, in their order, wherever they are. The last rank gets behind
+  /// them those that effects have made. One after the other, the ranks' columns are that of one rank. Waits.
+  template <class Column>
+  std::vector<detail::column_element<Column, S>> to_host() {
+    using pair_of = collide::columns<global_number, Column>;
+    using row = detail::particle_row<S, pair_of>;
+    constexpr auto width = std::size_t(detail::column_layout<Column, S>::width);
+    detail::mail<row> out, in;
+    std::vector<detail::column_element<Column, S>> found;
+    std::uint64_t const first = starts_.empty() ? 0 : starts_[static_cast<std::size_t>(ranks_.rank())];
+    check_sound();
+    together(ranks_, [&] {
+      if (!part_.is_set()) throw error("collide: simulation: to_host needs particles: call set before it");
+      std::vector<id> const numbers = part_.template on_host<global_number>();
+      detail::mail<std::uint32_t> places;
+      detail::fill_mail(places, ranks_.size(), [&](auto const& put) {
+        for (std::size_t i = 0; i < numbers.size(); ++i) put(home_of(numbers[i]), static_cast<std::uint32_t>(i));
+      });
+      part_.template pack<pair_of>(places.items, out.items);
+      out.counts = places.counts;
+    });
+    detail::deliver(ranks_, out, in);
+    together(ranks_, [&] {
+      found.resize(width * in.items.size());
+      for (row const& one : in.items) {
+        id number = 0;
+        std::memcpy(&number, one.bytes, sizeof number);
+        std::memcpy(found.data() + width * static_cast<std::size_t>(number - first), one.bytes + sizeof number,
+                    row::size - sizeof number);
+      }
+    });
+    return found;
+  }
+
+  /// What the particles of all ranks give to each body; see `reaction_sums::read`. Waits.
+  std::vector<body_impulse> total(reaction_sums const& mine) const {
+    return impulses(mine, [&] { return mine.counts(local().space()); });
+  }
+  /// What the particles of all ranks give to each triangle; see `reaction_sums::read_triangles`. Waits.
+  std::vector<body_impulse> total_of_triangles(reaction_sums const& mine) const {
+    return impulses(mine, [&] { return mine.triangle_counts(local().space()); });
+  }
+  /// How many contacts of all ranks are in no sum; see `reaction_sums::refused`. Waits.
+  std::uint64_t total_refused(reaction_sums const& mine) const {
+    std::uint64_t own = 0, all = 0;
+    together(ranks_, [&] { own = mine.refused(local().space()); });
+    ranks_.reduce(&own, &all, 1, reduction::sum);
+    return all;
+  }
+
+  /// The parameters of an effect, which may be changed between steps, on all ranks alike.
+  template <class E>
+  E& effect() {
+    return part_.simulation().template effect<E>();
+  }
+
+  /// The ranks.
+  Ranks const& ranks() const { return ranks_; }
+  /// The simulation of this rank, to look at: its `size()` particles are those that are on this rank now, in any order;
+  /// the column `global_number` tells which.
+  simulation_type const& local() const { return part_.simulation(); }
+  /// The space of this rank.
+  execution_space& space() { return part_.space(); }
+
+ private:
+  friend class detail::distributed_checkpoint<distributed>;
+
+  /// All ranks know it alike.
+  void check_sound() const {
+    if (!is_sound_) {
+      throw error("collide: simulation: the last step, set or load has failed on some rank: call set or load");
+    }
+  }
+
+  /// The sums over all ranks of the counts that read() gives, as impulses.
+  template <class Read>
+  std::vector<body_impulse> impulses(reaction_sums const& mine, Read const& read) const {
+    std::vector<std::int64_t> const counts = detail::sums_of_ranks(ranks_, read);
+    std::vector<body_impulse> found;
+    together(ranks_, [&] { found = mine.impulses(counts); });
+    return found;
+  }
+
+  /// Particles meet where they begin.
+  void meet_first(S dt) {
+    together(ranks_, [&] { part_.check_step(dt); });
+    exchange_.exchange(ranks_, part_);
+    exchange_.send(ranks_, part_);
+    together(ranks_, [&] {
+      exchange_.unpack(ranks_, part_);
+      part_.meet(dt);
+    });
+  }
+
+  /// A step, until this rank is done: what went wrong here then. All throw what goes wrong before, or has `failed` here
+  /// in the last step.
+  std::exception_ptr try_step(S dt, std::exception_ptr failed) {
+    std::uint64_t mine[2] = {0, 0}, all[2];  // 1: particles must change ranks, 2: something is wrong; has it begun?
+    try {
+      if (failed) std::rethrow_exception(failed);
+      part_.check_step(dt);
+      mine[1] = 1;
+      part_.begin_step(dt);
+      if (meets && part_.knows_others()) exchange_.pack(ranks_, part_);
+      mine[0] = part_.has_moved() ? 1 : 0;
+    } catch (...) {
+      failed = std::current_exception();
+      mine[0] = 2;
+    }
+    ranks_.reduce(mine, all, 2, reduction::max);
+    is_sound_ = is_sound_ && all[1] == 0;
+    if (all[0] == 2) agree(ranks_, failed);
+    if (meets && all[0] == 1) exchange_.exchange(ranks_, part_);
+    try {
+      if constexpr (meets) {
+        exchange_.send(ranks_, part_);
+        exchange_.unpack(ranks_, part_);
+      }
+      part_.end_step(dt);
+    } catch (...) {
+      failed = std::current_exception();
+    }
+    if (size() != 0) reverse_order_ = !reverse_order_;
+    return failed;
+  }
+
+  /// Says with which free places this rank begins.
+  void share_free(detail::numbers_of_all& all) const {
+    auto const ranks = static_cast<std::uint64_t>(ranks_.size()), rank = static_cast<std::uint64_t>(ranks_.rank());
+    std::uint64_t const room = all.size - all.placed;
+    all.first_free = all.placed + room * rank / ranks;
+    all.free_size = all.placed + room * (rank + 1) / ranks - all.first_free;
+  }
+
+  /// Radii of the particles of all ranks. Throws `error` on all if there must be one, but there are several.
+  detail::radii_of_all<S> find_radii(sphere_view<S> const& mine) const {
+    using detail::to_ordered_bits;
+    S smallest = std::numeric_limits<S>::infinity(), largest = mine.common_radius(), widest = 0;
+    together(ranks_, [&] {
+      buffer<S> memory;
+      auto const& space = part_.simulation().space();
+      std::vector<S> each;
+      if (!mine.one_radius()) {
+        each = detail::packed_on_host<S>(space, mine.size(), memory, [&](S* to) {
+          space.for_each(mine.size(), detail::copy_radii<S>{mine, to});
+        });
+      }
+      if (!each.empty()) largest = *std::max_element(each.begin(), each.end());
+      widest = largest < 0 ? -largest : largest;
+      if (mine.one_radius() && largest >= 0) smallest = largest;
+      for (S const r : each) {
+        widest = std::max(widest, r < 0 ? -r : r);
+        if (r >= 0) smallest = std::min(smallest, r);
+      }
+    });
+    // a rank without particles has no say in this, unless no rank has any
+    auto const ask = [&](S value, bool has_say) {
+      std::uint64_t mine_bits[2] = {0, has_say ? to_ordered_bits(static_cast<double>(value)) : 0}, all[2];
+      mine_bits[0] = has_say ? 1 : 0;
+      ranks_.reduce(mine_bits, all, 2, reduction::max);
+      return std::pair<bool, S>(all[0] != 0, static_cast<S>(detail::from_ordered_bits<double>(all[1])));
+    };
+    bool const has_any = ask(S(0), mine.size() != 0).first;
+    bool const has_say = mine.size() != 0 || !has_any;
+    S const most = ask(mine.common_radius(), has_say).second, least = -ask(-mine.common_radius(), has_say).second;
+    bool const several =
+        ask(S(0), has_say && !mine.one_radius()).first || detail::to_bits(most) != detail::to_bits(least);
+    detail::check_particles<columns>(!several, 0, 0, S(0), S(0));
+    S const least_of_all = -ask(-smallest, has_say).second;
+    return {several ? S(0) : most,
+            {several ? least_of_all : most, ask(largest, has_say).second},
+            ask(widest, has_say).second};
+  }
+
+  /// The rank that has set a particle; the last has what effects make.
+  int home_of(id number) const {
+    auto const after = std::upper_bound(starts_.begin(), starts_.end(), std::uint64_t{number});
+    return std::min(static_cast<int>(after - starts_.begin()), ranks_.size()) - 1;
+  }
+
+  Ranks ranks_;
+  part_type part_;
+  detail::particle_exchange<part_type> exchange_;
+  bool is_sound_ = true;               ///< no step, `set` or `load` has stopped half-way
+  bool reverse_order_ = false;         ///< of one rank's next step, for checkpoints
+  std::vector<std::uint64_t> starts_;  ///< numbers of the first particles that ranks have set, and one behind the last
+};
+
+}  // namespace collide
