@@ -25,11 +25,7 @@ template <mesh_kind Kind, class Space, class S>
 class moving_scene {
  public:
   moving_scene(Space const& space, trial const& t, world<S> w)
-      : trial_{t},
-        w_{std::move(w)},
-        at_{w_.corners},
-        rates_(w_.corners.size()),
-        particles_(space, w_) {
+      : trial_{t}, w_{std::move(w)}, at_{w_.corners}, rates_(w_.corners.size()), particles_(space, w_) {
     corners_of_sheet_.reserve(space.resource(), at_.size());
     rates_of_sheet_.reserve(space.resource(), at_.size());
   }
@@ -283,8 +279,8 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   static constexpr bool momentum_closes =
       has<collide::reaction> &&
       !has<collide::drag, collide::wind<>, collide::box_walls, collide::emit, collide::absorb, collide::absorbing_box>;
-  static constexpr bool energy_falls = !has<collide::wind<>, collide::emit> &&
-                                       !(has<collide::gravity> && has<collide::periodic_box>);
+  static constexpr bool energy_falls =
+      !has<collide::wind<>, collide::emit> && !(has<collide::gravity> && has<collide::periodic_box>);
   static constexpr bool energy_stays = energy_falls && has<collide::velocity_verlet> && has<collide::gravity> &&
                                        has<collide::sphere_contact> && has<collide::bounce> &&
                                        !has<collide::friction, collide::adhesion, collide::drag, collide::sleep,
