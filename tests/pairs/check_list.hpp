@@ -136,9 +136,10 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
     return {surface::at_rest, Kind == mesh_kind::moving ? surface::body : surface::driven_body, surface::deforming};
   }
 
-  /// What the list makes of its scene on the host, with one thread.
-  explicit checked_list(trial const& t) : trial_{t} {
-    given_ = play_on(host(1), middle_, end_);
+  /// What the list makes of its scene in a space, which others are compared with.
+  template <class Space>
+  checked_list(trial const& t, Space const& space) : trial_{t} {
+    given_ = play_on(space, middle_, end_);
     check_finite(end_);
   }
 
@@ -377,7 +378,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
 /// Checks a list in a scene.
 template <class List>
 void check_list(trial const& t) {
-  checked_list<List> const list(t);
+  checked_list<List> const list(t, collide::host(1));
   list.check_momentum();
   list.check_energy();
   list.check_rest();
