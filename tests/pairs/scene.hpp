@@ -97,8 +97,8 @@ E parameters(trial const& t, collide::reaction_sums const& sums, bool several_si
     return collide::sphere_contact::from_restitution(t.draw(0.6, 0.1, 0.95, 20), t.duration(), grain_radius, density,
                                                      t.draw(0.3, 0.01, 1, 21));
   } else if constexpr (std::is_same<E, collide::sleep>::value) {
-    double const speed = t.draw(0.02, 0.002, 0.2, 22);
-    int const steps = static_cast<int>(t.draw(20, 2, 120, 23)), at_top = static_cast<int>(2 * speed / (9.81 * t.dt()));
+    double const speed = t.draw(0.02, 0.001, 0.01, 22);
+    int const steps = static_cast<int>(t.draw(20, 60, 120, 23)), at_top = static_cast<int>(2 * speed / (9.81 * t.dt()));
     return {speed, std::max(steps, at_top + 2)};  // what flies does not sleep
   } else if constexpr (std::is_same<E, collide::emit>::value) {
     return {t.draw(40, 1, 400, 24), {{0, 0, 0.6}, 0.1, {0, 0, -1}, 0.2}, several_sizes ? small_grain_radius : 0};
