@@ -39,6 +39,12 @@ TEST_CASE("where features meet: what sleeps goes with what it lies on, however s
   tests::check_slow_support<karabassi_swept<>, float>(host(1));
 }
 
+TEST_CASE("where features meet: what wakes what sleeps loses what that gets") {
+  tests::check_momentum_of_waking<semi_implicit_euler, double>(host(1));
+  tests::check_momentum_of_waking<semi_implicit_euler, float>(blocks());
+  tests::check_momentum_of_waking<velocity_verlet, double>(host(1));
+}
+
 TEST_CASE("where features meet: what spins does not sleep, and angular momentum closes") {
   tests::check_sleep_of_what_spins<karabassi<>, double>(host(1));
   tests::check_sleep_of_what_spins<karabassi_swept<>, float>(host(1));

@@ -220,6 +220,28 @@ void check_sleep_of_what_spins(Space const& space) {
   CHECK(std::abs(double(made.simulation.template to_host<collide::angular_velocity>()[2])) < 0.1);
 }
 
+/// What hits a sphere that sleeps loses what that gets, also in the step that wakes it.
+template <class Integrator, class S, class Space>
+void check_momentum_of_waking(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, collide::sleep, sphere_contact>;
+  world<S> w;
+  w.radius = S(0.1);
+  w.particle(0, 0, 0);
+  w.particle(-0.25, 0, 0);
+  w.particle(0.4, 0.05, 0, -1, 0, 0);
+  running<simulation> made(space, w, Integrator{}, collide::sleep{},
+                           sphere_contact::from_restitution(0.6, 0.03, 0.1, density_of_grains, 0.3));
+  made.simulation.steps(150, S(1e-3));
+  CHECK(made.simulation.template to_host<slow_steps>()[0] >= 50);
+  made.simulation.steps(350, S(1e-3));
+  auto const v = made.velocities();
+  double const rounding = sizeof(S) == 4 ? 1e-6 : 1e-14;
+  CHECK(v[3] < S(-0.1));
+  CHECK(std::abs(double(v[0]) + double(v[3]) + double(v[6]) + 1) < rounding);
+  CHECK(std::abs(double(v[1]) + double(v[4]) + double(v[7])) < rounding);
+}
+
 /// What a ball loses of its angular momentum the mesh gets, rolling resistance included.
 template <class NarrowPhase, class S, class Space>
 void check_angular_momentum(Space const& space) {
