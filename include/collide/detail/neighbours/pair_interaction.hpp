@@ -25,7 +25,7 @@ struct pair_interaction {
   /// A particle before and after.
   struct pair_state {
     interaction self, changed;
-    bool met = false;
+    bool met = false, woken = false;
     COLLIDE_HD_INLINE explicit pair_state(interaction const& p) : self(p), changed(p) {}
   };
 
@@ -41,9 +41,17 @@ struct pair_interaction {
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     bool const is_active = !is_skipped(p.self), is_other = !is_skipped(other);
-    if (is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
-    if (is_other) effects.try_wake(p.changed, other);
+    if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
+    if (is_other && !p.woken) effects.try_wake(p.changed, other);
     p.met = p.met || is_active || is_other;
+  }
+  /// True once if the particle has been woken: then it meets those that were awake again, which have got their part of
+  /// what the two do to each other.
+  COLLIDE_HD_INLINE bool must_meet_again(pair_state& p) const {
+    if constexpr (Effects::skips) {
+      p.woken = !p.woken && p.met && is_skipped(p.self) && !is_skipped(p.changed);
+    }
+    return p.woken;
   }
 
   /// A meeting with what the contact remembers in `record`, if it `was` there. True if there is something to remember.
@@ -52,13 +60,13 @@ struct pair_interaction {
     interaction other = order.load(place);
     bool const is_active = !is_skipped(p.self), is_other = overlap && !is_skipped(other);
     bool goes_on = was;
-    if (is_active) {
+    if (p.woken ? is_other : is_active) {
       contact_values<S, typename Effects::remembered> values;
       if (was) values = record.values();
       goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, only_kicks ? S(0) : dt, dt);
       if (goes_on) record.set(values);
     }
-    if (is_other) effects.try_wake(p.changed, other);
+    if (is_other && !p.woken) effects.try_wake(p.changed, other);
     p.met = p.met || is_active || is_other;
     return goes_on;
   }
@@ -97,27 +105,29 @@ struct interact_listed : pair_interaction<S, Effects> {
     if (places.list(0, i) == places.overflow_mark) return;
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
     packed_sphere<S> const own = places.spheres[i];
-    if constexpr (sorted_particles<S, Effects>::has_memory) {
-      std::uint32_t const before = places.memory.touching[i];
-      std::uint32_t touching = 0;
-      for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other, std::uint32_t k) {
-        bool const overlap = places.within_skin(own, other, S(0)), was = (before >> k & 1) != 0;
-        if (!overlap && !was) return;
-        auto& record = places.memory.records[k * places.capacity + i];
-        if (this->interact(p, place, overlap, was, record)) touching |= 1u << k;
-      });
-      if ((touching | before) != 0) places.memory.touching[i] = touching;
-    } else {
-      for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other, std::uint32_t) {
-        if (places.within_skin(own, other, S(0))) this->interact(p, place);
-      });
-    }
+    do {
+      if constexpr (sorted_particles<S, Effects>::has_memory) {
+        std::uint32_t const before = places.memory.touching[i];
+        std::uint32_t touching = 0;
+        for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other, std::uint32_t k) {
+          bool const overlap = places.within_skin(own, other, S(0)), was = (before >> k & 1) != 0;
+          if (!overlap && !was) return;
+          auto& record = places.memory.records[k * places.capacity + i];
+          if (this->interact(p, place, overlap, was, record)) touching |= 1u << k;
+        });
+        if ((touching | before) != 0) places.memory.touching[i] = touching;
+      } else {
+        for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other, std::uint32_t) {
+          if (places.within_skin(own, other, S(0))) this->interact(p, place);
+        });
+      }
+    } while (this->must_meet_again(p));
     this->store(p);
   }
 
  private:
-  /// f(place, sphere, item) for each on the list of a particle. While one is looked at, the next and the list's item behind
-  /// it are on their way (docs/development/experiments.md).
+  /// f(place, sphere, item) for each on the list of a particle. While one is looked at, the next and the list's item
+  /// behind it are on their way (docs/development/experiments.md).
   template <class F>
   COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, F const& f) const {
     auto const& places = this->order;
@@ -151,11 +161,13 @@ struct interact_overflowed : pair_interaction<S, Effects> {
     if (this->is_of_another(i)) return;
     auto const self = static_cast<std::uint32_t>(i);
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
-    if (places.list(1, i) == places.overflow_mark) {
-      search(self, p);
-    } else {
-      go_through_run(self, p);
-    }
+    do {
+      if (places.list(1, i) == places.overflow_mark) {
+        search(self, p);
+      } else {
+        go_through_run(self, p);
+      }
+    } while (this->must_meet_again(p));
     this->store(p);
   }
 

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include <collide/detail/execution/atomic.hpp>
-#include <collide/detail/particles/contact_memory.hpp>
 #include <collide/detail/neighbours/spatial_hash.hpp>
 #include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/particles/contact_memory.hpp>
 #include <collide/detail/particles/particle.hpp>
 
 namespace collide::detail {
