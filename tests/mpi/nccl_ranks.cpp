@@ -11,24 +11,16 @@
 
 namespace {
 
-template <class Scene>
-void check_scene(collide::nccl_ranks const& ranks, Scene const& scene, tests::complaints& wrong) {
-  tests::check_scene(ranks, scene, tests::expected_values<Scene>(scene), tests::split::odd, wrong);
-}
-
 std::string check(std::string const& what) {
   tests::complaints wrong;
   collide::nccl_ranks const ranks{collide::mpi_ranks()};
   if (what == "members") {
     tests::check_members(ranks, wrong);
     tests::check_agreement(ranks, wrong);
-  } else if (what == "queries") {
-    tests::check_both(ranks, tests::hard_scene<float>(), {}, wrong);
-    tests::check_queries(ranks, wrong);
   } else {
-    check_scene(ranks, tests::snow<collide::cuda_shared>(), wrong);
-    check_scene(ranks, tests::leaps<collide::cuda_shared>(), wrong);
-    check_scene(ranks, tests::sizes_that_repeat<collide::cuda_shared>(), wrong);
+    auto const scene = tests::snow<collide::cuda_shared>();
+    tests::check_scene(ranks, scene, tests::expected_values<std::decay_t<decltype(scene)>>(scene), tests::split::odd,
+                       wrong);
   }
   return wrong.text();
 }

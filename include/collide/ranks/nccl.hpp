@@ -35,8 +35,8 @@ inline void nccl_check(ncclResult_t status, char const* call) {
 /// A communicator, with memory of the device for what comes from the host.
 class nccl_communicator {
  public:
-  nccl_communicator(ncclUniqueId const& id, int rank, int size, double patience) : patience_{patience} {
-    nccl_check(ncclCommInitRank(&comm_, size, id, rank), "ncclCommInitRank");
+  nccl_communicator(ncclUniqueId const& common, int rank, int size, double patience) : patience_{patience} {
+    nccl_check(ncclCommInitRank(&comm_, size, common, rank), "ncclCommInitRank");
     nccl_cuda_check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
   }
   nccl_communicator(nccl_communicator const&) = delete;
@@ -45,7 +45,7 @@ class nccl_communicator {
   ~nccl_communicator() {
     if (comm_ != nullptr && std::uncaught_exceptions() > 0) abort();
     if (comm_ != nullptr) ncclCommDestroy(comm_);
-    for (void* const memory : {sent_.at, received_.at}) cudaFree(memory);
+    for (void* const at : {sent_.at, received_.at}) cudaFree(at);
     if (stream_ != nullptr) cudaStreamDestroy(stream_);
   }
 
@@ -120,18 +120,18 @@ class nccl_ranks {
   explicit nccl_ranks(Ranks const& by, double patience = 300)
       : nccl_ranks(handed_out(by), by.rank(), by.size(), patience) {}
   /// Number `rank` of `size`, with an id that one of them has made by `make_id` and given to all.
-  nccl_ranks(ncclUniqueId const& id, int rank, int size, double patience = 300) : rank_{rank}, size_{size} {
+  nccl_ranks(ncclUniqueId const& common, int rank, int size, double patience = 300) : rank_{rank}, size_{size} {
     if (rank < 0 || rank >= size)
       throw error("collide: nccl_ranks: the number of a rank is from 0 to below their number");
     if (!(patience > 0)) throw error("collide: nccl_ranks: patience is above 0");
-    comm_ = std::make_shared<detail::nccl_communicator>(id, rank, size, patience);
+    comm_ = std::make_shared<detail::nccl_communicator>(common, rank, size, patience);
   }
 
   /// An id for ranks. With NCCL_COMM_ID=host:port in the environment, all ranks may call it instead of one.
   static ncclUniqueId make_id() {
-    ncclUniqueId id;
-    detail::nccl_check(ncclGetUniqueId(&id), "ncclGetUniqueId");
-    return id;
+    ncclUniqueId made;
+    detail::nccl_check(ncclGetUniqueId(&made), "ncclGetUniqueId");
+    return made;
   }
 
   /// The number of this rank, from 0.
