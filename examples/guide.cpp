@@ -8,10 +8,13 @@
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
 #include <collide/karabassi_swept.hpp>
+#include <collide/sinks/contains.hpp>
 #include <collide/sinks/csr.hpp>
 #include <collide/sinks/earliest.hpp>
 #include <collide/sinks/nearest.hpp>
+#include <collide/sinks/signed_distance.hpp>
 #include <collide/validate.hpp>
+#include <collide/validate_closed.hpp>
 
 namespace {
 
@@ -65,6 +68,20 @@ void use_nearest() {
     std::printf("triangle %u, %g away\n", found.triangle, static_cast<double>(found.distance));
 }
 
+void use_inside() {
+  float const corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  unsigned const faces[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  auto const solid = collide::indexed_mesh(corners, 4, faces, 4);
+  if (!collide::validate_closed(solid).closed()) std::printf("there is a hole\n");
+  float const places[] = {0.1f, 0.2f, 0.3f, 0, 0, 1, 1, 1, 1};
+  collide::detector<collide::bvh> tree;
+  tree.build(solid);
+  auto const is_inside = tree.query(collide::points(places, 3), collide::contains()).to_host();  // 1, 1, 0
+  auto const surface = tree.query(collide::points(places, 3), collide::signed_distance()).to_host();
+  for (std::size_t i = 0; i < surface.size(); ++i)
+    std::printf("%s: %g\n", is_inside[i] ? "inside" : "outside", static_cast<double>(surface[i].distance));
+}
+
 void use_moving_spheres() {
   float const centres[] = {0.5f, 0.25f, 5, 3, 3, 5}, displacements[] = {0, 0, -10, 0, 0, -10};
   auto const falling = collide::with_displacements(collide::spheres_xyz(centres, 2, 0.5f), displacements);
@@ -87,6 +104,7 @@ int main() {
   use_layouts();
   use_sinks();
   use_nearest();
+  use_inside();
   use_moving_spheres();
   check_input();
 }

@@ -94,12 +94,12 @@ MUTATIONS = {
     "product-carry": ("numeric/exact_sum.hpp", "the carry within a product", "stages", "plain",
                       [("carry = (carry >> 32) + (first >> 32)", "carry = (first >> 32)")]),
     "product-room": ("numeric/exact_sum.hpp", "memory for a product of six", "stages", "checked",
-                     [("product[2 * exact_product::most_factors + 1]", "product[2 * exact_product::most_factors - 1]")]),
+                     [("product[2 * Product::most_factors + 1]", "product[2 * Product::most_factors - 1]")]),
     "spare": ("numeric/exact_sum.hpp", "digits for the sign of the sum: 32 bits fewer", "stages", "plain",
               [("carry_bits = 24", "carry_bits = -8")]),
     "sign": ("numeric/exact_sum.hpp", "the signs of factors", "stages", "plain",
              [("negative = negative != (f.mantissa < 0)", "")]),
-    "twice": ("numeric/exact_sum.hpp", "weights of 2", "stages", "plain", [(" + (weight == 2 || weight == -2 ? 1 : 0)", "")]),
+    "twice": ("numeric/exact_sum.hpp", "weights of 2", "stages", "plain", [(" + magnitude_exponent", "")]),
     "subnormal": ("numeric/exact_number.hpp", "the exponent of subnormal numbers", "stages", "plain",
                   [("larger(biased, 1) -", "biased -")]),
     "hidden-bit": ("numeric/exact_number.hpp", "the leading bit of subnormal numbers", "stages", "plain",
@@ -192,7 +192,7 @@ MUTATIONS = {
     "near-feet": ("predicates/exact.hpp", "feet that doubles take for farther by mistake", "contacts", "plain",
                   [("sqrt_rn(around) + 0x1p-40", "sqrt_rn(around)"), ("mul(mul(reach, reach), 1 + 0x1p-40)", "mul(reach, reach)")]),
     "power-below": ("predicates/exact.hpp", "powers of two beyond the range, below", "contacts", "plain",
-                    [("    for (; n < -1000; n += 1000) x *= 0x1p-1000;\n", "")]),
+                    [("  for (; n < -1000; n += 1000) x *= 0x1p-1000;\n", "")]),
 }
 
 # The same without a mutation: nothing may be wrong.

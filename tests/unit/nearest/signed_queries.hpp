@@ -37,9 +37,11 @@ template <class BroadPhase, class Precision = collide::exact, class S, class Spa
 signed_answers<S> ask(Space const& space, std::vector<collide::triangle<S>> const& mesh,
                       std::vector<collide::vec3<S>> const& points, S reach = std::numeric_limits<S>::infinity()) {
   std::vector<S> corners, coordinates;
-  for (auto const& t : mesh)
-    for (auto const& v : {t.a, t.b, t.c}) corners.insert(corners.end(), {v.x(), v.y(), v.z()});
-  for (auto const& p : points) coordinates.insert(coordinates.end(), {p.x(), p.y(), p.z()});
+  auto const append = [](std::vector<S>& to, collide::vec3<S> const& v) {
+    for (int k = 0; k < 3; ++k) to.push_back(v[k]);
+  };
+  for (auto const& t : mesh) append(corners, t.a), append(corners, t.b), append(corners, t.c);
+  for (auto const& p : points) append(coordinates, p);
   collide::buffer<S> mesh_memory, point_memory;
   collide::detector<BroadPhase, collide::karabassi<Precision>, Space, S> detector(space);
   detector.build(collide::triangle_soup(in_space(space, corners, mesh_memory), mesh.size()));

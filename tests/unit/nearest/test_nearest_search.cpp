@@ -6,6 +6,10 @@
 #include <numeric>
 #include <vector>
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 #include <doctest/doctest.h>
 
 #include <collide/detail/nearest/nearest_search.hpp>
@@ -183,25 +187,58 @@ TEST_CASE_TEMPLATE("nearest: general position, slivers, segments and points", S,
   check(all);
 }
 
-TEST_CASE_TEMPLATE("nearest: coordinates of all exponents", S, float, double) {
-  tests::dice roll(3);
-  tally all;
-  auto const most = std::numeric_limits<S>::max_exponent, least = std::numeric_limits<S>::min_exponent - 20;
-  for (int i = 0; i < (sizeof(S) == 4 ? 500 : 150); ++i) {
-    bool const mixed = roll.integer(0, 1) == 0;
-    int const all_of = roll.integer(least, most - 4);
+namespace {
+
+/// Triangles and a point with coordinates of all exponents, or of one.
+template <class S>
+struct any_exponents {
+  bool mixed;
+  triangles<S> mesh;
+  collide::vec3<S> point;
+
+  explicit any_exponents(tests::dice& roll) : mixed(roll.integer(0, 1) == 0) {
+    auto const most = std::numeric_limits<S>::max_exponent, least = std::numeric_limits<S>::min_exponent - 20;
+    int const all_of = roll.integer(least, roll.integer(0, 2) == 0 ? least + 40 : most - 4);
     auto const number = [&] {
       int const exponent = mixed ? roll.integer(least, most - 4) : all_of;
       return static_cast<S>(std::ldexp(roll.integer(0, 2) == 0 ? roll.integer(-2, 2) : roll.uniform(-2, 2), exponent));
     };
     auto const corner = [&] { return collide::vec3<S>(number(), number(), number()); };
-    triangles<S> mesh;
     for (int k = 0; k < 3; ++k) mesh.push_back({corner(), corner(), corner()});
     mesh.push_back({mesh[0].b, mesh[0].a, corner()});
-    judge<S>(mesh, corner(), roll, all, !mixed);
+    point = corner();
+  }
+};
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("nearest: coordinates of all exponents", S, float, double) {
+  tests::dice roll(3);
+  tally all;
+  for (int i = 0; i < (sizeof(S) == sizeof(float) ? 300 : 60); ++i) {
+    any_exponents<S> const c(roll);
+    judge<S>(c.mesh, c.point, roll, all, !c.mixed);
   }
   check(all);
 }
+
+#if defined(__SSE__)
+TEST_CASE_TEMPLATE("nearest: the same triangle where the processor takes subnormal numbers for zero", S, float,
+                   double) {
+  tests::dice roll(4);
+  int wrong = 0;
+  for (int i = 0; i < (sizeof(S) == sizeof(float) ? 1000 : 60); ++i) {
+    any_exponents<S> const c(roll);
+    auto const expected = search(c.mesh, c.point).triangle;
+    unsigned const mode = _mm_getcsr();
+    _mm_setcsr(mode | 0x8040);
+    auto const found = search(c.mesh, c.point).triangle;
+    _mm_setcsr(mode);
+    wrong += found != expected;
+  }
+  CHECK(wrong == 0);
+}
+#endif
 
 TEST_CASE_TEMPLATE("nearest: points around closed meshes, at the origin and far from it", S, float, double) {
   for (double const offset : {0.0, 1e2, 1e5}) {

@@ -32,23 +32,6 @@ COLLIDE_HD_NOINLINE int compare_distances(triangle<S> const& s, triangle<S> cons
   return compare_distances(widened(s), widened(t), widened(point));
 }
 
-/// Corner `i`, from 0 to 2.
-template <class S>
-COLLIDE_HD_INLINE vec3<S> corner_of(triangle<S> const& t, int i) {
-  return i == 0 ? t.a : (i == 1 ? t.b : t.c);
-}
-
-/// Equal numbers, decided on bits: subnormal numbers that are flushed to zero compare as if they were equal.
-template <class S>
-COLLIDE_HD_INLINE bool is_same_point(vec3<S> const& p, vec3<S> const& q) {
-  bool same = true;
-  for (int k = 0; k < 3; ++k) {
-    auto const x = to_bits(p[k]), y = to_bits(q[k]);
-    same = same & ((x == y) | (((x | y) & ~ieee_traits<S>::sign_mask) == 0));
-  }
-  return same;
-}
-
 /// True if both feet are one corner, or one edge: then both triangles are as near.
 template <class S>
 COLLIDE_HD_INLINE bool is_same_foot(triangle<S> const& s, int foot_of_s, triangle<S> const& t, int foot_of_t) {

@@ -32,6 +32,23 @@ COLLIDE_HD_INLINE vec3<double> difference_in_double(vec3<S> const& to, vec3<S> c
   return d;
 }
 
+/// Corner `i`, from 0 to 2.
+template <class S>
+COLLIDE_HD_INLINE vec3<S> corner_of(triangle<S> const& t, int i) {
+  return i == 0 ? t.a : (i == 1 ? t.b : t.c);
+}
+
+/// Equal numbers, decided on bits: subnormal numbers that are flushed to zero compare as if they were equal.
+template <class S>
+COLLIDE_HD_INLINE bool is_same_point(vec3<S> const& p, vec3<S> const& q) {
+  bool same = true;
+  for (int k = 0; k < 3; ++k) {
+    auto const x = to_bits(p[k]), y = to_bits(q[k]);
+    same = same & ((x == y) | (((x | y) & ~ieee_traits<S>::sign_mask) == 0));
+  }
+  return same;
+}
+
 /// Bounds of the distance of a finite triangle from a finite point. False if the triangle is farther than `reach`, with
 /// nothing but `low` set.
 template <class S>
@@ -78,6 +95,10 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
   w = smaller(saturate(mul(w, inverse)), 1 - v);
   auto const combined = [&](int k) { return a[k] + fused(v, ab[k], mul(w, ac[k])); };
   vec3<double> const q = {combined(0), combined(1), combined(2)};
+  if (foot < 3 && is_same_point(point, corner_of(t, foot))) {
+    found = {0, 0, foot, true};
+    return true;
+  }
   double const error = mul(64 * u, size), beyond = reach + error;
   found.low = 0;
   auto const is_separating = [&](vec3<double> const& g) {

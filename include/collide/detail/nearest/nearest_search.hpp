@@ -64,7 +64,8 @@ class exact_nearest_search {
 
   COLLIDE_HD S squared_bound() const { return high_ < 0 ? S(-1) : rounded_up<S>(mul(high_, high_)); }
 
-  /// Also sets `direction`, from the closest point to the point, but for the length; on the triangle its normal, or 0.
+  /// The nearest triangle. `direction` is then set: from the closest point to the point, but for the length; on the
+  /// triangle its normal, or 0.
   COLLIDE_HD nearest_triangle<S> result(vec3<double>& direction) const {
     if (number_ == no_id || !is_within_reach()) return no_nearest_triangle<S>();
     triangle<double> const t = widened(corners_);

@@ -11,14 +11,16 @@
 
 namespace collide::detail {
 
-/// A weight times some numbers.
-struct exact_product {
-  static constexpr int most_factors = 10;
+/// A weight times at most `Factors` numbers.
+template <int Factors>
+struct weighted_product {
+  static constexpr int most_factors = Factors;
 
   std::int8_t weight;  ///< -4, -2, -1, 1, 2 or 4
   std::uint8_t count;
-  std::uint8_t factors[most_factors];
+  std::uint8_t factors[Factors];
 };
+using exact_product = weighted_product<6>;
 
 class exact_products {
  public:
@@ -55,9 +57,10 @@ class difference_of_products {
     COLLIDE_HD iterator(difference_of_products const* of, int side)
         : of_(of), side_(side), first_(of->factors_[side].begin), second_(of->factors_[side + 1].begin) {}
 
-    COLLIDE_HD exact_product operator*() const {
-      exact_product both = *first_;
-      both.weight = static_cast<std::int8_t>(both.weight * (side_ == 0 ? second_->weight : -second_->weight));
+    COLLIDE_HD weighted_product<10> operator*() const {
+      int const weight = first_->weight * (side_ == 0 ? second_->weight : -second_->weight);
+      weighted_product<10> both{static_cast<std::int8_t>(weight), 0, {}};
+      for (int i = 0; i < first_->count; ++i) both.factors[both.count++] = first_->factors[i];
       for (int i = 0; i < second_->count; ++i) both.factors[both.count++] = second_->factors[i];
       return both;
     }

@@ -23,11 +23,11 @@ class exact_sum {
  public:
   /// The sum; -1 for one that is negative, if only the sign is wanted. With all combinations of the components of
   /// factors, at most 2^20 products.
-  template <class Products>
+  template <class Products = exact_products>
   COLLIDE_HD_NOINLINE static scaled_double of(exact_numbers const& numbers, Products const& products,
                                               bool with_value = true) {
     exact_sum sum(numbers);
-    for (exact_product const& product : products) sum.extend_exponent_range(product);
+    for (auto const& product : products) sum.extend_exponent_range(product);
     bool negative = false;
     while (sum.accumulate(products, negative ? -1 : 1)) {
       if (!with_value) return {-1, 0};
@@ -44,7 +44,7 @@ class exact_sum {
   }
 
   /// -1, 0 or 1.
-  template <class Products>
+  template <class Products = exact_products>
   static COLLIDE_HD int sign_of(exact_numbers const& numbers, Products const& products) {
     double const sum = of(numbers, products, false).value;
     return sum < 0 ? -1 : (sum > 0 ? 1 : 0);
@@ -63,7 +63,8 @@ class exact_sum {
 
   COLLIDE_HD explicit exact_sum(exact_numbers const& numbers) : numbers_(numbers) {}
 
-  COLLIDE_HD void extend_exponent_range(exact_product const& product) {
+  template <class Product>
+  COLLIDE_HD void extend_exponent_range(Product const& product) {
     int low = 0, high = 2;  // for a weight of 4
     for (int i = 0; i < product.count; ++i) {
       components_view const f = numbers_[product.factors[i]];
@@ -89,7 +90,7 @@ class exact_sum {
     top_ = 0;
     for (begin_ = 0; begin_ < count; begin_ += window_digits) {
       for (int i = 0; i < window_digits; ++i) digits_[i] = 0;
-      for (exact_product const& product : products) add(product, sign * product.weight);
+      for (auto const& product : products) add(product, sign * product.weight);
       for (int i = 0; i < window_digits; ++i) {
         std::int64_t const sum = digits_[i] + carry;
         carry = sum >> 32;
@@ -108,14 +109,15 @@ class exact_sum {
   }
 
   /// Adds the products of all combinations of the components of the factors.
-  COLLIDE_HD void add(exact_product const& of, int weight) {
+  template <class Product>
+  COLLIDE_HD void add(Product const& of, int weight) {
     int const magnitude = weight < 0 ? -weight : weight, magnitude_exponent = magnitude / 2;  // 0, 1, 2 of 1, 2, 4
     int combinations = 1;
     for (int i = 0; i < of.count; ++i) combinations *= numbers_[of.factors[i]].count;
     for (int c = 0; c < combinations; ++c) {
       int rest = c, exponent = -lowest_ + magnitude_exponent, words = 1;
       bool negative = weight < 0;
-      std::uint32_t product[2 * exact_product::most_factors + 1] = {1};
+      std::uint32_t product[2 * Product::most_factors + 1] = {1};
       for (int i = 0; i < of.count; ++i) {
         components_view const components = numbers_[of.factors[i]];
         dyadic const f = components[rest % components.count];

@@ -111,8 +111,8 @@ class exact_triangle {
     return i;
   }
 
-  /// The square of the distance of a foot is a quotient of two sums of products. This one is the denominator: the
-  /// squared length of the edge or of the normal, or 1.
+  /// The square of the distance of a foot is a quotient of two sums of products. This is the denominator: the squared
+  /// length of the edge or of the normal, or 1.
   COLLIDE_HD void add_length(exact_products& sum, int foot) const {
     int const e = edge(feature_index_of(foot));
     if (foot < 3) {
@@ -124,7 +124,7 @@ class exact_triangle {
     }
   }
 
-  /// And this one is the numerator.
+  /// The numerator of that quotient.
   COLLIDE_HD void add_distance_squared(exact_products& sum, int weight, int foot) const {
     int const v = corner(feature_index_of(foot)), e = edge(feature_index_of(foot));
     if (foot < 3) {
@@ -136,7 +136,7 @@ class exact_triangle {
     }
   }
 
-  /// The values of these two.
+  /// The denominator, and the numerator, as numbers.
   COLLIDE_HD_NOINLINE scaled_double length(int foot) const {
     exact_products sum;
     add_length(sum, foot);

@@ -28,6 +28,17 @@ COLLIDE_HD_NOINLINE inline int closest_foot_in_integers(triangle<double> const& 
   return exact_triangle(exact_numbers_of(memory.table(), t, resting_at(point), {0, 0})).closest_foot();
 }
 
+/// -1 or 1: the sign of a * b - c * d, none of them negative; 0 if that takes more digits than these numbers have.
+COLLIDE_HD inline int compare_roughly(scaled_double const& a, scaled_double const& b, scaled_double const& c,
+                                      scaled_double const& d) {
+  double const left = mul(mul(a.value, 0x1p-64), mul(b.value, 0x1p-64)),
+               right = mul(mul(c.value, 0x1p-64), mul(d.value, 0x1p-64));
+  if (left == 0 || right == 0) return left > right ? 1 : (left < right ? -1 : 0);
+  int const shift = larger(-100, smaller(100, a.exponent + b.exponent - c.exponent - d.exponent));
+  double const shifted = times_power(left, shift), difference = shifted - right, error = mul(right, 0x1p-48);
+  return difference > error ? 1 : (difference < -error ? -1 : 0);
+}
+
 /// -1 if the point is nearer to s than to t, 0 if it is as near, else 1. Finite coordinates.
 COLLIDE_HD_NOINLINE inline int compare_distances_in_integers(triangle<double> const& s, triangle<double> const& t,
                                                              vec3<double> const& point) {
@@ -37,6 +48,9 @@ COLLIDE_HD_NOINLINE inline int compare_distances_in_integers(triangle<double> co
   add_edges(numbers, t);
   exact_triangle const of_s(numbers), of_t(numbers, exact_second_slot::corner, exact_second_slot::edge);
   int const foot_of_s = of_s.closest_foot(), foot_of_t = of_t.closest_foot();
+  int const rough = compare_roughly(of_s.distance_squared(foot_of_s), of_t.length(foot_of_t),
+                                    of_t.distance_squared(foot_of_t), of_s.length(foot_of_s));
+  if (rough != 0) return rough;
   exact_products square_of_s, length_of_s, square_of_t, length_of_t;
   of_s.add_distance_squared(square_of_s, 1, foot_of_s);
   of_s.add_length(length_of_s, foot_of_s);

@@ -45,7 +45,7 @@ COLLIDE_HD_INLINE int side_of_line(vec3<double> const& a, vec3<double> const& b,
   return sign_of_cross_in_integers({b.x(), b.y(), p.x(), p.y()}, {a.x(), a.y(), a.x(), a.y()});
 }
 
-/// The same once p is moved; 0 only if a and b have the same x and y.
+/// The side once p is moved; 0 only if a and b have the same x and y.
 COLLIDE_HD_INLINE int side_of_line_moved(int side, vec3<double> const& a, vec3<double> const& b) {
   if (side != 0) return side;
   return a.y() != b.y() ? (b.y() < a.y() ? 1 : -1) : sign_of(b.x() - a.x());

@@ -94,10 +94,11 @@ template <class Index, class NarrowPhase, class Space, class S>
 template <class F>
 void query_pass<Index, NarrowPhase, Space, S>::search(F const& f) const {
   static_assert(is_valid<index_for_each_nearer, Index, S> && is_valid<index_for_each_on_ray, Index, S>,
-                "collide: nearest, contains and signed_distance need a broad phase that finds what is near, at any "
+                "collide: nearest, contains, signed_distance and winding_number need a broad phase that finds what is "
+                "near, at any "
                 "distance: bvh, or all_pairs");
   static_assert(is_discrete<NarrowPhase, S>,
-                "collide: nearest, contains and signed_distance are for points and spheres that rest");
+                "collide: nearest, contains, signed_distance and winding_number are for points and spheres that rest");
   using ref_type = decltype(index.ref());
   ref_type const ref = mesh.size() != 0 ? index.ref() : ref_type{};
   space.for_each(spheres.size(), search_of_sphere<S, ref_type, F>{ref, mesh, spheres, f});

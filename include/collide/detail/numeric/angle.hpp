@@ -1,0 +1,27 @@
+/// \file
+/// The angle of a vector in the plane with the same bits on host and device: fixed operations, each rounded on its own.
+#pragma once
+
+#include <collide/detail/numeric/rounding.hpp>
+
+namespace collide::detail {
+
+/// The angle of (x, y) in radians, from -pi to pi, to within 2^-50; 0 of (0, 0). Finite numbers whose quotient does not
+/// matter where it underflows.
+COLLIDE_HD_INLINE double angle_of(double y, double x) {
+  constexpr double pi = 3.141592653589793;
+  double const across = y < 0 ? -y : y, along = x < 0 ? -x : x;
+  double const least = smaller(across, along), most = larger(across, along);
+  if (!(most > 0)) return 0;
+  // atan(t) = pi/4 + atan((t - 1) / (t + 1)), where t is above tan(pi/8)
+  bool const steep = least > mul(most, 0.41421356237309503);
+  double const t = steep ? div(least - most, least + most) : div(least, most), tt = mul(t, t);
+  double series = 0;
+  for (int k = 43; k > 0; k -= 2) series = div(1.0, k) - mul(tt, series);
+  double angle = (steep ? pi / 4 : 0) + mul(t, series);
+  if (across > along) angle = pi / 2 - angle;
+  if (x < 0) angle = pi - angle;
+  return y < 0 ? -angle : angle;
+}
+
+}  // namespace collide::detail
