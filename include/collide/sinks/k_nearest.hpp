@@ -27,6 +27,9 @@ class k_nearest_search {
     one.consider(mesh_[number], number);
     nearest_triangle<S> const found = one.result();
     if (found.triangle == no_id) return;
+    for (int i = 0; i < size_; ++i) {
+      if (numbers_[i] == number) return;  // it may come more than once
+    }
     int place = size_;
     for (; place > 0 && comes_before(found.distance, number, place - 1); --place) {
       if (place == k_) continue;
