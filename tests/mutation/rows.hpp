@@ -24,19 +24,51 @@ struct row {
   collide::vec3<S> at(std::size_t i) const { return {numbers[i], numbers[i + 1], numbers[i + 2]}; }
 };
 
+/// Four triangles and a point.
+template <class S>
+struct nearest_row {
+  static constexpr std::size_t count = 4;
+  enum side : int { outside, inside, none };
+
+  std::array<S, 9 * count + 3> numbers;  ///< corners, point
+  double distance;                       ///< of the nearest, exact, rounded once
+  unsigned features;                     ///< of the closest point, as the oracle's bits
+  int nearest;                           ///< which one it is, of equally near ones the first
+  int side;                              ///< of the mesh of the four, if that is closed
+
+  collide::triangle<S> triangle(std::size_t i) const { return {at(9 * i), at(9 * i + 3), at(9 * i + 6)}; }
+  collide::vec3<S> point() const { return at(9 * count); }
+
+ private:
+  collide::vec3<S> at(std::size_t i) const { return {numbers[i], numbers[i + 1], numbers[i + 2]}; }
+};
+
 /// The file of the rows of `S`.
 template <class S>
 std::string path_of(std::string const& folder) {
   return folder + (sizeof(S) == 4 ? "/rows.float" : "/rows.double");
 }
+template <class S>
+std::string path_of_nearest(std::string const& folder) {
+  return path_of<S>(folder) + ".nearest";
+}
+
+template <class Row>
+std::vector<Row> read_all(std::string const& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<Row> rows;
+  for (Row r; file.read(reinterpret_cast<char*>(&r), sizeof r);) rows.push_back(r);
+  if (rows.empty()) throw std::runtime_error(path + ": no rows");
+  return rows;
+}
 
 template <class S>
 std::vector<row<S>> read_rows(std::string const& folder) {
-  std::ifstream file(path_of<S>(folder), std::ios::binary);
-  std::vector<row<S>> rows;
-  for (row<S> r; file.read(reinterpret_cast<char*>(&r), sizeof r);) rows.push_back(r);
-  if (rows.empty()) throw std::runtime_error(path_of<S>(folder) + ": no rows");
-  return rows;
+  return read_all<row<S>>(path_of<S>(folder));
+}
+template <class S>
+std::vector<nearest_row<S>> read_nearest_rows(std::string const& folder) {
+  return read_all<nearest_row<S>>(path_of_nearest<S>(folder));
 }
 
 }  // namespace tests
