@@ -19,6 +19,7 @@
 #include <collide/all_pairs.cuh>
 #include <collide/automatic.cuh>
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
 #include <collide/upload.hpp>
 
 #include "io/scenes.hpp"
@@ -125,13 +126,16 @@ void add(io::scene_kind const& kind, std::size_t part, std::string const& broad,
 /// Every scene; `all_pairs` where it has at most so many pairs to decide.
 template <class Space>
 void add_scenes(std::size_t part, double most_decided, Space space) {
-  for (auto const& kind : io::measured_scenes) {
+  auto const add_scene = [&](io::scene_kind const& kind) {
     add<collide::bucket>(kind, part, "bucket", space);
+    add<collide::bvh>(kind, part, "bvh", space);
     add<collide::automatic>(kind, part, "automatic", space);
     double const spheres = static_cast<double>(part_of(kind.spheres, part));
     double const triangles = static_cast<double>(part_of(kind.triangles, part));
     if (spheres * triangles <= most_decided) add<collide::all_pairs>(kind, part, "all_pairs", space);
-  }
+  };
+  for (auto const& kind : io::measured_scenes) add_scene(kind);
+  for (auto const& kind : io::needle_scenes) add_scene(kind);
 }
 
 }  // namespace

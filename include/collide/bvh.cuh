@@ -24,19 +24,22 @@ struct tree_policy {
       if (mesh.size() >= tree_node::leaf) throw error("collide: bvh: a mesh has at most 2^31 - 1 triangles");
       mesh_ = mesh;
       has_tree_ = false;
+      before_ = nullptr;
       if constexpr (bvh_tuning<Space>::divides_by_area) {
         has_tree_ = divided_.build(space, mesh, nodes_);
+        before_ = divided_.before();
       } else {
         packed_.build(space, mesh, nodes_);
         has_tree_ = true;
       }
     }
 
-    tree_ref<S> ref() const { return {mesh_, has_tree_ ? nodes_.data() : nullptr}; }
+    tree_ref<S> ref() const { return {mesh_, has_tree_ ? nodes_.data() : nullptr, before_}; }
 
    private:
     mesh_view<S> mesh_;
     bool has_tree_ = false;
+    boxes_before const* before_ = nullptr;
     buffer<tree_node> nodes_;
     sah_tree<S> divided_;
     packed_tree<S> packed_;

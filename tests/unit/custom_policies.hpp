@@ -1,5 +1,5 @@
 /// \file
-/// A broad phase of a user, in a space: what it finds is what all pairs have.
+/// A broad phase that enumerates, in a space: what it finds is what all pairs have.
 #pragma once
 
 #include <limits>
@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include <collide/all_pairs.cuh>
+#include <collide/bvh.cuh>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/extend.hpp>
@@ -70,10 +71,10 @@ std::vector<S> positions_after_steps(Space const& space, collide::mesh_view<S> m
   return simulation.template to_host<collide::position>();
 }
 
-template <class NarrowPhase, class S, class Space>
+template <class Broad, class NarrowPhase, class S, class Space>
 void check_custom_simulation(Space const& space, collide::mesh_view<S> mesh, collide::sphere_view<S> spheres,
                              S const* velocities) {
-  using custom = collide::detector<collide::per_sphere<bounding_spheres>, NarrowPhase, Space, S>;
+  using custom = collide::detector<Broad, NarrowPhase, Space, S>;
   using expected = collide::detector<collide::all_pairs, NarrowPhase, Space, S>;
   auto const a = positions_after_steps<S, custom>(space, mesh, spheres, velocities);
   auto const b = positions_after_steps<S, expected>(space, mesh, spheres, velocities);
@@ -81,29 +82,29 @@ void check_custom_simulation(Space const& space, collide::mesh_view<S> mesh, col
   CHECK(b != positions_after_steps<S, expected>(space, {}, spheres, velocities));  // some touch the mesh
 }
 
-template <class S, class Space>
+/// `Broad` is a broad phase that is made of one that only enumerates.
+template <class Broad, class S, class Space>
 void check_custom_broad_phase(Space const& space) {
   crowd<S> made(300, 700);
   array_in<Space, S> const triangles(space, made.triangles), centres(space, made.centres), radii(space, made.radii),
       motions(space, made.motions);
   auto const mesh = collide::triangle_soup(triangles.data(), 300);
   auto const spheres = collide::spheres_xyz(centres.data(), 700, radii.data());
-  using custom = collide::per_sphere<bounding_spheres>;
   auto const expected = pairs_of<collide::all_pairs, collide::karabassi<>, S>(space, mesh, spheres);
   CHECK(expected.size() > 400);
-  CHECK((pairs_of<custom, collide::karabassi<>, S>(space, mesh, spheres) == expected));
+  CHECK((pairs_of<Broad, collide::karabassi<>, S>(space, mesh, spheres) == expected));
 
   auto const moving = collide::with_displacements(spheres, motions.data());
   auto const swept = pairs_of<collide::all_pairs, collide::karabassi_swept<>, S>(space, mesh, moving);
   CHECK(swept.size() > expected.size());
-  CHECK((pairs_of<custom, collide::karabassi_swept<>, S>(space, mesh, moving) == swept));
+  CHECK((pairs_of<Broad, collide::karabassi_swept<>, S>(space, mesh, moving) == swept));
 
   std::vector<S> finite = made.centres;
   finite[7] = 0;
   array_in<Space, S> const starts(space, finite);
   auto const particles = collide::spheres_xyz(starts.data(), 700, S(0.03));
-  check_custom_simulation<collide::karabassi<>, S>(space, mesh, particles, motions.data());
-  check_custom_simulation<collide::karabassi_swept<>, S>(space, mesh, particles, motions.data());
+  check_custom_simulation<Broad, collide::karabassi<>, S>(space, mesh, particles, motions.data());
+  check_custom_simulation<Broad, collide::karabassi_swept<>, S>(space, mesh, particles, motions.data());
 }
 
 }  // namespace tests

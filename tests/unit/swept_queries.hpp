@@ -14,6 +14,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/earliest.hpp>
 #include <collide/sinks/impacts.hpp>
@@ -153,7 +154,7 @@ void check_motion(Space const& space, BroadPhase const& broad, moving_scene<S> c
                    [](auto const& x, auto const& y) { return x.triangle == y.triangle && x.time == y.time; }));
 }
 
-/// Both broad phases in a space, on scenes of many kinds.
+/// Each broad phase in a space, on scenes of many kinds.
 template <class S, class Space, class Precision = collide::exact>
 void check_motions(Space const& space) {
   using narrow_phase = collide::karabassi_swept<Precision>;
@@ -167,6 +168,7 @@ void check_motions(Space const& space) {
     CHECK(expected.size() > 20);
     check_motion<narrow_phase>(space, collide::all_pairs(), made, expected);
     check_motion<narrow_phase>(space, options, made, expected);
+    check_motion<narrow_phase>(space, collide::bvh(), made, expected);
   };
   for (double const longest : {0.0, 0.1, 3.0, 30.0, 1000.0}) {
     motion m;

@@ -6,6 +6,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/csr.hpp>
 #include <collide/sinks/earliest.hpp>
@@ -115,6 +116,7 @@ TEST_CASE("allocation: none as hits grow, in sinks with memory of their own and 
   for (int const threads : {1, 2}) {
     check_spheres_at_rest<collide::all_pairs>(threads);
     check_spheres_at_rest<collide::bucket>(threads);
+    check_spheres_at_rest<collide::bvh>(threads);
   }
 }
 

@@ -13,6 +13,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bvh.cuh>
+#include <collide/sinks/k_nearest.hpp>
 #include <collide/sinks/nearest.hpp>
 #include <collide/upload.hpp>
 
@@ -109,6 +110,47 @@ void check_nearest(Space const& space) {
       CHECK(n.distance == std::numeric_limits<S>::infinity());
       CHECK(std::isnan(n.point[2]));
     }
+  }
+}
+
+/// The k nearest, one after the other: each time the nearest of those that are left.
+template <class Broad, class Space, class S>
+void check_k_nearest(Space const& space) {
+  constexpr S far = std::numeric_limits<S>::infinity();
+  for (auto const& made : hard_meshes<S>(60)) {
+    if (made.size() > 100) continue;
+    CAPTURE(made.name);
+    auto const points = points_around(made, 50);
+    auto const mesh = collide::upload(space, made.view());
+    auto const there = collide::upload(space, collide::spheres_xyz(points.data(), points.size() / 3, S(0)));
+    collide::detector<Broad, collide::karabassi<>, Space, S> detector(space);
+    detector.build(mesh.view());
+    for (int const k : {1, 3, 32}) {
+      std::vector<collide::nearest_triangle<S>> expected;
+      for (std::size_t i = 0; i < points.size(); i += 3) {
+        std::vector<bool> taken(made.size());
+        for (int j = 0; j < k; ++j) {
+          collide::detail::nearest_search<S, collide::exact> search({points[i], points[i + 1], points[i + 2]}, far);
+          for (collide::id t = 0; t < made.size(); ++t) {
+            if (!taken[t]) search.consider(made.view()[t], t);
+          }
+          expected.push_back(search.result());
+          if (expected.back().triangle != collide::no_id) taken[expected.back().triangle] = true;
+        }
+      }
+      collide::k_nearest<S> sink(k);
+      CHECK(same_bytes(detector.query(there.view().centres(), sink).to_host(), expected));
+      CHECK(sink.rows() == points.size() / 3);
+    }
+    auto const few = detector.query(there.view().centres(), collide::k_nearest<S>(4, made.extent() / 8)).to_host();
+    auto const first = detector.query(there.view().centres(), collide::nearest<S>(made.extent() / 8)).to_host();
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < few.size(); ++i) {
+      bool const ordered = i % 4 == 0 ? few[i].triangle == first[i / 4].triangle
+                                      : few[i].triangle == collide::no_id || few[i - 1].distance <= few[i].distance;
+      wrong += !ordered || (few[i].triangle != collide::no_id && few[i].distance > made.extent() / 8);
+    }
+    CHECK(wrong == 0);
   }
 }
 

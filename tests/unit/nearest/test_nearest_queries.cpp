@@ -11,6 +11,12 @@ TEST_CASE_TEMPLATE("nearest: what a loop over all triangles finds, to the last b
   tests::check_nearest<all_pairs, host, S>(host(1));
 }
 
+TEST_CASE_TEMPLATE("k nearest: each is the nearest of those that are left, to the last bit", S, float, double) {
+  tests::check_k_nearest<bvh, host, S>(host(2));
+  tests::check_k_nearest<bvh, in_lockstep, S>(in_lockstep(1));
+  tests::check_k_nearest<all_pairs, host, S>(host(1));
+}
+
 TEST_CASE("nearest: plain arithmetic finds what is about as near") {
   tests::check_plain_nearest<collide::single_precision, host, float>(host(1));
   tests::check_plain_nearest<collide::double_precision, host, float>(host(1));
@@ -28,6 +34,9 @@ TEST_CASE("nearest: a largest distance that is none is refused") {
   CHECK_THROWS_WITH_AS(collide::nearest<float>(-1), "collide: nearest: the largest distance is negative or NaN",
                        collide::error);
   CHECK_THROWS_AS(collide::nearest<double>(std::nan("")), collide::error);
+  CHECK_THROWS_AS(collide::k_nearest<double>(3, std::nan("")), collide::error);
+  CHECK_THROWS_WITH_AS(collide::k_nearest<float>(0), "collide: k_nearest: k is not from 1 to 32", collide::error);
+  CHECK_THROWS_AS(collide::k_nearest<float>(33), collide::error);
 }
 
 TEST_CASE("nearest: points go to other sinks as spheres of radius 0") {

@@ -9,6 +9,11 @@ TEST_CASE_TEMPLATE("nearest: what a loop over all triangles finds, to the last b
   tests::check_nearest<all_pairs, cuda_shared, S>(cuda_shared());
 }
 
+TEST_CASE_TEMPLATE("k nearest: each is the nearest of those that are left, to the last bit, on CUDA", S, float,
+                   double) {
+  tests::check_k_nearest<bvh, cuda_shared, S>(cuda_shared());
+}
+
 TEST_CASE("nearest: plain arithmetic finds what is about as near, on CUDA") {
   tests::check_plain_nearest<collide::single_precision, cuda_shared, float>(cuda_shared());
   tests::check_plain_nearest<collide::double_precision, cuda_shared, double>(cuda_shared());

@@ -14,6 +14,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/polydisperse.hpp>
@@ -373,7 +374,7 @@ void check_closed_mesh(Space const& space, std::size_t steps, double speed, std:
   CHECK(worst <= 1e-5);
 }
 
-/// The same bits on every run, with any number of threads, and with both broad phases.
+/// The same bits on every run, with any number of threads, and with each broad phase.
 template <class NarrowPhase, class Space, class Other>
 void check_determinism(Space const& space, Other const& other) {
   auto const run = [](auto const& there, auto broad) {
@@ -388,6 +389,7 @@ void check_determinism(Space const& space, Other const& other) {
   auto const first = run(space, collide::bucket());
   CHECK((run(space, collide::bucket()) == first));
   CHECK((run(other, collide::bucket()) == first));
+  CHECK((run(space, collide::bvh()) == first));
   if constexpr (Space::host_accessible) CHECK((run(space, collide::all_pairs()) == first));
 }
 

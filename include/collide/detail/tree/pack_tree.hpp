@@ -102,6 +102,7 @@ COLLIDE_HD_INLINE void place_node(tree_node& node, std::size_t i, std::size_t bo
   node.there = boxes < tree_node::width ? (1u << boxes) - 1 : 0xffu;
   node.parent = static_cast<std::uint32_t>(first_above + i / tree_node::width);
   node.slot = static_cast<std::uint32_t>(i % tree_node::width);
+  node.continues = 0;
 }
 
 /// Kernel body of `for_each` over the nodes of the lowest level.

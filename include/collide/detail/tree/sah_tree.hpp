@@ -12,6 +12,7 @@
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/tree/tree_node.hpp>
+#include <collide/detail/tree/triangle_pieces.hpp>
 #include <collide/memory.hpp>
 
 // the numbers of elements of small arrays are int
@@ -48,10 +49,10 @@ struct box_ends {
   }
 };
 
-/// A triangle while the tree is made.
+/// A triangle, or a piece of one, while the tree is made.
 struct boxed_triangle {
   box_ends box;
-  id triangle;
+  id triangle;  ///< or the number of the piece
 
   float middle(int axis) const { return box.middle(axis); }
 };
@@ -192,17 +193,19 @@ class sah_tree {
   /// Returns false if no triangle is finite: there is no tree then.
   template <class Space>
   bool build(Space& space, mesh_view<S> const& mesh, buffer<tree_node>& memory) {
-    std::size_t const n = mesh.size();
+    std::size_t const cut = pieces_.build(space, mesh), n = cut != 0 ? cut : mesh.size();
+    is_cut_ = cut != 0;
     all_ = triangles_.reserve(space.resource(), n);
     vec3<S> const origin = tree_origin(mesh);
     space.for_each(n, [&](std::size_t i) {
-      all_[i] = {box_ends::of(tree_box_of(mesh[i], origin)), static_cast<id>(i)};
+      all_[i] = {box_ends::of(is_cut_ ? pieces_.data()[i].box : tree_box_of(mesh[i], origin)), static_cast<id>(i)};
     });
     auto const* const end =
         std::partition(all_, all_ + n, [](boxed_triangle const& t) { return !t.box.box().is_empty(); });
     auto const finite = static_cast<std::uint32_t>(end - all_);
     if (finite == 0) return false;
     nodes_ = memory.reserve(space.resource(), most_nodes(finite));
+    if (is_cut_) before_.reserve(space.resource(), most_nodes(finite));
     used_ = 1;
     tasks_ = 0;
     nodes_[0].parent = nodes_[0].slot = 0;
@@ -212,6 +215,9 @@ class sah_tree {
     for_each_block(space, tasks_, [&](std::size_t i) { build_node(waiting_[i], false); });
     return true;
   }
+
+  /// Of each node; null if no triangle is cut.
+  boxes_before const* before() const { return is_cut_ ? before_.data() : nullptr; }
 
  private:
   static constexpr int width = tree_node::width, most_tasks = 1024, most_uneven = 40;  // levels
@@ -234,17 +240,19 @@ class sah_tree {
       return;
     }
     tree_node& node = nodes_[t.node];
+    node.continues = 0;
     triangle_range parts[width];
     int n = 0;
     if (t.range.size() <= width) {
-      for (std::uint32_t i = t.range.begin; i < t.range.end; ++i)
-        node.set(n++, all_[i].box.box(), all_[i].triangle | tree_node::leaf);
+      for (std::uint32_t i = t.range.begin; i < t.range.end; ++i) set_leaf(t.node, n++, all_[i]);
     } else {
       n = divide(t, parts);
       for (int k = 0; k < n; ++k) {
-        bool const one = parts[k].size() == 1;
-        std::uint32_t const child = one ? all_[parts[k].begin].triangle | tree_node::leaf : fetch_add(&used_, 1u);
-        node.set(k, parts[k].box.box(), child);
+        if (parts[k].size() == 1) {
+          set_leaf(t.node, k, all_[parts[k].begin]);
+        } else {
+          node.set(k, parts[k].box.box(), fetch_add(&used_, 1u));
+        }
       }
     }
     node.there = (1u << n) - 1;
@@ -256,6 +264,15 @@ class sah_tree {
       nodes_[child].slot = static_cast<std::uint32_t>(k);
       build_node({parts[k], child, t.level + 1}, postpones);
     }
+  }
+
+  void set_leaf(std::uint32_t number, int k, boxed_triangle const& t) {
+    tree_node& node = nodes_[number];
+    triangle_piece const* const piece = is_cut_ ? pieces_.data() + t.triangle : nullptr;
+    node.set(k, t.box.box(), (is_cut_ ? piece->triangle : t.triangle) | tree_node::leaf);
+    if (!is_cut_ || piece->before == 0) return;
+    node.continues |= 1u << k;
+    before_.data()[number].of[k] = (piece - 1)->box;
   }
 
   /// Divides a range into as many as a node has room for, always the one with the largest surface.
@@ -278,6 +295,9 @@ class sah_tree {
     return n;
   }
 
+  triangle_pieces<S> pieces_;
+  buffer<boxes_before> before_;
+  bool is_cut_ = false;
   buffer<boxed_triangle> triangles_;
   boxed_triangle* all_ = nullptr;
   tree_node* nodes_ = nullptr;

@@ -75,6 +75,14 @@ struct tree_point {
   }
 };
 
+/// True if a box and that of a point or a sphere have a point in common: told without arithmetic, so alike wherever it
+/// is asked.
+COLLIDE_HD_INLINE bool overlap(aabb<float> const& box, tree_point const& other) {
+  bool apart = false;
+  for (int i = 0; i < 3; ++i) apart = apart | (box.lower[i] > other.upper[i]) | (box.upper[i] < other.lower[i]);
+  return !apart;
+}
+
 /// A node: boxes next to each other, number by number, for the processor's vector unit; and what is in them.
 struct alignas(32) tree_node {
   static constexpr int width = 8;
@@ -82,9 +90,10 @@ struct alignas(32) tree_node {
 
   float lower[3][width], upper[3][width];
   std::uint32_t child[width];
-  std::uint32_t there;   ///< bit k: there is a box k
-  std::uint32_t parent;  ///< number of a node; of the root, itself
-  std::uint32_t slot;    ///< which box of the parent this node is
+  std::uint32_t there;      ///< bit k: there is a box k
+  std::uint32_t parent;     ///< number of a node; of the root, itself
+  std::uint32_t slot;       ///< which box of the parent this node is
+  std::uint32_t continues;  ///< bit k: box k is of a piece of a triangle, and not of the first
 
   COLLIDE_HD_INLINE void set(int k, aabb<float> const& box, std::uint32_t what) {
     for (int i = 0; i < 3; ++i) {
@@ -127,13 +136,14 @@ struct alignas(32) tree_node {
 #endif
   }
 
-  /// Bit k: the ray from the point along +z meets box k.
-  COLLIDE_HD_INLINE std::uint32_t on_ray(tree_point const& p) const {
+  /// Bit k: box k and another have a point in common; see `overlap`.
+  COLLIDE_HD_INLINE std::uint32_t overlapping(tree_point const& other) const {
     std::uint32_t mask = 0;
     for (int k = 0; k < width; ++k) {
-      bool const beside = (lower[0][k] > p.upper[0]) | (upper[0][k] < p.lower[0]) | (lower[1][k] > p.upper[1]) |
-                          (upper[1][k] < p.lower[1]) | (upper[2][k] < p.lower[2]);
-      mask |= beside ? 0u : 1u << k;
+      bool const apart = (lower[0][k] > other.upper[0]) | (upper[0][k] < other.lower[0]) |
+                         (lower[1][k] > other.upper[1]) | (upper[1][k] < other.lower[1]) |
+                         (lower[2][k] > other.upper[2]) | (upper[2][k] < other.lower[2]);
+      mask |= apart ? 0u : bit[k];
     }
     return mask & there;
   }
@@ -174,6 +184,11 @@ struct alignas(32) tree_node {
     float const outside = larger(lower[axis][k] - p.upper[axis], p.lower[axis] - upper[axis][k]);
     return select(outside > 0, outside, 0.0f);
   }
+};
+
+/// Of the boxes of a node that are of pieces of triangles, those of the pieces before them.
+struct boxes_before {
+  aabb<float> of[tree_node::width];
 };
 
 }  // namespace collide::detail

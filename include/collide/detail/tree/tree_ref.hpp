@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/tree/tree_node.hpp>
@@ -82,7 +83,8 @@ class tree_cursor {
 template <class S>
 struct tree_ref {
   mesh_view<S> mesh;
-  tree_node const* nodes;  ///< the root first; null if there are none
+  tree_node const* nodes;      ///< the root first; null if there are none
+  boxes_before const* before;  ///< of each node, where triangles are in pieces; else null
 
   using cursor = tree_cursor;
 
@@ -90,6 +92,7 @@ struct tree_ref {
   struct reach {
     tree_point centre;
     float squared;
+    tree_point around;  ///< its box
 
     COLLIDE_HD_INLINE reach(sphere<S> const& s, vec3<S> const& origin) : centre(s.centre, origin) {
       float radius;
@@ -99,6 +102,10 @@ struct tree_ref {
         radius = triangle_aabb<float>::padded_radius(float_above(s.radius));
       }
       squared = radius * radius;
+      for (int k = 0; k < 3; ++k) {
+        around.lower[k] = below(centre.lower[k] - radius);
+        around.upper[k] = above(centre.upper[k] + radius);
+      }
     }
   };
 
@@ -121,18 +128,20 @@ struct tree_ref {
     for (id triangle; next(r, c, triangle);) f(triangle);
   }
 
-  COLLIDE_HD_INLINE cursor begin(reach const& r) const { return cursor::at(0, nodes[0].reached(r.centre, r.squared)); }
+  COLLIDE_HD_INLINE cursor begin(reach const& r) const { return cursor::at(0, reached(0, r)); }
 
   /// Moves on to the next triangle; false if there is none.
   COLLIDE_HD_INLINE bool next(reach const& r, cursor& c, id& triangle) const {
     for (;;) {
       while (c.has_box()) {
-        std::uint32_t const child = nodes[c.node()].child[c.take()];
+        int const k = c.take();
+        std::uint32_t const child = nodes[c.node()].child[k];
         if ((child & tree_node::leaf) != 0) {
+          if (!is_first(c.node(), k, r.around)) continue;
           triangle = child & ~tree_node::leaf;
           return true;
         }
-        c.descend(child, nodes[child].reached(r.centre, r.squared));
+        c.descend(child, reached(child, r));
       }
       if (c.node() == 0) {
         c = cursor::ended();
@@ -140,12 +149,13 @@ struct tree_ref {
       }
       tree_node const& here = nodes[c.node()];
       std::uint32_t const behind = 0xfeu << here.slot, above = here.parent;
-      if (!c.ascend(above)) c = cursor::at(above, nodes[above].reached(r.centre, r.squared) & behind & 0xff);
+      if (!c.ascend(above)) c = cursor::at(above, reached(above, r) & behind & 0xff);
     }
   }
 
   /// Calls bound = f(triangle) for triangles near a point, the nearest boxes first: at least for all whose squared
-  /// distance is at most `bound`, which only falls. Nothing if it is negative, or the point is not finite.
+  /// distance is at most `bound`, which only falls; for some more than once. Nothing if it is negative, or the point is
+  /// not finite.
   template <class F>
   COLLIDE_HD void for_each_nearer(vec3<S> const& point, S bound, F const& f) const {
     if (nodes == nullptr || !(bound >= 0) || !is_finite(point)) return;
@@ -191,26 +201,40 @@ struct tree_ref {
   template <class F>
   COLLIDE_HD void for_each_on_ray(vec3<S> const& point, F const& f) const {
     if (nodes == nullptr || !is_finite(point)) return;
-    tree_point const p(point, tree_origin(mesh));
+    tree_point ray(point, tree_origin(mesh));
+    ray.upper[2] = std::numeric_limits<float>::infinity();
     struct level {
       std::uint32_t node, boxes;  ///< those still to be looked into
     };
     level stack[most_tree_levels];
-    stack[0] = {0, nodes[0].on_ray(p)};
+    stack[0] = {0, nodes[0].overlapping(ray)};
     for (int top = 0; top >= 0;) {
       level& here = stack[top];
       if (here.boxes == 0) {
         --top;
         continue;
       }
-      std::uint32_t const child = nodes[here.node].child[lowest_bit(here.boxes)];
+      int const k = lowest_bit(here.boxes);
+      std::uint32_t const child = nodes[here.node].child[k];
       here.boxes &= here.boxes - 1;
       if ((child & tree_node::leaf) == 0) {
-        stack[++top] = {child, nodes[child].on_ray(p)};
-      } else if (!f(child & ~tree_node::leaf)) {
+        stack[++top] = {child, nodes[child].overlapping(ray)};
+      } else if (is_first(here.node, k, ray) && !f(child & ~tree_node::leaf)) {
         return;
       }
     }
+  }
+
+ private:
+  /// The boxes of a node that a sphere reaches. Where triangles are in pieces its box counts.
+  COLLIDE_HD_INLINE std::uint32_t reached(std::uint32_t node, reach const& r) const {
+    return before != nullptr ? nodes[node].overlapping(r.around) : nodes[node].reached(r.centre, r.squared);
+  }
+
+  /// True if no other piece of the triangle in a box overlaps what this one does and comes before: so each triangle is
+  /// found once. Pieces that overlap a box follow each other, so the one before tells of all.
+  COLLIDE_HD_INLINE bool is_first(std::uint32_t node, int k, tree_point const& around) const {
+    return (nodes[node].continues >> k & 1) == 0 || !overlap(before[node].of[k], around);
   }
 };
 

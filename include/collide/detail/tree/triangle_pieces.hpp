@@ -1,0 +1,163 @@
+/// \file
+/// Long thin triangles that lie across the axes, cut into pieces with a box each, which hold far less space than one
+/// around all (M. Stich, H. Friedrich, A. Dietrich, "Spatial splits in bounding volume hierarchies", 2009; here before
+/// the tree is made). For the host.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/detail/execution/algorithms.hpp>
+#include <collide/detail/tree/tree_node.hpp>
+#include <collide/memory.hpp>
+
+namespace collide::detail {
+
+/// A box of some of a triangle.
+struct triangle_piece {
+  aabb<float> box;
+  id triangle;
+  std::uint32_t before;  ///< how many pieces of the triangle there are before this one
+};
+
+/// Cuts the triangles of a mesh for which that pays.
+template <class S>
+class triangle_pieces {
+ public:
+  /// Returns how many pieces there are, at most 16 for each triangle, those of a triangle next to each other; 0 if
+  /// nothing is cut.
+  template <class Space>
+  std::size_t build(Space& space, mesh_view<S> const& mesh) {
+    std::size_t const n = mesh.size();
+    constexpr std::size_t parts = 64;
+    struct sum {
+      double wasted, roots, all;
+    } sums[parts] = {};
+    std::size_t const share = (n + parts - 1) / parts;
+    for_each_block(space, parts, [&](std::size_t p) {
+      for (std::size_t i = p * share; i < n && i < (p + 1) * share; ++i) {
+        shape const s(mesh, i);
+        double const w = s.wasted();
+        sums[p].wasted += w;
+        sums[p].roots += std::sqrt(w);
+        sums[p].all += s.half_surface;
+      }
+    });
+    sum total{};
+    for (sum const& s : sums) total = {total.wasted + s.wasted, total.roots + s.roots, total.all + s.all};
+    if (!(total.wasted > total.all / 2) || !std::isfinite(total.all)) return 0;
+    std::uint32_t* const first = first_.reserve(space.resource(), n + 1);
+    auto const extra = static_cast<double>(smaller(15 * n, larger(3 * n, std::size_t{1} << 18)));
+    space.for_each(n, [&](std::size_t i) { first[i] = pieces_of(shape(mesh, i), extra / total.roots); });
+    first[n] = 0;
+    exclusive_scan(space, first, n + 1);
+    size_ = first[n];
+    triangle_piece* const to = pieces_.reserve(space.resource(), 16 * n);
+    space.for_each(n, [&](std::size_t i) { cut(mesh, i, to + first[i], first[i + 1] - first[i]); });
+    return size_;
+  }
+
+  triangle_piece const* data() const { return pieces_.data(); }
+
+ private:
+  static constexpr int most = 64;  ///< pieces of a triangle
+
+  /// A triangle, as far as that decides into how many pieces it is cut.
+  struct shape {
+    double half_surface;  ///< of its box
+    double area;
+    double length;  ///< of its longest edge
+
+    shape(mesh_view<S> const& mesh, std::size_t i) : half_surface{0}, area{0}, length{0} {
+      triangle<S> const t = mesh[i];
+      if (!is_finite(t)) return;
+      vec3<double> const a = t.a.template cast<double>(), u = t.b.template cast<double>() - a,
+                         v = t.c.template cast<double>() - a;
+      vec3<double> const least = smaller(smaller<double>(u, v), vec3<double>(0, 0, 0)),
+                         sides = larger(larger<double>(u, v), vec3<double>(0, 0, 0)) - least;
+      half_surface = sides.x() * sides.y() + (sides.y() * sides.z() + sides.z() * sides.x());
+      area = std::sqrt(cross(u, v).squaredNorm()) / 2;
+      length = std::sqrt(std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
+    }
+
+    /// What its box has more than that of a triangle of its area that is not long and thin.
+    double wasted() const {
+      double const w = half_surface - 8 * area;
+      return w > 0 ? w : 0;
+    }
+  };
+
+  /// In proportion to what makes the sum of the boxes least, but none shorter than wide.
+  static std::uint32_t pieces_of(shape const& s, double for_root) {
+    double const wanted = 1 + std::sqrt(s.wasted()) * for_root;
+    double const slender = s.area > 0 ? s.length * s.length / (2 * s.area) : most;
+    return static_cast<std::uint32_t>(smaller(smaller(wanted, larger(slender, 1.0)), static_cast<double>(most)));
+  }
+
+  /// Cuts a triangle by planes at equal distances across the longest side of its box.
+  static void cut(mesh_view<S> const& mesh, std::size_t i, triangle_piece* to, std::uint32_t n) {
+    triangle<S> const t = mesh[i];
+    vec3<S> const origin = tree_origin(mesh);
+    aabb<float> const whole = tree_box_of(t, origin);
+    for (std::uint32_t k = 0; k < n; ++k) to[k] = {whole, static_cast<id>(i), k};
+    if (n == 1) return;
+    vec3<double> corners[3];
+    int c = 0;
+    for (auto const* p : {&t.a, &t.b, &t.c}) corners[c++] = p->template cast<double>() - origin.template cast<double>();
+    vec3<double> const lower = smaller(smaller(corners[0], corners[1]), corners[2]);
+    vec3<double> const sides = larger(larger(corners[0], corners[1]), corners[2]) - lower;
+    int const axis = sides[0] >= sides[1] && sides[0] >= sides[2] ? 0 : (sides[1] >= sides[2] ? 1 : 2);
+    float const padding = float_above(triangle_aabb_of(t).padding);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      double const from = lower[axis] + sides[axis] * k / n, until = lower[axis] + sides[axis] * (k + 1) / n;
+      aabb<double> const box = box_between(corners, axis, from, until);
+      if (box.is_empty()) continue;
+      for (int j = 0; j < 3; ++j) {
+        to[k].box.lower[j] = larger(whole.lower[j], below(float_below(box.lower[j]) - padding));
+        to[k].box.upper[j] = smaller(whole.upper[j], above(float_above(box.upper[j]) + padding));
+      }
+    }
+    make_monotone(to, n);
+  }
+
+  /// Makes boxes wider such that from piece to piece they go one way on each axis: those that overlap any box then
+  /// follow each other.
+  static void make_monotone(triangle_piece* of, std::uint32_t n) {
+    for (int j = 0; j < 3; ++j) {
+      aabb<float> const &first = of[0].box, &last = of[n - 1].box;
+      bool const rises = first.lower[j] + first.upper[j] <= last.lower[j] + last.upper[j];
+      for (std::uint32_t k = 1; k < n; ++k) {
+        std::uint32_t const up = rises ? k : n - 1 - k, down = rises ? n - 1 - k : k;  // where it comes from is done
+        of[up].box.upper[j] = larger(of[up].box.upper[j], of[rises ? up - 1 : up + 1].box.upper[j]);
+        of[down].box.lower[j] = smaller(of[down].box.lower[j], of[rises ? down + 1 : down - 1].box.lower[j]);
+      }
+    }
+  }
+
+  /// The box around what of a triangle is between two planes.
+  static aabb<double> box_between(vec3<double> const (&corners)[3], int axis, double from, double until) {
+    aabb<double> box = aabb<double>::empty();
+    for (int c = 0; c < 3; ++c) {
+      vec3<double> const &a = corners[c], &b = corners[(c + 1) % 3];
+      double const begin = a[axis], way = b[axis] - begin;
+      if (smaller(begin, b[axis]) > until || larger(begin, b[axis]) < from) continue;
+      for (double const plane : {from, until}) {
+        // of an edge along the planes both ends
+        double const part = way != 0 ? saturate((plane - begin) / way) : (plane == from ? 0.0 : 1.0);
+        for (int j = 0; j < 3; ++j) {
+          double const x = a[j] + part * (b[j] - a[j]);
+          box.lower[j] = smaller(box.lower[j], x);
+          box.upper[j] = larger(box.upper[j], x);
+        }
+      }
+    }
+    return box;
+  }
+
+  buffer<std::uint32_t> first_;
+  buffer<triangle_piece> pieces_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace collide::detail
