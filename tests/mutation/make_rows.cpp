@@ -71,7 +71,7 @@ class nearest_writer {
     for (int i = 0; i < 800; ++i) add(tetrahedron([&] { return lattice_point(); }), lattice_point(), true);
     for (int i = 0; i < 100; ++i) {
       int const kind = i % 3, exponent = kind == 0 ? std::numeric_limits<S>::min_exponent - 18
-                                                   : std::numeric_limits<S>::max_exponent - 4;
+                                                   : std::numeric_limits<S>::max_exponent - 2;
       auto const place = [&] { return any_point(exponent, kind == 2); };
       add({{{place(), place(), place()},
             {place(), place(), place()},

@@ -112,6 +112,35 @@ void check_signed_queries(Space const& space, int n) {
   }
 }
 
+/// A ball drawn out into a needle across the axes, whose triangles a tree cuts into pieces: each counts once.
+template <class BroadPhase, class S, class Space>
+void check_signed_queries_of_needles(Space const& space, int n) {
+  dice roll(10);
+  auto needle = icosphere<S>(2, 1, {0, 0, 0});
+  for (std::size_t i = 0; i < needle.vertices.size(); i += 3) {
+    S* const v = &needle.vertices[i];
+    S const along = 40 * (v[0] + v[1] + v[2]);
+    for (int k = 0; k < 3; ++k) v[k] += along;
+  }
+  auto const mesh = triangles_of(needle);
+  std::vector<collide::vec3<S>> points;
+  for (int i = 0; i < n; ++i) {
+    points.push_back(point_at_surface(mesh, roll, 1));
+    points.push_back((mesh[std::size_t(roll.integer(0, 319))].a + mesh[std::size_t(roll.integer(0, 319))].b) * S(0.5));
+  }
+  auto const found = ask<BroadPhase>(space, mesh, points);
+  auto const plainly = ask_plainly(mesh, points);
+  CHECK(found.inside == plainly.inside);
+  int wrong = 0, inside = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    wrong += !same_bits<S>(found.distances[i], plainly.distances[i]);
+    inside += found.inside[i];
+  }
+  CHECK(wrong == 0);
+  CHECK(inside > n / 2);
+  CHECK(inside < 2 * n);
+}
+
 /// What public threads of other libraries ask for: rays through corners and edges, and in the planes of faces.
 template <class BroadPhase, class S, class Space>
 void check_known_situations(Space const& space) {

@@ -256,6 +256,17 @@ TEST_CASE_TEMPLATE("nearest: points around closed meshes, at the origin and far 
   }
 }
 
+TEST_CASE_TEMPLATE("hunt: nearest: half a million points at the surface of closed meshes", S, float, double) {
+  for (double const offset : {0.0, 1e2, 1e5}) {
+    CAPTURE(offset);
+    tests::dice roll(12);
+    tally all;
+    auto const mesh = tests::triangles_of(tests::icosphere<S>(0, 1, {offset, offset, offset}));
+    for (int i = 0; i < 83334; ++i) judge(mesh, tests::point_at_surface(mesh, roll, i % 3), roll, all);
+    check(all);
+  }
+}
+
 TEST_CASE_TEMPLATE("nearest: a distance of exactly the reach counts", S, float, double) {
   int within = 0, cases = 0;
   for (auto const& c : tests::ties<S>(5, 2000)) {

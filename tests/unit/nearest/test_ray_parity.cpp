@@ -70,6 +70,18 @@ TEST_CASE_TEMPLATE("parity: points at the surface of closed meshes, at the origi
   }
 }
 
+TEST_CASE_TEMPLATE("hunt: parity: half a million points at the surface of closed meshes", S, float, double) {
+  for (double const offset : {0.0, 1e2, 1e5}) {
+    CAPTURE(offset);
+    tests::dice roll(11);
+    auto const mesh = tests::triangles_of(tests::icosphere<S>(0, 1, {offset, offset, offset}));
+    auto const exact = to_oracle(mesh);
+    tally all;
+    for (int i = 0; i < 83334; ++i) all.add<S>(mesh, exact, tests::point_at_surface(mesh, roll, i % 3));
+    CHECK(all.wrong == 0);
+  }
+}
+
 TEST_CASE_TEMPLATE("parity: grids of points in the planes and on the edges of boxes", S, float, double) {
   auto const cube = tests::triangles_of(tests::unit_cube<S>());
   // a box turned by 45 degrees has edges, and a pyramid a corner, above points of the grid

@@ -10,6 +10,11 @@ TEST_CASE_TEMPLATE("signed queries: the same bits in every space and with every 
   tests::check_signed_queries<collide::bvh, S>(tests::lockstep<256, false>(), 1000);
 }
 
+TEST_CASE_TEMPLATE("signed queries: needles, which a tree cuts into pieces", S, float, double) {
+  tests::check_signed_queries_of_needles<collide::bvh, S>(collide::host(), 1000);
+  tests::check_signed_queries_of_needles<collide::bvh, S>(tests::lockstep<64, true>(), 300);
+}
+
 TEST_CASE_TEMPLATE("signed queries: situations of public threads", S, float, double) {
   tests::check_known_situations<collide::all_pairs, S>(collide::host());
   tests::check_known_situations<collide::bvh, S>(collide::host());

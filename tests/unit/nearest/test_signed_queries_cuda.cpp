@@ -7,6 +7,7 @@ TEST_CASE_TEMPLATE("signed queries on a device: the bits of the host", S, float,
   tests::check_signed_queries<collide::bvh, S>(collide::cuda(), 1000);
   tests::check_signed_queries<collide::bvh, S>(collide::cuda_shared(), 1000);
   tests::check_signed_queries<collide::all_pairs, S>(collide::cuda(), 200);
+  tests::check_signed_queries_of_needles<collide::bvh, S>(collide::cuda_shared(), 1000);
 }
 
 TEST_CASE_TEMPLATE("signed queries on a device: situations of public threads, and what is unusual", S, float, double) {

@@ -45,7 +45,7 @@ class exact_nearest_search {
 
   COLLIDE_HD void consider(triangle<S> const& corners, id number) {
     distance_bounds found;
-    if (high_ < 0 || !is_finite(corners) || !bound_distance(corners, point_, high_, found)) return;
+    if (high_ < 0 || number == number_ || !is_finite(corners) || !bound_distance(corners, point_, high_, found)) return;
     if (found.low > high_) return;
     bool nearer = number_ == no_id || found.high < low_;
     if (!nearer) {
@@ -185,7 +185,9 @@ class plain_nearest_search {
 /// `exact` it makes no difference.
 ///
 ///     nearest_search(point, max_distance)    triangles count up to that distance, inclusive; none if it is below 0
-///     consider(corners, number)              looks at a triangle; one that is not finite is never nearest
+///     consider(corners, number)              looks at a triangle, which may come again; one that is not finite is
+///     never
+///                                            nearest
 ///     squared_bound()                        a box whose squared distance, rounded down, is above this holds no nearer
 ///                                            triangle; below 0 if no triangle counts
 ///     result()                               the nearest triangle, of equally near ones the one of the lowest number
