@@ -23,7 +23,7 @@ ONE_SPHERE = "x,y,z\n0.2,0.2,0.1\n"
 CUBE = ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
         [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
          (3, 0, 4), (3, 4, 7)])
-COMPOSITIONS = [("--broad", b, "--precision", p) for b in ("all_pairs", "bucket") for p in ("exact", "single", "double")]
+COMPOSITIONS = [("--broad", b, "--precision", p) for b in ("all_pairs", "bucket", "bvh") for p in ("exact", "single", "double")]
 
 
 def random_scene(seed, spread):
@@ -109,7 +109,7 @@ class Answers(ProgramTest):
     def test_broad_phases_write_the_same_files(self):
         self.succeed("generate", "--spheres", 3000, "--triangles", 5000, "mesh.obj", "spheres.csv")
         outputs = set()
-        for i, options in enumerate((["--broad", "all_pairs"], ["--broad", "bucket"], ["--cell-width", 12], ["--threads", 1])):
+        for i, options in enumerate((["--broad", "all_pairs"], ["--broad", "bucket"], ["--broad", "bvh"], ["--cell-width", 12], ["--threads", 1])):
             self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 30, *options, "--output", f"p{i}", "--contacts", f"c{i}",
                          "--ply", f"h{i}")
             outputs.add((self.read(f"p{i}"), self.read(f"c{i}"), self.read(f"h{i}")))
@@ -127,6 +127,64 @@ class Answers(ProgramTest):
         self.assertEqual(self.detect(*call), [])
         self.assertEqual(self.detect(*call, "--precision", "double"), [])
         self.assertEqual(self.detect(*call, "--precision", "double", "--scalar", "float"), [(0, 0)])
+
+
+class Points(ProgramTest):
+    """What is nearest to points, and on which side of the surface they are."""
+
+    def ask(self, *options):
+        """The rows of the table that it writes, as text."""
+        self.succeed("detect", "mesh.obj", "spheres.csv", *options, "--output", "found.csv")
+        header, *rows = self.read("found.csv").decode().splitlines()
+        return header, [row.split(",") for row in rows]
+
+    def cube_and_points(self):
+        rng = random.Random(46)
+        points = [[rng.randrange(-8, 17) / 8 for _ in range(3)] for _ in range(300)]  # many on faces, edges and corners
+        self.scene(*CUBE, points)
+        return points
+
+    def test_the_cube(self):
+        points = self.cube_and_points()
+        header, rows = self.ask("--nearest")
+        self.assertEqual(header, "point,triangle,x,y,z,distance")
+        self.assertEqual([int(row[0]) for row in rows], list(range(300)))
+        _, signed = self.ask("--signed-distance")
+        header, inside = self.ask("--inside")
+        self.assertEqual(header, "point,inside")
+        for point, row, with_sign, (number, flag) in zip(points, rows, signed, inside):
+            clamped = [min(max(x, 0), 1) for x in point]
+            outside = math.dist(point, clamped)
+            depth = min(min(x, 1 - x) for x in point)
+            distance = max(outside, depth)
+            self.assertEqual(float(row[5]), distance)
+            self.assertEqual(float(with_sign[5]), -distance if depth > 0 else distance)
+            self.assertEqual((number, flag), (row[0], str(int(depth >= 0))))
+            self.assertAlmostEqual(math.dist(point, [float(x) for x in row[2:5]]), distance, places=12)
+            plane = {triangle: axis for triangle, axis in zip(range(12), (2, 2, 2, 2, 1, 1, 0, 0, 1, 1, 0, 0))}[int(row[1])]
+            self.assertIn(float(row[2 + plane]), (0, 1))
+
+    def test_all_ways_write_the_same(self):
+        self.scene(*random_scene(7, 3)[:3])
+        for question in ("--nearest", "--signed-distance", "--inside"):
+            found = self.ask(question)
+            for options in (["--broad", "all_pairs"], ["--ranks", "threads:3"], ["--threads", 1]):
+                self.assertEqual(self.ask(question, *options), found)
+
+    def test_radii_count(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", "x,y,z,r\n.25,.25,2,.5\n.25,.25,-1,3\n")
+        self.assertEqual([row[5] for row in self.ask("--nearest")[1]], ["1.5", "-2"])
+
+    def test_usage(self):
+        self.cube_and_points()
+        for words, args in ((["--nearest", "one thing"], ["--nearest", "--inside"]), (["--broad", "bucket"], ["--nearest", "--broad", "bucket"]),
+                            (["--contacts"], ["--inside", "--contacts", "c.csv"]), (["--ply"], ["--nearest", "--ply", "p.ply"]),
+                            (["--triangles-per-pass"], ["--nearest", "--triangles-per-pass", 3])):
+            done = self.run_program("detect", "mesh.obj", "spheres.csv", *args)
+            self.assertEqual(done.returncode, 2)
+            for word in words:
+                self.assertIn(word, done.stderr.decode())
 
 
 class ObjTest(ProgramTest):
