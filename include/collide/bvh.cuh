@@ -21,11 +21,13 @@ struct tree_policy {
    public:
     template <class Space>
     void build(Space& space, tree_policy const&, mesh_view<S> mesh) {
-      if (mesh.size() >= tree_node::leaf) throw error("collide: bvh: a mesh has at most 2^31 - 1 triangles");
+      constexpr bool divides = bvh_tuning<Space>::divides_by_area;
+      if (mesh.size() >= (divides ? std::size_t{1} << 29 : std::size_t{tree_node::leaf}))
+        throw error("collide: bvh: a mesh has fewer than 2^29 triangles on the host, and 2^31 on a device");
       mesh_ = mesh;
       has_tree_ = false;
       before_ = nullptr;
-      if constexpr (bvh_tuning<Space>::divides_by_area) {
+      if constexpr (divides) {
         has_tree_ = divided_.build(space, mesh, nodes_);
         before_ = divided_.before();
       } else {
@@ -50,9 +52,11 @@ struct tree_policy {
 
 /// Broad phase: a tree of boxes around the triangles, eight to a node, in float, rounded outward. For meshes that a
 /// grid does not suit: long thin triangles, a few that are very large beside many small ones, spheres of very different
-/// sizes; and to find the nearest triangle. The host divides the triangles by the surface area heuristic, O(n log n);
-/// devices sort them along Hilbert's curve, O(n). Query O(spheres * (log(triangles) + candidates)). Memory: at most 72
-/// bytes for each triangle on a device, 100 on the host. A mesh has at most 2^31 - 1 triangles.
+/// sizes; and to find the nearest triangle. The host divides the triangles by the surface area heuristic, O(n log n),
+/// long thin ones in up to 64 pieces; devices sort them along Hilbert's curve, O(n). Query O(spheres * (log(triangles)
+/// + candidates)). Memory: at most 72 bytes for each triangle on a device, 110 on the host; where triangles are cut 200
+/// for each piece, of which there are at most 4 for each triangle, or 2^18 more than triangles in small meshes. A mesh
+/// has fewer than 2^31 triangles, on the host fewer than 2^29.
 struct bvh : per_sphere<detail::tree_policy> {};
 
 }  // namespace collide

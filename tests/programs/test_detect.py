@@ -23,7 +23,7 @@ ONE_SPHERE = "x,y,z\n0.2,0.2,0.1\n"
 CUBE = ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
         [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
          (3, 0, 4), (3, 4, 7)])
-COMPOSITIONS = [("--broad", b, "--precision", p) for b in ("all_pairs", "bucket") for p in ("exact", "single", "double")]
+COMPOSITIONS = [("--broad", b, "--precision", p) for b in ("all_pairs", "bucket", "bvh") for p in ("exact", "single", "double")]
 
 
 def random_scene(seed, spread):
@@ -109,7 +109,7 @@ class Answers(ProgramTest):
     def test_broad_phases_write_the_same_files(self):
         self.succeed("generate", "--spheres", 3000, "--triangles", 5000, "mesh.obj", "spheres.csv")
         outputs = set()
-        for i, options in enumerate((["--broad", "all_pairs"], ["--broad", "bucket"], ["--cell-width", 12], ["--threads", 1])):
+        for i, options in enumerate((["--broad", "all_pairs"], ["--broad", "bucket"], ["--broad", "bvh"], ["--cell-width", 12], ["--threads", 1])):
             self.succeed("detect", "mesh.obj", "spheres.csv", "--radius", 30, *options, "--output", f"p{i}", "--contacts", f"c{i}",
                          "--ply", f"h{i}")
             outputs.add((self.read(f"p{i}"), self.read(f"c{i}"), self.read(f"h{i}")))
@@ -130,65 +130,88 @@ class Answers(ProgramTest):
 
 
 class Points(ProgramTest):
-    """What is nearest to points, and on which side of a closed mesh they are."""
+    """What is nearest to points, and on which side of the surface they are."""
 
-    def table(self, header, *args):
-        self.succeed("detect", "mesh.obj", "spheres.csv", "--output", "out.csv", *args)
-        first, *lines = self.read("out.csv").decode().splitlines()
-        self.assertEqual(first, header)
-        rows = [line.split(",") for line in lines]
-        self.assertEqual([int(row[0]) for row in rows], list(range(len(rows))), "points by rising number")
-        return [row[1:] for row in rows]
+    def ask(self, *options):
+        """The rows of the table that it writes, as text."""
+        self.succeed("detect", "mesh.obj", "spheres.csv", *options, "--output", "found.csv")
+        header, *rows = self.read("found.csv").decode().splitlines()
+        return header, [row.split(",") for row in rows]
 
-    def setUp(self):
-        super().setUp()
+    def cube_and_points(self):
+        rng = random.Random(46)
+        points = [[rng.randrange(-8, 17) / 8 for _ in range(3)] for _ in range(300)]  # many on faces, edges and corners
+        self.scene(*CUBE, points)
+        return points
+
+    def test_the_cube(self):
+        points = self.cube_and_points()
+        header, rows = self.ask("--nearest")
+        self.assertEqual(header, "point,triangle,x,y,z,distance")
+        self.assertEqual([int(row[0]) for row in rows], list(range(300)))
+        _, signed = self.ask("--signed-distance")
+        header, inside = self.ask("--inside")
+        self.assertEqual(header, "point,inside")
+        for point, row, with_sign, (number, flag) in zip(points, rows, signed, inside):
+            clamped = [min(max(x, 0), 1) for x in point]
+            outside = math.dist(point, clamped)
+            depth = min(min(x, 1 - x) for x in point)
+            distance = max(outside, depth)
+            self.assertEqual(float(row[5]), distance)
+            self.assertEqual(float(with_sign[5]), -distance if depth > 0 else distance)
+            self.assertEqual((number, flag), (row[0], str(int(depth >= 0))))
+            self.assertAlmostEqual(math.dist(point, [float(x) for x in row[2:5]]), distance, places=12)
+            plane = {triangle: axis for triangle, axis in zip(range(12), (2, 2, 2, 2, 1, 1, 0, 0, 1, 1, 0, 0))}[int(row[1])]
+            self.assertIn(float(row[2 + plane]), (0, 1))
+
+    def test_all_ways_write_the_same(self):
+        for question in ("--nearest", "--signed-distance", "--inside"):
+            if question == "--nearest":
+                self.scene(*random_scene(7, 3)[:3])
+            else:
+                self.cube_and_points()
+            found = self.ask(question)
+            for options in (["--broad", "all_pairs"], ["--ranks", "threads:3"], ["--threads", 1]):
+                self.assertEqual(self.ask(question, *options), found)
+
+    def test_radii_count(self):
+        self.write("mesh.obj", TRIANGLE)
+        self.write("spheres.csv", "x,y,z,r\n.25,.25,2,.5\n.25,.25,-1,3\n")
+        self.assertEqual([row[5] for row in self.ask("--nearest")[1]], ["1.5", "-2"])
+
+    def test_usage(self):
+        self.cube_and_points()
+        for words, args in ((["--nearest", "one thing"], ["--nearest", "--inside"]), (["--broad", "bucket"], ["--nearest", "--broad", "bucket"]),
+                            (["--contacts"], ["--inside", "--contacts", "c.csv"]), (["--ply"], ["--nearest", "--ply", "p.ply"]),
+                            (["--triangles-per-pass"], ["--nearest", "--triangles-per-pass", 3])):
+            done = self.run_program("detect", "mesh.obj", "spheres.csv", *args)
+            self.assertEqual(done.returncode, 2)
+            for word in words:
+                self.assertIn(word, done.stderr.decode())
+
+    def test_points_next_to_the_surface(self):
         rng = random.Random(3)
         number = lambda: rng.choice([-1, 0, 0.25, 0.5, 1, 2, 1 - 2.0**-53, 2.0**-70, round(rng.uniform(-1, 2), 3)])
-        self.points = [[number() for _ in range(3)] for _ in range(300)]
-        self.scene(*CUBE, self.points)
+        points = [[number() for _ in range(3)] for _ in range(300)]
+        self.scene(*CUBE, points)
         corners = [[[Fraction(x) for x in CUBE[0][i]] for i in t] for t in CUBE[1]]
-        self.squares = [[programs.squared_distance([Fraction(x) for x in p], t) for t in corners] for p in self.points]
-        self.inside = [all(0 <= x <= 1 for x in p) for p in self.points]
-
-    def test_inside(self):
-        for broad in ("bvh", "all_pairs"):
-            self.assertEqual(self.table("point,inside", "--inside", "--broad", broad), [["1" if i else "0"] for i in self.inside])
-        self.assertIn(f"{sum(self.inside)} points inside, of {len(self.points)} points",
-                      self.succeed("detect", "mesh.obj", "spheres.csv", "--inside"))
-
-    def test_nearest_and_signed_distance(self):
-        for args in ((), ("--broad", "all_pairs"), ("--threads", 1), ("--ranks", "threads:3")):
-            plain = self.table("point,triangle,x,y,z,distance", "--nearest", *args)
-            signed = self.table("point,triangle,x,y,z,distance", "--signed-distance", *args)
-            for p, squares, inside, row, side in zip(self.points, self.squares, self.inside, plain, signed):
-                least = min(squares)
-                self.assertEqual(int(row[0]), squares.index(least), p)
-                distance = float(row[4])
-                self.assertTrue(Fraction(math.nextafter(distance, 0))**2 <= least <= Fraction(math.nextafter(distance, 9))**2, p)
-                self.assertEqual(side[:4], row[:4], p)
-                self.assertEqual(float(side[4]), -distance if inside else distance, p)
-                self.assertAlmostEqual(math.dist(p, [float(x) for x in row[1:4]]), distance, delta=1e-15)
-
-    def test_a_radius_counts_for_the_nearest(self):
-        self.scene(*CUBE, [(3, 0.5, 0.5)], [0.5])
-        self.assertEqual(self.table("point,triangle,x,y,z,distance", "--nearest")[0][4], "1.5")
-        self.assertEqual(self.table("point,triangle,x,y,z,distance", "--signed-distance")[0][4], "2")
+        for point, row, signed in zip(points, self.ask("--nearest")[1], self.ask("--signed-distance")[1]):
+            squares = [programs.squared_distance([Fraction(x) for x in point], t) for t in corners]
+            least, distance = min(squares), float(row[5])
+            self.assertEqual(int(row[1]), squares.index(least), point)
+            below, above = (Fraction(math.nextafter(distance, to)) for to in (0, 9))
+            self.assertTrue(below**2 <= least <= above**2, point)
+            self.assertEqual(float(signed[5]), -distance if all(0 <= x <= 1 for x in point) else distance, point)
 
     def test_a_mesh_with_a_hole(self):
-        self.scene(CUBE[0], CUBE[1][:-1], self.points)
+        points = self.cube_and_points()
+        self.scene(CUBE[0], CUBE[1][:-1], points)
         for asked in ("--inside", "--signed-distance"):
             done = self.run_program("detect", "mesh.obj", "spheres.csv", asked)
             self.assertEqual(done.returncode, 0)
-            self.assertRegex(done.stderr.decode(), r"\Adetect: the mesh is not closed, so sides mean little: 3 open edge\(s\)[^\n]*\n\Z")
+            self.assertRegex(done.stderr.decode(),
+                             r"\Adetect: the mesh is not closed, so sides mean little: 3 open edge\(s\)[^\n]*\n\Z")
         self.succeed("detect", "mesh.obj", "spheres.csv", "--nearest")
-
-    def test_what_does_not_go_together(self):
-        for args, words in ((("--inside", "--nearest"), ["one thing at a time"]),
-                            (("--inside", "--broad", "bucket"), ["bucket", "bvh"]),
-                            (("--nearest", "--contacts", "c.csv"), ["--contacts"]),
-                            (("--signed-distance", "--ply", "c.ply"), ["--ply"]),
-                            (("--inside", "--triangles-per-pass", 5), ["--triangles-per-pass"])):
-            self.fail_with(2, words, "detect", "mesh.obj", "spheres.csv", *args)
 
 
 class ObjTest(ProgramTest):

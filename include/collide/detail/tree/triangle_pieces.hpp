@@ -25,8 +25,8 @@ struct triangle_piece {
 template <class S>
 class triangle_pieces {
  public:
-  /// Returns how many pieces there are, at most 16 for each triangle, those of a triangle next to each other; 0 if
-  /// nothing is cut.
+  /// Returns how many pieces there are, those of a triangle next to each other; 0 if nothing is cut. There are at most
+  /// 16 for each triangle, and not more than 4 where these are more than 2^18 more.
   template <class Space>
   std::size_t build(Space& space, mesh_view<S> const& mesh) {
     std::size_t const n = mesh.size();
@@ -48,12 +48,13 @@ class triangle_pieces {
     for (sum const& s : sums) total = {total.wasted + s.wasted, total.roots + s.roots, total.all + s.all};
     if (!(total.wasted > total.all / 2) || !std::isfinite(total.all)) return 0;
     std::uint32_t* const first = first_.reserve(space.resource(), n + 1);
-    auto const extra = static_cast<double>(smaller(15 * n, larger(3 * n, std::size_t{1} << 18)));
-    space.for_each(n, [&](std::size_t i) { first[i] = pieces_of(shape(mesh, i), extra / total.roots); });
+    std::size_t const extra = smaller(15 * n, larger(3 * n, std::size_t{1} << 18));
+    space.for_each(
+        n, [&](std::size_t i) { first[i] = pieces_of(shape(mesh, i), static_cast<double>(extra) / total.roots); });
     first[n] = 0;
     exclusive_scan(space, first, n + 1);
     size_ = first[n];
-    triangle_piece* const to = pieces_.reserve(space.resource(), 16 * n);
+    triangle_piece* const to = pieces_.reserve(space.resource(), n + extra);
     space.for_each(n, [&](std::size_t i) { cut(mesh, i, to + first[i], first[i + 1] - first[i]); });
     return size_;
   }
