@@ -62,6 +62,7 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
   // flushed numbers of S are below u M and u L, and no product of six numbers is out of range
   constexpr double least = sizeof(S) == sizeof(float) ? 0x1p-70 : 0x1p-120, most = 0x1p140;
   double const length = larger(larger(max_norm(ab), max_norm(ac)), least);
+  // guard: bounds-smallest
   if (!(size >= least && size <= most)) {
     found = {0, size <= most ? mul(2.0, size) + 2 * least : none, 6, false};
     return true;
@@ -80,6 +81,7 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
     w = inside ? w_there : w;
     sum = inside ? sum_there : sum;
     foot = inside ? number : foot;
+    // guard: bounds-certain
     certain = inside ? surely : certain;
   };
   double const from_b = d4 - d3, from_c = d5 - d6;
@@ -99,10 +101,12 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
     found = {0, 0, foot, true};
     return true;
   }
+  // guard: bounds
   double const error = mul(64 * u, size), beyond = reach + error;
   found.low = 0;
   auto const is_separating = [&](vec3<double> const& g) {
     double const gg = fused_dot(g, g), along = smaller(smaller(fused_dot(a, g), fused_dot(b, g)), fused_dot(c, g));
+    // guard: bounds-least
     if (!(along > 0) || !(gg > 0x1p-600)) return false;
     if (mul(along, along) > mul(mul(beyond, beyond), gg)) return true;
     found.low = larger(found.low, div(along, sqrt_rn(gg)) - error);

@@ -77,6 +77,7 @@ COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<
   constexpr double least = 0x1p-88;  // of a square: half of the digits, and 2^-56 left of the rest
   sphere<double> const centre{point, 0};
   double const scale = to_unit_range(to_local<double>(t, centre), t, centre).scale;
+  // guard: measured-scale
   if (!(scale >= 0x1p-1000 && scale <= 0x1p850)) return false;
   long_triangle const l = long_triangle_of(t, resting_at(point), 0, scale);
   rounded_triangle const r(l);
@@ -92,6 +93,7 @@ COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<
     long_vector const c = cross(l.corner[i], l.edge[i]);
     double_double const square = dot(c, c), by = dot(l.edge[i], l.edge[i]);
     double const limit = mul(least, larger(dot(r.corner[i], r.corner[i]), 1.0));
+    // guard: measured-edge
     if (!(by.high >= limit && square.high >= mul(limit, by.high))) return false;
     distance = root(square / by);
     found.direction = cross(c.rounded(), r.edge[i]);
@@ -101,6 +103,7 @@ COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<
     double_double const height = dot(l.corner[0], n), by = dot(n, n);
     double const longest = larger(larger(r.length_squared[0], r.length_squared[1]), r.length_squared[2]);
     double const limit = mul(mul(least, 64.0), mul(longest, longest));
+    // guard: measured-face
     if (!(longest >= 0x1p-160 && by.high >= mul(least * 64, longest) && mul(height.high, height.high) >= limit))
       return false;
     distance = height / root(by);

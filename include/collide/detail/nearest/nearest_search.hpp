@@ -49,8 +49,10 @@ class exact_nearest_search {
     if (found.low > high_) return;
     bool nearer = number_ == no_id || found.high < low_;
     if (!nearer) {
+      // guard: nearest-certain
       bool const tied = certain_ && found.certain && is_same_foot(corners_, foot_, corners, found.foot);
       int const order = tied ? 0 : compare(corners);
+      // guard: nearest-tie
       nearer = order < 0 || (order == 0 && number < number_);
     }
     high_ = smaller(high_, found.high);
@@ -67,9 +69,11 @@ class exact_nearest_search {
   /// The nearest triangle. `direction` is then set: from the closest point to the point, but for the length; on the
   /// triangle its normal, or 0.
   COLLIDE_HD nearest_triangle<S> result(vec3<double>& direction) const {
+    // guard: nearest-reach
     if (number_ == no_id || !is_within_reach()) return no_nearest_triangle<S>();
     triangle<double> const t = widened(corners_);
     vec3<double> const p = widened(point_);
+    // guard: nearest-foot
     int const foot = certain_ ? foot_ : closest_foot(t, p);
     measured_foot const there = measure_foot(t, p, foot);
     direction = there.direction;

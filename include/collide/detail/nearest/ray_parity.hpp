@@ -23,6 +23,7 @@ class ray_parity {
     bool on_line;
     ray_crossing const crossing = cross(t, on_line);
     if (crossing == ray_crossing::above) odd_ = !odd_;
+    // guard: ray-surface
     if (crossing == ray_crossing::at_point || (on_line && intersects_exact(t, sphere<S>{point_, 0}).hit))
       on_surface_ = done_ = true;
     return !done_;

@@ -35,6 +35,7 @@ COLLIDE_HD inline int compare_roughly(scaled_double const& a, scaled_double cons
                right = mul(mul(c.value, 0x1p-64), mul(d.value, 0x1p-64));
   if (left == 0 || right == 0) return left > right ? 1 : (left < right ? -1 : 0);
   int const shift = larger(-100, smaller(100, a.exponent + b.exponent - c.exponent - d.exponent));
+  // guard: nearest-rough
   double const shifted = times_power(left, shift), difference = shifted - right, error = mul(right, 0x1p-48);
   return difference > error ? 1 : (difference < -error ? -1 : 0);
 }

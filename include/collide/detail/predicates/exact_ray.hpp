@@ -40,6 +40,7 @@ COLLIDE_HD_INLINE int side_of_line(vec3<double> const& a, vec3<double> const& b,
   if (first != second) return first > second ? 1 : -1;
   if (first == 0) return 0;
   double const p1 = mul(x, v), p2 = mul(y, u), difference = p1 - p2, sum = larger(p1, -p1) + larger(p2, -p2);
+  // guard: ray-side
   double const error = mul(sum, 8 * ieee_traits<double>::unit_roundoff);
   if (sum > 0x1p-900 && sum < 0x1p1000 && (difference > error || difference < -error)) return sign_of(difference);
   return sign_of_cross_in_integers({b.x(), b.y(), p.x(), p.y()}, {a.x(), a.y(), a.x(), a.y()});
@@ -48,6 +49,7 @@ COLLIDE_HD_INLINE int side_of_line(vec3<double> const& a, vec3<double> const& b,
 /// The side once p is moved; 0 only if a and b have the same x and y.
 COLLIDE_HD_INLINE int side_of_line_moved(int side, vec3<double> const& a, vec3<double> const& b) {
   if (side != 0) return side;
+  // guard: ray-moved, ray-moved-twice
   return a.y() != b.y() ? (b.y() < a.y() ? 1 : -1) : sign_of(b.x() - a.x());
 }
 
@@ -69,6 +71,7 @@ COLLIDE_HD_INLINE int sign_of_height(triangle<double> const& t, vec3<double> con
     height += p1 - p2;
     sum += larger(p1, -p1) + larger(p2, -p2);
   }
+  // guard: ray-height
   double const error = mul(sum, 32 * ieee_traits<double>::unit_roundoff);
   if (sum > 0x1p-900 && sum < 0x1p1000 && (height > error || height < -error)) return sign_of(height);
   return sign_of_height_in_integers(t, p);

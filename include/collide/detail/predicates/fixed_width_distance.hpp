@@ -20,6 +20,7 @@ namespace collide::detail {
 /// Points and triangles as integers in units of one power of two.
 class fixed_width_units {
  public:
+  // guard: nearest-fit
   static constexpr int most_bits = 124;  ///< of a difference
 
   COLLIDE_HD void include(vec3<double> const& point) {
@@ -81,6 +82,7 @@ class fixed_width_distance {
                   (off_diagonal[1] - off_diagonal[0]) * (diagonal[2] - off_diagonal[1]);
       rotate(weight), rotate(diagonal), rotate(off_diagonal);
     }
+    // guard: nearest-face
     if (weight[0].positive() && weight[1].positive() && weight[2].positive()) {
       foot_ = 6;
       square_ = diagonal[0] * weight[0] + off_diagonal[0] * weight[1] + off_diagonal[2] * weight[2];
@@ -90,6 +92,7 @@ class fixed_width_distance {
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 3; ++i) {
       int_words<4> const before = diagonal[0] - off_diagonal[0], after = diagonal[1] - off_diagonal[0];
+      // guard: nearest-edge-begin, nearest-edge-end, nearest-edge-side
       if (before.positive() && after.positive() && !weight[2].positive()) {
         foot_ = 3 + i;
         square_ = extended<12>(diagonal[0] * diagonal[1] - off_diagonal[0] * off_diagonal[0]);
