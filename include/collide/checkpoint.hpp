@@ -125,7 +125,7 @@ class checkpoint {
     checkpoint_reader from(stream);
     pass_types(from);
     numbers_.pass(from);
-    if (simulated::effects_type::touches && numbers_.triangles != triangles) {
+    if (simulated::effects_type::any_mesh_contact && numbers_.triangles != triangles) {
       from.refuse("triangles", "the file has " + std::to_string(numbers_.triangles) + ", the mesh of the simulation " +
                                    std::to_string(triangles));
     }
@@ -166,7 +166,7 @@ class checkpoint {
     to.reverse_order_ = numbers_.reverse_order != 0;
     to.knows_pair_forces_ = numbers_.knows_pair_forces != 0;
     to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius};
-    if constexpr (simulated::effects_type::meets) to.neighbours_.clear(space, places, to.radii_.largest);
+    if constexpr (simulated::effects_type::any_pair_contact) to.neighbours_.clear(space, places, to.radii_.largest);
     to.is_set_ = true;
     to.prepare();
     restore_bodies(to);

@@ -27,14 +27,14 @@ struct bounce {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
     S const e = S(restitution), speed = -detail::dot(p[velocity{}], t.normal);
-    S back = detail::larger(t.depth, S(0));
+    S back = detail::max(t.depth, S(0));
     if (speed > 0) {
-      S const rebound = e * detail::larger(detail::smaller(t.approach_speed, speed), S(0));
+      S const rebound = e * detail::max(detail::min(t.approach_speed, speed), S(0));
       t.is_resting = rebound <= 3 * -detail::dot(t.force_dv, t.normal);
       t.repel(p[velocity{}], t.is_resting ? speed : speed + rebound);
-      if (!t.is_resting) back += rebound * detail::smaller(back / speed, dt);
+      if (!t.is_resting) back += rebound * detail::min(back / speed, dt);
     }
-    t.move_out(p[position{}], back);
+    t.push_out(p[position{}], back);
   }
 };
 

@@ -40,7 +40,7 @@ struct pair_interaction {
 
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
-    bool const is_active = !is_skipped(p.self), is_other = !is_skipped(other);
+    bool const is_active = !is_inactive(p.self), is_other = !is_inactive(other);
     if (is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
     if (is_other) effects.try_wake(p.changed, other);
     p.met = p.met || is_active || is_other;
@@ -60,16 +60,16 @@ struct pair_interaction {
   }
 
  private:
-  COLLIDE_HD_INLINE bool is_skipped(interaction& p) const {
-    if constexpr (Effects::skips) {
-      return effects.is_skipped(p);
+  COLLIDE_HD_INLINE bool is_inactive(interaction& p) const {
+    if constexpr (Effects::any_inactive) {
+      return effects.is_inactive(p);
     } else {
       return false;
     }
   }
 };
 
-/// Kernel body of `for_each` over places in the order: a particle meets those on its list that overlap it.
+/// Kernel functor of `for_each` over places in the order: a particle meets those on its list that overlap it.
 template <class S, class Effects>
 struct interact_listed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
@@ -109,8 +109,8 @@ struct interact_listed : pair_interaction<S, Effects> {
   }
 };
 
-/// Kernel body of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have room
-/// for meet those that overlap them. As many as can be held at a time are found, by rising numbers.
+/// Kernel functor of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have
+/// room for meet those that overlap them. As many as can be held at a time are found, by rising numbers.
 template <class S, class Effects>
 struct interact_overflowed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {

@@ -50,30 +50,30 @@ constexpr bool check_effect() {
   if constexpr (std::is_class<E>::value && !std::is_final<E>::value) {
     using m = effect_lacks;
     using state = particle_state<S, typename archetype<E, S>::list>;
-    static_assert(skips_in<E, S>::value || is_valid<m::template is_inactive, E>,
+    static_assert(has_is_inactive<E, S>::value || is_valid<m::template is_inactive, E>,
                   "collide: an effect's is_inactive is called as is_inactive(particle) const, with any particle");
-    static_assert(accelerates_in<E, S>::value || is_valid<m::template accelerate, E>,
+    static_assert(has_accelerate<E, S>::value || is_valid<m::template accelerate, E>,
                   "collide: an effect's accelerate is called as accelerate(particle&, dt) const, with any particle");
-    static_assert(touches_in<E, S>::value || is_valid<m::template on_mesh_contact, E>,
+    static_assert(has_on_mesh_contact<E, S>::value || is_valid<m::template on_mesh_contact, E>,
                   "collide: an effect's on_mesh_contact is called as on_mesh_contact(particle&, mesh_contact&, dt) "
                   "const, with any particle");
-    static_assert(settles_in<E, S>::value || is_valid<m::template after_mesh_contact, E>,
+    static_assert(has_after_mesh_contact<E, S>::value || is_valid<m::template after_mesh_contact, E>,
                   "collide: an effect's after_mesh_contact is called as after_mesh_contact(particle&, mesh_contact&, "
                   "dt) const, with any particle");
-    static_assert(books_in<E, S>::value || is_valid<m::template on_mesh_impulse, E>,
+    static_assert(has_on_mesh_impulse<E, S>::value || is_valid<m::template on_mesh_impulse, E>,
                   "collide: an effect's on_mesh_impulse is called as on_mesh_impulse(particle&, mesh_impulse const&, "
                   "dt) const, with any particle");
-    static_assert(holds_in<E, S>::value || is_valid<m::template holds, E>,
+    static_assert(has_holds<E, S>::value || is_valid<m::template holds, E>,
                   "collide: an effect's holds is called as holds(particle, pull, dt) const, with any particle");
-    static_assert(meets_in<E, S>::value || is_valid<m::template on_pair_contact, E>,
+    static_assert(has_on_pair_contact<E, S>::value || is_valid<m::template on_pair_contact, E>,
                   "collide: an effect's on_pair_contact is called as on_pair_contact(particle&, self, other, dt) "
                   "const, with any particle");
-    static_assert(disturbs_in<E, S>::value || is_valid<m::template try_wake, E>,
+    static_assert(has_try_wake<E, S>::value || is_valid<m::template try_wake, E>,
                   "collide: an effect's try_wake is called as try_wake(particle&, other) const, with any particle");
-    static_assert(finishes_in<E, S>::value || is_valid<m::template end_step, E>,
+    static_assert(has_end_step<E, S>::value || is_valid<m::template end_step, E>,
                   "collide: an effect's end_step is called as end_step(particle&, dt) const, with any particle");
     static_assert(
-        begins_in<E, Space, state, S>::value || is_valid<m::template begin_step, E>,
+        has_begin_step<E, Space, state, S>::value || is_valid<m::template begin_step, E>,
         "collide: an effect's begin_step is called as begin_step(space&, state, dt), with any space and state");
     static_assert(checks_parameters<E>::value || is_valid<m::template check_parameters, E>,
                   "collide: an effect's check_parameters is called as check_parameters() const");
@@ -109,7 +109,7 @@ constexpr bool check_effects() {
       respects_order<Effect...>,
       "collide: an effect comes after those whose result it uses: name friction after bounce, and what reads forces "
       "(mesh_forces, pair_forces, reaction) behind what makes them");
-  constexpr bool is_solid = (repels<Effect> || ...), meets = (meets_in<Effect, S>::value || ...);
+  constexpr bool is_solid = (repels<Effect> || ...), meets = (has_on_pair_contact<Effect, S>::value || ...);
   static_assert(is_solid || !(needs_solid_mesh<Effect> || ...),
                 "collide: friction and adhesion act where the mesh is solid: name bounce before them, or an effect of "
                 "yours that says static constexpr bool repels = true");

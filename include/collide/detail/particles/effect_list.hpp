@@ -18,31 +18,31 @@ template <class S, class... E>
 struct effect_list : effect_slot<E>... {
   using integrator = typename integrator_of<E...>::type;
 
-  static constexpr bool skips = (skips_in<E, S>::value || ...);
-  static constexpr bool touches = (touches_mesh_in<E, S> || ...);
-  static constexpr bool meets = (meets_in<E, S>::value || ...);
-  static constexpr bool finishes = (finishes_in<E, S>::value || ...);
-  static constexpr bool books = (books_in<E, S>::value || ...);
-  static constexpr bool resists = (resists_in<E, S>::value || ...);
+  static constexpr bool any_inactive = (has_is_inactive<E, S>::value || ...);
+  static constexpr bool any_mesh_contact = (has_mesh_contact<E, S> || ...);
+  static constexpr bool any_pair_contact = (has_on_pair_contact<E, S>::value || ...);
+  static constexpr bool any_end_step = (has_end_step<E, S>::value || ...);
+  static constexpr bool any_mesh_impulse = (has_on_mesh_impulse<E, S>::value || ...);
+  static constexpr bool any_resistance = (has_resistance<E, S>::value || ...);
 
   using base = columns<position, velocity>;
   using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
-  static constexpr bool adheres = touches && contains<named, adhered>;
+  static constexpr bool adheres = any_mesh_contact && contains<named, adhered>;
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
   /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
-  static constexpr bool keeps_pair_forces = meets && (adheres || has_half_kicks);
-  static constexpr bool keeps_pair_torques = meets && has_half_kicks && contains<named, angular_velocity>;
+  static constexpr bool keeps_pair_forces = any_pair_contact && (adheres || has_half_kicks);
+  static constexpr bool keeps_pair_torques = any_pair_contact && has_half_kicks && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
-  static constexpr bool ends_after_meeting = meets && has_half_kicks;
+  static constexpr bool ends_after_meeting = any_pair_contact && has_half_kicks;
   /// What sleeps presses on.
-  static constexpr bool keeps_support = books && contains<named, slow_steps>;
+  static constexpr bool keeps_support = any_mesh_impulse && contains<named, slow_steps>;
 
  private:
   template <bool Needed, class... C>
   using columns_if = std::conditional_t<Needed, columns<C...>, columns<>>;
   using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
                               columns_if<keeps_pair_torques, pair_angular_acceleration>>;
-  using held_columns = columns_if<touches && has_half_kicks, held>;
+  using held_columns = columns_if<any_mesh_contact && has_half_kicks, held>;
   using support_columns = columns_if<keeps_support, support, supported_by>;
 
  public:
@@ -62,15 +62,16 @@ struct effect_list : effect_slot<E>... {
       Has, union_of<typename writes_of<F>::type, intersection_of<typename optional_writes_of<F>::type, all>>,
       columns<>>;
   template <class F>
-  static constexpr bool is_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value ||
-                                        skips_in<F, S>::value || holds_in<F, S>::value ||
-                                        (books_in<F, S>::value && (adheres || keeps_support));
+  static constexpr bool is_integrated = changes_velocity<F, S> || has_end_step<F, S>::value ||
+                                        has_is_inactive<F, S>::value || has_holds<F, S>::value ||
+                                        (has_on_mesh_impulse<F, S>::value && (adheres || keeps_support));
   template <class F>
-  static constexpr bool writes_while_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value ||
-                                                  holds_in<F, S>::value ||
-                                                  (books_in<F, S>::value && (adheres || keeps_support));
+  static constexpr bool writes_while_integrated = changes_velocity<F, S> || has_end_step<F, S>::value ||
+                                                  has_holds<F, S>::value ||
+                                                  (has_on_mesh_impulse<F, S>::value && (adheres || keeps_support));
   template <class F>
-  static constexpr bool interacts_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
+  static constexpr bool interacts_or_skips =
+      has_on_pair_contact<F, S>::value || has_try_wake<F, S>::value || has_is_inactive<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
   using own_number = intersection_of<columns<global_number>, all>;
   template <bool Needed>
@@ -78,23 +79,24 @@ struct effect_list : effect_slot<E>... {
 
  public:
   /// What is read to find out which particles are left out.
-  using skipping = union_of<own_number, reads_if<E, skips_in<E, S>::value>...>;
+  using inactive_reads = union_of<own_number, reads_if<E, has_is_inactive<E, S>::value>...>;
   /// What is read and written for every particle,
-  using integration_reads = union_of<base, reads_if<E, is_integrated<E>>..., radius_if<touches>, own_number, pair_kicks,
-                                     columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
+  using integration_reads =
+      union_of<base, reads_if<E, is_integrated<E>>..., radius_if<any_mesh_contact>, own_number, pair_kicks,
+               columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
   using integration_writes = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
                                       columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns,
                                       writes_if<E, writes_while_integrated<E>>...>;
   /// and for those that may touch the mesh.
-  using contact = union_of<integration_reads, reads_if<E, touches_mesh_in<E, S>>...>;
-  using contact_writes = union_of<integration_writes, writes_if<E, touches_mesh_in<E, S>>...>;
+  using contact = union_of<integration_reads, reads_if<E, has_mesh_contact<E, S>>...>;
+  using contact_writes = union_of<integration_writes, writes_if<E, has_mesh_contact<E, S>>...>;
   /// What is read and written for particles that meet others; what is read is also copied.
   using interaction = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
                                columns_if<keeps_pair_torques, angular_velocity>, reads_if<E, interacts_or_skips<E>>...,
-                               radius_if<meets>, own_number>;
+                               radius_if<any_pair_contact>, own_number>;
   using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
   using interaction_writes = difference_of<
-      union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>,
+      union_of<columns<>, writes_if<E, has_on_pair_contact<E, S>::value || has_try_wake<E, S>::value>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
 
@@ -115,48 +117,48 @@ struct effect_list : effect_slot<E>... {
 
   /// Of two scenes' worth of reasons to leave a particle out, one suffices.
   template <class P>
-  COLLIDE_HD_INLINE bool is_skipped([[maybe_unused]] P& p) const {
-    return (skipped_by<E>(p) || ...);
+  COLLIDE_HD_INLINE bool is_inactive([[maybe_unused]] P& p) const {
+    return (is_inactive_of<E>(p) || ...);
   }
 
   template <class P>
   COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (resists) {
+    if constexpr (any_resistance) {
       vec3<S> const before = p[velocity{}];
       media around(before.template cast<double>());
-      push(p, dt);
-      (resist_by<E>(p, around), ...);
+      accelerate_without_resistance(p, dt);
+      (resistance_of<E>(p, around), ...);
       p[velocity{}] = velocity_in(around.sum(), before, p[velocity{}], dt);
     } else {
-      push(p, dt);
+      accelerate_without_resistance(p, dt);
     }
   }
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_contact(P& p, mesh_contact<S>& t, S dt) const {
-    (touch_by<E>(p, t, dt), ...);
-    (settle_by<E>(p, t, dt), ...);
+    (on_mesh_contact_of<E>(p, t, dt), ...);
+    (after_mesh_contact_of<E>(p, t, dt), ...);
   }
   /// Tells effects of what the mesh gives to a particle.
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_impulse(P& p, mesh_impulse<S> const& given, S dt) const {
-    (book_by<E>(p, given, dt), ...);
+    (on_mesh_impulse_of<E>(p, given, dt), ...);
   }
   /// True if an effect holds a particle that is adhered.
   template <class P>
   COLLIDE_HD_INLINE bool holds(P& p, vec3<S> const& pull, S dt) const {
-    return (held_by<E>(p, pull, dt) || ...);
+    return (holds_of<E>(p, pull, dt) || ...);
   }
   template <class P>
   COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
-    (meet_by<E>(p, self, other, dt), ...);
+    (on_pair_contact_of<E>(p, self, other, dt), ...);
   }
   template <class P>
   COLLIDE_HD_INLINE void try_wake(P& p, P& other) const {
-    (disturb_by<E>(p, other), ...);
+    (try_wake_of<E>(p, other), ...);
   }
   template <class P>
   COLLIDE_HD_INLINE void end_step([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    (finish_by<E>(p, dt), ...);
+    (end_step_of<E>(p, dt), ...);
   }
 
  private:
@@ -171,8 +173,8 @@ struct effect_list : effect_slot<E>... {
     return 0;
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE bool skipped_by([[maybe_unused]] P& p) const {
-    if constexpr (skips_in<F, S>::value) {
+  COLLIDE_HD_INLINE bool is_inactive_of([[maybe_unused]] P& p) const {
+    if constexpr (has_is_inactive<F, S>::value) {
       particle_access<F, P> const seen(p);
       return of<F>().is_inactive(seen);
     } else {
@@ -180,54 +182,54 @@ struct effect_list : effect_slot<E>... {
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void resist_by([[maybe_unused]] P& p, [[maybe_unused]] media& around) const {
-    if constexpr (resists_in<F, S>::value) {
+  COLLIDE_HD_INLINE void resistance_of([[maybe_unused]] P& p, [[maybe_unused]] media& around) const {
+    if constexpr (has_resistance<F, S>::value) {
       particle_access<F, P> const seen(p);
       around.add(of<F>().resistance(seen));
     }
   }
   /// What all accelerate but those that resist.
   template <class P>
-  COLLIDE_HD_INLINE void push([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+  COLLIDE_HD_INLINE void accelerate_without_resistance([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;
     if constexpr (keeps_pair_torques) p[angular_velocity{}] += p[pair_angular_acceleration{}] * dt;
-    (accelerate_by<E>(p, dt), ...);
+    (accelerate_of<E>(p, dt), ...);
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void accelerate_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (accelerates_in<F, S>::value) {
+  COLLIDE_HD_INLINE void accelerate_of([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (has_accelerate<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().accelerate(seen, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void touch_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
-                                  [[maybe_unused]] S dt) const {
-    if constexpr (touches_in<F, S>::value) {
+  COLLIDE_HD_INLINE void on_mesh_contact_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
+                                            [[maybe_unused]] S dt) const {
+    if constexpr (has_on_mesh_contact<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().on_mesh_contact(seen, t, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void settle_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
-                                   [[maybe_unused]] S dt) const {
-    if constexpr (settles_in<F, S>::value) {
+  COLLIDE_HD_INLINE void after_mesh_contact_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
+                                               [[maybe_unused]] S dt) const {
+    if constexpr (has_after_mesh_contact<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().after_mesh_contact(seen, t, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void book_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_impulse<S> const& given,
-                                 [[maybe_unused]] S dt) const {
-    if constexpr (books_in<F, S>::value) {
+  COLLIDE_HD_INLINE void on_mesh_impulse_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_impulse<S> const& given,
+                                            [[maybe_unused]] S dt) const {
+    if constexpr (has_on_mesh_impulse<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().on_mesh_impulse(seen, given, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE bool held_by([[maybe_unused]] P& p, [[maybe_unused]] vec3<S> const& pull,
-                                 [[maybe_unused]] S dt) const {
-    if constexpr (holds_in<F, S>::value) {
+  COLLIDE_HD_INLINE bool holds_of([[maybe_unused]] P& p, [[maybe_unused]] vec3<S> const& pull,
+                                  [[maybe_unused]] S dt) const {
+    if constexpr (has_holds<F, S>::value) {
       particle_access<F, P> const seen(p);
       return of<F>().holds(seen, pull, dt);
     } else {
@@ -235,25 +237,25 @@ struct effect_list : effect_slot<E>... {
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void meet_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
-                                 [[maybe_unused]] S dt) const {
-    if constexpr (meets_in<F, S>::value) {
+  COLLIDE_HD_INLINE void on_pair_contact_of([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
+                                            [[maybe_unused]] S dt) const {
+    if constexpr (has_on_pair_contact<F, S>::value) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_self(self), seen_other(other);
       of<F>().on_pair_contact(seen, seen_self, seen_other, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void disturb_by([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {
-    if constexpr (disturbs_in<F, S>::value) {
+  COLLIDE_HD_INLINE void try_wake_of([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {
+    if constexpr (has_try_wake<F, S>::value) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_other(other);
       of<F>().try_wake(seen, seen_other);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void finish_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (ends_in<F, S>::value) {
+  COLLIDE_HD_INLINE void end_step_of([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (has_end_step_alone<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().end_step(seen, dt);
     } else if constexpr (asks_forces<F>) {
