@@ -14,6 +14,7 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
   S x, y, z, radius;
 
   /// Covers the rounding here and that of the coarsest narrow phase, which computes in float.
+  // guard: slack
   static constexpr S slack = 1 + 32 * S(ieee_traits<float>::unit_roundoff);
 
   /// The squared distance within which a centre can reach the triangle with a sphere of radius `r`: rounded up so far
@@ -47,6 +48,7 @@ COLLIDE_HD_INLINE bounding_sphere<S> bounding_sphere_of(triangle<S> const& t) {
   // -ffast-math makes a NaN of the root of infinity
   if (!is_finite(far_squared)) return {m.x(), m.y(), m.z(), std::numeric_limits<S>::infinity()};
   // the root of the smallest normal number covers squares that underflow
+  // guard: ball-underflow
   S const radius = sqrt_rn(far_squared) * bounding_sphere<S>::slack + 2 * sqrt_rn(std::numeric_limits<S>::min());
   return {m.x(), m.y(), m.z(), radius};
 }

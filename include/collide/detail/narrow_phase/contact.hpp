@@ -90,6 +90,7 @@ COLLIDE_HD contact<S> narrow_to(contact<double> const& c) {
 enum class digits { of_float, of_double };
 
 template <class S>
+// guard: double-input
 inline constexpr digits digits_of = sizeof(S) == sizeof(float) ? digits::of_float : digits::of_double;
 
 /// The contact of a finite triangle and a sphere where that is at a time, when its centre is where `l` is seen from.
@@ -100,6 +101,7 @@ COLLIDE_HD_NOINLINE inline contact<double> contact_with_fallback(local_triangle<
                                                                  digits wanted, bool exact_depth) {
   constexpr double enough = well_conditioned_length;
   auto const well_conditioned = [&](double distance, double depth) {
+    // guard: near-depth
     return wanted == digits::of_float && distance >= enough && (!exact_depth || depth >= enough || depth <= -enough);
   };
   measured_contact found;

@@ -28,10 +28,13 @@ struct filter_result {
 
 /// The stages after the first filter, out of line and once for all scalars: floats are widened.
 COLLIDE_HD_NOINLINE inline decision intersects_exact_slow(triangle<double> const& t, sphere<double> const& s) {
+  // guard: bad-radius, bad-centre, bad-corner
   if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(t)) return {false, stage::exact_integers};
+  // guard: infinite-radius
   if (is_infinite(s.radius)) return {true, stage::exact_integers};
   local_triangle<double> l = to_local<double>(t, s);
   double size;
+  // guard: size-in-double
   if (rescale_to_filter_range<double>(l, size)) {
     verdict const v = filtered_test(l, size);
     if (v != verdict::uncertain) return {v == verdict::hit, stage::double_filter};
@@ -48,6 +51,7 @@ COLLIDE_HD_NOINLINE decision intersects_exact_slow(triangle<S> const& t, sphere<
 /// False if the triangle's box is farther away than the radius.
 template <class S>
 COLLIDE_HD_INLINE bool box_is_near(local_triangle<S> const& l) {
+  // guard: box
   return aabb_within(l, larger(l.radius, ieee_traits<S>::min_sum_under_ftz));
 }
 
@@ -57,6 +61,7 @@ COLLIDE_HD_INLINE filter_result filter_exact(triangle<S> const& t, sphere<S> con
   local_triangle<S> l = to_local<S>(t, s);
   if (!box_is_near(l)) return {verdict::miss, stage::box};
   S size;
+  // guard: size-in-float
   if (!rescale_to_filter_range<S>(l, size)) return {verdict::uncertain, stage::single_filter};
   return {filtered_test(narrow_to<float>(l), static_cast<float>(size)), stage::single_filter};
 }

@@ -101,6 +101,7 @@ COLLIDE_HD inline bool foot_on_face(long_triangle const& l, rounded_triangle con
 
 /// The nearest of the feet on corners and edges.
 COLLIDE_HD inline void foot_on_boundary(long_triangle const& l, rounded_triangle const& r, long_foot& found) {
+  // guard: compensated-nearest
   constexpr double none = std::numeric_limits<double>::max(), error = 0x1p-43, error_squared = 0x1p-96;
   double square[6], least = none;
   for (int i = 0; i < 3; ++i) {
@@ -152,6 +153,7 @@ COLLIDE_HD inline double depth_of(double radius, double_double const& distance) 
 COLLIDE_HD_NOINLINE inline bool measure_compensated(triangle<double> const& t, moving_sphere<double> const& s,
                                                     double time, double scale, bool exact_depth, vec3<double>& foot,
                                                     measured_contact& found) {
+  // guard: compensated-scale
   if (!(scale >= 0x1p-1000 && scale <= 0x1p850)) return false;
   long_triangle const l = long_triangle_of(t, s, time, scale);
   rounded_triangle const r(l);
@@ -161,8 +163,11 @@ COLLIDE_HD_NOINLINE inline bool measure_compensated(triangle<double> const& t, m
   double const away = nearest.distance.high;
   double_double const distance = scaled(nearest.distance, div(1.0, scale));
   double const depth = depth_of(s.radius, distance);
+  // guard: compensated-depth
   double const least = exact_depth ? smaller(away, mul(depth < 0 ? -depth : depth, scale)) : away;
+  // guard: compensated-length
   if (!(mul(mul(least, least), nearest.sine_squared) >= 0x1p-84)) return false;
+  // guard: compensated-doubt
   if (!nearest.certain && !(mul(mul(away, least), nearest.sine_squared) >= 0x1p-40)) return false;
   int const index = nearest.number % 3;
   vec3<double> const normal = unit(nearest.normal);

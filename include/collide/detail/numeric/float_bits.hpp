@@ -68,6 +68,7 @@ COLLIDE_HD_INLINE T saturate(T x) {
 /// Neither NaN nor infinite; decided on bits, because -ffinite-math-only deletes std::isfinite.
 template <class T>
 COLLIDE_HD_INLINE bool is_finite(T x) {
+  // guard: finite
   return (to_bits(x) & ieee_traits<T>::exponent_mask) != ieee_traits<T>::exponent_mask;
 }
 
@@ -85,6 +86,7 @@ COLLIDE_HD_INLINE bool is_finite(vec3<T> const& v) {
 
 template <class T>
 COLLIDE_HD_INLINE bool is_finite(triangle<T> const& t) {
+  // guard: finite-corner
   return larger(larger(largest_bits(t.a), largest_bits(t.b)), largest_bits(t.c)) < ieee_traits<T>::exponent_mask;
 }
 
@@ -92,6 +94,7 @@ COLLIDE_HD_INLINE bool is_finite(triangle<T> const& t) {
 template <class T>
 COLLIDE_HD_INLINE bool is_valid_radius(T r) {
   auto const u = to_bits(r);
+  // guard: valid-radius
   return u <= ieee_traits<T>::exponent_mask || u == ieee_traits<T>::sign_mask;
 }
 

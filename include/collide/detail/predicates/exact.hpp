@@ -81,6 +81,7 @@ class exact_triangle {
   /// True if the sphere touches the triangle.
   COLLIDE_HD bool intersects() const {
     for (int foot = 0; foot < feet; ++foot) {
+      // guard: touching
       if (exists(foot) && excess(foot, false).value >= 0) return true;
     }
     return false;
@@ -95,6 +96,7 @@ class exact_triangle {
         if ((wanted >> foot & 1) == 0 || !exists(foot)) continue;
         separation const there = measured(foot);
         // each of the two has all its digits where it is the smaller one
+        // guard: equally-deep
         bool const nearer =
             there.depth > there.distance ? there.distance < to_nearest.distance : there.depth > to_nearest.depth;
         if (found++ == 0 || nearer) {
@@ -131,8 +133,10 @@ class exact_triangle {
   /// The centre projects into the edge or the face.
   COLLIDE_HD bool exists(int foot) const {
     if (foot < 3) return true;
+    // guard: edge-begin, edge-end
     if (foot < face) return along(foot - 3, foot - 3, -1) > 0 && along(foot - 3, (foot + 1) % 3, 1) > 0;
     for (int i = 0; i < 3; ++i) {
+      // guard: over-face
       if (side_of_edge(i) <= 0) return false;
     }
     return true;
@@ -210,6 +214,7 @@ class exact_triangle {
     scaled_double const by = length(foot), d = root_of_distance_squared(foot, by);
     double const distance = times_power(d.value, d.exponent);
     scaled_double const above = excess(foot, true);
+    // guard: depth-of-a-tie
     if (above.value == 0) return {distance, 0};
     // R - d = (R^2 - d^2) / (R + d), where R and d are divided by a power of two as large as the larger one
     components_view const radius = numbers_[exact_slot::radius];
@@ -233,6 +238,7 @@ class exact_triangle {
 
   /// The feet that are not certainly farther than the root of `around`, as far as doubles can tell.
   static COLLIDE_HD unsigned candidate_feet(local_triangle<double> const& l, double around) {
+    // guard: near-feet
     double const reach = sqrt_rn(around) + 0x1p-40, limit = mul(mul(reach, reach), 1 + 0x1p-40);  // l is below 4
     vec3<double> const v[3] = {l.a, l.b, l.c};
     unsigned candidates = 1u << face;
@@ -279,6 +285,7 @@ class exact_triangle {
   /// x * 2^n, also where 2^n is beyond the range.
   static COLLIDE_HD double times_power(double x, int n) {
     for (; n > 1000; n -= 1000) x *= 0x1p1000;
+    // guard: power-below
     for (; n < -1000; n += 1000) x *= 0x1p-1000;
     return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
   }

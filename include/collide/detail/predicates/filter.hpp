@@ -19,6 +19,7 @@ struct filter_bounds {
   /// Every number stays between its limits if the size of the problem (`max_norm`) is between these two.
   static constexpr T smallest = T(0x1p-10), largest = T(0x1p16);
   /// Lengths are known to within this times the size.
+  // guard: error
   static constexpr T error = 32 * ieee_traits<T>::unit_roundoff;
   /// A squared length below this may have lost digits to underflow.
   static constexpr T shortest = T(0x1p-60);
@@ -30,10 +31,13 @@ template <class S, class Problem, class T>
 COLLIDE_HD_INLINE bool rescale_to_filter_range(Problem& p, T& size) {
   using bounds = filter_bounds<T>;
   size = max_norm(p);
+  // guard: smallest, largest
   if (size >= bounds::smallest && size <= bounds::largest) return true;
   // beyond, subnormal coordinates that were flushed to zero would show, or a difference has overflowed
+  // guard: floor-of-float, floor-of-double
   constexpr T floor = sizeof(S) == sizeof(float) ? T(0x1p-60) : T(0x1p-900);
   if (!(size >= floor && size <= std::numeric_limits<T>::max())) return false;
+  // guard: scaling
   p = scaled(p, inverse_power_of_two(size));
   size = max_norm(p);
   return true;
@@ -60,6 +64,7 @@ COLLIDE_HD_INLINE verdict filtered_test(local_triangle<T> const& t, T size) {
   if (!Branchless && bad) return verdict::uncertain;
   bool face = true;
   auto const select_region = [&](bool inside, T v_there, T w_there, T weight_sum_there) {
+    // guard: regions
     v = select(inside, v_there, v);
     w = select(inside, w_there, w);
     weight_sum = select(inside, weight_sum_there, weight_sum);
@@ -74,21 +79,28 @@ COLLIDE_HD_INLINE verdict filtered_test(local_triangle<T> const& t, T size) {
   // Whatever came of that, v and w become weights: not negative, their sum not above 1.
   bool const divides = weight_sum > std::numeric_limits<T>::min();
   T const inverse = select(divides, approx_reciprocal(select(divides, weight_sum, T(1))), T(0));
+  // guard: v-from-below, v-from-above
   v = saturate(mul(v, inverse));
+  // guard: w-from-below
   T const remainder = T(1) - v, limited = saturate(mul(w, inverse));
+  // guard: v-and-w
   w = select(limited < remainder, limited, remainder);
   auto const combined = [&](int k) { return t.a[k] + fused(v, ab[k], mul(w, ac[k])); };
   vec3<T> const q = {combined(0), combined(1), combined(2)};
   T const s = fused_dot(q, q);
   T const error = mul(bounds::error, size);
 
+  // guard: error-of-hit
   T const radius_low = t.radius - error;
+  // guard: inner
   bool const hit = (radius_low > 0) & (s <= mul(radius_low, radius_low));
   if (!Branchless && hit) return verdict::hit;
 
+  // guard: error-of-miss
   T const radius_high = t.radius + error;
   auto const is_separating = [&](vec3<T> const& g, T gg) {
     T const least = smaller(smaller(fused_dot(t.a, g), fused_dot(t.b, g)), fused_dot(t.c, g));
+    // guard: least, shortest
     return (gg >= bounds::shortest) & (least > 0) & (mul(least, least) > mul(mul(radius_high, radius_high), gg));
   };
   bool miss = is_separating(q, s);

@@ -39,6 +39,7 @@ class fixed_width_predicate {
  public:
   COLLIDE_HD_NOINLINE fixed_width_predicate(triangle<double> const& t, sphere<double> const& s) {
     vec3<double> const* const points[4] = {&s.centre, &t.a, &t.b, &t.c};
+    // guard: fixed-unit
     lower_exponent(s.radius);
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 12; ++i) lower_exponent((*points[i / 3])[i % 3]);
@@ -62,12 +63,14 @@ class fixed_width_predicate {
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 3; ++i) {
       diagonal[0] = dot(v[0], v[0]) - square;
+      // guard: fixed-corner, fixed-touching-corner
       if (!diagonal[0].positive()) return true;
       off_diagonal[0] = dot(v[0], v[1]) - square;
       rotate(v), rotate(diagonal), rotate(off_diagonal);
     }
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 3; ++i) {
+      // guard: fixed-edge, fixed-touching-edge
       if (off_diagonal[0].negative() && !(diagonal[0] * diagonal[1] - off_diagonal[0] * off_diagonal[0]).positive())
         return true;
       rotate(diagonal), rotate(off_diagonal);
@@ -78,10 +81,12 @@ class fixed_width_predicate {
     for (int i = 0; i < 3; ++i) {
       int_words<8> const weight = (diagonal[1] - off_diagonal[1]) * (diagonal[2] - off_diagonal[2]) +
                                   (off_diagonal[1] - off_diagonal[0]) * (diagonal[2] - off_diagonal[1]);
+      // guard: fixed-face, fixed-degenerate
       if (!weight.positive()) return false;
       determinant = determinant + row[0] * weight;
       rotate(row), rotate(diagonal), rotate(off_diagonal);
     }
+    // guard: fixed-touching-face
     return !determinant.positive();
   }
 
@@ -91,6 +96,7 @@ class fixed_width_predicate {
   };
 
   static constexpr int most_bits = 126;
+  // guard: fixed-shift
   static constexpr int most_length = 126;  ///< of a number: a bit of two words is for differences, one for the sign
 
   int exponent_ = 1 << 30;  ///< as a power of two
@@ -107,6 +113,7 @@ class fixed_width_predicate {
     dyadic const d = decoded(x);
     if (d.mantissa == 0) return 0;
     int const shift = d.exponent - exponent_;
+    // guard: fixed-far
     fits_ = fits_ && shift + d.length() <= most_length;
     return static_cast<uint128>(d.mantissa) << (shift & 127);
   }

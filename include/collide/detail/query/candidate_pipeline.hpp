@@ -51,6 +51,7 @@ struct deferred_pairs {
 
   COLLIDE_HD_INLINE void add(pair p) const {
     std::uint64_t const slot = fetch_add(&count->total, std::uint64_t{1});
+    // guard: room
     if (slot < capacity) pairs[slot] = p;
   }
 };

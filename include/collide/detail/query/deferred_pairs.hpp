@@ -70,7 +70,9 @@ struct resolve_deferred {
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     std::uint64_t const total = deferred.count->total;
+    // guard: listed
     bool const all_found_room = total <= deferred.capacity;
+    // guard: second-time
     std::uint64_t const work = all_found_room ? total : std::uint64_t{pipeline.spheres.size()} * pipeline.mesh.size();
     std::uint64_t const busy = smaller<std::uint64_t>(blocks, (work + Block::num_threads - 1) / Block::num_threads);
     if (block.index() >= busy) {
@@ -101,6 +103,7 @@ struct resolve_deferred {
     // the last block that had something to do empties the list; those that come later find it so
     block.for_each_thread([&](int thread_rank) {
       if (thread_rank != 0 || fetch_add(&deferred.count->ready, std::uint64_t{1}) + 1 != busy) return;
+      // guard: left-empty
       deferred.count->total = deferred.count->ready = 0;
       finish_pass(pipeline.output);
     });
@@ -114,6 +117,7 @@ struct resolve_deferred {
     if (!is_deferred) {
       sphere<S> const around = swept_bounding_sphere(shape);
       if (!bounding_sphere_of(t).overlaps(around.centre, around.radius)) return false;
+      // guard: first-step
       if (filter<NarrowPhase>(t, shape) != verdict::uncertain) return false;
     }
     return resolve<NarrowPhase>(t, shape);
