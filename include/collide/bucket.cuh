@@ -41,7 +41,7 @@ struct bucket {
   double cell_width = 0;
 
   /// Bytes of the space's memory that the grids may take at most; 0 is no limit. The results of sinks are not counted.
-  /// Where it does not suffice for a grid, spheres are tested with every triangle: slower, with the same result.
+  /// If it does not suffice for a grid, spheres are tested with every triangle: slower, with the same result.
   std::size_t memory_budget = 0;
 
   /// The most triangles of a build; more are refused (`error`). A grid cannot have more than the default: larger meshes
@@ -116,7 +116,7 @@ struct grid_set {
 /// into the cells.
 enum class query_order { sphere_major, triangle_major };
 
-/// What a query does.
+/// The plan of a query.
 template <class S>
 struct query_plan {
   grid_request_radii<S> grids;  ///< that it needs

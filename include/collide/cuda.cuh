@@ -87,7 +87,7 @@ struct fill_bytes {
   __device__ void operator()(std::size_t i) const { to[i] = byte; }
 };
 
-/// What both CUDA spaces have in common: a stream and memory.
+/// The base of both CUDA spaces: a stream and memory.
 class cuda_space {
  public:
   /// A space for the device that is current now, which must be current in every later call.
@@ -109,7 +109,7 @@ class cuda_space {
 
   /// The stream that all work is put on.
   cudaStream_t stream() const { return stream_; }
-  /// Where device memory comes from.
+  /// The resource of device memory.
   std::pmr::memory_resource* resource() const { return resource_; }
 
   /// Waits until all work on the stream is done.

@@ -140,7 +140,7 @@ struct per_sphere {
       space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);
     }
 
-    /// What a kernel of a simulation asks for the triangles near a single sphere; valid until the next build.
+    /// The triangles near a single sphere, for a kernel of a simulation; valid until the next build.
     auto triangle_ref() const {
       return detail::per_sphere_ref<S, decltype(index_.ref())>{{mesh_, nullptr}, index_.ref()};
     }

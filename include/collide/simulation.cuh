@@ -281,7 +281,7 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   using neighbour_lists =
       std::conditional_t<effects_type::any_pair_contact, detail::verlet_list<S, effects_type>, detail::null_ref>;
-  /// What a step asks for the triangles near a particle.
+  /// The triangles near a particle, for a step.
   auto mesh_ref([[maybe_unused]] S dt) const {
     if constexpr (effects_type::any_mesh_contact) {
       auto const whole = mesh_.size() != 0 ? index_.triangle_ref() : std::decay_t<decltype(index_.triangle_ref())>{};

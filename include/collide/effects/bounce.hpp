@@ -12,7 +12,7 @@ namespace collide {
 /// acceleration, and so be back within six steps, rests on the surface: in a groove, what has slid down one wall for a
 /// step meets the other one so fast.
 ///
-/// What is left of the step after the impact, depth / speed, is spent on the way back, so that bounces lose or gain
+/// The rest of the step after the impact, depth / speed, is spent on the way back, so that bounces lose or gain
 /// no height on average, whatever the step.
 struct bounce {
   using writes = columns<position, velocity>;

@@ -1,5 +1,5 @@
 /// \file
-/// What a kernel functor is written against: a block of threads that work together.
+/// The interface that kernel functors are written against: a block of threads that work together.
 ///
 /// A kernel is a function object `kernel(block, scratch)`. It runs once per block, on any execution space:
 ///   - `block.for_each_thread(f)` calls f(thread) for every thread, then waits for all of them;

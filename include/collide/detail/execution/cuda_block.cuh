@@ -184,7 +184,7 @@ class cuda_block {
 #endif
   }
 
-  /// What a warp's rows of `N` values pass through.
+  /// The part of shared memory through which a warp exchanges its rows of `N` values.
   template <int N, class T>
   static __device__ __forceinline__ T* warp_slice(T* values) {
     return values + threadIdx.x / cuda_warp * (cuda_warp * N);

@@ -1,5 +1,5 @@
 /// \file
-/// What a kernel asks where there is no grid: every triangle is a candidate. The members are those of triangle_ref.hpp.
+/// A reference without a grid: every triangle is a candidate. The members are those of triangle_ref.hpp.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,7 @@ namespace collide::detail {
 struct count_entries {
   item_range* cells;
 
-  /// Of the cells whose bit is set.
+  /// Counts the cells whose bit is set.
   template <int N>
   COLLIDE_HD_INLINE void operator()(cell_ref const (&some)[N], std::uint32_t mask, id) const {
     aggregated_count<N> counters;
@@ -229,7 +229,7 @@ struct allocate_entries {
   }
 
  private:
-  /// What a thread reads and writes at once.
+  /// Two lists, which a thread reads and writes at once.
   struct alignas(16) two_lists {
     item_range a, b;
   };

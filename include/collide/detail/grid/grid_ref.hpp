@@ -1,5 +1,5 @@
 /// \file
-/// What a kernel asks the grids for a single sphere. The members are those of triangle_ref.hpp.
+/// A reference to grids for a single sphere. The members are those of triangle_ref.hpp.
 #pragma once
 
 #include <cstddef>

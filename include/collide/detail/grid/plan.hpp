@@ -37,7 +37,7 @@ struct triangle_sums {
   static constexpr float perimeter_of_extent = 2.4f;
 };
 
-/// What a level of cells costs, in nanoseconds.
+/// The cost of a level of cells, in nanoseconds.
 struct level_cost {
   bucket_costs costs;
   float spheres;
@@ -52,7 +52,7 @@ struct level_cost {
   }
 };
 
-/// What is asked of the grids.
+/// A request for grids.
 template <class S>
 struct grid_request {
   S reaches[max_grids];  ///< falling

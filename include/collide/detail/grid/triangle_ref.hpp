@@ -50,7 +50,7 @@ struct candidate_cursor {
   COLLIDE_HD_INLINE bool at_end() const { return grid == ended; }
 };
 
-/// What both lookups share: the triangles, and a cheap test for each.
+/// The base of all references: the triangles, and a cheap test for each.
 template <class S>
 struct triangle_ref {
   mesh_view<S> mesh;

@@ -62,7 +62,7 @@ struct deferred_pairs {
   }
 };
 
-/// Where the hits of a pass go, and the pairs that are decided later.
+/// The output of a pass, and the pairs that are decided later.
 template <class Output>
 struct output_with_deferral {
   static constexpr bool stores_ids = detail::stores_ids<Output>;
@@ -203,7 +203,7 @@ struct candidate_pipeline {
     return is_hit(p, mesh[p.triangle], s);
   }
 
-  /// What the narrow phase's filter leaves open is put off, or decided at once.
+  /// True if the pair is a hit. A pair that the narrow phase's filter leaves uncertain is deferred, or decided at once.
   template <class Sphere>
   COLLIDE_HD_INLINE bool is_hit([[maybe_unused]] pair p, triangle<S> const& t, Sphere const& s) const {
     if constexpr (defers_pairs<Output>) {

@@ -107,7 +107,7 @@ struct per_sphere_query {
   }
 };
 
-/// What a kernel asks for the triangles near a single sphere; the members are those of triangle_ref.hpp. A cursor is
+/// A reference to the triangles near a single sphere; the members are those of triangle_ref.hpp. A cursor is
 /// the number of a triangle: the next candidate is that of the least number from there on, for which all are
 /// enumerated.
 template <class S, class Ref>

@@ -1,5 +1,5 @@
 /// \file
-/// What the built-in sinks share; what a sink must have is in concepts.hpp.
+/// Parts of the built-in sinks; the members of a sink are in concepts.hpp.
 #pragma once
 
 #include <algorithm>
@@ -76,8 +76,8 @@ struct hit_counter {
   std::uint64_t* total;
 };
 
-/// What a query writes of its hits, and all that it knows of a built-in sink: so a kernel is compiled once for all of
-/// them. What a sink does not want is null, or no room.
+/// The output of a query for its hits, and all that it knows of a built-in sink: so a kernel is compiled once for all
+/// of them. What a sink does not want is null, or no room.
 struct output {
   static constexpr bool stores_ids = true;
 

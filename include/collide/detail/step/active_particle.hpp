@@ -47,7 +47,7 @@ COLLIDE_HD_INLINE S time_of_key(std::uint64_t key) {
 /// How many of the contacts that a particle has had are recorded: the last ones.
 inline constexpr int max_recorded_contacts = 3;
 
-/// What is known of a swept particle alone.
+/// State of a swept particle alone.
 template <class S, bool IsSwept>
 struct remaining_motion {};
 template <class S>
@@ -59,7 +59,7 @@ struct remaining_motion<S, true> {
   COLLIDE_HD_INLINE vec3<S> motion() const { return {displacement[0], displacement[1], displacement[2]}; }
 };
 
-/// What is known of a particle alone that may touch bodies that move.
+/// State of a particle alone that may touch bodies that move.
 template <class S, bool HasBodies>
 struct body_contacts {};
 template <class S>
@@ -170,7 +170,7 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     }
   }
 
-  /// What a surface that has been moved has pushed by `height` does not go back to where it was: where it is held at
+  /// Shifts the start of a particle that a moved surface has pushed by `height`: where it is held at
   /// the contacts that follow, it is there.
   COLLIDE_HD_INLINE void offset_start(mesh_contact<S> const& c, S height) {
     if (!overlaps(height)) return;

@@ -84,7 +84,7 @@ struct surface_of_body {
   COLLIDE_HD_INLINE vec3<S> velocity_seen(vec3<S> const& v) const {
     return rounded_to<S>(turned_back(v.template cast<double>() - entrainment_velocity));
   }
-  /// What it was at the beginning of a discrete step, if the surface carried it with it.
+  /// The start of a discrete step, carried with the surface.
   COLLIDE_HD_INLINE vec3<S> start_seen(vec3<S> const& x) const {
     if constexpr (IsSwept) {
       return x;
