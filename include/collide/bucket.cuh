@@ -181,7 +181,7 @@ class bucket::index {
     carry_out(space, options, spheres, plan_query(space, options, spheres));
   }
 
-  /// Likewise of spheres that move.
+  /// Makes what spheres that move need of the mesh.
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
     carry_out(space, options, spheres, plan_query(space, options, spheres));

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include <collide/atomic_add.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/execution/block.hpp>
 #include <collide/detail/execution/launch.hpp>

@@ -38,7 +38,7 @@ class exchange_barrier {
   int size() const { return static_cast<int>(places_.size()); }
   place& slot(int rank) { return places_[static_cast<std::size_t>(rank)]; }
 
-  /// How often all have waited, as a rank sees it that does not wait.
+  /// The number of completed rounds: how often all ranks have waited.
   std::uint64_t round() const { return round_.load(std::memory_order_relaxed); }
 
   /// Returns when all have called it. Throws `rank_error` if one has left. Others mostly come soon, and to wake a

@@ -124,7 +124,7 @@ struct contact_search {
     }
   }
 
-  /// The sphere of a particle in the frame of a triangle, or in a frame.
+  /// The sphere of a particle in the frame of a triangle's body, or in a frame.
   static COLLIDE_HD_INLINE shape shape_seen([[maybe_unused]] mesh_type const& mesh, active const& a,
                                             [[maybe_unused]] id number) {
     if constexpr (has_bodies) {

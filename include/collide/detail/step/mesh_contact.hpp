@@ -1,6 +1,6 @@
 /// \file
-/// Contacts as a simulation needs them: where a sphere that touches a triangle does so, and when one that moves does,
-/// without digits that nobody sees.
+/// Contacts as a simulation needs them: the contact of a sphere and a triangle, and the time at which a moving sphere
+/// stops, in double, without the exact digits that `contact_of` gives.
 #pragma once
 
 #include <collide/detail/geometry/local_sweep.hpp>
