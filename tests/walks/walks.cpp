@@ -1,6 +1,6 @@
-/// The ways that scripts/walk counts, through the algorithms of a CUDA block on the host: a centre in a query, a particle in
-/// a step, a mesh in `build`. Compiled with -finstrument-functions: writes the address of each function that runs between
-/// `begin` and `end` when it is called first.
+/// The ways that scripts/walk counts, through the algorithms of a CUDA block on the host: a centre in a query, a
+/// particle in a step, a mesh in `build`. Compiled with -finstrument-functions: writes the address of each function
+/// that runs between `begin` and `end` when it is called first.
 ///
 ///     walks centre|particle|mesh
 #include <array>
@@ -8,12 +8,12 @@
 #include <cstring>
 #include <vector>
 
-#include "unit/execution/lockstep.hpp"
-
 #include <collide/bucket.cuh>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
+
+#include "unit/execution/lockstep.hpp"
 
 #define NOT_INSTRUMENTED __attribute__((no_instrument_function))
 
@@ -60,7 +60,8 @@ std::vector<float> make_floor() {
 std::vector<float> make_centres() {
   std::vector<float> centres;
   for (int i = 0; i < 300; ++i) {
-    centres.insert(centres.end(), {0.3f + static_cast<float>(i % 15), 0.2f + static_cast<float>(i / 20), i == 0 ? 0.25f : 5.0f});
+    centres.insert(centres.end(),
+                   {0.3f + static_cast<float>(i % 15), 0.2f + static_cast<float>(i / 20), i == 0 ? 0.25f : 5.0f});
   }
   return centres;
 }
@@ -83,7 +84,8 @@ int main(int argc, char** argv) {
     is_recording = false;
     if (found.size() == 0) return 1;
   } else if (std::strcmp(argv[1], "particle") == 0) {
-    collide::simulation<detector, collide::gravity, collide::bounce> scene(space(), collide::gravity{0, 0, -9.81}, collide::bounce{0.5});
+    collide::simulation<detector, collide::gravity, collide::bounce> scene(space(), collide::gravity{0, 0, -9.81},
+                                                                           collide::bounce{0.5});
     scene.set_mesh(mesh);
     scene.set(spheres);
     scene.step(1e-3f);
