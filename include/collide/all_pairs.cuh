@@ -168,7 +168,7 @@ struct all_pairs {
       space.launch(blocks * kernel.splits, kernel);
     }
 
-    /// What a kernel asks for the triangles near a single sphere; valid until the next build.
+    /// The triangles near a single sphere, for a kernel; valid until the next build.
     detail::all_pairs_ref<S> triangle_ref() const { return {{mesh_, nullptr}}; }
 
     template <class Space>

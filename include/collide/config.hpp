@@ -1,5 +1,5 @@
 /// \file
-/// What marks functions and loops for host and device: the only macros of the library, but for those of version.hpp and
+/// Markers of functions and loops for host and device: the only macros of the library, but for those of version.hpp and
 /// compiled.hpp.
 #pragma once
 

@@ -1,5 +1,5 @@
 /// \file
-/// What the ways to measure a contact share.
+/// A contact without its point, and unit vectors: parts of all measurements of contacts.
 #pragma once
 
 #include <collide/detail/predicates/exact.hpp>

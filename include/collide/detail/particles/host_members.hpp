@@ -1,5 +1,5 @@
 /// \file
-/// What a simulation does on the host with effects and columns.
+/// The work of a simulation on the host with effects and columns.
 #pragma once
 
 #include <algorithm>
@@ -96,7 +96,7 @@ void check_time_step_of(Effects const& effects, S dt, S smallest) {
               ": take largest_time_step(simulation)");
 }
 
-/// Where a container's elements are.
+/// The address of a container's elements.
 template <class T>
 T const* raw_pointer(T const* p) {
   return p;

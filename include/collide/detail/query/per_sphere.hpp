@@ -8,7 +8,6 @@
 #include <utility>
 
 #include <collide/detail/geometry/swept_bounds.hpp>
-#include <collide/detail/grid/occupancy.hpp>
 #include <collide/detail/grid/triangle_ref.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
 
@@ -108,7 +107,7 @@ struct per_sphere_query {
   }
 };
 
-/// What a kernel asks for the triangles near a single sphere; the members are those of triangle_ref.hpp. A cursor is
+/// A reference to the triangles near a single sphere; the members are those of triangle_ref.hpp. A cursor is
 /// the number of a triangle: the next candidate is that of the least number from there on, for which all are
 /// enumerated.
 template <class S, class Ref>
@@ -116,16 +115,6 @@ struct per_sphere_ref : triangle_ref<S> {
   Ref ref;
 
   COLLIDE_HD per_sphere_ref const& without_overflown_grids() const { return *this; }
-  template <class Sphere>
-  COLLIDE_HD bool empty(Sphere const&) const {
-    return this->mesh.size() == 0;
-  }
-  COLLIDE_HD bool has_single_cell_lookup(S) const { return false; }
-  COLLIDE_HD occupancy_view<S> occupancy() const { return {}; }
-  template <class Sphere>
-  COLLIDE_HD candidate_cursor begin(Sphere const&) const {
-    return {0, 0, 0, 0};
-  }
   template <class Sphere>
   COLLIDE_HD bool next(Sphere const& s, candidate_cursor& c, std::uint32_t, candidate_range& range) const {
     if (c.at_end() || this->mesh.size() == 0) return false;

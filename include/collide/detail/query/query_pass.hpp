@@ -51,7 +51,7 @@ void query_pass<Index, NarrowPhase, Space, S>::operator()(Output const& output) 
   static_assert(
       is_valid<output_allocate, Output>,
       "collide: what a sink passes to query has a const member allocate(n) that returns the number of a slot");
-  static_assert(is_valid<output_store, Output, hit<NarrowPhase, S>>,
+  static_assert(stores_ids<Output> || is_valid<output_store, Output, hit<NarrowPhase, S>>,
                 "collide: what a sink passes to query has a const member store(slot, hit)");
   static_assert(is_plain<Output> || Space::host_accessible,
                 "collide: what a sink hands to the device must be a plain value");

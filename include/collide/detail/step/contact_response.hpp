@@ -25,7 +25,7 @@ COLLIDE_HD_INLINE S swept_radius(S r, vec3<S> const& centre, vec3<S> const& disp
   return r >= 0 && r < largest ? max(r, min(least, largest)) : r;
 }
 
-/// What a block does with particles that may touch the mesh.
+/// Contact response: the work of a block for particles that may touch the mesh.
 template <class Context>
 struct contact_response {
   using S = typename Context::scalar;
