@@ -127,8 +127,8 @@ struct supported_by {
   using value = std::uint8_t;
 };
 
-/// What a second surface adds, in the corner of two. Scenes have it, and the next three, that have `support` and name
-/// `moving_bodies`.
+/// Acceleration by a second surface, in the corner of two. Scenes have it, and the next three, that have `support` and
+/// name `moving_bodies`.
 struct second_support {
   template <class S>
   using value = vec3<S>;
@@ -140,7 +140,7 @@ struct second_supported_by {
   using value = std::uint8_t;
 };
 
-/// What a third surface adds, and all others.
+/// Acceleration by a third surface, and all others.
 struct third_support {
   template <class S>
   using value = vec3<S>;

@@ -278,7 +278,7 @@ class simulation {
     return most;
   }
 
-  /// What a source has made since `set`; see `birth_counts`. Waits.
+  /// Counts of a source since `set`; see `birth_counts`. Waits.
   birth_counts births() const {
     static_assert(effects_type::makes, "collide: simulation: births: no effect of the scene makes particles");
     double clock[detail::clock_size] = {};
@@ -306,7 +306,7 @@ class simulation {
   using surface_memory =
       std::conditional_t<effects_type::overlaps, detail::surface_memory<S, typename effects_type::remembered>,
                          detail::null_ref>;
-  /// What a step asks for the triangles near a particle, if it `asks`.
+  /// The triangles near a particle, for a step that `Asks` for them.
   template <bool Asks = effects_type::any_mesh_contact>
   auto mesh_ref([[maybe_unused]] S dt) const {
     if constexpr (Asks) {

@@ -154,7 +154,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     return found;
   }
 
-  /// What the source has made on all ranks; see `birth_counts`. All ranks call it. Waits.
+  /// Counts of the source on all ranks; see `birth_counts`. All ranks call it. Waits.
   birth_counts births() const {
     birth_counts all;
     together(ranks_, [&] { all = local().births(); });

@@ -71,7 +71,7 @@ class verlet_list {
     contacts_.clear(space, n);
   }
 
-  /// What contacts remember, for a checkpoint. Waits.
+  /// The memory of contacts, for a checkpoint. Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
     saved_contacts<S> saved;

@@ -13,7 +13,7 @@ struct effect_slot {
   E effect;
 };
 
-/// What drag and wind do in a step, if there are any; known before it.
+/// The resistance of drag and wind in a step, if there are any; known before it.
 template <bool Resists>
 struct resistance_slot {};
 template <>
@@ -115,7 +115,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       union_of<columns<>, writes_if<E, pairs_in<E, S> || has_try_wake<E, S>::value>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
-  /// What is read and written for particles that press on the mesh.
+  /// Columns that are read and written for particles that press on the mesh.
   using overlap_reads = union_of<base, own_radius, own_number, pair_kicks,
                                  columns_if<keeps_pair_torques, angular_velocity>, support_columns,
                                  reads_if<E, overlaps_in<E, S> || has_is_inactive<E, S>::value ||

@@ -13,7 +13,7 @@
 
 namespace collide {
 
-/// What a source has made since `set`.
+/// Counts of a source since `set`.
 struct birth_counts {
   std::uint64_t due = 0;          ///< particles that have come due: time times rate
   std::uint64_t overlapping = 0;  ///< of these, in scenes in which particles meet: those that overlapped one that was
