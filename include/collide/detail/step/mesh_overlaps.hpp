@@ -273,7 +273,7 @@ struct press_on_mesh {
       if (item.frame != 0) normal = f.now.rotated(normal);
       vec3<double> const point = centre - scaled(normal, n.distance);
       if (item.frame != 0) {
-        surface = velocity_at(f.moving, f.now, point) + f.belt;
+        surface = velocity_at(f.moving, f.now, point) + f.conveyor_velocity;
       } else if (open.mesh.vertex_velocities != nullptr) {
         surface = open.mesh.velocity_of(item.triangle, rounded_to<S>(point));
       }
