@@ -20,7 +20,7 @@ struct local_triangle {
 /// The largest of |x|, |y| and |z|.
 template <class T>
 COLLIDE_HD_INLINE T max_norm(vec3<T> const& v) {
-  return max_component<T>(v.cwiseAbs());
+  return max_component<T>(absolute(v));
 }
 
 /// Subtracts the centre. `W` holds all values of `S`.

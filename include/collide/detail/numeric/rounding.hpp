@@ -187,4 +187,10 @@ COLLIDE_HD_INLINE T max_component(vec3<T> const& a) {
   return larger(larger(a.x(), a.y()), a.z());
 }
 
+/// The absolute values of the coordinates.
+template <class T>
+COLLIDE_HD_INLINE vec3<T> absolute(vec3<T> const& a) {
+  return {std::abs(a.x()), std::abs(a.y()), std::abs(a.z())};
+}
+
 }  // namespace collide::detail

@@ -20,7 +20,7 @@ namespace collide::detail {
 template <class S>
 COLLIDE_HD_INLINE S swept_radius(S r, vec3<S> const& centre, vec3<S> const& displacement, S largest) {
   S const reach =
-      collide::detail::max_component<S>(centre.cwiseAbs()) + collide::detail::max_component<S>(displacement.cwiseAbs());
+      collide::detail::max_component<S>(absolute(centre)) + collide::detail::max_component<S>(absolute(displacement));
   S const least = 4 * std::numeric_limits<S>::epsilon() * reach;
   return r >= 0 && r < largest ? larger(r, smaller(least, largest)) : r;
 }
