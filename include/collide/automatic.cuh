@@ -101,4 +101,8 @@ struct automatic {
   };
 };
 
+#if defined(COLLIDE_COMPILED)
+COLLIDE_COMPILED_DETECTORS(automatic)
+#endif
+
 }  // namespace collide

@@ -145,7 +145,7 @@ class detector {
                   "or visit: an "
                   "object with a member run(space, query)");
     prepare(spheres);
-    sink.run(space_, pass{index_, space_, mesh_, spheres, deferred_});
+    detail::run_sink(sink, space_, pass{index_, space_, mesh_, spheres, deferred_});
     return std::forward<Sink>(sink);
   }
 

@@ -13,6 +13,12 @@
 
 namespace collide::detail {
 
+/// Lets a sink run its passes. Not inline; see compiled.hpp.
+template <class Sink, class Space, class Pass>
+void run_sink(Sink& sink, Space& space, Pass const& pass) {
+  sink.run(space, pass);
+}
+
 /// One pass of a query over the scene, as a sink sees it; see concepts.hpp.
 template <class Index, class NarrowPhase, class Space, class S>
 struct query_pass {

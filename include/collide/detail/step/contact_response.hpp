@@ -63,7 +63,7 @@ struct contact_response {
     });
     span_counts seen{0, 0};
     for (std::uint32_t active_before = 0;;) {
-      search.find(block, s, n, seen);
+      find_contacts(search, block, s, n, seen);
       for_each_particle([&](active& a, std::uint32_t) {
         if (!a.is_active) return;
         respond(a);
