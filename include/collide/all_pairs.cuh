@@ -183,8 +183,7 @@ struct all_pairs {
 };
 
 #if defined(COLLIDE_COMPILED)
-COLLIDE_COMPILED_DETECTORS(all_pairs)
-COLLIDE_COMPILED_LOOKUPS(all_pairs)
+COLLIDE_ELSEWHERE(all_pairs)
 #endif
 
 }  // namespace collide

@@ -102,7 +102,7 @@ struct automatic {
 };
 
 #if defined(COLLIDE_COMPILED)
-COLLIDE_COMPILED_DETECTORS(automatic)
+COLLIDE_ELSEWHERE(automatic)
 #endif
 
 }  // namespace collide

@@ -339,8 +339,7 @@ class bucket::index {
 };
 
 #if defined(COLLIDE_COMPILED)
-COLLIDE_COMPILED_DETECTORS(bucket)
-COLLIDE_COMPILED_LOOKUPS(bucket)
+COLLIDE_ELSEWHERE(bucket)
 #endif
 
 }  // namespace collide

@@ -143,7 +143,7 @@ class simulation {
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
-    if (mesh.size() != 0) detail::build_lookup(index_, there, options_, mesh);
+    if (mesh.size() != 0) detail::build_index(index_, there, options_, mesh);
     bodies_.build(space_, mesh, bodies, velocities);
     mesh_ = mesh;
     has_mesh_ = true;
@@ -381,7 +381,7 @@ class simulation {
       S const room = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.room());
       S const most = detail::larger(radii_.largest, least_radius_) + room;
       bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < most);
-      detail::prepare_lookup(index_, there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
+      detail::prepare_index(index_, there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }
   }
 

@@ -15,8 +15,6 @@
 namespace collide::detail {
 
 using block_of_host = host::block<void>;
-template <class S, class NarrowPhase, class Triangles>
-using scratch_on_host = typename contact_search<S, NarrowPhase, Triangles>::template scratch<block_of_host>;
 
 }  // namespace collide::detail
 
@@ -24,23 +22,24 @@ using scratch_on_host = typename contact_search<S, NarrowPhase, Triangles>::temp
 // collide::detail.
 
 /// The search in what a look-up finds.
-#define COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, ...)                                                \
-  PREFIX void find_contacts(contact_search<SCALAR, NARROW_PHASE, __VA_ARGS__> const&, block_of_host&,    \
-                            scratch_on_host<SCALAR, NARROW_PHASE, __VA_ARGS__>&, std::uint32_t, span_counts&);
+#define COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT, HAS_BODIES, ...)                           \
+  PREFIX void find_contacts(contact_search<SCALAR, NARROW_PHASE, __VA_ARGS__> const&, block_of_host&,     \
+                            contact_scratch<SCALAR, IS_SWEPT, HAS_BODIES, block_of_host>&, std::uint32_t, \
+                            span_counts&);
 
 /// The searches with a narrow phase, without and with moving bodies.
-#define COLLIDE_SEARCHES(PREFIX, SCALAR, NARROW_PHASE)                                          \
-  COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, bucket_ref<SCALAR>)                              \
-  COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, all_pairs_ref<SCALAR>)                           \
-  COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, bodies_ref<SCALAR, bucket_ref<SCALAR>>)          \
-  COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, bodies_ref<SCALAR, all_pairs_ref<SCALAR>>)
+#define COLLIDE_SEARCHES(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT)                                       \
+  COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT, false, bucket_ref<SCALAR>)                    \
+  COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT, false, all_pairs_ref<SCALAR>)                 \
+  COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT, true, bodies_ref<SCALAR, bucket_ref<SCALAR>>) \
+  COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT, true, bodies_ref<SCALAR, all_pairs_ref<SCALAR>>)
 
 /// All searches on the host.
-#define COLLIDE_ALL_SEARCHES(PREFIX, SCALAR)                    \
-  COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi<exact>)            \
-  COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi<single_precision>) \
-  COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi<double_precision>) \
-  COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi_swept<exact>)
+#define COLLIDE_ALL_SEARCHES(PREFIX, SCALAR)                           \
+  COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi<exact>, false)            \
+  COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi<single_precision>, false) \
+  COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi<double_precision>, false) \
+  COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi_swept<exact>, true)
 
 #if defined(COLLIDE_COMPILED)
 namespace collide::detail {

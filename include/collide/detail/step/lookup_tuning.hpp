@@ -6,8 +6,6 @@
 #include <utility>
 
 #include <collide/detail/execution/tuning.hpp>
-#include <collide/mesh.hpp>
-#include <collide/spheres.hpp>
 
 namespace collide {
 
@@ -24,16 +22,6 @@ template <class Index, class = void>
 struct has_lookup : std::false_type {};
 template <class Index>
 struct has_lookup<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
-
-/// Makes what look-ups need of a mesh, and of the particles' radii. Not inline; see compiled.hpp.
-template <class Index, class Space, class Options, class S>
-void build_lookup(Index& index, lookup_tuning<Space>& space, Options const& options, mesh_view<S> const& mesh) {
-  index.build(space, options, mesh);
-}
-template <class Index, class Space, class Options, class S>
-void prepare_lookup(Index& index, lookup_tuning<Space>& space, Options const& options, sphere_view<S> const& spheres) {
-  index.prepare(space, options, spheres);
-}
 
 }  // namespace detail
 
