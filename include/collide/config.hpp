@@ -36,6 +36,24 @@
 #endif
 
 #if defined(__CUDA_ARCH__)
+/// Marks a template that a program for the host may link instead of compiling it (compiled.hpp): it is not inline
+/// there.
+#define COLLIDE_HD_LINKED COLLIDE_HD_INLINE
+#else
+/// Marks a template that a program for the host may link instead of compiling it (compiled.hpp): it is not inline
+/// there.
+#define COLLIDE_HD_LINKED COLLIDE_HD
+#endif
+
+#if defined(__GNUC__) && !defined(__CUDACC__)
+/// Marks a function that is called once in a while: small, and quick to compile.
+#define COLLIDE_COLD __attribute__((cold))
+#else
+/// Marks a function that is called once in a while: small, and quick to compile.
+#define COLLIDE_COLD
+#endif
+
+#if defined(__CUDA_ARCH__)
 /// Before a loop that the device does not unroll.
 #define COLLIDE_NO_UNROLL _Pragma("unroll 1")
 #else

@@ -8,6 +8,7 @@
 #include <collide/detail/grid/all_pairs_ref.hpp>
 #include <collide/detail/grid/grid_ref.hpp>
 #include <collide/detail/step/contact_search.hpp>
+#include <collide/detail/step/integrate.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
@@ -34,8 +35,15 @@ using block_of_host = host::block<void>;
   COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT, true, bodies_ref<SCALAR, bucket_ref<SCALAR>>) \
   COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT, true, bodies_ref<SCALAR, all_pairs_ref<SCALAR>>)
 
-/// All searches on the host.
+/// Whether particles are near a mesh that rests: as many as a step asks about at a time.
+#define COLLIDE_NEAR_TRIANGLES(PREFIX, SCALAR, SHAPE)                                         \
+  PREFIX std::uint32_t near_triangles(bucket_ref<SCALAR> const&, SHAPE<SCALAR> const(&)[16]); \
+  PREFIX std::uint32_t near_triangles(all_pairs_ref<SCALAR> const&, SHAPE<SCALAR> const(&)[16]);
+
+/// All of these, on the host.
 #define COLLIDE_ALL_SEARCHES(PREFIX, SCALAR)                           \
+  COLLIDE_NEAR_TRIANGLES(PREFIX, SCALAR, sphere)                       \
+  COLLIDE_NEAR_TRIANGLES(PREFIX, SCALAR, moving_sphere)                \
   COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi<exact>, false)            \
   COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi<single_precision>, false) \
   COLLIDE_SEARCHES(PREFIX, SCALAR, karabassi<double_precision>, false) \
