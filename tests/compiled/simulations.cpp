@@ -10,6 +10,7 @@
 #include <collide/bucket.cuh>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
+#include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
 
 namespace {
