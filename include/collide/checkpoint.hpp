@@ -52,8 +52,10 @@ struct saved_numbers {
     archive.value("largest radius", largest_radius);
     archive.value("time", time);
     archive.value("time on the device", clock[0]);
-    if (HasSource) archive.value("particles of the source", clock[1]);
-    if (HasSource) archive.value("part of its next one", clock[2]);
+    if (HasSource) archive.value("particles of the source", clock[clock_made]);
+    if (HasSource) archive.value("part of its next one", clock[clock_part]);
+    if (HasSource) archive.value("those that overlapped others", clock[clock_overlapping]);
+    if (HasSource) archive.value("those that were not born", clock[clock_not_born]);
     archive.value("reverse order", reverse_order);
     archive.value("pair forces are known", knows_pair_forces);
     archive.value("bodies are placed", bodies_are_placed);
@@ -160,7 +162,7 @@ class checkpoint {
     space.for_each(padded_size(places), init_particles<S, column_list>{
                                             state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr, S(0)});
     restore_columns(space, state, 0, 0, places);
-    restore_parameters(to);
+    restore_parameters(to.effects_);
     to.state_ = state;
     to.time_ = numbers_.time;
     to.reverse_order_ = numbers_.reverse_order != 0;
@@ -182,8 +184,8 @@ class checkpoint {
       space.copy_from_host(state.at(c) + width * place, column<decltype(c)>().data() + width * first, width * n);
     });
   }
-  template <class Simulation>
-  void restore_parameters(Simulation& to) const {
+  template <class Effects>
+  void restore_parameters(Effects& to) const {
     (restore_parameters_of<Effect>(to), ...);
   }
   template <class Simulation>
@@ -239,10 +241,10 @@ class checkpoint {
       std::get<bytes_of<E>>(parameters_).values = from.block<unsigned char>(parameters_name<E>(), sizeof(E));
     }
   }
-  template <class E, class Simulation>
-  void restore_parameters_of(Simulation& to) const {
+  template <class E, class Effects>
+  void restore_parameters_of(Effects& to) const {
     if constexpr (has_bytes<E>) {
-      std::memcpy(static_cast<void*>(&to.template effect<E>()), std::get<bytes_of<E>>(parameters_).values.data(),
+      std::memcpy(static_cast<void*>(&to.template of<E>()), std::get<bytes_of<E>>(parameters_).values.data(),
                   sizeof(E));
     }
   }

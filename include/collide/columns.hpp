@@ -120,6 +120,31 @@ struct supported_by {
   using value = std::uint8_t;
 };
 
+/// What a second surface adds, in the corner of two. Scenes have it, and the next three, that have `support` and name
+/// `moving_bodies`.
+struct second_support {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// Which surface `second_support` is of.
+struct second_supported_by {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+/// What a third surface adds, and all others.
+struct third_support {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// Which surface `third_support` is of: the first of them.
+struct third_supported_by {
+  template <class S>
+  using value = std::uint8_t;
+};
+
 /// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
 struct global_number {
   template <class S>

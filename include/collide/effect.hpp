@@ -141,6 +141,7 @@ struct mesh_contact : contact<S> {
   vec3<S> force_dv;         ///< what a step's acceleration adds to the velocity
   vec3<S> start;            ///< the centre when the step began; of a swept particle where it was stopped
   S elapsed;                ///< for how long the particle has moved from there, in the units of `dt`
+  S remaining;              ///< what is left of the step for a swept particle, in the units of `dt`; else 0
   vec3<S> velocity_before;  ///< the particle's velocity before this contact
   S approach_speed;         ///< speed towards the surface, before the contacts at this place changed it
   vec3<S> lift;        ///< displacement that raises the particle above the surface by 1, and leaves it on those before

@@ -150,9 +150,7 @@ class simulation {
     if constexpr (sweeps) {
       least_radius_ = 8 * std::numeric_limits<S>::epsilon() * detail::largest_coordinate(space_, mesh, mesh_summary_);
     }
-    if constexpr (detail::contains<columns, slow_steps>) {  // what slept may have lost its support
-      if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
-    }
+    wake_all();  // what slept may have lost its support
     prepare();
     if constexpr (effects_type::adheres) {
       if (is_set_)
@@ -250,11 +248,18 @@ class simulation {
     }
   }
 
-  /// The parameters of an effect, which may be changed between steps.
+  /// The parameters of an effect, to be changed between steps. All that sleeps is woken, as what holds it may be
+  /// another then; but not by a source, or by `moving_bodies`, which wake what they touch.
   template <class E>
   E& effect() {
-    static_assert((std::is_same<E, Effect>::value || ...),
-                  "collide: effect<E>() gives the parameters of an effect that is in the simulation's list");
+    check_effect<E>();
+    if constexpr (!detail::is_source<E> && !detail::is_moving_bodies<E>) wake_all();
+    return effects_.template of<E>();
+  }
+  /// The parameters of an effect, to be read.
+  template <class E>
+  E const& effect() const {
+    check_effect<E>();
     return effects_.template of<E>();
   }
 
@@ -264,6 +269,14 @@ class simulation {
     double most = std::numeric_limits<double>::infinity();
     ((most = detail::smaller(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
     return most;
+  }
+
+  /// What a source has made since `set`; see `birth_counts`. Waits.
+  birth_counts births() const {
+    static_assert(effects_type::makes, "collide: simulation: births: no effect of the scene makes particles");
+    double clock[detail::clock_size] = {};
+    if (state_.time != nullptr) space_.copy_to_host(clock, state_.time, detail::clock_size);
+    return detail::births_of(clock);
   }
 
   /// The bodies of the mesh, in a scene with `moving_bodies`: where they are; see `body_memory`.
@@ -310,6 +323,7 @@ class simulation {
   /// The part of a step before particles meet.
   void begin_step(S dt) {
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
+    effects_.prepare(dt);
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step)
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
@@ -323,7 +337,16 @@ class simulation {
     if (state_.size == 0) return;
     if constexpr (effects_type::meets) {
       if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
+      neighbours_.renew(space_, with_copies);
+      settle_births(with_copies, dt);
       neighbours_.interact(space_, with_copies, effects_, dt, is_first);
+    }
+  }
+  /// Says which of those that a source has made overlap others, once the lists are renewed.
+  void settle_births([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
+    if constexpr (effects_type::makes) {
+      if (effects_.due(static_cast<double>(dt)) > 0)
+        neighbours_.settle_births(space_, with_copies, effects_.makes_only_where_free());
     }
   }
   template <class... Kick>
@@ -351,15 +374,26 @@ class simulation {
     space_.launch(body.blocks, body);
   }
 
+  void wake_all() {
+    if constexpr (detail::contains<columns, slow_steps>) {
+      if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
+    }
+  }
+
   /// Moves the bodies on by `dt`, or, if they start, to where they are at this time.
   void advance_bodies(double dt, bool start) {
     if constexpr (has_bodies) {
       if (state_.time == nullptr) return;
-      auto const& motion = effect<moving_bodies<typename bodies_memory::motion>>().motion;
+      auto const& motion = effects_.template of<moving_bodies<typename bodies_memory::motion>>().motion;
       bodies_.advance(space_, motion, state_.time, dt, radii_.smallest, sweeps, start);
     }
   }
 
+  template <class E>
+  static constexpr void check_effect() {
+    static_assert((std::is_same<E, Effect>::value || ...),
+                  "collide: effect<E>() gives the parameters of an effect that is in the simulation's list");
+  }
   template <class Column>
   static constexpr void check() {
     static_assert(detail::contains<columns, Column>,
@@ -393,6 +427,8 @@ class simulation {
       throw error("collide: simulation: the time dt of a step is finite and above 0");
     ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
     ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
+    if (!effects_type::meets && effects_.makes_only_where_free())
+      throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
   }
 
   execution_space space_;

@@ -25,7 +25,7 @@ struct pair_interaction {
   /// A particle before and after.
   struct pair_state {
     interaction self, changed;
-    bool met = false;
+    bool met = false, woken = false;
     COLLIDE_HD_INLINE explicit pair_state(interaction const& p) : self(p), changed(p) {}
   };
 
@@ -41,9 +41,17 @@ struct pair_interaction {
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     bool const is_active = !is_skipped(p.self), is_other = !is_skipped(other);
-    if (is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
-    if (is_other) effects.try_wake(p.changed, other);
+    if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
+    if (is_other && !p.woken) effects.try_wake(p.changed, other);
     p.met = p.met || is_active || is_other;
+  }
+  /// True once if the particle has been woken: then it meets those that were awake again, which have got their part of
+  /// what the two do to each other.
+  COLLIDE_HD_INLINE bool must_meet_again(pair_state& p) const {
+    if constexpr (Effects::skips) {
+      p.woken = !p.woken && p.met && is_skipped(p.self) && !is_skipped(p.changed);
+    }
+    return p.woken;
   }
 
   COLLIDE_HD_INLINE void store(pair_state const& p) const {
@@ -80,9 +88,11 @@ struct interact_listed : pair_interaction<S, Effects> {
     if (places.list(0, i) == places.overflow_mark) return;
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
     packed_sphere<S> const own = places.spheres[i];
-    for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other) {
-      if (places.within_skin(own, other, S(0))) this->interact(p, place);
-    });
+    do {
+      for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other) {
+        if (places.within_skin(own, other, S(0))) this->interact(p, place);
+      });
+    } while (this->must_meet_again(p));
     this->store(p);
   }
 
@@ -119,6 +129,15 @@ struct interact_overflowed : pair_interaction<S, Effects> {
     if (this->is_of_another(i)) return;
     auto const self = static_cast<std::uint32_t>(i);
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
+    do {
+      meet_all(self, p);
+    } while (this->must_meet_again(p));
+    this->store(p);
+  }
+
+ private:
+  COLLIDE_HD_INLINE void meet_all(std::uint32_t self, typename pair_interaction<S, Effects>::pair_state& p) const {
+    auto const& places = this->order;
     id last = 0;
     for (bool first = true, complete = false; !complete; first = false) {
       first_neighbours<16> near;
@@ -131,7 +150,6 @@ struct interact_overflowed : pair_interaction<S, Effects> {
       complete = near.complete;
       if (!complete) last = near.numbers[near.size - 1];
     }
-    this->store(p);
   }
 };
 

@@ -24,6 +24,7 @@
 #include <limits>
 
 #include <collide/detail/execution/algorithms.hpp>
+#include <collide/detail/neighbours/births.hpp>
 #include <collide/detail/neighbours/build_lists.hpp>
 #include <collide/detail/neighbours/pair_interaction.hpp>
 #include <collide/detail/neighbours/particle_order.hpp>
@@ -36,6 +37,8 @@ namespace collide::detail {
 /// The lists, the grid and their memory.
 template <class S, class Effects>
 class verlet_list {
+  using state_type = particle_state<S, typename Effects::all>;
+
  public:
   /// Takes all memory that steps of up to `n` particles need.
   void reserve(std::pmr::memory_resource* resource, std::size_t n) {
@@ -70,17 +73,12 @@ class verlet_list {
            references_.bytes() + known_.bytes() + memory_.bytes();
   }
 
-  /// One pass of `on_pair_contact` over all pairs; if `only_kicks`, to know what they do to each other's velocities.
+  /// Makes the lists complete for particles where they now are. They hold until something moves.
   template <class Space>
-  void interact(Space& space, particle_state<S, typename Effects::all> const& state, Effects const& effects, S dt,
-                bool only_kicks) {
-    order const o{cells_,          ends_.data(),
-                  header_.data(),  numbers_.data(),
-                  spheres_.data(), references_.data(),
-                  known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
-                  lists_.data(),   state.size};
+  void renew(Space& space, state_type const& state) {
+    order const o = order_of(state);
     std::size_t const n = state.size;
-    std::uint32_t const *const rebuild = &o.header->rebuild, *const overflowed = &o.header->overflowed;
+    std::uint32_t const* const rebuild = &o.header->rebuild;
     // half of the skin, but for rounding
     space.for_each(n, update_and_check_skin<S, Effects>{state, o, S(0.495) * skin_});
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
@@ -89,6 +87,24 @@ class verlet_list {
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
+  }
+
+  /// After `renew`: counts what a source has made in this step where something is; if `refuse`, it is not born.
+  template <class Space>
+  void settle_births(Space& space, state_type const& state, bool refuse) {
+    order const o = order_of(state);
+    space.for_each(state.size, find_crowded_births<S, Effects>{state, o});
+    space.for_each(state.size, detail::settle_births<S, Effects>{state, o.header, refuse});
+    if (refuse) space.for_each(state.size, leave_out_unborn<S, Effects>{state, o});
+  }
+
+  /// After `renew`: one pass of `on_pair_contact` over all pairs; if `only_kicks`, to know what they do to each other's
+  /// velocities.
+  template <class Space>
+  void interact(Space& space, state_type const& state, Effects const& effects, S dt, bool only_kicks) {
+    order const o = order_of(state);
+    std::size_t const n = state.size;
+    std::uint32_t const* const overflowed = &o.header->overflowed;
     space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, only_kicks}});
     for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, only_kicks}});
   }
@@ -98,6 +114,14 @@ class verlet_list {
   using cells = spatial_hash<S>;
 
   static constexpr S skin_fraction = S(0.1);
+
+  order order_of(state_type const& state) const {
+    return {cells_,          ends_.data(),
+            header_.data(),  numbers_.data(),
+            spheres_.data(), references_.data(),
+            known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
+            lists_.data(),   state.size};
+  }
 
   /// How many blocks of cells there are for so many particles.
   static std::size_t blocks_for(std::size_t n) {

@@ -13,9 +13,17 @@ struct effect_slot {
   E effect;
 };
 
+/// What drag and wind do in a step, if there are any; known before it.
+template <bool Resists>
+struct resistance_slot {};
+template <>
+struct resistance_slot<true> {
+  resistance_in_step resistance;
+};
+
 /// The effects of a simulation and what follows from their list at compile time.
 template <class S, class... E>
-struct effect_list : effect_slot<E>... {
+struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value || ...)> {
   using integrator = typename integrator_of<E...>::type;
 
   static constexpr bool skips = (skips_in<E, S>::value || ...);
@@ -24,6 +32,7 @@ struct effect_list : effect_slot<E>... {
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
   static constexpr bool books = (books_in<E, S>::value || ...);
   static constexpr bool resists = (resists_in<E, S>::value || ...);
+  static constexpr bool flows = (flows_in<E, S>::value || ...);
 
   using base = columns<position, velocity>;
   using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
@@ -43,7 +52,9 @@ struct effect_list : effect_slot<E>... {
   using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
                               columns_if<keeps_pair_torques, pair_angular_acceleration>>;
   using held_columns = columns_if<touches && has_half_kicks, held>;
-  using support_columns = columns_if<keeps_support, support, supported_by>;
+  using support_columns = union_of<columns_if<keeps_support, support, supported_by>,
+                                   columns_if<keeps_support && (is_moving_bodies<E> || ...), second_support,
+                                              second_supported_by, third_support, third_supported_by>>;
 
  public:
   /// All columns of the simulation.
@@ -102,7 +113,10 @@ struct effect_list : effect_slot<E>... {
 
   /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
   double due(double dt) const { return (due_of<E>(dt) + ... + 0.0); }
-  S source_radius() const { return (is_source<E> || ...) ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+  static constexpr bool makes = (is_source<E> || ...);
+  /// Whether what a source makes where something is, is not born.
+  bool makes_only_where_free() const { return (is_careful<E>() || ...); }
+  S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
 
   template <class F>
   COLLIDE_HD_INLINE F const& of() const {
@@ -119,16 +133,45 @@ struct effect_list : effect_slot<E>... {
     return (skipped_by<E>(p) || ...);
   }
 
+  /// Makes ready for steps of the time `dt`.
+  void prepare([[maybe_unused]] S dt) {
+    if constexpr (resists) this->resistance = resistance_over(S(integrator::kick_before) * dt);
+  }
   template <class P>
   COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (resists) {
       vec3<S> const before = p[velocity{}];
-      media around(before.template cast<double>());
+      vec3<double> const flow = flow_around(p);
       push(p, dt);
-      (resist_by<E>(p, around), ...);
-      p[velocity{}] = velocity_in(around.sum(), before, p[velocity{}], dt);
+      bool const is_ready = this->resistance.time == static_cast<double>(dt);
+      p[velocity{}] = velocity_in(is_ready ? this->resistance : resistance_over(dt), flow, before, p[velocity{}]);
     } else {
       push(p, dt);
+    }
+  }
+  /// Accelerates some particles, each for its own time, on a CPU; those for 0 are left out.
+  template <class P, int N>
+  COLLIDE_HD_INLINE void accelerate_together(P (&p)[N], S const (&dt)[N]) const {
+    auto const& r = this->resistance;
+    S const time = S(r.time);
+    bool ready = !r.is_none();
+    for (int k = 0; k < N; ++k) ready = ready && (dt[k] == time || dt[k] == 0);
+    if (!ready) {
+      for (int k = 0; k < N; ++k) {
+        if (dt[k] != 0) accelerate(p[k], dt[k]);
+      }
+      return;
+    }
+    velocities_in<S, N, flows> velocities;
+    for (int k = 0; k < N; ++k) {
+      velocities.set_before(k, flow_around(p[k]), p[k][velocity{}]);
+      if (dt[k] != 0) push(p[k], time);
+      velocities.set_pushed(k, p[k][velocity{}]);
+    }
+    multiversioned([&] { r.quadratic == 0 ? velocities.ease(r) : velocities.find(r); });
+    velocities.keep();
+    for (int k = 0; k < N; ++k) {
+      if (dt[k] != 0) velocities.get(k, p[k][velocity{}], r);
     }
   }
   template <class P>
@@ -166,6 +209,11 @@ struct effect_list : effect_slot<E>... {
     return 0;
   }
   template <class F>
+  bool is_careful() const {
+    if constexpr (is_source<F>) return of<F>().only_where_free;
+    return false;
+  }
+  template <class F>
   S source_radius_of() const {
     if constexpr (is_source<F>) return static_cast<S>(of<F>().radius);
     return 0;
@@ -185,6 +233,26 @@ struct effect_list : effect_slot<E>... {
       particle_access<F, P> const seen(p);
       around.add(of<F>().resistance(seen));
     }
+  }
+  /// The velocity of the medium around a particle.
+  template <class P>
+  COLLIDE_HD_INLINE vec3<double> flow_around(P& p) const {
+    if constexpr (!flows) return {0, 0, 0};
+    media around(p[velocity{}].template cast<double>());
+    (resist_by<E>(p, around), ...);
+    return around.flow();
+  }
+  template <class F>
+  COLLIDE_HD_INLINE void add_resistance([[maybe_unused]] double& linear, [[maybe_unused]] double& quadratic) const {
+    if constexpr (resists_in<F, S>::value) {
+      linear += of<F>().linear;
+      quadratic += of<F>().quadratic;
+    }
+  }
+  COLLIDE_HD_INLINE resistance_in_step resistance_over(S time) const {
+    double linear = 0, quadratic = 0;
+    (add_resistance<E>(linear, quadratic), ...);
+    return {linear, quadratic, static_cast<double>(time)};
   }
   /// What all accelerate but those that resist.
   template <class P>

@@ -2,7 +2,9 @@
 /// Which members an effect has, and where it may be in the list.
 #pragma once
 
+#include <collide/bodies.hpp>
 #include <collide/detail/particles/particle_access.hpp>
+#include <collide/detail/particles/resistance.hpp>
 #include <collide/integrators.hpp>
 
 namespace collide::detail {
@@ -28,6 +30,10 @@ template <class E, class S>
 struct accelerates_in<
     E, S, std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
+template <class Effect>
+inline constexpr bool is_moving_bodies = false;
+template <class Motion>
+inline constexpr bool is_moving_bodies<moving_bodies<Motion>> = true;
 /// Drag and wind: what resists the motion that all others accelerate.
 template <class E, class S, class = void>
 struct resists_in : std::false_type {};
@@ -35,6 +41,15 @@ template <class E, class S>
 struct resists_in<
     E, S, std::void_t<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()))>>
     : std::true_type {};
+/// Wind: what resists motion in a medium that may move.
+template <class E, class S, class = void>
+struct flows_in : std::false_type {};
+template <class E, class S>
+struct flows_in<
+    E, S, std::void_t<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()))>>
+    : std::bool_constant<
+          !std::is_same<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>())),
+                        medium_at_rest>::value> {};
 template <class E, class S>
 inline constexpr bool changes_velocity_in = accelerates_in<E, S>::value || resists_in<E, S>::value;
 template <class E, class S, class = void>
