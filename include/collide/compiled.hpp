@@ -6,9 +6,11 @@
 #pragma once
 
 #include <collide/detector.hpp>
-#include <collide/karabassi_swept.hpp>
 
 namespace collide {
+
+template <class Precision>
+struct karabassi_swept;
 
 class any_hit;
 class count;
