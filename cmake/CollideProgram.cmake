@@ -2,7 +2,7 @@
 # collide_program(NAME SOURCE...): its sources are .cpp files that are compiled as CUDA where COLLIDE_CUDA is ON and as
 # C++ otherwise.
 # collide_host_program(NAME SOURCE...): nothing in it is for CUDA.
-# Both link collide::compiled, or collide::compiled_cuda, so that they compile what is theirs alone.
+# They link collide::compiled, the former collide::compiled_cuda too, so that they compile what is theirs alone.
 
 set(COLLIDE_EXTRA_INCLUDE "" CACHE PATH "Folder of third-party headers that the system lacks")
 
@@ -25,19 +25,15 @@ if(COLLIDE_WERROR)
                                                    $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Werror=all-warnings>)
 endif()
 
-set(collide_linked collide::compiled)  # what programs and tests link
-if(COLLIDE_CUDA)
-  set(collide_linked collide::compiled_cuda)
-endif()
-
 function(collide_host_program name)
   add_executable(${name} ${ARGN})
-  target_link_libraries(${name} PRIVATE collide_options ${collide_linked})
+  target_link_libraries(${name} PRIVATE collide_options collide::compiled)
 endfunction()
 
 function(collide_program name)
   collide_host_program(${name} ${ARGN})
   if(COLLIDE_CUDA)
+    target_link_libraries(${name} PRIVATE collide::compiled_cuda)
     set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
   endif()
 endfunction()
