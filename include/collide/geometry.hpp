@@ -22,8 +22,8 @@ using vec3 = Eigen::Matrix<S, 3, 1>;
 
 namespace detail {
 
-/// Sums and multiples of vectors, as Eigen computes them: the library's own code finds these first, and they are a tenth
-/// of what Eigen's expressions take to compile.
+/// Sums and multiples of vectors, as Eigen computes them: the library's own code finds these first, and they are a
+/// tenth of what Eigen's expressions take to compile.
 namespace vector_operators {
 
 template <class S>

@@ -3,8 +3,8 @@
 
 #include <thrust/device_vector.h>
 
-#include <collide/effects/bounce.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/simulation.cuh>
 

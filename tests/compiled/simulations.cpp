@@ -1,5 +1,5 @@
-/// Steps of simulations, with what collide::compiled has of them or without. Prints a hash of where the particles end: the
-/// same either way.
+/// Steps of simulations, with what collide::compiled has of them or without. Prints a hash of where the particles end:
+/// the same either way.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
