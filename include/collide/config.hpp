@@ -1,6 +1,6 @@
 /// \file
-/// What marks functions and loops for host and device: the only macros of the library, but for those of version.hpp and
-/// compiled.hpp.
+/// What marks functions and loops for host and device: the only macros of the library, but for those of version.hpp,
+/// compiled.hpp and detail/step/compiled_search.hpp.
 #pragma once
 
 #include <collide/version.hpp>
