@@ -242,8 +242,9 @@ class checkpoint {
   static std::vector<unsigned char> bytes_of_parameters(E effect) {
     std::vector<unsigned char> bytes;
     for_each_part_of(effect, [&](auto const& part) {
-      auto const* const first = reinterpret_cast<unsigned char const*>(&part);
-      bytes.insert(bytes.end(), first, first + sizeof part);
+      std::size_t const before = bytes.size();
+      bytes.resize(before + sizeof part);
+      std::memcpy(bytes.data() + before, &part, sizeof part);
     });
     return bytes;
   }
