@@ -168,7 +168,7 @@ struct all_pairs {
       space.launch(blocks * kernel.splits, kernel);
     }
 
-    /// What a kernel asks for the triangles near a single sphere; valid until the next build.
+    /// The triangles near a single sphere, for a kernel; valid until the next build.
     detail::all_pairs_ref<S> triangle_ref() const { return {{mesh_, nullptr}}; }
 
     /// What a kernel asks for the triangles near a point; valid until the next build.
@@ -186,11 +186,7 @@ struct all_pairs {
 };
 
 #if defined(COLLIDE_COMPILED)
-COLLIDE_COMPILED_ELSEWHERE(all_pairs, host)
-#if defined(__CUDACC__) && defined(COLLIDE_COMPILED_CUDA)
-COLLIDE_COMPILED_ELSEWHERE(all_pairs, cuda)
-COLLIDE_COMPILED_ELSEWHERE(all_pairs, cuda_shared)
-#endif
+COLLIDE_ELSEWHERE(all_pairs)
 #endif
 
 }  // namespace collide

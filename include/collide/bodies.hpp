@@ -21,12 +21,12 @@ COLLIDE_HD_INLINE vec3<double> rotated(double const (&q)[4], vec3<double> const&
 
 }  // namespace detail
 
-/// Where a body is: a point x of its mesh is at position + R x, R the rotation.
+/// The pose of a body: a point x of its mesh is at position + R x, R the rotation.
 struct pose {
   double position[3] = {0, 0, 0};     ///< of the origin of the mesh
   double rotation[4] = {1, 0, 0, 0};  ///< unit quaternion w, x, y, z
 
-  /// Where a point of the mesh is. O(1).
+  /// The position of a point of the mesh. O(1).
   COLLIDE_HD vec3<double> operator()(vec3<double> const& x) const {
     return vec3<double>(position[0], position[1], position[2]) + detail::rotated(rotation, x);
   }
@@ -38,7 +38,7 @@ struct twist {
   double angular[3] = {0, 0, 0};  ///< radians per unit of time, around the axis that it points along
 };
 
-/// Where a body is and how it moves at a time.
+/// The pose and the velocity of a body at a time.
 struct body_state {
   pose at;                     ///< where it is
   twist moving;                ///< how `at` changes
@@ -68,7 +68,7 @@ struct body_motion {
     sin_cos const wave = sin_cos_of_turns(mul_rn(frequency, time) + phase);
     double const wave_rate = mul_rn(mul_rn(two_pi, frequency), wave.cos);
     vec3<double> const given(axis[0], axis[1], axis[2]);
-    vec3<double> const direction = scaled(given, inverse_power_of_two(max_component<double>(given.cwiseAbs())));
+    vec3<double> const direction = scaled(given, inverse_power_of_two(max_component<double>(detail::absolute(given))));
     double const length = sqrt_rn(dot(direction, direction));
     double const angle = mul_rn(rate, time) + mul_rn(swing, wave.sin), angle_rate = rate + mul_rn(swing, wave_rate);
     sin_cos const half = sin_cos_of_turns(div_rn(angle, 2 * two_pi));
@@ -100,7 +100,7 @@ struct body {
 /// In place of a motion: poses and twists are what the caller's kernels write to `simulation::bodies()`.
 struct driven {};
 
-/// What is told of bodies, counted since `set_mesh`: see `simulation::bodies().report(space)`.
+/// The report on bodies, counted since `set_mesh`: see `simulation::bodies().report(space)`.
 struct body_report {
   /// How often a body was to get a pose that is no rotation or not finite; it then stays where it was, at rest.
   std::uint32_t refused_poses = 0;

@@ -33,7 +33,7 @@ std::string type_name() {
   return name;
 }
 
-/// What a simulation knows besides its columns and the parameters of its effects.
+/// The numbers of a simulation besides its columns and the parameters of its effects.
 template <class S, bool HasSource>
 struct saved_numbers {
   std::uint64_t triangles = 0, places = 0, placed = 0;
@@ -209,7 +209,7 @@ class checkpoint {
   }
 
  private:
-  /// What the simulation is: written, or compared with what was.
+  /// The type of the simulation: written, or compared with what was.
   template <class Archive>
   static void pass_types(Archive& archive) {
     archive.text("scalar", type_name<S>());
@@ -242,8 +242,9 @@ class checkpoint {
   static std::vector<unsigned char> bytes_of_parameters(E effect) {
     std::vector<unsigned char> bytes;
     for_each_part_of(effect, [&](auto const& part) {
-      auto const* const first = reinterpret_cast<unsigned char const*>(&part);
-      bytes.insert(bytes.end(), first, first + sizeof part);
+      std::size_t const before = bytes.size();
+      bytes.resize(before + sizeof part);
+      std::memcpy(bytes.data() + before, &part, sizeof part);
     });
     return bytes;
   }

@@ -1,5 +1,5 @@
 /// \file
-/// What an effect is: what happens to a particle in a step of a simulation.
+/// The interface of effects: what happens to a particle in a step of a simulation.
 ///
 /// An effect is a small copyable struct with its parameters. It names the columns that it works on,
 ///
@@ -78,7 +78,7 @@ inline constexpr S contact_tolerance = sizeof(S) == sizeof(float) ? S(1e-5) : S(
 /// The rounding of a position: at least 1 unit in the last place of its largest coordinate.
 template <class S>
 COLLIDE_HD_INLINE S rounding_at(vec3<S> const& position) {
-  return std::numeric_limits<S>::epsilon() * max_component<S>(position.cwiseAbs());
+  return std::numeric_limits<S>::epsilon() * max_component<S>(detail::absolute(position));
 }
 
 /// The mass of a sphere.
@@ -146,7 +146,7 @@ void for_each_part_of(E& of, F const& f) {
 
 }  // namespace detail
 
-/// What the mesh gives to a particle, as `on_mesh_impulse` gets it: changes per mass, in the world.
+/// The impulse from the mesh to a particle, as `on_mesh_impulse` gets it: changes per mass, in the world.
 template <class S>
 struct mesh_impulse {
   vec3<S> change;       ///< of the velocity
@@ -172,7 +172,7 @@ struct mesh_overlap {
 /// A particle's contact with the mesh, as `on_mesh_contact` gets it. `depth` is how deep the triangle still is in the
 /// sphere, where the particle is now: an effect that pushes the particle out takes off what it pushed.
 ///
-/// Where a particle touches several triangles at the same place, each contact knows of those before it. In a groove
+/// If a particle touches several triangles at the same place, each contact knows of those before it. In a groove
 /// the surface of the second can only be left along the first: `push_out` and `repel` do so.
 template <class S>
 struct mesh_contact : contact<S> {

@@ -54,7 +54,7 @@ class host {
 
   /// The name of the space, for messages.
   static constexpr char const* name() { return "host"; }
-  /// Where memory comes from.
+  /// The resource of memory.
   std::pmr::memory_resource* resource() const { return resource_; }
   /// Does nothing: all work is done when a call returns.
   void synchronize() const {}

@@ -54,20 +54,7 @@ struct karabassi {
 namespace detail {
 
 template <>
-struct filtered_predicate<karabassi<exact>> : std::true_type {
-  template <class S>
-  static COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, sphere<S> const& s) {
-    return detail::filter_exact(t, s).verdict;
-  }
-  template <class S>
-  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s) {
-    return detail::filter_branchless(t, s);
-  }
-  template <class S>
-  static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, sphere<S> const& s) {
-    return detail::resolve_exact(t, s).hit;
-  }
-};
+struct filtered_predicate<karabassi<exact>> : exact_predicate {};
 
 }  // namespace detail
 

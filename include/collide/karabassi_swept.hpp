@@ -69,21 +69,7 @@ struct karabassi_swept {
 namespace detail {
 
 template <>
-struct filtered_predicate<karabassi_swept<exact>> : std::true_type {
-  template <class S>
-  static COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, moving_sphere<S> const& s) {
-    return detail::filter_exact(t, s).verdict;
-  }
-  template <class S>
-  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& around,
-                                                     sphere<S> const& midpoint) {
-    return detail::filter_branchless(t, around, midpoint);
-  }
-  template <class S>
-  static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, moving_sphere<S> const& s) {
-    return detail::resolve_exact(t, s).hit;
-  }
-};
+struct filtered_predicate<karabassi_swept<exact>> : exact_swept_predicate {};
 
 }  // namespace detail
 

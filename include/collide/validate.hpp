@@ -62,7 +62,7 @@ class report {
   /// True for what is unusual but has a defined meaning.
   static constexpr bool legal(problem p) { return p == problem::triangle_degenerate || p == problem::radius_infinite; }
 
-  /// What is known of one kind of problem, as it is kept in memory of a space.
+  /// The count of one kind of problem, in memory of a space.
   struct finding {
     std::uint64_t count;  ///< how many elements have it
     id first;             ///< the smallest id of one; `no_id` if there is none

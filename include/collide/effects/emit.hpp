@@ -64,7 +64,8 @@ struct emit_particles {
 
  protected:
   COLLIDE_HD_INLINE std::uint64_t begun() const { return static_cast<std::uint64_t>(state.time[clock_made]); }
-  /// Of the particles of a step for a place, of which there are `others`, the latest stays, or the first is born.
+  /// Chooses among the particles of a step for a place, of which there are `others`: the latest stays, or the first is
+  /// born.
   COLLIDE_HD_INLINE void store_at(std::size_t place, std::uint64_t number, std::uint64_t others) const {
     if (only_free) {
       bool const is_taken = state.at(alive{})[place] != 0;

@@ -32,8 +32,8 @@ struct spin {
   }
 
  private:
-  /// What rolls without slipping is slowed down as a whole: friction, as far as it has a reserve, keeps rotation and
-  /// motion together. Returns what is left of the resistance `most`, both per mass.
+  /// A particle that rolls without slipping is slowed down as a whole: friction, as far as it has a reserve, keeps
+  /// rotation and motion together. Returns what is left of the resistance `most`, both per mass.
   template <class Particle, class S>
   COLLIDE_HD_INLINE static S slow_rolling(Particle& p, mesh_contact<S>& t, S most) {
     auto& w = p[angular_velocity{}];

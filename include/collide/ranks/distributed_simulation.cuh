@@ -32,7 +32,7 @@ class distributed_checkpoint;
 /// ranks call all members, in the same order, with the same parameters of effects and the same `dt`. What one throws
 /// makes all throw: see `together`; then `set` begins anew.
 ///
-/// Where particles meet each other, each rank has the particles of a brick of space, and copies of those that are near
+/// If particles meet each other, each rank has the particles of a brick of space, and copies of those that are near
 /// it. All tell each other in each step where copies are, and whether a particle has moved so far that some may be
 /// missing: then particles change ranks, and where many more are on one rank than on others, new bricks are cut. So a
 /// step waits for the other ranks, and with CUDA for the device. Where particles do not meet, they stay where they are.
@@ -154,7 +154,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     return found;
   }
 
-  /// What the source has made on all ranks; see `birth_counts`. All ranks call it. Waits.
+  /// Counts of the source on all ranks; see `birth_counts`. All ranks call it. Waits.
   birth_counts births() const {
     birth_counts all;
     together(ranks_, [&] { all = local().births(); });
@@ -163,11 +163,11 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     ranks_.reduce(mine, sums, 2, reduction::sum);
     return {all.due, sums[0], sums[1]};
   }
-  /// What the particles of all ranks give to each body; see `reaction_sums::read`. Waits.
+  /// The sums of all ranks for each body; see `reaction_sums::read`. Waits.
   std::vector<body_impulse> total(reaction_sums const& mine) const {
     return impulses(mine, [&] { return mine.counts(local().space()); });
   }
-  /// What the particles of all ranks give to each triangle; see `reaction_sums::read_triangles`. Waits.
+  /// The sums of all ranks for each triangle; see `reaction_sums::read_triangles`. Waits.
   std::vector<body_impulse> total_of_triangles(reaction_sums const& mine) const {
     return impulses(mine, [&] { return mine.triangle_counts(local().space()); });
   }

@@ -21,14 +21,14 @@ namespace collide {
 
 namespace detail {
 
-/// Where threads wait for each other, and see what the others have laid out. Who waits for one that has left throws.
+/// A barrier at which threads wait for each other, and see what the others have laid out. It throws if one has left.
 class exchange_barrier {
  public:
   static constexpr std::size_t max_values = 8;  ///< numbers that a rank can lay out here
 
   explicit exchange_barrier(int size) : places_(static_cast<std::size_t>(size)) {}
 
-  /// What a rank shows to the others.
+  /// The data of a rank that the others see.
   struct place {
     void const* data = nullptr;
     std::uint64_t const* counts = nullptr;
@@ -38,7 +38,7 @@ class exchange_barrier {
   int size() const { return static_cast<int>(places_.size()); }
   place& slot(int rank) { return places_[static_cast<std::size_t>(rank)]; }
 
-  /// How often all have waited, as a rank sees it that does not wait.
+  /// The number of completed rounds: how often all ranks have waited.
   std::uint64_t round() const { return round_.load(std::memory_order_relaxed); }
 
   /// Returns when all have called it. Throws `rank_error` if one has left. Others mostly come soon, and to wake a
@@ -75,7 +75,7 @@ class exchange_barrier {
     changed_.notify_all();
   }
 
-  /// What went wrong first, rather than what that made others throw; null if nothing did.
+  /// The first failure, rather than those that follow from it on other ranks; null if there was none.
   std::exception_ptr failure() const { return failure_; }
 
  private:

@@ -69,7 +69,7 @@ class csr : public detail::kept_in_space<id> {
   /// Number of spheres of the last query.
   std::size_t rows() const { return rows_; }
 
-  /// Where the row of each sphere begins, and behind the last row the number of pairs: `rows() + 1` numbers, in memory
+  /// The begin of each sphere's row, and behind the last row the number of pairs: `rows() + 1` numbers, in memory
   /// of the space. Null before the first query.
   std::uint64_t const* offsets() const { return offsets_; }
   /// The stored triangles, row after row, `size()` of them, in memory of the space. Valid until the next query.

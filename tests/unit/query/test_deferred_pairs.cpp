@@ -9,7 +9,7 @@
 namespace {
 
 /// Spheres next to `layers` triangles each, all in the same place: a third touches them at exactly the radius, which no
-/// certificate decides, a third is a unit in the last place (of float) too far away, and a third nearer by as much. So
+/// filter decides, a third is a unit in the last place (of float) too far away, and a third nearer by as much. So
 /// threads that decide side by side take unequally long.
 template <class S>
 tests::scene<S> touching_scene(int layers, int spheres) {

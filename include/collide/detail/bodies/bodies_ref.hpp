@@ -102,10 +102,6 @@ struct bodies_ref {
 
   /// `around` is in the triangle's frame.
   COLLIDE_HD_INLINE bool near(sphere<S> const& around, id triangle) const { return whole.near(around, triangle); }
-  template <class NarrowPhase, class Sphere>
-  COLLIDE_HD_INLINE bool aabb_overlaps_unless_filtered(Sphere const& shape, id triangle) const {
-    return whole.template aabb_overlaps_unless_filtered<NarrowPhase>(shape, triangle);
-  }
 
  private:
   template <class Sphere>

@@ -13,7 +13,7 @@
 
 namespace collide::detail {
 
-/// What is known of a body from the start.
+/// Constants of a body.
 struct body_record {
   body_motion motion;
   vec3<double> centre;  ///< of its bounding sphere, in its frame
@@ -168,7 +168,7 @@ class body_memory {
     return copy;
   }
 
-  /// What has gone wrong since `set_mesh`. Waits.
+  /// The report of what has gone wrong since `set_mesh`. Waits.
   template <class Space>
   body_report report(Space const& space) const {
     return report_.data() != nullptr ? space.read(report_.data()) : body_report();

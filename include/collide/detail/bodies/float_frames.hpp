@@ -2,7 +2,7 @@
 /// A quick test of several particles that rest whether they may touch a body: in the coordinates' own precision, with a
 /// bound on how far the place that it finds in a body's frame is from the one that contacts are computed with.
 ///
-/// What the bound rests on. Let u be the unit roundoff of the scalar and d = 2^-53 that of double, A the linear map of
+/// Proof of the bound. Let u be the unit roundoff of the scalar and d = 2^-53 that of double, A the linear map of
 /// a body's unit quaternion, P its position, c the centre of its bounding sphere as `body_frame` has it, x a particle's
 /// centre, v = x - c, and m = A (c - P). Contacts are computed at p, which is A (x - P) in double, rounded. A's formula
 /// has fewer than 32 roundings that matter, so |p - A (x - P)| <= 32 d (|v| + |m|) + u (|v| + |m|). The quick place is
@@ -54,7 +54,7 @@ struct alignas(16) float_frame {
     return {{0, 0, 0}, std::numeric_limits<S>::infinity(), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}, 0};
   }
 
-  /// Of a discrete step, in which `f` has the bounding sphere as it is at the end.
+  /// The frame of a discrete step, in which `f` has the bounding sphere as it is at the end.
   static COLLIDE_HD_INLINE float_frame of(body_frame<S> const& f) {
     float_frame q;
     double const w = f.now.w, a[3] = {f.now.axis.x(), f.now.axis.y(), f.now.axis.z()};

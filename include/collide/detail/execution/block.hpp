@@ -1,5 +1,5 @@
 /// \file
-/// What a kernel functor is written against: a block of threads that work together.
+/// The interface that kernel functors are written against: a block of threads that work together.
 ///
 /// A kernel is a function object `kernel(block, scratch)`. It runs once per block, on any execution space:
 ///   - `block.for_each_thread(f)` calls f(thread) for every thread, then waits for all of them;
@@ -11,11 +11,11 @@
 ///     of a few values, one row for each thread, that follow each other: `warp_size` threads call them at a time and
 ///     read and write what lies side by side together, so all of these rows must exist; what a thread has read is its
 ///     own row after the exchange, and not before;
-///   - `block.for_each_balanced<ItemsPerThread>(...)` spreads work evenly over the threads: for all k < counts[i],
-///   which are at
-///     least 1, it finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f). `load` and `filter`
-///     only read, and a thread does them up to `ItemsPerThread` times before it takes, so that it waits for all of them
-///     at once if they do not branch; after each round the whole block calls `end_round(is_last)`;
+///   - `block.for_each_balanced<ItemsPerThread>(...)` spreads work evenly over the threads. For all k < counts[i],
+///   where
+///     counts are at least 1: x = load(item(i), k), and if filter(item(i), x), then consume(item(i), x). `load` and
+///     `filter` only read, and a thread calls them for up to `ItemsPerThread` work items before it consumes, so that
+///     the loads overlap if they do not branch. After each round the whole block calls `end_round(is_last)`;
 ///   - `block.scan(...)` makes of at most as many values as threads the sums of those before each;
 ///   - `block.reduce(...)` combines a value per thread.
 /// `scratch` is the kernel's scratch memory of the block (shared memory on CUDA); it is not initialised.

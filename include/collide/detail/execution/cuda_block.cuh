@@ -73,14 +73,14 @@ class cuda_block {
     return to.values;
   }
 
-  /// A warp reads what lies side by side,
+  /// Reads a row of each thread of a warp: adjacent threads read adjacent values.
   template <class T, int N>
   __device__ __forceinline__ void load_striped(T const* from, std::uint32_t row, T (&side)[N]) {
     from += striped_offset<N>(row);
     for (int k = 0; k < N; ++k) side[k] = from[k * cuda_warp];
   }
 
-  /// and its lanes exchange it.
+  /// Exchanges what a warp has read with `load_striped`, so that each thread has its own row.
   template <class Scratch, class T, int N>
   __device__ __forceinline__ void striped_to_blocked(Scratch& s, T (&values)[N]) {
     if constexpr (N > 1) {
@@ -118,10 +118,11 @@ class cuda_block {
     return sum;
   }
 
-  /// Each warp takes a stretch of the work at a time. Whose work its first piece is, it searches for; from there on, a
-  /// word of bits tells all its lanes which of the next pieces are the first ones of others. A lane finds and looks at
-  /// all its pieces without a branch between them, so that what it reads for them comes together; where there is no
-  /// more work, at the last piece again.
+  /// All work items are numbered: those of counts[0], then those of counts[1], and so on: each count is a segment. A
+  /// warp takes a tile of consecutive work items at a time. It finds the segment of the first by a search; the segments
+  /// of the others follow from a word with a bit for each item that is the first of a segment. A thread loads and
+  /// filters all its items without a branch between them, so that their memory accesses overlap; behind the end, the
+  /// last item again.
   template <int ItemsPerThread, class Item, class Load, class Filter, class Consume, class EndRound>
   __device__ __forceinline__ void for_each_balanced(scan_storage& s, std::uint32_t* counts, std::uint32_t n,
                                                     Item const& item, Load const& load, Filter const& filter,
@@ -184,7 +185,7 @@ class cuda_block {
 #endif
   }
 
-  /// What a warp's rows of `N` values pass through.
+  /// The part of shared memory through which a warp exchanges its rows of `N` values.
   template <int N, class T>
   static __device__ __forceinline__ T* warp_slice(T* values) {
     return values + threadIdx.x / cuda_warp * (cuda_warp * N);

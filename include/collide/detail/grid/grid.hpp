@@ -5,7 +5,7 @@
 /// that it meets; a sphere then looks into the one cell that holds its centre. No pair can appear twice, and the
 /// spheres need no sorting.
 ///
-/// What keeps the grid from collapsing:
+/// Measures that keep the grid from collapsing:
 ///   - A cost model. The width is the one where entering the triangles and testing the candidates cost least together;
 ///     plan.hpp. Triangles are entered only into cells that they meet themselves; triangle_cells.hpp.
 ///   - Two levels, where that costs less: triangles much larger than the rest go to wider cells; a sphere looks into
@@ -101,7 +101,7 @@ struct grid_level {
   static COLLIDE_HD_INLINE std::uint32_t whole(S x) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(x)); }
 };
 
-/// What a grid is, but for its levels.
+/// A grid without its levels.
 template <class S>
 struct grid_header {
   S reach;           ///< serves spheres of radius up to this

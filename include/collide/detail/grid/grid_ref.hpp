@@ -1,5 +1,5 @@
 /// \file
-/// What a kernel asks the grids for a single sphere. The members are those of triangle_ref.hpp.
+/// A reference to grids for a single sphere. The members are those of triangle_ref.hpp.
 #pragma once
 
 #include <cstddef>
@@ -109,7 +109,7 @@ struct bucket_ref : triangle_ref<S> {
     COLLIDE_NO_UNROLL
     for (int g = 0; g < grid_count; ++g) {
       for (int k = 0; k < N; ++k) {
-        // a sphere that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
+        // a sphere without candidates stays so: its radius may be NaN, and -ffast-math may compare that either way
         bool const served = (number[k] != no_candidates) & serves(grids[g], pack.shape(k));
         std::int8_t const there = meets(grids[g], pack.shape(k)) ? static_cast<std::int8_t>(g) : no_candidates;
         number[k] = served ? there : number[k];

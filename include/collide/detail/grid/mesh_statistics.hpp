@@ -15,7 +15,7 @@
 
 namespace collide::detail {
 
-/// What a mesh looks like, over its finite triangles. Memory of zeros is a summary of none: `lower` and `upper` are
+/// Statistics of a mesh, over its finite triangles. Memory of zeros is a summary of none: `lower` and `upper` are
 /// both updated by a maximum.
 template <class S>
 struct mesh_statistics {

@@ -24,7 +24,7 @@ struct vertices_as_spheres {
   COLLIDE_HD sphere<S> operator[](std::size_t i) const { return {mesh[i].a, common}; }
 };
 
-/// Where a sphere is; of one that moves, somewhere on its path, from 0 to 1.
+/// The sphere at a part of its path, from 0 to 1, if it moves.
 template <class S>
 COLLIDE_HD_INLINE sphere<S> sphere_on_path(sphere<S> const& s, S) {
   return s;
@@ -70,8 +70,8 @@ struct pair_distances {
   COLLIDE_HD_INLINE static float end_of(std::uint32_t bin) { return from_bits<float>((bin + 127 - 28) << 23); }
 };
 
-/// What share of all pairs is not farther apart than a distance, as far as some thousand pairs tell: a power of the
-/// distance where there are few.
+/// The share of all pairs that are not farther apart than a distance, estimated from a few thousand pairs: a power of
+/// the distance where there are few.
 class share_of_pairs {
  public:
   COLLIDE_HD explicit share_of_pairs(pair_distances const& seen) {
@@ -92,7 +92,7 @@ class share_of_pairs {
     power_ = min(max(power_, 1.f), 3.f);
   }
 
-  /// Of triangles with this mean extent.
+  /// The share for triangles with this mean extent.
   COLLIDE_HD float operator()(float distance, float extent) const {
     float const x = (extent + 2 * distance) / (extent + 2 * distance_);
     return x > 0 ? min(1.f, share_ * exp2f(power_ * log2f(x))) : 0.f;

@@ -68,7 +68,7 @@ class swept_cells {
   /// Steps are numbered; in each there is one cell, or none. A cell of the piece before is not come to again.
   COLLIDE_HD_INLINE std::uint32_t steps() const { return segments_ * cells_per_segment(); }
 
-  /// Where a step leads. Plain numbers: scratch memory is not constructed.
+  /// The cell of a step. Plain numbers: scratch memory is not constructed.
   struct cell_visit {
     std::uint32_t cell[3];
     std::uint32_t lower[3];  ///< where the piece that it belongs to begins
@@ -140,7 +140,7 @@ class swept_cells {
     return t + mul_rn(direction * 8 * ieee_traits<S>::unit_roundoff, abs_of(t));
   }
 
-  /// What is beyond the grid, where there are no cells, counts as its first or last cell.
+  /// The coordinate of a cell. A point beyond the grid, where there are no cells, counts as its first or last cell.
   static COLLIDE_HD_INLINE std::uint32_t coordinate(grid<S> const& g, grid_level<S> const& l, S x, int k) {
     return l.coordinate(offset(g, x, k));
   }

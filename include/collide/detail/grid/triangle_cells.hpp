@@ -18,7 +18,7 @@
 
 namespace collide::detail {
 
-/// What is left of a triangle in a slab, seen along the slab's axis: the parts of its edges, and the lines along which
+/// The part of a triangle in a slab, seen along the slab's axis: the parts of its edges, and the lines along which
 /// the slab cuts it. Its coordinates are x, and v on the axis of the rows.
 template <class S>
 class triangle_slab {
@@ -113,8 +113,8 @@ void each_range_of_box(grid_level<S> const& l, cell_box const& r, F const& f) {
 template <class S>
 class triangle_cells {
  public:
-  /// Of the triangle with this box. It is not cut, but entered into all cells that its dilated box meets, if the grid
-  /// wants that, or if there are few.
+  /// The cells of the triangle with this box. It is not cut, but entered into all cells that its dilated box meets, if
+  /// the grid wants that, or if there are few.
   COLLIDE_HD triangle_cells(grid<S> const& g, grid_level<S> const& l, aabb<S> const& b)
       : grid_{g}, level_{l}, box_{b}, range_{g.cells_of(l, b, first_step_, last_step_)} {
     bool turns = false;

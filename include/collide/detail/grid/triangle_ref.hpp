@@ -17,9 +17,9 @@
 #include <cstdint>
 
 #include <collide/detail/geometry/aabb.hpp>
-#include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/cell_coverage.hpp>
-#include <collide/detail/narrow_phase/intersects.hpp>
+#include <collide/detail/grid/occupancy.hpp>
+#include <collide/detail/numeric/rounding.hpp>
 #include <collide/mesh.hpp>
 
 namespace collide::detail {
@@ -50,25 +50,26 @@ struct candidate_cursor {
   COLLIDE_HD_INLINE bool at_end() const { return grid == ended; }
 };
 
-/// What both lookups share: the triangles, and a cheap test for each.
+/// The base of all references: the triangles, and a cheap test for each.
 template <class S>
 struct triangle_ref {
   mesh_view<S> mesh;
   triangle_aabb<S> const* boxes;  ///< may be null
 
-  COLLIDE_HD_INLINE bool near(sphere<S> const& around, id triangle) const {
-    return boxes == nullptr || boxes[triangle].overlaps(around.centre, around.radius);
+  // What a reference without cells says of them; `bucket_ref` has its own.
+  COLLIDE_HD bool has_single_cell_lookup(S) const { return false; }
+  COLLIDE_HD occupancy_view<S> occupancy() const { return {}; }
+  template <class Sphere>
+  COLLIDE_HD bool empty(Sphere const&) const {
+    return mesh.size() == 0;
+  }
+  template <class Sphere>
+  COLLIDE_HD candidate_cursor begin(Sphere const&) const {
+    return {0, 0, 0, 0};
   }
 
-  /// Whether a triangle that has passed the quick tests is near, unless the narrow phase asks that itself before
-  /// anything else.
-  template <class NarrowPhase, class Sphere>
-  COLLIDE_HD_INLINE bool aabb_overlaps_unless_filtered(Sphere const& shape, id triangle) const {
-    if constexpr (filtered_predicate<NarrowPhase>::value) {
-      return true;
-    } else {
-      return near(swept_bounding_sphere(shape), triangle);
-    }
+  COLLIDE_HD_INLINE bool near(sphere<S> const& around, id triangle) const {
+    return boxes == nullptr || boxes[triangle].overlaps(around.centre, around.radius);
   }
 
   COLLIDE_HD_INLINE aabb<S> box_at(id triangle) const {

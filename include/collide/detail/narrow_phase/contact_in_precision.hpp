@@ -27,10 +27,10 @@ COLLIDE_HD contact<S> contact_in_precision(local_triangle<T> const& l, double sc
   closest_point<T> const closest = closest_to_origin(l, n);
   double const distance = div_rn(static_cast<double>(sqrt_rn(closest.distance_squared)), scale);
   contact_without_point const found{{distance, static_cast<double>(radius) - distance},
-                                    contact_normal(l, n, closest).template cast<double>(),
+                                    cast_to<double>(contact_normal(l, n, closest)),
                                     closest.kind,
                                     closest.index};
-  return contact_at_point<S>(found, closest.point.template cast<double>(), scale, centre);
+  return contact_at_point<S>(found, cast_to<double>(closest.point), scale, centre);
 }
 
 /// The contact of a finite triangle and a sphere at rest in `T`.
@@ -39,8 +39,7 @@ COLLIDE_HD_NOINLINE contact<S> contact_of_pair_in_precision(triangle<S> const& t
   using W = std::common_type_t<S, T>;
   sphere<S> const centre{s.centre, 0};
   local_triangle<W> const l = to_unit_range(to_local<W>(t, centre), t, centre);
-  return contact_in_precision(narrow_to<T>(l), static_cast<double>(l.scale), s.radius,
-                              s.centre.template cast<double>());
+  return contact_in_precision(narrow_to<T>(l), static_cast<double>(l.scale), s.radius, cast_to<double>(s.centre));
 }
 
 /// The contact of a finite triangle and a moving sphere, at a time within the step, in `T`.
@@ -49,9 +48,9 @@ COLLIDE_HD_NOINLINE contact<S> contact_at_time_in_precision(triangle<S> const& t
   using W = std::common_type_t<S, T>;
   moving_sphere<S> const centre{{s.centre, 0}, s.displacement};
   local_sweep<W> const l = to_unit_range(to_local<W>(t, centre), t, centre);
-  vec3<double> const path = s.displacement.template cast<double>();
+  vec3<double> const path = cast_to<double>(s.displacement);
   return contact_in_precision(narrow_to<T>(at_time(l, static_cast<W>(time))), static_cast<double>(l.shape.scale),
-                              s.radius, s.centre.template cast<double>() + scaled(path, static_cast<double>(time)));
+                              s.radius, cast_to<double>(s.centre) + scaled(path, static_cast<double>(time)));
 }
 
 }  // namespace collide::detail

@@ -103,4 +103,41 @@ COLLIDE_HD_INLINE decision intersects_exact(triangle<S> const& t, sphere<S> cons
 template <class NarrowPhase>
 struct filtered_predicate : std::false_type {};
 
+/// The filtered predicate of a narrow phase that decides as `intersects_exact` does.
+struct exact_predicate : std::true_type {
+  template <class S>
+  static COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, sphere<S> const& s) {
+    return filter_exact(t, s).verdict;
+  }
+  template <class S>
+  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s) {
+    return detail::filter_branchless(t, s);
+  }
+  template <class S>
+  static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, sphere<S> const& s) {
+    return resolve_exact(t, s).hit;
+  }
+};
+
+/// Whether a sphere touches a triangle, where the narrow phase is quick to tell. `uncertain` is left to `resolve`,
+/// which takes long: where threads run together, as few of them as possible should go through it.
+template <class NarrowPhase, class S, class Sphere>
+COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, Sphere const& s) {
+  if constexpr (filtered_predicate<NarrowPhase>::value) {
+    return filtered_predicate<NarrowPhase>::filter(t, s);
+  } else {
+    return NarrowPhase::intersects(t, s) ? verdict::hit : verdict::miss;
+  }
+}
+
+/// Whether a sphere touches a triangle of which `filter` is unsure.
+template <class NarrowPhase, class S, class Sphere>
+COLLIDE_HD_INLINE bool resolve([[maybe_unused]] triangle<S> const& t, [[maybe_unused]] Sphere const& s) {
+  if constexpr (filtered_predicate<NarrowPhase>::value) {
+    return filtered_predicate<NarrowPhase>::resolve(t, s);
+  } else {
+    return false;  // it never is
+  }
+}
+
 }  // namespace collide::detail

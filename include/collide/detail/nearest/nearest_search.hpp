@@ -73,7 +73,7 @@ class exact_nearest_search {
     if (number_ == no_id || !is_within_reach()) return no_nearest_triangle<S>();
     triangle<double> const t = widened(corners_);
     vec3<double> const p = widened(point_);
-    // guard: nearest-foot
+    // guard: nearest-projection
     int const foot = certain_ ? foot_ : closest_foot(t, p);
     measured_foot const there = measure_foot(t, p, foot);
     direction = there.direction;

@@ -10,7 +10,7 @@
 
 namespace collide::detail {
 
-/// What happens where particles meet.
+/// Interaction of particles that overlap.
 template <class S, class Effects>
 struct pair_interaction {
   particle_state<S, typename Effects::all> state;

@@ -14,13 +14,13 @@
 
 namespace collide::detail {
 
-/// What decides whether two particles overlap, to be read at once.
+/// Centre and radius of a particle, which decide whether two overlap, to be read at once.
 template <class S>
 struct alignas(4 * sizeof(S)) packed_sphere {
   S x, y, z, radius;
 };
 
-/// Where a particle was when the lists were made, and how large, if that may change.
+/// The position of a particle when the lists were made, and its radius, if that may change.
 template <class S, bool HasRadius>
 struct reference {
   S x, y, z;
@@ -34,7 +34,7 @@ struct reference<S, true> : packed_sphere<S> {
   COLLIDE_HD_INLINE S growth(packed_sphere<S> const& s) const { return max(s.radius - this->radius, S(0)); }
 };
 
-/// What all particles in the order have in common.
+/// State of the lists of all particles.
 struct list_state {
   std::uint32_t rebuild;     ///< not 0: the lists are to be made anew
   std::uint32_t overflowed;  ///< not 0: some particles have more neighbours than lists have room for

@@ -7,12 +7,12 @@
 
 namespace collide::detail {
 
-/// What is left after the time z of 1 that decays by itself per unit of time, and what is lost of it.
+/// The rest after the time z of 1 that decays by itself per unit of time, and the loss.
 struct decay {
   double left, lost;  ///< e^-z and 1 - e^-z
 };
 
-/// Of z >= 0: both to within 2 units in the last place, but that `left` is 0 for z above 690. NaN of NaN.
+/// The decay after z >= 0: both to within 2 units in the last place, but `left` is 0 for z above 690. NaN for NaN.
 COLLIDE_HD_INLINE decay decay_after(double z) {
   if (!(z <= 690)) return {z > 690 ? 0 : z, z > 690 ? 1 : z};
   int const count = static_cast<int>(mul_rn(z, 1.4426950408889634) + 0.5);

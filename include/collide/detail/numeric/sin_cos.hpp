@@ -13,7 +13,7 @@ struct sin_cos {
   double sin, cos;
 };
 
-/// Of an angle in radians from -pi/4 to pi/4: the series, to within 2 units in the last place.
+/// Sine and cosine of an angle in radians from -pi/4 to pi/4: the series, to within 2 units in the last place.
 COLLIDE_HD_INLINE sin_cos sin_cos_near_zero(double x) {
   double const y = mul_rn(x, x);
   // 1 / (k (k + 1)) of the next term, from the last on
@@ -25,8 +25,8 @@ COLLIDE_HD_INLINE sin_cos sin_cos_near_zero(double x) {
   return {mul_rn(x, s), c};
 }
 
-/// Of an angle in turns of 2 pi: exact at quarters of a turn, elsewhere to within 1e-15. NaN unless the angle is
-/// finite.
+/// Sine and cosine of an angle in turns of 2 pi: exact at quarters of a turn, elsewhere to within 1e-15. NaN unless the
+/// angle is finite.
 COLLIDE_HD_INLINE sin_cos sin_cos_of_turns(double turns) {
   double const part = turns - std::floor(turns);  // exact, or 1 of what is just below 0
   double const quarter = std::floor(mul_rn(part, 4) + 0.5);

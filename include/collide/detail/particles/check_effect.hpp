@@ -1,5 +1,5 @@
 /// \file
-/// What the members of an effect must be called with: a member of that name that cannot be called so would be left out
+/// The arguments of the members of an effect: a member that cannot be called with them would be left out
 /// in silence.
 #pragma once
 
@@ -88,7 +88,7 @@ constexpr bool check_effect() {
   return true;
 }
 
-/// What an effect says of itself: the mesh is solid with it; it needs that, or that or particles that meet.
+/// Properties of an effect: the mesh is solid with it; it needs that, or that or particles that meet.
 template <class E, class = void>
 inline constexpr bool repels = false;
 template <class E>

@@ -13,7 +13,7 @@ struct effect_slot {
   E effect;
 };
 
-/// What drag and wind do in a step, if there are any; known before it.
+/// The resistance of drag and wind in a step, if there are any; known before it.
 template <bool Resists>
 struct resistance_slot {};
 template <>
@@ -42,13 +42,13 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
   static constexpr bool adheres = any_mesh_contact && contains<named, adhered>;
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
-  /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
+  /// The effect of particles on each other is kept as an acceleration, for each half kick, and for adhesion.
   static constexpr bool keeps_pair_forces = (any_pair_contact || overlaps) && (adheres || has_half_kicks);
   static constexpr bool keeps_pair_torques =
       (any_pair_contact || overlaps) && has_half_kicks && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
   static constexpr bool ends_after_meeting = (any_pair_contact || overlaps) && has_half_kicks;
-  /// What sleeps presses on.
+  /// Particles that sleep still press on what they lie on.
   static constexpr bool keeps_support = any_mesh_impulse && contains<named, slow_steps>;
 
  private:
@@ -66,7 +66,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using all = union_of<named, pair_kicks, held_columns, support_columns>;
 
  private:
-  /// What `E` reads or writes in members of which `Has` says whether there is one.
+  /// Columns that `E` reads or writes in a member, if it `Has` it.
   template <class F, bool Has>
   using reads_if = std::conditional_t<Has,
                                       union_of<typename reads_of<F>::type, typename writes_of<F>::type,
@@ -94,9 +94,9 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using radius_if = std::conditional_t<Needed, own_radius, columns<>>;
 
  public:
-  /// What is read to find out which particles are left out.
+  /// Columns that are read to find out which particles are inactive.
   using inactive_reads = union_of<own_number, reads_if<E, has_is_inactive<E, S>::value>...>;
-  /// What is read and written for every particle,
+  /// Columns that are read and written for every particle,
   using integration_reads =
       union_of<base, reads_if<E, is_integrated<E>>..., radius_if<any_mesh_contact>, own_number, pair_kicks,
                columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
@@ -106,7 +106,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   /// and for those that may touch the mesh.
   using contact = union_of<integration_reads, reads_if<E, has_mesh_contact<E, S>>...>;
   using contact_writes = union_of<integration_writes, writes_if<E, has_mesh_contact<E, S>>...>;
-  /// What is read and written for particles that meet others; what is read is also copied.
+  /// Columns that are read and written for particles that meet others; those that are read are also copied.
   using interaction = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
                                columns_if<keeps_pair_torques, angular_velocity>, reads_if<E, interacts_or_skips<E>>...,
                                radius_if<any_pair_contact>, own_number>;
@@ -115,7 +115,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       union_of<columns<>, writes_if<E, pairs_in<E, S> || has_try_wake<E, S>::value>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
-  /// What is read and written for particles that press on the mesh.
+  /// Columns that are read and written for particles that press on the mesh.
   using overlap_reads = union_of<base, own_radius, own_number, pair_kicks,
                                  columns_if<keeps_pair_torques, angular_velocity>, support_columns,
                                  reads_if<E, overlaps_in<E, S> || has_is_inactive<E, S>::value ||
@@ -143,7 +143,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
     return static_cast<effect_slot<F>&>(*this).effect;
   }
 
-  /// Of two scenes' worth of reasons to leave a particle out, one suffices.
+  /// True if any effect says that the particle is inactive.
   template <class P>
   COLLIDE_HD_INLINE bool is_inactive([[maybe_unused]] P& p) const {
     return (is_inactive_of<E>(p) || ...);
@@ -286,7 +286,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
     (add_resistance<E>(linear, quadratic), ...);
     return {linear, quadratic, static_cast<double>(time)};
   }
-  /// What all accelerate but those that resist.
+  /// Lets all effects accelerate a particle but those with a resistance.
   template <class P>
   COLLIDE_HD_INLINE void accelerate_without_resistance([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;

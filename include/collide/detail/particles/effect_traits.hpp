@@ -140,7 +140,7 @@ struct has_end_step_alone<
     E, S, std::void_t<decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
 
-/// What an effect may ask at the end of a step: what the forces of a list of effects are.
+/// The forces of a list of effects, for an effect at the end of a step.
 template <class Effects, class P, class S>
 struct forces_on {
   static constexpr S kick_after = S(Effects::integrator::kick_after);  ///< part of the step's acceleration that is last

@@ -1,5 +1,5 @@
 /// \file
-/// What a simulation does on the host with effects and columns.
+/// The work of a simulation on the host with effects and columns.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace collide {
 
-/// What a source has made since `set`.
+/// Counts of a source since `set`.
 struct birth_counts {
   std::uint64_t due = 0;          ///< particles that have come due: time times rate
   std::uint64_t overlapping = 0;  ///< of these, in scenes in which particles meet: those that overlapped one that was
@@ -96,7 +96,7 @@ void check_time_step_of(Effects const& effects, S dt, S smallest) {
               ": take largest_time_step(simulation)");
 }
 
-/// Where a container's elements are.
+/// The address of a container's elements.
 template <class T>
 T const* raw_pointer(T const* p) {
   return p;

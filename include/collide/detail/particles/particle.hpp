@@ -55,7 +55,7 @@ COLLIDE_HD_INLINE void set_initial_values(particle<S, columns<C...>>& p) {
   ((p[C{}] = initial_of<C, S>::value()), ...);
 }
 
-/// Where a column is in memory.
+/// The address of a column in memory.
 template <class C, class S>
 struct pointer_of {
   column_element<C, S>* value;
@@ -64,7 +64,7 @@ struct pointer_of {
 /// How many particles are read or written together: four coordinates are 16 bytes.
 inline constexpr int particles_per_pack = 4;
 
-/// What is read or written at once.
+/// Four values that are read or written at once.
 template <class T>
 struct alignas(4 * sizeof(T)) pack4 {
   T v[4];
@@ -79,7 +79,7 @@ inline std::size_t padded_size(std::size_t particles) {
   return (particles + particle_padding - 1) / particle_padding * particle_padding;
 }
 
-/// What a rank knows of the particles of all, of which it has some. Those at places from `own` on are copies of others'
+/// The particles of a rank among those of all ranks. Those at places from `own` on are copies of other ranks'
 /// particles.
 struct rank_share {
   std::size_t own;

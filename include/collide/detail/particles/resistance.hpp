@@ -60,7 +60,7 @@ COLLIDE_HD_INLINE double velocity_along(double v, double push, double linear, do
   return div_rn(v + mul_rn(slowing, x), 1 + mul_rn(h - mul_rn(quadratic, v), x));
 }
 
-/// What a medium does in a step that is the same for all particles.
+/// The part of a medium's resistance in a step that is the same for all particles.
 struct resistance_in_step {
   double time = -1;                  ///< of the step
   double linear = 0, quadratic = 0;  ///< of the medium, times the step
@@ -97,7 +97,8 @@ COLLIDE_HD_INLINE double reciprocal_root(double x) {
   return r;
 }
 
-/// What `resisted_strongly` finds, where a step changes little: without a branch, in sums, products and one quotient.
+/// The result of `resisted_strongly`, where a step changes little: without a branch, in sums, products and one
+/// quotient.
 ///
 /// Along v the motion has the closed form v' = (v + (a - h v) T) / (1 + (h + q |v|) T) with T = tanh(r) / r, h = half
 /// of linear, r^2 = h^2 + q a (negative: tan). T is a quotient of polynomials in r^2, the seventh of its continued

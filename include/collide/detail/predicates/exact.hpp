@@ -20,7 +20,7 @@
 
 namespace collide::detail {
 
-/// Where the numbers of a triangle and a sphere stand in their table. Vectors have three numbers; there are three
+/// Places of the numbers of a triangle and a sphere in their table. Vectors have three numbers; there are three
 /// corners and three edges.
 struct exact_slot {
   enum : int {
@@ -241,7 +241,7 @@ class exact_triangle {
     return exact_sum::sign_of(numbers_, height);
   }
 
-  /// What the square of the radius is above that of the distance, multiplied by `length`; or only a number of its sign.
+  /// The square of the radius less that of the distance, multiplied by `length`; or only a number of its sign.
   COLLIDE_HD_NOINLINE scaled_double excess(int projection, bool with_value) const {
     exact_products sum;
     add_length(sum, projection);

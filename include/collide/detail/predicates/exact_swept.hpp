@@ -23,7 +23,7 @@
 
 namespace collide::detail {
 
-/// Where the further numbers of a sweep stand in the table. Those of `exact_slot` are as seen from the end of the way.
+/// Places of the further numbers of a sweep in the table. Those of `exact_slot` are as seen from the end of the path.
 struct exact_sweep_slot {
   enum : int {
     path = exact_slot::end,   ///< from the beginning of the way to its end

@@ -9,7 +9,7 @@
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/geometry/swept_bounds.hpp>
-#include <collide/detail/narrow_phase/two_stages.hpp>
+#include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/hit.hpp>
 
 namespace collide::detail {
@@ -38,6 +38,12 @@ struct end_pass_kernel {
   COLLIDE_HD void operator()(std::size_t) const { output.end_pass(); }
 };
 
+/// True for outputs of which `store` takes the ids of a hit, a `pair`, alone.
+template <class Output, class = void>
+inline constexpr bool stores_ids = false;
+template <class Output>
+inline constexpr bool stores_ids<Output, std::void_t<decltype(Output::stores_ids)>> = Output::stores_ids;
+
 /// Pairs that the narrow phase's filter left open, for a kernel of their own; see deferred_pairs.hpp.
 struct deferred_pairs {
   struct counters {
@@ -56,9 +62,11 @@ struct deferred_pairs {
   }
 };
 
-/// Where the hits of a pass go, and the pairs that are decided later.
+/// The output of a pass, and the pairs that are decided later.
 template <class Output>
 struct output_with_deferral {
+  static constexpr bool stores_ids = detail::stores_ids<Output>;
+
   Output output;
   deferred_pairs deferred;
 
@@ -195,7 +203,7 @@ struct candidate_pipeline {
     return is_hit(p, mesh[p.triangle], s);
   }
 
-  /// What the narrow phase's filter leaves open is put off, or decided at once.
+  /// True if the pair is a hit. A pair that the narrow phase's filter leaves uncertain is deferred, or decided at once.
   template <class Sphere>
   COLLIDE_HD_INLINE bool is_hit([[maybe_unused]] pair p, triangle<S> const& t, Sphere const& s) const {
     if constexpr (defers_pairs<Output>) {
@@ -243,7 +251,11 @@ struct candidate_pipeline {
   }
 
   COLLIDE_HD_INLINE void write(std::uint64_t slot, pair p) const {
-    output.store(slot, hit<NarrowPhase, S>(p, mesh, spheres));
+    if constexpr (stores_ids<Output>) {
+      output.store(slot, p);
+    } else {
+      output.store(slot, hit<NarrowPhase, S>(p, mesh, spheres));
+    }
   }
 };
 

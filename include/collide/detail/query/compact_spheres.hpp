@@ -1,5 +1,5 @@
 /// \file
-/// Of the spheres of a query, those that may be near a triangle.
+/// Compaction: the spheres of a query that may be near a triangle.
 #pragma once
 
 #include <cstddef>

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <collide/detail/execution/atomic.hpp>
-#include <collide/detail/execution/launch.hpp>
 #include <collide/detail/geometry/bounding_sphere.hpp>
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
@@ -61,6 +60,13 @@ struct resolve_deferred {
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
   deferred_pairs deferred;
   std::size_t blocks;
+
+  /// A few blocks, as few pairs are deferred.
+  template <class Space>
+  void choose_grid_size(Space const& space) {
+    constexpr std::size_t threads = Space::template block<resolve_deferred>::num_threads;
+    blocks = min(max<std::size_t>(1, space.saturating_blocks() / 8), (deferred.capacity + threads - 1) / threads);
+  }
 
   template <class Block>
   struct scratch {
@@ -132,7 +138,7 @@ void query_two_pass(Space& space, Index& index, mesh_view<S> const& mesh,
   deferred_pairs const deferred = buffer.acquire(space, spheres.size());
   index.template query<NarrowPhase>(space, spheres, output_with_deferral<Output>{output, deferred});
   resolve_deferred<S, NarrowPhase, Output> kernel{{mesh, spheres, output}, deferred, 0};
-  kernel.blocks = min(max<std::size_t>(1, space.saturating_blocks() / 8), grid_size<Space>(deferred.capacity, kernel));
+  kernel.choose_grid_size(space);
   space.launch(kernel.blocks, kernel);
   buffer.release();
 }

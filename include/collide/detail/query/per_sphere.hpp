@@ -9,7 +9,6 @@
 #include <utility>
 
 #include <collide/detail/geometry/swept_bounds.hpp>
-#include <collide/detail/grid/occupancy.hpp>
 #include <collide/detail/grid/triangle_ref.hpp>
 #include <collide/detail/query/candidate_batch.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
@@ -230,7 +229,7 @@ struct batched_per_sphere_query {
   }
 };
 
-/// What a kernel asks for the triangles near a single sphere; the members are those of triangle_ref.hpp. Where the
+/// A reference to the triangles near a single sphere; the members are those of triangle_ref.hpp. Where the
 /// reference cannot go on by itself a cursor is the number of a triangle: the next candidate is that of the least
 /// number from there on, for which all are enumerated.
 template <class S, class Ref>
@@ -250,8 +249,6 @@ struct per_sphere_ref : triangle_ref<S> {
       return false;
     }
   }
-  COLLIDE_HD bool has_single_cell_lookup(S) const { return false; }
-  COLLIDE_HD occupancy_view<S> occupancy() const { return {}; }
   template <class Sphere>
   COLLIDE_HD candidate_cursor begin([[maybe_unused]] Sphere const& s) const {
     candidate_cursor c{0, 0, 0, 0};

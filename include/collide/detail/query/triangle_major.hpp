@@ -184,7 +184,7 @@ struct query_triangle_major {
     }
   }
 
-  /// What the narrow phase judges.
+  /// The sphere as the narrow phase takes it.
   decltype(auto) sphere_of(std::uint32_t place) const {
     if constexpr (is_discrete<NarrowPhase, S>) {
       return in.spheres[place];

@@ -28,7 +28,7 @@ struct brick {
   }
 };
 
-/// What a `bisection` says, as a plain value that a kernel takes: it reads the bricks in memory of its space.
+/// A `bisection` as a plain value that a kernel takes: it reads the bricks in memory of its space.
 struct brick_lookup {
   brick const* bricks;
 

@@ -56,7 +56,7 @@ class device_exchange_buffer {
     if constexpr (!Space::host_accessible) on_host_.resize(space, size_);
     host_ = Space::host_accessible ? data() : on_host_.data();
   }
-  /// Where they are on the host, once there is room.
+  /// The items on the host, once there is room.
   T* on_host() const { return host_; }
 
  private:

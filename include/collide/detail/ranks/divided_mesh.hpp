@@ -57,7 +57,7 @@ class divided_mesh {
   mesh_view<S> view() const { return view_; }
   /// Their numbers among those of all ranks, in memory of the space.
   id const* numbers() const { return numbers_in_space_; }
-  /// Of all ranks.
+  /// The number of triangles of all ranks.
   std::size_t size() const { return static_cast<std::size_t>(all_); }
   rank_map const& map() const { return map_; }
   /// The map for kernels of the space that the mesh was built in.

@@ -72,7 +72,7 @@ class halo_filter {
     return true;
   }
 
-  /// Where a box begins, in cells, one more than from the frame on.
+  /// The first cell of a box, in cells, one more than from the frame on.
   COLLIDE_HD_INLINE S place(int axis, S x, S radius) const { return mul_rn(x - lower_[axis] - radius, scale_[axis]); }
 
   /// Whether a box that begins there may reach into the frame; on bits, which negative numbers and NaN have more of.

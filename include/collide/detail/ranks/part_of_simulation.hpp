@@ -36,7 +36,7 @@ class part_of_simulation {
   using state_type = typename Simulation::state_type;
   using effects_type = typename Simulation::effects_type;
   using all_columns = typename Simulation::columns;
-  /// What is known of copies: all that is read of a particle that another one meets.
+  /// Columns of copies: all that is read of a particle that another one meets.
   using seen_columns =
       union_of<typename effects_type::interaction, intersection_of<columns<radius, alive>, all_columns>>;
   template <class List>
@@ -62,7 +62,7 @@ class part_of_simulation {
     simulation_.prepare();
   }
 
-  /// What a checkpoint has of the simulation of all, besides columns, effects and bodies.
+  /// The part of a checkpoint of all ranks besides columns, effects and bodies.
   template <class Numbers>
   Numbers saved_numbers_of_all(bool reverse_order) const {
     auto const& s = simulation_;

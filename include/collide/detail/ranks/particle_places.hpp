@@ -1,5 +1,5 @@
 /// \file
-/// Where the particles of a rank are, which they are of all, and whether they have moved.
+/// The places of a rank's particles, their numbers among all, and whether they have moved.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ constexpr bool check_on_ranks() {
   return true;
 }
 
-/// What all ranks know of the particles of all when these are set.
+/// Numbers of the particles of all ranks when these are set.
 struct global_counts {
   std::uint64_t first;                  ///< number of this rank's first particle
   std::uint64_t placed, size;           ///< particles, and places for them, on all ranks
@@ -70,7 +70,7 @@ struct number_places {
   }
 };
 
-/// Where particles were, and whether they were there, when ranks last exchanged some.
+/// Positions of particles, and whether they were there, when ranks last exchanged some.
 template <class S>
 struct last_places {
   S* centres;

@@ -1,5 +1,5 @@
 /// \file
-/// What sinks share that keep a record of every colliding pair.
+/// The base of sinks that keep a record of every colliding pair.
 #pragma once
 
 #include <collide/detail/sinks/array_in_space.hpp>

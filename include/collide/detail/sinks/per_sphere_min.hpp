@@ -1,5 +1,5 @@
 /// \file
-/// What sinks share that keep one triangle per sphere: that of the smallest number, and of these the first.
+/// The base of sinks that keep one triangle per sphere: that of the smallest number, and of these the first.
 #pragma once
 
 #include <collide/detail/numeric/float_bits.hpp>

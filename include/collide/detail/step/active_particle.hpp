@@ -47,7 +47,7 @@ COLLIDE_HD_INLINE S time_of_key(std::uint64_t key) {
 /// How many of the contacts that a particle has had are recorded: the last ones.
 inline constexpr int max_recorded_contacts = 3;
 
-/// What is known of a swept particle alone.
+/// State of a swept particle alone.
 template <class S, bool IsSwept>
 struct remaining_motion {};
 template <class S>
@@ -59,7 +59,7 @@ struct remaining_motion<S, true> {
   COLLIDE_HD_INLINE vec3<S> motion() const { return {displacement[0], displacement[1], displacement[2]}; }
 };
 
-/// What is known of a particle alone that may touch bodies that move.
+/// State of a particle alone that may touch bodies that move.
 template <class S, bool HasBodies>
 struct body_contacts {};
 template <class S>
@@ -71,9 +71,10 @@ struct body_contacts<S, true> {
   bool is_held;  ///< it had no velocity relative to the surface after the last one
 };
 
-/// How a particle moves, as a surface sees it that it may touch: one that rests sees what there is.
+/// The motion of a particle relative to a surface at rest: that in the world.
 struct seen_at_rest {};
-/// A surface of a body sees a displacement of its own in the rest of the step, and a velocity.
+/// The motion of a particle relative to the surface of a body: its displacement in the rest of the step, and its
+/// velocity.
 template <class S>
 struct seen_from_body {
   vec3<S> own_displacement;  ///< in the frame of the body
@@ -170,7 +171,7 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     }
   }
 
-  /// What a surface that has been moved has pushed by `height` does not go back to where it was: where it is held at
+  /// Shifts the start of a particle that a moved surface has pushed by `height`: where it is held at
   /// the contacts that follow, it is there.
   COLLIDE_HD_INLINE void offset_start(mesh_contact<S> const& c, S height) {
     if (!overlaps(height)) return;
@@ -289,7 +290,7 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
  private:
   COLLIDE_HD_INLINE vec3<S> normal_of(int slot) const { return {normals[slot][0], normals[slot][1], normals[slot][2]}; }
 
-  /// As the surface sees it that it touches now, the particle has stayed at a place: that has moved with the surface.
+  /// Moves the start of a particle that has stayed at a place with the surface that it touches.
   COLLIDE_HD_INLINE void advect_start(seen_at_rest) {}
   COLLIDE_HD_INLINE void advect_start(seen_from_body<S> const& seen) {
     for (int k = 0; k < 3; ++k) start[k] += seen.drift[k];

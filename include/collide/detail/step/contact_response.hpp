@@ -20,12 +20,12 @@ namespace collide::detail {
 template <class S>
 COLLIDE_HD_INLINE S swept_radius(S r, vec3<S> const& centre, vec3<S> const& displacement, S largest) {
   S const reach =
-      collide::detail::max_component<S>(centre.cwiseAbs()) + collide::detail::max_component<S>(displacement.cwiseAbs());
+      collide::detail::max_component<S>(absolute(centre)) + collide::detail::max_component<S>(absolute(displacement));
   S const least = 4 * std::numeric_limits<S>::epsilon() * reach;
   return r >= 0 && r < largest ? max(r, min(least, largest)) : r;
 }
 
-/// What a block does with particles that may touch the mesh.
+/// Contact response: the work of a block for particles that may touch the mesh.
 template <class Context>
 struct contact_response {
   using S = typename Context::scalar;
@@ -64,7 +64,7 @@ struct contact_response {
     });
     span_counts seen{0, 0};
     for (std::uint32_t active_before = 0;;) {
-      search.find(block, s, n, seen);
+      find_contacts(search, block, s, n, seen);
       for_each_particle([&](active& a, std::uint32_t) {
         if (!a.is_active) return;
         respond(a);

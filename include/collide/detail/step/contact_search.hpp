@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/narrow_phase/traits.hpp>
-#include <collide/detail/narrow_phase/two_stages.hpp>
 #include <collide/detail/step/contact_scratch.hpp>
 #include <collide/detail/step/mesh_contact.hpp>
 #include <collide/detail/step/surface_motion.hpp>
@@ -124,7 +124,7 @@ struct contact_search {
     }
   }
 
-  /// What of a particle is seen from the frame of a triangle, or from a frame.
+  /// The sphere of a particle in the frame of a triangle's body, or in a frame.
   static COLLIDE_HD_INLINE shape shape_seen([[maybe_unused]] mesh_type const& mesh, active const& a,
                                             [[maybe_unused]] id number) {
     if constexpr (has_bodies) {
@@ -165,6 +165,15 @@ struct contact_search {
     part.displacement = scaled(part.displacement, min(S(1), time_of_key<S>(a.best_key) + late));
   }
 
+  /// False if the triangle's box is out of reach. A filtered predicate begins with a test of boxes itself.
+  COLLIDE_HD_INLINE bool may_touch([[maybe_unused]] shape const& s, [[maybe_unused]] id triangle) const {
+    if constexpr (filtered_predicate<NarrowPhase>::value) {
+      return true;
+    } else {
+      return triangles.near(swept_bounding_sphere(s), triangle);
+    }
+  }
+
   /// Filters the `n` candidates that are queued, and computes the contacts of those that may touch.
   template <class Block>
   COLLIDE_HD_INLINE void drain(Block& block, scratch<Block>& s, std::uint32_t n) const {
@@ -177,9 +186,7 @@ struct contact_search {
         id const number = q.candidates.triangles[i];
         active const& a = s.particles[q.candidates.particles[i]];
         shape const whole = shape_seen(triangles.mesh, a, number);
-        if (!triangles.template aabb_overlaps_unless_filtered<NarrowPhase>(whole, number) ||
-            is_leaving(a, number, whole))
-          return;
+        if (!may_touch(whole, number) || is_leaving(a, number, whole)) return;
         verdict const quick = filter<NarrowPhase>(triangles.mesh[number], whole);
         if (quick == verdict::miss) return;
         q.verdicts[q.contacts.push(block, q.candidates.particles[i], number)] = packed(quick);
@@ -320,5 +327,13 @@ struct contact_search {
     return key;
   }
 };
+
+/// Finds the next contact of each active particle; see `contact_search::find`. Not inline: what does not depend on the
+/// effects of a scene is in collide::compiled; see compiled.hpp.
+template <class Search, class Block, class Scratch>
+COLLIDE_HD_LINKED void find_contacts(Search const& search, Block& block, Scratch& s, std::uint32_t n,
+                                     span_counts& seen) {
+  search.find(block, s, n, seen);
+}
 
 }  // namespace collide::detail

@@ -16,13 +16,22 @@
 
 namespace collide::detail {
 
+/// Bit k is set if shape k may touch a triangle. `triangles` is a look-up that is opened.
+template <class Triangles, class Shape, int N>
+COLLIDE_HD_LINKED std::uint32_t near_triangles(Triangles const& triangles, Shape const (&shapes)[N]) {
+  std::uint32_t found = 0;
+  COLLIDE_NO_UNROLL
+  for (int k = 0; k < N; ++k) found |= triangles.empty(shapes[k]) ? 0u : 1u << k;
+  return found;
+}
+
 /// In place of a mesh filter, where nothing touches the mesh.
 struct no_filter {
   template <class Particles, class Flags>
   COLLIDE_HD_INLINE void operator()(Particles const&, Flags const&, Flags const&) const {}
 };
 
-/// What a thread does with the particles that it moves.
+/// Time integration: the work of a thread for the particles that it moves.
 template <class Context>
 struct integration {
   using S = typename Context::scalar;
@@ -207,8 +216,8 @@ struct integration {
     for (int k = 0; k < N; k += pack) context.state.load_pack(block, s, p + k, first + static_cast<std::size_t>(k));
   }
 
-  /// Of one radius and in one grid of one level: without branches, for the CPU's vector unit, as which particles are
-  /// near the mesh is not to be foreseen. False if it is not known: one of them goes a long way.
+  /// The test for particles of one radius in one grid of one level: without branches, for the CPU's vector unit, as
+  /// which particles are near the mesh is not to be foreseen. False if it is not known: one of them goes a long way.
   template <int N>
   COLLIDE_HD_INLINE bool test_occupied(occupancy_view<S> const& occupancy, integrated const (&p)[N],
                                        bool (&near)[N]) const {
@@ -238,13 +247,11 @@ struct integration {
     triangles_type const triangles = context.triangles.without_overflown_grids();
     decltype(shape_of(p[0])) shapes[N];
     for (int k = 0; k < N; ++k) shapes[k] = shape_of(p[k]);
-    std::uint32_t found = 0;
-    COLLIDE_NO_UNROLL
-    for (int k = 0; k < N; ++k) found |= triangles.empty(shapes[k]) ? 0u : 1u << k;
+    std::uint32_t const found = near_triangles(triangles, shapes);
     for (int k = 0; k < N; ++k) near[k] = (found >> k & 1) != 0;
   }
 
-  /// What the narrow phase judges.
+  /// The sphere as the narrow phase takes it.
   COLLIDE_HD_INLINE auto shape_of(integrated const& p) const {
     if constexpr (is_swept) {
       S const radius = p.the_radius >= 0 ? max(p.the_radius, context.least_radius) : p.the_radius;

@@ -1,6 +1,6 @@
 /// \file
-/// Contacts as a simulation needs them: where a sphere that touches a triangle does so, and when one that moves does,
-/// without digits that nobody sees.
+/// Contacts as a simulation needs them: the contact of a sphere and a triangle, and the time at which a moving sphere
+/// stops, in double, without the exact digits that `contact_of` gives.
 #pragma once
 
 #include <collide/detail/geometry/local_sweep.hpp>
@@ -42,7 +42,7 @@ COLLIDE_HD_INLINE verdict try_contact_double(triangle<S> const& t, sphere<S> con
   return apart ? verdict::miss : verdict::hit;
 }
 
-/// Where a moving sphere is at a time within the step, rounded once: what comes from far away stops at the mesh as
+/// The moving sphere at a time within the step, rounded once: what comes from far away stops at the mesh as
 /// accurately as what comes from near.
 template <class S>
 COLLIDE_HD_INLINE sphere<S> sphere_at(moving_sphere<S> const& s, S time) {

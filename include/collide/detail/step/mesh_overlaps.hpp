@@ -18,7 +18,7 @@
 
 namespace collide::detail {
 
-/// What a contact with the mesh remembers, and by what it is known again: a sphere that slides over a surface goes from
+/// The memory of a contact with the mesh, and its key: a sphere that slides over a surface goes from
 /// triangle to triangle, and its contact goes on; that of another wall has another normal.
 template <class S, class List>
 struct surface_record {

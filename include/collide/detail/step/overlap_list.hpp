@@ -20,7 +20,7 @@
 
 namespace collide::detail {
 
-/// Where a triangle is nearest to a centre. All is computed in double.
+/// The closest point of a triangle to a centre, computed in double.
 struct nearest_of_triangle {
   vec3<double> normal;  ///< unit vector to the centre
   double distance;

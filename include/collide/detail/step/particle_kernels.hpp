@@ -78,7 +78,7 @@ struct release_adhered {
   }
 
  private:
-  /// What of the mesh a sphere touches, as `adhered` has it: of several triangles the first in memory.
+  /// The part of the mesh that a sphere touches, as `adhered` has it: of several triangles the first in memory.
   template <class S>
   COLLIDE_HD std::uint8_t find(sphere<S> const& s) const {
     Triangles const near = triangles.without_overflown_grids();

@@ -128,7 +128,8 @@ struct step_kernel {
            static_cast<std::uint32_t>(thread_rank) % tile_threads<Block> * Block::items;
   }
 
-  /// Where a block has the number of its `i`-th particle for which its queue has no room: where its own tiles would be.
+  /// The address at which a block keeps the number of its `i`-th particle for which its queue has no room: where its
+  /// own tiles would be.
   template <class Block>
   COLLIDE_HD_INLINE std::size_t overflow_slot(Block const& block, std::uint32_t i) const {
     return std::size_t{tile_index(block, i / tile<Block>)} * tile<Block> + i % tile<Block>;

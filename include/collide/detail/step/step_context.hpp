@@ -1,5 +1,5 @@
 /// \file
-/// What all parts of a simulation's step know.
+/// The context of a step: all that its parts share.
 #pragma once
 
 #include <cstddef>

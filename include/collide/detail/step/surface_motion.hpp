@@ -37,7 +37,7 @@ COLLIDE_HD_INLINE seen_from_body<S> seen_in_world([[maybe_unused]] moving_mesh<S
   return seen;
 }
 
-/// A surface that rests, and sees what there is.
+/// A surface at rest: its frame is the world.
 struct surface_at_rest {
   static constexpr int frame = 0;
 
@@ -84,7 +84,7 @@ struct surface_of_body {
   COLLIDE_HD_INLINE vec3<S> velocity_seen(vec3<S> const& v) const {
     return rounded_to<S>(turned_back(v.template cast<double>() - entrainment_velocity));
   }
-  /// What it was at the beginning of a discrete step, if the surface carried it with it.
+  /// The start of a discrete step, carried with the surface.
   COLLIDE_HD_INLINE vec3<S> start_seen(vec3<S> const& x) const {
     if constexpr (IsSwept) {
       return x;
@@ -126,7 +126,7 @@ struct surface_of_body {
     if constexpr (contains<typename Particle::list, angular_velocity>) p[angular_velocity{}] += angular;
   }
 
-  /// From the end of the step, where motion ends, to the time of contact, as the surface turns; and the other shift.
+  /// A vector of the pose at the end of the step, rotated to the pose at the contact; and the inverse.
   COLLIDE_HD_INLINE vec3<double> turned_back(vec3<double> const& x) const {
     if (!IsSwept || frame == 0) return x;
     return at.rotated(now.rotated_back(x));

@@ -71,7 +71,7 @@ struct hand_over {
 #endif
   COLLIDE_HD void operator()(std::size_t i) const {
     std::uint64_t const slot = output.allocate(1);
-    if constexpr (std::is_same<Output, detail::output>::value) {  // which keeps ids alone: nothing need be looked up
+    if constexpr (stores_ids<Output>) {  // nothing need be looked up
       output.store(slot, pairs[i]);
     } else {
       output.store(slot, hit_of<NarrowPhase, S>(pairs[i], mesh, spheres));

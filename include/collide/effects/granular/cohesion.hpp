@@ -1,5 +1,5 @@
 /// \file
-/// What pulls grains together.
+/// Cohesion: forces that pull grains together.
 #pragma once
 
 #include <collide/effects/granular/law.hpp>
