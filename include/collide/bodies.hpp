@@ -21,12 +21,12 @@ COLLIDE_HD_INLINE vec3<double> rotated(double const (&q)[4], vec3<double> const&
 
 }  // namespace detail
 
-/// Where a body is: a point x of its mesh is at position + R x, R the rotation.
+/// The pose of a body: a point x of its mesh is at position + R x, R the rotation.
 struct pose {
   double position[3] = {0, 0, 0};     ///< of the origin of the mesh
   double rotation[4] = {1, 0, 0, 0};  ///< unit quaternion w, x, y, z
 
-  /// Where a point of the mesh is. O(1).
+  /// The position of a point of the mesh. O(1).
   COLLIDE_HD vec3<double> operator()(vec3<double> const& x) const {
     return vec3<double>(position[0], position[1], position[2]) + detail::rotated(rotation, x);
   }
@@ -38,7 +38,7 @@ struct twist {
   double angular[3] = {0, 0, 0};  ///< radians per unit of time, around the axis that it points along
 };
 
-/// Where a body is and how it moves at a time.
+/// The pose and the velocity of a body at a time.
 struct body_state {
   pose at;                     ///< where it is
   twist moving;                ///< how `at` changes
@@ -65,26 +65,26 @@ struct body_motion {
   COLLIDE_HD body_state operator()(double time) const {
     using namespace detail;
     constexpr double two_pi = 6.283185307179586;
-    sin_cos const wave = sin_cos_of_turns(mul(frequency, time) + phase);
-    double const wave_rate = mul(mul(two_pi, frequency), wave.cos);
+    sin_cos const wave = sin_cos_of_turns(mul_rn(frequency, time) + phase);
+    double const wave_rate = mul_rn(mul_rn(two_pi, frequency), wave.cos);
     vec3<double> const given(axis[0], axis[1], axis[2]);
     vec3<double> const direction = scaled(given, inverse_power_of_two(max_component<double>(detail::absolute(given))));
     double const length = sqrt_rn(dot(direction, direction));
-    double const angle = mul(rate, time) + mul(swing, wave.sin), angle_rate = rate + mul(swing, wave_rate);
-    sin_cos const half = sin_cos_of_turns(div(angle, 2 * two_pi));
+    double const angle = mul_rn(rate, time) + mul_rn(swing, wave.sin), angle_rate = rate + mul_rn(swing, wave_rate);
+    sin_cos const half = sin_cos_of_turns(div_rn(angle, 2 * two_pi));
     body_state s;
     s.at.rotation[0] = length > 0 ? half.cos : 1;
     for (int k = 0; k < 3; ++k) {
-      double const along = length > 0 ? div(direction[k], length) : 0;
-      s.at.rotation[k + 1] = mul(along, half.sin);
-      s.moving.angular[k] = mul(along, angle_rate);
+      double const along = length > 0 ? div_rn(direction[k], length) : 0;
+      s.at.rotation[k + 1] = mul_rn(along, half.sin);
+      s.moving.angular[k] = mul_rn(along, angle_rate);
       s.belt[k] = belt[k];
     }
     vec3<double> const arm = rotated(s.at.rotation, vec3<double>(pivot[0], pivot[1], pivot[2]));
     vec3<double> const w(s.moving.angular[0], s.moving.angular[1], s.moving.angular[2]), turning = cross(w, arm);
     for (int k = 0; k < 3; ++k) {
-      s.at.position[k] = (pivot[k] - arm[k]) + mul(velocity[k], time) + mul(amplitude[k], wave.sin);
-      s.moving.linear[k] = velocity[k] + mul(amplitude[k], wave_rate) - turning[k];
+      s.at.position[k] = (pivot[k] - arm[k]) + mul_rn(velocity[k], time) + mul_rn(amplitude[k], wave.sin);
+      s.moving.linear[k] = velocity[k] + mul_rn(amplitude[k], wave_rate) - turning[k];
     }
     return s;
   }
@@ -100,7 +100,7 @@ struct body {
 /// In place of a motion: poses and twists are what the caller's kernels write to `simulation::bodies()`.
 struct driven {};
 
-/// What is told of bodies, counted since `set_mesh`: see `simulation::bodies().report(space)`.
+/// The report on bodies, counted since `set_mesh`: see `simulation::bodies().report(space)`.
 struct body_report {
   /// How often a body was to get a pose that is no rotation or not finite; it then stays where it was, at rest.
   std::uint32_t refused_poses = 0;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include <collide/detail/execution/launch.hpp>
 #include <collide/detail/grid/cell_lists.hpp>
@@ -40,7 +41,7 @@ struct bucket {
   double cell_width = 0;
 
   /// Bytes of the space's memory that the grids may take at most; 0 is no limit. The results of sinks are not counted.
-  /// Where it does not suffice for a grid, spheres are tested with every triangle: slower, with the same result.
+  /// If it does not suffice for a grid, spheres are tested with every triangle: slower, with the same result.
   std::size_t memory_budget = 0;
 
   /// The most triangles of a build; more are refused (`error`). A grid cannot have more than the default: larger meshes
@@ -50,6 +51,80 @@ struct bucket {
   template <class S>
   class index;
 };
+
+namespace detail {
+
+/// Measures of a mesh. The memory budget may have no room for them: then there are no grids, or no boxes.
+template <class S>
+struct mesh_measures {
+  buffer<mesh_statistics<S>> statistics;
+  buffer<triangle_aabb<S>> box_memory;
+  bool has_boxes = false;  ///< of this mesh
+
+  /// The boxes of the triangles; null if there are none.
+  triangle_aabb<S> const* boxes() const { return has_boxes ? box_memory.data() : nullptr; }
+
+  /// The statistics of no triangles.
+  template <class Space>
+  mesh_statistics<S>* clear(Space& space) {
+    auto* const cleared = statistics.reserve(space.resource(), 1);
+    mesh_statistics<S>::clear(space, cleared);
+    return cleared;
+  }
+};
+
+/// Radii of grids that spheres ask for, falling.
+template <class S>
+struct grid_request_radii {
+  S reaches[max_grids] = {};
+  int count = 0;
+  bool whole_boxes = false;  ///< spheres that move look for triangles along their paths
+
+  friend bool operator==(grid_request_radii const& a, grid_request_radii const& b) {
+    return a.count == b.count && a.whole_boxes == b.whole_boxes &&
+           std::equal(a.reaches, a.reaches + a.count, b.reaches);
+  }
+};
+
+/// The grids that an index has.
+template <class S>
+struct grid_set {
+  buffer<grid<S>> memory;
+  int count = 0;                 ///< as many as were asked for, or as the budget allows
+  grid_request_radii<S> asked;   ///< what they were made for
+  bool is_given = false;         ///< for a radius that was given: they serve until the next build
+  bool are_filled = false;       ///< the triangles are entered into their cells
+  std::size_t cells = 0;         ///< of all grids
+  std::size_t entry_limit = 0;   ///< of all cells
+  std::uint32_t table_bits = 0;  ///< log2 of the number of cells per grid
+
+  /// Forgets the grids.
+  void clear() {
+    count = asked.count = 0;
+    is_given = are_filled = false;
+  }
+
+  /// The radius of a grid for spheres of one radius: that of the one that is there if it is at most `most` times as
+  /// wide, else `wider`.
+  S reach_for(S radius, S most, S wider) const {
+    bool const serves = asked.count == 1 && radius <= asked.reaches[0] && asked.reaches[0] <= most * radius;
+    return serves ? asked.reaches[0] : wider;
+  }
+};
+
+/// Which way round a query goes: spheres look for triangles in the cells, or triangles look for spheres that are sorted
+/// into the cells.
+enum class query_order { sphere_major, triangle_major };
+
+/// The plan of a query.
+template <class S>
+struct query_plan {
+  grid_request_radii<S> grids;  ///< that it needs
+  bool makes_grids = false;     ///< those that are there do not serve
+  query_order order = query_order::sphere_major;
+};
+
+}  // namespace detail
 
 /// The buckets of a mesh.
 template <class S>
@@ -61,82 +136,55 @@ class bucket::index {
   void build(Space& space, bucket const& options, mesh_view<S> mesh) {
     if (!(options.cell_width >= 0)) throw error("collide: bucket: the cell width is negative or NaN");
     detail::check_triangles(mesh.size(), options.most_triangles);
-    if (options.memory_budget != 0 && mesh.size() != mesh_.size()) release_grids();
+    if (options.memory_budget != 0 && mesh.size() != mesh_.size()) {
+      measures_.box_memory.release();
+      lists_.release();
+    }
     mesh_ = mesh;
-    stage_ = stage::none;
-    origin_ = origin::none;
-    grid_count_ = requested_ = 0;
     queries_ = 0;
-    has_boxes_ = false;
+    measures_.has_boxes = false;
+    forget_grids();
     if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (bins_spheres<Space>(options)) return bins_.measure(space, mesh, clear_summary(space));
+      if (bins_spheres<Space>(options)) return bins_.measure(space, mesh, measures_.clear(space));
     }
     auto const affords = [&](std::size_t bytes) {
       return options.memory_budget == 0 || bytes <= options.memory_budget;
     };
     if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_aabb<S>))) {
-      boxes_.reserve(space.resource(), mesh.size());
-      has_boxes_ = true;
+      measures_.box_memory.reserve(space.resource(), mesh.size());
+      measures_.has_boxes = true;
+      forget_grids();
     } else {
-      boxes_.release();
+      measures_.box_memory.release();
     }
-    if (!affords(fixed_bytes)) return summary_.release();
-    auto* const summary = clear_summary(space);
-    detail::compute_mesh_statistics<S> const body{mesh, summary, boxes_.data()};
-    space.launch(detail::grid_size<Space>(mesh.size(), body), body);
+    if (!affords(fixed_bytes)) return measures_.statistics.release();
+    auto* const statistics = measures_.clear(space);
+    detail::compute_mesh_statistics<S> const kernel{mesh, statistics, measures_.box_memory.data()};
+    space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
   /// Makes a grid for spheres up to `radius`, which serves until the next build, or until many spheres that move want
   /// another.
   template <class Space>
   void prepare(Space& space, bucket const& options, S radius) {
-    origin_ = origin::radius;
-    if (summary_.data() == nullptr || !detail::is_valid_radius(radius) || !detail::is_finite(radius)) return;
-    make_grids(space, options, &radius, 1, detail::vertices_as_spheres<S>{mesh_, radius});
-    if (stage_ == stage::planned && !bins_spheres<Space>(options)) enter_triangles(space, options);
+    grids_.is_given = true;
+    if (measures_.statistics.data() == nullptr || !detail::is_valid_radius(radius) || !detail::is_finite(radius))
+      return;
+    make_grids(space, options, {{radius}, 1, grids_.asked.whole_boxes}, detail::vertices_as_spheres<S>{mesh_, radius});
+    if (!bins_spheres<Space>(options)) fill_grids(space, options);
   }
 
-  /// Makes the grids that the spheres need, unless they are there, and chooses how they are used. Waits for the host to
-  /// see the radii where they differ.
+  /// Makes the grids that the spheres need, unless they are there, and what else the next query needs of the mesh.
+  /// Waits for the host to see the radii where they differ.
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
-    request_grids(space, options, spheres);
-    // entering the triangles pays where few spheres come again and again (docs/development/experiments.md)
-    bool const pays = queries_ == 0 || spheres.size() >= mesh_.size() / 8;
-    choose(space, options, pays && stage_ != stage::none && can_bin<Space>(options, spheres.size()));
+    carry_out(space, options, spheres, plan_query(space, options, spheres));
   }
 
-  /// Spheres that move are binned, too, if there are many, of one radius, and none moves far; else they look for
-  /// triangles along their ways.
+  /// Makes what spheres that move need of the mesh.
   template <class Space>
   void prepare(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
-    bool bins = false;
-    if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (summary_.data() != nullptr && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
-          can_bin<Space>(options, spheres.size())) {
-        S const reach = bins_.reach_of(space, spheres);
-        if (detail::is_finite(reach) && reach <= 2 * spheres.common_radius()) {
-          bool const kept = requested_ == 1 && reach <= reaches_[0] && reaches_[0] <= 2 * reach;
-          if (!kept) {
-            S const wider = reach + reach / 16;  // so that a bit more next time fits too
-            make_grids(space, options, &wider, 1, spheres);
-            origin_ = origin::spheres;
-          }
-          bins = stage_ != stage::none;
-        }
-      }
-    }
-    if (!bins) {
-      if (!whole_boxes_ && stage_ != stage::none) {  // made for a radius, before it was known that spheres move
-        whole_boxes_ = true;
-        S reaches[detail::max_grids];
-        for (int i = 0; i < detail::max_grids; ++i) reaches[i] = reaches_[i];
-        make_grids(space, options, reaches, requested_, spheres);
-      }
-      whole_boxes_ = true;
-      request_grids(space, options, spheres);
-    }
-    choose(space, options, bins);
+    carry_out(space, options, spheres, plan_query(space, options, spheres));
   }
 
   /// Makes room for queries of up to so many spheres.
@@ -151,8 +199,7 @@ class bucket::index {
   std::uint64_t expected_hits([[maybe_unused]] Space& space,
                               [[maybe_unused]] detail::sphere_view_for<NarrowPhase, S> const& spheres) {
     if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (algorithm_ == algorithm::triangle_major) {
-        if (bins_.empty()) bin(space, spheres);
+      if (sort_if_planned(space, spheres)) {
         return bins_.template expected_hits<NarrowPhase>(space, mesh_, spheres.size());
       }
     }
@@ -164,48 +211,32 @@ class bucket::index {
   void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
     using pipeline = detail::candidate_pipeline<S, NarrowPhase, Output>;
     if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (algorithm_ == algorithm::triangle_major) {
-        if (bins_.empty()) bin(space, spheres);
-        bins_.query(space, pipeline{mesh_, spheres, output});
-        return;
-      }
+      if (sort_if_planned(space, spheres)) return bins_.query(space, pipeline{mesh_, spheres, output});
     }
-    detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes()}, lookup(), 0, 0};
-    body.share(space, spheres.size());
-    space.launch(body.blocks, body);
+    detail::bucket_query<S, NarrowPhase, Output> kernel{pipeline{mesh_, spheres, output, measures_.boxes()}, ref_, 0,
+                                                        0};
+    kernel.choose_grid_size(space, spheres.size());
+    space.launch(kernel.blocks, kernel);
   }
 
-  /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
-  detail::bucket_ref<S> lookup() const {
-    return {{mesh_, boxes()}, grids_.data(),  grid_count_,      lists_.occupied(),
-            lists_.data(),    lists_.total(), lists_.entries(), lists_.capacity()};
-  }
+  /// The triangles near a single sphere, for a kernel; valid until the next build or prepare.
+  detail::bucket_ref<S> const& triangle_ref() const { return ref_; }
 
   /// Width of the finest cells in use; 0 if there is no grid.
   template <class Space>
   double cell_width(Space& space) const {
-    return grid_count_ == 0 ? 0.0 : static_cast<double>(space.read(&grids_.data()->width));
+    return grids_.count == 0 ? 0.0 : static_cast<double>(space.read(&grids_.memory.data()->width));
   }
 
  private:
-  /// How far the grids have come: there are none; their cells are chosen; the triangles are entered into the cells.
-  enum class stage { none, planned, entered };
-
-  /// What the grids are for: nothing yet; a radius that was given; the radii that the spheres have.
-  enum class origin { none, radius, spheres };
-
-  /// How a query goes: spheres look for triangles in the cells, or triangles look for spheres that are binned into the
-  /// cells.
-  enum class algorithm { sphere_major, triangle_major };
-
   static constexpr std::size_t fixed_bytes =
       sizeof(detail::mesh_statistics<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
 
   /// Up to so many triangles entries have memory for as many as there may be; the device is asked how many there are if
   /// there are more triangles, or several grids.
-  static constexpr std::size_t most_unasked = std::size_t{1} << 18;
+  static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
 
-  /// True if spheres can be binned into the cells: what that takes is not part of a budget.
+  /// True if spheres can be sorted into the cells: what that takes is not part of a budget.
   template <class Space>
   static bool bins_spheres(bucket const& options) {
     return bucket_tuning<Space>::bins_spheres && options.memory_budget == 0;
@@ -215,127 +246,161 @@ class bucket::index {
     return bins_spheres<Space>(options) && spheres <= detail::sorted_spheres<S>::most;
   }
 
+  /// The plan of a query of spheres at rest.
   template <class Space>
-  detail::mesh_statistics<S>* clear_summary(Space& space) {
-    auto* const summary = summary_.reserve(space.resource(), 1);
-    detail::mesh_statistics<S>::clear(space, summary);
-    return summary;
+  detail::query_plan<S> plan_query(Space& space, bucket const& options, sphere_view<S> const& spheres) {
+    detail::query_plan<S> plan = plan_grids(space, spheres, grids_.asked.whole_boxes);
+    // entering the triangles pays where few spheres come again and again (docs/development/experiments.md)
+    bool const pays = queries_ == 0 || spheres.size() >= mesh_.size() / 8;
+    bool const has_grids = plan.makes_grids || grids_.count != 0;
+    if (pays && has_grids && can_bin<Space>(options, spheres.size())) plan.order = detail::query_order::triangle_major;
+    return plan;
   }
 
-  /// The boxes of the triangles; null if there are none.
-  detail::triangle_aabb<S> const* boxes() const { return has_boxes_ ? boxes_.data() : nullptr; }
-
-  /// Chooses the algorithm of the next query, and makes what it needs of the mesh.
+  /// The plan of a query of spheres that move: they are sorted, too, if there are many, of one radius, and none moves
+  /// far; else they look for triangles along their paths.
   template <class Space>
-  void choose(Space& space, bucket const& options, bool bins) {
-    algorithm_ = bins ? algorithm::triangle_major : algorithm::sphere_major;
-    bins_.clear();
+  detail::query_plan<S> plan_query(Space& space, bucket const& options, moving_sphere_view<S> const& spheres) {
+    if constexpr (bucket_tuning<Space>::bins_spheres) {
+      if (measures_.statistics.data() != nullptr && spheres.one_radius() && spheres.size() / 4 >= mesh_.size() &&
+          can_bin<Space>(options, spheres.size())) {
+        S const reach = bins_.reach_of(space, spheres);
+        if (detail::is_finite(reach) && reach <= 2 * spheres.common_radius()) {
+          detail::query_plan<S> plan;
+          // a new one is wider, so that a bit more next time fits too
+          plan.grids = {{grids_.reach_for(reach, 2, reach + reach / 16)}, 1, grids_.asked.whole_boxes};
+          plan.makes_grids = !(plan.grids == grids_.asked);
+          plan.order = detail::query_order::triangle_major;
+          return plan;
+        }
+      }
+    }
+    return plan_grids(space, spheres, true);
+  }
+
+  /// The grids for the radii of the spheres; those that are there if they serve, or were made for a radius that was
+  /// given.
+  template <class Space, class Spheres>
+  detail::query_plan<S> plan_grids(Space& space, Spheres const& spheres, bool whole_boxes) {
+    detail::query_plan<S> plan;
+    plan.grids = grids_.asked;
+    if (!grids_.is_given && measures_.statistics.data() != nullptr) {
+      detail::grid_request_radii<S> wanted;
+      if (!spheres.one_radius()) {
+        wanted.count = detail::reaches_of(detail::histogram_of_radii<S>(space, spheres, radii_), wanted.reaches);
+      } else if (S const radius = spheres.common_radius();
+                 detail::is_valid_radius(radius) && detail::is_finite(radius)) {
+        wanted.reaches[0] = grids_.reach_for(radius, 4, radius);
+        wanted.count = 1;
+      }
+      if (wanted.count != 0) plan.grids = wanted;
+    }
+    plan.grids.whole_boxes = whole_boxes;
+    plan.makes_grids = plan.grids.count != 0 && !(plan.grids == grids_.asked);
+    return plan;
+  }
+
+  /// Makes what a plan needs of the mesh.
+  template <class Space, class Spheres>
+  void carry_out(Space& space, bucket const& options, Spheres const& spheres, detail::query_plan<S> const& plan) {
+    if (plan.makes_grids) {
+      bool const is_given = grids_.is_given && plan.order == detail::query_order::sphere_major;
+      make_grids(space, options, plan.grids, spheres);
+      grids_.is_given = is_given;
+    }
+    grids_.asked.whole_boxes = plan.grids.whole_boxes;
     ++queries_;
-    if (!bins && stage_ == stage::planned) enter_triangles(space, options);
+    order_ = plan.order;
+    if constexpr (bucket_tuning<Space>::bins_spheres) bins_.clear();
+    if (order_ == detail::query_order::sphere_major) fill_grids(space, options);
   }
 
-  template <class Space>
-  void bin(Space& space, sphere_view<S> const& spheres) {
-    bins_.sort(space, spheres);
-  }
-  template <class Space>
-  void bin(Space& space, moving_sphere_view<S> const& spheres) {
-    bins_.sort(space, detail::swept_bounding_spheres<S>{spheres, reaches_[0]});
-  }
-
-  /// Makes the grids for the radii of the spheres, unless they are there or a radius was given.
+  /// True if the plan is that triangles look for spheres; these are sorted into the cells then.
   template <class Space, class Spheres>
-  void request_grids(Space& space, bucket const& options, Spheres const& spheres) {
-    if (origin_ == origin::radius || summary_.data() == nullptr) return;
-    S reaches[detail::max_grids];
-    int const n = spheres.one_radius()
-                      ? reach_of(spheres.common_radius(), reaches)
-                      : detail::reaches_of(detail::histogram_of_radii<S>(space, spheres, radii_), reaches);
-    if (n == 0 || (n == requested_ && std::equal(reaches, reaches + n, reaches_))) return;
-    origin_ = origin::spheres;
-    make_grids(space, options, reaches, n, spheres);
+  bool sort_if_planned(Space& space, Spheres const& spheres) {
+    if (order_ != detail::query_order::triangle_major) return false;
+    if (!bins_.empty()) return true;
+    if constexpr (std::is_same<Spheres, sphere_view<S>>::value) {
+      bins_.sort(space, spheres);
+    } else {
+      bins_.sort(space, detail::swept_bounding_spheres<S>{spheres, grids_.asked.reaches[0]});
+    }
+    return true;
   }
 
-  /// The grid of one radius: the one that is there if it is not much too wide.
-  int reach_of(S radius, S* reaches) const {
-    if (!detail::is_valid_radius(radius) || !detail::is_finite(radius)) return 0;
-    bool const kept = requested_ == 1 && radius <= reaches_[0] && reaches_[0] <= 4 * radius;
-    reaches[0] = kept ? reaches_[0] : radius;
-    return 1;
-  }
-
-  /// Chooses the cells of grids up to these radii, as many of `requested` as the budget allows, for these spheres.
+  /// Chooses the cells of grids up to these radii, as many as the budget allows, for these spheres.
   template <class Space, class Spheres>
-  void make_grids(Space& space, bucket const& options, S const* reaches, int requested, Spheres const& spheres) {
-    stage_ = stage::none;  // until all is done: an exception leaves no half-made grid behind
-    grid_count_ = requested_ = 0;
-    std::size_t const taken = fixed_bytes + (boxes() != nullptr ? mesh_.size() * sizeof *boxes() : 0);
-    auto const plan = detail::memory_plan::make(mesh_.size(), spheres.size(), requested, options.cell_width > 0, taken,
-                                                options.memory_budget);
-    for (int i = 0; i < detail::max_grids && i < requested; ++i) reaches_[i] = reaches[i];
+  void make_grids(Space& space, bucket const& options, detail::grid_request_radii<S> const& asked,
+                  Spheres const& spheres) {
+    bool const is_given = grids_.is_given;
+    forget_grids();  // until all is done: an exception leaves no half-made grid behind
+    auto const* const boxes = measures_.boxes();
+    std::size_t const taken = fixed_bytes + (boxes != nullptr ? mesh_.size() * sizeof *boxes : 0);
+    auto const plan = detail::memory_plan::make(mesh_.size(), spheres.size(), asked.count, options.cell_width > 0,
+                                                taken, options.memory_budget);
     if (plan.grids != 0) {
       auto const count = static_cast<std::size_t>(plan.grids);
       // what is held for another number of cells would come on top of what the budget was planned for
-      if (options.memory_budget != 0 && cells_ != count << plan.table_bits) lists_.release();
-      cells_ = count << plan.table_bits;
-      entry_limit_ = plan.entries;
-      table_bits_ = plan.table_bits;
-      auto* const grids = grids_.reserve(space.resource(), detail::max_grids);
+      if (options.memory_budget != 0 && grids_.cells != count << plan.table_bits) lists_.release();
+      grids_.cells = count << plan.table_bits;
+      grids_.entry_limit = plan.entries;
+      grids_.table_bits = plan.table_bits;
+      auto* const grids = grids_.memory.reserve(space.resource(), detail::max_grids);
       detail::grid_request<S> request{{},
                                       plan.grids,
                                       static_cast<S>(options.cell_width),
-                                      whole_boxes_,
+                                      asked.whole_boxes,
                                       0.5f * static_cast<float>(plan.entries) / static_cast<float>(plan.grids),
                                       plan.table_bits,
                                       bucket_tuning<Space>::costs};
-      for (int i = 0; i < detail::max_grids; ++i) request.reaches[i] = reaches_[i];
-      space.launch(count, detail::plan_grid<S, Spheres>{mesh_, boxes(), spheres, summary_.data(), grids, request});
+      std::copy(asked.reaches, asked.reaches + detail::max_grids, request.reaches);
+      space.launch(count,
+                   detail::plan_grid<S, Spheres>{mesh_, boxes, spheres, measures_.statistics.data(), grids, request});
       if constexpr (bucket_tuning<Space>::bins_spheres) {
-        if (bins_spheres<Space>(options)) {
-          bins_.mark(space, mesh_, grids, plan.grids, plan.table_bits);
-        }
+        if (bins_spheres<Space>(options)) bins_.mark(space, mesh_, grids, plan.grids, plan.table_bits);
       }
-      grid_count_ = plan.grids;
-      stage_ = stage::planned;
+      grids_.count = plan.grids;
+      ref_.grids = grids;  // without lists, until the triangles are entered
+      ref_.grid_count = plan.grids;
     }
-    requested_ = requested;
+    grids_.asked = asked;
+    grids_.is_given = is_given;
   }
 
-  /// Enters the triangles into the cells.
+  /// Enters the triangles into the cells, unless they are there, or there are no grids.
   template <class Space>
-  void enter_triangles(Space& space, bucket const& options) {
+  void fill_grids(Space& space, bucket const& options) {
+    if (grids_.count == 0 || grids_.are_filled) return;
     if constexpr (bucket_tuning<Space>::bins_spheres) {
-      if (bins_spheres<Space>(options) && !has_boxes_) detail::compute_boxes<S>::run(space, mesh_, boxes_);
-      has_boxes_ = has_boxes_ || bins_spheres<Space>(options);
+      if (bins_spheres<Space>(options) && !measures_.has_boxes) {
+        detail::compute_boxes<S>::run(space, mesh_, measures_.box_memory);
+        measures_.has_boxes = true;
+      }
     }
-    bool const asks = mesh_.size() > most_unasked || grid_count_ > 1 || options.cell_width > 0;
-    lists_.enter(space, mesh_, boxes(), {grids_.data(), grid_count_, table_bits_, cells_}, entry_limit_, asks);
-    stage_ = stage::entered;
+    bool const waits_for_size = mesh_.size() > max_without_readback || grids_.count > 1 || options.cell_width > 0;
+    auto const* const boxes = measures_.boxes();
+    auto const* const grids = grids_.memory.data();
+    lists_.enter(space, mesh_, boxes, {grids, grids_.count, grids_.table_bits, grids_.cells}, grids_.entry_limit,
+                 waits_for_size);
+    ref_ = {{mesh_, boxes}, grids,          grids_.count,     lists_.occupied(),
+            lists_.data(),  lists_.total(), lists_.entries(), lists_.capacity()};
+    grids_.are_filled = true;
   }
 
-  void release_grids() {
-    boxes_.release();
-    lists_.release();
+  void forget_grids() {
+    grids_.clear();
+    ref_ = {{mesh_, measures_.boxes()}, nullptr, 0, nullptr, nullptr, nullptr, nullptr, 0};
   }
 
   mesh_view<S> mesh_;
-  stage stage_ = stage::none;
-  origin origin_ = origin::none;
-  algorithm algorithm_ = algorithm::sphere_major;
-  std::size_t queries_ = 0;  ///< since the build
-  int requested_ = 0;        ///< how many grids are wanted: the budget may have allowed fewer
-  int grid_count_ = 0;
-  S reaches_[detail::max_grids] = {};  ///< of the grids that are wanted
-  bool whole_boxes_ = false;           ///< spheres that move look for triangles along their ways
-  std::size_t cells_ = 0, entry_limit_ = 0;
-  std::uint32_t table_bits_ = 0;
-  bool has_boxes_ = false;                      ///< of this mesh
-  buffer<detail::triangle_aabb<S>> boxes_;      ///< empty if the budget has no room for them, or nothing needs them
-  buffer<detail::mesh_statistics<S>> summary_;  ///< empty if the budget has no room for it
-  buffer<detail::size_histogram> radii_;
-  buffer<detail::grid<S>> grids_;
+  std::size_t queries_ = 0;                                        ///< since the build
+  detail::query_order order_ = detail::query_order::sphere_major;  ///< of the next query
+  detail::mesh_measures<S> measures_;
+  detail::grid_set<S> grids_;
   detail::cell_lists<S> lists_;
   detail::sorted_spheres<S> bins_;
+  detail::bucket_ref<S> ref_ = {};
+  buffer<detail::size_histogram> radii_;
 };
 
 #if defined(COLLIDE_COMPILED)

@@ -33,7 +33,7 @@ std::string type_name() {
   return name;
 }
 
-/// What a simulation knows besides its columns and the parameters of its effects.
+/// The numbers of a simulation besides its columns and the parameters of its effects.
 template <class S, bool HasSource>
 struct saved_numbers {
   std::uint64_t triangles = 0, places = 0, placed = 0;
@@ -175,7 +175,7 @@ class checkpoint {
     to.reverse_order_ = numbers_.reverse_order != 0;
     to.knows_pair_forces_ = numbers_.knows_pair_forces != 0;
     to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius};
-    if constexpr (simulated::effects_type::meets) to.neighbours_.clear(space, places, to.radii_.largest);
+    if constexpr (simulated::effects_type::any_pair_contact) to.neighbours_.clear(space, places, to.radii_.largest);
     to.is_set_ = true;
     to.prepare();
     restore_bodies(to);
@@ -209,7 +209,7 @@ class checkpoint {
   }
 
  private:
-  /// What the simulation is: written, or compared with what was.
+  /// The type of the simulation: written, or compared with what was.
   template <class Archive>
   static void pass_types(Archive& archive) {
     archive.text("scalar", type_name<S>());
@@ -242,8 +242,9 @@ class checkpoint {
   static std::vector<unsigned char> bytes_of_parameters(E effect) {
     std::vector<unsigned char> bytes;
     for_each_part_of(effect, [&](auto const& part) {
-      auto const* const first = reinterpret_cast<unsigned char const*>(&part);
-      bytes.insert(bytes.end(), first, first + sizeof part);
+      std::size_t const before = bytes.size();
+      bytes.resize(before + sizeof part);
+      std::memcpy(bytes.data() + before, &part, sizeof part);
     });
     return bytes;
   }
@@ -286,7 +287,7 @@ class checkpoint {
   }
 
   using remembered = typename simulated::effects_type::remembered;
-  static constexpr bool remembers_pairs = remembered::size != 0 && simulated::effects_type::meets;
+  static constexpr bool remembers_pairs = remembered::size != 0 && simulated::effects_type::any_pair_contact;
   static constexpr bool remembers_surfaces = remembered::size != 0 && simulated::effects_type::overlaps;
   static constexpr std::uint64_t contact_width = std::uint64_t(contact_values<S, remembered>::width);
 

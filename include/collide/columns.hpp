@@ -100,21 +100,21 @@ struct held {
   using value = std::uint8_t;
 };
 
-/// What other particles add to the velocity, per unit of time, in length per time squared. Scenes have it that name an
+/// Acceleration by other particles, in length per time squared. Scenes have it that name an
 /// effect with `on_pair_contact`, and `velocity_verlet` or `adhesion`.
 struct pair_acceleration {
   template <class S>
   using value = vec3<S>;
 };
 
-/// What other particles add to the angular velocity, per unit of time, in radians per time squared. Scenes have it that
+/// Angular acceleration by other particles, in radians per time squared. Scenes have it that
 /// name an effect with `on_pair_contact`, `velocity_verlet` and `spin`.
 struct pair_angular_acceleration {
   template <class S>
   using value = vec3<S>;
 };
 
-/// What the mesh adds to the velocity per unit of time, on the mean over the steps in which the particle has been slow:
+/// Acceleration by the mesh, on the mean over the steps in which the particle has been slow:
 /// so a particle that sleeps goes on to press. Scenes have it that name `sleep` and an effect with `on_mesh_impulse`.
 struct support {
   template <class S>
@@ -127,8 +127,8 @@ struct supported_by {
   using value = std::uint8_t;
 };
 
-/// What a second surface adds, in the corner of two. Scenes have it, and the next three, that have `support` and name
-/// `moving_bodies`.
+/// Acceleration by a second surface, in the corner of two. Scenes have it, and the next three, that have `support` and
+/// name `moving_bodies`.
 struct second_support {
   template <class S>
   using value = vec3<S>;
@@ -140,7 +140,7 @@ struct second_supported_by {
   using value = std::uint8_t;
 };
 
-/// What a third surface adds, and all others.
+/// Acceleration by a third surface, and all others.
 struct third_support {
   template <class S>
   using value = vec3<S>;

@@ -40,7 +40,7 @@ struct lookup_tuning;
 
 // PREFIX is `template` where it is compiled, `extern template` elsewhere. All of these are for namespace collide.
 
-/// What an index keeps of a mesh, and for spheres at rest; SPACE is the space, or that of look-ups.
+/// Code that an index keeps of a mesh, and for spheres at rest; SPACE is the space, or that of look-ups.
 #define COLLIDE_INDEX(PREFIX, BROAD_PHASE, SPACE, SCALAR)                                                             \
   PREFIX void detail::build_index(BROAD_PHASE::index<SCALAR>&, SPACE&, BROAD_PHASE const&, mesh_view<SCALAR> const&); \
   PREFIX void detail::prepare_index(BROAD_PHASE::index<SCALAR>&, SPACE&, BROAD_PHASE const&, SCALAR const&);          \

@@ -1,5 +1,5 @@
 /// \file
-/// What marks functions and loops for host and device: the only macros of the library, but for those of version.hpp,
+/// Markers of functions and loops for host and device: the only macros of the library, but for those of version.hpp,
 /// compiled.hpp and detail/step/compiled_search.hpp.
 #pragma once
 

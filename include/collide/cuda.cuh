@@ -7,16 +7,230 @@
 #error "collide/cuda.cuh needs nvcc; without CUDA include the headers of the host space alone"
 #endif
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <cuda_runtime.h>
 
 #include <collide/cuda_memory.cuh>
 #include <collide/detail/execution/block.hpp>
 #include <collide/detail/execution/cuda_block.cuh>
-#include <collide/detail/execution/cuda_kernels.cuh>
-#include <collide/detail/execution/cuda_space.cuh>
 #include <collide/detail/execution/tuning.hpp>
 
 namespace collide {
+
+namespace detail {
+
+/// How many blocks of a kernel a processor should hold at a time, which limits the registers of a thread: its member
+/// `min_blocks_per_sm<Block>`, or 1.
+template <class Kernel, class Block, class = void>
+inline constexpr int min_blocks_per_sm = 1;
+template <class Kernel, class Block>
+inline constexpr int
+    min_blocks_per_sm<Kernel, Block, std::enable_if_t<(Kernel::template min_blocks_per_sm<Block> > 0)>> =
+        Kernel::template min_blocks_per_sm<Block>;
+
+/// A kernel begins with these two. It lets the next kernel of the stream start, which then waits for its turn: so a
+/// launch takes its time while the kernel before is at work. Where it was compiled for compute capability 9.0 or more,
+/// and with `cuda_space::launch_kernel`.
+__device__ __forceinline__ void pdl_launch_dependents() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+__device__ __forceinline__ void pdl_wait() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+#endif
+}
+
+/// Runs a kernel in one thread per block.
+template <class Block, class Kernel>
+__global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<Kernel, Block>))
+    run_threads(std::size_t blocks, Kernel kernel) {
+  pdl_launch_dependents();
+  pdl_wait();
+  std::size_t const i = std::size_t{blockIdx.x} * threads_per_block + threadIdx.x;
+  if (i >= blocks) return;
+  typename Kernel::template scratch<Block> scratch;
+  Block here(i);
+  kernel(here, scratch);
+}
+
+/// Runs a kernel in one CUDA block per block.
+template <class Block, class Kernel>
+__global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<Kernel, Block>)) run_blocks(Kernel kernel) {
+  pdl_launch_dependents();
+  pdl_wait();
+  __shared__ typename Kernel::template scratch<Block> scratch;
+  Block here(blockIdx.x);
+  kernel(here, scratch);
+}
+
+template <class F>
+__global__ void __launch_bounds__(threads_per_block) run_for_each(std::size_t n, F f) {
+  pdl_wait();  // first: blocks of the next kernel would take the room of those that it waits for
+  pdl_launch_dependents();
+  std::size_t const i = std::size_t{blockIdx.x} * threads_per_block + threadIdx.x;
+  if (i < n) f(i);
+}
+
+/// Kernel functor of `for_each` over bytes.
+struct fill_bytes {
+  unsigned char* to;
+  unsigned char byte;
+  __device__ void operator()(std::size_t i) const { to[i] = byte; }
+};
+
+/// The base of both CUDA spaces: a stream and memory.
+class cuda_space {
+ public:
+  /// A space for the device that is current now, which must be current in every later call.
+  ///
+  /// \param stream    where all work is put; null is CUDA's default stream
+  /// \param resource  where device memory comes from; null is `cuda_memory`. Memory is used in the order of the stream.
+  /// \throws cuda_error  if there is no usable device
+  ///
+  /// Stream and resource must outlive everything that was made with the space.
+  explicit cuda_space(cudaStream_t stream = nullptr, std::pmr::memory_resource* resource = nullptr)
+      : stream_{stream}, resource_{resource != nullptr ? resource : cuda_memory::get()} {
+    int device = 0;
+    cuda_check(cudaGetDevice(&device), "cudaGetDevice");
+    cuda_check(cudaDeviceGetAttribute(&sm_count_, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
+    cudaFuncAttributes compiled{};
+    cuda_check(cudaFuncGetAttributes(&compiled, run_for_each<fill_bytes>), "cudaFuncGetAttributes");
+    has_pdl_ = compiled.ptxVersion >= 90;
+  }
+
+  /// The stream that all work is put on.
+  cudaStream_t stream() const { return stream_; }
+  /// The resource of device memory.
+  std::pmr::memory_resource* resource() const { return resource_; }
+
+  /// Waits until all work on the stream is done.
+  void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
+
+  /// True if the host reads this memory without waiting for anything: not here.
+  static constexpr bool host_accessible = false;
+
+  /// False if the memory at `p` is known not to be this space's: pageable memory, where the device cannot read that.
+  static bool reads(void const* p) {
+    cudaPointerAttributes memory{};
+    cuda_check(cudaPointerGetAttributes(&memory, p), "cudaPointerGetAttributes");
+    if (memory.type != cudaMemoryTypeUnregistered) return true;
+    int device = 0, reads_pageable = 0;
+    cuda_check(cudaGetDevice(&device), "cudaGetDevice");
+    cuda_check(cudaDeviceGetAttribute(&reads_pageable, cudaDevAttrPageableMemoryAccess, device),
+               "cudaDeviceGetAttribute");
+    return reads_pageable != 0;
+  }
+
+  /// Puts a kernel on the stream that calls f(i) for all i < n. Throws `cuda_error`.
+  template <class F>
+  void for_each(std::size_t n, F const& f) const {
+    if (n == 0) return;
+    launch_kernel("launch of run_for_each", run_for_each<F>, grid_of(n), n, f);
+  }
+
+  /// Puts work on the stream that sets `bytes` bytes. A little is filled by a kernel: in a graph, between kernels, that
+  /// takes half as long as a memory set.
+  void fill(void* to, unsigned char byte, std::size_t bytes) const {
+    constexpr std::size_t little = 16384;
+    if (bytes <= little) {
+      for_each(bytes, fill_bytes{static_cast<unsigned char*>(to), byte});
+    } else {
+      cuda_check(cudaMemsetAsync(to, byte, bytes, stream_), "cudaMemsetAsync");
+    }
+  }
+
+  /// The value at `from`. Waits.
+  template <class T>
+  T read(T const* from) const {
+    T value;
+    copy_to_host(&value, from, 1);
+    return value;
+  }
+
+  /// Copies `n` values from the device and waits.
+  template <class T>
+  void copy_to_host(T* to, T const* from, std::size_t n) const {
+    if (n == 0) return;
+    cuda_check(cudaMemcpyAsync(static_cast<void*>(to), from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_),
+               "cudaMemcpyAsync");
+    synchronize();
+  }
+
+  /// Copies `n` values to the device and waits; the source may be changed as soon as the call returns.
+  template <class T>
+  void copy_from_host(T* to, T const* from, std::size_t n) const {
+    if (n == 0) return;
+    cuda_check(cudaMemcpyAsync(static_cast<void*>(to), from, n * sizeof(T), cudaMemcpyHostToDevice, stream_),
+               "cudaMemcpyAsync");
+    synchronize();
+  }
+
+  /// Copies `bytes` bytes to this device from memory of any other of the process, or its own, in the order of the
+  /// stream.
+  void copy_from_any_device(void* to, void const* from, std::size_t bytes) const {
+    if (bytes == 0) return;
+    read_directly(from);
+    cuda_check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream_), "cudaMemcpyAsync");
+  }
+
+ protected:
+  /// Has this device read the memory of that at `p` without help of the host, where it can.
+  static void read_directly(void const* p) {
+    cudaPointerAttributes memory{};
+    cuda_check(cudaPointerGetAttributes(&memory, p), "cudaPointerGetAttributes");
+    int device = 0, can = 0;
+    cuda_check(cudaGetDevice(&device), "cudaGetDevice");
+    if (memory.type != cudaMemoryTypeDevice || memory.device == device) return;
+    thread_local std::vector<std::pair<int, int>> tried;  // to find out takes longer than a short copy
+    std::pair<int, int> const both(device, memory.device);
+    if (std::find(tried.begin(), tried.end(), both) != tried.end()) return;
+    cuda_check(cudaDeviceCanAccessPeer(&can, device, memory.device), "cudaDeviceCanAccessPeer");
+    if (can != 0 && cudaDeviceEnablePeerAccess(memory.device, 0) != cudaSuccess) {
+      cudaGetLastError();  // it does already, or copies go by way of the host
+    }
+    tried.push_back(both);
+  }
+
+  /// Launches a kernel that begins with `pdl_wait`.
+  template <class... Parameters>
+  void launch_kernel(char const* call, void (*kernel)(Parameters...), unsigned blocks,
+                     Parameters const&... arguments) const {
+    cudaLaunchAttribute early{};
+    early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    early.val.programmaticStreamSerializationAllowed = 1;
+    cudaLaunchConfig_t config{};
+    config.gridDim = dim3(blocks);
+    config.blockDim = dim3(threads_per_block);
+    config.stream = stream_;
+    config.attrs = &early;
+    config.numAttrs = has_pdl_ ? 1 : 0;
+    cuda_check(cudaLaunchKernelEx(&config, kernel, arguments...), call);
+  }
+
+  static unsigned grid_of(std::size_t n) {
+    std::size_t const blocks = (n + threads_per_block - 1) / threads_per_block;
+    if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+      throw error("collide: too much work for one CUDA launch");
+    }
+    return static_cast<unsigned>(blocks);
+  }
+
+  cudaStream_t stream_;
+  std::pmr::memory_resource* resource_;
+  int sm_count_ = 1;
+  bool has_pdl_ = false;  ///< see `pdl_wait`
+};
+
+}  // namespace detail
 
 /// Execution space: an NVIDIA GPU, each thread on its own. Views point to device memory; work is put on a stream, and
 /// calls do not wait for it unless they say so. Simpler than `cuda_shared`, which in most scenes is the faster one; the
@@ -27,21 +241,21 @@ class cuda : public detail::cuda_space {
   /// The name of the space, for messages.
   static constexpr char const* name() { return "cuda"; }
 
-  template <class Body>
-  using block = detail::serial_block<Body::items, 0>;
+  template <class Kernel>
+  using block = detail::serial_block<Kernel::items, 0>;
 
-  /// Puts a kernel on the stream that runs `body` once for each of `blocks` blocks. Throws `cuda_error`.
-  template <class Body>
-  void launch(std::size_t blocks, Body const& body) const {
+  /// Puts a kernel on the stream that runs `kernel` once for each of `blocks` blocks. Throws `cuda_error`.
+  template <class Kernel>
+  void launch(std::size_t blocks, Kernel const& kernel) const {
     if (blocks == 0) return;
-    launch_kernel("launch of run_threads", detail::run_threads<block<Body>, Body>, grid_of(blocks), blocks, body);
+    launch_kernel("launch of run_threads", detail::run_threads<block<Kernel>, Kernel>, grid_of(blocks), blocks, kernel);
   }
 
   /// How many blocks keep the device busy.
   std::size_t saturating_blocks() const { return static_cast<std::size_t>(sm_count_) * 2048; }
 
-  /// How many blocks of a body can be at work at a time; here that does not matter.
-  template <class Body>
+  /// How many blocks of a kernel can be at work at a time; here that does not matter.
+  template <class Kernel>
   std::size_t max_resident_blocks() const {
     return std::numeric_limits<std::size_t>::max();
   }
@@ -63,27 +277,28 @@ class cuda_shared : public detail::cuda_space {
   /// The name of the space, for messages.
   static constexpr char const* name() { return "cuda_shared"; }
 
-  template <class Body>
-  using block = detail::cuda_block<Body::items>;
+  template <class Kernel>
+  using block = detail::cuda_block<Kernel::items>;
 
-  /// Puts a kernel on the stream that runs `body` once for each of `blocks` blocks. Throws `cuda_error`, and `error` if
-  /// there are 2^31 blocks or more.
-  template <class Body>
-  void launch(std::size_t blocks, Body const& body) const {
+  /// Puts a kernel on the stream that runs `kernel` once for each of `blocks` blocks. Throws `cuda_error`, and `error`
+  /// if there are 2^31 blocks or more.
+  template <class Kernel>
+  void launch(std::size_t blocks, Kernel const& kernel) const {
     if (blocks == 0) return;
     if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
       throw error("collide: too much work for one CUDA launch");
     }
-    launch_kernel("launch of run_blocks", detail::run_blocks<block<Body>, Body>, static_cast<unsigned>(blocks), body);
+    launch_kernel("launch of run_blocks", detail::run_blocks<block<Kernel>, Kernel>, static_cast<unsigned>(blocks),
+                  kernel);
   }
 
   /// How many blocks keep the device busy.
   std::size_t saturating_blocks() const { return static_cast<std::size_t>(sm_count_) * 8; }
 
-  /// How many blocks of a body are at work at a time.
-  template <class Body>
+  /// How many blocks of a kernel are at work at a time.
+  template <class Kernel>
   std::size_t max_resident_blocks() const {
-    return static_cast<std::size_t>(sm_count_) * detail::residency<Body, block<Body>>;
+    return static_cast<std::size_t>(sm_count_) * detail::min_blocks_per_sm<Kernel, block<Kernel>>;
   }
 };
 

@@ -8,7 +8,7 @@
 
 namespace collide {
 
-/// What `energy` finds, in mass times length squared per time squared.
+/// The result of `energy`, in mass times length squared per time squared.
 struct energy_sums {
   double kinetic = 0;     ///< of the motion of centres
   double rotational = 0;  ///< of solid spheres that turn; 0 without `spin` in the scene

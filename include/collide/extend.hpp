@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 
+#include <collide/atomic_add.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/execution/block.hpp>
 #include <collide/detail/execution/launch.hpp>
 #include <collide/detail/execution/tuning.hpp>
+#include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/geometry/bounding_sphere.hpp>
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
@@ -16,6 +19,16 @@
 #include <collide/detector.hpp>
 
 namespace collide {
+
+namespace detail {
+
+/// True for an index that is made of what the host alone can read.
+template <class Index, class = void>
+inline constexpr bool is_host_only = false;
+template <class Index>
+inline constexpr bool is_host_only<Index, std::void_t<decltype(Index::host_only)>> = Index::host_only;
+
+}  // namespace detail
 
 /// A block of one thread, for spaces whose threads do not work together: `Items` items, and `HitCapacity` hits that are
 /// gathered before they go to the sink. detail/execution/block.hpp says what a block has.
@@ -51,6 +64,55 @@ class bounding_sphere {
  private:
   detail::bounding_sphere<S> sphere_;
 };
+
+/// An axis-aligned box with room for rounding, see `conservative`.
+template <class S>
+struct conservative_box {
+  S lower[3];  ///< the lowest coordinates
+  S upper[3];  ///< the highest coordinates
+
+  /// True if the boxes have a point in common. O(1).
+  COLLIDE_HD bool overlaps(conservative_box const& other) const {
+    bool meets = true;
+    for (int k = 0; k < 3; ++k) meets = meets && lower[k] <= other.upper[k] && other.lower[k] <= upper[k];
+    return meets;
+  }
+};
+
+namespace detail {
+
+/// A box, larger by a length on all sides, and by the rounding of that.
+template <class S>
+COLLIDE_HD_INLINE conservative_box<S> inflated(aabb<S> const& b, S by) {
+  conservative_box<S> c;
+  for (int k = 0; k < 3; ++k) {
+    constexpr S slack = 4 * ieee_traits<S>::unit_roundoff;
+    c.lower[k] = b.lower[k] - by - slack * ((b.lower[k] < 0 ? -b.lower[k] : b.lower[k]) + by);
+    c.upper[k] = b.upper[k] + by + slack * ((b.upper[k] < 0 ? -b.upper[k] : b.upper[k]) + by);
+  }
+  return c;
+}
+
+}  // namespace detail
+
+/// The box around a sphere, inflated such that it overlaps that of each triangle that a built-in narrow phase accepts
+/// for the sphere: R3 in docs/development/numerics.md. A NaN or negative radius overlaps nothing. O(1).
+template <class S>
+COLLIDE_HD conservative_box<S> conservative(sphere<S> const& s) {
+  S const nan = std::numeric_limits<S>::quiet_NaN(), r = detail::is_valid_radius(s.radius) ? s.radius : nan;
+  detail::aabb<S> const centre{{s.centre.x(), s.centre.y(), s.centre.z()}, {s.centre.x(), s.centre.y(), s.centre.z()}};
+  return detail::inflated(centre, detail::triangle_aabb<S>::padded_radius(r));
+}
+
+/// The box around a triangle, inflated likewise. That of a triangle that is not finite overlaps that of no finite
+/// sphere. O(1).
+template <class S>
+COLLIDE_HD conservative_box<S> conservative(triangle<S> const& t) {
+  detail::triangle_aabb<S> const b = detail::triangle_aabb_of(t);
+  constexpr S far = std::numeric_limits<S>::infinity();
+  if (b.is_empty()) return {{far, far, far}, {-far, -far, -far}};
+  return detail::inflated<S>(b, b.padding);
+}
 
 /// Whether a sphere can touch a mesh at all: a plain value for kernels, see `mesh_bounds`.
 template <class S>
@@ -104,7 +166,9 @@ class mesh_bounds {
 ///   - `ref() const`: a trivially copyable value with a const member `template <class F> void
 ///     for_each_candidate(sphere<S>, F f)` that calls f(triangle) for all that the sphere could touch, each once. It
 ///     runs where the space is, so it is `COLLIDE_HD`. For a sphere that moves it is called with a sphere around all of
-///     its motion, unless it takes a `moving_sphere<S>` too.
+///     its motion, unless it takes a `moving_sphere<S>` too;
+///   - `static constexpr bool host_only`, if there is one: true if `build` reads the mesh on the host. A detector in a
+///     space whose memory the host cannot read then does not compile.
 ///
 /// A query takes O(spheres * enumeration); in spaces with threads that work together an enumeration is made for every 8
 /// candidates of a sphere, in simulations for every candidate.
@@ -120,6 +184,9 @@ struct per_sphere {
     template <class Space>
     void build(Space& space, per_sphere const& options, mesh_view<S> mesh) {
       using ref_type = decltype(index_.ref());
+      static_assert(!detail::is_host_only<policy_index> || Space::host_accessible,
+                    "collide: this per_sphere policy is host_only: its index reads the mesh on the host, which in this "
+                    "space cannot be read there");
       static_assert(std::is_trivially_copyable<ref_type>::value && std::is_default_constructible<ref_type>::value,
                     "collide: what ref() of a per_sphere policy returns is a trivially copyable value, and has a "
                     "default constructor");
@@ -140,8 +207,10 @@ struct per_sphere {
       space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);
     }
 
-    /// What a kernel of a simulation asks for the triangles near a single sphere; valid until the next build.
-    auto lookup() const { return detail::per_sphere_lookup<S, decltype(index_.ref())>{{mesh_, nullptr}, index_.ref()}; }
+    /// The triangles near a single sphere, for a kernel of a simulation; valid until the next build.
+    auto triangle_ref() const {
+      return detail::per_sphere_ref<S, decltype(index_.ref())>{{mesh_, nullptr}, index_.ref()};
+    }
 
     template <class Space>
     double cell_width(Space&) const {

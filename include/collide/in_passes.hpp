@@ -30,7 +30,7 @@ namespace collide {
 /// (`keeps_ids_alone`, see concepts.hpp), 40 or 80 for each triangle that is hit, up to three times that of the host,
 /// and 8 of the host for each pair of a pass. It is kept between queries. On the host the mesh is read where it lies.
 ///
-/// Where one pass is enough the mesh is built once, and a query is one of the detector. Otherwise each query builds
+/// If one pass is enough the mesh is built once, and a query is one of the detector. Otherwise each query builds
 /// every part again: give it all spheres at once. One object is for one thread at a time.
 ///
 /// \tparam Detector  a `detector`
@@ -117,7 +117,7 @@ class in_passes {
     return detail::most_triangles_of_grid;
   }
 
-  /// Where pass number `pass` begins.
+  /// The first triangle of pass number `pass`.
   std::size_t begin_of(std::size_t pass) const {
     std::size_t const longer = mesh_.size() % passes_;
     return mesh_.size() / passes_ * pass + std::min(pass, longer);

@@ -4,7 +4,7 @@
 
 #include <collide/contact.hpp>
 #include <collide/detail/narrow_phase/contact.hpp>
-#include <collide/detail/narrow_phase/contact_plain.hpp>
+#include <collide/detail/narrow_phase/contact_in_precision.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/narrow_phase/karabassi_test.hpp>
 #include <collide/precision.hpp>
@@ -46,7 +46,7 @@ struct karabassi {
     if constexpr (std::is_same<Precision, exact>::value) {
       return detail::contact_of_pair(t, s);
     } else {
-      return detail::plain_contact_of_pair<typename Precision::scalar>(t, s);
+      return detail::contact_of_pair_in_precision<typename Precision::scalar>(t, s);
     }
   }
 };
@@ -54,20 +54,7 @@ struct karabassi {
 namespace detail {
 
 template <>
-struct filtered_predicate<karabassi<exact>> : std::true_type {
-  template <class S>
-  static COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, sphere<S> const& s) {
-    return detail::filter_exact(t, s).verdict;
-  }
-  template <class S>
-  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s) {
-    return detail::filter_branchless(t, s);
-  }
-  template <class S>
-  static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, sphere<S> const& s) {
-    return detail::resolve_exact(t, s).hit;
-  }
-};
+struct filtered_predicate<karabassi<exact>> : exact_predicate {};
 
 }  // namespace detail
 

@@ -2,7 +2,7 @@
 /// Karabassi's intersection test for moving spheres: continuous collision detection.
 #pragma once
 
-#include <collide/detail/narrow_phase/contact_plain.hpp>
+#include <collide/detail/narrow_phase/contact_in_precision.hpp>
 #include <collide/detail/narrow_phase/contact_swept.hpp>
 #include <collide/detail/narrow_phase/intersects_swept.hpp>
 #include <collide/detail/narrow_phase/karabassi_swept_test.hpp>
@@ -61,7 +61,7 @@ struct karabassi_swept {
     if constexpr (std::is_same<Precision, exact>::value) {
       return {detail::contact_at_time(t, s, time), time};
     } else {
-      return {detail::plain_contact_at_time<typename Precision::scalar>(t, s, time), time};
+      return {detail::contact_at_time_in_precision<typename Precision::scalar>(t, s, time), time};
     }
   }
 };
@@ -69,21 +69,7 @@ struct karabassi_swept {
 namespace detail {
 
 template <>
-struct filtered_predicate<karabassi_swept<exact>> : std::true_type {
-  template <class S>
-  static COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, moving_sphere<S> const& s) {
-    return detail::filter_exact(t, s).verdict;
-  }
-  template <class S>
-  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& around,
-                                                     sphere<S> const& midpoint) {
-    return detail::filter_branchless(t, around, midpoint);
-  }
-  template <class S>
-  static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, moving_sphere<S> const& s) {
-    return detail::resolve_exact(t, s).hit;
-  }
-};
+struct filtered_predicate<karabassi_swept<exact>> : exact_swept_predicate {};
 
 }  // namespace detail
 

@@ -99,7 +99,7 @@ class buffer {
   T* data() const { return data_; }
   /// For how many values there is room.
   std::size_t capacity() const { return capacity_; }
-  /// What it has taken of the resource.
+  /// Memory taken from the resource.
   std::size_t bytes() const { return capacity_ * sizeof(T); }
 
  private:

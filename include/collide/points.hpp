@@ -134,7 +134,7 @@ constexpr bool check_matrix() {
   return true;
 }
 
-/// Where the rows of an n x 3 matrix lie; the columns, if the type of the matrix has 3 rows. Throws `error` if the
+/// The rows of an n x 3 matrix as points; the columns, if the type of the matrix has 3 rows. Throws `error` if the
 /// matrix has another shape.
 struct matrix_layout {
   std::size_t size;

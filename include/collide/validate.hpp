@@ -62,7 +62,7 @@ class report {
   /// True for what is unusual but has a defined meaning.
   static constexpr bool legal(problem p) { return p == problem::triangle_degenerate || p == problem::radius_infinite; }
 
-  /// What is known of one kind of problem, as it is kept in memory of a space.
+  /// The count of one kind of problem, in memory of a space.
   struct finding {
     std::uint64_t count;  ///< how many elements have it
     id first;             ///< the smallest id of one; `no_id` if there is none
@@ -100,7 +100,7 @@ struct inspection {
   }
 };
 
-/// Kernel body of `for_each` over triangles.
+/// Kernel functor of `for_each` over triangles.
 template <class S>
 struct inspect_triangle : inspection {
   mesh_view<S> mesh;
@@ -121,7 +121,7 @@ struct inspect_triangle : inspection {
   }
 };
 
-/// Kernel body of `for_each` over spheres.
+/// Kernel functor of `for_each` over spheres.
 template <class S>
 struct inspect_sphere : inspection {
   sphere_view<S> spheres;

@@ -4,9 +4,10 @@ code      The first block of C++ in the README is examples/minimal.cpp, and ever
           the file that the comment before it names (`<!-- from: FILE -->`). Pages that teach have no other C++.
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
-glossary  Each name in docs/glossary.md is in the file, or in the folder, that it is said to be in; words are in order.
+glossary  Each name in docs/glossary.md is in the code of the file, or folder, that it is said to be in; words are in order.
 members   The tables of members in docs/guide.md have all that the headers have, and nothing else.
-english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST.
+english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; no docstring of include/ begins with
+          a word of FOREIGN_BEGINNINGS, which name nothing.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
@@ -55,6 +56,9 @@ FOREIGN = {
     r"made anew": "rebuilt",
 }
 LONGEST = 120
+
+# Docstrings name what follows: "The result of ...", and not "What ... gives".
+FOREIGN_BEGINNINGS = r"(What|Where|Of)\b"
 
 
 def without_code(text):
@@ -118,7 +122,7 @@ def glossary():
     yield from (f"{page}: {word} is not in alphabetic order" for word, sorted_word in zip(words, sorted(words)) if word != sorted_word)
     for word, name, target in rows:
         path = (page.parent / target).resolve()
-        texts = [p.read_text() for p in ([path] if path.is_file() else path.rglob("*.*"))]
+        texts = [re.sub(r"//.*", "", p.read_text()) for p in ([path] if path.is_file() else path.rglob("*.*"))]
         if not any(re.search(rf"\b{name}\b", text) for text in texts):
             yield f"{page}: {word}: there is no {name} in {target}"
 
@@ -167,6 +171,13 @@ def english():
                 found = re.search(rf"\b({pattern})\b", prose, re.I)
                 if found:
                     yield f"{page}:{line}: {found[0]!r}: write {instead}"
+    for header in sorted((ROOT / "include").rglob("*.*")):
+        before = ""
+        for line, words in enumerate(header.read_text().splitlines(), 1):
+            found = re.match(rf"\s*/// {FOREIGN_BEGINNINGS}", words)
+            if found and (not re.match(r"\s*///(?!<)", before) or "\\file" in before):
+                yield f"{header}:{line}: a docstring begins with {found[1]!r}: name what it is about"
+            before = words
 
 
 def numbers():

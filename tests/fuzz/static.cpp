@@ -52,8 +52,7 @@ void check(pair<S> const& n) {
   auto const hash = n.hash();
   bool const slowly = hash % asks_slowly == 0, asks = hash / asks_slowly % asks_oracle == 0;
   auto const quick = stages::filter(n.shape(), n.ball()), straight = stages::filter_branchless(n.shape(), n.ball());
-  n.require(straight == verdict::uncertain || quick == verdict::uncertain || straight == quick,
-            "both certificates agree");
+  n.require(straight == verdict::uncertain || quick == verdict::uncertain || straight == quick, "both filters agree");
   check_bad_values<collide::single_precision>(n);
   check_bad_values<collide::double_precision>(n);
   collide::karabassi<collide::baseline>::intersects(n.shape(), n.ball());  // promises nothing, but harms nothing

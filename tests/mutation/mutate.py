@@ -26,180 +26,182 @@ COMPILERS = {
     "clang-fast": "clang++ -O2 -ffast-math",
 }
 
-# The regions of Ericson are right as they are; the weights are kept in their limits for what they might be.
-NO_REGIONS = ("""    v = select(inside, v_there, v);
+# The regions of Ericson are right as they are; the weights are kept in their limits for what they might be. This guard
+# has a name of its own.
+NO_REGIONS = [("regions", """    v = select(inside, v_there, v);
     w = select(inside, w_there, w);
     weight_sum = select(inside, weight_sum_there, weight_sum);
-""", "")
+""", "")]
 
-# name: (file of include/collide/detail, what goes without the guard, program, compiler,
-#        [(text that stands there once, what takes its place)])
+# name: (what goes without the guard, program, compiler, [(text of the guard, what takes its place)]). The guard stands
+# behind the comment `// guard: name` of one header. Names in its text stand for whatever is called so there now, names in
+# what takes its place for the same: a header is renamed, moved and formatted without a change here.
 MUTATIONS = {
-    "error": ("predicates/filter.hpp", "the error of a length, 32 units: 3 instead", "stages", "plain",
+    "error": ("the error of a length, 32 units: 3 instead", "stages", "plain",
               [("error = 32 * ieee_traits<T>::unit_roundoff", "error = 3 * ieee_traits<T>::unit_roundoff")]),
-    "error-of-hit": ("predicates/filter.hpp", "that error in hits", "stages", "plain", [("t.radius - error", "t.radius")]),
-    "error-of-miss": ("predicates/filter.hpp", "that error in misses", "stages", "plain", [("t.radius + error", "t.radius")]),
-    "inner": ("predicates/filter.hpp", "a radius below its error certifies no hit", "stages", "plain",
+    "error-of-hit": ("that error in hits", "stages", "plain", [("t.radius - error", "t.radius")]),
+    "error-of-miss": ("that error in misses", "stages", "plain", [("t.radius + error", "t.radius")]),
+    "inner": ("a radius below its error gives no hit", "stages", "plain",
               [("(radius_low > 0) & ", "")]),
-    "least": ("predicates/filter.hpp", "a direction that the triangle reaches to both sides of separates nothing", "stages", "plain",
+    "least": ("a direction that the triangle reaches to both sides of separates nothing", "stages", "plain",
               [("(least > 0) & ", "")]),
-    "shortest": ("predicates/filter.hpp", "squared lengths that have lost digits to underflow", "stages", "plain",
+    "shortest": ("squared lengths that have lost digits to underflow", "stages", "plain",
                  [("(gg >= bounds::shortest) & ", "")]),
-    "v-from-below": ("predicates/filter.hpp", "v >= 0, whatever the region", "stages", "plain",
-                     [NO_REGIONS, ("v = saturate(mul(v, inverse))", "v = smaller(mul(v, inverse), T(1))")]),
-    "v-from-above": ("predicates/filter.hpp", "v <= 1, whatever the region", "stages", "plain",
-                     [NO_REGIONS, ("v = saturate(mul(v, inverse))", "v = larger(mul(v, inverse), T(0))")]),
-    "w-from-below": ("predicates/filter.hpp", "w >= 0, whatever the region", "stages", "plain",
-                     [NO_REGIONS, ("limited = saturate(mul(w, inverse))", "limited = mul(w, inverse)")]),
-    "v-and-w": ("predicates/filter.hpp", "v + w <= 1, whatever the region", "stages", "plain",
-                [NO_REGIONS, ("select(limited < remainder, limited, remainder)", "limited")]),
-    "smallest": ("predicates/filter.hpp", "sizes below which squares underflow", "stages", "plain",
+    "v-from-below": ("v >= 0, whatever the region", "stages", "plain",
+                     [*NO_REGIONS, ("v = saturate(mul_rn(v, inverse))", "v = mul_rn(v, inverse) < 1 ? mul_rn(v, inverse) : 1")]),
+    "v-from-above": ("v <= 1, whatever the region", "stages", "plain",
+                     [*NO_REGIONS, ("v = saturate(mul_rn(v, inverse))", "v = mul_rn(v, inverse) > 0 ? mul_rn(v, inverse) : 0")]),
+    "w-from-below": ("w >= 0, whatever the region", "stages", "plain",
+                     [*NO_REGIONS, ("limited = saturate(mul_rn(w, inverse))", "limited = mul_rn(w, inverse)")]),
+    "v-and-w": ("v + w <= 1, whatever the region", "stages", "plain",
+                [*NO_REGIONS, ("select(limited < remainder, limited, remainder)", "limited")]),
+    "smallest": ("sizes below which squares underflow", "stages", "plain",
                  [("size >= bounds::smallest && ", "")]),
-    "largest": ("predicates/filter.hpp", "sizes above which products overflow", "stages", "fast",
+    "largest": ("sizes above which products overflow", "stages", "fast",
                 [("size >= bounds::smallest && size <= bounds::largest", "size >= bounds::smallest")]),
-    "floor-of-float": ("predicates/filter.hpp", "sizes at which flushed subnormal numbers show, float", "stages", "plain",
+    "floor-of-float": ("sizes at which flushed subnormal numbers show, float", "stages", "plain",
                        [("T(0x1p-60) : T(0x1p-900)", "T(0x1p-126) : T(0x1p-900)")]),
-    "floor-of-double": ("predicates/filter.hpp", "the same, double", "stages", "plain",
+    "floor-of-double": ("the same, double", "stages", "plain",
                         [("T(0x1p-60) : T(0x1p-900)", "T(0x1p-60) : T(0x1p-1022)")]),
-    "scaling": ("predicates/filter.hpp", "scaling to a size that squares bear", "stages", "plain",
+    "scaling": ("scaling to a size that squares bear", "stages", "plain",
                 [("  p = scaled(p, inverse_power_of_two(size));\n", "")]),
-    "box": ("narrow_phase/intersects.hpp", "the box test where subnormal numbers are flushed", "stages", "plain",
-            [("larger(l.radius, ieee_traits<S>::min_sum_under_ftz)", "l.radius")]),
-    "size-in-float": ("narrow_phase/intersects.hpp", "no certificate in float at the wrong size", "stages", "plain",
+    "box": ("the box test where subnormal numbers are flushed", "stages", "plain",
+            [("max(l.radius, ieee_traits<S>::min_sum_under_ftz)", "l.radius")]),
+    "size-in-float": ("no filter in float at the wrong size", "stages", "plain",
                       [("  if (!rescale_to_filter_range<S>(l, size)) return {verdict::uncertain, stage::single_filter};\n",
                         "  rescale_to_filter_range<S>(l, size);\n")]),
-    "size-in-double": ("narrow_phase/intersects.hpp", "no certificate in double at the wrong size", "stages", "plain",
+    "size-in-double": ("no filter in double at the wrong size", "stages", "plain",
                        [("  if (rescale_to_filter_range<double>(l, size)) {", "  rescale_to_filter_range<double>(l, size);\n  {")]),
-    "bad-radius": ("narrow_phase/intersects.hpp", "radii that are negative or NaN", "stages", "plain",
+    "bad-radius": ("radii that are negative or NaN", "stages", "plain",
                    [("!is_valid_radius(s.radius) || ", "")]),
-    "bad-centre": ("narrow_phase/intersects.hpp", "centres that are not finite", "stages", "plain", [("!is_finite(s.centre) || ", "")]),
-    "bad-corner": ("narrow_phase/intersects.hpp", "corners that are not finite", "stages", "plain", [(" || !is_finite(t)", "")]),
-    "infinite-radius": ("narrow_phase/intersects.hpp", "an infinite radius reaches all", "stages", "plain",
+    "bad-centre": ("centres that are not finite", "stages", "plain", [("!is_valid_radius(s.radius) || !is_finite(s.centre)", "!is_valid_radius(s.radius)")]),
+    "bad-corner": ("corners that are not finite", "stages", "plain", [(" || !is_finite(t)", "")]),
+    "infinite-radius": ("an infinite radius reaches all", "stages", "plain",
                         [("  if (is_infinite(s.radius)) return {true, stage::exact_integers};\n", "")]),
-    "finite": ("numeric/float_bits.hpp", "finite numbers are known by their bits", "stages", "clang-fast",
+    "finite": ("finite numbers are known by their bits", "stages", "clang-fast",
                [("return (to_bits(x) & ieee_traits<T>::exponent_mask) != ieee_traits<T>::exponent_mask", "return x - x == 0")]),
-    "finite-corner": ("numeric/float_bits.hpp", "finite corners are known by their bits", "stages", "clang-fast",
-                      [("return larger(larger(largest_bits(t.a), largest_bits(t.b)), largest_bits(t.c)) < ieee_traits<T>::exponent_mask",
-                        "return t.a.allFinite() && t.b.allFinite() && t.c.allFinite()")]),
-    "valid-radius": ("numeric/float_bits.hpp", "valid radii are known by their bits", "stages", "fast",
+    "finite-corner": ("finite corners are known by their bits", "stages", "clang-fast",
+                      [("return max(max(largest_bits(t.a), largest_bits(t.b)), largest_bits(t.c)) < ieee_traits<T>::exponent_mask",
+                        "return (t.a[0] + t.a[1] + t.a[2] + t.b[0] + t.b[1] + t.b[2] + t.c[0] + t.c[1] + t.c[2]) * 0 == 0")]),
+    "valid-radius": ("valid radii are known by their bits", "stages", "fast",
                      [("return u <= ieee_traits<T>::exponent_mask || u == ieee_traits<T>::sign_mask",
                        "return r >= 0 || u == ieee_traits<T>::sign_mask")]),
-    "difference": ("numeric/exact_number.hpp", "a difference is one number only if 62 bits suffice", "stages", "plain",
+    "difference": ("a difference is one number only if 62 bits suffice", "stages", "plain",
                    [("high.length() + shift > 61", "high.length() + shift > 65")]),
-    "carry": ("numeric/exact_sum.hpp", "the carry from digit to digit", "stages", "plain",
+    "carry": ("the carry from digit to digit", "stages", "plain",
               [("digits_[i] + carry", "digits_[i]")]),
-    "window-carry": ("numeric/exact_sum.hpp", "the carry from window to window", "stages", "plain",
+    "window-carry": ("the carry from window to window", "stages", "plain",
                      [("begin_ += window_digits) {", "begin_ += window_digits) { carry = 0;")]),
-    "product-carry": ("numeric/exact_sum.hpp", "the carry within a product", "stages", "plain",
+    "product-carry": ("the carry within a product", "stages", "plain",
                       [("carry = (carry >> 32) + (first >> 32)", "carry = (first >> 32)")]),
-    "product-room": ("numeric/exact_sum.hpp", "memory for a product of six", "stages", "checked",
+    "product-room": ("memory for a product of six", "stages", "checked",
                      [("product[2 * exact_product::most_factors + 1]", "product[2 * exact_product::most_factors - 1]")]),
-    "spare": ("numeric/exact_sum.hpp", "digits for the sign of the sum: 32 bits fewer", "stages", "plain",
+    "spare": ("digits for the sign of the sum: 32 bits fewer", "stages", "plain",
               [("carry_bits = 24", "carry_bits = -8")]),
-    "sign": ("numeric/exact_sum.hpp", "the signs of factors", "stages", "plain",
+    "sign": ("the signs of factors", "stages", "plain",
              [("negative = negative != (f.mantissa < 0)", "")]),
-    "twice": ("numeric/exact_sum.hpp", "weights of 2", "stages", "plain", [(" + (weight == 2 || weight == -2 ? 1 : 0)", "")]),
-    "subnormal": ("numeric/exact_number.hpp", "the exponent of subnormal numbers", "stages", "plain",
-                  [("larger(biased, 1) -", "biased -")]),
-    "hidden-bit": ("numeric/exact_number.hpp", "the leading bit of subnormal numbers", "stages", "plain",
+    "twice": ("weights of 2", "stages", "plain", [(" + (weight == 2 || weight == -2 ? 1 : 0)", "")]),
+    "subnormal": ("the exponent of subnormal numbers", "stages", "plain",
+                  [("max(biased, 1) -", "biased -")]),
+    "hidden-bit": ("the leading bit of subnormal numbers", "stages", "plain",
                    [("biased == 0 ? fraction : fraction", "fraction")]),
-    "first-digit": ("numeric/exact_sum.hpp", "products that begin below the window", "stages", "plain",
+    "first-digit": ("products that begin below the window", "stages", "plain",
                     [("first + words < 0", "first < 0")]),
-    "last-digit": ("numeric/exact_sum.hpp", "bits that a shift moves into one more digit", "stages", "plain",
+    "last-digit": ("bits that a shift moves into one more digit", "stages", "plain",
                    [("i <= words; ++i", "i < words; ++i")]),
-    "window": ("numeric/exact_sum.hpp", "digits outside of the window", "stages", "checked",
+    "window": ("digits outside of the window", "stages", "checked",
                [("first + i >= 0 && first + i < window_digits", "first + i >= 0")]),
-    "widened": ("numeric/exact_number.hpp", "subnormal floats that the hardware takes for zero", "stages", "plain",
+    "widened": ("subnormal floats that the hardware takes for zero", "stages", "plain",
                 [("  if (magnitude >> f::mantissa_bits != 0) return", "  return")]),
-    "touching": ("predicates/exact.hpp", "touching counts", "stages", "plain",
-                 [("excess(foot, false).value >= 0", "excess(foot, false).value > 0")]),
-    "over-face": ("predicates/exact.hpp", "a degenerate triangle has no face", "stages", "plain",
+    "touching": ("touching counts", "stages", "plain",
+                 [("excess(projection, false).value >= 0", "excess(projection, false).value > 0")]),
+    "over-face": ("a degenerate triangle has no face", "stages", "plain",
                   [("if (side_of_edge(i) <= 0) return false", "if (side_of_edge(i) < 0) return false")]),
-    "edge-begin": ("predicates/exact.hpp", "the foot is not before the edge", "stages", "plain",
-                   [("along(foot - 3, foot - 3, -1) > 0 && ", "")]),
-    "edge-end": ("predicates/exact.hpp", "the foot is not beyond the edge", "stages", "plain",
-                 [(" && along(foot - 3, (foot + 1) % 3, 1) > 0", "")]),
-    "fixed-shift": ("predicates/fixed_width.hpp", "numbers that two words have no room for", "stages", "plain",
+    "edge-begin": ("the projection is not before the edge", "stages", "plain",
+                   [("along(projection - 3, projection - 3, -1) > 0 && ", "")]),
+    "edge-end": ("the projection is not beyond the edge", "stages", "plain",
+                 [(" && along(projection - 3, (projection + 1) % 3, 1) > 0", "")]),
+    "fixed-shift": ("numbers that two words have no room for", "stages", "plain",
                     [("most_length = 126", "most_length = 128")]),
-    "fixed-far": ("predicates/fixed_width.hpp", "shifts by more than two words", "stages", "plain",
+    "fixed-far": ("shifts by more than two words", "stages", "plain",
                   [("fits_ = fits_ && shift + d.length()", "fits_ = fits_ && (shift & 127) + d.length()")]),
-    "fixed-unit": ("predicates/fixed_width.hpp", "the radius is an integer, too", "stages", "plain",
+    "fixed-unit": ("the radius is an integer, too", "stages", "plain",
                    [("    lower_exponent(s.radius);\n", "")]),
-    "fixed-corner": ("predicates/fixed_width.hpp", "edges and face are for corners out of reach", "stages", "plain",
+    "fixed-corner": ("edges and face are for corners out of reach", "stages", "plain",
                      [("      if (!diagonal[0].positive()) return true;\n", "")]),
-    "fixed-edge": ("predicates/fixed_width.hpp", "the foot is inside the edge", "stages", "plain", [("off_diagonal[0].negative() && ", "")]),
-    "fixed-face": ("predicates/fixed_width.hpp", "the foot is inside the face", "stages", "plain",
+    "fixed-edge": ("the projection is inside the edge", "stages", "plain", [("off_diagonal[0].negative() && ", "")]),
+    "fixed-face": ("the projection is inside the face", "stages", "plain",
                    [("      if (!weight.positive()) return false;\n", "")]),
-    "fixed-degenerate": ("predicates/fixed_width.hpp", "a degenerate triangle has no face", "stages", "plain",
+    "fixed-degenerate": ("a degenerate triangle has no face", "stages", "plain",
                          [("if (!weight.positive())", "if (weight.negative())")]),
-    "fixed-touching-corner": ("predicates/fixed_width.hpp", "touching a corner counts", "stages", "plain",
+    "fixed-touching-corner": ("touching a corner counts", "stages", "plain",
                               [("if (!diagonal[0].positive())", "if (diagonal[0].negative())")]),
-    "fixed-touching-edge": ("predicates/fixed_width.hpp", "touching an edge counts", "stages", "plain",
+    "fixed-touching-edge": ("touching an edge counts", "stages", "plain",
                             [("!(diagonal[0] * diagonal[1] - off_diagonal[0] * off_diagonal[0]).positive()",
                               "(diagonal[0] * diagonal[1] - off_diagonal[0] * off_diagonal[0]).negative()")]),
-    "fixed-touching-face": ("predicates/fixed_width.hpp", "touching the face counts", "stages", "plain",
+    "fixed-touching-face": ("touching the face counts", "stages", "plain",
                             [("!determinant.positive()", "determinant.negative()")]),
-    "fixed-carry": ("numeric/wide_int.hpp", "the carry of a sum", "stages", "plain", [("+ y[i] + carry", "+ y[i]")]),
-    "fixed-borrow": ("numeric/wide_int.hpp", "the borrow of a difference", "stages", "plain", [(" - borrow;", ";")]),
-    "fixed-product-carry": ("numeric/wide_int.hpp", "the carry within a product", "stages", "plain",
+    "fixed-carry": ("the carry of a sum", "stages", "plain", [("+ y[i] + carry", "+ y[i]")]),
+    "fixed-borrow": ("the borrow of a difference", "stages", "plain", [(" - borrow;", ";")]),
+    "fixed-product-carry": ("the carry within a product", "stages", "plain",
                             [("product[i + k] + carry", "product[i + k]")]),
-    "fixed-product-top": ("numeric/wide_int.hpp", "the carry that is the product's highest word", "stages", "plain",
+    "fixed-product-top": ("the carry that is the product's highest word", "stages", "plain",
                           [("    product[i + m] = carry;\n", "")]),
-    "fixed-sign": ("numeric/wide_int.hpp", "the sign of the first factor", "stages", "plain",
+    "fixed-sign": ("the sign of the first factor", "stages", "plain",
                    [("  subtract_words(product.word + N, y.word, M, x.negative());\n", "")]),
-    "fixed-second-sign": ("numeric/wide_int.hpp", "the sign of the second factor", "stages", "plain",
+    "fixed-second-sign": ("the sign of the second factor", "stages", "plain",
                           [("  subtract_words(product.word + M, x.word, N, y.negative());\n", "")]),
-    "slack": ("geometry/bounding_sphere.hpp", "the rounding of a bounding sphere", "stages", "plain",
+    "slack": ("the rounding of a bounding sphere", "stages", "plain",
               [("1 + 32 * S(ieee_traits<float>::unit_roundoff)", "1")]),
-    "ball-underflow": ("geometry/bounding_sphere.hpp", "squares in its radius that underflow", "stages", "plain",
+    "ball-underflow": ("squares in its radius that underflow", "stages", "plain",
                        [(" + 2 * sqrt_rn(std::numeric_limits<S>::min());", ";")]),
-    "lifted-slack": ("geometry/lifted_bounds.hpp", "the rounding of squares that cancel", "stages", "plain",
+    "lifted-slack": ("the rounding of squares that cancel", "stages", "plain",
                      [("lifted_slack = 32 * ieee_traits<S>::unit_roundoff", "lifted_slack = 0 * ieee_traits<S>::unit_roundoff")]),
-    "lifted-overflow": ("geometry/lifted_bounds.hpp", "squares of a bounding sphere that overflow", "stages", "plain",
+    "lifted-overflow": ("squares of a bounding sphere that overflow", "stages", "plain",
                         [("    if (is_finite(centre + square) && centre + square <= max_lifted_square<S>) return;\n", "    return;\n")]),
-    "lifted-sphere": ("geometry/lifted_bounds.hpp", "squares of a sphere that overflow", "stages", "plain",
+    "lifted-sphere": ("squares of a sphere that overflow", "stages", "plain",
                       [("      if (is_finite(centre + square) && centre + square <= max_lifted_square<S> && is_valid_radius(radius[k])) continue;\n",
                         "      continue;\n")]),
-    "room": ("query/candidate_pipeline.hpp", "pairs that find no room on the list", "scenes", "checked",
+    "room": ("pairs that find no room on the list", "scenes", "checked",
              [("if (slot < capacity) ", "")]),
-    "listed": ("query/deferred_pairs.hpp", "a list that lacks pairs is not used", "scenes", "checked",
+    "listed": ("a list that lacks pairs is not used", "scenes", "checked",
                [("bool const all_found_room = total <= deferred.capacity;", "bool const all_found_room = true;")]),
-    "second-time": ("query/deferred_pairs.hpp", "then all pairs are tested, and not as many as the list counts", "scenes", "plain",
+    "second-time": ("then all pairs are tested, and not as many as the list counts", "scenes", "plain",
                     [("all_found_room ? total : std::uint64_t{pipeline.spheres.size()} * pipeline.mesh.size()", "total")]),
-    "first-step": ("query/deferred_pairs.hpp", "what was certain is not reported again", "scenes", "plain",
+    "first-step": ("what was certain is not reported again", "scenes", "plain",
                    [("      if (filter<NarrowPhase>(t, shape) != verdict::uncertain) return false;\n", "")]),
-    "left-empty": ("query/deferred_pairs.hpp", "the list is empty for the next query", "scenes", "plain",
+    "left-empty": ("the list is empty for the next query", "scenes", "plain",
                    [("      deferred.count->total = deferred.count->ready = 0;\n", "")]),
-    "near-depth": ("narrow_phase/contact.hpp", "depths of which doubles have too few digits", "contacts", "plain",
+    "near-depth": ("depths of which doubles have too few digits", "contacts", "plain",
                    [(" && (!exact_depth || depth >= enough || depth <= -enough)", "")]),
-    "double-input": ("narrow_phase/contact.hpp", "doubles in, doubles out: twice the digits, or exact", "contacts", "plain",
+    "double-input": ("doubles in, doubles out: twice the digits, or exact", "contacts", "plain",
                      [("sizeof(S) == sizeof(float) ? digits::of_float : digits::of_double", "digits::of_float")]),
-    "compensated-depth": ("narrow_phase/measure_compensated.hpp", "depths that even twice the digits are too few for", "contacts", "plain",
-                          [("exact_depth ? smaller(away, mul(depth < 0 ? -depth : depth, scale)) : away", "away")]),
-    "compensated-length": ("narrow_phase/measure_compensated.hpp", "distances that even twice the digits are too few for", "contacts", "plain",
-                           [("  if (!(mul(mul(least, least), nearest.sine_squared) >= 0x1p-84)) return false;\n", "")]),
-    "compensated-doubt": ("narrow_phase/measure_compensated.hpp", "feet of which doubles do not know whether they are there", "contacts", "plain",
+    "compensated-depth": ("depths that even twice the digits are too few for", "contacts", "plain",
+                          [("exact_depth ? min(away, mul_rn(depth < 0 ? -depth : depth, scale)) : away", "away")]),
+    "compensated-length": ("distances that even twice the digits are too few for", "contacts", "plain",
+                           [("  if (!(mul_rn(mul_rn(least, least), nearest.sine_squared) >= 0x1p-84)) return false;\n", "")]),
+    "compensated-doubt": ("projections of which doubles do not know whether they are there", "contacts", "plain",
                           [("!nearest.certain && ", "false && ")]),
-    "compensated-nearest": ("narrow_phase/measure_compensated.hpp", "feet that doubles take for farther by mistake", "contacts", "plain",
+    "compensated-nearest": ("projections that doubles take for farther by mistake", "contacts", "plain",
                             [("error = 0x1p-43, ", "error = 0, ")]),
-    "compensated-scale": ("narrow_phase/measure_compensated.hpp", "lengths that under- or overflow", "contacts", "plain",
+    "compensated-scale": ("lengths that under- or overflow", "contacts", "plain",
                           [("  if (!(scale >= 0x1p-1000 && scale <= 0x1p850)) return false;\n", "")]),
-    "depth-of-a-tie": ("predicates/exact.hpp", "a centre on the triangle and a radius of 0", "contacts", "plain",
+    "depth-of-a-tie": ("a centre on the triangle and a radius of 0", "contacts", "plain",
                        [("    if (above.value == 0) return {distance, 0};\n", "")]),
-    "equally-deep": ("predicates/exact.hpp", "of feet that are equally deep the closest", "contacts", "plain",
+    "equally-deep": ("of projections that are equally deep the closest", "contacts", "plain",
                      [("there.depth > there.distance ? there.distance < to_nearest.distance : there.depth", "there.depth")]),
-    "near-feet": ("predicates/exact.hpp", "feet that doubles take for farther by mistake", "contacts", "plain",
-                  [("sqrt_rn(around) + 0x1p-40", "sqrt_rn(around)"), ("mul(mul(reach, reach), 1 + 0x1p-40)", "mul(reach, reach)")]),
-    "power-below": ("predicates/exact.hpp", "powers of two beyond the range, below", "contacts", "plain",
+    "near-feet": ("projections that doubles take for farther by mistake", "contacts", "plain",
+                  [("sqrt_rn(around) + 0x1p-40", "sqrt_rn(around)"), ("mul_rn(mul_rn(reach, reach), 1 + 0x1p-40)", "mul_rn(reach, reach)")]),
+    "power-below": ("powers of two beyond the range, below", "contacts", "plain",
                     [("    for (; n < -1000; n += 1000) x *= 0x1p-1000;\n", "")]),
 }
 
 # The same without a mutation: nothing may be wrong.
-SOUND = {f"none.{program}.{compiler}": (None, None, program, compiler, [])
-         for program, compiler in sorted({(m[2], m[3]) for m in MUTATIONS.values()})}
-SOUND["none.regions"] = ("predicates/filter.hpp", None, "stages", "plain", [NO_REGIONS])
+SOUND = {f"none.{program}.{compiler}": (None, program, compiler, [])
+         for program, compiler in sorted({m[1:3] for m in MUTATIONS.values()})}
+SOUND["none.regions"] = (None, "stages", "plain", NO_REGIONS)
 
-# (file, the guard as it stands there, why no row goes wrong without it)
+# (file, the text of the guard, with any names, why no row goes wrong without it)
 UNSEEN = [
     ("predicates/exact.hpp", "if (square.value == 0) return {0, -4000};",
      "a distance of 0 has no exponent; the depth, which then is infinite or too large, is limited by the radius, and that is right"),
@@ -208,7 +210,7 @@ UNSEEN = [
     ("geometry/lifted_bounds.hpp", "lifted_radius_slack = 32 * S(ieee_traits<float>::unit_roundoff)",
      "is for narrow phases that compute in float; of real contacts the other slack takes care"),
     ("geometry/lifted_bounds.hpp", "32 * std::numeric_limits<S>::min()", "the bounding radius has room for squares that underflow already"),
-    ("geometry/bounding_sphere.hpp", "if (!is_finite(far_squared))",
+    ("geometry/bounding_sphere.hpp", "if (!is_finite(far_squared)) return {m.x()",
      "the root of infinity is infinity, but a NaN with -ffast-math in kernels that read the bounding sphere from memory; "
      "`verdicts` saw it until the host came to do without bounding spheres"),
     ("predicates/filter.hpp", " | !has_radius",
@@ -218,11 +220,11 @@ UNSEEN = [
     ("predicates/filter.hpp", " && size <= std::numeric_limits<T>::max()",
      "an infinite coordinate makes `weight_sum` infinite or NaN, an infinite radius `radius_low` NaN; the same compilers"),
     ("predicates/filter.hpp", "weight_sum > std::numeric_limits<T>::min()",
-     "dividing by 0 gives NaN or limited weights, and so no certificate; the same compilers, and the limits of `__fdividef`"),
-    ("numeric/float_bits.hpp", "larger(r, 1)", "a subnormal power of two is as good where it is not flushed to zero"),
+     "dividing by 0 gives NaN or limited weights, and so no result of the filter; the same compilers, and the limits of `__fdividef`"),
+    ("numeric/float_bits.hpp", "max(r, 1)", "a subnormal power of two is as good where it is not flushed to zero"),
     ("narrow_phase/contact.hpp", "distance >= enough && (!exact_depth",
      "no row of floats has a distance so small and a depth so large that doubles lack the digits"),
-    ("narrow_phase/measure_compensated.hpp", "if (sine_squared < 0x1p-80)",
+    ("narrow_phase/contact_compensated.hpp", "if (sine_squared < 0x1p-80)",
      "a triangle that thin and a centre that near its edges would have to be below 2^-25 of the size at once"),
     ("predicates/exact.hpp", "for (; n > 1000; n -= 1000)", "no row has so large a power: a number beyond the range would follow"),
     ("numeric/rounding.hpp", "T volatile const kept = x",
@@ -233,14 +235,58 @@ UNSEEN = [
 ]
 
 
+TOKEN = re.compile(r"\s+|0x[\da-f.]+(?:p[+-]?\d+)?|\d[\w.]*|std::\w+(?:::\w+)*|[A-Za-z_]\w*|.", re.DOTALL)
+LANGUAGE = set("bool char const constexpr continue double false float for if inline int long return short signed sizeof static true unsigned void volatile".split())
+
+
+def tokens(text):
+    """The text's tokens, and whether each is a name."""
+    for token in TOKEN.findall(text):
+        if not token.isspace():
+            yield token, re.match(r"[A-Za-z_]", token) and not token.startswith("std::") and token not in LANGUAGE
+
+
+def pattern_of(text):
+    """A regular expression for the text with any names, and the group of each name."""
+    groups, parts = {}, []
+    for token, is_name in tokens(text):
+        if not is_name:
+            parts.append(re.escape(token))
+        elif token in groups:
+            parts.append(rf"(?P={groups[token]})\b")
+        else:
+            groups[token] = f"n{len(groups)}"
+            parts.append(rf"\b(?P<{groups[token]}>[A-Za-z_]\w*)\b")
+    return r"\s*".join(parts), groups
+
+
+def headers():
+    return {p.relative_to(ROOT / "include" / DETAIL).as_posix(): p.read_text() for p in sorted((ROOT / "include" / DETAIL).rglob("*.hpp"))}
+
+
+def place_of(guard, texts):
+    """The header with the guard of this name, and where the comment ends that names it."""
+    found = [(file, comment.end()) for file, text in texts.items()
+             for comment in re.finditer(r"// guard: ([\w, -]+)\n", text) if guard in comment[1].split(", ")]
+    if len(found) != 1:
+        raise SystemExit(f"{len(found)} headers have the comment `// guard: {guard}`")
+    return found[0]
+
+
 def mutated(name):
     """The file that a mutation changes, and its new text."""
-    file, _, _, _, edits = (SOUND | MUTATIONS)[name]
-    text = (ROOT / "include" / DETAIL / file).read_text()
-    for old, new in edits:
-        if text.count(old) != 1:
-            raise SystemExit(f"{name}: this stands {text.count(old)} times in {file}: {old}")
-        text = text.replace(old, new)
+    texts = headers()
+    file = text = None
+    for edit in (SOUND | MUTATIONS)[name][-1]:
+        guard, old, new = edit if len(edit) == 3 else (name, *edit)
+        file, begin = place_of(guard, texts)
+        text = texts[file]
+        pattern, groups = pattern_of(old)
+        found = re.compile(pattern).search(text, begin, begin + len(old) + 400)
+        if not found:
+            raise SystemExit(f"{name}: this does not stand behind `guard: {guard}` in {file}, by any names: {old}")
+        written = "".join(found[groups[t]] if t in groups else t for t in TOKEN.findall(new))
+        texts[file] = text = f"{text[:found.start()]} {written} {text[found.end():]}"
     return file, text
 
 
@@ -259,14 +305,14 @@ def precompile(folder, eigen):
 
 def judge(name, rows, eigen):
     """What is wrong with the verdicts: None if nothing is."""
-    file, _, program, compiler, _ = (SOUND | MUTATIONS)[name]
+    _, program, compiler, edits = (SOUND | MUTATIONS)[name]
     command = COMPILERS[compiler].split()
     if not shutil.which(command[0]):
         print(f"skipped: no {command[0]}")
         raise SystemExit(SKIPPED)
     with tempfile.TemporaryDirectory() as folder:
         place = pathlib.Path(folder)
-        if file:
+        if edits:
             file, text = mutated(name)
             (place / DETAIL / file).parent.mkdir(parents=True)
             (place / DETAIL / file).write_text(text)
@@ -285,14 +331,15 @@ def judge(name, rows, eigen):
 
 def tables():
     yield "| mutation | takes away, or loosens | in | seen by |\n|---|---|---|---|\n"
-    for name, (file, what, program, compiler, _) in MUTATIONS.items():
-        mutated(name)
+    for name, (what, program, compiler, _) in MUTATIONS.items():
+        file, _ = mutated(name)
         yield f"| `{name}` | {what} | `{file}` | `{program}`, `{COMPILERS[compiler]}` |\n"
     yield "\nNo row is known that goes wrong without these:\n\n| guard | in | why |\n|---|---|---|\n"
     for file, guard, why in UNSEEN:
-        if guard not in (ROOT / "include" / DETAIL / file).read_text():
-            raise SystemExit(f"this does not stand in {file}: {guard}")
-        shown = guard.strip().replace("|", r"\|")  # in a table a bar ends a cell, in code too
+        found = re.search(pattern_of(guard)[0], headers()[file])
+        if not found:
+            raise SystemExit(f"this does not stand in {file}, by any names: {guard}")
+        shown = " ".join(found[0].split()).replace("|", r"\|")  # in a table a bar ends a cell, in code too
         yield f"| `{shown}` | `{file}` | {why} |\n"
 
 

@@ -46,7 +46,7 @@ struct nozzle {
 
 namespace detail {
 
-/// Kernel body of `for_each` over the particles of a step, the latest first.
+/// Kernel functor of `for_each` over the particles of a step, the latest first.
 template <class S, class State, class Source>
 struct emit_particles {
   State state;
@@ -64,7 +64,8 @@ struct emit_particles {
 
  protected:
   COLLIDE_HD_INLINE std::uint64_t begun() const { return static_cast<std::uint64_t>(state.time[clock_made]); }
-  /// Of the particles of a step for a place, of which there are `others`, the latest stays, or the first is born.
+  /// Chooses among the particles of a step for a place, of which there are `others`: the latest stays, or the first is
+  /// born.
   COLLIDE_HD_INLINE void store_at(std::size_t place, std::uint64_t number, std::uint64_t others) const {
     if (only_free) {
       bool const is_taken = state.at(alive{})[place] != 0;
@@ -82,7 +83,7 @@ struct emit_particles {
   }
 };
 
-/// Kernel body of `for_each` over the places of a rank: particles of a step that begin there.
+/// Kernel functor of `for_each` over the places of a rank: particles of a step that begin there.
 template <class S, class State, class Source>
 struct emit_at_places : emit_particles<S, State, Source> {
   COLLIDE_HD void operator()(std::size_t i) const {
@@ -142,7 +143,7 @@ struct emit_from {
     } else {
       std::size_t const room = state.size - state.placed;
       std::size_t const most = due < static_cast<double>(room) ? static_cast<std::size_t>(due) + 2 : room;
-      space.for_each(detail::smaller(most, room),
+      space.for_each(detail::min(most, room),
                      detail::emit_particles<S, State, Source>{state, source, due, mark, only_where_free});
     }
   }

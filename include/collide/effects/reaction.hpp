@@ -18,8 +18,8 @@ struct friction;
 struct spin;
 struct adhesion;
 
-/// What a body, or a triangle, has got of all particles: an impulse, force times time, and its moment about the origin
-/// of space. About a point x it is angular - x x linear.
+/// The impulse that a body, or a triangle, has got from all particles, force times time, and its moment about the
+/// origin of space. About a point x it is angular - x x linear.
 struct body_impulse {
   double linear[3] = {0, 0, 0};   ///< impulse, mass times velocity
   double angular[3] = {0, 0, 0};  ///< moment of it about the origin
@@ -62,7 +62,7 @@ struct reaction {
     detail::check_parameter(detail::is_positive(density) && detail::is_positive(unit) && sums != nullptr,
                             "reaction: density is above 0, and finite, and reaction_sums makes the effect");
   }
-  /// Of the bodies of a simulation's mesh.
+  /// The sums of the bodies of a simulation's mesh.
   void check_bodies(std::size_t of_mesh) const {
     detail::check_parameter(of_mesh <= bodies, "reaction: the mesh has more bodies than reaction_sums was made for");
   }
@@ -70,12 +70,12 @@ struct reaction {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_impulse(Particle& p, mesh_impulse<S> const& t, S) const {
     using namespace detail;
-    double const radius = static_cast<double>(p.radius()), mass = div(sphere_mass(density, radius), unit);
+    double const radius = static_cast<double>(p.radius()), mass = div_rn(sphere_mass(density, radius), unit);
     vec3<double> const change = t.change.template cast<double>(), turn = t.spin_change.template cast<double>();
     vec3<double> const centre = t.centre.template cast<double>(), shift = t.shift.template cast<double>();
     vec3<double> const velocity = t.velocity.template cast<double>(), impulse = scaled(change, -mass);
     vec3<double> const moment = cross(centre, impulse) - scaled(cross(shift, velocity), mass) -
-                                scaled(turn, mul(0.4 * mass, mul(radius, radius)));
+                                scaled(turn, mul_rn(0.4 * mass, mul_rn(radius, radius)));
     bool const has_counts = dot(impulse, impulse) + dot(moment, moment) < most_squared;  // false for NaN
     if (!has_counts) {
       atomic_add(refused, 1);
@@ -129,7 +129,8 @@ class reaction_sums {
     space.fill(sums_.data(), 0, size() * sizeof(detail::impulse_counts));
   }
 
-  /// What each body has got since `clear`, and last what rests. Over the time since then it is the mean force. Waits.
+  /// The impulse of each body since `clear`, and last that of what rests. Over the time since then it is the mean
+  /// force. Waits.
   template <class Space>
   std::vector<body_impulse> read(Space const& space) const {
     return impulses(counts(space));
@@ -142,7 +143,7 @@ class reaction_sums {
     return static_cast<std::uint64_t>(space.read(refused_count()));
   }
 
-  /// What each body has got, and last what rests, as multiples of the unit: six numbers each. Those of several ranks
+  /// The sums of each body, and last of what rests, as multiples of the unit: six numbers each. Those of several ranks
   /// may be added. Throws `error` if one is 9e18 or more. Waits.
   template <class Space>
   std::vector<std::int64_t> counts(Space const& space) const {
@@ -161,7 +162,7 @@ class reaction_sums {
     return found;
   }
 
-  /// What each triangle has got since `clear`, as multiples of the unit: six numbers each. Waits.
+  /// The sums of each triangle since `clear`, as multiples of the unit: six numbers each. Waits.
   template <class Space>
   std::vector<std::int64_t> triangle_counts(Space const& space) const {
     std::vector<detail::impulse_counts> all(triangles_);
@@ -171,13 +172,13 @@ class reaction_sums {
     return found;
   }
 
-  /// What each triangle has got since `clear`. Waits.
+  /// The impulse of each triangle since `clear`. Waits.
   template <class Space>
   std::vector<body_impulse> read_triangles(Space const& space) const {
     return impulses(triangle_counts(space));
   }
 
-  /// What counts are, in units of impulse.
+  /// The value of counts, in units of impulse.
   std::vector<body_impulse> impulses(std::vector<std::int64_t> const& counts) const {
     std::vector<body_impulse> found(counts.size() / 6);
     for (std::size_t b = 0; b < found.size(); ++b) {

@@ -41,7 +41,7 @@ class nccl_communicator {
   }
   nccl_communicator(nccl_communicator const&) = delete;
   nccl_communicator& operator=(nccl_communicator const&) = delete;
-  /// Where an exception goes on, others may wait: their messages will not come.
+  /// Aborts if an exception is in flight: others may wait for messages that will not come.
   ~nccl_communicator() {
     if (comm_ != nullptr && std::uncaught_exceptions() > 0) abort();
     if (comm_ != nullptr) ncclCommDestroy(comm_);

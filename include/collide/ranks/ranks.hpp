@@ -28,13 +28,13 @@
 
 namespace collide {
 
-/// What `reduce` makes of the numbers of all ranks.
+/// The result of `reduce` for the numbers of all ranks.
 enum class reduction {
   sum,  ///< their sum
   max   ///< the largest
 };
 
-/// What a rank throws because another one has failed, or has left: the message says which, and why.
+/// The exception of a rank when another one has failed, or has left: the message says which, and why.
 class rank_error : public error {
  public:
   using error::error;
@@ -97,7 +97,7 @@ constexpr bool check_ranks() {
   return true;
 }
 
-/// What an exception says.
+/// The message of an exception.
 inline std::string message_of(std::exception_ptr const& failure) {
   try {
     std::rethrow_exception(failure);
@@ -108,7 +108,7 @@ inline std::string message_of(std::exception_ptr const& failure) {
   }
 }
 
-/// What goes wrong first in work that goes on all the same, as others wait for it.
+/// Keeps the first exception of work that must continue, as other ranks wait for it.
 class first_failure {
  public:
   /// Calls f(), and keeps what it throws.
@@ -120,7 +120,7 @@ class first_failure {
       if (!failure_) failure_ = std::current_exception();
     }
   }
-  /// What was thrown first; null if nothing was.
+  /// The first exception; null if there was none.
   std::exception_ptr const& get() const { return failure_; }
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);

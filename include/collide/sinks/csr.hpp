@@ -11,7 +11,7 @@ namespace collide {
 
 namespace detail {
 
-/// Kernel body of `for_each` over pairs: how many each sphere has.
+/// Kernel functor of `for_each` over pairs: how many each sphere has.
 struct count_rows {
   pair const* pairs;
   std::uint64_t* counts;
@@ -22,7 +22,7 @@ struct count_rows {
   }
 };
 
-/// Kernel body of `for_each` over pairs: brings triangles to the rows of their spheres.
+/// Kernel functor of `for_each` over pairs: brings triangles to the rows of their spheres.
 struct scatter_triangles {
   pair const* pairs;
   std::uint64_t const* offsets;
@@ -69,7 +69,7 @@ class csr : public detail::kept_in_space<id> {
   /// Number of spheres of the last query.
   std::size_t rows() const { return rows_; }
 
-  /// Where the row of each sphere begins, and behind the last row the number of pairs: `rows() + 1` numbers, in memory
+  /// The begin of each sphere's row, and behind the last row the number of pairs: `rows() + 1` numbers, in memory
   /// of the space. Null before the first query.
   std::uint64_t const* offsets() const { return offsets_; }
   /// The stored triangles, row after row, `size()` of them, in memory of the space. Valid until the next query.

@@ -9,7 +9,7 @@
 namespace {
 
 /// Spheres next to `layers` triangles each, all in the same place: a third touches them at exactly the radius, which no
-/// certificate decides, a third is a unit in the last place (of float) too far away, and a third nearer by as much. So
+/// filter decides, a third is a unit in the last place (of float) too far away, and a third nearer by as much. So
 /// threads that decide side by side take unequally long.
 template <class S>
 tests::scene<S> touching_scene(int layers, int spheres) {
@@ -30,7 +30,7 @@ struct nothing_touches final : collide::karabassi<> {
 
 /// A sink whose handle has members of its own, with names that the library uses elsewhere.
 struct counting_sink {
-  struct handle final {
+  struct output final {
     int* count;
     static bool needed() { return false; }
     static bool takes() { return false; }
@@ -42,7 +42,7 @@ struct counting_sink {
 
   template <class Space, class Query>
   void run(Space&, Query const& query) {
-    query(handle{&total});
+    query(output{&total});
   }
 };
 

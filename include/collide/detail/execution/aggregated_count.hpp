@@ -41,7 +41,7 @@ class aggregated_count {
     }
   }
 
-  /// What counter `k` was before this thread's 1 came to it.
+  /// The value of counter `k` before this thread's 1 was added.
   COLLIDE_HD_INLINE std::uint32_t before(std::uint32_t k) const {
 #if defined(__CUDA_ARCH__)
     if (with_[k] == 0) return 0;

@@ -1,5 +1,5 @@
 /// \file
-/// What the names of the CUDA spaces stand for where no nvcc compiles: a sentence.
+/// Stand-ins for the CUDA spaces where no nvcc compiles: they end with a sentence.
 #pragma once
 
 #if !defined(__CUDACC__)

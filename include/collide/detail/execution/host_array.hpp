@@ -13,7 +13,7 @@
 
 namespace collide::detail {
 
-/// Where memory of the host comes from that a space copies to and from at full speed: pinned memory for a device.
+/// The resource of host memory that a space copies to and from at full speed: pinned memory for a device.
 template <class Space>
 std::pmr::memory_resource* host_memory_of(Space const&) {
 #if defined(__CUDACC__)

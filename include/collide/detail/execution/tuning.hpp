@@ -5,7 +5,7 @@
 
 namespace collide {
 
-/// What the cells of `bucket` cost, in nanoseconds; only the ratios count.
+/// Costs of the cells of `bucket`, in nanoseconds; only the ratios count.
 struct bucket_costs {
   float entry_ns;      ///< to enter a triangle into a cell
   float candidate_ns;  ///< to look at a triangle that is in a sphere's cell
@@ -48,7 +48,7 @@ struct query_tuning {
   static constexpr bool defers_exact_tests = !Space::host_accessible;
 };
 
-/// What the broad phases cost, in nanoseconds, as `bench/automatic_bench` measures it; only the ratios count.
+/// Costs of the broad phases, in nanoseconds, as `bench/automatic_bench` measures them; only the ratios count.
 struct broad_phase_cost_model {
   double per_near_sphere_ns;  ///< `all_pairs`: a sphere and the few triangles that it is near to
   double per_pair_ns;         ///< `all_pairs`: a sphere and any triangle

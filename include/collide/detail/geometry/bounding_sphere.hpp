@@ -14,6 +14,7 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
   S x, y, z, radius;
 
   /// Covers the rounding here and that of the coarsest narrow phase, which computes in float.
+  // guard: slack
   static constexpr S slack = 1 + 32 * S(ieee_traits<float>::unit_roundoff);
 
   /// The squared distance within which a centre can reach the triangle with a sphere of radius `r`: rounded up so far
@@ -38,15 +39,16 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
 template <class S>
 COLLIDE_HD_INLINE bounding_sphere<S> bounding_sphere_of(triangle<S> const& t) {
   if (!is_finite(t)) return {S(0), S(0), S(0), std::numeric_limits<S>::quiet_NaN()};
-  vec3<S> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
+  vec3<S> const lower = min(min(t.a, t.b), t.c), upper = max(max(t.a, t.b), t.c);
   vec3<S> const m = lower * S(0.5) + upper * S(0.5);
   bounding_sphere<S> const at{m.x(), m.y(), m.z(), S(0)};
   S const far_squared =
-      larger(larger(at.distance_squared(t.a.x(), t.a.y(), t.a.z()), at.distance_squared(t.b.x(), t.b.y(), t.b.z())),
-             at.distance_squared(t.c.x(), t.c.y(), t.c.z()));
+      max(max(at.distance_squared(t.a.x(), t.a.y(), t.a.z()), at.distance_squared(t.b.x(), t.b.y(), t.b.z())),
+          at.distance_squared(t.c.x(), t.c.y(), t.c.z()));
   // -ffast-math makes a NaN of the root of infinity
   if (!is_finite(far_squared)) return {m.x(), m.y(), m.z(), std::numeric_limits<S>::infinity()};
   // the root of the smallest normal number covers squares that underflow
+  // guard: ball-underflow
   S const radius = sqrt_rn(far_squared) * bounding_sphere<S>::slack + 2 * sqrt_rn(std::numeric_limits<S>::min());
   return {m.x(), m.y(), m.z(), radius};
 }

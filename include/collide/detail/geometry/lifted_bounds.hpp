@@ -15,6 +15,7 @@ namespace collide::detail {
 
 /// How far computed squares may be off, as a part of them.
 template <class S>
+// guard: lifted-slack
 inline constexpr S lifted_slack = 32 * ieee_traits<S>::unit_roundoff;
 
 /// How far a radius may be off so that the coarsest narrow phase, which computes in float, loses nothing; see
@@ -41,6 +42,7 @@ struct alignas(4 * sizeof(S)) lifted_bounds {
     height = (square - centre) / 2 + lifted_slack<S> * (centre + square) + lifted_radius_slack<S> * square +
              32 * std::numeric_limits<S>::min();
     bool const valid = is_valid_radius(radius);
+    // guard: lifted-overflow
     if (is_finite(centre + square) && centre + square <= max_lifted_square<S>) return;
     x = y = z = radius = 0;
     height = valid ? std::numeric_limits<S>::max() / 2 : -std::numeric_limits<S>::max() / 2;
@@ -63,7 +65,7 @@ struct lifted_batch {
 
   template <class Spheres>
   COLLIDE_HD_INLINE void load(Spheres const& spheres, std::size_t first, vec3<S> const& origin) {
-    sphere_batch<S, Items> batch;
+    sphere_pack<S, Items> batch;
     batch.load(spheres, first);
     for (int k = 0; k < Items; ++k) {
       x[k] = batch.x[k] - origin.x();
@@ -73,6 +75,7 @@ struct lifted_batch {
       S const centre = x[k] * x[k] + y[k] * y[k] + z[k] * z[k], square = radius[k] * radius[k];
       threshold[k] = (centre - square) / 2 - lifted_slack<S> * (centre + square) - lifted_radius_slack<S> * square -
                      32 * std::numeric_limits<S>::min();
+      // guard: lifted-sphere
       if (is_finite(centre + square) && centre + square <= max_lifted_square<S> && is_valid_radius(radius[k])) continue;
       x[k] = y[k] = z[k] = radius[k] = 0;
       // an invalid sphere overlaps nothing, one that is too large everything

@@ -1,10 +1,9 @@
 /// \file
-/// What a kernel asks where there is no grid: every triangle is a candidate. The members are those of triangle_ref.hpp.
+/// A reference without a grid: every triangle is a candidate. The members are those of triangle_ref.hpp.
 #pragma once
 
 #include <cstdint>
 
-#include <collide/detail/grid/occupancy.hpp>
 #include <collide/detail/grid/triangle_ref.hpp>
 
 namespace collide::detail {
@@ -12,18 +11,7 @@ namespace collide::detail {
 /// The lookup of `all_pairs`.
 template <class S>
 struct all_pairs_ref : triangle_ref<S> {
-  COLLIDE_HD all_pairs_ref const& opened() const { return *this; }
-
-  template <class Sphere>
-  COLLIDE_HD bool empty(Sphere const&) const {
-    return this->mesh.size() == 0;
-  }
-  COLLIDE_HD bool has_single_cell_lookup(S) const { return false; }
-  COLLIDE_HD occupancy_view<S> occupancy() const { return {}; }
-  template <class Sphere>
-  COLLIDE_HD candidate_cursor begin(Sphere const&) const {
-    return {0, 0, 0, 0};
-  }
+  COLLIDE_HD all_pairs_ref const& without_overflown_grids() const { return *this; }
   template <class Sphere>
   COLLIDE_HD bool next(Sphere const&, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
     return this->next_of_all(c, most, range);

@@ -23,7 +23,7 @@ struct cell_coverage {
   template <class S>
   static COLLIDE_HD_INLINE std::uint32_t subcell_of(S fraction) {
     auto const sixteenths = static_cast<std::uint32_t>(static_cast<std::int32_t>(fraction * S(16)));
-    return smaller(sixteenths, last - first) + first;
+    return min(sixteenths, last - first) + first;
   }
 
   /// A box from the step `from` to the step `to` of an axis; to be united by `|` with the other axes.
@@ -31,7 +31,7 @@ struct cell_coverage {
     return (17 - from) << 5 * axis | to << (5 * axis + 15);
   }
 
-  /// What is from the step `from` to the step `to` of an axis; to be united with the other axes.
+  /// The bits from the step `from` to the step `to` of an axis; to be united with the other axes.
   static COLLIDE_HD_INLINE std::uint32_t encode_query(std::uint32_t from, std::uint32_t to, int axis) {
     return (to - 1) << 5 * axis | (16 - from) << (5 * axis + 15);
   }
@@ -54,7 +54,7 @@ struct cell_ref {
   std::uint32_t number, coverage;
 };
 
-/// What is in a cell: a triangle, and the part of the cell that its dilated box covers.
+/// An entry of a cell: a triangle, and the part of the cell that its dilated box covers.
 struct alignas(8) cell_item {
   id triangle;
   std::uint32_t coverage;

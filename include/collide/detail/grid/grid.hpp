@@ -5,7 +5,7 @@
 /// that it meets; a sphere then looks into the one cell that holds its centre. No pair can appear twice, and the
 /// spheres need no sorting.
 ///
-/// What keeps the grid from collapsing:
+/// Measures that keep the grid from collapsing:
 ///   - A cost model. The width is the one where entering the triangles and testing the candidates cost least together;
 ///     plan.hpp. Triangles are entered only into cells that they meet themselves; triangle_cells.hpp.
 ///   - Two levels, where that costs less: triangles much larger than the rest go to wider cells; a sphere looks into
@@ -69,7 +69,7 @@ struct grid_level {
   /// How many cells fit below an offset that is not above the grid's upper end; any number for other offsets.
   COLLIDE_HD_INLINE std::uint32_t coordinate_inside(S offset) const {
 #if defined(__CUDA_ARCH__)
-    if constexpr (sizeof(S) == 4) return __float2uint_rz(mul(offset, inverse_width));  // 0 of what is less
+    if constexpr (sizeof(S) == 4) return __float2uint_rz(mul_rn(offset, inverse_width));  // 0 of what is less
 #endif
     return coordinate(offset);
   }
@@ -95,15 +95,13 @@ struct grid_level {
 
  private:
   /// Without branches.
-  COLLIDE_HD_INLINE S cells_below(S offset) const {
-    return smaller(larger(S(0), mul(offset, inverse_width)), S(1 << 30));
-  }
+  COLLIDE_HD_INLINE S cells_below(S offset) const { return min(max(S(0), mul_rn(offset, inverse_width)), S(1 << 30)); }
 
   /// Through a signed integer, for which all processors have an instruction.
   static COLLIDE_HD_INLINE std::uint32_t whole(S x) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(x)); }
 };
 
-/// What a grid is, but for its levels.
+/// A grid without its levels.
 template <class S>
 struct grid_header {
   S reach;           ///< serves spheres of radius up to this

@@ -28,10 +28,13 @@ struct filter_result {
 
 /// The stages after the first filter, out of line and once for all scalars: floats are widened.
 COLLIDE_HD_NOINLINE inline decision intersects_exact_slow(triangle<double> const& t, sphere<double> const& s) {
+  // guard: bad-radius, bad-centre, bad-corner
   if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(t)) return {false, stage::exact_integers};
+  // guard: infinite-radius
   if (is_infinite(s.radius)) return {true, stage::exact_integers};
   local_triangle<double> l = to_local<double>(t, s);
   double size;
+  // guard: size-in-double
   if (rescale_to_filter_range<double>(l, size)) {
     verdict const v = filtered_test(l, size);
     if (v != verdict::uncertain) return {v == verdict::hit, stage::double_filter};
@@ -48,7 +51,8 @@ COLLIDE_HD_NOINLINE decision intersects_exact_slow(triangle<S> const& t, sphere<
 /// False if the triangle's box is farther away than the radius.
 template <class S>
 COLLIDE_HD_INLINE bool box_is_near(local_triangle<S> const& l) {
-  return aabb_within(l, larger(l.radius, ieee_traits<S>::min_sum_under_ftz));
+  // guard: box
+  return aabb_within(l, max(l.radius, ieee_traits<S>::min_sum_under_ftz));
 }
 
 /// The box test and the filter in float. What they leave `uncertain` is for `resolve_exact`.
@@ -57,6 +61,7 @@ COLLIDE_HD_INLINE filter_result filter_exact(triangle<S> const& t, sphere<S> con
   local_triangle<S> l = to_local<S>(t, s);
   if (!box_is_near(l)) return {verdict::miss, stage::box};
   S size;
+  // guard: size-in-float
   if (!rescale_to_filter_range<S>(l, size)) return {verdict::uncertain, stage::single_filter};
   return {filtered_test(narrow_to<float>(l), static_cast<float>(size)), stage::single_filter};
 }
@@ -97,5 +102,42 @@ COLLIDE_HD_INLINE decision intersects_exact(triangle<S> const& t, sphere<S> cons
 /// inlined. A class that derives from such a narrow phase is not filtered itself: it may have another `intersects`.
 template <class NarrowPhase>
 struct filtered_predicate : std::false_type {};
+
+/// The filtered predicate of a narrow phase that decides as `intersects_exact` does.
+struct exact_predicate : std::true_type {
+  template <class S>
+  static COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, sphere<S> const& s) {
+    return filter_exact(t, s).verdict;
+  }
+  template <class S>
+  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& s) {
+    return detail::filter_branchless(t, s);
+  }
+  template <class S>
+  static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, sphere<S> const& s) {
+    return resolve_exact(t, s).hit;
+  }
+};
+
+/// Whether a sphere touches a triangle, where the narrow phase is quick to tell. `uncertain` is left to `resolve`,
+/// which takes long: where threads run together, as few of them as possible should go through it.
+template <class NarrowPhase, class S, class Sphere>
+COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, Sphere const& s) {
+  if constexpr (filtered_predicate<NarrowPhase>::value) {
+    return filtered_predicate<NarrowPhase>::filter(t, s);
+  } else {
+    return NarrowPhase::intersects(t, s) ? verdict::hit : verdict::miss;
+  }
+}
+
+/// Whether a sphere touches a triangle of which `filter` is unsure.
+template <class NarrowPhase, class S, class Sphere>
+COLLIDE_HD_INLINE bool resolve([[maybe_unused]] triangle<S> const& t, [[maybe_unused]] Sphere const& s) {
+  if constexpr (filtered_predicate<NarrowPhase>::value) {
+    return filtered_predicate<NarrowPhase>::resolve(t, s);
+  } else {
+    return false;  // it never is
+  }
+}
 
 }  // namespace collide::detail

@@ -64,4 +64,21 @@ COLLIDE_HD_INLINE decision intersects_exact(triangle<S> const& t, moving_sphere<
   return resolve_exact(t, s);
 }
 
+/// The filtered predicate of a narrow phase for moving spheres that decides as `intersects_exact` does.
+struct exact_swept_predicate : std::true_type {
+  template <class S>
+  static COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, moving_sphere<S> const& s) {
+    return detail::filter_exact(t, s).verdict;
+  }
+  template <class S>
+  static COLLIDE_HD_INLINE verdict filter_branchless(triangle<S> const& t, sphere<S> const& around,
+                                                     sphere<S> const& midpoint) {
+    return detail::filter_branchless(t, around, midpoint);
+  }
+  template <class S>
+  static COLLIDE_HD_INLINE bool resolve(triangle<S> const& t, moving_sphere<S> const& s) {
+    return detail::resolve_exact(t, s).hit;
+  }
+};
+
 }  // namespace collide::detail

@@ -10,7 +10,7 @@
 
 namespace collide::detail {
 
-/// What happens where particles meet.
+/// Interaction of particles that overlap.
 template <class S, class Effects>
 struct pair_interaction {
   particle_state<S, typename Effects::all> state;
@@ -40,7 +40,7 @@ struct pair_interaction {
 
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
-    bool const is_active = !is_skipped(p.self), is_other = !is_skipped(other);
+    bool const is_active = !is_inactive(p.self), is_other = !is_inactive(other);
     if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
     if (is_other && !p.woken) effects.try_wake(p.changed, other);
     p.met = p.met || is_active || is_other;
@@ -48,8 +48,8 @@ struct pair_interaction {
   /// True once if the particle has been woken: then it meets those that were awake again, which have got their part of
   /// what the two do to each other.
   COLLIDE_HD_INLINE bool must_meet_again(pair_state& p) const {
-    if constexpr (Effects::skips) {
-      p.woken = !p.woken && p.met && is_skipped(p.self) && !is_skipped(p.changed);
+    if constexpr (Effects::any_inactive) {
+      p.woken = !p.woken && p.met && is_inactive(p.self) && !is_inactive(p.changed);
     }
     return p.woken;
   }
@@ -58,7 +58,7 @@ struct pair_interaction {
   template <class Record>
   COLLIDE_HD_INLINE bool interact(pair_state& p, std::uint32_t place, bool overlap, bool was, Record& record) const {
     interaction other = order.load(place);
-    bool const is_active = !is_skipped(p.self), is_other = overlap && !is_skipped(other);
+    bool const is_active = !is_inactive(p.self), is_other = overlap && !is_inactive(other);
     bool goes_on = was;
     if (p.woken ? is_other : is_active) {
       contact_values<S, typename Effects::remembered> values;
@@ -85,16 +85,16 @@ struct pair_interaction {
   }
 
  private:
-  COLLIDE_HD_INLINE bool is_skipped(interaction& p) const {
-    if constexpr (Effects::skips) {
-      return effects.is_skipped(p);
+  COLLIDE_HD_INLINE bool is_inactive(interaction& p) const {
+    if constexpr (Effects::any_inactive) {
+      return effects.is_inactive(p);
     } else {
       return false;
     }
   }
 };
 
-/// Kernel body of `for_each` over places in the order: a particle meets those on its list that overlap it.
+/// Kernel functor of `for_each` over places in the order: a particle meets those on its list that overlap it.
 template <class S, class Effects>
 struct interact_listed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
@@ -148,9 +148,9 @@ struct interact_listed : pair_interaction<S, Effects> {
   }
 };
 
-/// Kernel body of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have room
-/// for meet those of their run. Where there was no room for that, all that overlap them are looked for, as many as can
-/// be held at a time, by rising numbers.
+/// Kernel functor of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have
+/// room for meet those of their run. Where there was no room for that, all that overlap them are looked for, as many as
+/// can be held at a time, by rising numbers.
 template <class S, class Effects>
 struct interact_overflowed : pair_interaction<S, Effects> {
   using ordered = sorted_particles<S, Effects>;

@@ -5,7 +5,7 @@
 /// may cross a half before something can be missing (L. Verlet, "Computer experiments on classical fluids I", Physical
 /// Review 159(1), 1967). Until then a step only copies the particles' columns in the order of the last grid, and tries
 /// what is listed. It is found out on the device whether that is so: kernels that renew the lists end at once if not.
-/// Where something has come, or moved far, all lists are made anew. What is no longer there is left out.
+/// If a particle has come, or moved far, all lists are rebuilt. Particles that are no longer there are left out.
 ///
 /// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. They lie in a
 /// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
@@ -62,7 +62,7 @@ class verlet_list {
     skin_ = skin_fraction * 2 * radius;
     // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
     // away from the origin
-    S const width = larger((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
+    S const width = max((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
     cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
     list_state* const header = header_.data();
     space.fill(header, 0, sizeof *header);
@@ -71,7 +71,7 @@ class verlet_list {
     contacts_.clear(space, n);
   }
 
-  /// What contacts remember, for a checkpoint. Waits.
+  /// The memory of contacts, for a checkpoint. Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
     saved_contacts<S> saved;
@@ -109,7 +109,7 @@ class verlet_list {
     contacts_.restore(space, saved);
   }
 
-  /// What it has taken of the resource.
+  /// Memory taken from the resource.
   std::size_t bytes() const {
     return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
            references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + contacts_.bytes();

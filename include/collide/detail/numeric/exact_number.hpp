@@ -28,8 +28,9 @@ COLLIDE_HD inline int leading_zeros(std::uint64_t x) {  // x != 0
 COLLIDE_HD_RARE double widened(float x) {
   using f = ieee_traits<float>;
   std::uint32_t const u = to_bits(x), magnitude = u & ~f::sign_mask;
+  // guard: widened
   if (magnitude >> f::mantissa_bits != 0) return static_cast<double>(x);
-  double const subnormal = mul(static_cast<double>(magnitude), 0x1p-149);
+  double const subnormal = mul_rn(static_cast<double>(magnitude), 0x1p-149);
   return (u & f::sign_mask) != 0 ? -subnormal : subnormal;
 }
 COLLIDE_HD inline double widened(double x) { return x; }
@@ -74,14 +75,17 @@ COLLIDE_HD inline dyadic decoded(double x) {
   std::uint64_t const u = to_bits(x);
   auto const biased = static_cast<int>((u & f::exponent_mask) >> f::mantissa_bits);
   auto const fraction = static_cast<std::int64_t>(u & ((std::uint64_t{1} << f::mantissa_bits) - 1));
+  // guard: hidden-bit
   std::int64_t const m = biased == 0 ? fraction : fraction | std::int64_t{1} << f::mantissa_bits;
-  dyadic const d = reduced(m, larger(biased, 1) - f::bias - f::mantissa_bits);
+  // guard: subnormal
+  dyadic const d = reduced(m, max(biased, 1) - f::bias - f::mantissa_bits);
   return {(u & f::sign_mask) != 0 ? -d.mantissa : d.mantissa, d.exponent};
 }
 
 /// A number as a double, exactly: of at most 53 bits, and with an exponent of at least -1022.
 COLLIDE_HD inline double value_of(dyadic const& x) {
-  return mul(static_cast<double>(x.mantissa), from_bits<double>(static_cast<std::uint64_t>(x.exponent + 1023) << 52));
+  return mul_rn(static_cast<double>(x.mantissa),
+                from_bits<double>(static_cast<std::uint64_t>(x.exponent + 1023) << 52));
 }
 
 /// The components whose sum a number is, wherever they are stored. No components are the number zero.
@@ -118,6 +122,7 @@ class exact_numbers {
       dyadic const& high = swapped ? y : x;
       dyadic const& low = swapped ? x : y;
       int const shift = high.exponent - low.exponent;
+      // guard: difference
       if (high.length() + shift > 61 || low.length() > 61) continue;
       x = reduced(high.mantissa * (std::int64_t{1} << shift) + low.mantissa, low.exponent);
       --end;

@@ -47,7 +47,8 @@ class exact_sum {
 
  private:
   static constexpr int window_digits = 24;  ///< digits of 32 bits
-  static constexpr int carry_bits = 24;     ///< bits for the sum of many products, and its sign
+  // guard: spare
+  static constexpr int carry_bits = 24;  ///< bits for the sum of many products, and its sign
 
   exact_numbers const& numbers_;
   exact_products const& products_;
@@ -67,14 +68,14 @@ class exact_sum {
       if (f.count == 0) return;
       int from = f[0].exponent, to = from + f[0].length();
       for (int k = 1; k < f.count; ++k) {
-        from = smaller(from, f[k].exponent);
-        to = larger(to, f[k].exponent + f[k].length());
+        from = min(from, f[k].exponent);
+        to = max(to, f[k].exponent + f[k].length());
       }
       low += from;
       high += to;
     }
-    lowest_ = smaller(lowest_, low);
-    highest_ = larger(highest_, high);
+    lowest_ = min(lowest_, low);
+    highest_ = max(highest_, high);
   }
 
   /// Adds all up, times `sign`. Returns true if the sum is negative; if not, its highest digits are known.
@@ -83,10 +84,12 @@ class exact_sum {
     std::int64_t carry = 0;
     std::uint32_t below[2] = {0, 0};
     top_ = 0;
+    // guard: window-carry
     for (begin_ = 0; begin_ < count; begin_ += window_digits) {
       for (int i = 0; i < window_digits; ++i) digits_[i] = 0;
       for (exact_product const& product : products_) add(product, sign * product.weight);
       for (int i = 0; i < window_digits; ++i) {
+        // guard: carry
         std::int64_t const sum = digits_[i] + carry;
         carry = sum >> 32;
         auto const digit = static_cast<std::uint32_t>(sum);
@@ -108,14 +111,17 @@ class exact_sum {
     int combinations = 1;
     for (int i = 0; i < of.count; ++i) combinations *= numbers_[of.factors[i]].count;
     for (int c = 0; c < combinations; ++c) {
+      // guard: twice
       int rest = c, exponent = -lowest_ + (weight == 2 || weight == -2 ? 1 : 0), words = 1;
       bool negative = weight < 0;
+      // guard: product-room
       std::uint32_t product[2 * exact_product::most_factors + 1] = {1};
       for (int i = 0; i < of.count; ++i) {
         components_view const components = numbers_[of.factors[i]];
         dyadic const f = components[rest % components.count];
         rest /= components.count;
         exponent += f.exponent;
+        // guard: sign
         negative = negative != (f.mantissa < 0);
         words = multiply(product, words, f.magnitude());
       }
@@ -133,6 +139,7 @@ class exact_sum {
       std::uint64_t const first = std::uint64_t{word} * low + static_cast<std::uint32_t>(carry);
       std::uint64_t const second = std::uint64_t{below} * high + static_cast<std::uint32_t>(first);
       x[i] = static_cast<std::uint32_t>(second);
+      // guard: product-carry
       carry = (carry >> 32) + (first >> 32) + (second >> 32);
       below = word;
     }
@@ -147,12 +154,15 @@ class exact_sum {
   /// Adds a number, shifted by `exponent` bits from the lowest, as far as the window shows it.
   COLLIDE_HD void add_shifted(std::uint32_t const* x, int words, int exponent, bool negative) {
     int const first = exponent / 32 - begin_, shift = exponent % 32;
+    // guard: first-digit
     if (first >= window_digits || first + words < 0) return;
     std::uint32_t below = 0;
+    // guard: last-digit
     for (int i = 0; i <= words; ++i) {
       std::uint32_t const word = i < words ? x[i] : 0;
       auto const digit = static_cast<std::uint32_t>((std::uint64_t{word} << 32 | below) >> (32 - shift));
       below = word;
+      // guard: window
       if (first + i >= 0 && first + i < window_digits) digits_[first + i] += negative ? -std::int64_t{digit} : digit;
     }
   }

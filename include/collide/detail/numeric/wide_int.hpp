@@ -27,6 +27,7 @@ struct int_words {
 COLLIDE_HD_RARE void add_words(std::uint64_t* x, std::uint64_t const* y, int n) {
   std::uint64_t carry = 0;
   for (int i = 0; i < n; ++i) {
+    // guard: fixed-carry
     uint128 const s = uint128{x[i]} + y[i] + carry;
     x[i] = static_cast<std::uint64_t>(s);
     carry = static_cast<std::uint64_t>(s >> 64);
@@ -38,6 +39,7 @@ COLLIDE_HD_RARE void subtract_words(std::uint64_t* x, std::uint64_t const* y, in
   std::uint64_t const mask = wanted ? ~std::uint64_t{0} : 0;
   std::uint64_t borrow = 0;
   for (int i = 0; i < n; ++i) {
+    // guard: fixed-borrow
     uint128 const d = uint128{x[i]} - (y[i] & mask) - borrow;
     x[i] = static_cast<std::uint64_t>(d);
     borrow = static_cast<std::uint64_t>(d >> 127);
@@ -51,10 +53,12 @@ COLLIDE_HD_RARE void multiply_words(std::uint64_t* product, std::uint64_t const*
   for (int i = 0; i < n; ++i) {
     std::uint64_t carry = 0;
     for (int k = 0; k < m; ++k) {
+      // guard: fixed-product-carry
       uint128 const p = uint128{x[i]} * y[k] + product[i + k] + carry;
       product[i + k] = static_cast<std::uint64_t>(p);
       carry = static_cast<std::uint64_t>(p >> 64);
     }
+    // guard: fixed-product-top
     product[i + m] = carry;
   }
 }
@@ -76,7 +80,9 @@ COLLIDE_HD_RARE int_words<N + M> operator*(int_words<N> const& x, int_words<M> c
   int_words<N + M> product;
   multiply_words(product.word, x.word, N, y.word, M);
   // a negative x has been taken for x + 2^(64 N), a negative y for y + 2^(64 M)
+  // guard: fixed-sign
   subtract_words(product.word + N, y.word, M, x.negative());
+  // guard: fixed-second-sign
   subtract_words(product.word + M, x.word, N, y.negative());
   return product;
 }

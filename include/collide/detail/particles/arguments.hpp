@@ -1,5 +1,5 @@
 /// \file
-/// What a simulation is made of.
+/// The arguments of a simulation.
 #pragma once
 
 #include <tuple>

@@ -86,7 +86,7 @@ using column_element = typename column_layout<C, S>::element;
 template <class C, class S>
 inline constexpr std::size_t column_bytes = sizeof(column_element<C, S>) * std::size_t(column_layout<C, S>::width);
 
-/// What a particle begins with.
+/// The initial value of a column.
 template <class C, class S, class = void>
 struct initial_of {
   static COLLIDE_HD column_value<C, S> value() {

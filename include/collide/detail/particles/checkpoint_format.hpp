@@ -230,7 +230,7 @@ class checkpoint_file {
   bool is_complete_ = false;
 };
 
-/// What read(stream) makes of a file, which has nothing else in it.
+/// The result of read(stream) for a file, which has nothing else in it.
 template <class Read>
 auto read_checkpoint_file(std::string const& path, Read const& read) {
   std::ifstream file(path, std::ios::binary);

@@ -1,5 +1,5 @@
 /// \file
-/// What contacts between particles remember from step to step, beside the lists of neighbours.
+/// The memory of contacts between particles from step to step, beside the lists of neighbours.
 ///
 /// Both particles of a contact have it, each in its own sign. Values lie where the neighbour is in the list, so a step
 /// reads and writes those of particles that touch, and nothing else. When lists are made anew, values are kept by the
@@ -25,7 +25,7 @@ struct contact_value {
   column_value<C, S> value = initial_of<C, S>::value();
 };
 
-/// What a contact remembers, by columns.
+/// The memory of a contact, by columns.
 template <class S, class List>
 struct contact_values;
 template <class S, class... C>
@@ -43,7 +43,7 @@ struct contact_values<S, columns<C...>> : contact_value<C, S>... {
   }
 };
 
-/// What a contact remembers, in memory: to be read at once.
+/// The memory of a contact as it is stored: to be read at once.
 template <class S, class List>
 struct alignas(contact_values<S, List>::width > 2 ? 4 * sizeof(S) : sizeof(S)) contact_record {
   S numbers[contact_values<S, List>::width];
@@ -83,7 +83,7 @@ struct kept_contact {
   id other;  ///< number of the other particle
 };
 
-/// Where the kept contacts of a particle are: in the order of the numbers of the others.
+/// The kept contacts of a particle, in the order of the numbers of the others.
 struct kept_range {
   std::uint32_t first, count;
 };
@@ -101,7 +101,7 @@ struct contact_memory_ref {
 template <class S>
 struct contact_memory_ref<S, columns<>> {};
 
-/// What contacts remember, for a checkpoint: how many contacts each particle has, the numbers of the others, by rising
+/// The memory of contacts, for a checkpoint: how many contacts each particle has, the numbers of the others, by rising
 /// numbers, and the values of each contact.
 template <class S>
 struct saved_contacts {
@@ -136,7 +136,7 @@ class contact_memory {
     if (in_runs != 0) space.copy_to_host(all.run_touching.data(), run_touching_.data(), in_runs);
     return all;
   }
-  /// What waits for lists to be made.
+  /// Contacts that wait for lists to be made.
   template <class Space>
   saved_contacts<S> saved_for_lists(Space const& space, std::size_t n) const {
     std::vector<kept_range> ranges(n);
@@ -209,7 +209,7 @@ class contact_memory<S, columns<>> {
   contact_memory_ref<S, columns<>> ref() const { return {}; }
 };
 
-/// What an effect sees of the memory of a contact: the columns that it names.
+/// The memory of a contact as an effect sees it: the columns that it names.
 template <class Named, class Values, class S>
 class contact_access {
  public:

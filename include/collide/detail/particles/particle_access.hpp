@@ -1,5 +1,5 @@
 /// \file
-/// What an effect names, and a particle as the effect sees it.
+/// The columns that an effect names, and a particle as the effect sees it.
 #pragma once
 
 #include <type_traits>

@@ -7,11 +7,11 @@
 ///
 ///     m_ik = v_i.v_k - R^2
 ///
-/// So a corner is in reach if m_ii <= 0. If no corner is, an edge is, at the foot of the perpendicular, if
+/// So a corner is in reach if m_ii <= 0. If no corner is, an edge is, at the projection of the perpendicular, if
 ///
 ///     m_ik < 0  and  m_ii m_kk <= m_ik^2
 ///
-/// and the face is, at its foot, whose weights are proportional to w_i, if
+/// and the face is, at its projection, whose weights are proportional to w_i, if
 ///
 ///     w_i > 0 for all three  and  det m <= 0
 ///
@@ -39,6 +39,7 @@ class fixed_width_predicate {
  public:
   COLLIDE_HD_NOINLINE fixed_width_predicate(triangle<double> const& t, sphere<double> const& s) {
     vec3<double> const* const points[4] = {&s.centre, &t.a, &t.b, &t.c};
+    // guard: fixed-unit
     lower_exponent(s.radius);
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 12; ++i) lower_exponent((*points[i / 3])[i % 3]);
@@ -62,12 +63,14 @@ class fixed_width_predicate {
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 3; ++i) {
       diagonal[0] = dot(v[0], v[0]) - square;
+      // guard: fixed-corner, fixed-touching-corner
       if (!diagonal[0].positive()) return true;
       off_diagonal[0] = dot(v[0], v[1]) - square;
       rotate(v), rotate(diagonal), rotate(off_diagonal);
     }
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 3; ++i) {
+      // guard: fixed-edge, fixed-touching-edge
       if (off_diagonal[0].negative() && !(diagonal[0] * diagonal[1] - off_diagonal[0] * off_diagonal[0]).positive())
         return true;
       rotate(diagonal), rotate(off_diagonal);
@@ -78,10 +81,12 @@ class fixed_width_predicate {
     for (int i = 0; i < 3; ++i) {
       int_words<8> const weight = (diagonal[1] - off_diagonal[1]) * (diagonal[2] - off_diagonal[2]) +
                                   (off_diagonal[1] - off_diagonal[0]) * (diagonal[2] - off_diagonal[1]);
+      // guard: fixed-face, fixed-degenerate
       if (!weight.positive()) return false;
       determinant = determinant + row[0] * weight;
       rotate(row), rotate(diagonal), rotate(off_diagonal);
     }
+    // guard: fixed-touching-face
     return !determinant.positive();
   }
 
@@ -91,6 +96,7 @@ class fixed_width_predicate {
   };
 
   static constexpr int most_bits = 126;
+  // guard: fixed-shift
   static constexpr int most_length = 126;  ///< of a number: a bit of two words is for differences, one for the sign
 
   int exponent_ = 1 << 30;  ///< as a power of two
@@ -100,13 +106,14 @@ class fixed_width_predicate {
 
   COLLIDE_HD void lower_exponent(double x) {
     dyadic const d = decoded(x);
-    if (d.mantissa != 0) exponent_ = smaller(exponent_, d.exponent);
+    if (d.mantissa != 0) exponent_ = min(exponent_, d.exponent);
   }
 
   COLLIDE_HD uint128 to_fixed_point(double x) {
     dyadic const d = decoded(x);
     if (d.mantissa == 0) return 0;
     int const shift = d.exponent - exponent_;
+    // guard: fixed-far
     fits_ = fits_ && shift + d.length() <= most_length;
     return static_cast<uint128>(d.mantissa) << (shift & 127);
   }

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include <collide/detail/geometry/swept_bounds.hpp>
-#include <collide/detail/grid/occupancy.hpp>
 #include <collide/detail/grid/triangle_ref.hpp>
 #include <collide/detail/query/candidate_pipeline.hpp>
 
@@ -56,14 +55,14 @@ struct per_sphere_query {
 
   template <class Block>
   struct scratch {
-    pipeline_storage<Block, items_per_thread> hits;
+    pipeline_storage<Block, items_per_thread> pipeline;
     std::uint32_t unfinished;  ///< how often a sphere had more candidates; only rises
   };
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     block.for_each_thread([&](int thread_rank) {
-      pipeline.reset(s.hits, thread_rank);
+      pipeline.reset(s.pipeline, thread_rank);
       if (thread_rank == 0) s.unfinished = 0;
     });
     std::size_t const base = block.index() * Block::num_threads * Block::items;
@@ -72,28 +71,28 @@ struct per_sphere_query {
       std::size_t const first = base + k * Block::num_threads;
       if constexpr (Block::num_threads == 1) {
         if (first < pipeline.spheres.size()) test_all(block, s, first);
-        pipeline.drain_if_full(block, s.hits);
+        pipeline.drain_if_full(block, s.pipeline);
       } else {
         for (std::uint32_t skip = 0;; skip += items_per_thread) {
           block.for_each_thread([&](int thread_rank) {
             std::size_t const i = first + static_cast<std::size_t>(thread_rank);
             if (i < pipeline.spheres.size()) test_some(block, s, i, skip);
           });
-          pipeline.drain_if_full(block, s.hits);
+          pipeline.drain_if_full(block, s.pipeline);
           std::uint32_t const unfinished = block.broadcast(s.unfinished);
           if (unfinished == seen) break;
           seen = unfinished;
         }
       }
     }
-    pipeline.drain(block, s.hits);
+    pipeline.drain(block, s.pipeline);
   }
 
  private:
   template <class Block>
   COLLIDE_HD_INLINE void test_all(Block& block, scratch<Block>& s, std::size_t i) const {
     auto const own = pipeline.spheres[i];
-    for_each_candidate(ref, own, [&](id t) { pipeline.push(block, s.hits, {static_cast<id>(i), t}, own); });
+    for_each_candidate(ref, own, [&](id t) { pipeline.push(block, s.pipeline, {static_cast<id>(i), t}, own); });
   }
 
   /// Candidates number `skip` and the next ones.
@@ -101,31 +100,21 @@ struct per_sphere_query {
   COLLIDE_HD_INLINE void test_some(Block& block, scratch<Block>& s, std::size_t i, std::uint32_t skip) const {
     std::uint32_t number = 0;
     for_each_candidate(ref, pipeline.spheres[i], [&](id t) {
-      if (number >= skip && number - skip < items_per_thread) pipeline.push(block, s.hits, {static_cast<id>(i), t});
+      if (number >= skip && number - skip < items_per_thread) pipeline.push(block, s.pipeline, {static_cast<id>(i), t});
       ++number;
     });
     if (number > skip + items_per_thread) block.add(s.unfinished, 1);
   }
 };
 
-/// What a kernel asks for the triangles near a single sphere; the members are those of triangle_ref.hpp. A cursor is
+/// A reference to the triangles near a single sphere; the members are those of triangle_ref.hpp. A cursor is
 /// the number of a triangle: the next candidate is that of the least number from there on, for which all are
 /// enumerated.
 template <class S, class Ref>
-struct per_sphere_lookup : triangle_ref<S> {
+struct per_sphere_ref : triangle_ref<S> {
   Ref ref;
 
-  COLLIDE_HD per_sphere_lookup const& opened() const { return *this; }
-  template <class Sphere>
-  COLLIDE_HD bool empty(Sphere const&) const {
-    return this->mesh.size() == 0;
-  }
-  COLLIDE_HD bool has_single_cell_lookup(S) const { return false; }
-  COLLIDE_HD occupancy_view<S> occupancy() const { return {}; }
-  template <class Sphere>
-  COLLIDE_HD candidate_cursor begin(Sphere const&) const {
-    return {0, 0, 0, 0};
-  }
+  COLLIDE_HD per_sphere_ref const& without_overflown_grids() const { return *this; }
   template <class Sphere>
   COLLIDE_HD bool next(Sphere const& s, candidate_cursor& c, std::uint32_t, candidate_range& range) const {
     if (c.at_end() || this->mesh.size() == 0) return false;

@@ -11,7 +11,7 @@
 
 namespace collide::detail {
 
-/// What a `rank_map` says, as a plain value that a kernel takes: it reads the masks in memory of its space.
+/// A `rank_map` as a plain value that a kernel takes: it reads the masks in memory of its space.
 struct rank_lookup {
   coarse_grid grid;
   std::uint64_t const* masks;  ///< of each cell
@@ -80,7 +80,7 @@ class rank_map {
     rank_lookup{grid_, masks_.data(), words_, others_.data()}.for_each_rank(box, f);
   }
 
-  /// What a lookup reads, where the space cannot read the host's memory.
+  /// The masks in memory of a space that cannot read the host's.
   struct lookup_memory {
     buffer<std::uint64_t> masks;
     buffer<std::uint32_t> others;

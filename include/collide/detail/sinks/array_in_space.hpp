@@ -1,5 +1,5 @@
 /// \file
-/// What sinks share that keep one array.
+/// The base of sinks that keep one array.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace collide::detail {
 template <class T>
 class array_in_space : public kept_in_space<T> {
  public:
-  /// What the last query found, in memory of the space: `size()` elements, complete when the work on the stream is
+  /// The result of the last query, in memory of the space: `size()` elements, complete when the work on the stream is
   /// done. Valid until the next query. Null before the first.
   T const* data() const { return data_; }
   /// How many elements there are: of sinks with one for each sphere, the number of spheres; else how many are stored.

@@ -1,5 +1,5 @@
 /// \file
-/// What the built-in sinks share; what a sink must have is in concepts.hpp.
+/// Parts of the built-in sinks; the members of a sink are in concepts.hpp.
 #pragma once
 
 #include <algorithm>
@@ -76,9 +76,11 @@ struct hit_counter {
   std::uint64_t* total;
 };
 
-/// What a query writes of its hits, and all that it knows of a built-in sink: so a kernel is compiled once for all of
-/// them. What a sink does not want is null, or no room.
+/// The output of a query for its hits, and all that it knows of a built-in sink: so a kernel is compiled once for all
+/// of them. What a sink does not want is null, or no room.
 struct output {
+  static constexpr bool stores_ids = true;
+
   hit_counter count;       ///< of all hits, also of those that find no room
   pair* pairs;             ///< hits, one after the other
   std::uint64_t capacity;  ///< how many pairs there is room for
@@ -87,10 +89,9 @@ struct output {
   COLLIDE_HD_INLINE std::uint64_t allocate(std::uint64_t n) const {
     return count.sum != nullptr ? fetch_add(count.sum, n) : 0;
   }
-  template <class Hit>
-  COLLIDE_HD_INLINE void store(std::uint64_t slot, Hit const& h) const {
-    if (slot < capacity) pairs[slot] = {h.sphere, h.triangle};
-    if (flags != nullptr) store_relaxed(flags + h.sphere, std::uint8_t{1});
+  COLLIDE_HD_INLINE void store(std::uint64_t slot, pair p) const {
+    if (slot < capacity) pairs[slot] = p;
+    if (flags != nullptr) store_relaxed(flags + p.sphere, std::uint8_t{1});
   }
   COLLIDE_HD_INLINE void end_pass() const {
     if (count.sum == nullptr) return;
@@ -100,7 +101,7 @@ struct output {
 };
 
 /// Flags are complete as they are.
-inline bool has_end_pass(output const& o) { return o.count.sum != nullptr; }
+inline bool wants_end_pass(output const& o) { return o.count.sum != nullptr; }
 
 /// The memory of a hit counter.
 class hit_counter_buffer {

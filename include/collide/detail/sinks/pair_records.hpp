@@ -1,12 +1,12 @@
 /// \file
-/// What sinks share that keep a record of every colliding pair.
+/// The base of sinks that keep a record of every colliding pair.
 #pragma once
 
 #include <collide/detail/sinks/array_in_space.hpp>
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over pairs. `Mesh` is a `mesh_view`, or what else `hit_of` takes.
+/// Kernel functor of `for_each` over pairs. `Mesh` is a `mesh_view`, or what else `hit_of` takes.
 template <class NarrowPhase, class S, class Record, class Mesh>
 struct compute_records {
   pair const* pairs;

@@ -1,6 +1,6 @@
 /// \file
-/// What the mesh gives to particles, whether they touch it, stick to it, or sleep on it: the one place where effects
-/// are told of it. And the half kicks of a step.
+/// The ledger of what the mesh gives to particles, whether they touch it, stick to it, or sleep on it: the one place
+/// where effects are told of it. And the half kicks of a step.
 #pragma once
 
 #include <collide/detail/bodies/moving_mesh.hpp>
@@ -66,7 +66,7 @@ COLLIDE_HD_INLINE int frame_ridden([[maybe_unused]] Particle const& p) {
   }
 }
 
-/// Where a body takes a point of space in the step that it has at the beginning.
+/// The place to which a body takes a point of space in the step that it has at the beginning.
 template <class S>
 COLLIDE_HD_INLINE vec3<double> carried(body_frame<S> const& f, vec3<double> const& x) {
   return f.now.to_world(f.before.to_local(x));
@@ -91,7 +91,7 @@ COLLIDE_HD_INLINE ridden_surface surface_ridden([[maybe_unused]] Context const& 
     double const dt = static_cast<double>(context.dt);
     s.drift = !Context::is_swept
                   ? s.after
-                  : vec3<double>(div(to.x() - x.x(), dt), div(to.y() - x.y(), dt), div(to.z() - x.z(), dt));
+                  : vec3<double>(div_rn(to.x() - x.x(), dt), div_rn(to.y() - x.y(), dt), div_rn(to.z() - x.z(), dt));
   }
   return s;
 }

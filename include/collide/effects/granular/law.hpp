@@ -1,5 +1,6 @@
 /// \file
-/// What a law of granular contact gets and gives: normal, tangential, rolling, cohesion. See granular_contact.hpp.
+/// The arguments and results of a law of granular contact: normal, tangential, rolling, cohesion. See
+/// granular_contact.hpp.
 ///
 /// A law is a small copyable struct. It may name what a contact remembers for it, `using remembers =
 /// contact_columns<...>`, and has one member template, `COLLIDE_HD`, const:

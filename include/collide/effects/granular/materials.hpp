@@ -1,5 +1,5 @@
 /// \file
-/// What granular particles and walls are made of.
+/// Materials of granular particles and walls.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace collide {
 
-/// What a particle is made of, as a number: see `materials`. Scenes have it that name `granular_contact` with
+/// The material of a particle, as a number: see `materials`. Scenes have it that name `granular_contact` with
 /// `materials`.
 struct material {
   template <class S>
@@ -24,7 +24,7 @@ struct solid {
   double density;  ///< mass per volume, above 0
 };
 
-/// What two solids do where they touch.
+/// The constants of a contact of two solids.
 struct surface_pair {
   double restitution = 1;       ///< coefficient of restitution, 0 < restitution <= 1
   double friction = 0;          ///< coefficient of sliding friction, not negative

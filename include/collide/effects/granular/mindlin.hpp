@@ -20,7 +20,7 @@ enum class tangential_damping {
   of_normal    ///< that of the normal force: LAMMPS
 };
 
-/// What is held against Coulomb's limit.
+/// The force that is compared with Coulomb's limit.
 enum class slip_test {
   spring,             ///< the spring alone; what slides has no dashpot: LIGGGHTS, MUSEN
   spring_and_dashpot  ///< S. Luding, Granular Matter 10, 2008, equation 20: LAMMPS
