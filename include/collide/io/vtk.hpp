@@ -44,7 +44,7 @@ class vtk_array {
   std::string bytes_;
 };
 
-/// What the cells of a file are.
+/// The kind of cells that a file has.
 enum class vtk_cells {
   dots,      ///< points; all are one cell
   lines,     ///< two points each

@@ -19,7 +19,7 @@
 namespace collide {
 namespace detail {
 
-/// What a file calls a column; null if it does not show it.
+/// The name of a column in a file; null if files do not show it.
 template <class Column>
 constexpr char const* vtk_name(Column) {
   return nullptr;
