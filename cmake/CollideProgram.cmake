@@ -8,6 +8,13 @@ set(COLLIDE_EXTRA_INCLUDE "" CACHE PATH "Folder of third-party headers that the 
 
 find_package(Threads REQUIRED)
 
+# Assimp, for meshes that are not OBJ, where it is: its target, else empty.
+find_package(assimp QUIET)
+set(COLLIDE_ASSIMP "")
+if(TARGET assimp::assimp)
+  set(COLLIDE_ASSIMP assimp::assimp)
+endif()
+
 add_library(collide_options INTERFACE)
 target_include_directories(collide_options SYSTEM INTERFACE ${COLLIDE_EXTRA_INCLUDE})
 target_link_libraries(collide_options INTERFACE collide::collide Threads::Threads)

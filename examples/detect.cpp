@@ -1,6 +1,6 @@
 /// \file
-/// Finds every pair of a sphere (CSV) and a triangle (OBJ) that touch. What finds them is in detect/, and compiled once
-/// for each scalar type, as CUDA where there is nvcc. Nothing here is for CUDA.
+/// Finds every pair of a sphere (CSV) and a triangle (OBJ, or what Assimp reads) that touch. What finds them is in
+/// detect/, and compiled once for each scalar type, as CUDA where there is nvcc. Nothing here is for CUDA.
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +16,7 @@
 #include <collide/validate_closed.hpp>
 
 #include "detect/detection.hpp"
+#include "io/mesh.hpp"
 #include "io/output.hpp"
 #include "io/ply.hpp"
 #include "io/program.hpp"
@@ -34,7 +35,7 @@ scene<S> read(Ranks const& ranks, options const& wish, std::string_view mesh, st
   scene<S> from;
   double smallest = std::numeric_limits<double>::infinity();
   io::read_together(ranks, [&] {
-    from.mesh = io::read_obj<S>(wish.mesh, mesh, wish.strict);
+    from.mesh = io::read_mesh<S>(wish.mesh, mesh, wish.strict);
     from.spheres = io::read_csv<S>(wish.spheres, spheres, ranks.rank(), ranks.size());
     from.tally = from.mesh.tally;
     if (!from.spheres.has_radii) {
@@ -270,7 +271,7 @@ int main(int argc, char** argv) {
   auto const file = [&](char const* name, std::string& path, char const* about) {
     return app.add_option(name, path, about)->type_name("FILE");
   };
-  file("mesh", wish.mesh, "the triangles, an OBJ file")->required();
+  file("mesh", wish.mesh, "the triangles: an OBJ file, or with Assimp STL, PLY, OFF or glTF")->required();
   file("spheres", wish.spheres, "the spheres, a CSV file with columns x, y, z and perhaps r")->required();
   app.add_option("--radius,radius", wish.radius, "radius of all spheres; a column r has precedence")->type_name("R");
   file("--output,output", wish.output, "colliding pairs (CSV), by sphere and then by triangle, ids from 0");

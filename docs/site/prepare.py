@@ -24,7 +24,8 @@ NAV = {
     "Development": ["development/*"],
 }
 # Pages that stand elsewhere in the repository.
-ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHANGELOG.md", "index": ROOT / "README.md"}
+ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHANGELOG.md", "index": ROOT / "README.md",
+             "measurements": ROOT / "bench" / "results" / "README.md"}
 LISTS = {DOCS / "README.md", DOCS / "index.md"}  # the navigation takes their place
 CODE = {".hpp": "cpp", ".cuh": "cuda", ".cpp": "cpp", ".cu": "cuda", ".py": "python", ".cmake": "cmake", ".md": "markdown"}
 

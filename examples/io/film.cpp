@@ -132,10 +132,8 @@ void report(film const& of, film_cost const& cost) {
 
 void write_mesh(std::string const& path, std::vector<float> const& vertices,
                 std::vector<std::uint32_t> const& corners) {
-  std::vector<std::uint32_t> ends(corners.size() / 3);
-  for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = static_cast<std::uint32_t>(3 * i + 3);
   output_file out(path);
-  write_vtp(out, vertices, {}, "Polys", corners, ends);
+  collide::write_vtp(out, vertices, {}, collide::vtk_cells::triangles, corners);
   out.commit();
 }
 
@@ -153,7 +151,7 @@ std::vector<float> moved_vertices(film const& of, std::vector<collide::body_stat
   return found;
 }
 
-vtk_frame next_frame(film const& of, std::size_t i, double time) {
+collide::vtk_frame next_frame(film const& of, std::size_t i, double time) {
   char number[16];
   std::snprintf(number, sizeof number, "-%05zu.vtp", i);
   return {std::string("particles") + number, time, of.bodies.empty() ? "" : std::string("mesh") + number};

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include <collide/bodies.hpp>
+#include <collide/io/vtk.hpp>
 
 #include "ranks.hpp"
 #include "scenes/scene.hpp"
-#include "vtk.hpp"
 
 namespace io {
 
@@ -96,7 +96,7 @@ void write_mesh(std::string const& path, std::vector<float> const& vertices, std
 std::vector<float> moved_vertices(film const& of, std::vector<collide::body_state> const& states);
 
 /// The files of picture number `i`.
-vtk_frame next_frame(film const& of, std::size_t i, double time);
+collide::vtk_frame next_frame(film const& of, std::size_t i, double time);
 
 /// The program of a film: reads the command line into it. Calls require(film), which throws if there is no such space
 /// here, and then shoot(film, ranks) on so many ranks as are wished for, with null if it is one.

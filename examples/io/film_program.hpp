@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -48,7 +49,7 @@ void write_particles(std::string const& path, Simulation& simulation, float radi
                      collide::columns<Column...>) {
   auto const points = of_present<collide::position>(simulation).first;
   std::size_t const n = points.size() / 3;
-  std::vector<vtk_array> known{{"radius", std::vector<float>(n, radius)}};
+  std::vector<collide::vtk_array> known{{"radius", std::vector<float>(n, radius)}};
   auto const add = [&](auto column) {
     using type = decltype(column);
     if constexpr (!std::is_same<type, collide::position>::value && !std::is_same<type, collide::alive>::value) {
@@ -58,11 +59,10 @@ void write_particles(std::string const& path, Simulation& simulation, float radi
   };
   (add(Column{}), ...);
   if (!shows) return;
-  std::vector<std::uint32_t> all(n), ends;
-  for (std::size_t i = 0; i < n; ++i) all[i] = static_cast<std::uint32_t>(i);
-  if (n != 0) ends.push_back(static_cast<std::uint32_t>(n));
+  std::vector<std::uint32_t> all(n);
+  std::iota(all.begin(), all.end(), 0u);
   output_file out(path);
-  write_vtp(out, points, known, "Verts", all, ends);
+  collide::write_vtp(out, points, known, collide::vtk_cells::dots, all);
   out.commit();
 }
 
@@ -79,7 +79,7 @@ auto const& bodies_of(collide::distributed<collide::simulation<Detector, Effect.
 /// Writes the particles that are there, and the mesh if it moves. With ranks, all call it, and the one that `shows`
 /// writes.
 template <class Simulation>
-void write_frame(film const& wish, vtk_frame const& frame, Simulation& simulation, float radius, bool shows) {
+void write_frame(film const& wish, collide::vtk_frame const& frame, Simulation& simulation, float radius, bool shows) {
   write_particles(wish.output + "/" + frame.file, simulation, radius, shows, typename Simulation::columns());
   if constexpr (std::decay_t<decltype(bodies_of(simulation))>::exist) {
     if (!shows) return;
@@ -132,7 +132,7 @@ void shoot(film const& wish, Ranks const& ranks, Simulation simulation) {
   std::size_t first = 0;  // the next picture
   for (std::size_t at = 0; (at = wish.picture(first, at)) <= begin;) ++first;
   std::size_t const steps = wish.steps();
-  std::vector<vtk_frame> frames;
+  std::vector<collide::vtk_frame> frames;
   auto const goes_on = [&](std::size_t done) {
     return done < steps && (wish.until == 0 || first + frames.size() < wish.until);
   };
@@ -159,7 +159,7 @@ void shoot(film const& wish, Ranks const& ranks, Simulation simulation) {
   if (!shows) return;
   if (!wish.output.empty()) {
     output_file out(wish.output + "/film.pvd");
-    write_pvd(out, frames);
+    collide::write_pvd(out, frames);
     out.commit();
   }
 

@@ -9,7 +9,7 @@ namespace collide {
 
 /// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
 /// long as no grid has been made; `bucket` wins for all else. Which it is follows from the numbers of triangles and
-/// spheres alone, by the measured costs of the space (docs/development/benchmarks.md): the same calls always go the
+/// spheres alone, by the measured costs of the space (bench/results/README.md): the same calls always go the
 /// same way, and the pairs are the same either way. The grid is made by `build` with a radius, and else by the first
 /// query for which it pays, counting what the queries before it would have saved. Complexity and memory are those of
 /// the chosen one. A simulation names `bucket` or `all_pairs` itself.

@@ -34,6 +34,7 @@ LAYERS = {
     "effects": "effects/ energy.hpp",
     "streaming": "detail/streaming/ in_passes.hpp streamed.cuh",
     "ranks": "detail/ranks/ ranks/",
+    "files": "io/",
 }
 
 

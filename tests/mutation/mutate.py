@@ -1,10 +1,10 @@
-"""mutate.py names | table [--write] | precompile FOLDER | judge NAME --rows FOLDER: the guards of `exact`, one by one.
+"""mutate.py names | table [FILE] | precompile FOLDER | judge NAME --rows FOLDER: the guards of `exact`, one by one.
 
 Every mutation takes a guard out of the library, or loosens it; a small program, compiled with that, must then find
 something wrong, or fail; and nothing with the library as it is. The rows that it judges are those of tests/data, those
 of hunted_*.csv, which were looked for because no others show the guards that they name, and cases next to contact: see
-make_rows.cpp. `precompile` compiles ../standard.hpp for all compilers, into the folder of the rows. `table` checks, or
-writes, the lists in docs/development/testing.md.
+make_rows.cpp. `precompile` compiles ../standard.hpp for all compilers, into the folder of the rows. `table` prints the
+lists of all mutations and of guards that no row shows, or writes them to a file.
 """
 import argparse
 import pathlib
@@ -16,7 +16,6 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PAGE = ROOT / "docs" / "development" / "testing.md"
 DETAIL = pathlib.Path("collide") / "detail"
 SKIPPED = 77
 
@@ -396,7 +395,7 @@ def main():
     parser = argparse.ArgumentParser()
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("names")
-    commands.add_parser("table").add_argument("--write", action="store_true")
+    commands.add_parser("table").add_argument("file", nargs="?", type=argparse.FileType("w"), default=sys.stdout)
     precompiled = commands.add_parser("precompile")
     precompiled.add_argument("folder")
     precompiled.add_argument("--eigen", default="/usr/include/eigen3")
@@ -410,15 +409,7 @@ def main():
         print("\n".join(SOUND | MUTATIONS))
         return 0
     if args.command == "table":
-        begin, end = "<!-- mutations -->\n", "<!-- end mutations -->"
-        before, rest = PAGE.read_text().split(begin)
-        listed, after = rest.split(end)
-        wanted = "".join(tables())
-        if args.write:
-            PAGE.write_text(before + begin + wanted + end + after)
-        elif listed != wanted:
-            print(f"{PAGE} lists other mutations; tests/mutation/mutate.py table --write changes that")
-            return 1
+        args.file.write("# Mutations\n\n" + "".join(tables()))
         return 0
     if args.command == "precompile":
         precompile(args.folder, args.eigen)

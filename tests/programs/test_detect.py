@@ -1,5 +1,7 @@
 """detect as its users see it."""
 
+import base64
+import json
 import math
 import os
 import random
@@ -8,6 +10,7 @@ import resource
 import shutil
 import signal
 import stat
+import struct
 import subprocess
 import time
 import unittest
@@ -310,6 +313,62 @@ class ObjForms(ObjTest):
         self.write("mesh.obj", self.square + "v 9 9 9\nv 10 9 9\nv 9 10 9\nf 1 2 3 4\nf 5 6 7\n")
         self.write("spheres.csv", "x,y,z\n9,9,9\n2,2,0\n")
         self.assertEqual(self.detect("mesh.obj", "spheres.csv", "--radius", 1), [(0, 2), (1, 0), (1, 1)])
+
+
+class OtherFormats(ProgramTest):
+    """What Assimp reads, where the program is built with it: the same triangles in the same order as in OBJ."""
+
+    SPHERES = [(0, 0, 0), (3, 3, 3), (.5, .5, .5), (1.25, 0, .5), (2.25, 2, 2)]
+
+    def setUp(self):
+        super().setUp()
+        self.scene(*CUBE, self.SPHERES)
+        self.write("mesh.stl", "solid a\nendsolid a\n")
+        done = self.run_program("detect", "mesh.stl", "spheres.csv", 1)
+        if b"built without Assimp" in done.stderr:
+            self.skipTest("detect was built without Assimp")
+
+    def pairs(self, name, content):
+        self.write(name, content)
+        said = [f"{name}: coordinates are floats, as Assimp reads them"]
+        self.succeed_saying(said, "detect", name, "spheres.csv", .4, "out.csv")
+        return self.read("out.csv")
+
+    def test_the_cube_in_each_format(self):
+        vertices, triangles = CUBE
+        self.succeed("detect", "mesh.obj", "spheres.csv", .4, "truth.csv")
+        truth = self.read("truth.csv")
+        self.assertGreater(len(truth.splitlines()), 5)
+        numbers = lambda rows: "".join(" ".join(map(str, row)) + "\n" for row in rows)
+        faces = numbers((3, *t) for t in triangles)
+        self.assertEqual(self.pairs("cube.off", f"OFF\n8 12 0\n{numbers(vertices)}{faces}"), truth)
+        self.assertEqual(self.pairs("cube.PLY", "ply\nformat ascii 1.0\nelement vertex 8\n" + "".join(f"property float {x}\n" for x in "xyz") +
+                                    f"element face 12\nproperty list uchar int vertex_indices\nend_header\n{numbers(vertices)}{faces}"), truth)
+        soup = b"".join(struct.pack("<12fH", 0, 0, 0, *(x for i in t for x in vertices[i]), 0) for t in triangles)
+        self.assertEqual(self.pairs("cube.stl", bytes(80) + struct.pack("<I", 12) + soup), truth)
+
+    def gltf(self, node):
+        data = struct.pack("<36H", *(i for t in CUBE[1] for i in t)) + struct.pack("<24f", *(x for v in CUBE[0] for x in v))
+        return json.dumps({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, **node}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0}]}],
+            "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+            "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 72}, {"buffer": 0, "byteOffset": 72, "byteLength": 96}],
+            "accessors": [{"bufferView": 0, "componentType": 5123, "count": 36, "type": "SCALAR"},
+                          {"bufferView": 1, "componentType": 5126, "count": 8, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]}]})
+
+    def test_a_scene_is_placed_as_its_nodes_say(self):
+        self.succeed("detect", "mesh.obj", "spheres.csv", .4, "truth.csv")
+        self.assertEqual(self.pairs("cube.gltf", self.gltf({})), self.read("truth.csv"))
+        self.write("mesh.obj", "".join("v %g %g %g\n" % tuple(2 * x for x in v) for v in CUBE[0]) +
+                   "".join("f %d %d %d\n" % tuple(i + 1 for i in t) for t in CUBE[1]))
+        self.succeed("detect", "mesh.obj", "spheres.csv", .4, "truth.csv")
+        self.assertEqual(self.pairs("cube.gltf", self.gltf({"scale": [2, 2, 2]})), self.read("truth.csv"))
+
+    def test_what_is_no_mesh_is_named(self):
+        self.write("mesh.off", "nonsense\n")
+        self.fail_with(1, ["mesh.off: "], "detect", "mesh.off", "spheres.csv", 1, "out.csv")
+        self.fail_with(1, ["mesh.off: ", "--strict"], "detect", "mesh.off", "spheres.csv", 1, "out.csv", "--strict")
 
 
 class RealExporters(ObjTest):

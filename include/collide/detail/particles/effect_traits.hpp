@@ -3,6 +3,7 @@
 #pragma once
 
 #include <collide/bodies.hpp>
+#include <collide/concepts.hpp>
 #include <collide/detail/particles/contact_memory.hpp>
 #include <collide/detail/particles/particle_access.hpp>
 #include <collide/detail/particles/resistance.hpp>
@@ -19,75 +20,57 @@ using archetype_access = particle_access<E, archetype<E, S>>;
 
 // ---- what an effect has
 
-template <class E, class S, class = void>
-struct has_is_inactive : std::false_type {};
 template <class E, class S>
-struct has_is_inactive<
-    E, S, std::void_t<decltype(std::declval<E const&>().is_inactive(std::declval<archetype_access<E, S> const&>()))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct has_accelerate : std::false_type {};
+using is_inactive_call = decltype(std::declval<E const&>().is_inactive(std::declval<archetype_access<E, S> const&>()));
 template <class E, class S>
-struct has_accelerate<
-    E, S, std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<archetype_access<E, S>&>(), S{}))>>
-    : std::true_type {};
+using has_is_inactive = std::bool_constant<is_valid<is_inactive_call, E, S>>;
+template <class E, class S>
+using accelerate_call = decltype(std::declval<E const&>().accelerate(std::declval<archetype_access<E, S>&>(), S{}));
+template <class E, class S>
+using has_accelerate = std::bool_constant<is_valid<accelerate_call, E, S>>;
 template <class Effect>
 inline constexpr bool is_moving_bodies = false;
 template <class Motion>
 inline constexpr bool is_moving_bodies<moving_bodies<Motion>> = true;
 /// Drag and wind: what resists the motion that all others accelerate.
-template <class E, class S, class = void>
-struct has_resistance : std::false_type {};
 template <class E, class S>
-struct has_resistance<
-    E, S, std::void_t<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()))>>
-    : std::true_type {};
+using resistance_call = decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()));
+template <class E, class S>
+using has_resistance = std::bool_constant<is_valid<resistance_call, E, S>>;
 /// Wind: what resists motion in a medium that may move.
 template <class E, class S, class = void>
 struct flows_in : std::false_type {};
 template <class E, class S>
-struct flows_in<
-    E, S, std::void_t<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()))>>
-    : std::bool_constant<
-          !std::is_same<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>())),
-                        medium_at_rest>::value> {};
+struct flows_in<E, S, std::void_t<resistance_call<E, S>>>
+    : std::bool_constant<!std::is_same<resistance_call<E, S>, medium_at_rest>::value> {};
 template <class E, class S>
 inline constexpr bool changes_velocity = has_accelerate<E, S>::value || has_resistance<E, S>::value;
-template <class E, class S, class = void>
-struct has_on_mesh_contact : std::false_type {};
 template <class E, class S>
-struct has_on_mesh_contact<E, S,
-                           std::void_t<decltype(std::declval<E const&>().on_mesh_contact(
-                               std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct has_after_mesh_contact : std::false_type {};
+using on_mesh_contact_call = decltype(std::declval<E const&>().on_mesh_contact(std::declval<archetype_access<E, S>&>(),
+                                                                               std::declval<mesh_contact<S>&>(), S{}));
 template <class E, class S>
-struct has_after_mesh_contact<E, S,
-                              std::void_t<decltype(std::declval<E const&>().after_mesh_contact(
-                                  std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct has_on_mesh_impulse : std::false_type {};
+using has_on_mesh_contact = std::bool_constant<is_valid<on_mesh_contact_call, E, S>>;
 template <class E, class S>
-struct has_on_mesh_impulse<E, S,
-                           std::void_t<decltype(std::declval<E const&>().on_mesh_impulse(
-                               std::declval<archetype_access<E, S>&>(), std::declval<mesh_impulse<S> const&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct has_holds : std::false_type {};
+using after_mesh_contact_call = decltype(std::declval<E const&>().after_mesh_contact(
+    std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}));
 template <class E, class S>
-struct has_holds<E, S,
-                 std::void_t<decltype(std::declval<E const&>().holds(std::declval<archetype_access<E, S> const&>(),
-                                                                     std::declval<vec3<S> const&>(), S{}))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct has_on_pair_contact : std::false_type {};
+using has_after_mesh_contact = std::bool_constant<is_valid<after_mesh_contact_call, E, S>>;
 template <class E, class S>
-struct has_on_pair_contact<E, S,
-                           std::void_t<decltype(std::declval<E const&>().on_pair_contact(
-                               std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
-                               std::declval<archetype_access<E, S> const&>(), S{}))>> : std::true_type {};
+using on_mesh_impulse_call = decltype(std::declval<E const&>().on_mesh_impulse(
+    std::declval<archetype_access<E, S>&>(), std::declval<mesh_impulse<S> const&>(), S{}));
+template <class E, class S>
+using has_on_mesh_impulse = std::bool_constant<is_valid<on_mesh_impulse_call, E, S>>;
+template <class E, class S>
+using holds_call = decltype(std::declval<E const&>().holds(std::declval<archetype_access<E, S> const&>(),
+                                                           std::declval<vec3<S> const&>(), S{}));
+template <class E, class S>
+using has_holds = std::bool_constant<is_valid<holds_call, E, S>>;
+template <class E, class S>
+using on_pair_contact_call = decltype(std::declval<E const&>().on_pair_contact(
+    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+    std::declval<archetype_access<E, S> const&>(), S{}));
+template <class E, class S>
+using has_on_pair_contact = std::bool_constant<is_valid<on_pair_contact_call, E, S>>;
 /// True for an effect whose `on_pair_contact` has what contacts remember as its fourth argument.
 template <class E, class S>
 using archetype_memory =
@@ -126,19 +109,15 @@ struct overlaps_with_memory<
     : std::true_type {};
 template <class E, class S>
 inline constexpr bool overlaps_in = overlaps_without_memory<E, S>::value || overlaps_with_memory<E, S>::value;
-template <class E, class S, class = void>
-struct has_try_wake : std::false_type {};
 template <class E, class S>
-struct has_try_wake<E, S,
-                    std::void_t<decltype(std::declval<E const&>().try_wake(
-                        std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>()))>>
-    : std::true_type {};
-template <class E, class S, class = void>
-struct has_end_step_alone : std::false_type {};
+using try_wake_call = decltype(std::declval<E const&>().try_wake(std::declval<archetype_access<E, S>&>(),
+                                                                 std::declval<archetype_access<E, S> const&>()));
 template <class E, class S>
-struct has_end_step_alone<
-    E, S, std::void_t<decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}))>>
-    : std::true_type {};
+using has_try_wake = std::bool_constant<is_valid<try_wake_call, E, S>>;
+template <class E, class S>
+using end_step_alone_call = decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}));
+template <class E, class S>
+using has_end_step_alone = std::bool_constant<is_valid<end_step_alone_call, E, S>>;
 
 /// The forces of a list of effects, for an effect at the end of a step.
 template <class Effects, class P, class S>

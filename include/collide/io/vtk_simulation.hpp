@@ -1,0 +1,128 @@
+/// \file
+/// The particles of a simulation, and where they touch each other, as VTK's XML files (.vtp) for ParaView.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <collide/columns.hpp>
+#include <collide/effects/sphere_contact.hpp>
+#include <collide/io/vtk.hpp>
+#include <collide/simulation.cuh>
+
+namespace collide {
+namespace detail {
+
+/// The name of a column in a file; null if files do not show it.
+template <class Column>
+constexpr char const* vtk_name(Column) {
+  return nullptr;
+}
+constexpr char const* vtk_name(velocity) { return "velocity"; }
+constexpr char const* vtk_name(angular_velocity) { return "angular_velocity"; }
+constexpr char const* vtk_name(adhered) { return "adhered"; }
+constexpr char const* vtk_name(slow_steps) { return "slow_steps"; }
+
+/// The particles that are there, as files show them.
+template <class S>
+struct vtk_particles {
+  std::vector<S> points, radii;
+  std::vector<vtk_array> known;
+
+  template <class Simulation, class... Column>
+  vtk_particles(Simulation const& of, S common_radius, columns<Column...> all) {
+    std::vector<std::uint8_t> present(of.size(), 1);
+    if constexpr (contains<decltype(all), alive>) present = of.template to_host<alive>();
+    auto const kept = [&](auto column) {
+      auto values = of.template to_host<decltype(column)>();
+      std::size_t const width = present.empty() ? 1 : values.size() / present.size();
+      std::size_t n = 0;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (present[i / width] != 0) values[n++] = values[i];
+      }
+      values.resize(n);
+      return std::pair(std::move(values), width);
+    };
+    points = kept(position{}).first;
+    radii.assign(points.size() / 3, common_radius);
+    if constexpr (contains<decltype(all), radius>) radii = kept(radius{}).first;
+    known.emplace_back("radius", radii);
+    auto const add = [&](auto column) {
+      if constexpr (vtk_name(decltype(column){}) != nullptr) {
+        auto const [values, width] = kept(column);
+        known.emplace_back(vtk_name(column), values, width);
+      }
+    };
+    (add(Column{}), ...);
+  }
+};
+
+/// Calls f(i, k, distance) for each pair of overlapping spheres, i < k in the order of x. O(n log n), and the pairs
+/// that are near each other along x.
+template <class S, class F>
+void for_each_overlap(std::vector<S> const& xyz, std::vector<S> const& radii, F const& f) {
+  std::vector<std::uint32_t> order(radii.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return xyz[3 * std::size_t{a}] < xyz[3 * std::size_t{b}]; });
+  S const most = radii.empty() ? S(0) : *std::max_element(radii.begin(), radii.end());
+  for (std::size_t a = 0; a < order.size(); ++a) {
+    std::size_t const i = order[a];
+    for (std::size_t b = a + 1; b < order.size(); ++b) {
+      std::size_t const k = order[b];
+      if (!(xyz[3 * k] - xyz[3 * i] < radii[i] + most)) break;
+      S const x = xyz[3 * k] - xyz[3 * i], y = xyz[3 * k + 1] - xyz[3 * i + 1], z = xyz[3 * k + 2] - xyz[3 * i + 2];
+      S const distance = std::sqrt(x * x + y * y + z * z);
+      if (distance < radii[i] + radii[k]) f(i, k, distance);
+    }
+  }
+}
+
+}  // namespace detail
+
+/// Writes the particles that are there as the file `path` (.vtp), as points with `radius`, `velocity`, and
+/// `angular_velocity`, `adhered` and `slow_steps` where the scene has them. ParaView's filter Glyph, scaled by radius,
+/// shows spheres. Waits; O(particles). Throws `error` if the file cannot be written.
+template <class Detector, class... Effect>
+void write_vtk_particles(std::string const& path, simulation<Detector, Effect...> const& of) {
+  using list = typename simulation<Detector, Effect...>::columns;
+  detail::vtk_particles<typename Detector::scalar> const shown(of, of.state().common_radius, list{});
+  detail::write_file(path, [&](std::ofstream& out) {
+    write_vtp(out, shown.points, shown.known, vtk_cells::dots, detail::first_numbers(shown.radii.size()));
+  });
+}
+
+/// Writes a line between the centres of each two particles that overlap, as the file `path` (.vtp), with their
+/// `overlap`, and `force`, that of the spring of `sphere_contact`, where the scene has it: the force chains. ParaView's
+/// filter Tube, its radius by force, shows them. Waits; O(n log n), and pairs near each other along x. Throws `error`
+/// if the file cannot be written.
+template <class Detector, class... Effect>
+void write_vtk_contacts(std::string const& path, simulation<Detector, Effect...> const& of) {
+  using S = typename Detector::scalar;
+  using list = typename simulation<Detector, Effect...>::columns;
+  detail::vtk_particles<S> const shown(of, of.state().common_radius, list{});
+  std::vector<S> points, overlaps;
+  detail::for_each_overlap(shown.points, shown.radii, [&](std::size_t i, std::size_t k, S distance) {
+    for (std::size_t const p : {i, k}) {
+      points.insert(points.end(), &shown.points[3 * p], &shown.points[3 * p] + 3);
+      overlaps.push_back(shown.radii[i] + shown.radii[k] - distance);
+    }
+  });
+  std::vector<vtk_array> known{{"overlap", overlaps}};
+  if constexpr ((std::is_same<Effect, sphere_contact>::value || ...)) {
+    std::vector<S> forces = overlaps;
+    for (S& f : forces) f *= static_cast<S>(of.template effect<sphere_contact>().stiffness);
+    known.emplace_back("force", forces);
+  }
+  detail::write_file(path, [&](std::ofstream& out) {
+    write_vtp(out, points, known, vtk_cells::lines, detail::first_numbers(overlaps.size()));
+  });
+}
+
+}  // namespace collide

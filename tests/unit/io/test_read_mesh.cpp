@@ -1,0 +1,123 @@
+/// Meshes from files, by tinyobjloader and, where it is, Assimp.
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#define TINYOBJLOADER_IMPLEMENTATION
+#include <collide/io/obj.hpp>
+#if defined(COLLIDE_HAS_ASSIMP)
+#include <collide/io/assimp.hpp>
+#endif
+
+#include <doctest/doctest.h>
+
+namespace {
+
+/// A file with this text that is gone after the test.
+struct written {
+  std::string path;
+  written(std::string const& text, std::string const& ending)
+      : path{"collide-test-mesh-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + ending} {
+    std::ofstream(path, std::ios::binary) << text;
+  }
+  ~written() { std::remove(path.c_str()); }
+};
+
+collide::mesh_data<float> read(std::string const& text) { return collide::read_obj<float>(written(text, ".obj").path); }
+
+std::string const square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+/// Twice the area of all triangles, with the sign of z.
+double area(collide::mesh_data<float> const& m) {
+  double sum = 0;
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    auto const at = [&](std::size_t k, std::size_t c) { return double(m.vertices[3 * m.corners[3 * i + k] + c]); };
+    double const one = (at(1, 0) - at(0, 0)) * (at(2, 1) - at(0, 1)) - (at(1, 1) - at(0, 1)) * (at(2, 0) - at(0, 0));
+    CHECK(one >= 0);
+    sum += one;
+  }
+  return sum;
+}
+
+TEST_CASE("read_obj: triangles in the order of the file, over objects and groups") {
+  auto const mesh = read(square + "o a\nf 1 2 3\ng b\nusemtl c\nf 1/1 3/2 4/3\no c\nf -4 -3 -1\n");
+  CHECK(mesh.corners == std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 0, 1, 3});
+  CHECK(mesh.vertices == std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+  CHECK(mesh.view().size() == 3);
+}
+
+TEST_CASE("read_obj: polygons become n - 2 triangles that cover them") {
+  CHECK(area(read(square + "f 1 2 3 4\n")) == 2);
+  // an arrow: only from two of its corners all of it is seen
+  auto const arrow = read("v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 1 2 3 4\nf 2 3 4 1\nf 3 4 1 2\nf 4 1 2 3\n");
+  CHECK(arrow.size() == 8);
+  CHECK(area(arrow) == 4 * 8);
+  auto const hexagon = read("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nv -1 1 0\nf 1 2 3 4 5 6\n");
+  CHECK(hexagon.size() == 4);
+  CHECK(area(hexagon) == 12);
+  CHECK(read("v 1 1 1\nv 2 2 2\nv 3 3 3\nv 4 4 4\nf 1 2 3 4\n").size() == 2);
+}
+
+TEST_CASE("read_obj: what is no mesh is refused, and named") {
+  using collide::error;
+  CHECK_THROWS_AS(collide::read_obj("/no/such/file.obj"), error);
+  CHECK_THROWS_AS(read(square), error);
+  CHECK_THROWS_AS(read(square + "f 1 2 9\n"), error);
+  CHECK_THROWS_AS(read("v 0 0 0\nv 1 0 0\nv 1e60 0 0\nf 1 2 3\n"), error);
+  // a comb, which no corner sees all of
+  CHECK_THROWS_AS(read("v 0 0 0\nv 5 0 0\nv 5 4 0\nv 4 1 0\nv 3 4 0\nv 2 1 0\nv 1 4 0\nv 0.5 1 0\nv 0 4 0\n"
+                       "f 1 2 3 4 5 6 7 8 9\n"),
+                  error);
+  std::string round = "f";
+  std::string corners;
+  for (int i = 1; i <= 300; ++i) corners += "v 0 0 0\n", round += " " + std::to_string(i);
+  CHECK_THROWS_AS(read(corners + round + "\nf 1 2 3\n"), error);
+}
+
+#if defined(COLLIDE_HAS_ASSIMP)
+
+TEST_CASE("read_mesh: a tetrahedron in each format is the same") {
+  std::string const off = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  std::string const ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  std::string const obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  std::vector<float> const corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  int const faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  std::string stl(84, '\0');
+  stl[80] = 4;
+  std::vector<float> soup;
+  for (auto const& face : faces) {
+    stl.append(12, '\0');
+    for (int const v : face) {
+      stl.append(reinterpret_cast<char const*>(corners[v].data()), 12);
+      soup.insert(soup.end(), corners[v].begin(), corners[v].end());
+    }
+    stl.append(2, '\0');
+  }
+  for (auto const& [text, ending] : {std::pair{off, ".off"}, {ply, ".ply"}, {obj, ".obj"}, {stl, ".stl"}}) {
+    CAPTURE(ending);
+    auto const mesh = collide::read_mesh<double>(written(text, ending).path);
+    CHECK(mesh.size() == 4);
+    CHECK(mesh.vertices.size() == 12);  // each vertex is there once
+    std::vector<float> found;
+    for (auto const c : mesh.corners) {
+      for (std::size_t k = 0; k < 3; ++k) found.push_back(float(mesh.vertices[3 * c + k]));
+    }
+    CHECK(found == soup);
+  }
+}
+
+TEST_CASE("read_mesh: a file that is no mesh is refused, and named") {
+  CHECK_THROWS_AS(collide::read_mesh("/no/such/file.stl"), collide::error);
+  CHECK_THROWS_AS(collide::read_mesh(written("nonsense", ".off").path), collide::error);
+}
+
+#endif
+
+}  // namespace
