@@ -38,8 +38,9 @@ struct triangle_edge {
 /// The findings of `validate_closed`.
 class seam_report {
  public:
-  /// Where the problem is, by rising number of the triangle: one entry for each open edge, flipped edge and duplicate
-  /// face, and one for each triangle at a crowded edge. A flipped edge is named by the triangle of the larger id.
+  /// The edges and faces with this problem, by rising number of the triangle: one entry for each open edge, flipped
+  /// edge and duplicate face, and one for each triangle at a crowded edge. A flipped edge is named by the triangle of
+  /// the larger id.
   std::vector<triangle_edge> const& where(seam_problem p) const { return found_[static_cast<std::size_t>(p)]; }
 
   /// True if every edge has an even number of triangles: then there is an inside, which `contains` finds.

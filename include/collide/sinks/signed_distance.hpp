@@ -23,7 +23,7 @@ struct signed_nearest_triangle : nearest_triangle<S> {
 
 namespace detail {
 
-/// What `signed_distance` does for each point.
+/// Kernel functor of `for_each` over points: the nearest triangle of each, and on which side it is.
 template <class S, class Precision>
 struct find_signed_distance {
   S max_distance;

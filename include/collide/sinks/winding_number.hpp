@@ -22,7 +22,7 @@ struct winding {
 
 namespace detail {
 
-/// What `winding_number` does for each point.
+/// Kernel functor of `for_each` over points: the winding number of each.
 template <class S>
 struct find_winding {
   winding<S>* to;

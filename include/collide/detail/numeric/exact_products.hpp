@@ -12,9 +12,9 @@
 namespace collide::detail {
 
 /// A weight times at most `Factors` numbers.
-template <int Factors>
+template <std::size_t Factors>
 struct weighted_product {
-  static constexpr int most_factors = Factors;
+  static constexpr int most_factors = static_cast<int>(Factors);
 
   std::int8_t weight;  ///< -4, -2, -1, 1, 2 or 4
   std::uint8_t count;

@@ -5,6 +5,10 @@
 #include <collide/detail/particles/effect_traits.hpp>
 #include <collide/detail/particles/resistance.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// An effect's parameters, in a base class that is found by the effect's type.
@@ -393,3 +397,5 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -6,6 +6,10 @@
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/numeric/decay.hpp>
 
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
 namespace collide::detail {
 
 /// How a medium resists.
@@ -125,8 +129,8 @@ COLLIDE_HD_INLINE response gentle_response(double vv, double va, double aa, resi
   double const force =
       mul_rn(r.linear, r.linear) + mul_rn(q, mul_rn(2 * r.linear, most) + mul_rn(q, ss));  // square, by speed
   constexpr double rounding = 1 + 8e-15;
-  bool const bounded = (ss <= mul_rn(vv, rounding)) | (mul_rn(ss, force) <= mul_rn(aa, rounding));
-  bool const right = (aa <= r.gentle) & (kept + mul_rn(share, top) >= 0) & bounded;
+  int const bounded = int{ss <= mul_rn(vv, rounding)} | int{mul_rn(ss, force) <= mul_rn(aa, rounding)};
+  bool const right = (int{aa <= r.gentle} & int{kept + mul_rn(share, top) >= 0} & bounded) != 0;
   return {of_v, across, select(right, 0.0, -1.0)};
 }
 
@@ -270,3 +274,5 @@ class media {
 };
 
 }  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -191,12 +191,14 @@ struct batched_per_sphere_query {
       if constexpr (resumes<Ref, S>::value) {
         auto const around = swept_bounding_sphere(own);
         decltype(ref.begin(around)) at;
-        for (bool more = true, begins = true; more; begins = false) {
+        bool more = true, begins = true;
+        while (more) {
           multiversioned([&] {
             if (begins) at = ref.begin(around);
             s.size = 0;
             more = next_candidates(ref, around, at, s.room, [&](id t) { s.found[s.size++] = t; });
           });
+          begins = false;
           for (std::uint32_t k = 0; k < s.size; ++k) take(block, s, {static_cast<id>(i), s.found[k]}, own);
         }
       } else {

@@ -185,11 +185,11 @@ class materials {
     detail::check_parameter(i >= 0 && i < N, "materials: the number of a solid is from 0 to N - 1");
   }
 
-  static constexpr std::size_t number = N;
+  static constexpr std::size_t count = N;
 
-  solid solids_[number] = {};
-  bool is_set_[number] = {};
-  detail::contact_material pairs_[number * (number + 1) / 2];
+  solid solids_[count] = {};
+  bool is_set_[count] = {};
+  detail::contact_material pairs_[count * (count + 1) / 2];
 };
 
 }  // namespace collide
