@@ -1,0 +1,54 @@
+/// \file
+/// What a call does while other threads of Python run, and what happens at the end of the interpreter and after a fork.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include <nanobind/nanobind.h>
+#include <pthread.h>
+
+#include <collide/error.hpp>
+
+namespace collide_python {
+
+namespace nb = nanobind;
+
+inline std::atomic<int> calls_under_way{0};
+inline std::atomic<bool> interpreter_ends{false};
+inline std::atomic<bool> is_forked{false};
+
+/// Sets `is_forked` in processes that are forked from now on.
+inline void watch_forks() {
+  pthread_atfork(nullptr, nullptr, [] { is_forked = true; });
+}
+
+/// Other threads run while this is there. At the end of the interpreter it is refused.
+class without_gil {
+ public:
+  without_gil() {
+    if (interpreter_ends) throw collide::error("collide: the interpreter is about to end");
+    ++calls_under_way;
+    state_ = PyEval_SaveThread();
+  }
+  ~without_gil() {
+    PyEval_RestoreThread(state_);
+    --calls_under_way;
+  }
+  without_gil(without_gil const&) = delete;
+  without_gil& operator=(without_gil const&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
+
+/// For `atexit`: waits for the calls of other threads, which would not come back to an interpreter that is gone.
+inline void wait_for_calls() {
+  interpreter_ends = true;
+  nb::gil_scoped_release const release;
+  while (!is_forked && calls_under_way > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+}  // namespace collide_python
