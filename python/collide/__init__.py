@@ -13,5 +13,10 @@ the same for all arguments. `Mesh` has the queries, `Simulation` particles that 
 
 from ._errors import Error
 from ._mesh import Contacts, Csr, Impacts, Mesh, Pairs
+from ._simulation import Body, Simulation
+from . import effects
+from .effects import *  # noqa: F403: collide.gravity() and all the others
+from .effects import Effect
 
-__all__ = ["Contacts", "Csr", "Error", "Impacts", "Mesh", "Pairs"]
+__all__ = ["Body", "Contacts", "Csr", "Effect", "Error", "Impacts", "Mesh", "Pairs", "Simulation", "effects"]
+__all__ += effects.__all__

@@ -10,6 +10,7 @@ except ImportError as reason:
 
 CPU_TYPES = (1, 3)  # of DLPack: memory of the host, and such that a GPU can read, too
 CUDA = 2
+NO_STREAM = (0, -1)  # what calls on the host are given
 
 
 def device_of(array, name):
@@ -42,8 +43,8 @@ class _Numpy:
     is_numpy = True
 
     def stream(self, device):
-        """The stream that the library works on now, and what its arrays' __dlpack__ is given; None where it has none."""
-        return None
+        """The stream that the library works on now, and what its arrays' __dlpack__ is given."""
+        raise ValueError("numpy has no arrays on a GPU")
 
     def array(self, result, stream):
         """A result of a compiled module as an array of this library, without a copy."""
@@ -108,8 +109,8 @@ class _Ordered:
         return self.result.__dlpack_device__()
 
     def __dlpack__(self, *, stream=None, **others):
-        if self.stream_of_result is not None and stream != -1:
-            _cuda.order(self.__dlpack_device__()[1], self.stream_of_result, stream or 1)
+        if stream != -1:
+            _cuda.order(self.__dlpack_device__()[1], self.stream_of_result[0], stream or 1)
         return self.result.__dlpack__(**others)
 
 

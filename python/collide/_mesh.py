@@ -2,7 +2,7 @@
 
 from typing import Any, Literal, NamedTuple, Optional, Union
 
-from ._arrays import CUDA, device_of, library_of, module_for
+from ._arrays import CUDA, NO_STREAM, device_of, library_of, module_for
 
 Array = Any  #: an array of numpy, torch, cupy, jax or warp, or anything with __dlpack__
 Precision = Literal["exact", "double", "single"]
@@ -130,8 +130,7 @@ class Mesh:
         self._is_wide = _is_wide(vertices)
         make = module.MeshDouble if self._is_wide else module.MeshFloat
         self._mesh = make(threads, self._device[1])
-        self._on_stream(self._library)
-        self._mesh.take(vertices, triangles, validate)
+        self._mesh.take(self._stream(self._library), vertices, triangles, validate)
 
     def __len__(self) -> int:
         """How many triangles there are."""
@@ -145,8 +144,8 @@ class Mesh:
         """The mesh has moved: takes other vertices, or the same array with other contents, and triangles if they have
         changed, too. What depends on them is prepared again by the next query; nothing is allocated if the mesh has not
         grown. Raises as the constructor does; the mesh is then as it was. Triangles are not checked."""
-        self._on_stream(library_of(vertices, self._device))
-        self._mesh.take(vertices, triangles, False)
+        stream = self._stream(library_of(vertices, self._device))
+        self._mesh.take(stream, vertices, triangles, False)
 
     def count(
         self,
@@ -157,8 +156,8 @@ class Mesh:
         precision: Precision = "exact",
     ) -> int:
         """How many pairs of a sphere and a triangle touch. Arguments as for `query`."""
-        self._on_stream(library_of(centres, self._device))
-        return self._mesh.count(precision, centres, radius, displacements, False, None, None, True)
+        stream = self._stream(library_of(centres, self._device))
+        return self._mesh.count(stream, precision, centres, radius, displacements, False, None, None, True)
 
     def any(
         self,
@@ -175,8 +174,8 @@ class Mesh:
              one has been made: it can be captured in a CUDA graph.
         """
         library = library_of(centres, self._device)
-        stream = self._on_stream(library)
-        flags = self._mesh.any(precision, centres, radius, displacements, False, None, out, library.is_numpy)
+        stream = self._stream(library)
+        flags = self._mesh.any(stream, precision, centres, radius, displacements, False, None, out, library.is_numpy)
         return flags if out is not None else library.flags(library.array(flags, stream))
 
     def query(
@@ -211,9 +210,9 @@ class Mesh:
             _refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
             _refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
             library = library_of(centres, self._device)
-            stream = self._on_stream(library)
+            stream = self._stream(library)
             arrays = self._mesh.csr(
-                precision, centres, radius, displacements, _is_canonical(order), None, None, library.is_numpy
+                stream, precision, centres, radius, displacements, _is_canonical(order), None, None, library.is_numpy
             )
             return Csr(*(library.array(a, stream) for a in arrays))
         _refuse(output != "pairs", "output", f"is {output!r}, expected 'pairs' or 'csr'")
@@ -273,9 +272,9 @@ class Mesh:
 
     def _ask(self, call, kind, centres, radius, displacements, precision, order, capacity, out):
         library = library_of(centres, self._device)
-        stream = self._on_stream(library)
+        stream = self._stream(library)
         records, size, total = getattr(self._mesh, call)(
-            precision, centres, radius, displacements, _is_canonical(order), capacity, out, library.is_numpy
+            stream, precision, centres, radius, displacements, _is_canonical(order), capacity, out, library.is_numpy
         )
         if out is None:
             records = library.array(records, stream)
@@ -283,13 +282,9 @@ class Mesh:
             records = out[:size]
         return kind(library, records, size, total, self._is_wide)
 
-    def _on_stream(self, library):
-        """On a GPU: calls go to the stream that the library works on."""
-        if self._device[0] != CUDA:
-            return None
-        stream, given = library.stream(self._device[1])
-        self._mesh.use_stream(stream, given)
-        return stream
+    def _stream(self, library):
+        """What a call to the compiled module begins with: on a GPU the stream that the library works on now."""
+        return library.stream(self._device[1]) if self._device[0] == CUDA else NO_STREAM
 
 
 def _is_wide(array):

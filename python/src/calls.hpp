@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <stdexcept>
 #include <thread>
 
@@ -42,6 +43,19 @@ class without_gil {
 
  private:
   PyThreadState* state_;
+};
+
+/// Holds a mutex. While another thread has it, other threads of Python run, so that this one can finish.
+class one_at_a_time {
+ public:
+  explicit one_at_a_time(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
+    if (lock_) return;
+    without_gil const others_run;
+    lock_.lock();
+  }
+
+ private:
+  std::unique_lock<std::mutex> lock_;
 };
 
 /// For `atexit`: waits for the calls of other threads, which would not come back to an interpreter that is gone.

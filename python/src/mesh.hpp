@@ -31,6 +31,7 @@ struct question {
   std::optional<std::size_t> capacity;  ///< for how many results there is room at most
   nb::object out;                       ///< None, or an array for them
   bool numpy = true;                    ///< whether results are numpy arrays
+  stream_of_call stream{0, -1};
 };
 
 template <class Space, class S>
@@ -41,7 +42,8 @@ class mesh {
   mesh(int threads, int device) : runtime_(threads, device) {}
 
   /// Reads other arrays from now on; without triangles those of before. After an error it is as it was.
-  void take(nb::object const& vertices, nb::object const& triangles, bool validate) {
+  void take(stream_of_call stream, nb::object const& vertices, nb::object const& triangles, bool validate) {
+    call const now(*this, stream);
     array const v = import_array(vertices, "vertices", runtime_.at());
     collide::point_view<S> const points =
         points_of<S>(v, "vertices", ": expected float32 or float64 from the beginning");
@@ -57,7 +59,6 @@ class mesh {
     }
     collide::mesh_view<S> const view = t.is_valid() ? mesh_of(points, t, "triangles") : collide::triangle_soup(points);
     if (validate) check(view);
-    std::lock_guard<std::mutex> const one_at_a_time(mutex_);
     vertices_ = v;
     triangles_ = t;
     view_ = view;
@@ -70,13 +71,15 @@ class mesh {
   runtime<Space>& where() { return runtime_; }
 
   std::uint64_t count(question const& q) {
+    call const now(*this, q.stream);
     collide::count sink;
     ask(q, sink);
     return sink.total();
   }
 
   nb::object any(question const& q) {
-    array const centres = import_array(q.centres, "centres", runtime_.at());
+    call const now(*this, q.stream);
+    array const centres = runtime_.keep(import_array(q.centres, "centres", runtime_.at()));
     if (!q.out.is_none()) {
       nb::ndarray<> const room = room_of<std::uint8_t>(q.out, "out", 0, runtime_.at());
       if (room.size() != centres.shape(0)) refuse("out", "has another length than centres");
@@ -101,6 +104,7 @@ class mesh {
   nb::object earliest(question const& q) { return per_sphere<collide::impact<S>, collide::earliest_impact<S>>(q); }
 
   nb::object csr(question const& q) {
+    call const now(*this, q.stream);
     auto sink = std::make_unique<kept<collide::csr>>(runtime_.memory(), order_of(q));
     ask(q, sink->sink);
     auto const* const offsets = reinterpret_cast<std::int64_t const*>(sink->sink.offsets());
@@ -115,6 +119,13 @@ class mesh {
   template <class Precision>
   using at_rest = collide::detector<collide::bucket, collide::karabassi<Precision>, Space, S>;
   using swept = collide::detector<collide::bucket, collide::karabassi_swept<>, Space, S>;
+
+  /// A call of Python: one at a time, in its place.
+  struct call {
+    one_at_a_time alone;
+    typename runtime<Space>::scope here;
+    call(mesh& m, stream_of_call const& stream) : alone(m.mutex_), here(m.runtime_, stream) {}
+  };
 
   /// A sink with memory that lives as long as its results.
   template <class Sink>
@@ -131,7 +142,6 @@ class mesh {
   }
 
   void check(collide::mesh_view<S> const& view) {
-    typename runtime<Space>::scope const here(runtime_);
     without_gil const others_run;
     auto const report = collide::validate(view, runtime_.space());
     if (report.count(collide::problem::corner_out_of_range) != 0)
@@ -140,6 +150,7 @@ class mesh {
 
   template <class Record, class Sink>
   nb::object records(question const& q) {
+    call const now(*this, q.stream);
     constexpr std::size_t words = sizeof(Record) / 4;
     if (!q.out.is_none()) {
       nb::ndarray<> const room = room_of<std::int32_t>(q.out, "out", words, runtime_.at());
@@ -165,6 +176,7 @@ class mesh {
 
   template <class Record, class Sink>
   nb::object per_sphere(question const& q) {
+    call const now(*this, q.stream);
     auto sink = std::make_unique<kept<Sink>>(runtime_.memory());
     ask(q, sink->sink);
     auto const* const data = reinterpret_cast<std::int32_t const*>(sink->sink.data());
@@ -175,7 +187,7 @@ class mesh {
 
   template <class Sink>
   void ask(question const& q, Sink& sink) {
-    ask(q, sink, import_array(q.centres, "centres", runtime_.at()));
+    ask(q, sink, runtime_.keep(import_array(q.centres, "centres", runtime_.at())));
   }
 
   /// Has the detector of a precision answer, while other threads run.
@@ -184,6 +196,7 @@ class mesh {
     array radii, displacements;
     auto const points = points_of<S>(centres, "centres");
     auto const spheres = spheres_of(points, q.radius, radii, runtime_.at());
+    if (radii.is_valid()) runtime_.keep(radii);
     if (q.displacements.is_none()) {
       if constexpr (!needs_motion<Sink>) {
         if (q.precision == "exact") return run<0>(std::get<0>(at_rest_), spheres, sink);
@@ -196,7 +209,7 @@ class mesh {
     } else if constexpr (needs_rest<Sink>) {
       refuse("displacements", "the closest triangle is of spheres at rest: ask for impacts");
     } else {
-      displacements = import_array(q.displacements, "displacements", runtime_.at());
+      displacements = runtime_.keep(import_array(q.displacements, "displacements", runtime_.at()));
       auto const paths = points_of<S>(displacements, "displacements");
       if (paths.size() != points.size())
         refuse("displacements", "has " + std::to_string(paths.size()) + " rows, expected " +
@@ -208,9 +221,7 @@ class mesh {
 
   template <std::size_t number, class Detector, class Spheres, class Sink>
   void run(Detector& detector, Spheres const& spheres, Sink& sink) {
-    typename runtime<Space>::scope const here(runtime_);
     without_gil const others_run;
-    std::lock_guard<std::mutex> const one_at_a_time(mutex_);
     detector.space() = runtime_.space();
     if (!is_built_[number]) detector.build(view_);
     is_built_[number] = true;

@@ -10,8 +10,15 @@
 
 #include "arrays.hpp"
 #include "calls.hpp"
+#include "simulation_base.hpp"
 
 namespace collide_python {
+
+/// On a GPU, the stream that a call puts its work on, and what DLPack's exporters are told.
+struct stream_of_call {
+  std::uintptr_t stream;
+  std::int64_t given;
+};
 
 /// What differs from space to space.
 template <class Space>
@@ -29,10 +36,16 @@ class runtime<collide::host> {
   /// The space of the next call. In a forked process one thread works: OpenMP's threads stayed in the parent.
   collide::host space() const { return collide::host(is_forked ? 1 : threads_); }
 
-  /// Makes the device current, and the call impossible where it cannot be.
+  /// What a call is done in: on a GPU with its device current, on a stream of the caller.
   struct scope {
-    explicit scope(runtime const&) {}
+    scope(runtime&, stream_of_call) {}
   };
+
+  whereabouts where() const { return {is_forked ? 1 : threads_, nullptr, nullptr}; }
+  stream_of_call current() const { return {0, -1}; }
+
+  /// Keeps an array of the caller until the work of the call is done.
+  array const& keep(array const& a) { return a; }
 
   /// Keeps memory of results usable until they are gone.
   std::shared_ptr<void> memory() const { return {}; }
