@@ -135,13 +135,25 @@ collide::mesh_view<S> mesh_of(collide::point_view<S> const& vertices, array cons
           static_cast<std::size_t>(a.stride(1))};
 }
 
+/// Whether a Python object is one number that the host can read.
+inline bool is_number(nb::handle from, place const& at) {
+  if (PyFloat_Check(from.ptr())) return true;
+  if (!nb::hasattr(from, "__float__")) return false;
+  if (!nb::hasattr(from, "ndim")) return true;
+  bool const is_scalar = nb::cast<int>(from.attr("ndim")) == 0;
+  return is_scalar && (is_on_host(at.device_type) || !nb::hasattr(from, "__dlpack__"));
+}
+
 /// A radius for all, or an array of shape (n,). `keep` holds the array.
 template <class S>
 collide::sphere_view<S> spheres_of(collide::point_view<S> const& centres, nb::handle radius, array& keep,
                                    place const& at) {
   if (centres.size() > 0x7fffffff) refuse("centres", "has more than 2,147,483,647 rows");
-  if (PyFloat_Check(radius.ptr()) || PyLong_Check(radius.ptr()))
-    return collide::spheres_at(centres, static_cast<S>(PyFloat_AsDouble(radius.ptr())));
+  if (is_number(radius, at)) {
+    double const number = PyFloat_AsDouble(radius.ptr());
+    if (number == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
+    return collide::spheres_at(centres, static_cast<S>(number));
+  }
   keep = import_array(radius, "radius", at);
   check_type<S>(keep, "radius", ", that of the vertices: nothing is converted");
   if (keep.ndim() != 1 || keep.shape(0) != centres.size())

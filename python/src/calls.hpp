@@ -21,18 +21,28 @@ inline std::atomic<int> calls_under_way{0};
 inline std::atomic<bool> interpreter_ends{false};
 inline std::atomic<bool> is_forked{false};
 
+/// The thread that ends the interpreter.
+inline std::thread::id& ending_thread() {
+  static std::thread::id id;
+  return id;
+}
+
 /// Sets `is_forked` in processes that are forked from now on.
 inline void watch_forks() {
   pthread_atfork(nullptr, nullptr, [] { is_forked = true; });
 }
 
-/// Other threads run while this is there. At the end of the interpreter it is refused.
+/// Other threads run while this is there. Once the interpreter ends, no call begins.
 class without_gil {
  public:
   without_gil() {
-    if (interpreter_ends) throw collide::error("collide: the interpreter is about to end");
+    if (interpreter_ends && std::this_thread::get_id() == ending_thread())
+      throw collide::error("collide: the interpreter is about to end");
     ++calls_under_way;
     state_ = PyEval_SaveThread();
+    if (!interpreter_ends) return;
+    --calls_under_way;
+    while (true) std::this_thread::sleep_for(std::chrono::hours(1));  // as Python's own calls do by then
   }
   ~without_gil() {
     PyEval_RestoreThread(state_);
@@ -60,6 +70,7 @@ class one_at_a_time {
 
 /// For `atexit`: waits for the calls of other threads, which would not come back to an interpreter that is gone.
 inline void wait_for_calls() {
+  ending_thread() = std::this_thread::get_id();
   interpreter_ends = true;
   nb::gil_scoped_release const release;
   while (!is_forked && calls_under_way > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));

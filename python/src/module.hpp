@@ -63,8 +63,8 @@ void bind_mesh(nb::module_& m, char const* name) {
                                  numpy,
                                  {stream.first, stream.second}});
         },
-        nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg().none(),
-        nb::arg());
+        nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg().none(), nb::arg(), nb::arg().none(),
+        nb::arg().none(), nb::arg());
   };
   def("count", &type::count);
   def("any", &type::any);
@@ -99,6 +99,7 @@ void bind_simulation(nb::module_& m, char const* name) {
 
 template <class Space>
 void bind(nb::module_& m) {
+  nb::set_leak_warnings(false);  // of what threads hold that the end of the interpreter stops
   register_errors();
   watch_forks();
   nb::module_::import_("atexit").attr("register")(nb::cpp_function(&wait_for_calls));

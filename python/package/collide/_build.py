@@ -22,7 +22,7 @@ def library(effects, names, space, capability, **options):
     built_in = _HERE / "lists" / (name_of(text) + ".so")
     if built_in.exists():
         return str(built_in)
-    command = _command(space, capability, text)
+    command = _command(space, capability)
     key = "\n".join([text, _version_of(command[0]), *command, _headers()])
     path = cache() / (hashlib.sha256(key.encode()).hexdigest()[:32] + ".so")
     if not path.exists():
@@ -36,27 +36,19 @@ def cache():
     return pathlib.Path(os.environ.get("COLLIDE_CACHE") or pathlib.Path(base) / "collide")
 
 
-def _include_folders():
-    """Those of the package; in a checkout, of the repository."""
-    if (_HERE / "include" / "collide").exists():
-        return [_HERE / "include", _HERE / "src"]
-    return [_HERE.parent.parent / "include", _HERE.parent / "src", pathlib.Path("/usr/include/eigen3")]
-
-
-def _command(space, capability, text):
+def _command(space, capability):
     """Compiler and flags, without the files."""
-    includes = [f"-I{folder}" for folder in _include_folders()]
-    flags = ["-std=c++17", "-O2", "-shared", *includes]
+    flags = ["-std=c++17", "-O2", "-shared", f"-I{_HERE / 'include'}", f"-I{_HERE / 'src'}"]
     if space == "host":
-        compiler = _find("CXX", ("g++", "clang++", "c++"), text)
+        compiler = _find("CXX", ("g++", "clang++", "c++"))
         return [*compiler, *flags, "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-fopenmp"]
-    compiler = _find("CUDACXX", ("nvcc", "/usr/local/cuda/bin/nvcc"), text)
+    compiler = _find("CUDACXX", ("nvcc", "/usr/local/cuda/bin/nvcc"))
     host = "-Xcompiler=-fPIC,-fvisibility=hidden,-ffp-contract=off,-fopenmp"
     cuda = ["--expt-relaxed-constexpr", "--diag-suppress=20012", "-cudart=static", f"-arch=sm_{capability}"]
     return [*compiler, *flags, *cuda, host]
 
 
-def _find(variable, names, text):
+def _find(variable, names):
     given = shlex.split(os.environ.get(variable, ""))
     for name in [given[0]] if given else names:
         if path := shutil.which(name):
@@ -75,10 +67,9 @@ def _version_of(compiler):
 def _headers():
     """What is in the headers, as one number."""
     digest = hashlib.sha256()
-    for folder in _include_folders()[:2]:
-        for path in sorted(folder.rglob("*")):
-            if path.suffix in (".hpp", ".cuh"):
-                digest.update(path.read_bytes())
+    for path in sorted(_HERE.rglob("*")):
+        if path.suffix in (".hpp", ".cuh"):
+            digest.update(path.read_bytes())
     return digest.hexdigest()
 
 
