@@ -32,22 +32,28 @@ inline void watch_forks() {
   pthread_atfork(nullptr, nullptr, [] { is_forked = true; });
 }
 
-/// Other threads run while this is there. Once the interpreter ends, no call begins.
+/// A call of Python, from its beginning to its end. Once the interpreter ends none begins.
+class call_under_way {
+ public:
+  call_under_way() {
+    if (interpreter_ends) {
+      if (std::this_thread::get_id() == ending_thread())
+        throw collide::error("collide: the interpreter is about to end");
+      PyEval_SaveThread();
+      while (true) std::this_thread::sleep_for(std::chrono::hours(1));  // as Python's own calls do by then
+    }
+    ++calls_under_way;
+  }
+  ~call_under_way() { --calls_under_way; }
+  call_under_way(call_under_way const&) = delete;
+  call_under_way& operator=(call_under_way const&) = delete;
+};
+
+/// Other threads run while this is there.
 class without_gil {
  public:
-  without_gil() {
-    if (interpreter_ends && std::this_thread::get_id() == ending_thread())
-      throw collide::error("collide: the interpreter is about to end");
-    ++calls_under_way;
-    state_ = PyEval_SaveThread();
-    if (!interpreter_ends) return;
-    --calls_under_way;
-    while (true) std::this_thread::sleep_for(std::chrono::hours(1));  // as Python's own calls do by then
-  }
-  ~without_gil() {
-    PyEval_RestoreThread(state_);
-    --calls_under_way;
-  }
+  without_gil() : state_{PyEval_SaveThread()} {}
+  ~without_gil() { PyEval_RestoreThread(state_); }
   without_gil(without_gil const&) = delete;
   without_gil& operator=(without_gil const&) = delete;
 

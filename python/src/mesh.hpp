@@ -122,6 +122,7 @@ class mesh {
 
   /// A call of Python: one at a time, in its place.
   struct call {
+    call_under_way under_way;
     one_at_a_time alone;
     typename runtime<Space>::scope here;
     call(mesh& m, stream_of_call const& stream) : alone(m.mutex_), here(m.runtime_, stream) {}

@@ -158,6 +158,7 @@ class simulation {
     owned(std::shared_ptr<simulation_base> o, std::shared_ptr<void> m) : memory(std::move(m)), one(std::move(o)) {}
   };
   struct call {
+    call_under_way under_way;
     one_at_a_time alone;
     typename runtime<Space>::scope here;
     call(simulation& s, stream_of_call const& stream) : alone(s.mutex_), here(s.runtime_, stream) {
