@@ -16,7 +16,7 @@ DOCS = ROOT / "docs"
 
 # The navigation: parts, and their pages in this order. `*` is all pages of a folder. The last part has the rest too.
 NAV = {
-    "Use": ["install", "guide", "choosing", "programs", "gallery"],
+    "Use": ["install", "guide", "python", "choosing", "programs", "gallery"],
     "Tutorials": ["tutorials/*"],
     "Simulations": ["simulation", "effects", "ranks"],
     "Reference": ["api/index", "accuracy", "performance", "glossary"],
