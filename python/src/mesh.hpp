@@ -226,8 +226,21 @@ class mesh {
     detector.space() = runtime_.space();
     if (!is_built_[number]) detector.build(view_);
     is_built_[number] = true;
+    std::size_t const n = spheres.size();
+    if constexpr (runtime<Space>::is_cuda && has_total<Sink>::value) {  // a second pass would cost more than some room
+      if (pairs_a_sphere_ > 0)
+        sink.reserve(detector.space(), n, static_cast<std::size_t>(1.2 * pairs_a_sphere_ * double(n)));
+    }
     detector.query(spheres, sink);
+    if constexpr (has_total<Sink>::value) {
+      if (n != 0) pairs_a_sphere_ = static_cast<double>(sink.total()) / static_cast<double>(n);
+    }
   }
+
+  template <class Sink, class = void>
+  struct has_total : std::false_type {};
+  template <class Sink>
+  struct has_total<Sink, std::void_t<decltype(std::declval<Sink&>().total())>> : std::true_type {};
 
   template <class Sink>
   static constexpr bool needs_motion =
@@ -243,6 +256,7 @@ class mesh {
       at_rest<collide::double_precision>(runtime_.space())};
   swept swept_{runtime_.space()};
   bool is_set_ = false;
+  double pairs_a_sphere_ = 0;  ///< of the last query
   std::array<bool, 4> is_built_{};
   std::mutex mutex_;
 };

@@ -121,9 +121,7 @@ class Mesh:
     only as far as it must read a number back: `any` does not.
     """
 
-    def __init__(
-        self, vertices: Array, triangles: Optional[Array] = None, *, validate: bool = True, threads: int = 0
-    ):
+    def __init__(self, vertices: Array, triangles: Optional[Array] = None, *, validate: bool = True, threads: int = 0):
         self._device = device_of(vertices, "vertices")
         self._library = library_of(vertices, self._device)
         module = module_for(self._device, "vertices")
@@ -148,25 +146,16 @@ class Mesh:
         self._mesh.take(stream, vertices, triangles, False)
 
     def count(
-        self,
-        centres: Array,
-        radius: Union[float, Array],
-        *,
-        displacements: Optional[Array] = None,
-        precision: Precision = "exact",
+        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
+        precision: Precision = "exact"
     ) -> int:
         """How many pairs of a sphere and a triangle touch. Arguments as for `query`."""
         stream = self._stream(library_of(centres, self._device))
         return self._mesh.count(stream, precision, centres, radius, displacements, False, None, None, True)
 
     def any(
-        self,
-        centres: Array,
-        radius: Union[float, Array],
-        *,
-        displacements: Optional[Array] = None,
-        precision: Precision = "exact",
-        out: Optional[Array] = None,
+        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
+        precision: Precision = "exact", out: Optional[Array] = None
     ) -> Array:
         """(n,) bool: whether each sphere touches anything. Arguments as for `query`.
 
@@ -179,16 +168,9 @@ class Mesh:
         return flags if out is not None else library.flags(library.array(flags, stream))
 
     def query(
-        self,
-        centres: Array,
-        radius: Union[float, Array],
-        *,
-        displacements: Optional[Array] = None,
-        precision: Precision = "exact",
-        order: Order = "unspecified",
-        output: Literal["pairs", "csr"] = "pairs",
-        capacity: Optional[int] = None,
-        out: Optional[Array] = None,
+        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
+        precision: Precision = "exact", order: Order = "unspecified", output: Literal["pairs", "csr"] = "pairs",
+        capacity: Optional[int] = None, out: Optional[Array] = None
     ) -> Union[Pairs, Csr]:
         """All pairs of a sphere and a triangle that touch, each exactly once.
 
@@ -219,16 +201,9 @@ class Mesh:
         return self._ask("pairs", Pairs, centres, radius, displacements, precision, order, capacity, out)
 
     def contacts(
-        self,
-        centres: Array,
-        radius: Union[float, Array],
-        *,
-        closest: bool = False,
-        displacements: Optional[Array] = None,
-        precision: Precision = "exact",
-        order: Order = "unspecified",
-        capacity: Optional[int] = None,
-        out: Optional[Array] = None,
+        self, centres: Array, radius: Union[float, Array], *, closest: bool = False,
+        displacements: Optional[Array] = None, precision: Precision = "exact", order: Order = "unspecified",
+        capacity: Optional[int] = None, out: Optional[Array] = None
     ) -> Contacts:
         """The contact of every pair that touches: closest point, normal, distance, depth, feature. With displacements,
         at the time of impact.
@@ -245,15 +220,8 @@ class Mesh:
         return self._ask(call, Contacts, centres, radius, displacements, precision, order, capacity, out)
 
     def impacts(
-        self,
-        centres: Array,
-        displacements: Array,
-        radius: Union[float, Array],
-        *,
-        first: bool = False,
-        order: Order = "unspecified",
-        capacity: Optional[int] = None,
-        out: Optional[Array] = None,
+        self, centres: Array, displacements: Array, radius: Union[float, Array], *, first: bool = False,
+        order: Order = "unspecified", capacity: Optional[int] = None, out: Optional[Array] = None
     ) -> Impacts:
         """Moving spheres: every pair that touches on the way from ``centres`` to ``centres + displacements``, with the
         time of impact and the contact then.
@@ -288,7 +256,11 @@ class Mesh:
 
 
 def _is_wide(array):
-    return str(array.dtype).endswith("float64") if hasattr(array, "dtype") else False
+    if not hasattr(array, "dtype") and device_of(array, "vertices")[0] != CUDA:
+        import numpy
+
+        array = numpy.from_dlpack(array)
+    return "float64" in str(getattr(array, "dtype", ""))
 
 
 def _is_canonical(order):

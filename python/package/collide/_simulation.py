@@ -59,14 +59,8 @@ class Simulation:
     """
 
     def __init__(
-        self,
-        mesh: Mesh,
-        effects: Sequence[Effect],
-        *,
-        bodies: Sequence[Body] = (),
-        swept: bool = False,
-        precision: str = "exact",
-        threads: int = 0,
+        self, mesh: Mesh, effects: Sequence[Effect], *, bodies: Sequence[Body] = (), swept: bool = False,
+        precision: str = "exact", threads: int = 0,
     ):
         for effect in effects:
             if not isinstance(effect, Effect):
@@ -105,12 +99,7 @@ class Simulation:
         self._simulation.set_mesh(self._stream(), self._mesh._mesh, [body._numbers() for body in self._bodies])
 
     def set(
-        self,
-        centres: Array,
-        radius: Union[float, Array],
-        velocities: Optional[Array] = None,
-        *,
-        capacity: int = 0,
+        self, centres: Array, radius: Union[float, Array], velocities: Optional[Array] = None, *, capacity: int = 0
     ) -> None:
         """Copies particles: those of before are gone, and the time is 0.
 
