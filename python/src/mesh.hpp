@@ -45,8 +45,7 @@ class mesh {
   void take(stream_of_call stream, nb::object const& vertices, nb::object const& triangles, bool validate) {
     call const now(*this, stream);
     array const v = import_array(vertices, "vertices", runtime_.at());
-    collide::point_view<S> const points =
-        points_of<S>(v, "vertices", ": expected float32 or float64 from the beginning");
+    collide::point_view<S> const points = points_of<S>(v, "vertices", is_set_ ? " as before" : " or float64");
     if (points.size() > 0x7fffffff) refuse("vertices", "has more than 2,147,483,647 rows");
     array t = triangles_;
     if (!triangles.is_none()) {

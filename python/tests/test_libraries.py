@@ -105,6 +105,6 @@ def test_any_object_with_dlpack():
 
     mesh = collide.Mesh(Array(VERTICES.astype(numpy.float32)), TRIANGLES)
     assert mesh.any(Array(VERTICES.astype(numpy.float32)), 0.1).tolist() == [True] * 4
-    assert collide.Mesh(Array(VERTICES), TRIANGLES).any(VERTICES, 0.1).tolist() == [True] * 4
+    assert collide.Mesh(Array(VERTICES.astype(float)), TRIANGLES).any(VERTICES.astype(float), 0.1).tolist() == [True] * 4
     with pytest.raises(TypeError, match="triangles: has dtype float32"):
         collide.Mesh(Array(VERTICES.astype(numpy.float32)), Array(VERTICES.astype(numpy.float32)))
