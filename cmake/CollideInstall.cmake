@@ -9,7 +9,7 @@ install(EXPORT collide-targets NAMESPACE collide:: DESTINATION ${package_dir} CO
 configure_package_config_file(cmake/collide-config.cmake.in collide-config.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(collide-config-version.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/collide-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/collide-config-version.cmake
-              cmake/CollideOpenMP.cmake cmake/CollideMpi.cmake cmake/CollideBuildType.cmake
+              cmake/CollideOpenMP.cmake cmake/CollideMpi.cmake cmake/CollideNccl.cmake cmake/CollideBuildType.cmake
         DESTINATION ${package_dir}
         COMPONENT headers)
 

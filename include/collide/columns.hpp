@@ -41,6 +41,13 @@ struct columns {
   static constexpr std::size_t size = sizeof...(Column);  ///< how many
 };
 
+/// A list of columns that each contact has, not each particle: what an effect remembers of it from step to step. See
+/// `remembers` in effect.hpp.
+template <class... Column>
+struct contact_columns {
+  using list = columns<Column...>;  ///< the columns
+};
+
 /// The centre, in the units of the scene.
 struct position {
   template <class S>
@@ -116,6 +123,31 @@ struct support {
 
 /// Which surface `support` is of: 0 none, 1 what rests of the mesh, 2 + k body number k.
 struct supported_by {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+/// What a second surface adds, in the corner of two. Scenes have it, and the next three, that have `support` and name
+/// `moving_bodies`.
+struct second_support {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// Which surface `second_support` is of.
+struct second_supported_by {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+/// What a third surface adds, and all others.
+struct third_support {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// Which surface `third_support` is of: the first of them.
+struct third_supported_by {
   template <class S>
   using value = std::uint8_t;
 };

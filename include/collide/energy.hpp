@@ -23,7 +23,7 @@ struct energy_sums {
 /// them. `density` is the mass per volume, 0 that of `sphere_contact`; `error` if there is none, or it is not above 0
 /// and finite. Waits, and copies columns to the host. O(particles), O(particles^2) with `sphere_contact` in the scene.
 template <class Detector, class... Effect>
-energy_sums energy(simulation<Detector, Effect...>& of, double density = 0) {
+energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0) {
   using S = typename Detector::scalar;
   using list = typename simulation<Detector, Effect...>::columns;
   gravity field{0, 0, 0};

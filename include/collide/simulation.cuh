@@ -14,6 +14,7 @@
 #include <collide/detail/particles/check_effect.hpp>
 #include <collide/detail/particles/host_members.hpp>
 #include <collide/detail/step/lookup_tuning.hpp>
+#include <collide/detail/step/mesh_overlaps.hpp>
 #include <collide/detail/step/particle_kernels.hpp>
 #include <collide/detail/step/step.hpp>
 #include <collide/detector.hpp>
@@ -55,9 +56,10 @@ class simulation {
   using index = typename broad_phase::template index<S>;
   using bodies_memory = detail::bodies_of<S, Effect...>;
   static constexpr bool has_bodies = bodies_memory::exist;
+  static constexpr bool asks_mesh = effects_type::touches || effects_type::overlaps;
 
   static_assert(detail::check_effects<execution_space, S, Effect...>());
-  static_assert(!effects_type::touches || detail::has_lookup<index>::value,
+  static_assert(!asks_mesh || detail::has_lookup<index>::value,
                 "collide: effects that touch the mesh need a broad phase whose index has a member lookup(), such as "
                 "bucket or all_pairs");
 
@@ -104,10 +106,11 @@ class simulation {
     place(particles, velocities, room);
     radii_ = {particles.common_radius(), particles.common_radius()};
     if (!particles.one_radius()) radii_ = detail::radius_range_of(*this);
-    if (effects_type::touches && n != 0 && radii_.smallest == 0)
+    if (asks_mesh && n != 0 && radii_.smallest == 0)
       throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
     radii_ = radii_.with(own);
     if constexpr (effects_type::meets) neighbours_.clear(space_, room, radii_.largest);
+    if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
     prepare();
   }
 
@@ -127,6 +130,11 @@ class simulation {
       }
     }
     if constexpr (effects_type::meets) neighbours_.reserve(resource, particles);
+    if constexpr (effects_type::overlaps) {
+      surfaces_.reserve(resource, particles);
+      pressing_.reserve(resource, particles);
+      pressing_count_.reserve(resource, 1);
+    }
   }
 
   /// The mesh that particles touch, not copied: it must stay as it is while it is used. Call it again when the mesh has
@@ -147,9 +155,7 @@ class simulation {
     if constexpr (sweeps) {
       least_radius_ = 8 * std::numeric_limits<S>::epsilon() * detail::largest_coordinate(space_, mesh, mesh_summary_);
     }
-    if constexpr (detail::contains<columns, slow_steps>) {  // what slept may have lost its support
-      if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
-    }
+    wake_all();  // what slept may have lost its support
     prepare();
     if constexpr (effects_type::adheres) {
       if (is_set_)
@@ -195,6 +201,7 @@ class simulation {
   std::size_t bytes() const {
     std::size_t lists = 0;
     if constexpr (effects_type::meets) lists = neighbours_.bytes();
+    if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes();
     return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
 
@@ -247,11 +254,18 @@ class simulation {
     }
   }
 
-  /// The parameters of an effect, which may be changed between steps.
+  /// The parameters of an effect, to be changed between steps. All that sleeps is woken, as what holds it may be
+  /// another then; but not by a source, or by `moving_bodies`, which wake what they touch.
   template <class E>
   E& effect() {
-    static_assert((std::is_same<E, Effect>::value || ...),
-                  "collide: effect<E>() gives the parameters of an effect that is in the simulation's list");
+    check_effect<E>();
+    if constexpr (!detail::is_source<E> && !detail::is_moving_bodies<E>) wake_all();
+    return effects_.template of<E>();
+  }
+  /// The parameters of an effect, to be read.
+  template <class E>
+  E const& effect() const {
+    check_effect<E>();
     return effects_.template of<E>();
   }
 
@@ -261,6 +275,14 @@ class simulation {
     double most = std::numeric_limits<double>::infinity();
     ((most = detail::smaller(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
     return most;
+  }
+
+  /// What a source has made since `set`; see `birth_counts`. Waits.
+  birth_counts births() const {
+    static_assert(effects_type::makes, "collide: simulation: births: no effect of the scene makes particles");
+    double clock[detail::clock_size] = {};
+    if (state_.time != nullptr) space_.copy_to_host(clock, state_.time, detail::clock_size);
+    return detail::births_of(clock);
   }
 
   /// The bodies of the mesh, in a scene with `moving_bodies`: where they are; see `body_memory`.
@@ -280,9 +302,13 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   using neighbour_lists =
       std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, detail::null_ref>;
-  /// What a step asks for the triangles near a particle.
+  using surface_memory =
+      std::conditional_t<effects_type::overlaps, detail::surface_memory<S, typename effects_type::remembered>,
+                         detail::null_ref>;
+  /// What a step asks for the triangles near a particle, if it `asks`.
+  template <bool Asks = effects_type::touches>
   auto lookup([[maybe_unused]] S dt) const {
-    if constexpr (effects_type::touches) {
+    if constexpr (Asks) {
       auto const whole = mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
       return bodies_.lookup(whole, mesh_, dt);
     } else {
@@ -307,6 +333,7 @@ class simulation {
   /// The part of a step before particles meet.
   void begin_step(S dt) {
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
+    effects_.prepare(dt);
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step)
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
@@ -320,7 +347,30 @@ class simulation {
     if (state_.size == 0) return;
     if constexpr (effects_type::meets) {
       if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
+      neighbours_.renew(space_, with_copies);
+      settle_births(with_copies, dt);
       neighbours_.interact(space_, with_copies, effects_, dt, is_first);
+    } else if constexpr (effects_type::keeps_pair_forces) {
+      forget_pair_kicks(typename effects_type::interaction_kicks{});
+    }
+    if constexpr (effects_type::overlaps) {
+      auto const memory = surfaces_.ref(state_.size);
+      auto const triangles = lookup<true>(dt);
+      using mesh_type = std::decay_t<decltype(triangles)>;
+      using memory_type = std::decay_t<decltype(memory)>;
+      detail::pressing_list const pressing{pressing_count_.data(), pressing_.data()};
+      space_.fill(pressing.count, 0, sizeof *pressing.count);
+      space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
+                                       state_, effects_, triangles, memory, pressing});
+      space_.for_each(state_.size, detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
+                                       state_, effects_, triangles, memory, pressing, dt, is_first});
+    }
+  }
+  /// Says which of those that a source has made overlap others, once the lists are renewed.
+  void settle_births([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
+    if constexpr (effects_type::makes) {
+      if (effects_.due(static_cast<double>(dt)) > 0)
+        neighbours_.settle_births(space_, with_copies, effects_.makes_only_where_free());
     }
   }
   template <class... Kick>
@@ -348,15 +398,26 @@ class simulation {
     space_.launch(body.blocks, body);
   }
 
+  void wake_all() {
+    if constexpr (detail::contains<columns, slow_steps>) {
+      if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
+    }
+  }
+
   /// Moves the bodies on by `dt`, or, if they start, to where they are at this time.
   void advance_bodies(double dt, bool start) {
     if constexpr (has_bodies) {
       if (state_.time == nullptr) return;
-      auto const& motion = effect<moving_bodies<typename bodies_memory::motion>>().motion;
+      auto const& motion = effects_.template of<moving_bodies<typename bodies_memory::motion>>().motion;
       bodies_.advance(space_, motion, state_.time, dt, radii_.smallest, sweeps, start);
     }
   }
 
+  template <class E>
+  static constexpr void check_effect() {
+    static_assert((std::is_same<E, Effect>::value || ...),
+                  "collide: effect<E>() gives the parameters of an effect that is in the simulation's list");
+  }
   template <class Column>
   static constexpr void check() {
     static_assert(detail::contains<columns, Column>,
@@ -370,7 +431,7 @@ class simulation {
 
   void prepare() {
     advance_bodies(0, true);
-    if constexpr (effects_type::touches) {
+    if constexpr (asks_mesh) {
       constexpr bool is_part = detail::contains<columns, global_number>;  // others come from other ranks
       std::size_t const n = detail::larger(state_.size, std::size_t{is_part});
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
@@ -384,12 +445,14 @@ class simulation {
 
   void check_step(S dt) const {
     if (!is_set_) throw error("collide: simulation: step needs particles: call set before it");
-    if (effects_type::touches && !has_mesh_)
+    if (asks_mesh && !has_mesh_)
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
     if (!(dt > 0) || !detail::is_finite(dt))
       throw error("collide: simulation: the time dt of a step is finite and above 0");
     ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
     ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
+    if (!effects_type::meets && effects_.makes_only_where_free())
+      throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
   }
 
   execution_space space_;
@@ -407,7 +470,10 @@ class simulation {
   S least_radius_ = 0;
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
+  surface_memory surfaces_;
   buffer<id> overflow_;
+  buffer<id> pressing_;  ///< particles that may press on the mesh, and how many they are
+  buffer<std::uint32_t> pressing_count_;
   bodies_memory bodies_;
 };
 

@@ -1,35 +1,41 @@
-"""Makes lists.hpp: lists of effects in which each pair of effects stands together.
+"""Makes lists of effects in which each pair of effects stands together with each kind of surface, with each narrow
+phase and with each scalar.
 
-Usage: make_lists.py                 writes lists.hpp
-       make_lists.py --check         says whether lists.hpp is that, covers all, and is in the tests
-       make_lists.py --pairs [NAME]  prints which lists cover which pair (of an effect)
+Usage: make_lists.py                 writes lists.hpp and the tests, one file for each narrow phase and scalar
+       make_lists.py --check         says whether they are what this script makes, and cover all
+       make_lists.py --pairs [NAME]  prints which lists cover which pair (of an effect), and what cannot be combined
 
-Each effect also stands with each kind of surface, each narrow phase and each scalar.
+A list is of a kind of mesh: fixed, with moving bodies, or with driven ones. A test plays it on all surfaces of its kind.
 """
 
+import collections
 import itertools
 import pathlib
 import random
+import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 HEADER = HERE / "lists.hpp"
-LONGEST = 8  # effects of a list
-TRIES = 300  # of which the list that covers most is taken
+FAILING = HERE.parent / "compile_fail"
+LONGEST = 9  # effects of a list, moving_bodies aside
+TRIES = 60  # of which the list that covers most is taken
 
 EFFECTS = """velocity_verlet gravity drag wind bounce friction spin adhesion sphere_contact sleep emit absorb
     absorbing_box box_walls periodic_box polydisperse lost_motion lost mesh_forces pair_forces reaction warms""".split()
 TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms"}
-SURFACES = ["at_rest", "body", "driven_body", "deforming"]
-MOVING = {"body": "moving_bodies<>", "driven_body": "moving_bodies<collide::driven>", "deforming": "moving_bodies<>"}
+BODIES = {"fixed": [], "moving": ["collide::moving_bodies<>"], "driven": ["collide::moving_bodies<collide::driven>"]}
+SURFACES = {  # of the kinds of mesh
+    "fixed": ["at_rest"],
+    "moving": ["at_rest", "body", "deforming"],
+    "driven": ["at_rest", "driven_body", "deforming"],
+}
 NARROW_PHASES = ["karabassi", "karabassi_swept"]
 SCALARS = ["float", "double"]
-FACTORS = [SURFACES, NARROW_PHASES, SCALARS]
+TESTS = {(n, s): HERE / f"test_{n}_{s}.cpp" for n in NARROW_PHASES for s in SCALARS}
 
 # One of these must be in the list, too; what a simulation without them says is in tests/compile_fail.
 REQUIRED = {"friction": ["bounce"], "adhesion": ["bounce"], "spin": ["bounce", "sphere_contact"]}
-# A user's effect between particles that changes no velocity does not compile alone with velocity_verlet or adhesion.
-NEEDS = {**REQUIRED, "warms": ["sphere_contact"]}
 # runs_after of the effects; pair_forces sees nothing of a user's effect that comes after it.
 AFTER = {
     "friction": ["bounce"],
@@ -39,60 +45,83 @@ AFTER = {
     "reaction": ["bounce", "friction", "spin", "adhesion"],
     "pair_forces": ["sphere_contact", "warms"],
 }
-# Where momentum closes, and energy does not grow: few of the other lists say anything of these.
+# Where momentum closes, energy does not grow, and what rests presses with its weight: few of the other lists say
+# anything of these.
 FIRST = [
-    ("velocity_verlet gravity sphere_contact bounce friction spin reaction", ("body", "karabassi_swept", "double")),
-    ("gravity sphere_contact bounce adhesion mesh_forces pair_forces reaction", ("driven_body", "karabassi", "float")),
-    ("polydisperse sphere_contact gravity bounce friction spin sleep reaction", ("at_rest", "karabassi", "float")),
-    ("velocity_verlet gravity bounce adhesion lost reaction", ("deforming", "karabassi_swept", "double")),
-    ("velocity_verlet gravity sphere_contact bounce polydisperse reaction", ("at_rest", "karabassi_swept", "double")),
+    ("velocity_verlet gravity sphere_contact bounce friction spin reaction", ("moving", "karabassi_swept", "double")),
+    ("gravity sphere_contact bounce adhesion mesh_forces pair_forces reaction", ("driven", "karabassi", "float")),
+    ("polydisperse sphere_contact gravity bounce friction spin sleep reaction", ("moving", "karabassi", "float")),
+    ("velocity_verlet gravity bounce adhesion lost reaction", ("driven", "karabassi_swept", "double")),
+    ("velocity_verlet gravity sphere_contact bounce polydisperse reaction", ("fixed", "karabassi_swept", "double")),
+    ("gravity bounce friction spin adhesion sleep mesh_forces reaction", ("fixed", "karabassi", "float")),
 ]
+# What is refused when it is compiled: a test of tests/compile_fail, and what it is.
+REFUSED = {
+    "friction_without_bounce": "friction or adhesion without bounce, or an effect of a user's with `repels`",
+    "friction_before_bounce": "friction, spin or adhesion before bounce",
+    "spin_without_contacts": "spin without bounce, sphere_contact or an effect of a user's that does the same",
+    "forces_before_bounce": "mesh_forces before bounce, friction, spin or adhesion",
+    "reaction_before_bounce": "reaction before bounce, friction, spin or adhesion",
+    "two_integrators": "two integrators",
+    "two_sources": "two sources",
+    "two_kinds_of_bodies": "two kinds of bodies",
+}
+
+List = collections.namedtuple("List", "effects kind narrow scalar")
+CIRCUMSTANCES = [*sorted({s for of in SURFACES.values() for s in of}), *NARROW_PHASES, *SCALARS]
 
 
-def pair(a, b):
-    return tuple(sorted((a, b)))
+
+def circumstances(one):
+    """Those in which the pairs of a list meet."""
+    return [*SURFACES[one.kind], one.narrow, one.scalar]
 
 
-def all_pairs():
-    found = {pair(a, b) for a, b in itertools.combinations(EFFECTS, 2)}
-    return found | {pair(e, v) for values in FACTORS for v in values for e in EFFECTS}
+def meeting(a, b, circumstance):
+    return (*sorted((a, b)), circumstance)
 
 
-def covered(effects, factors):
-    return {pair(a, b) for a, b in itertools.combinations([*effects, *factors], 2)}
+def all_meetings():
+    return {(*p, c) for p in itertools.combinations(sorted(EFFECTS), 2) for c in CIRCUMSTANCES}
+
+
+def covered(one):
+    return {meeting(a, b, c) for a, b in itertools.combinations(one.effects, 2) for c in circumstances(one)}
 
 
 def needed(effect, chosen, rng):
     """What must be added with an effect."""
-    of = NEEDS.get(effect, [])
+    of = REQUIRED.get(effect, [])
     return [] if not of or set(of) & set(chosen) else [rng.choice(of)]
 
 
-def try_list(left, rng):
-    """A list that begins with a pair that is left, and grows by what covers most."""
-    first, second = rng.choice(sorted(left))
-    factors = [second if second in values else first if first in values else rng.choice(values) for values in FACTORS]
-    chosen = []
+def try_list(left, in_order, file, rng):
+    """A list of a file that begins with a meeting that is left, and grows by what covers most."""
+    first, second, where = rng.choice(in_order)
+    kinds = [k for k in BODIES if k != "fixed" and (where in SURFACES[k] or where in NARROW_PHASES + SCALARS)]
+    one = List([], rng.choice(kinds), *file)
+    chosen, factors = one.effects, circumstances(one)
+
+    def gain(effect):
+        return sum(meeting(effect, other, c) in left for other in chosen for c in factors)
 
     def add(effect):
-        if effect not in chosen:
-            chosen.extend([*needed(effect, [*chosen, effect], rng), effect])
+        for e in [*needed(effect, [*chosen, effect], rng), effect]:
+            if e not in chosen:
+                total[0] += gain(e)
+                chosen.append(e)
 
-    for one in (first, second):
-        if one in EFFECTS:
-            add(one)
-    longest = LONGEST - (factors[0] != "at_rest")
-    while len(chosen) < longest:
-        now = len(left & covered(chosen, factors))
-        rest = [e for e in EFFECTS if e not in chosen and len(chosen) + 1 + len(needed(e, chosen, rng)) <= longest]
-        if not rest:
-            break
-        gains = {e: len(left & covered([*chosen, e], factors)) - now for e in rest}
-        most = max(gains.values())
-        if most == 0 and len(chosen) >= 5:
+    total = [0]
+    add(first)
+    add(second)
+    while len(chosen) < LONGEST:
+        rest = [e for e in EFFECTS if e not in chosen and len(chosen) + 1 + len(needed(e, chosen, rng)) <= LONGEST]
+        gains = {e: gain(e) for e in rest}
+        most = max(gains.values(), default=0)
+        if most == 0:
             break
         add(rng.choice([e for e in rest if gains[e] == most]))
-    return chosen, factors
+    return total[0], one
 
 
 def in_order(effects, rng):
@@ -106,15 +135,19 @@ def in_order(effects, rng):
 
 
 def make_lists():
-    rng, left, lists = random.Random(43), all_pairs(), []
-    for names, factors in FIRST:
-        left -= covered(names.split(), factors)
-        lists.append((in_order(names.split(), rng), factors))
+    rng, left, lists = random.Random(46), all_meetings(), []
+
+    def add(one):
+        left.difference_update(covered(one))
+        lists.append(one._replace(effects=in_order(one.effects, rng)))
+
+    for names, (kind, narrow, scalar) in FIRST:
+        add(List(names.split(), kind, narrow, scalar))
     while left:
-        tries = [try_list(left, rng) for _ in range(TRIES)]
-        effects, factors = max(tries, key=lambda t: len(left & covered(*t)))
-        left -= covered(effects, factors)
-        lists.append((in_order(effects, rng), factors))
+        ordered = sorted(left)
+        files = sorted(TESTS, key=lambda t: sum((one.narrow, one.scalar) == t for one in lists))[:2]
+        tries = [try_list(left, ordered, rng.choice(files), rng) for _ in range(TRIES)]
+        add(max(tries, key=lambda t: t[0])[1])
     return lists
 
 
@@ -125,8 +158,8 @@ def type_of(effect):
 
 def header(lists):
     lines = [
-        "/// Made by make_lists.py: lists of effects in which each pair of effects stands together, and each effect with each",
-        "/// kind of surface, narrow phase and scalar.",
+        "/// Made by make_lists.py: lists of effects in which each pair of effects stands together on each kind of surface,",
+        "/// with each narrow phase and each scalar.",
         "#pragma once",
         "",
         '#include "check_list.hpp"',
@@ -135,43 +168,57 @@ def header(lists):
         "",
         "// clang-format off",
     ]
-    for number, (effects, (surface, narrow, scalar)) in enumerate(lists, 1):
-        types = [type_of(e) for e in effects]
-        if surface in MOVING:
-            types.append(f"collide::{MOVING[surface]}")
-        lines.append(f"using list_{number} = scene_list<surface::{surface}, collide::{narrow}<>, {scalar},")
+    for number, (effects, kind, narrow, scalar) in enumerate(lists, 1):
+        types = [*map(type_of, effects), *BODIES[kind]]
+        lines.append(f"using list_{number} = scene_list<mesh_kind::{kind}, collide::{narrow}<>, {scalar},")
         lines.append(f"    {', '.join(types)}>;")
     return "\n".join([*lines, "// clang-format on", "", "}  // namespace tests::pairs", ""])
 
 
+def test_file(lists, narrow, scalar):
+    of = [n for n, one in enumerate(lists, 1) if (one.narrow, one.scalar) == (narrow, scalar)]
+    lines = [f"/// Made by make_lists.py: the lists with {narrow} and {scalar}.", '#include "hunt.hpp"', '#include "lists.hpp"', ""]
+    lines += ["using namespace tests::pairs;", ""]
+    for n in of:
+        lines.append(f'TEST_CASE("pairs: list {n}") {{ check_list<list_{n}>(); }}')
+        lines.append(f'static bool const list_{n}_is_hunted = hunt<list_{n}>("{n}");')
+    return "\n".join([*lines, ""])
+
+
+def files(lists):
+    return {HEADER: header(lists), **{path: test_file(lists, *of) for of, path in TESTS.items()}}
+
+
 def problems(lists):
-    if not HEADER.exists() or HEADER.read_text() != header(lists):
-        yield "lists.hpp is not what make_lists.py makes: run it"
-    left = all_pairs()
-    for number, (effects, factors) in enumerate(lists, 1):
-        left -= covered(effects, factors)
+    for path, text in files(lists).items():
+        if not path.exists() or path.read_text() != text:
+            yield f"{path.name} is not what make_lists.py makes: run it"
+    left = all_meetings()
+    for number, one in enumerate(lists, 1):
+        effects = one.effects
+        left -= covered(one)
         for effect, before in AFTER.items():
             if effect in effects and any(b in effects and effects.index(b) > effects.index(effect) for b in before):
                 yield f"list {number}: {effect} comes too early"
-        if not 5 <= len(effects) + (factors[0] != "at_rest") <= LONGEST:
+        if len(effects) > LONGEST:
             yield f"list {number} has {len(effects)} effects"
     if left:
         yield f"no list covers {sorted(left)}"
-    tests = "".join(path.read_text() for path in sorted(HERE.glob("test_*.cpp")))
-    for number in range(1, len(lists) + 1):
-        if f"list_{number}>" not in tests:
-            yield f"no test checks list_{number}"
+    for name in REFUSED:
+        if not (FAILING / f"{name}.cpp").exists():
+            yield f"no test of what does not compile: {name}"
 
 
 def print_pairs(lists, name):
-    for one in sorted(all_pairs()):
-        if name is None or name in one:
-            of = [n for n, (effects, factors) in enumerate(lists, 1) if one in covered(effects, factors)]
-            print(f"{one[0]}, {one[1]}: {', '.join(map(str, of))}")
-    for effect, of in REQUIRED.items():
-        print(f"{effect}: does not compile without {' or '.join(of)}, or an effect of a user's that does the same")
-    print("two integrators, two sources: do not compile")
-    print("An effect stands with moving_bodies where it does with body, driven_body or deforming.")
+    for a, b in itertools.combinations(sorted(EFFECTS), 2):
+        if name is None or name in (a, b):
+            of = {n: one for n, one in enumerate(lists, 1) if {a, b} <= set(one.effects)}
+            where = [f"{c} {'/'.join(str(n) for n in of if c in circumstances(of[n]))}" for c in CIRCUMSTANCES]
+            print(f"{a}, {b}: {', '.join(where)}")
+    for test, what in REFUSED.items():
+        sentence = (FAILING / f"{test}.cpp").read_text().splitlines()[0].removeprefix("// expect: ")
+        if name is None or re.search(rf"\b{name}\b", what):
+            print(f"does not compile: {what}: {sentence}")
 
 
 def main(arguments):
@@ -180,13 +227,14 @@ def main(arguments):
         print_pairs(lists, arguments[1] if len(arguments) > 1 else None)
     elif arguments == ["--check"]:
         found = list(problems(lists))
-        print("\n".join(found) or f"{len(lists)} lists cover {len(all_pairs())} pairs")
+        print("\n".join(found) or f"{len(lists)} lists cover {len(all_meetings())} meetings of two effects")
         return bool(found)
     elif arguments:
         print(__doc__)
         return True
     else:
-        HEADER.write_text(header(lists))
+        for path, text in files(lists).items():
+            path.write_text(text)
         print(f"{len(lists)} lists")
     return False
 

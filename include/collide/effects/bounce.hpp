@@ -12,8 +12,9 @@ namespace collide {
 /// acceleration, and so be back within six steps, rests on the surface: in a groove, what has slid down one wall for a
 /// step meets the other one so fast.
 ///
-/// What is left of the step after the impact, depth / speed, is spent on the way back, so that bounces lose or gain
-/// no height on average, whatever the step.
+/// The velocity is turned around as it is at the impact, not as it is in the middle of the step, and what is left of
+/// the step is spent on the way back: so under a constant force elastic bounces keep their height to rounding, whatever
+/// the step, with both integrators.
 struct bounce {
   using writes = columns<position, velocity>;
   static constexpr bool repels = true;  ///< the mesh is solid
@@ -30,11 +31,25 @@ struct bounce {
     S back = detail::larger(t.depth, S(0));
     if (speed > 0) {
       S const rebound = e * detail::larger(detail::smaller(t.approach_speed, speed), S(0));
-      t.is_resting = rebound <= 3 * -detail::dot(t.force_dv, t.normal);
-      t.repel(p[velocity{}], t.is_resting ? speed : speed + rebound);
-      if (!t.is_resting) back += rebound * detail::smaller(back / speed, dt);
+      S const a = detail::dot(t.force_dv, t.normal), late = detail::smaller(back / speed, dt);
+      t.is_resting = rebound <= 3 * -a;
+      S const leaves = t.is_resting ? S(0) : leaving_speed(e, rebound, a, (t.remaining + late) / dt);
+      t.repel(p[velocity{}], speed + leaves);
+      back += leaves * late;
     }
     t.move_out(p[position{}], back);
+  }
+
+ private:
+  /// How fast a particle leaves that has come with `rebound` / e. Speeds are those in the middle of a step, of which
+  /// the part `left` comes after the impact, and a is what acceleration adds in a step. If x is where the step ends,
+  /// both integrators keep (v + a / 2)^2 / 2 - a x / dt: the speed at the wall is that of x = 0, it is e times as
+  /// large after the impact, and with the one that leaves x is left * dt times it.
+  template <class S>
+  COLLIDE_HD_INLINE static S leaving_speed(S e, S rebound, S a, S left) {
+    if (a == 0 || !(rebound > 0)) return rebound;
+    S const push = a * (1 - 2 * left), hit = 4 * rebound * (rebound - e * push) + e * e * a * a;
+    return detail::larger((detail::sqrt_rn(detail::larger(hit + push * push - a * a, S(0))) - push) / 2, S(0));
   }
 };
 

@@ -26,8 +26,8 @@ struct drag {
   }
 
   template <class Particle>
-  COLLIDE_HD_INLINE detail::medium resistance(Particle const&) const {
-    return {linear, quadratic, {0, 0, 0}};
+  COLLIDE_HD_INLINE detail::medium_at_rest resistance(Particle const&) const {
+    return {{linear, quadratic, {0, 0, 0}}};
   }
 };
 

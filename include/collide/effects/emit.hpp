@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/particles/particle.hpp>
 #include <collide/effect.hpp>
 
@@ -50,20 +51,30 @@ template <class S, class State, class Source>
 struct emit_particles {
   State state;
   Source source;
-  double due;  ///< particles in the step
+  double due;         ///< particles in the step
+  std::uint8_t mark;  ///< what `alive` is of those that are new
+  bool only_free;     ///< none makes room
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::uint64_t const begin = begun(), end = begin + begin_in_step(state.time, due), room = state.size - state.placed;
-    if (i >= end - begin) return;
-    std::uint64_t const number = end - 1 - i;
-    store_at(state.placed + static_cast<std::size_t>(number % room), number);
+    std::uint64_t const begin = begun(), n = begin_in_step(state.time, due), room = state.size - state.placed;
+    if (i >= n) return;
+    std::uint64_t const number = only_free ? begin + i : begin + n - 1 - i;
+    store_at(state.placed + static_cast<std::size_t>(number % room), number, (n - 1 - i) / room);
   }
 
  protected:
-  COLLIDE_HD_INLINE std::uint64_t begun() const { return static_cast<std::uint64_t>(state.time[1]); }
-  COLLIDE_HD_INLINE void store_at(std::size_t place, std::uint64_t number) const {
+  COLLIDE_HD_INLINE std::uint64_t begun() const { return static_cast<std::uint64_t>(state.time[clock_made]); }
+  /// Of the particles of a step for a place, of which there are `others`, the latest stays, or the first is born.
+  COLLIDE_HD_INLINE void store_at(std::size_t place, std::uint64_t number, std::uint64_t others) const {
+    if (only_free) {
+      bool const is_taken = state.at(alive{})[place] != 0;
+      if (is_taken || others != 0)
+        fetch_add(state.time + clock_not_born, static_cast<double>(others + (is_taken ? 1 : 0)));
+      if (is_taken) return;
+    }
     particle<S, typename State::list> p;
     set_initial_values(p);
+    p[alive{}] = mark;
     if constexpr (contains<typename State::list, radius>) p[radius{}] = state.at(radius{})[place];
     source(number, p[position{}], p[velocity{}]);
     if constexpr (contains<typename State::list, global_number>) p[global_number{}] = state.at(global_number{})[place];
@@ -76,20 +87,25 @@ template <class S, class State, class Source>
 struct emit_at_places : emit_particles<S, State, Source> {
   COLLIDE_HD void operator()(std::size_t i) const {
     State const& here = this->state;
-    std::uint64_t const begin = this->begun(), end = begin + begin_in_step(here.time, this->due);
+    std::uint64_t const begin = this->begun(), n = begin_in_step(here.time, this->due);
     std::uint64_t const room = here.all_size - here.all_placed, place = here.at(global_number{})[i];
-    if (begin == end || place < here.all_placed) return;
-    std::uint64_t const last = end - 1;  // of all particles for this place the latest stays
-    std::uint64_t const back = (last % room + room - (place - here.all_placed)) % room;
-    if (back < end - begin) this->store_at(i, last - back);
+    if (n == 0 || place < here.all_placed) return;
+    std::uint64_t const first = (place - here.all_placed + room - begin % room) % room;  // of the step for this place
+    if (first >= n) return;
+    std::uint64_t const others = (n - 1 - first) / room;
+    this->store_at(i, begin + first + (this->only_free ? 0 : others * room), others);
   }
 };
 
 }  // namespace detail
 
 /// A source: `rate` particles per unit of time, in the places that `simulation::set` got as capacity beyond the
-/// particles that it placed. Where all are taken, the oldest make room. A scene has one at most. `Source` is a copyable
-/// function object: COLLIDE_HD source(number, position&, velocity&) const says how particle number 0, 1, ... begins.
+/// particles that it placed. Where all are taken, the oldest make room. `simulation::births` says how many have come
+/// due, and how many of them overlapped others where particles meet each other. With `only_where_free` those are not
+/// born, nor one for which another would have to make room: it is dropped, and the next one has a place of its own.
+/// They are looked for when particles meet for the first time in the step, so no other is pushed; with
+/// `velocity_verlet` that is at its end. A scene has one source at most. `Source` is a copyable function object:
+/// COLLIDE_HD source(number, position&, velocity&) const says how particle number 0, 1, ... begins.
 template <class Source = nozzle>
 struct emit_from {
   using writes = columns<position, velocity, alive>;
@@ -100,6 +116,8 @@ struct emit_from {
   double rate = 0;           ///< particles per time, not negative; may change between steps
   Source source = Source();  ///< how they begin
   double radius = 0;         ///< theirs, with `polydisperse`, as it is when `set` is called; 0: that of all in `set`
+  bool only_where_free = false;  ///< one that would overlap another, or whose place in memory is taken, is not born
+  bool unused[7] = {};           ///< in place of padding, which would be bytes of a checkpoint that no one sets
 
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(rate), "emit: rate is not negative, and finite");
@@ -112,18 +130,20 @@ struct emit_from {
     return p[alive{}] == 0;
   }
   template <class Space, class State, class S>
-  void begin_step(Space& space, State const& state, S dt) const {
+  void begin_step(Space& space, State const& state, S dt, std::uint8_t mark = 1) const {
     static_assert(std::is_invocable<Source const&, std::uint64_t, vec3<S>&, vec3<S>&>::value,
                   "collide: a source of emit_from is called as source(number, position&, velocity&) const");
     double const due = rate * static_cast<double>(dt);
     if (!(due > 0)) return;
     if constexpr (detail::contains<typename State::list, collide::global_number>) {
       using places = detail::emit_at_places<S, State, Source>;
-      if (state.all_size != state.all_placed) space.for_each(state.size, places{{state, source, due}});
+      if (state.all_size != state.all_placed)
+        space.for_each(state.size, places{{state, source, due, mark, only_where_free}});
     } else {
       std::size_t const room = state.size - state.placed;
       std::size_t const most = due < static_cast<double>(room) ? static_cast<std::size_t>(due) + 2 : room;
-      space.for_each(detail::smaller(most, room), detail::emit_particles<S, State, Source>{state, source, due});
+      space.for_each(detail::smaller(most, room),
+                     detail::emit_particles<S, State, Source>{state, source, due, mark, only_where_free});
     }
   }
 };

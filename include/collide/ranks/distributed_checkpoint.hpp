@@ -37,9 +37,13 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
     together(ranks, [&] {
       if (!from.part_.is_set()) throw error("collide: save: the simulation has no particles: call set before it");
     });
+    birth_counts born;
+    if constexpr (simulated::simulation_type::effects_type::makes) born = from.births();
     on_first([&] {
       to.emplace(*stream, name);
       auto numbers = from.part_.template saved_numbers_of_all<typename format::numbers_type>(from.reverse_order_);
+      numbers.clock[clock_overlapping] = static_cast<double>(born.overlapping);
+      numbers.clock[clock_not_born] = static_cast<double>(born.not_born);
       format::begin(*to, numbers, from.part_.effects());
     });
     format::for_each_column([&](auto column) {
@@ -54,7 +58,10 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
       deliver(ranks, mine, all);
       on_first([&] { format::template write_column<type>(*to, all.items); });
     });
-    on_first([&] { format::end(*to, from.local()); });
+    on_first([&] {
+      format::end(*to, from.local());
+      to->finish();
+    });
   }
 
   /// All ranks read the same.
@@ -76,7 +83,7 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
     to.share_free(all);
     to.reverse_order_ = found->numbers().reverse_order != 0;
     to.exchange_.clear();
-    together(ranks, [&] { to.part_.restore(*found, static_cast<std::size_t>(end - first), all); });
+    together(ranks, [&] { to.part_.restore(*found, static_cast<std::size_t>(end - first), all, ranks.rank() == 0); });
     to.is_sound_ = true;
   }
 };

@@ -154,6 +154,15 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     return found;
   }
 
+  /// What the source has made on all ranks; see `birth_counts`. All ranks call it. Waits.
+  birth_counts births() const {
+    birth_counts all;
+    together(ranks_, [&] { all = local().births(); });
+    std::uint64_t const mine[2] = {all.overlapping, all.not_born};
+    std::uint64_t sums[2] = {0, 0};
+    ranks_.reduce(mine, sums, 2, reduction::sum);
+    return {all.due, sums[0], sums[1]};
+  }
   /// What the particles of all ranks give to each body; see `reaction_sums::read`. Waits.
   std::vector<body_impulse> total(reaction_sums const& mine) const {
     return impulses(mine, [&] { return mine.counts(local().space()); });
@@ -237,6 +246,12 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       if constexpr (meets) {
         exchange_.send(ranks_, part_);
         exchange_.unpack(ranks_, part_);
+        if (part_.refuses_births(dt)) {
+          part_.settle_births(dt);
+          exchange_.pack(ranks_, part_);
+          exchange_.send(ranks_, part_);
+          exchange_.unpack(ranks_, part_);
+        }
       }
       part_.end_step(dt);
     } catch (...) {

@@ -127,6 +127,7 @@ class world_in {
 template <class Scene>
 struct expected_values {
   values_of<typename Scene::simulation> middle, end;
+  collide::birth_counts births;
 
   explicit expected_values(Scene const& scene) {
     std::apply(
@@ -140,6 +141,7 @@ struct expected_values {
           middle.read(one);
           one.steps(static_cast<std::size_t>(scene.steps - scene.steps / 2), scene.dt);
           end.read(one);
+          if constexpr (Scene::simulation::effects_type::makes) births = one.births();
         },
         scene.effects);
   }
@@ -169,6 +171,12 @@ void check_scene(Ranks const& ranks, Scene const& scene, expected_values<Scene> 
         found.read(parts);
         wrong.expect(equal(found, expected.end.part(own.first, own.size)), "in the end");
         wrong.expect(parts.size() == std::max(scene.w.size(), scene.capacity), "the number of places is of all");
+        if constexpr (simulation::effects_type::makes) {
+          auto const births = parts.births();
+          wrong.expect(births.due == expected.births.due && births.overlapping == expected.births.overlapping &&
+                           births.not_born == expected.births.not_born,
+                       "what was born");
+        }
       },
       scene.effects);
 }
@@ -208,18 +216,35 @@ auto leaps() {
                                                                      periodic_box{{-1, -1, -1}, {1, 1, 1}});
 }
 
-/// Snow that comes from a source, sticks, sleeps and wakes; when places end the oldest make room.
+/// Snow that comes from a source, sticks, sleeps and wakes; when places end the oldest make room, or nothing is born,
+/// nor where something is.
 template <class Space = collide::host>
-auto snow() {
+auto snow(bool only_where_free = false) {
   using namespace collide;
   world<float> w = crowd<float>(100, 1, 0.06, 0.5, 3);
-  emit const source{700, {{0.2, 0, 0.7}, 0.25, {0.1, 0, -1}, 0.4}};
+  emit const source{700, {{0.2, 0, 0.7}, 0.25, {0.1, 0, -1}, 0.4}, 0, only_where_free};
   auto scene = scene_of<simulation<discrete<Space>, emit, collide::sleep, gravity, drag, sphere_contact, bounce,
                                    adhesion, box_walls, mesh_forces, pair_forces>>(
       "snow", w, 400, 2e-3, source, collide::sleep{0.2, 6}, gravity{}, drag{3, 1},
       sphere_contact::from_restitution(0.2, 0.04, 0.06, 100, 0.9), bounce{0.1}, adhesion{60},
       box_walls{{-1, -1, -1}, {1, 1, 1}, 0.2}, mesh_forces{}, pair_forces{});
   scene.capacity = 400;
+  return scene;
+}
+
+/// Grains of two sizes from a source that has no room, in the middle of those that are there.
+template <class Space = collide::host>
+auto crowded_source() {
+  using namespace collide;
+  world<float> w = crowd<float>(300, 0.4, 0.05, 0.5, 8);
+  for (int i = 0; i < 300; ++i) w.radii.push_back(i % 2 == 0 ? 0.05f : 0.03f);
+  emit const source{9000, {{0.1, 0, 0}, 0.35, {0, 0, 0}, 1}, 0.03, true};
+  auto scene = scene_of<
+      simulation<discrete<Space>, velocity_verlet, emit, polydisperse, sphere_contact, absorbing_box, periodic_box>>(
+      "crowded source", w, 100, 1e-3, velocity_verlet{}, source, polydisperse{},
+      sphere_contact{20, 0.01, 0.2, 0.01, 100}, absorbing_box{{-1, -1, -1}, {-0.2, 1, 1}},
+      periodic_box{{-1, -1, -1}, {1, 1, 1}});
+  scene.capacity = 600;
   return scene;
 }
 
@@ -412,7 +437,7 @@ void check_refusals(Ranks const& ranks, complaints& wrong) {
   for (float const dt : {std::numeric_limits<float>::infinity(), 0.0f, -0.1f}) {
     expect("collide: simulation: the time dt of a step is finite and above 0", [&] { parts.step(dt); });
   }
-  expect("collide: simulation: the time dt of a step, 1, is above a fifth of a collision", [&] { parts.step(1); });
+  expect("collide: simulation: the time dt of a step, 1, is longer than an effect allows", [&] { parts.step(1); });
   parts.template effect<sphere_contact>().stiffness = 0.01;
   parts.template effect<sphere_contact>().density = -1;
   expect("collide: sphere_contact: density is above 0", [&] { parts.step(1); });

@@ -76,6 +76,7 @@ std::string thrown(F const& f) {
 
 TEST_CASE("checkpoints on ranks: what one rank saves others go on from") {
   check_checkpoints(tests::snow());
+  check_checkpoints(tests::snow(true));
   check_checkpoints(tests::dust());
   check_checkpoints(tests::sizes_that_repeat());
   check_checkpoints(tests::piston_and_belt<collide::karabassi_swept<>>());

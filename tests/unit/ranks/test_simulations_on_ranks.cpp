@@ -40,11 +40,14 @@ TEST_CASE("simulations on ranks: many sizes, and ways across several bricks") {
 
 TEST_CASE("simulations on ranks: sources and sinks, what sticks and what sleeps") {
   check_on_threads(tests::snow());
+  check_on_threads(tests::snow(true));
+  check_on_threads(tests::crowded_source());
   check_on_threads(tests::dust());
 }
 
 TEST_CASE("simulations on ranks: sources where nobody is, and with fewer places than ranks") {
   auto snow = tests::snow();
+  auto careful = tests::snow(true);
   auto dust = tests::dust();
   auto const empty = [](auto& scene) {
     scene.w.centres.clear();
@@ -54,6 +57,7 @@ TEST_CASE("simulations on ranks: sources where nobody is, and with fewer places 
     check_on_threads(scene);
   };
   empty(snow);
+  empty(careful);
   empty(dust);
 }
 

@@ -140,7 +140,7 @@ void check_scenes_go_on(Space const& space) {
   SUBCASE("in free flight") { check_goes_on<detector<bucket, karabassi<>, Space>>(space, w, 0, 1e-3); }
   SUBCASE("marbles") {
     check_goes_on<at_rest, emit, gravity, sphere_contact, bounce, friction, spin>(
-        space, w, 200, 1e-3, emit{150, above}, gravity{}, soft, bounce{0.4}, friction{0.4, 0.3}, spin{0.01});
+        space, w, 200, 1e-3, emit{500, above, 0, true}, gravity{}, soft, bounce{0.4}, friction{0.4, 0.3}, spin{0.01});
   }
   SUBCASE("snow") {
     check_goes_on<at_rest, emit, sleep, gravity, drag, sphere_contact, bounce, adhesion, box_walls>(

@@ -94,6 +94,27 @@ void check_drag(Space const& space) {
   CHECK(made.positions()[3] > x[3] + 0.5f);
 }
 
+/// Positions and velocities of what falls on a floor in two media, however strong.
+template <class S, class Integrator, class Space>
+std::vector<S> fallen_in_media(Space const& space, double strength) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, drag, gravity, bounce,
+                                         collide::wind<>>;
+  world<S> w;
+  add_floor(w, 4, 8);
+  w.radius = S(0.1);
+  for (int i = 0; i < 100; ++i) {
+    double const x = i;
+    w.particle(0.03 * x - 1.5, 0.02 * x - 1, 0.1 + 0.01 * x, std::sin(x), std::cos(3 * x), std::sin(7 * x));
+  }
+  running<simulation> made(space, w, Integrator{}, drag{0.2 * strength, 0.3 * strength}, gravity{}, bounce{0.5},
+                           collide::wind<>{0.1, strength, {1, 2, 0}});
+  made.simulation.steps(200, S(1e-3));
+  auto found = made.positions();
+  auto const v = made.velocities();
+  found.insert(found.end(), v.begin(), v.end());
+  return found;
+}
+
 /// A field that a user might write: air that turns around the z axis.
 struct vortex {
   double rate = 1;

@@ -309,27 +309,32 @@ void check_many_contacts(Space const& space) {
   }
 }
 
-/// However coarse the step, elastic bounces neither gain nor lose height on average.
+/// However coarse the step, elastic bounces keep their height, each of them. `lag` says how many steps old the velocity
+/// is: half a one with Euler.
 template <class Simulation>
-void check_coarse_bounces(typename Simulation::execution_space const& space) {
+void check_coarse_bounces(typename Simulation::execution_space const& space, double dt, double lag) {
   world<float> w;
   add_floor(w, 8, 8);
   w.radius = 0.1f;
   std::mt19937 engine(9);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  double before = 0, after = 0;
+  std::vector<double> before;
   for (int i = 0; i < 256; ++i) {
     double const height = 1 + 0.3 * uniform(engine);
     w.particle(7 * uniform(engine), 7 * uniform(engine), 0.1 + height);
-    before += 9.81 * height;
+    before.push_back(9.81 * height);
   }
   running<Simulation> made(space, w);
   made.simulation.template effect<collide::bounce>().restitution = 1;
-  made.simulation.steps(8000, 5e-3f);
+  made.simulation.steps(8000, static_cast<float>(dt));
   auto const x = made.positions(), v = made.velocities();
-  for (std::size_t i = 0; i < w.size(); ++i)
-    after += 9.81 * (double(x[3 * i + 2]) - 0.1) + double(v[3 * i + 2]) * double(v[3 * i + 2]) / 2;
-  CHECK(after == doctest::Approx(before).epsilon(0.03));
+  double most = 0;  // by how much energy is off
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    double const speed = double(v[3 * i + 2]) - lag * 9.81 * dt;
+    double const after = 9.81 * (double(x[3 * i + 2]) - 0.1) + speed * speed / 2;
+    most = std::max(most, std::abs(after / before[i] - 1));
+  }
+  CHECK(most < 1e-3);
 }
 
 /// A world of particles at random in a cube.

@@ -43,6 +43,16 @@ class counting_space : public host {
 
 TEST_CASE("effects: drag leads to the terminal velocity, as the closed form has it") { tests::check_drag(host(1)); }
 
+TEST_CASE("effects: drag and wind give the same bits as blocks of threads go") {
+  using blocks = tests::lockstep<64, true>;
+  for (double const strength : {0., 0.1, 10., 1e3}) {
+    CHECK(tests::fallen_in_media<float, collide::semi_implicit_euler>(host(1), strength) ==
+          tests::fallen_in_media<float, collide::semi_implicit_euler>(blocks(), strength));
+    CHECK(tests::fallen_in_media<double, collide::velocity_verlet>(host(1), strength) ==
+          tests::fallen_in_media<double, collide::velocity_verlet>(blocks(), strength));
+  }
+}
+
 TEST_CASE("effects: wind, uniform and a user's field") { tests::check_wind(host(1)); }
 
 TEST_CASE("effects: what is on an incline slides if and only if it is steeper than friction holds") {

@@ -6,12 +6,17 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/particles/resistance.hpp>
 
 namespace {
 
-using collide::detail::resisted;
+using collide::detail::resistance_in_step;
 using vec = collide::vec3<double>;
+
+vec resisted(vec const& v, vec const& push, double linear, double quadratic) {
+  return collide::detail::resisted(v, push, resistance_in_step(linear, quadratic, 1));
+}
 
 vec integrated(vec v, vec const& push, double linear, double quadratic, int steps) {
   auto const rate = [&](vec const& u) { return vec(push - u * (linear + quadratic * u.norm())); };
@@ -108,6 +113,57 @@ TEST_CASE("resistance: one medium in place of several resists as they do") {
       return vec(u * (m.linear + m.quadratic * u.norm()));
     };
     vec const together = resistance(one) + resistance(two);
-    CHECK((resistance(all.sum()) - together).norm() <= 1e-13 * together.norm());
+    medium const sum{one.linear + two.linear, one.quadratic + two.quadratic, all.flow()};
+    CHECK((resistance(sum) - together).norm() <= 1e-13 * together.norm());
+  }
+}
+
+TEST_CASE("resistance: where a step changes little, the closed form to rounding") {
+  using real = long double;
+  std::mt19937 engine(5);
+  double worst = 0;
+  int gentle = 0;
+  for (int i = 0; i < 20000; ++i) {
+    double const linear = i % 3 == 0 ? 0 : any_size(engine, -0.3), quadratic = any_size(engine, 1);
+    double const push = any_size(engine, 0) * 0.09 / quadratic, v = i % 5 == 0 ? 0 : any_size(engine, 1);
+    double const sign = i % 2 == 0 ? 1 : -1;
+    resistance_in_step const r(linear, quadratic, 1);
+    auto const found = collide::detail::gentle_response(v * v, sign * v * push, push * push, r);
+    if (found.margin < 0) continue;
+    ++gentle;
+    real const h = real(linear) / 2, square = h * h + (v > 0 ? sign : 1) * real(push) * real(quadratic);
+    real const root = std::sqrt(std::abs(square));
+    real const t = square > 0 ? std::tanh(root) / root : (square < 0 ? std::tan(root) / root : 1);
+    real const right = (v + ((v > 0 ? sign : 1) * real(push) - h * v) * t) / (1 + (h + quadratic * v) * t);
+    double const got = v * found.of_velocity + (v > 0 ? sign : 1) * push * found.of_push;
+    worst = std::max(worst, double(std::abs(got - right) / (v + right)));
+  }
+  CHECK(gentle > 15000);
+  CHECK(worst < 2e-15);
+}
+
+TEST_CASE("resistance: some at a time get the same bits as each alone") {
+  constexpr int n = 16;
+  std::mt19937 engine(6);
+  for (int i = 0; i < 2000; ++i) {
+    resistance_in_step const r(i % 3 == 0 ? 0 : any_size(engine, 1), i % 7 == 0 ? 0 : any_size(engine, 1), 0.125);
+    collide::detail::velocities_in<float, n, true> some;
+    collide::vec3<float> before[n], pushed[n];
+    vec flow[n];
+    for (int k = 0; k < n; ++k) {
+      flow[k] = any_direction(engine) * any_size(engine, 0);
+      before[k] = (any_direction(engine) * any_size(engine)).cast<float>();
+      if (k % 5 == 0) before[k] = flow[k].cast<float>();
+      pushed[k] = k % 3 == 0 ? before[k] : before[k] + (any_direction(engine) * any_size(engine, 0)).cast<float>();
+      some.set_before(k, flow[k], before[k]);
+      some.set_pushed(k, pushed[k]);
+    }
+    collide::detail::multiversioned([&] { r.quadratic == 0 ? some.ease(r) : some.find(r); });
+    some.keep();
+    for (int k = 0; k < n; ++k) {
+      collide::vec3<float> found;
+      some.get(k, found, r);
+      CHECK(found == collide::detail::velocity_in(r, flow[k], before[k], pushed[k]));
+    }
   }
 }

@@ -70,7 +70,7 @@ TEST_CASE("simulation: on the GPU, bounces are e^(2n) as high, and end in rest")
 TEST_CASE("simulation: on the GPU, a ball feels no bump at the inner edges of a plane") {
   tests::check_inner_edges<karabassi<>, float>(cuda_shared());
   tests::check_inner_edges<karabassi_swept<>, float>(cuda_shared());
-  tests::check_coarse_bounces<falls_in<karabassi<>>>(cuda_shared());
+  tests::check_coarse_bounces<falls_in<karabassi<>>>(cuda_shared(), 1.0 / 60, 0.5);
 }
 
 TEST_CASE("simulation: on the GPU, balls that touch hundreds of triangles") {

@@ -17,6 +17,18 @@ TEST_CASE("where features meet: what lies on the mesh presses with its weight") 
   tests::check_slope_and_stack<velocity_verlet, float>(blocks());
 }
 
+TEST_CASE("where features meet: in the corner of bodies each has its share of the weight, asleep or not") {
+  tests::check_weight_in_a_corner<karabassi<>, semi_implicit_euler, double>(host(1));
+  tests::check_weight_in_a_corner<karabassi<>, velocity_verlet, float>(host(1));
+  tests::check_weight_in_a_corner<karabassi<>, semi_implicit_euler, float>(blocks());
+  tests::check_weight_in_a_corner<karabassi_swept<>, velocity_verlet, double>(host(1));
+}
+
+TEST_CASE("where features meet: what sleeps is woken where a parameter changes") {
+  tests::check_waking_by_parameters<double>(host(1));
+  tests::check_waking_by_parameters<float>(blocks());
+}
+
 TEST_CASE("where features meet: velocity Verlet is of second order with forces between particles") {
   tests::check_order_of_pair_forces(host(1));
 }
@@ -25,6 +37,12 @@ TEST_CASE("where features meet: what sleeps goes with what it lies on, however s
   tests::check_slow_support<karabassi<>, double>(host(1));
   tests::check_slow_support<karabassi<>, float>(blocks());
   tests::check_slow_support<karabassi_swept<>, float>(host(1));
+}
+
+TEST_CASE("where features meet: what wakes what sleeps loses what that gets") {
+  tests::check_momentum_of_waking<semi_implicit_euler, double>(host(1));
+  tests::check_momentum_of_waking<semi_implicit_euler, float>(blocks());
+  tests::check_momentum_of_waking<velocity_verlet, double>(host(1));
 }
 
 TEST_CASE("where features meet: what spins does not sleep, and angular momentum closes") {
@@ -57,6 +75,7 @@ TEST_CASE("where features meet: a driven body is nowhere before its first pose, 
   tests::check_first_pose<karabassi<>, float>(blocks());
   tests::check_first_pose<karabassi_swept<>, double>(host(1));
   tests::check_turntable(host(1));
+  tests::check_far_turntable(host(1));
 }
 
 TEST_CASE("where features meet: what is nowhere is counted") {

@@ -7,6 +7,7 @@
 #include <collide/effects/contact_forces.hpp>
 #include <collide/effects/lost.hpp>
 #include <collide/effects/sleep.hpp>
+#include <collide/energy.hpp>
 #include <collide/integrators.hpp>
 
 #include "simulation/bodies.hpp"
@@ -96,6 +97,61 @@ void check_slope_and_stack(Space const& space) {
   for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(double(v[3 * k + 2])) < 2e-4);
 }
 
+/// In the corner of bodies each gets its share of the weight, also of what sleeps: two walls at right angles, and an
+/// end wall that leans on the ball.
+template <class NarrowPhase, class Integrator, class S, class Space>
+void check_weight_in_a_corner(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, Integrator, collide::sleep, gravity, bounce,
+                                         collide::reaction, moving_bodies<>>;
+  double const c = 0.8, s = 0.6, r = 0.1, mass = mass_of_grain(r), dt = 1.0 / 1024;
+  world<S> w;
+  w.radius = S(r);
+  w.particle(r * (c - s), r, r * (c + s));
+  add_quad(w, {0, -3, 0}, {3 * c, -3, 3 * s}, {3 * c, 3, 3 * s}, {0, 3, 0});    // normal (-s, 0, c)
+  add_quad(w, {0, -3, 0}, {0, 3, 0}, {-3 * s, 3, 3 * c}, {-3 * s, -3, 3 * c});  // normal (c, 0, s)
+  add_quad(w, {-3, 0, -3}, {3, 0, -3}, {3, 0, 3}, {-3, 0, 3});                  // normal (0, 1, 0)
+  collide::reaction_sums sums(space, 3, mass * 1e-12);
+  running_bodies<simulation> made(space, w, {body{0, 2, {}}, body{2, 2, {}}, body{4, 2, {}}}, Integrator{},
+                                  collide::sleep{}, gravity{0, -2, -9.81}, bounce{0.2}, sums.effect(density_of_grains),
+                                  moving_bodies<>{});
+  double const rounding = sizeof(S) == 4 ? 1e-5 : 1e-9;
+  for (int const asleep : {0, 1}) {
+    made.simulation.steps(asleep == 0 ? 20 : 300, S(dt));
+    CHECK((made.simulation.template to_host<slow_steps>()[0] >= 50) == (asleep == 1));
+    sums.clear(space);
+    made.simulation.steps(16, S(dt));
+    auto const found = sums.read(space);
+    double const right[3][3] = {{9.81 * c * s, 0, -9.81 * c * c}, {-9.81 * s * c, 0, -9.81 * s * s}, {0, -2, 0}};
+    for (std::size_t b = 0; b < 3; ++b) {
+      for (int k = 0; k < 3; ++k) CHECK(std::abs(found[b].linear[k] / (mass * 16 * dt) - right[b][k]) < 10 * rounding);
+    }
+  }
+}
+
+/// What sleeps is woken where parameters change; not where they are read, or another thing moves.
+template <class S, class Space>
+void check_waking_by_parameters(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::sleep, gravity, bounce, moving_bodies<>>;
+  auto const w = ball_on_floor<S>();
+  running_bodies<simulation> made(space, w, one_body(w, {}), collide::sleep{}, gravity{}, bounce{0.2},
+                                  moving_bodies<>{});
+  auto const slow = [&] { return int(made.simulation.template to_host<slow_steps>()[0]); };
+  made.simulation.steps(100, S(1e-3));
+  CHECK(slow() == 50);
+  auto const x = made.positions();
+  simulation const& seen = made.simulation;
+  CHECK(seen.template effect<gravity>().z == -9.81);
+  CHECK(energy(seen, 1).kinetic == 0);
+  made.simulation.template effect<moving_bodies<>>();
+  made.simulation.steps(10, S(1e-3));
+  CHECK(slow() == 50);
+  CHECK(made.positions() == x);
+  made.simulation.template effect<gravity>().x = 1;
+  made.simulation.steps(100, S(1e-3));
+  CHECK(double(made.velocities()[0]) == doctest::Approx(0.1).epsilon(1e-4));
+}
+
 /// Spheres in elastic contact: halving the step divides the error of `velocity_verlet` by four.
 template <class Space>
 void check_order_of_pair_forces(Space const& space) {
@@ -162,6 +218,28 @@ void check_sleep_of_what_spins(Space const& space) {
   made.simulation.steps(2000, S(1e-3));
   CHECK(made.simulation.template to_host<slow_steps>()[0] >= 50);
   CHECK(std::abs(double(made.simulation.template to_host<collide::angular_velocity>()[2])) < 0.1);
+}
+
+/// What hits a sphere that sleeps loses what that gets, also in the step that wakes it.
+template <class Integrator, class S, class Space>
+void check_momentum_of_waking(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, collide::sleep, sphere_contact>;
+  world<S> w;
+  w.radius = S(0.1);
+  w.particle(0, 0, 0);
+  w.particle(-0.25, 0, 0);
+  w.particle(0.4, 0.05, 0, -1, 0, 0);
+  running<simulation> made(space, w, Integrator{}, collide::sleep{},
+                           sphere_contact::from_restitution(0.6, 0.03, 0.1, density_of_grains, 0.3));
+  made.simulation.steps(150, S(1e-3));
+  CHECK(made.simulation.template to_host<slow_steps>()[0] >= 50);
+  made.simulation.steps(350, S(1e-3));
+  auto const v = made.velocities();
+  double const rounding = sizeof(S) == 4 ? 1e-6 : 1e-14;
+  CHECK(v[3] < S(-0.1));
+  CHECK(std::abs(double(v[0]) + double(v[3]) + double(v[6]) + 1) < rounding);
+  CHECK(std::abs(double(v[1]) + double(v[4]) + double(v[7])) < rounding);
 }
 
 /// What a ball loses of its angular momentum the mesh gets, rolling resistance included.
@@ -399,6 +477,36 @@ void check_turntable(Space const& space) {
   double const c = std::cos(2 * 5000 * dt), s = std::sin(2 * 5000 * dt);
   CHECK(std::abs(y[0] - (c * x[0] - s * x[1])) < 1e-9);
   CHECK(std::abs(y[1] - (s * x[0] + c * x[1])) < 1e-9);
+}
+
+/// Far from the origin what lies on a turntable touches it only every few steps in floats: it drifts outward by no more
+/// than the page says. Nearer to it it does not.
+template <class Space>
+void check_far_turntable(Space const& space) {
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi_swept<>>, gravity, bounce, friction, moving_bodies<>>;
+  double const dt = 1e-3, rate = 2;
+  for (double const far : {0.0, 10.0, 100.0}) {
+    world<float> w;
+    w.radius = 0.1f;
+    w.triangle({far - 3, far - 3, 0, far + 3, far - 3, 0, far, far + 3, 0});
+    w.particle(far + 0.5, far, 0.1);
+    body_motion turns;
+    turns.pivot[0] = turns.pivot[1] = far;
+    turns.rate = rate;
+    running_bodies<simulation> made(space, w, one_body(w, turns), gravity{}, bounce{0}, friction{0.6, 0.6},
+                                    moving_bodies<>{});
+    auto const distance = [&] {
+      auto const x = made.positions();
+      return std::hypot(double(x[0]) - far, double(x[1]) - far);
+    };
+    made.simulation.steps(1000, float(dt));
+    double const before = distance();
+    made.simulation.steps(20000, float(dt));
+    double const most = far < 50 ? 1e-3 : 1.1 * (std::exp(rate * rate * dt * 20) - 1);
+    CHECK(distance() / before - 1 < most);
+    CHECK(distance() / before - 1 > -1e-3);
+  }
 }
 
 /// Particles that are nowhere are counted, and the others go on.

@@ -8,6 +8,7 @@
 #include <collide/detail/bodies/bodies_ref.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/geometry/aabb.hpp>
+#include <collide/detail/particles/effect_traits.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
@@ -335,11 +336,6 @@ struct no_bodies {
     return whole;
   }
 };
-
-template <class Effect>
-inline constexpr bool is_moving_bodies = false;
-template <class Motion>
-inline constexpr bool is_moving_bodies<moving_bodies<Motion>> = true;
 
 /// The bodies of a scene with these effects.
 template <class S, class... Effect>

@@ -45,6 +45,18 @@ COLLIDE_HD_INLINE U fetch_add(U* target, U n) {
 #endif
 }
 
+/// Adds. In whatever order threads do so: the sum of whole numbers is exact.
+COLLIDE_HD_INLINE void fetch_add(double* target, double n) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(target, n);
+#else
+  double seen = *target, sum;
+  do {
+    sum = seen + n;
+  } while (!__atomic_compare_exchange(target, &seen, &sum, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED));
+#endif
+}
+
 /// Sets the bits of `mask`.
 COLLIDE_HD_INLINE void fetch_or(std::uint32_t* target, std::uint32_t mask) {
 #if defined(__CUDA_ARCH__)

@@ -13,27 +13,40 @@ struct effect_slot {
   E effect;
 };
 
+/// What drag and wind do in a step, if there are any; known before it.
+template <bool Resists>
+struct resistance_slot {};
+template <>
+struct resistance_slot<true> {
+  resistance_in_step resistance;
+};
+
 /// The effects of a simulation and what follows from their list at compile time.
 template <class S, class... E>
-struct effect_list : effect_slot<E>... {
+struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value || ...)> {
   using integrator = typename integrator_of<E...>::type;
 
   static constexpr bool skips = (skips_in<E, S>::value || ...);
-  static constexpr bool touches = (touches_mesh_in<E, S> || ...);
-  static constexpr bool meets = (meets_in<E, S>::value || ...);
+  static constexpr bool meets = (pairs_in<E, S> || ...);
+  using remembered = union_of<columns<>, typename remembers_of<E>::type...>;  ///< by contacts between particles
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
   static constexpr bool books = (books_in<E, S>::value || ...);
+  static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
+  static constexpr bool touches =                               ///< or by impulses
+      (touches_in<E, S>::value || ...) || (settles_in<E, S>::value || ...) || (books && !overlaps);
   static constexpr bool resists = (resists_in<E, S>::value || ...);
+  static constexpr bool flows = (flows_in<E, S>::value || ...);
 
   using base = columns<position, velocity>;
   using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
   static constexpr bool adheres = touches && contains<named, adhered>;
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
   /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
-  static constexpr bool keeps_pair_forces = meets && (adheres || has_half_kicks);
-  static constexpr bool keeps_pair_torques = meets && has_half_kicks && contains<named, angular_velocity>;
+  static constexpr bool keeps_pair_forces = (meets || overlaps) && (adheres || has_half_kicks);
+  static constexpr bool keeps_pair_torques =
+      (meets || overlaps) && has_half_kicks && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
-  static constexpr bool ends_after_meeting = meets && has_half_kicks;
+  static constexpr bool ends_after_meeting = (meets || overlaps) && has_half_kicks;
   /// What sleeps presses on.
   static constexpr bool keeps_support = books && contains<named, slow_steps>;
 
@@ -43,7 +56,9 @@ struct effect_list : effect_slot<E>... {
   using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
                               columns_if<keeps_pair_torques, pair_angular_acceleration>>;
   using held_columns = columns_if<touches && has_half_kicks, held>;
-  using support_columns = columns_if<keeps_support, support, supported_by>;
+  using support_columns = union_of<columns_if<keeps_support, support, supported_by>,
+                                   columns_if<keeps_support && (is_moving_bodies<E> || ...), second_support,
+                                              second_supported_by, third_support, third_supported_by>>;
 
  public:
   /// All columns of the simulation.
@@ -70,7 +85,7 @@ struct effect_list : effect_slot<E>... {
                                                   holds_in<F, S>::value ||
                                                   (books_in<F, S>::value && (adheres || keeps_support));
   template <class F>
-  static constexpr bool interacts_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
+  static constexpr bool interacts_or_skips = pairs_in<F, S> || disturbs_in<F, S>::value || skips_in<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
   using own_number = intersection_of<columns<global_number>, all>;
   template <bool Needed>
@@ -94,15 +109,27 @@ struct effect_list : effect_slot<E>... {
                                radius_if<meets>, own_number>;
   using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
   using interaction_writes = difference_of<
-      union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>,
+      union_of<columns<>, writes_if<E, pairs_in<E, S> || disturbs_in<E, S>::value>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
+  /// What is read and written for particles that press on the mesh.
+  using overlap_reads =
+      union_of<base, own_radius, own_number, pair_kicks, columns_if<keeps_pair_torques, angular_velocity>,
+               support_columns,
+               reads_if<E, overlaps_in<E, S> || skips_in<E, S>::value || (overlaps && books_in<E, S>::value)>...>;
+  using overlap_writes = difference_of<
+      union_of<pair_kicks, support_columns,
+               writes_if<E, overlaps_in<E, S> || (overlaps && books_in<E, S>::value)>...>,
+      union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
 
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
   /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
   double due(double dt) const { return (due_of<E>(dt) + ... + 0.0); }
-  S source_radius() const { return (is_source<E> || ...) ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+  static constexpr bool makes = (is_source<E> || ...);
+  /// Whether what a source makes where something is, is not born.
+  bool makes_only_where_free() const { return (is_careful<E>() || ...); }
+  S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
 
   template <class F>
   COLLIDE_HD_INLINE F const& of() const {
@@ -119,16 +146,45 @@ struct effect_list : effect_slot<E>... {
     return (skipped_by<E>(p) || ...);
   }
 
+  /// Makes ready for steps of the time `dt`.
+  void prepare([[maybe_unused]] S dt) {
+    if constexpr (resists) this->resistance = resistance_over(S(integrator::kick_before) * dt);
+  }
   template <class P>
   COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (resists) {
       vec3<S> const before = p[velocity{}];
-      media around(before.template cast<double>());
+      vec3<double> const flow = flow_around(p);
       push(p, dt);
-      (resist_by<E>(p, around), ...);
-      p[velocity{}] = velocity_in(around.sum(), before, p[velocity{}], dt);
+      bool const is_ready = this->resistance.time == static_cast<double>(dt);
+      p[velocity{}] = velocity_in(is_ready ? this->resistance : resistance_over(dt), flow, before, p[velocity{}]);
     } else {
       push(p, dt);
+    }
+  }
+  /// Accelerates some particles, each for its own time, on a CPU; those for 0 are left out.
+  template <class P, int N>
+  COLLIDE_HD_INLINE void accelerate_together(P (&p)[N], S const (&dt)[N]) const {
+    auto const& r = this->resistance;
+    S const time = S(r.time);
+    bool ready = !r.is_none();
+    for (int k = 0; k < N; ++k) ready = ready && (dt[k] == time || dt[k] == 0);
+    if (!ready) {
+      for (int k = 0; k < N; ++k) {
+        if (dt[k] != 0) accelerate(p[k], dt[k]);
+      }
+      return;
+    }
+    velocities_in<S, N, flows> velocities;
+    for (int k = 0; k < N; ++k) {
+      velocities.set_before(k, flow_around(p[k]), p[k][velocity{}]);
+      if (dt[k] != 0) push(p[k], time);
+      velocities.set_pushed(k, p[k][velocity{}]);
+    }
+    multiversioned([&] { r.quadratic == 0 ? velocities.ease(r) : velocities.find(r); });
+    velocities.keep();
+    for (int k = 0; k < N; ++k) {
+      if (dt[k] != 0) velocities.get(k, p[k][velocity{}], r);
     }
   }
   template <class P>
@@ -150,6 +206,23 @@ struct effect_list : effect_slot<E>... {
   COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
     (meet_by<E>(p, self, other, dt), ...);
   }
+  /// With what the contact remembers; `overlap` if the two do. True if the contact goes on.
+  template <class P, class Values>
+  COLLIDE_HD_INLINE bool on_pair_contact(P& p, P& self, P& other, bool overlap, Values& values, S elapsed,
+                                         S dt) const {
+    if (overlap) on_pair_contact(p, self, other, dt);
+    bool goes_on = false;
+    ((goes_on = meet_with_memory_by<E>(p, self, other, values, elapsed, dt) || goes_on), ...);
+    return goes_on;
+  }
+  /// True if the contact goes on.
+  template <class P, class Values>
+  COLLIDE_HD_INLINE bool on_mesh_overlap(P& p, P& self, mesh_overlap<S> const& o, Values& values, S elapsed,
+                                         S dt) const {
+    bool goes_on = false;
+    ((goes_on = overlap_by<E>(p, self, o, values, elapsed, dt) || goes_on), ...);
+    return goes_on;
+  }
   template <class P>
   COLLIDE_HD_INLINE void try_wake(P& p, P& other) const {
     (disturb_by<E>(p, other), ...);
@@ -164,6 +237,11 @@ struct effect_list : effect_slot<E>... {
   double due_of([[maybe_unused]] double dt) const {
     if constexpr (is_source<F>) return of<F>().rate * dt;
     return 0;
+  }
+  template <class F>
+  bool is_careful() const {
+    if constexpr (is_source<F>) return of<F>().only_where_free;
+    return false;
   }
   template <class F>
   S source_radius_of() const {
@@ -185,6 +263,26 @@ struct effect_list : effect_slot<E>... {
       particle_access<F, P> const seen(p);
       around.add(of<F>().resistance(seen));
     }
+  }
+  /// The velocity of the medium around a particle.
+  template <class P>
+  COLLIDE_HD_INLINE vec3<double> flow_around(P& p) const {
+    if constexpr (!flows) return {0, 0, 0};
+    media around(p[velocity{}].template cast<double>());
+    (resist_by<E>(p, around), ...);
+    return around.flow();
+  }
+  template <class F>
+  COLLIDE_HD_INLINE void add_resistance([[maybe_unused]] double& linear, [[maybe_unused]] double& quadratic) const {
+    if constexpr (resists_in<F, S>::value) {
+      linear += of<F>().linear;
+      quadratic += of<F>().quadratic;
+    }
+  }
+  COLLIDE_HD_INLINE resistance_in_step resistance_over(S time) const {
+    double linear = 0, quadratic = 0;
+    (add_resistance<E>(linear, quadratic), ...);
+    return {linear, quadratic, static_cast<double>(time)};
   }
   /// What all accelerate but those that resist.
   template <class P>
@@ -242,6 +340,35 @@ struct effect_list : effect_slot<E>... {
       particle_access<F, P> const seen_self(self), seen_other(other);
       of<F>().on_pair_contact(seen, seen_self, seen_other, dt);
     }
+  }
+  template <class F, class P, class Values>
+  COLLIDE_HD_INLINE bool meet_with_memory_by([[maybe_unused]] P& p, [[maybe_unused]] P& self,
+                                             [[maybe_unused]] P& other, [[maybe_unused]] Values& values,
+                                             [[maybe_unused]] S elapsed, [[maybe_unused]] S dt) const {
+    if constexpr (remembers_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_self(self), seen_other(other);
+      contact_access<typename remembers_of<F>::type, Values, S> const memory(values, elapsed);
+      return of<F>().on_pair_contact(seen, seen_self, seen_other, memory, dt);
+    } else {
+      return false;
+    }
+  }
+  template <class F, class P, class Values>
+  COLLIDE_HD_INLINE bool overlap_by([[maybe_unused]] P& p, [[maybe_unused]] P& self,
+                                    [[maybe_unused]] mesh_overlap<S> const& o, [[maybe_unused]] Values& values,
+                                    [[maybe_unused]] S elapsed, [[maybe_unused]] S dt) const {
+    if constexpr (overlaps_in<F, S>) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_self(self);
+      if constexpr (overlaps_with_memory<F, S>::value) {
+        contact_access<typename remembers_of<F>::type, Values, S> const memory(values, elapsed);
+        return of<F>().on_mesh_overlap(seen, seen_self, o, memory, dt);
+      } else {
+        of<F>().on_mesh_overlap(seen, seen_self, o, dt);
+      }
+    }
+    return false;
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void disturb_by([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {

@@ -11,7 +11,22 @@
 #include <collide/detail/particles/effect_list.hpp>
 #include <collide/spheres.hpp>
 
-namespace collide::detail {
+namespace collide {
+
+/// What a source has made since `set`.
+struct birth_counts {
+  std::uint64_t due = 0;          ///< particles that have come due: time times rate
+  std::uint64_t overlapping = 0;  ///< of these, in scenes in which particles meet: those that overlapped one that was
+                                  ///< there before, or one of the same step whose place is before theirs
+  std::uint64_t not_born = 0;     ///< with `only_where_free`: those, and those whose place in memory was taken
+};
+
+namespace detail {
+
+inline birth_counts births_of(double const (&clock)[clock_size]) {
+  auto const whole = [&](std::size_t k) { return static_cast<std::uint64_t>(clock[k]); };
+  return {whole(clock_made), whole(clock_overlapping), whole(clock_not_born)};
+}
 
 /// Throws `error` if these are more places than a simulation may have.
 inline void check_places(std::uint64_t places) {
@@ -77,7 +92,7 @@ void check_time_step_of(Effects const& effects, S dt, S smallest) {
   double const most = longest_step_of<E>(effects, smallest);
   if (!(smallest > 0 && static_cast<double>(dt) > most)) return;
   throw error("collide: simulation: the time dt of a step, " + text_of(dt) +
-              ", is above a fifth of a collision of the smallest particles, " + text_of(most) +
+              ", is longer than an effect allows with the smallest particles, " + text_of(most) +
               ": take largest_time_step(simulation)");
 }
 
@@ -91,10 +106,14 @@ auto raw_pointer(Pointer const& p) -> decltype(p.get()) {
   return p.get();
 }
 
-/// Calls an effect's `begin_step`, if it has one.
+/// Calls an effect's `begin_step`, if it has one. What a source makes is marked where particles meet.
 template <class E, class Effects, class Space, class State, class S>
 void begin_step_of(Effects& effects, Space& space, State const& state, S dt) {
-  if constexpr (begins_in<E, Space, State, S>::value) effects.template of<E>().begin_step(space, state, dt);
+  if constexpr (is_source<E>) {
+    effects.template of<E>().begin_step(space, state, dt, Effects::meets ? newborn : std::uint8_t{1});
+  } else if constexpr (begins_in<E, Space, State, S>::value) {
+    effects.template of<E>().begin_step(space, state, dt);
+  }
 }
 
 /// The radii of a simulation's particles.
@@ -124,4 +143,5 @@ auto radius_range_of(Simulation const& simulation) {
   return found;
 }
 
-}  // namespace collide::detail
+}  // namespace detail
+}  // namespace collide

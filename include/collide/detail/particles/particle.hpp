@@ -87,12 +87,17 @@ struct share_of_all {
 };
 struct all_of_all {};
 
-/// Numbers at `particle_state::time`.
-inline constexpr std::size_t clock_size = 3;
+/// Numbers at `particle_state::time`: the time, then those of a source: how many particles have come due, what part of
+/// the next one is, how many came in this step; how many overlapped others, and how many were not born.
+inline constexpr std::size_t clock_made = 1, clock_part = 2, clock_made_now = 3, clock_overlapping = 4,
+                             clock_not_born = 5, clock_size = 6;
+
+/// In `alive` from where a source makes a particle until particles meet: it is there, and new; and it overlaps others.
+inline constexpr std::uint8_t newborn = 2, crowded_newborn = 3;
 
 /// How many particles a source makes in a step in which `due` are due. A part of 1e-9 of one is put down to rounding.
 COLLIDE_HD_INLINE std::uint64_t begin_in_step(double const* time, double due) {
-  double const whole = std::floor(time[2] + due + 1e-9);
+  double const whole = std::floor(time[clock_part] + due + 1e-9);
   return static_cast<std::uint64_t>(whole < 0x1p53 ? whole : 0x1p53);
 }
 
@@ -106,8 +111,8 @@ struct particle_state<S, columns<C...>>
   std::size_t size;    ///< number of particles, or of places for them
   std::size_t placed;  ///< how many of them `set` has placed; effects that make particles use the others
   S common_radius;     ///< if there is no column for it
-  double* time;        ///< since `set`, when the step begins; null unless an effect has a member begin_step. Behind it:
-                       ///< how many particles a source has made, and what part of the next one is due
+  double* time;        ///< since `set`, when the step begins; null unless an effect has a member begin_step. Behind it
+                       ///< what is known of a source: see `clock_size`
 
   template <class D>
   COLLIDE_HD_INLINE column_element<D, S>* at(D) const {

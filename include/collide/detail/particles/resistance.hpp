@@ -3,6 +3,7 @@
 /// Below, velocities are relative to the medium, and the step is the unit of time.
 #pragma once
 
+#include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/numeric/decay.hpp>
 
 namespace collide::detail {
@@ -13,6 +14,7 @@ struct medium {
   double quadratic = 0;  ///< per length
   vec3<double> flow = {0, 0, 0};
 };
+struct medium_at_rest : medium {};
 
 COLLIDE_HD_INLINE double length_of(vec3<double> const& x) { return sqrt_rn(dot(x, x)); }
 
@@ -58,17 +60,77 @@ COLLIDE_HD_INLINE double velocity_along(double v, double push, double linear, do
   return div(v + mul(slowing, x), 1 + mul(h - mul(quadratic, v), x));
 }
 
-/// The velocity after a step against a linear resistance. `push`: by which a push alone would have changed it.
-COLLIDE_HD_INLINE vec3<double> eased(vec3<double> const& v, vec3<double> const& push, double rate) {
-  decay const d = decay_after(rate);
-  return scaled(v, d.left) + scaled(push, rate > 0 ? div(d.lost, rate) : 1);
+/// What a medium does in a step that is the same for all particles.
+struct resistance_in_step {
+  double time = -1;                  ///< of the step
+  double linear = 0, quadratic = 0;  ///< of the medium, times the step
+  double left = 1, gained = 1;       ///< what is left of a velocity, and gained of a push, if it is linear
+  double gentle = 0;                 ///< square of the push up to which `gentle_response` is meant
+
+  resistance_in_step() = default;
+  COLLIDE_HD_INLINE resistance_in_step(double by_time, double by_length, double step)
+      : time{step}, linear{mul(by_time, step)}, quadratic{mul(by_length, step)} {
+    decay const d = decay_after(linear);
+    left = d.left;
+    if (linear > 0) gained = div(d.lost, linear);
+    gentle = linear <= 0.6 ? div(0.01, mul(quadratic, quadratic)) : -1;
+  }
+  COLLIDE_HD_INLINE bool is_none() const { return linear == 0 && quadratic == 0; }
+};
+
+/// How much of its velocity a particle keeps in a step, and how much it gets of a push: that by which all else would
+/// have changed its velocity.
+struct response {
+  double of_velocity, of_push;
+  double margin = 0;  ///< negative if it is not right
+
+  COLLIDE_HD_INLINE vec3<double> operator()(vec3<double> const& v, vec3<double> const& push) const {
+    return scaled(v, of_velocity) + scaled(push, of_push);
+  }
+};
+
+/// 1 / sqrt(x) to within 4 units in the last place, of normal numbers; NaN of an infinite one. A loop of it has no
+/// branch and no call, and is vectorised.
+COLLIDE_HD_INLINE double reciprocal_root(double x) {
+  double r = from_bits<double>(0x5fe6eb50c7b537a9u - (to_bits(x) >> 1));
+  for (int i = 0; i < 4; ++i) r = mul(r, 1.5 - mul(mul(x / 2, r), r));  // Newton: from 3 % to 1e-21
+  return r;
 }
 
-/// The velocity after a step against any resistance: exact if it is linear, or velocity and push are parallel. Else of
-/// second order; never faster than both at first and in the end.
-COLLIDE_HD_INLINE vec3<double> resisted(vec3<double> const& v, vec3<double> const& push, double linear,
-                                        double quadratic) {
-  if (quadratic == 0) return eased(v, push, linear);
+/// What `resisted_strongly` finds, where a step changes little: without a branch, in sums, products and one quotient.
+///
+/// Along v the motion has the closed form v' = (v + (a - h v) T) / (1 + (h + q |v|) T) with T = tanh(r) / r, h = half
+/// of linear, r^2 = h^2 + q a (negative: tan). T is a quotient of polynomials in r^2, the seventh of its continued
+/// fraction, right to rounding for |r^2| < 0.2. Of a push across v the mean of what is left of a velocity at the
+/// beginning and at the end remains. It is wrong where the particle turns around, or gets faster than the terminal
+/// velocity.
+///
+/// \param vv, va, aa  the scalar products of velocity and push
+COLLIDE_HD_INLINE response gentle_response(double vv, double va, double aa, resistance_in_step const& r) {
+  double const h = r.linear / 2, q = r.quadratic;
+  bool const moves = vv > 1e-200;  // else it goes along the push
+  double const xx = select(moves, vv, aa) + 1e-200, inverse = reciprocal_root(xx), length = mul(xx, inverse);
+  double const along = mul(select(moves, va, aa), inverse), share = mul(along, inverse);
+  double const y = mul(h, h) + mul(q, along);
+  double const top = 135135 + mul(y, 17325 + mul(y, 378 + y));  // T = top / bottom
+  double const bottom = 135135 + mul(y, 62370 + mul(y, 3150 + mul(28, y)));
+  double const kept = bottom - mul(h, top), speed = select(moves, length, 0.0);
+  double const scale = div(1, bottom + mul(h + mul(q, speed), top));
+  double const left = mul(kept, scale), gained = mul(top, scale), across = select(moves, 0.5 + left / 2, gained);
+  double const of_v = left + mul(share, gained - across);
+  double const ss = mul(mul(of_v, of_v), vv) + mul(across, mul(2 * of_v, va) + mul(across, aa));  // speed afterwards
+  double const most = mul(mul(ss, inverse) + length, 0.5);                                        // is not above this
+  double const force = mul(r.linear, r.linear) + mul(q, mul(2 * r.linear, most) + mul(q, ss));    // square, by speed
+  constexpr double rounding = 1 + 8e-15;
+  bool const bounded = (ss <= mul(vv, rounding)) | (mul(ss, force) <= mul(aa, rounding));
+  bool const right = (aa <= r.gentle) & (kept + mul(share, top) >= 0) & bounded;
+  return {of_v, across, select(right, 0.0, -1.0)};
+}
+
+/// The velocity after a step against any resistance: exact where velocity and push are parallel. Else of second order;
+/// never faster than both at first and in the end.
+COLLIDE_HD_RARE vec3<double> resisted_strongly(vec3<double> const& v, vec3<double> const& push, double linear,
+                                               double quadratic) {
   double const a = length_of(push), speed = length_of(v);
   vec3<double> const along = a > 0 ? scaled(push, div(1, a)) : scaled(v, speed > 0 ? div(1, speed) : 0);
   double const part = dot(v, along);
@@ -79,20 +141,102 @@ COLLIDE_HD_INLINE vec3<double> resisted(vec3<double> const& v, vec3<double> cons
   double const gain = dot(push, ahead), to = length_of(ahead);  // how fast the speed grows is gain / to
   double const middle = gain >= 0 && to > 0 ? speed_after(speed, div(gain, to), linear, quadratic, 0.5)
                                             : speed_after(length_of(v + scaled(push, 0.5)), 0, linear, quadratic, 0.5);
-  vec3<double> const after = eased(v, push, linear + mul(quadratic, middle));
+  double const rate = linear + mul(quadratic, middle);
+  decay const d = decay_after(rate);
+  vec3<double> const after = response{d.left, rate > 0 ? div(d.lost, rate) : 1}(v, push);
   double const terminal = div(2 * a, linear + sqrt_rn(mul(linear, linear) + mul(4 * quadratic, a)));
   double const found = length_of(after), most = larger(speed, terminal);
   return found > most ? scaled(after, div(most, found)) : after;
 }
 
-/// The velocity after the time `dt` in a medium. `before`: at its beginning; `pushed`: after what else accelerates.
-template <class S>
-COLLIDE_HD_INLINE vec3<S> velocity_in(medium const& m, vec3<S> const& before, vec3<S> const& pushed, S dt) {
-  if (m.linear == 0 && m.quadratic == 0) return pushed;
-  double const time = static_cast<double>(dt);
-  vec3<double> const from = before.template cast<double>(), push = pushed.template cast<double>() - from;
-  return rounded_to<S>(m.flow + resisted(from - m.flow, push, mul(m.linear, time), mul(m.quadratic, time)));
+/// The velocity after a step against any resistance: `resisted_strongly`, but exact if it is linear, and fast if the
+/// step changes little.
+COLLIDE_HD_INLINE vec3<double> resisted(vec3<double> const& v, vec3<double> const& push, resistance_in_step const& r) {
+  response by{r.left, r.gained};
+  if (r.quadratic != 0) by = gentle_response(dot(v, v), dot(v, push), dot(push, push), r);
+  return by.margin >= 0 ? by(v, push) : resisted_strongly(v, push, r.linear, r.quadratic);
 }
+
+/// The velocity after a step in a medium. `before`: at its beginning; `pushed`: after what else accelerates.
+template <class S>
+COLLIDE_HD_INLINE vec3<S> velocity_in(resistance_in_step const& r, vec3<double> const& flow, vec3<S> const& before,
+                                      vec3<S> const& pushed) {
+  if (r.is_none()) return pushed;
+  vec3<double> const from = before.template cast<double>();
+  return rounded_to<S>(flow + resisted(from - flow, pushed.template cast<double>() - from, r));
+}
+
+/// Velocities of `N` particles after a step, for the vector unit of a CPU; `Flows`: the medium does not rest.
+template <class S, int N, bool Flows>
+class velocities_in {
+ public:
+  // number by number: what has been written in fours is not read in eights, which takes as long as all of the rest
+  COLLIDE_HD_INLINE void set_before(int k, [[maybe_unused]] vec3<double> const& flow, vec3<S> const& velocity) {
+    for (int d = 0; d < 3; ++d) {
+      if constexpr (Flows) flow_[d][k] = flow[d];
+      before_[d][k] = velocity[d];
+    }
+  }
+  COLLIDE_HD_INLINE void set_pushed(int k, vec3<S> const& velocity) {
+    for (int d = 0; d < 3; ++d) pushed_[d][k] = velocity[d];
+  }
+  COLLIDE_HD_INLINE void find(resistance_in_step const& r) {
+    resistance_in_step const in = r;
+    for (int k = 0; k < N; ++k) {
+      double v[3], push[3];
+      for (int d = 0; d < 3; ++d) {
+        double const from = static_cast<double>(before_[d][k]);
+        v[d] = from - flow(d, k);
+        push[d] = static_cast<double>(pushed_[d][k]) - from;
+      }
+      response const by = gentle_response(product(v, v), product(v, push), product(push, push), in);
+      for (int d = 0; d < 3; ++d) {
+        after_[d][k] = static_cast<S>(flow(d, k) + (mul(v[d], by.of_velocity) + mul(push[d], by.of_push)));
+      }
+      margin_[k] = by.margin;
+    }
+  }
+  COLLIDE_HD_INLINE void ease(resistance_in_step const& r) {
+    double const left = r.left, gained = r.gained;
+    for (int d = 0; d < 3; ++d) {
+      for (int k = 0; k < N; ++k) {
+        double const from = static_cast<double>(before_[d][k]), v = from - flow(d, k);
+        double const push = static_cast<double>(pushed_[d][k]) - from;
+        after_[d][k] = static_cast<S>(flow(d, k) + (mul(v, left) + mul(push, gained)));
+      }
+    }
+    for (int k = 0; k < N; ++k) margin_[k] = 0;
+  }
+  COLLIDE_HD_INLINE void get(int k, vec3<S>& velocity, resistance_in_step const& r) const {
+    if (margin_[k] >= 0) {
+      for (int d = 0; d < 3; ++d) velocity[d] = after_[d][k];
+    } else {
+      velocity = alone(k, r);
+    }
+  }
+  /// To be called after `find` and `ease`: keeps a compiler from leaving out the rounding; see `rounded_to`.
+  COLLIDE_HD_INLINE void keep() {
+#if defined(__GNUC__) && !defined(__CUDA_ARCH__)
+    __asm__("" : "+m"(after_));
+#endif
+  }
+
+ private:
+  static COLLIDE_HD_INLINE double product(double const (&a)[3], double const (&b)[3]) {
+    return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
+  }
+  COLLIDE_HD_INLINE double flow([[maybe_unused]] int d, [[maybe_unused]] int k) const {
+    if constexpr (Flows) return flow_[d][k];
+    return 0;
+  }
+  COLLIDE_HD_NOINLINE vec3<S> alone(int k, resistance_in_step const& r) const {
+    return velocity_in(r, vec3<double>(flow(0, k), flow(1, k), flow(2, k)), of(before_, k), of(pushed_, k));
+  }
+  static COLLIDE_HD_INLINE vec3<S> of(S const (&a)[3][N], int k) { return {a[0][k], a[1][k], a[2][k]}; }
+
+  S before_[3][N], pushed_[3][N], after_[3][N];
+  double flow_[3][Flows ? N : 1], margin_[N];
+};
 
 /// One medium in place of several: it resists a velocity as they do together.
 class media {
@@ -107,11 +251,12 @@ class media {
     sum_.flow = m.flow;
     ++count_;
   }
-  COLLIDE_HD_INLINE medium sum() const {
-    if (count_ == 1) return sum_;
+  /// How it flows; it is as strong as all are together.
+  COLLIDE_HD_INLINE vec3<double> flow() const {
+    if (count_ == 1) return sum_.flow;
     double const force = length_of(resisting_), root = mul(sum_.linear, sum_.linear) + mul(4 * sum_.quadratic, force);
     double const speed_by_force = force > 0 ? div(2, sum_.linear + sqrt_rn(root)) : 0;
-    return {sum_.linear, sum_.quadratic, velocity_ - scaled(resisting_, speed_by_force)};
+    return velocity_ - scaled(resisting_, speed_by_force);
   }
 
  private:

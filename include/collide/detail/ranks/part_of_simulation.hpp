@@ -83,9 +83,10 @@ class part_of_simulation {
   std::size_t triangles() const { return simulation_.mesh_.size(); }
   effects_type const& effects() const { return simulation_.effects_; }
 
-  /// Takes particles, time, effects and bodies of a checkpoint: `mine` particles, and free places.
+  /// Takes particles, time, effects and bodies of a checkpoint: `mine` particles, and free places. One rank of all
+  /// `has_sums`: counts of all ranks.
   template <class Checkpoint>
-  void restore(Checkpoint const& saved, std::size_t mine, numbers_of_all const& all) {
+  void restore(Checkpoint const& saved, std::size_t mine, numbers_of_all const& all, bool has_sums) {
     auto const& numbers = saved.numbers();
     S largest = larger(numbers.largest_radius, numbers.common_radius), widest = largest < 0 ? -largest : largest;
     if constexpr (contains<all_columns, radius>) {
@@ -101,8 +102,13 @@ class part_of_simulation {
     auto const& state = simulation_.state_;
     saved.restore_columns(space(), state, 0, static_cast<std::size_t>(all.first), mine);
     saved.restore_columns(space(), state, mine, static_cast<std::size_t>(all.first_free), free);
-    if constexpr (Simulation::has_begin_step) space().copy_from_host(state.time, numbers.clock, clock_size);
-    saved.restore_parameters(simulation_);
+    if constexpr (Simulation::has_begin_step) {
+      double clock[clock_size];
+      for (std::size_t k = 0; k < clock_size; ++k) clock[k] = numbers.clock[k];
+      if (!has_sums) clock[clock_overlapping] = clock[clock_not_born] = 0;
+      space().copy_from_host(state.time, clock, clock_size);
+    }
+    saved.restore_parameters(simulation_.effects_);
     simulation_.time_ = numbers.time;
     simulation_.knows_pair_forces_ = numbers.knows_pair_forces != 0;
     simulation_.prepare();
@@ -140,10 +146,18 @@ class part_of_simulation {
     if (own() != 0) simulation_.end_step(dt);
   }
   /// Particles meet.
-  void meet(S dt) {
-    state_type with_copies = simulation_.state_;
-    if constexpr (meets) with_copies.size += copies_;
-    simulation_.meet(with_copies, dt);
+  void meet(S dt) { simulation_.meet(with_copies(), dt); }
+  /// Whether what a source makes may not be born, which others must know before particles meet.
+  bool refuses_births(S dt) const {
+    return meets && effects().due(static_cast<double>(dt)) > 0 && effects().makes_only_where_free();
+  }
+  /// Says which of those that a source has made here are not born.
+  void settle_births(S dt) {
+    if constexpr (meets) {
+      if (own() == 0) return;
+      simulation_.neighbours_.renew(space(), with_copies());
+      simulation_.settle_births(with_copies(), dt);
+    }
   }
   /// Whether the next step knows what particles do to each other where it begins.
   bool knows_pair_forces() const { return simulation_.knows_pair_forces_; }
@@ -240,6 +254,11 @@ class part_of_simulation {
   static constexpr S skin_fraction = S(0.1);  ///< of the largest diameter
 
   state_type const& state() const { return simulation_.state_; }
+  state_type with_copies() const {
+    state_type all = simulation_.state_;
+    if constexpr (meets) all.size += copies_;
+    return all;
+  }
 
   /// Puts rows, in memory of the space, to places that the host knows.
   void unpack(std::vector<std::uint32_t> const& places, particle_row<S, all_columns> const* from) {

@@ -218,6 +218,7 @@ struct contact_response {
       c.elapsed = context.dt;
       face_against(c, arrival);
     }
+    if constexpr (is_swept) c.remaining = a.remaining_time;
     c.velocity_before = surface.velocity_seen(p[velocity{}]);
     c.approach_speed = -dot(arrival, c.normal);
     colliding next = p;

@@ -64,9 +64,14 @@ struct integration {
                                    bool const (&inactive)[N], Filter const& filter) const {
     auto const& state = context.state;
     bool near[N] = {};
+    if constexpr (effects_type::resists && N % 16 == 0) {  // on a CPU
+      S times[N];
+      for (int k = 0; k < N; ++k) times[k] = inactive[k] ? S(0) : begin_with_kick(context, p[k]) * context.dt;
+      context.effects.accelerate_together(p, times);
+    }
     for (int k = 0; k < N; ++k) {
       if (inactive[k]) continue;
-      begin_particle(context, p[k]);
+      if constexpr (!(effects_type::resists && N % 16 == 0)) begin_particle(context, p[k]);
       if constexpr (!is_swept) move(p[k]);
     }
     filter(p, inactive, near);

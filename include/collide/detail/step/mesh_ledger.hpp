@@ -11,15 +11,35 @@ namespace collide::detail {
 /// Number of the body of a frame.
 COLLIDE_HD_INLINE id body_of_frame(int frame) { return frame == 0 ? no_id : static_cast<id>(frame - 1); }
 
+/// Calls f(support, supported_by) of each surface that may support a particle.
+template <class Particle, class F>
+COLLIDE_HD_INLINE void for_each_support(Particle& p, F const& f) {
+  f(p[support{}], p[supported_by{}]);
+  if constexpr (contains<typename Particle::list, second_support>) {
+    f(p[second_support{}], p[second_supported_by{}]);
+    f(p[third_support{}], p[third_supported_by{}]);
+  }
+}
+
 /// Tells the effects what the mesh gives to a particle, and keeps a mean of it for when the particle sleeps.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void book(Context const& context, Particle& p, mesh_impulse<typename Context::scalar> const& given) {
   using S = typename Context::scalar;
   context.effects.on_mesh_impulse(p, given, context.dt);
   if constexpr (Context::effects_type::keeps_support) {
-    p[support{}] += given.change * (1 / (S(steps_in_mean(p[slow_steps{}])) * context.dt));
-    if (p[supported_by{}] != 0 || dot(given.change, given.change) == 0) return;
-    p[supported_by{}] = given.body == no_id ? std::uint8_t{1} : static_cast<std::uint8_t>(given.body + 2);
+    if (dot(given.change, given.change) == 0) return;
+    vec3<S> const change = given.change * (1 / (S(steps_in_mean(p[slow_steps{}])) * context.dt));
+    auto const surface = static_cast<std::uint8_t>(given.body == no_id ? 1 : given.body + 2);
+    bool is_known = false;
+    for_each_support(p, [&](vec3<S>& of, std::uint8_t& by) {
+      if (is_known || (by != 0 && by != surface)) return;
+      of += change;
+      by = surface;
+      is_known = true;
+    });
+    if constexpr (contains<typename Particle::list, third_support>) {
+      if (!is_known) p[third_support{}] += change;
+    }
   }
 }
 
@@ -27,11 +47,12 @@ COLLIDE_HD_INLINE void book(Context const& context, Particle& p, mesh_impulse<ty
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void book_sleeping(Context const& context, Particle& p) {
   using S = typename Context::scalar;
-  int const by = p[supported_by{}];
-  if (by == 0) return;
-  vec3<S> const none(S(0), S(0), S(0)), change = p[support{}] * context.dt;
-  mesh_impulse<S> const given{change, none, p[position{}], none, none, no_id, body_of_frame(by - 1)};
-  context.effects.on_mesh_impulse(p, given, context.dt);
+  for_each_support(p, [&](vec3<S> const& of, std::uint8_t const& by) {
+    if (by == 0) return;
+    vec3<S> const none(S(0), S(0), S(0)), change = of * context.dt;
+    mesh_impulse<S> const given{change, none, p[position{}], none, none, no_id, body_of_frame(by - 1)};
+    context.effects.on_mesh_impulse(p, given, context.dt);
+  });
 }
 
 /// The frame of the body that a particle sticks to; 0 if it is free, or sticks to what rests. See `adhesion`.
@@ -116,21 +137,29 @@ COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p) {
   return true;
 }
 
-/// The beginning of a particle's step: the first kick.
+/// The beginning of a particle's step. Returns for how long all accelerate it in the first kick: 0 if the mesh holds
+/// it.
 template <class Context, class Particle>
-COLLIDE_HD_INLINE void begin_particle(Context const& context, Particle& p) {
+COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
   using S = typename Context::scalar;
   if constexpr (Context::effects_type::keeps_support) {
     auto const n = S(steps_in_mean(p[slow_steps{}]));
-    p[support{}] = p[support{}] * ((n - 1) / n);
-    p[supported_by{}] = 0;
+    for_each_support(p, [&](vec3<S>& of, std::uint8_t& by) {
+      of = of * ((n - 1) / n);
+      if (n == 1) by = 0;
+    });
   }
   if constexpr (Context::effects_type::adheres) {
-    if (p[adhered{}] != 0 && hold_adhered(context, p)) return;
+    if (p[adhered{}] != 0 && hold_adhered(context, p)) return S(0);
   }
-  auto const kick = first_kick<Context>(p);
-  if (kick != 0) context.effects.accelerate(p, kick * context.dt);
+  S const kick = first_kick<Context>(p);
   if constexpr (contains<typename Particle::list, held>) p[held{}] = 0;
+  return kick;
+}
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void begin_particle(Context const& context, Particle& p) {
+  auto const kick = begin_with_kick(context, p);
+  if (kick != 0) context.effects.accelerate(p, kick * context.dt);
 }
 
 /// Says that a particle has come to the end of its step, and whether the mesh `holds` it there.

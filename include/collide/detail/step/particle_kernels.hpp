@@ -142,8 +142,9 @@ struct advance_time {
   COLLIDE_HD void operator()(std::size_t) const {
     auto const begun = static_cast<double>(begin_in_step(time, due));
     time[0] += dt;
-    time[1] += begun;
-    time[2] += due - begun;
+    time[clock_made] += begun;
+    time[clock_part] += due - begun;
+    time[clock_made_now] = begun;
   }
 };
 

@@ -85,7 +85,7 @@ struct step_kernel {
       advance_and_enqueue(block, s);
       resolve_queue(block, s);
     } else {
-      advance_tiles<pack>(block, s, no_filter{});
+      advance_tiles<unfiltered_at_a_time<Block>>(block, s, no_filter{});
     }
   }
 
@@ -95,7 +95,9 @@ struct step_kernel {
   /// How many particles a thread moves at a time: a pack, which compilers put into vector registers, or as many as are
   /// asked together whether they are near the mesh.
   template <class Block>
-  static constexpr int at_a_time = Block::items % 16 == 0 && Context::touches ? 16 : pack;
+  static constexpr int at_a_time = Block::items % 16 == 0 && (Context::touches || effects_type::resists) ? 16 : pack;
+  template <class Block>
+  static constexpr int unfiltered_at_a_time = effects_type::resists ? at_a_time<Block> : pack;
   static_assert(particle_padding % 16 == 0, "the last ones are read and written with those that are not there");
 
   /// On a CPU, where nothing happens to particles after they have moved, they are asked afterwards whether they may
@@ -153,7 +155,7 @@ struct step_kernel {
     auto const enqueue_one = [&](id number) { enqueue(block, s, number); };
     if constexpr (filters_after_integration<Block>) {
       if (s.single_cell) {
-        advance_tiles<pack>(block, s, no_filter{});
+        advance_tiles<unfiltered_at_a_time<Block>>(block, s, no_filter{});
         auto const first = first_of<Block>(0, tile_index(block, 0), tile_count<Block>(context.state.size));
         multiversioned([&] { integrate.template enqueue_marked<Block::items>(first, s.marks, enqueue_one); });
         return;

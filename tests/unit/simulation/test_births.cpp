@@ -1,0 +1,26 @@
+/// What a source makes where something is, on the host and as blocks of threads go.
+#include "compositions.hpp"
+#include "simulation/births.hpp"
+
+using collide::host;
+using collide::polydisperse;
+using collide::semi_implicit_euler;
+using collide::velocity_verlet;
+using blocks = tests::lockstep<64, true>;
+
+TEST_CASE("births: those that overlap others are counted, and not born where that is asked for") {
+  tests::check_births<semi_implicit_euler, float>(host(1));
+  tests::check_births<semi_implicit_euler, double>(host(2), polydisperse{});
+  tests::check_births<semi_implicit_euler, float>(blocks());
+  tests::check_births<velocity_verlet, float>(host(1), polydisperse{});
+  tests::check_births<velocity_verlet, double>(blocks());
+}
+
+TEST_CASE("births: a hundred in one point") {
+  tests::check_births_in_one_point(host(1));
+  tests::check_births_in_one_point(blocks());
+}
+
+TEST_CASE("births: nothing is counted where particles do not meet") {
+  tests::check_births_of_what_does_not_meet(host(1));
+}
