@@ -28,7 +28,7 @@ EFFECTS = {
     "sleep": ("sleep", "sleep", _same(speed=0.01, steps=50)),
     "emit": (
         "emit", "emit",
-        _same(rate=0, radius=0) + [
+        _same(rate=0, radius=0, only_where_free=0) + [
             ("position", (0, 0, 0), "source.position"), ("half_width", 0, "source.half_width"),
             ("velocity", (0, 0, 0), "source.velocity"), ("velocity_spread", 0, "source.velocity_spread"),
         ],

@@ -112,20 +112,16 @@ def sleep(speed: float = 0.01, steps: int = 50) -> Effect:
 
 
 def emit(
-    rate: float,
-    position: Vector,
-    velocity: Vector = (0, 0, 0),
-    half_width: float = 0,
-    velocity_spread: float = 0,
-    radius: float = 0,
+    rate: float, position: Vector, velocity: Vector = (0, 0, 0), half_width: float = 0, velocity_spread: float = 0,
+    radius: float = 0, only_where_free: bool = False,
 ) -> Effect:
     """A source: ``rate`` particles per time from a cube around ``position``, into the places that `Simulation.set` was
-    given as capacity. With `polydisperse` they have ``radius``."""
+    given as capacity. With `polydisperse` they have ``radius``. ``only_where_free``: none is put where another one is."""
     return Effect(
         "emit",
         dict(
             rate=rate, radius=radius, position=position, half_width=half_width, velocity=velocity,
-            velocity_spread=velocity_spread,
+            velocity_spread=velocity_spread, only_where_free=only_where_free,
         ),
     )
 
