@@ -246,7 +246,7 @@ def test_simulations_have_the_bits_of_the_host(library, effects):
         assert numpy.array_equal(library.get(column), host[name])
     sim["velocity"] = library.put(numpy.ones((500, 3), numpy.float32))
     assert (library.get(sim["velocity"]) == 1).all()
-    old = sim["position"]
+    old = sim["position"]  # of jax a copy
     before = library.get(old).copy()
     sim.set(library.put(numpy.zeros((2, 3), numpy.float32) + 1), 0.1)
     sim.step(1e-3)

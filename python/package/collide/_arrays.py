@@ -50,6 +50,10 @@ class _Numpy:
         """A result of a compiled module as an array of this library, without a copy."""
         return result
 
+    def shown(self, view):
+        """An array that shows memory which changes later."""
+        return view
+
     def dtype(self, name):
         """The library's dtype of a name."""
         return name
@@ -109,7 +113,7 @@ class _Ordered:
         return self.result.__dlpack_device__()
 
     def __dlpack__(self, *, stream=None, **others):
-        if stream != -1:
+        if self.__dlpack_device__()[0] == CUDA and stream != -1:
             _cuda.order(self.__dlpack_device__()[1], self.stream_of_result[0], stream or 1)
         return self.result.__dlpack__(**others)
 
@@ -128,6 +132,9 @@ class _Jax(_Numpy):
 
     def array(self, result, stream):
         return self.jax.dlpack.from_dlpack(_Ordered(result, stream))
+
+    def shown(self, view):  # its arrays never change: a copy
+        return self.jax.numpy.array(view, copy=True).block_until_ready()
 
     def flags(self, result):
         return result != 0

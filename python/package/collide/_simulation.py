@@ -122,9 +122,10 @@ class Simulation:
     def __getitem__(self, name: str) -> Array:
         """A column of the particles: (n, 3) for ``position`` and ``velocity``, (n, 3) or (n,) for those of `columns`. It
         shows the simulation's own memory: it changes with steps, and may be written to between them. After `set` it shows
-        the particles of before."""
+        the particles of before. Of jax, whose arrays never change, it is a copy."""
         stream = self._stream()
-        return self._library.array(self._simulation.column(stream, name, self._library.is_numpy), stream)
+        column = self._simulation.column(stream, name, self._library.is_numpy)
+        return self._library.shown(self._library.array(column, stream))
 
     def __setitem__(self, name: str, values: Array) -> None:
         """Gives all particles a column's values, packed and of its dtype."""
