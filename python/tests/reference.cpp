@@ -1,9 +1,9 @@
 // Answers all queries of a scene with the library itself: the tests compare Python's bytes with these.
 //
 // reference NAME SPHERES TRIANGLES SCENE: writes a scene of io/scenes.hpp, of doubles
-// reference SCENE RESULTS: answers. A scene is eight numbers of 64 bits - bytes of a scalar, vertices, triangles, spheres, 1 if
-// each has a radius, 1 if they move, precision 0 exact, 1 double, 2 single, and steps of a simulation - and the arrays.
-// The results are one after the other, each with its number of bytes before it.
+// reference SCENE RESULTS: answers. A scene is eight numbers of 64 bits - bytes of a scalar, vertices, triangles,
+// spheres, 1 if each has a radius, 1 if they move, precision 0 exact, 1 double, 2 single, and steps of a simulation -
+// and the arrays. The results are one after the other, each with its number of bytes before it.
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
