@@ -243,6 +243,7 @@ MUTATIONS = {
 # The same without a mutation: nothing may be wrong.
 SOUND = {f"none.{program}.{compiler}": (None, None, program, compiler, [])
          for program, compiler in sorted({(m[2], m[3]) for m in MUTATIONS.values()})}
+SOUND |= {f"none.nearest.{compiler}": (None, None, "nearest", compiler, []) for compiler in ("fast", "clang-fast")}
 SOUND["none.regions"] = ("predicates/filter.hpp", None, "stages", "plain", [NO_REGIONS])
 
 # (file, the guard as it stands there, why no row goes wrong without it)
