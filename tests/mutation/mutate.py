@@ -236,8 +236,6 @@ MUTATIONS = {
                       [("    if (!(by.high >= limit && square.high >= mul(limit, by.high))) return false;\n", "")]),
     "measured-face": ("nearest/measure_nearest.hpp", "the same, faces", "nearest", "plain",
                       [(" && mul(height.high, height.high) >= limit", "")]),
-    "measured-scale": ("nearest/measure_nearest.hpp", "lengths that under- or overflow", "nearest", "plain",
-                       [("  if (!(scale >= 0x1p-1000 && scale <= 0x1p850)) return false;\n", "")]),
 }
 
 # The same without a mutation: nothing may be wrong.
@@ -274,6 +272,8 @@ UNSEEN = [
     ("predicates/exact.hpp", "for (; n > 1000; n -= 1000)", "no row has so large a power: a number beyond the range would follow"),
     ("nearest/distance_bounds.hpp", " && size <= most)",
      "products that overflow are infinite or NaN: no comparison holds that would separate, and the upper bound is infinite"),
+    ("nearest/measure_nearest.hpp", "scale >= 0x1p-1000 && scale <= 0x1p850",
+     "differences that overflow become NaN, which the tests that follow refuse; those that are scaled up stay exact"),
     ("numeric/rounding.hpp", "T volatile const kept = x",
      "C0 needs it where a compiler may reassociate; g++ 12 and clang++ 14 do not here, with -ffast-math"),
     ("grid/plan.hpp", "g.reach * (1 + 4 * S(ieee_traits<float>::unit_roundoff))", "is for single precision; `exact` needs lo - c <= r only"),
