@@ -64,7 +64,9 @@ struct triangle_range {
 
   std::uint32_t size() const { return end - begin; }
 
-  static triangle_range of(boxed_triangle const* from, std::uint32_t begin, std::uint32_t end) {
+  /// A template, as what follows: nvcc minds no loops for the host there.
+  template <class Triangle>
+  static triangle_range of(Triangle const* from, std::uint32_t begin, std::uint32_t end) {
     triangle_range r{begin, end, box_ends::empty(), box_ends::empty()};
     multiversioned([&] {
       for (std::uint32_t i = begin; i < end; ++i) {
@@ -81,9 +83,10 @@ struct triangle_range {
 };
 
 /// Divides ranges of triangles. Nodes at the lowest level get as many as they have room for.
+template <class Triangle>
 class range_divider {
  public:
-  explicit range_divider(boxed_triangle* triangles) : all_{triangles} {}
+  explicit range_divider(Triangle* triangles) : all_{triangles} {}
 
   /// Divides a range of more triangles than a node has room for; `halves`: at its middle, however that is.
   void divide(triangle_range const& range, bool halves, triangle_range& left, triangle_range& right) {
@@ -92,7 +95,7 @@ class range_divider {
     std::uint32_t middle = range.begin + range.size() / 2;
     if (p.axis >= 0) {
       auto* const found = std::partition(all_ + range.begin, all_ + range.end,
-                                         [&](boxed_triangle const& t) { return p.bin_of(t, p.axis) <= p.bin; });
+                                         [&](Triangle const& t) { return p.bin_of(t, p.axis) <= p.bin; });
       middle = static_cast<std::uint32_t>(found - all_);
     }
     if (middle == range.begin || middle == range.end) middle = range.begin + range.size() / 2;
@@ -111,7 +114,7 @@ class range_divider {
     int bin;   ///< the last one before the plane
     float first, scale;
 
-    int bin_of(boxed_triangle const& t, int of_axis) const {
+    int bin_of(Triangle const& t, int of_axis) const {
       float const x = (t.middle(of_axis) - first) * scale;
       return static_cast<int>(select(x > 0, smaller(x, float(bins - 1)), 0.0f));  // 0 where it is NaN
     }
@@ -131,7 +134,7 @@ class range_divider {
     }
     multiversioned([&] {
       for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        boxed_triangle const& t = all_[i];
+        Triangle const& t = all_[i];
         for (int axis = 0; axis < 3; ++axis) {
           int const b = planes[axis].bin_of(t, axis);
           ++counts[axis][b];
@@ -174,16 +177,14 @@ class range_divider {
     std::uint32_t const wanted = larger((middle - range.begin + n / 2) / n, 1u) * n, most = (range.size() - 1) / n * n;
     std::uint32_t const to = range.begin + smaller(wanted, most);
     if (to == middle) return to;
-    auto const before = [&](boxed_triangle const& a, boxed_triangle const& b) {
-      return a.middle(axis) < b.middle(axis);
-    };
+    auto const before = [&](Triangle const& a, Triangle const& b) { return a.middle(axis) < b.middle(axis); };
     bool const from_left = to < middle;
     std::nth_element(all_ + (from_left ? range.begin : middle), all_ + to, all_ + (from_left ? middle : range.end),
                      before);
     return to;
   }
 
-  boxed_triangle* all_;
+  Triangle* all_;
 };
 
 /// Makes the tree.
