@@ -65,8 +65,7 @@ struct triangle_range {
   std::uint32_t size() const { return end - begin; }
 };
 
-/// Divides ranges of triangles. Nodes at the lowest level get as many as they have room for. A template, in which nvcc
-/// minds no loops for the host.
+/// Divides ranges of triangles. Nodes at the lowest level get as many as they have room for.
 template <class Triangle>
 class range_divider {
  public:
@@ -79,7 +78,7 @@ class range_divider {
       for (std::uint32_t i = begin; i < end; ++i) {
         box_ends const& b = all_[i].box;
         r.box.add(b);
-        box_ends middle;
+        box_ends middle{};
         for (int k = 0; k < 4; ++k) middle.ends[k + 4] = b.ends[k + 4] - b.ends[k];
         for (int k = 0; k < 4; ++k) middle.ends[k] = -middle.ends[k + 4];
         r.middles.add(middle);
