@@ -66,10 +66,9 @@ struct triangle_range {
 };
 
 /// Divides ranges of triangles. Nodes at the lowest level get as many as they have room for.
-template <class Triangle>
 class range_divider {
  public:
-  explicit range_divider(Triangle* triangles) : all_{triangles} {}
+  explicit range_divider(boxed_triangle* triangles) : all_{triangles} {}
 
   /// A part of the triangles.
   triangle_range range_of(std::uint32_t begin, std::uint32_t end) const {
@@ -94,7 +93,7 @@ class range_divider {
     std::uint32_t middle = range.begin + range.size() / 2;
     if (p.axis >= 0) {
       auto* const found = std::partition(all_ + range.begin, all_ + range.end,
-                                         [&](Triangle const& t) { return p.bin_of(t, p.axis) <= p.bin; });
+                                         [&](boxed_triangle const& t) { return p.bin_of(t, p.axis) <= p.bin; });
       middle = static_cast<std::uint32_t>(found - all_);
     }
     if (middle == range.begin || middle == range.end) middle = range.begin + range.size() / 2;
@@ -113,7 +112,7 @@ class range_divider {
     int bin;   ///< the last one before the plane
     float first, scale;
 
-    int bin_of(Triangle const& t, int of_axis) const {
+    int bin_of(boxed_triangle const& t, int of_axis) const {
       float const x = (t.middle(of_axis) - first) * scale;
       return static_cast<int>(select(x > 0, smaller(x, float(bins - 1)), 0.0f));  // 0 where it is NaN
     }
@@ -133,7 +132,7 @@ class range_divider {
     }
     multiversioned([&] {
       for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        Triangle const& t = all_[i];
+        boxed_triangle const& t = all_[i];
         for (int axis = 0; axis < 3; ++axis) {
           int const b = planes[axis].bin_of(t, axis);
           ++counts[axis][b];
@@ -176,14 +175,16 @@ class range_divider {
     std::uint32_t const wanted = larger((middle - range.begin + n / 2) / n, 1u) * n, most = (range.size() - 1) / n * n;
     std::uint32_t const to = range.begin + smaller(wanted, most);
     if (to == middle) return to;
-    auto const before = [&](Triangle const& a, Triangle const& b) { return a.middle(axis) < b.middle(axis); };
+    auto const before = [&](boxed_triangle const& a, boxed_triangle const& b) {
+      return a.middle(axis) < b.middle(axis);
+    };
     bool const from_left = to < middle;
     std::nth_element(all_ + (from_left ? range.begin : middle), all_ + to, all_ + (from_left ? middle : range.end),
                      before);
     return to;
   }
 
-  Triangle* all_;
+  boxed_triangle* all_;
 };
 
 /// Makes the tree.
