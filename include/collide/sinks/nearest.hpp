@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include <collide/concepts.hpp>
 #include <collide/detail/nearest/nearest_search.hpp>
@@ -25,6 +26,17 @@ template <class Precision>
 struct nearest_precision<karabassi<Precision>> {
   using type = std::conditional_t<std::is_same<Precision, baseline>::value, single_precision, Precision>;
 };
+
+template <class Query, class F>
+using query_search = decltype(std::declval<Query const&>().search(std::declval<F const&>()));
+
+/// Puts the search on the space's stream.
+template <class Query, class F>
+void search_mesh(Query const& query, F const& f) {
+  static_assert(is_valid<query_search, Query, F>,
+                "collide: nearest and k_nearest are of a whole mesh: not of one in passes, or divided among ranks");
+  if constexpr (is_valid<query_search, Query, F>) query.search(f);
+}
 
 /// What `nearest` does for each sphere.
 template <class S, class Precision>
@@ -83,7 +95,7 @@ class nearest : public detail::array_in_space<nearest_triangle<S>> {
     download_ = detail::host_copier<nearest_triangle<S>>(space);
     size_ = query.spheres.size();
     data_ = own_.reserve(space.resource(), size_);
-    query.search(detail::find_nearest<S, precision>{max_distance_, data_});
+    detail::search_mesh(query, detail::find_nearest<S, precision>{max_distance_, data_});
   }
 
  private:
