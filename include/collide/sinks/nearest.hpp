@@ -5,11 +5,10 @@
 #include <cstddef>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
-#include <collide/concepts.hpp>
 #include <collide/detail/nearest/nearest_search.hpp>
 #include <collide/detail/sinks/array_in_space.hpp>
+#include <collide/detail/sinks/search_mesh.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/nearest_triangle.hpp>
 
@@ -26,17 +25,6 @@ template <class Precision>
 struct nearest_precision<karabassi<Precision>> {
   using type = std::conditional_t<std::is_same<Precision, baseline>::value, single_precision, Precision>;
 };
-
-template <class Query, class F>
-using query_search = decltype(std::declval<Query const&>().search(std::declval<F const&>()));
-
-/// Puts the search on the space's stream.
-template <class Query, class F>
-void search_mesh(Query const& query, F const& f) {
-  static_assert(is_valid<query_search, Query, F>,
-                "collide: nearest and k_nearest are of a whole mesh: not of one in passes, or divided among ranks");
-  if constexpr (is_valid<query_search, Query, F>) query.search(f);
-}
 
 /// What `nearest` does for each sphere.
 template <class S, class Precision>
