@@ -38,13 +38,16 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
   static constexpr bool adheres = touches && contains<named, adhered>;
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
+  /// What sleeps presses on.
+  static constexpr bool keeps_support = books && contains<named, slow_steps>;
+  /// Effects that know no mesh may hold particles where they are.
+  static constexpr bool holds_without_mesh =
+      ((finishes_in<E, S>::value && contains<typename writes_of<E>::type, velocity>) || ...);
   /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
-  static constexpr bool keeps_pair_forces = meets && (adheres || has_half_kicks);
+  static constexpr bool keeps_pair_forces = meets && (adheres || has_half_kicks || keeps_support);
   static constexpr bool keeps_pair_torques = meets && has_half_kicks && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
   static constexpr bool ends_after_meeting = meets && has_half_kicks;
-  /// What sleeps presses on.
-  static constexpr bool keeps_support = books && contains<named, slow_steps>;
 
  private:
   template <bool Needed, class... C>
@@ -117,6 +120,13 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   /// Whether what a source makes where something is, is not born.
   bool makes_only_where_free() const { return (is_careful<E>() || ...); }
   S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+
+  /// True of a particle that is left out, if that is because it sleeps.
+  template <class P>
+  COLLIDE_HD_INLINE bool only_sleeps(P p) const {
+    p[slow_steps{}] = 0;
+    return !is_skipped(p);
+  }
 
   template <class F>
   COLLIDE_HD_INLINE F const& of() const {
