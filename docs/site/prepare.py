@@ -18,7 +18,7 @@ DOCS = ROOT / "docs"
 NAV = {
     "Use": ["install", "guide", "choosing", "programs", "gallery"],
     "Tutorials": ["tutorials/*"],
-    "Simulations": ["simulation", "effects", "ranks"],
+    "Simulations": ["simulation", "granular", "effects", "ranks"],
     "Reference": ["api/index", "accuracy", "performance", "glossary"],
     "Inside": ["design", "extending", "contributing", "changelog"],
     "Development": ["development/*"],
@@ -119,7 +119,7 @@ class Site:
     def reference(self):
         """Each public header is in one page of docs/api/."""
         listed = re.findall(r"^```\{doxygenfile\} (\S+)", "".join((DOCS / "api" / p).read_text() for p in os.listdir(DOCS / "api")), re.M)
-        headers = {p.name for folder in ("", "effects", "sinks", "ranks") for p in (ROOT / "include" / "collide" / folder).iterdir() if p.is_file()}
+        headers = {p.name for p in (ROOT / "include" / "collide").rglob("*.*") if "detail" not in p.parts}
         if headers != set(listed) or len(listed) != len(headers):
             wrong = headers ^ set(listed) or {n for n in listed if listed.count(n) > 1}
             sys.exit(f"docs/site/prepare.py: not in exactly one page of docs/api/: {', '.join(sorted(wrong))}")

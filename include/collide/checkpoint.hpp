@@ -91,6 +91,11 @@ class checkpoint {
     for_each_column(
         [&](auto column) { write_column<decltype(column)>(to, from.template to_host<decltype(column)>()); });
     end(to, from);
+    if constexpr (remembers_pairs)
+      write_contacts(to, "contacts between particles", from.neighbours_.save_contacts(from.space_, from.state_.size));
+    if constexpr (remembers_surfaces)
+      write_contacts(to, "contacts with the mesh", from.surfaces_.save_contacts(from.space_, from.state_.size));
+    to.finish();
   }
 
   /// Writes what is before the columns; then each column follows, and `end`.
@@ -117,7 +122,6 @@ class checkpoint {
         to.block(name, copy.data(), copy.size());
       });
     }
-    to.finish();
   }
 
   checkpoint(simulated const& into, std::istream& stream) : checkpoint(into.mesh_.size(), into, stream) {}
@@ -127,7 +131,7 @@ class checkpoint {
     checkpoint_reader from(stream);
     pass_types(from);
     numbers_.pass(from);
-    if (simulated::effects_type::touches && numbers_.triangles != triangles) {
+    if (simulated::asks_mesh && numbers_.triangles != triangles) {
       from.refuse("triangles", "the file has " + std::to_string(numbers_.triangles) + ", the mesh of the simulation " +
                                    std::to_string(triangles));
     }
@@ -140,6 +144,9 @@ class checkpoint {
         bodies_.push_back(from.block<unsigned char>(name, n * sizeof(*elements)));
       });
     }
+    if constexpr (remembers_pairs) read_contacts(from, "contacts between particles", contact_width, pair_contacts_);
+    if constexpr (remembers_surfaces)
+      read_contacts(from, "contacts with the mesh", contact_width + 3, surface_contacts_);
     from.finish();
   }
 
@@ -173,6 +180,8 @@ class checkpoint {
     to.prepare();
     restore_bodies(to);
     to.bodies_.place(numbers_.bodies_are_placed != 0);
+    if constexpr (remembers_pairs) to.neighbours_.restore_contacts(space, pair_contacts_);
+    if constexpr (remembers_surfaces) to.surfaces_.restore_contacts(space, surface_contacts_);
   }
 
   /// Gives places from `place` on the columns of `n` particles from number `first` on.
@@ -228,25 +237,71 @@ class checkpoint {
     return saves_parameters<E> && !std::is_empty<E>::value;
   }();
 
+  /// The bytes of an effect's parameters, or of their parts if there is padding between them.
+  template <class E>
+  static std::vector<unsigned char> bytes_of_parameters(E effect) {
+    std::vector<unsigned char> bytes;
+    for_each_part_of(effect, [&](auto const& part) {
+      auto const* const first = reinterpret_cast<unsigned char const*>(&part);
+      bytes.insert(bytes.end(), first, first + sizeof part);
+    });
+    return bytes;
+  }
+  template <class E>
+  static std::size_t size_of_parameters() {
+    if constexpr (gives_parts<E, no_part>::value) {
+      return bytes_of_parameters(E()).size();
+    } else {
+      return sizeof(E);
+    }
+  }
+  struct no_part {
+    template <class Part>
+    void operator()(Part&) const {}
+  };
+
   template <class E, class Effects>
   static void write_parameters(checkpoint_writer& to, Effects const& effects) {
     if constexpr (has_bytes<E>) {
-      E const& effect = effects.template of<E>();
-      to.block(parameters_name<E>(), reinterpret_cast<unsigned char const*>(&effect), sizeof(E));
+      auto const bytes = bytes_of_parameters(effects.template of<E>());
+      to.block(parameters_name<E>(), bytes.data(), bytes.size());
     }
   }
   template <class E>
   void read_parameters(checkpoint_reader& from) {
     if constexpr (has_bytes<E>) {
-      std::get<bytes_of<E>>(parameters_).values = from.block<unsigned char>(parameters_name<E>(), sizeof(E));
+      std::get<bytes_of<E>>(parameters_).values =
+          from.block<unsigned char>(parameters_name<E>(), size_of_parameters<E>());
     }
   }
   template <class E, class Effects>
   void restore_parameters_of(Effects& to) const {
     if constexpr (has_bytes<E>) {
-      std::memcpy(static_cast<void*>(&to.template of<E>()), std::get<bytes_of<E>>(parameters_).values.data(),
-                  sizeof(E));
+      unsigned char const* from = std::get<bytes_of<E>>(parameters_).values.data();
+      for_each_part_of(to.template of<E>(), [&](auto& part) {
+        std::memcpy(static_cast<void*>(&part), from, sizeof part);
+        from += sizeof part;
+      });
     }
+  }
+
+  using remembered = typename simulated::effects_type::remembered;
+  static constexpr bool remembers_pairs = remembered::size != 0 && simulated::effects_type::meets;
+  static constexpr bool remembers_surfaces = remembered::size != 0 && simulated::effects_type::overlaps;
+  static constexpr std::uint64_t contact_width = std::uint64_t(contact_values<S, remembered>::width);
+
+  static void write_contacts(checkpoint_writer& to, std::string const& name, saved_contacts<S> const& saved) {
+    to.block(name, saved.counts.data(), saved.counts.size());
+    to.block("others of " + name, saved.others.data(), saved.others.size());
+    to.block("values of " + name, saved.values.data(), saved.values.size());
+  }
+  void read_contacts(checkpoint_reader& from, std::string const& name, std::uint64_t width,
+                     saved_contacts<S>& saved) const {
+    saved.counts = from.block<std::uint32_t>(name, numbers_.places);
+    std::uint64_t all = 0;
+    for (std::uint32_t const count : saved.counts) all += count;
+    saved.others = from.block<id>("others of " + name, all);
+    saved.values = from.block<S>("values of " + name, all * width);
   }
 
   template <class... C, class F>
@@ -275,6 +330,7 @@ class checkpoint {
   };
 
   numbers_type numbers_;
+  saved_contacts<S> pair_contacts_, surface_contacts_;
   std::tuple<bytes_of<Effect>...> parameters_;
   std::vector<std::vector<unsigned char>> bodies_;  ///< poses, and what else is known of them
   typename table_of<column_list>::type columns_;

@@ -41,6 +41,13 @@ struct columns {
   static constexpr std::size_t size = sizeof...(Column);  ///< how many
 };
 
+/// A list of columns that each contact has, not each particle: what an effect remembers of it from step to step. See
+/// `remembers` in effect.hpp.
+template <class... Column>
+struct contact_columns {
+  using list = columns<Column...>;  ///< the columns
+};
+
 /// The centre, in the units of the scene.
 struct position {
   template <class S>

@@ -8,6 +8,7 @@
 ///     using optional_writes = columns<...>;  // optional: columns that it changes where other effects name them
 ///     using optional_reads = columns<...>;   // optional: columns that it looks at where other effects name them
 ///     using runs_after = effects<...>;       // optional: effects that must come before it in the scene's list
+///     using remembers = contact_columns<...>;  // optional: what each contact keeps from step to step
 ///
 /// and has one or more of these members, each `COLLIDE_HD`, const, and a template over the type of the particle:
 ///
@@ -21,6 +22,13 @@
 ///   what all effects have changed, of what `adhesion` holds or what sleeps what the mesh holds it against.
 /// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it. Only with such an effect
 ///   are neighbours listed.
+/// - `on_mesh_overlap(particle&, self, mesh_overlap const&, dt)`, for each point of the mesh that a particle presses
+/// on,
+///   when particles meet: forces that grow with the overlap, in place of the impulses of `on_mesh_contact`.
+/// - With `remembers`, these two get what the contact remembers before `dt`, and return true if the contact goes on:
+///   `memory[column{}]` is a value, which begins as a particle's would, and `memory.elapsed()` the time since the
+///   contact was looked at before. `on_pair_contact` is then called as long as the contact goes on, also of particles
+///   that no longer overlap.
 /// - `try_wake(particle&, other)`, for each other particle that is active and overlaps it, also if it is not.
 /// - `holds(particle const&, pull, dt)`: true if the mesh holds a particle that is `adhered` against a change of its
 ///   velocity by `pull`, relative to the surface, in a step.
@@ -28,7 +36,8 @@
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
 /// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense. An effect whose
-/// parameters have pointers says `static constexpr bool saves_parameters = false`; see checkpoint.hpp. One whose
+/// parameters have pointers says `static constexpr bool saves_parameters = false`; one with padding between them has
+/// `for_each_part(f)`, which calls f with each of them; see checkpoint.hpp. One whose
 /// `begin_step` does the same to particles wherever they are says `static constexpr bool begins_on_ranks = true`; see
 /// distributed_simulation.cuh. One with `static constexpr bool asks_forces = true` has `end_step(particle&, forces,
 /// dt)` instead: `forces.change(dt)` is by how much `accelerate` of all effects changes the velocity. One
@@ -69,7 +78,7 @@ inline constexpr S contact_tolerance = sizeof(S) == sizeof(float) ? S(1e-5) : S(
 /// The rounding of a position: at least 1 unit in the last place of its largest coordinate.
 template <class S>
 COLLIDE_HD_INLINE S rounding_at(vec3<S> const& position) {
-  return std::numeric_limits<S>::epsilon() * max_component<S>(position.cwiseAbs());
+  return std::numeric_limits<S>::epsilon() * max_component<S>(detail::absolute(position));
 }
 
 /// The mass of a sphere.
@@ -117,6 +126,24 @@ inline constexpr bool saves_parameters = true;
 template <class E>
 inline constexpr bool saves_parameters<E, std::void_t<decltype(E::saves_parameters)>> = E::saves_parameters;
 
+/// f(part) for each part of an effect's parameters that has no padding, for checkpoints: what its `for_each_part(f)`
+/// gives, or all of it. Nothing of what is empty, or of what says that it is not saved.
+template <class E, class F, class = void>
+struct gives_parts : std::false_type {};
+template <class E, class F>
+struct gives_parts<E, F, std::void_t<decltype(std::declval<E&>().for_each_part(std::declval<F const&>()))>>
+    : std::true_type {};
+template <class E, class F>
+void for_each_part_of(E& of, F const& f) {
+  if constexpr (std::is_class<E>::value && !saves_parameters<E>) {
+    return;
+  } else if constexpr (gives_parts<E, F>::value) {
+    of.for_each_part(f);
+  } else if constexpr (!std::is_empty<E>::value) {
+    f(of);
+  }
+}
+
 }  // namespace detail
 
 /// What the mesh gives to a particle, as `on_mesh_impulse` gets it: changes per mass, in the world.
@@ -129,6 +156,17 @@ struct mesh_impulse {
   vec3<S> velocity;     ///< of the particle, after
   id triangle;          ///< number of the triangle; `no_id` of what is held or sleeps
   id body;              ///< number of the body whose surface it is; `no_id` of what rests
+};
+
+/// A surface of the mesh that a particle overlaps, as `on_mesh_overlap` gets it: a point of it that is nearest to the
+/// centre among all around.
+template <class S>
+struct mesh_overlap {
+  vec3<S> normal;            ///< unit vector to the centre
+  S overlap;                 ///< radius minus distance, above 0
+  vec3<S> surface_velocity;  ///< of the surface at the point, in the world: 0 of what rests
+  id triangle;               ///< number of the triangle
+  id body;                   ///< number of the body whose surface it is; `no_id` of what rests
 };
 
 /// A particle's contact with the mesh, as `on_mesh_contact` gets it. `depth` is how deep the triangle still is in the

@@ -14,9 +14,13 @@
 #include <collide/detail/particles/check_effect.hpp>
 #include <collide/detail/particles/host_members.hpp>
 #include <collide/detail/step/lookup_tuning.hpp>
+#include <collide/detail/step/mesh_overlaps.hpp>
 #include <collide/detail/step/particle_kernels.hpp>
 #include <collide/detail/step/step.hpp>
 #include <collide/detector.hpp>
+#if defined(COLLIDE_COMPILED)
+#include <collide/detail/step/compiled_search.hpp>
+#endif
 
 namespace collide {
 
@@ -55,9 +59,10 @@ class simulation {
   using index = typename broad_phase::template index<S>;
   using bodies_memory = detail::bodies_of<S, Effect...>;
   static constexpr bool has_bodies = bodies_memory::exist;
+  static constexpr bool asks_mesh = effects_type::touches || effects_type::overlaps;
 
   static_assert(detail::check_effects<execution_space, S, Effect...>());
-  static_assert(!effects_type::touches || detail::has_lookup<index>::value,
+  static_assert(!asks_mesh || detail::has_lookup<index>::value,
                 "collide: effects that touch the mesh need a broad phase whose index has a member lookup(), such as "
                 "bucket or all_pairs");
 
@@ -97,23 +102,24 @@ class simulation {
   /// per time), or null for particles that rest. The other columns get their initial values. `capacity` is for how many
   /// there is room, if an effect makes more; more than 2^32 - 2 are refused (`error`), as is room that no effect of the
   /// scene fills, and radii that differ without `polydisperse` in the scene. O(particles). Allocates; may wait.
-  void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
+  COLLIDE_COLD void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
     std::size_t const n = particles.size(), room = detail::larger(n, capacity);
     S const own = effects_.source_radius();
     detail::check_particles<columns>(particles.one_radius(), n, room, own, particles.common_radius());
     place(particles, velocities, room);
     radii_ = {particles.common_radius(), particles.common_radius()};
     if (!particles.one_radius()) radii_ = detail::radius_range_of(*this);
-    if (effects_type::touches && n != 0 && radii_.smallest == 0)
+    if (asks_mesh && n != 0 && radii_.smallest == 0)
       throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
     radii_ = radii_.with(own);
     if constexpr (effects_type::meets) neighbours_.clear(space_, room, radii_.largest);
+    if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
     prepare();
   }
 
   /// Makes room for up to so many particles, so that a later `set` takes no memory for them. There are none until
   /// then. More than 2^32 - 2 are refused (`error`).
-  void reserve(std::size_t particles) {
+  COLLIDE_COLD void reserve(std::size_t particles) {
     detail::check_places(particles);
     state_ = {};
     is_set_ = false;
@@ -127,6 +133,11 @@ class simulation {
       }
     }
     if constexpr (effects_type::meets) neighbours_.reserve(resource, particles);
+    if constexpr (effects_type::overlaps) {
+      surfaces_.reserve(resource, particles);
+      pressing_.reserve(resource, particles);
+      pressing_count_.reserve(resource, 1);
+    }
   }
 
   /// The mesh that particles touch, not copied: it must stay as it is while it is used. Call it again when the mesh has
@@ -135,12 +146,12 @@ class simulation {
   /// Only with `moving_bodies` in the scene (bodies.hpp): `bodies`, parts of the mesh that move, and `velocities` of
   /// all vertices (packed, in memory of the space) where the rest deforms: at the end of the next step, as the mesh is.
   /// `error` if there are more than 64 bodies, triangles not in the mesh or in two, or a motion is not finite.
-  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
+  COLLIDE_COLD void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
     bodies_.check(bodies, mesh.size(), velocities);
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
-    if (mesh.size() != 0) index_.build(there, options_, mesh);
+    if (mesh.size() != 0) detail::build_index(index_, there, options_, mesh);
     bodies_.build(space_, mesh, bodies, velocities);
     mesh_ = mesh;
     has_mesh_ = true;
@@ -193,6 +204,7 @@ class simulation {
   std::size_t bytes() const {
     std::size_t lists = 0;
     if constexpr (effects_type::meets) lists = neighbours_.bytes();
+    if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes();
     return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
 
@@ -293,9 +305,13 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   using neighbour_lists =
       std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, detail::null_ref>;
-  /// What a step asks for the triangles near a particle.
+  using surface_memory =
+      std::conditional_t<effects_type::overlaps, detail::surface_memory<S, typename effects_type::remembered>,
+                         detail::null_ref>;
+  /// What a step asks for the triangles near a particle, if it `asks`.
+  template <bool Asks = effects_type::touches>
   auto lookup([[maybe_unused]] S dt) const {
-    if constexpr (effects_type::touches) {
+    if constexpr (Asks) {
       auto const whole = mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
       return bodies_.lookup(whole, mesh_, dt);
     } else {
@@ -304,7 +320,7 @@ class simulation {
   }
 
   /// Puts particles into new columns, with places for more.
-  void place(sphere_view<S> const& particles, S const* velocities, std::size_t room) {
+  COLLIDE_COLD void place(sphere_view<S> const& particles, S const* velocities, std::size_t room) {
     reserve(room);
     state_ = memory_.state(room, particles.size(), particles.common_radius());
     if constexpr (has_begin_step) {
@@ -337,6 +353,20 @@ class simulation {
       neighbours_.renew(space_, with_copies);
       settle_births(with_copies, dt);
       neighbours_.interact(space_, with_copies, effects_, dt, is_first);
+    } else if constexpr (effects_type::keeps_pair_forces) {
+      forget_pair_kicks(typename effects_type::interaction_kicks{});
+    }
+    if constexpr (effects_type::overlaps) {
+      auto const memory = surfaces_.ref(state_.size);
+      auto const triangles = lookup<true>(dt);
+      using mesh_type = std::decay_t<decltype(triangles)>;
+      using memory_type = std::decay_t<decltype(memory)>;
+      detail::pressing_list const pressing{pressing_count_.data(), pressing_.data()};
+      space_.fill(pressing.count, 0, sizeof *pressing.count);
+      space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
+                                       state_, effects_, triangles, memory, pressing});
+      space_.for_each(state_.size, detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
+                                       state_, effects_, triangles, memory, pressing, dt, is_first});
     }
   }
   /// Says which of those that a source has made overlap others, once the lists are renewed.
@@ -402,9 +432,9 @@ class simulation {
     return state_.size * std::size_t(detail::column_layout<Column, S>::width);
   }
 
-  void prepare() {
+  COLLIDE_COLD void prepare() {
     advance_bodies(0, true);
-    if constexpr (effects_type::touches) {
+    if constexpr (asks_mesh) {
       constexpr bool is_part = detail::contains<columns, global_number>;  // others come from other ranks
       std::size_t const n = detail::larger(state_.size, std::size_t{is_part});
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
@@ -412,13 +442,13 @@ class simulation {
       S const room = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.room());
       S const most = detail::larger(radii_.largest, least_radius_) + room;
       bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < most);
-      index_.prepare(there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
+      detail::prepare_index(index_, there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }
   }
 
-  void check_step(S dt) const {
+  COLLIDE_COLD void check_step(S dt) const {
     if (!is_set_) throw error("collide: simulation: step needs particles: call set before it");
-    if (effects_type::touches && !has_mesh_)
+    if (asks_mesh && !has_mesh_)
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
     if (!(dt > 0) || !detail::is_finite(dt))
       throw error("collide: simulation: the time dt of a step is finite and above 0");
@@ -443,7 +473,10 @@ class simulation {
   S least_radius_ = 0;
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
+  surface_memory surfaces_;
   buffer<id> overflow_;
+  buffer<id> pressing_;  ///< particles that may press on the mesh, and how many they are
+  buffer<std::uint32_t> pressing_count_;
   bodies_memory bodies_;
 };
 

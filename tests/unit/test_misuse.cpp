@@ -14,6 +14,7 @@
 #include <collide/effects/drag.hpp>
 #include <collide/effects/emit.hpp>
 #include <collide/effects/friction.hpp>
+#include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/sleep.hpp>
 #include <collide/effects/sphere_contact.hpp>
@@ -109,6 +110,50 @@ TEST_CASE("misuse: a step without particles, without a mesh, and of a time that 
         "collide: simulation: the number of steps is negative");
 }
 
+TEST_CASE("misuse: materials and laws of granular contact") {
+  using collide::solid;
+  auto const of = [](solid const& s, collide::surface_pair const& p) {
+    return said_by([&] { collide::one_material(s, p); });
+  };
+  CHECK(of({1e7, 0.3, 1000}, {0.5, 0.3}) == "");
+  std::string const modulus = "collide: materials: Young's modulus and density of a solid are above 0, and finite",
+                    ratio = "collide: materials: Poisson's ratio is above -1, and at most 0.5",
+                    restitution = "collide: materials: the coefficient of restitution is above 0, and at most 1",
+                    amounts =
+                        "collide: materials: friction, rolling friction and cohesion of a pair are not negative, "
+                        "and finite";
+  for (double const wrong : {0.0, -1.0, infinity, not_a_number}) {
+    CHECK(of({wrong, 0.3, 1000}, {}) == modulus);
+    CHECK(of({1e7, 0.3, wrong}, {}) == modulus);
+  }
+  for (double const wrong : {-1.0, 0.6, not_a_number}) CHECK(of({1e7, wrong, 1000}, {}) == ratio);
+  for (double const wrong : {0.0, 1.1, not_a_number}) CHECK(of({1e7, 0.3, 1000}, {wrong}) == restitution);
+  for (double const wrong : {-0.1, infinity, not_a_number}) {
+    CHECK(of({1e7, 0.3, 1000}, {0.5, wrong}) == amounts);
+    CHECK(of({1e7, 0.3, 1000}, {0.5, 0, wrong}) == amounts);
+    CHECK(of({1e7, 0.3, 1000}, {0.5, 0, 0, wrong}) == amounts);
+  }
+  collide::materials<2> two;
+  two.set(0, {1e7, 0.3, 1000});
+  CHECK(said_by([&] {
+          two.set(2, {1e7, 0.3, 1000});
+        }) == "collide: materials: the number of a solid is from 0 to N - 1");
+  CHECK(said_by([&] { two.set_pair(0, 1, {}); }) == "collide: materials: set both solids before their pair");
+  two.set(1, {1e7, 0.3, 1000});
+  two.set_pair(0, 0, {});
+  two.set_pair(1, 1, {});
+  using law =
+      collide::granular_contact<collide::hertz, collide::none, collide::none, collide::none, collide::materials<2>>;
+  simulation<detector<bucket>, law> grains(collide::host(1), law{two});
+  grains.set_mesh({});
+  grains.set(spheres());
+  CHECK(said_by([&] { grains.step(1e-6f); }) == "collide: materials: the pair of 0 and 1 is missing: call set_pair");
+  simulation<detector<bucket>, collide::granular_contact<collide::hertz>> pair;
+  pair.set_mesh({});
+  pair.set(spheres());
+  CHECK(said_by([&] { pair.step(1.0f); }).find("is longer than an effect allows") != std::string::npos);
+}
+
 TEST_CASE("misuse: steps that are too long for springs, radii of 0, and values that do not fit a column") {
   simulation<detector<bucket>, sphere_contact> springs(collide::host(1), sphere_contact{1000, 0, 0, 0, 1});
   springs.set(spheres());  // pi sqrt(m / (2 k)) / 5, of a sphere of mass m
@@ -116,7 +161,7 @@ TEST_CASE("misuse: steps that are too long for springs, radii of 0, and values t
                fifth = 0.2 * std::sqrt(r * r * r * 2 / 3 * std::pow(3.14159265358979, 3) / 1000);
   CHECK(largest_time_step(springs) == doctest::Approx(fifth / 4));
   CHECK(said_by([&] { springs.step(float(0.99 * fifth)); }) == "");
-  CHECK(said_by([&] { springs.step(float(1.01 * fifth)); }).find("is above a fifth of a collision") !=
+  CHECK(said_by([&] { springs.step(float(1.01 * fifth)); }).find("is longer than an effect allows") !=
         std::string::npos);
   simulation<detector<bucket>, gravity> free;
   CHECK(largest_time_step(free) == infinity);

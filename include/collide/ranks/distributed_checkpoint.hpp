@@ -58,7 +58,10 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
       deliver(ranks, mine, all);
       on_first([&] { format::template write_column<type>(*to, all.items); });
     });
-    on_first([&] { format::end(*to, from.local()); });
+    on_first([&] {
+      format::end(*to, from.local());
+      to->finish();
+    });
   }
 
   /// All ranks read the same.

@@ -437,7 +437,7 @@ void check_refusals(Ranks const& ranks, complaints& wrong) {
   for (float const dt : {std::numeric_limits<float>::infinity(), 0.0f, -0.1f}) {
     expect("collide: simulation: the time dt of a step is finite and above 0", [&] { parts.step(dt); });
   }
-  expect("collide: simulation: the time dt of a step, 1, is above a fifth of a collision", [&] { parts.step(1); });
+  expect("collide: simulation: the time dt of a step, 1, is longer than an effect allows", [&] { parts.step(1); });
   parts.template effect<sphere_contact>().stiffness = 0.01;
   parts.template effect<sphere_contact>().density = -1;
   expect("collide: sphere_contact: density is above 0", [&] { parts.step(1); });

@@ -55,7 +55,10 @@ struct clear_cells {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     order.ends[i] = 0;
-    if (i == 0) order.header->overflowed = order.header->count = 0;
+    if (i == 0) {
+      list_state& h = *order.header;
+      h.overflowed = h.count = h.in_runs = h.kept = 0;
+    }
   }
 };
 
@@ -72,7 +75,10 @@ struct count_or_scatter {
     state.load(p, i);
     if constexpr (contains<placing, alive>) {
       if constexpr (Fill) order.known[i] = p[alive{}];
-      if (p[alive{}] == 0) return;
+      if (p[alive{}] == 0) {
+        if constexpr (sorted_particles<S, Effects>::has_memory) order.memory.kept_of[i].count = 0;
+        return;
+      }
     }
     vec3<S> const& c = p[position{}];
     std::uint32_t const slot = fetch_add(order.ends + order.cells.number(order.cells.of(c.x(), c.y(), c.z())) + 1, 1u);
@@ -115,6 +121,26 @@ struct gather {
   }
 };
 
+/// Kernel body of `for_each_if_nonzero` over places in the old order: keeps what contacts remember, by numbers.
+template <class S, class Effects>
+struct keep_contacts {
+  sorted_particles<S, Effects> order;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (i >= order.header->count) return;
+    auto const place = static_cast<std::uint32_t>(i);
+    auto const& m = order.memory;
+    std::uint32_t touching = 0;
+    order.for_each_remembered(place, [&](std::uint32_t, std::size_t) { ++touching; });
+    std::uint32_t const first = fetch_add(&order.header->kept, touching);
+    m.kept_of[order.numbers[i]] = {first, touching};
+    std::uint32_t n = first;
+    order.for_each_remembered(place, [&](std::uint32_t other, std::size_t item) {
+      m.kept[n++] = {m.records[item], order.number_at(other)};
+    });
+  }
+};
+
 /// Kernel body of `for_each_if_nonzero` over places in the order: lists what is near.
 template <class S, class Effects>
 struct build_lists {
@@ -126,7 +152,8 @@ struct build_lists {
   }
 
  private:
-  static constexpr std::uint32_t room = sorted_particles<S, Effects>::listed;
+  using ordered = sorted_particles<S, Effects>;
+  static constexpr std::uint32_t room = ordered::listed;
 
   COLLIDE_HD_INLINE void list(std::uint32_t i) const {
     std::uint32_t places[room], found = 0;
@@ -139,8 +166,7 @@ struct build_lists {
       ++found;
     });
     if (found > room) {
-      order.list(0, i) = order.overflow_mark;
-      store_relaxed(&order.header->overflowed, 1u);
+      list_run(i, found);
       return;
     }
     first_neighbours<room> near;
@@ -151,6 +177,87 @@ struct build_lists {
     COLLIDE_NO_UNROLL
     for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];
     if (near.size < room) order.list(near.size, i) = i;
+    if constexpr (ordered::has_memory) {
+      std::uint32_t touching = 0;
+      restore(
+          i, near.size, [&](std::uint32_t n) { return near.numbers[n]; },
+          [&](std::uint32_t n, auto const& record) {
+            order.memory.records[n * order.capacity + i] = record;
+            touching |= 1u << n;
+          });
+      order.memory.touching[i] = touching;
+    }
+  }
+
+  /// A list of any length, as a run of its own.
+  COLLIDE_HD void list_run(std::uint32_t i, std::uint32_t found) const {
+    order.list(0, i) = order.overflow_mark;
+    store_relaxed(&order.header->overflowed, 1u);
+    std::uint32_t const first = fetch_add(&order.header->in_runs, found);
+    if (first + std::size_t{found} > order.run_capacity) {
+      order.list(1, i) = order.overflow_mark;
+      return;
+    }
+    std::uint32_t* const run = order.runs + first;
+    std::uint32_t size = 0;
+    order.for_each_overlapping(i, skin, [&](std::uint32_t k, int row) {
+      if (order.is_in_row(k, i, row)) run[size++] = k;
+    });
+    sort_by_number(run, size);
+    order.list(1, i) = first;
+    order.list(2, i) = size = unique(run, size);
+    if constexpr (ordered::has_memory) {
+      auto const& m = order.memory;
+      for (std::uint32_t n = 0; n < size; ++n) m.run_touching[first + n] = 0;
+      restore(
+          i, size, [&](std::uint32_t n) { return order.number_at(run[n]); },
+          [&](std::uint32_t n, auto const& record) {
+            m.records[order.run_item(first + n)] = record;
+            m.run_touching[first + n] = 1;
+          });
+    }
+  }
+
+  /// write(n, record) for each kept contact of a particle with neighbour n of its list, of which number_of(n) is the
+  /// number. Both are in the order of numbers.
+  template <class Number, class Write>
+  COLLIDE_HD_INLINE void restore(std::uint32_t i, std::uint32_t size, Number const& number_of,
+                                 Write const& write) const {
+    auto const& m = order.memory;
+    kept_range& kept = m.kept_of[order.numbers[i]];
+    std::uint32_t n = 0;
+    for (std::uint32_t k = kept.first; k < kept.first + kept.count; ++k) {
+      while (n < size && number_of(n) < m.kept[k].other) ++n;
+      if (n < size && number_of(n) == m.kept[k].other) write(n, m.kept[k].record);
+    }
+    kept.count = 0;
+  }
+
+  /// Heap sort: nothing that calls itself, and no memory.
+  COLLIDE_HD void sort_by_number(std::uint32_t* run, std::uint32_t n) const {
+    auto const sift = [&](std::uint32_t root, std::uint32_t end) {
+      for (std::uint32_t child; (child = 2 * root + 1) < end; root = child) {
+        if (child + 1 < end && order.number_at(run[child]) < order.number_at(run[child + 1])) ++child;
+        if (order.number_at(run[root]) >= order.number_at(run[child])) return;
+        std::uint32_t const moved = run[root];
+        run[root] = run[child];
+        run[child] = moved;
+      }
+    };
+    for (std::uint32_t root = n / 2; root > 0; --root) sift(root - 1, n);
+    for (std::uint32_t end = n; end > 1; --end) {
+      std::uint32_t const last = run[0];
+      run[0] = run[end - 1];
+      run[end - 1] = last;
+      sift(0, end - 1);
+    }
+  }
+  COLLIDE_HD_INLINE std::uint32_t unique(std::uint32_t* run, std::uint32_t n) const {
+    std::uint32_t size = 0;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      if (size == 0 || run[size - 1] != run[k]) run[size++] = run[k];
+    }
+    return size;
   }
 };
 

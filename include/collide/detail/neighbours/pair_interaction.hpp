@@ -54,6 +54,24 @@ struct pair_interaction {
     return p.woken;
   }
 
+  /// A meeting with what the contact remembers in `record`, if it `was` there. True if there is something to remember.
+  template <class Record>
+  COLLIDE_HD_INLINE bool interact(pair_state& p, std::uint32_t place, bool overlap, bool was, Record& record) const {
+    interaction other = order.load(place);
+    bool const is_active = takes_part(p.self), is_awake = !is_skipped(other), is_other = overlap && is_awake;
+    bool goes_on = was;
+    if (p.woken ? is_other : is_active) {
+      contact_values<S, typename Effects::remembered> values;
+      if (was) values = record.values();
+      bool const stays = only_kicks || (!is_awake && is_skipped(p.self));  // of two that sleep the contact is as it was
+      goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, stays ? S(0) : dt, dt);
+      if (goes_on) record.set(values);
+    }
+    if (is_other && !p.woken) effects.try_wake(p.changed, other);
+    p.met = p.met || is_active || is_other;
+    return goes_on;
+  }
+
   COLLIDE_HD_INLINE void store(pair_state& p) const {
     if (!p.met) return;
     bool is_asleep = false;
@@ -99,16 +117,28 @@ struct interact_listed : pair_interaction<S, Effects> {
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
     packed_sphere<S> const own = places.spheres[i];
     do {
-      for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other) {
-        if (places.within_skin(own, other, S(0))) this->interact(p, place);
-      });
+      if constexpr (sorted_particles<S, Effects>::has_memory) {
+        std::uint32_t const before = places.memory.touching[i];
+        std::uint32_t touching = 0;
+        for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other, std::uint32_t k) {
+          bool const overlap = places.within_skin(own, other, S(0)), was = (before >> k & 1) != 0;
+          if (!overlap && !was) return;
+          auto& record = places.memory.records[k * places.capacity + i];
+          if (this->interact(p, place, overlap, was, record)) touching |= 1u << k;
+        });
+        if ((touching | before) != 0) places.memory.touching[i] = touching;
+      } else {
+        for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other, std::uint32_t) {
+          if (places.within_skin(own, other, S(0))) this->interact(p, place);
+        });
+      }
     } while (this->must_meet_again(p));
     this->store(p);
   }
 
  private:
-  /// f(place, sphere) for each on the list of a particle. While one is looked at, the next and the list's item behind
-  /// it are on their way (docs/development/experiments.md).
+  /// f(place, sphere, item) for each on the list of a particle. While one is looked at, the next and the list's item
+  /// behind it are on their way (docs/development/experiments.md).
   template <class F>
   COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, F const& f) const {
     auto const& places = this->order;
@@ -124,15 +154,18 @@ struct interact_listed : pair_interaction<S, Effects> {
       next = behind;
       next_sphere = places.spheres[next];
       behind = item(next, n);
-      f(place, sphere);
+      f(place, sphere, n - 2);
     }
   }
 };
 
 /// Kernel body of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have room
-/// for meet those that overlap them. As many as can be held at a time are found, by rising numbers.
+/// for meet those of their run. Where there was no room for that, all that overlap them are looked for, as many as can
+/// be held at a time, by rising numbers.
 template <class S, class Effects>
 struct interact_overflowed : pair_interaction<S, Effects> {
+  using ordered = sorted_particles<S, Effects>;
+
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
     if (i >= places.header->count || places.list(0, i) != places.overflow_mark) return;
@@ -140,14 +173,40 @@ struct interact_overflowed : pair_interaction<S, Effects> {
     auto const self = static_cast<std::uint32_t>(i);
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
     do {
-      meet_all(self, p);
+      if (places.list(1, i) == places.overflow_mark) {
+        search(self, p);
+      } else {
+        go_through_run(self, p);
+      }
     } while (this->must_meet_again(p));
     this->store(p);
   }
 
  private:
-  COLLIDE_HD_INLINE void meet_all(std::uint32_t self, typename pair_interaction<S, Effects>::pair_state& p) const {
+  using pair_state = typename pair_interaction<S, Effects>::pair_state;
+
+  COLLIDE_HD_INLINE void go_through_run(std::uint32_t self, pair_state& p) const {
     auto const& places = this->order;
+    std::uint32_t const first = places.list(1, self), size = places.list(2, self);
+    packed_sphere<S> const own = places.spheres[self];
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; k < size; ++k) {
+      std::uint32_t const place = places.runs[first + k];
+      bool const overlap = places.within_skin(own, places.spheres[place], S(0));
+      if constexpr (ordered::has_memory) {
+        std::uint8_t& touching = places.memory.run_touching[first + k];
+        if (!overlap && touching == 0) continue;
+        auto& record = places.memory.records[places.run_item(first + k)];
+        touching = this->interact(p, place, overlap, touching != 0, record);
+      } else {
+        if (overlap) this->interact(p, place);
+      }
+    }
+  }
+
+  COLLIDE_HD_INLINE void search(std::uint32_t self, pair_state& p) const {
+    auto const& places = this->order;
+    if constexpr (ordered::has_memory) store_relaxed(&places.header->forgotten, 1u);
     id last = 0;
     for (bool first = true, complete = false; !complete; first = false) {
       first_neighbours<16> near;
@@ -156,7 +215,14 @@ struct interact_overflowed : pair_interaction<S, Effects> {
         if ((first || number > last) && places.is_in_row(k, self, row)) near.add(number, k);
       });
       COLLIDE_NO_UNROLL
-      for (std::uint32_t k = 0; k < near.size; ++k) this->interact(p, near.places[k]);
+      for (std::uint32_t k = 0; k < near.size; ++k) {
+        if constexpr (ordered::has_memory) {
+          contact_record<S, typename Effects::remembered> forgotten;
+          this->interact(p, near.places[k], true, false, forgotten);
+        } else {
+          this->interact(p, near.places[k]);
+        }
+      }
       complete = near.complete;
       if (!complete) last = near.numbers[near.size - 1];
     }

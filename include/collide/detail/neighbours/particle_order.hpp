@@ -9,6 +9,7 @@
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/neighbours/spatial_hash.hpp>
 #include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/particles/contact_memory.hpp>
 #include <collide/detail/particles/particle.hpp>
 
 namespace collide::detail {
@@ -38,6 +39,9 @@ struct list_state {
   std::uint32_t rebuild;     ///< not 0: the lists are to be made anew
   std::uint32_t overflowed;  ///< not 0: some particles have more neighbours than lists have room for
   std::uint32_t count;       ///< how many particles are in the order
+  std::uint32_t in_runs;     ///< how many neighbours are in runs, or would be if there were room
+  std::uint32_t kept;        ///< how many contacts are kept while lists are made anew
+  std::uint32_t forgotten;   ///< not 0: there was no room for what some contact remembers
 };
 
 /// The particles in the order of the grid, with all that they must know of each other.
@@ -60,8 +64,16 @@ struct sorted_particles {
 
   static constexpr std::uint32_t listed = 16;  ///< the most neighbours that a list has
   static constexpr std::uint32_t overflow_mark = 0xffffffffu;
-  std::uint32_t* lists;  ///< places, in the order of numbers; the particle's own behind the last; or too_many
+  /// Places, in the order of numbers; the particle's own behind the last. Or `overflow_mark`, and then where its run
+  /// begins and how long that is; `overflow_mark` again where there was no room for it.
+  std::uint32_t* lists;
   std::size_t capacity;  ///< of each of `listed` arrays
+  std::uint32_t* runs;   ///< places of those that have more neighbours than that, as in lists
+  std::size_t run_capacity;
+
+  using remembered = typename Effects::remembered;
+  static constexpr bool has_memory = remembered::size != 0;
+  contact_memory_ref<S, remembered> memory;
 
   COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
 
@@ -138,6 +150,29 @@ struct sorted_particles {
   COLLIDE_HD_INLINE bool is_in_row(std::uint32_t k, std::uint32_t i, int row) const {
     cell const from = first_of(cell_of(i), row), there = cell_of(k);
     return there.y == from.y && there.z == from.z && there.x >= from.x && there.x <= from.x + 2;
+  }
+
+  /// The item of what is remembered of a neighbour in a run.
+  COLLIDE_HD_INLINE std::size_t run_item(std::uint32_t n) const { return listed * capacity + n; }
+
+  /// f(place, item) for the neighbours with which a particle has a contact that remembers something, in the order of
+  /// their numbers.
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_remembered(std::uint32_t i, F const& f) const {
+    if (lists[i] != overflow_mark) {
+      std::uint32_t const touching = memory.touching[i];
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t k = 0; k < listed; ++k) {
+        if ((touching >> k & 1) != 0) f(list(k, i), k * capacity + i);
+      }
+      return;
+    }
+    std::uint32_t const first = list(1, i), size = list(2, i);
+    if (first == overflow_mark) return;
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; k < size; ++k) {
+      if (memory.run_touching[first + k] != 0) f(runs[first + k], run_item(first + k));
+    }
   }
 
  private:

@@ -22,6 +22,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include <collide/detail/execution/algorithms.hpp>
 #include <collide/detail/neighbours/births.hpp>
@@ -50,6 +51,8 @@ class verlet_list {
     references_.reserve(resource, n);
     if constexpr (order::has_absent) known_.reserve(resource, n);
     lists_.reserve(resource, order::listed * n);
+    runs_.reserve(resource, n);
+    contacts_.reserve(resource, n, order::listed, n);
   }
 
   /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet.
@@ -65,12 +68,51 @@ class verlet_list {
     space.fill(header, 0, sizeof *header);
     space.fill(&header->rebuild, 1, sizeof header->rebuild);
     if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
+    contacts_.clear(space, n);
+  }
+
+  /// What contacts remember, for a checkpoint. Waits.
+  template <class Space>
+  saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
+    saved_contacts<S> saved;
+    saved.counts.assign(n, 0);
+    list_state const header = copied(space, header_.data(), 1)[0];
+    if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
+    auto const numbers = copied(space, numbers_.data(), header.count);
+    auto const lists = copied(space, lists_.data(), order::listed * n),
+               runs = copied(space, runs_.data(), runs_.capacity());
+    auto const memory = contacts_.template copied<order::listed>(space, n, header.count, runs.size());
+    std::vector<std::uint32_t> place_of(n, order::overflow_mark);
+    for (std::uint32_t i = 0; i < header.count; ++i) place_of[numbers[i]] = i;
+    for (std::size_t number = 0; number < n; ++number) {
+      std::uint32_t const i = place_of[number];
+      if (i == order::overflow_mark) continue;
+      auto const add = [&](std::uint32_t place, std::size_t item) {
+        saved.others.push_back(numbers[place]);
+        memory.append(saved.values, item);
+        ++saved.counts[number];
+      };
+      if (lists[i] != order::overflow_mark) {
+        for (std::uint32_t k = 0; k < order::listed; ++k)
+          if ((memory.touching[i] >> k & 1) != 0) add(lists[k * n + i], k * n + i);
+      } else if (lists[n + i] != order::overflow_mark) {
+        std::size_t const first = lists[n + i], size = lists[2 * n + i];
+        for (std::size_t k = first; k < first + size; ++k)
+          if (memory.run_touching[k] != 0) add(runs[k], order::listed * n + k);
+      }
+    }
+    return saved;
+  }
+  /// After `clear`: lists that are made have what was saved. May wait.
+  template <class Space>
+  void restore_contacts(Space& space, saved_contacts<S> const& saved) {
+    contacts_.restore(space, saved);
   }
 
   /// What it has taken of the resource.
   std::size_t bytes() const {
     return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
-           references_.bytes() + known_.bytes() + memory_.bytes();
+           references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + contacts_.bytes();
   }
 
   /// Makes the lists complete for particles where they now are. They hold until something moves.
@@ -81,6 +123,7 @@ class verlet_list {
     std::uint32_t const* const rebuild = &o.header->rebuild;
     // half of the skin, but for rounding
     space.for_each(n, update_and_check_skin<S, Effects>{state, o, S(0.495) * skin_});
+    if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
     for_each_if_nonzero(space, rebuild, blocks_, scan_cells<S, Effects>{o});
@@ -115,12 +158,21 @@ class verlet_list {
 
   static constexpr S skin_fraction = S(0.1);
 
+  template <class Space, class T>
+  static std::vector<T> copied(Space const& space, T const* from, std::size_t n) {
+    std::vector<T> copy(n);
+    if (n != 0) space.copy_to_host(copy.data(), from, n);
+    return copy;
+  }
+
   order order_of(state_type const& state) const {
     return {cells_,          ends_.data(),
             header_.data(),  numbers_.data(),
             spheres_.data(), references_.data(),
             known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
-            lists_.data(),   state.size};
+            lists_.data(),   state.size,
+            runs_.data(),    runs_.capacity(),
+            contacts_.ref()};
   }
 
   /// How many blocks of cells there are for so many particles.
@@ -134,12 +186,13 @@ class verlet_list {
   S skin_{};
   std::size_t blocks_ = 0;
   buffer<list_state> header_;
-  buffer<std::uint32_t> ends_, lists_;
+  buffer<std::uint32_t> ends_, lists_, runs_;
   buffer<id> numbers_;
   buffer<packed_sphere<S>> spheres_;
   buffer<reference<S, contains<typename Effects::all, radius>>> references_;
   buffer<column_element<alive, S>> known_;
   column_buffers<S, typename Effects::interaction_copies> memory_;
+  contact_memory<S, typename Effects::remembered> contacts_;
 };
 
 }  // namespace collide::detail

@@ -12,7 +12,8 @@ namespace collide::detail {
 
 /// Has a member of each name. What also derives from a class with such a member has two, and its name says nothing.
 struct every_effect_member {
-  int is_inactive, accelerate, on_mesh_contact, after_mesh_contact, on_mesh_impulse, holds, on_pair_contact, try_wake,
+  int is_inactive, accelerate, on_mesh_contact, after_mesh_contact, on_mesh_impulse, holds, on_pair_contact,
+      on_mesh_overlap, try_wake,
       end_step, begin_step, check_parameters;
 };
 template <class E>
@@ -34,6 +35,8 @@ struct effect_lacks {
   using holds = decltype(&effect_and_every_member<E>::holds);
   template <class E>
   using on_pair_contact = decltype(&effect_and_every_member<E>::on_pair_contact);
+  template <class E>
+  using on_mesh_overlap = decltype(&effect_and_every_member<E>::on_mesh_overlap);
   template <class E>
   using try_wake = decltype(&effect_and_every_member<E>::try_wake);
   template <class E>
@@ -65,9 +68,14 @@ constexpr bool check_effect() {
                   "dt) const, with any particle");
     static_assert(holds_in<E, S>::value || is_valid<m::template holds, E>,
                   "collide: an effect's holds is called as holds(particle, pull, dt) const, with any particle");
-    static_assert(meets_in<E, S>::value || is_valid<m::template on_pair_contact, E>,
+    static_assert(pairs_in<E, S> || is_valid<m::template on_pair_contact, E>,
                   "collide: an effect's on_pair_contact is called as on_pair_contact(particle&, self, other, dt) "
-                  "const, with any particle");
+                  "const, or with the memory of the contact before dt if the effect remembers something, with any "
+                  "particle");
+    static_assert(overlaps_in<E, S> || is_valid<m::template on_mesh_overlap, E>,
+                  "collide: an effect's on_mesh_overlap is called as on_mesh_overlap(particle&, self, mesh_overlap "
+                  "const&, dt) const, or with the memory of the contact before dt if the effect remembers something, "
+                  "with any particle");
     static_assert(disturbs_in<E, S>::value || is_valid<m::template try_wake, E>,
                   "collide: an effect's try_wake is called as try_wake(particle&, other) const, with any particle");
     static_assert(finishes_in<E, S>::value || is_valid<m::template end_step, E>,
@@ -109,10 +117,14 @@ constexpr bool check_effects() {
       respects_order<Effect...>,
       "collide: an effect comes after those whose result it uses: name friction after bounce, and what reads forces "
       "(mesh_forces, pair_forces, reaction) behind what makes them");
-  constexpr bool is_solid = (repels<Effect> || ...), meets = (meets_in<Effect, S>::value || ...);
+  constexpr bool is_solid = (repels<Effect> || ...), meets = (pairs_in<Effect, S> || ...);
   static_assert(is_solid || !(needs_solid_mesh<Effect> || ...),
                 "collide: friction and adhesion act where the mesh is solid: name bounce before them, or an effect of "
                 "yours that says static constexpr bool repels = true");
+  static_assert(!(overlaps_in<Effect, S> || ...) ||
+                    !((touches_in<Effect, S>::value || settles_in<Effect, S>::value) || ...),
+                "collide: granular_contact makes the mesh solid by forces: leave out bounce, friction, adhesion and spin, "
+                "whose impulses would come on top; it has laws of its own for them");
   static_assert(is_solid || meets || !(needs_contacts<Effect> || ...),
                 "collide: spin needs contacts that turn particles: name bounce or sphere_contact with it");
   return true;

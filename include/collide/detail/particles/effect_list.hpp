@@ -27,10 +27,13 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   using integrator = typename integrator_of<E...>::type;
 
   static constexpr bool skips = (skips_in<E, S>::value || ...);
-  static constexpr bool touches = (touches_mesh_in<E, S> || ...);
-  static constexpr bool meets = (meets_in<E, S>::value || ...);
+  static constexpr bool meets = (pairs_in<E, S> || ...);
+  using remembered = union_of<columns<>, typename remembers_of<E>::type...>;  ///< by contacts between particles
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
   static constexpr bool books = (books_in<E, S>::value || ...);
+  static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
+  static constexpr bool touches =                               ///< or by impulses
+      (touches_in<E, S>::value || ...) || (settles_in<E, S>::value || ...) || (books && !overlaps);
   static constexpr bool resists = (resists_in<E, S>::value || ...);
   static constexpr bool flows = (flows_in<E, S>::value || ...);
 
@@ -44,10 +47,10 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   static constexpr bool holds_without_mesh =
       ((finishes_in<E, S>::value && contains<typename writes_of<E>::type, velocity>) || ...);
   /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
-  static constexpr bool keeps_pair_forces = meets && (adheres || has_half_kicks || keeps_support);
-  static constexpr bool keeps_pair_torques = meets && has_half_kicks && contains<named, angular_velocity>;
+  static constexpr bool keeps_pair_forces = (meets || overlaps) && (adheres || has_half_kicks || keeps_support);
+  static constexpr bool keeps_pair_torques = (meets || overlaps) && has_half_kicks && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
-  static constexpr bool ends_after_meeting = meets && has_half_kicks;
+  static constexpr bool ends_after_meeting = (meets || overlaps) && has_half_kicks;
 
  private:
   template <bool Needed, class... C>
@@ -84,7 +87,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
                                                   holds_in<F, S>::value ||
                                                   (books_in<F, S>::value && (adheres || keeps_support));
   template <class F>
-  static constexpr bool interacts_or_skips = meets_in<F, S>::value || disturbs_in<F, S>::value || skips_in<F, S>::value;
+  static constexpr bool interacts_or_skips = pairs_in<F, S> || disturbs_in<F, S>::value || skips_in<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
   using own_number = intersection_of<columns<global_number>, all>;
   template <bool Needed>
@@ -108,9 +111,17 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
                                radius_if<meets>, own_number>;
   using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
   using interaction_writes = difference_of<
-      union_of<columns<>, writes_if<E, meets_in<E, S>::value || disturbs_in<E, S>::value>...>,
+      union_of<columns<>, writes_if<E, pairs_in<E, S> || disturbs_in<E, S>::value>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
+  /// What is read and written for particles that press on the mesh.
+  using overlap_reads =
+      union_of<base, own_radius, own_number, pair_kicks, columns_if<keeps_pair_torques, angular_velocity>,
+               support_columns,
+               reads_if<E, overlaps_in<E, S> || skips_in<E, S>::value || (overlaps && books_in<E, S>::value)>...>;
+  using overlap_writes = difference_of<
+      union_of<pair_kicks, support_columns, writes_if<E, overlaps_in<E, S> || (overlaps && books_in<E, S>::value)>...>,
+      union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
 
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
@@ -202,6 +213,22 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   template <class P>
   COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
     (meet_by<E>(p, self, other, dt), ...);
+  }
+  /// With what the contact remembers; `overlap` if the two do. True if the contact goes on.
+  template <class P, class Values>
+  COLLIDE_HD_INLINE bool on_pair_contact(P& p, P& self, P& other, bool overlap, Values& values, S elapsed, S dt) const {
+    if (overlap) on_pair_contact(p, self, other, dt);
+    bool goes_on = false;
+    ((goes_on = meet_with_memory_by<E>(p, self, other, values, elapsed, dt) || goes_on), ...);
+    return goes_on;
+  }
+  /// True if the contact goes on.
+  template <class P, class Values>
+  COLLIDE_HD_INLINE bool on_mesh_overlap(P& p, P& self, mesh_overlap<S> const& o, Values& values, S elapsed,
+                                         S dt) const {
+    bool goes_on = false;
+    ((goes_on = overlap_by<E>(p, self, o, values, elapsed, dt) || goes_on), ...);
+    return goes_on;
   }
   template <class P>
   COLLIDE_HD_INLINE void try_wake(P& p, P& other) const {
@@ -320,6 +347,35 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
       particle_access<F, P> const seen_self(self), seen_other(other);
       of<F>().on_pair_contact(seen, seen_self, seen_other, dt);
     }
+  }
+  template <class F, class P, class Values>
+  COLLIDE_HD_INLINE bool meet_with_memory_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
+                                             [[maybe_unused]] Values& values, [[maybe_unused]] S elapsed,
+                                             [[maybe_unused]] S dt) const {
+    if constexpr (remembers_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_self(self), seen_other(other);
+      contact_access<typename remembers_of<F>::type, Values, S> const memory(values, elapsed);
+      return of<F>().on_pair_contact(seen, seen_self, seen_other, memory, dt);
+    } else {
+      return false;
+    }
+  }
+  template <class F, class P, class Values>
+  COLLIDE_HD_INLINE bool overlap_by([[maybe_unused]] P& p, [[maybe_unused]] P& self,
+                                    [[maybe_unused]] mesh_overlap<S> const& o, [[maybe_unused]] Values& values,
+                                    [[maybe_unused]] S elapsed, [[maybe_unused]] S dt) const {
+    if constexpr (overlaps_in<F, S>) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_self(self);
+      if constexpr (overlaps_with_memory<F, S>::value) {
+        contact_access<typename remembers_of<F>::type, Values, S> const memory(values, elapsed);
+        return of<F>().on_mesh_overlap(seen, seen_self, o, memory, dt);
+      } else {
+        of<F>().on_mesh_overlap(seen, seen_self, o, dt);
+      }
+    }
+    return false;
   }
   template <class F, class P>
   COLLIDE_HD_INLINE void disturb_by([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {

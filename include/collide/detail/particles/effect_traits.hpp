@@ -3,6 +3,7 @@
 #pragma once
 
 #include <collide/bodies.hpp>
+#include <collide/detail/particles/contact_memory.hpp>
 #include <collide/detail/particles/particle_access.hpp>
 #include <collide/detail/particles/resistance.hpp>
 #include <collide/integrators.hpp>
@@ -87,6 +88,44 @@ struct meets_in<E, S,
                 std::void_t<decltype(std::declval<E const&>().on_pair_contact(
                     std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
                     std::declval<archetype_access<E, S> const&>(), S{}))>> : std::true_type {};
+/// True for an effect whose `on_pair_contact` has what contacts remember as its fourth argument.
+template <class E, class S>
+using archetype_memory =
+    contact_access<typename remembers_of<E>::type, contact_values<S, typename remembers_of<E>::type>, S>;
+template <class E, class S, class = void>
+struct remembers_in : std::false_type {};
+template <class E, class S>
+struct remembers_in<
+    E, S,
+    std::void_t<std::enable_if_t<remembers_of<E>::type::size != 0>,
+                decltype(std::declval<E const&>().on_pair_contact(
+                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+                    std::declval<archetype_access<E, S> const&>(), std::declval<archetype_memory<E, S> const&>(),
+                    S{}))>> : std::true_type {};
+template <class E, class S>
+inline constexpr bool pairs_in = meets_in<E, S>::value || remembers_in<E, S>::value;
+/// True for an effect with `on_mesh_overlap`, if it remembers nothing, or with what the contact remembers.
+template <class E, class S, class = void>
+struct overlaps_without_memory : std::false_type {};
+template <class E, class S>
+struct overlaps_without_memory<
+    E, S,
+    std::void_t<std::enable_if_t<remembers_of<E>::type::size == 0>,
+                decltype(std::declval<E const&>().on_mesh_overlap(
+                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+                    std::declval<mesh_overlap<S> const&>(), S{}))>> : std::true_type {};
+template <class E, class S, class = void>
+struct overlaps_with_memory : std::false_type {};
+template <class E, class S>
+struct overlaps_with_memory<
+    E, S,
+    std::void_t<std::enable_if_t<remembers_of<E>::type::size != 0>,
+                decltype(std::declval<E const&>().on_mesh_overlap(
+                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+                    std::declval<mesh_overlap<S> const&>(), std::declval<archetype_memory<E, S> const&>(), S{}))>>
+    : std::true_type {};
+template <class E, class S>
+inline constexpr bool overlaps_in = overlaps_without_memory<E, S>::value || overlaps_with_memory<E, S>::value;
 template <class E, class S, class = void>
 struct disturbs_in : std::false_type {};
 template <class E, class S>
@@ -144,7 +183,7 @@ inline constexpr bool is_effect = [] {
   } else {
     using state = particle_state<S, typename archetype<E, S>::list>;
     return skips_in<E, S>::value || changes_velocity_in<E, S> || touches_mesh_in<E, S> || holds_in<E, S>::value ||
-           meets_in<E, S>::value || finishes_in<E, S>::value || begins_in<E, Space, state, S>::value ||
+           pairs_in<E, S> || overlaps_in<E, S> || finishes_in<E, S>::value || begins_in<E, Space, state, S>::value ||
            is_integrator<E>::value || archetype<E, S>::list::size != 0;
   }
 }();

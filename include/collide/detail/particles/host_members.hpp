@@ -92,7 +92,7 @@ void check_time_step_of(Effects const& effects, S dt, S smallest) {
   double const most = longest_step_of<E>(effects, smallest);
   if (!(smallest > 0 && static_cast<double>(dt) > most)) return;
   throw error("collide: simulation: the time dt of a step, " + text_of(dt) +
-              ", is above a fifth of a collision of the smallest particles, " + text_of(most) +
+              ", is longer than an effect allows with the smallest particles, " + text_of(most) +
               ": take largest_time_step(simulation)");
 }
 

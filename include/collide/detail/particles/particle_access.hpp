@@ -50,6 +50,15 @@ struct runs_after_of<E, std::void_t<typename E::runs_after>> {
   using type = typename E::runs_after;
 };
 
+template <class E, class = void>
+struct remembers_of {
+  using type = columns<>;
+};
+template <class E>
+struct remembers_of<E, std::void_t<typename E::remembers>> {
+  using type = typename E::remembers::list;
+};
+
 /// A particle as an effect sees it: with the columns that it names and no others.
 template <class Effect, class Particle>
 class particle_access {

@@ -1,0 +1,80 @@
+/// \file
+/// What pulls grains together.
+#pragma once
+
+#include <collide/effects/granular/law.hpp>
+
+namespace collide {
+
+/// A pull of `cohesion` times the area in which two spheres overlap, 2 pi overlap 2 R*: the simplified JKR model of
+/// LIGGGHTS, second form.
+struct sjkr {
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
+                              Memory const&) const {
+    n.elastic -= S(m.cohesion) * S(12.566370614359172) * p.radius * detail::larger(p.overlap, S(0));
+  }
+};
+
+/// Hertz' force less a constant pull, 4 pi gamma R*, of hard grains: B. V. Derjaguin, V. M. Muller and Y. P. Toporov,
+/// Journal of Colloid and Interface Science 53, 1975.
+struct dmt {
+  static constexpr bool needs_hertz = true;
+
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
+                              Memory const&) const {
+    n.pull_off = S(12.566370614359172) * S(m.cohesion) * p.radius;
+    n.elastic -= n.pull_off;
+  }
+};
+
+/// Soft grains that stick: K. L. Johnson, K. Kendall and A. D. Roberts, Proceedings of the Royal Society A 324, 1971.
+/// With x^2 = a, the overlap is x^4 / R* - 2 x sqrt(pi gamma / E*), and the force 4 E* a^3 / (3 R*) - 4 sqrt(pi gamma
+/// E* a^3). They hold each other by up to 3 pi gamma R*, also a little apart, once they have touched.
+struct jkr {
+  using remembers = contact_columns<contact_radius>;
+  static constexpr bool needs_hertz = true;
+
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
+                              Memory const& memory) const {
+    S const gamma = S(m.cohesion), young = S(m.young);
+    if (!(gamma > 0)) return;
+    S const k = detail::sqrt_rn(S(3.141592653589793) * gamma / young);
+    S const x = root(p.radius, k, p.overlap);
+    if (!(x > 0)) {  // they have parted
+      n.elastic = n.stiffness = n.contact_radius = 0;
+      return;
+    }
+    S const a = x * x, cube = a * a * a;
+    n.contact_radius = a;
+    n.stiffness = 2 * young * a;
+    n.elastic = S(4.0 / 3) * young * cube / p.radius - 4 * k * young * detail::sqrt_rn(cube);
+    n.pull_off = S(9.42477796076938) * gamma * p.radius;
+    n.goes_on = true;
+    memory[contact_radius{}] = a;
+  }
+
+ private:
+  /// The larger root of x^4 / r - 2 k x = overlap, by Newton's method from above; 0 if there is none: the two have
+  /// parted.
+  template <class S>
+  static COLLIDE_HD_INLINE S root(S r, S k, S overlap) {
+    S x = detail::sqrt_rn(detail::sqrt_rn(r * detail::larger(overlap, S(0))));
+    S least = detail::sqrt_rn(detail::sqrt_rn(k * r));  // grows until it is above the root
+    x = detail::larger(x, least);
+    while (x * x * x * x / r - 2 * k * x < overlap) x *= 2;
+    COLLIDE_NO_UNROLL
+    for (int i = 0; i < 60; ++i) {
+      S const slope = 4 * x * x * x / r - 2 * k;
+      if (!(slope > 0)) return 0;
+      S const next = x - (x * x * x * x / r - 2 * k * x - overlap) / slope;
+      if (!(next < x)) return x;
+      x = next;
+    }
+    return x;
+  }
+};
+
+}  // namespace collide

@@ -1,0 +1,86 @@
+/// \file
+/// What a law of granular contact gets and gives: normal, tangential, rolling, cohesion. See granular_contact.hpp.
+///
+/// A law is a small copyable struct. It may name what a contact remembers for it, `using remembers =
+/// contact_columns<...>`, and has one member template, `COLLIDE_HD`, const:
+///   - normal: `normal_force<S> force(granular_pair<S> const&, contact_material const&)`;
+///   - cohesion: `void pull(normal_force<S>&, granular_pair<S> const&, contact_material const&, Memory const&)`;
+///   - tangential: `vec3<S> force(granular_pair<S> const&, contact_material const&, normal_force<S> const&,
+///     Memory const&)`, on the particle, at right angles to the normal;
+///   - rolling: `vec3<S> torque(...)` with the same arguments, on the particle.
+/// `memory[column{}]` is what the contact remembers, `memory.elapsed()` for how long the contact has moved since it was
+/// looked at before.
+#pragma once
+
+#include <collide/effects/granular/materials.hpp>
+
+namespace collide {
+
+/// Two spheres in contact, or a sphere and a wall, as laws see them.
+template <class S>
+struct granular_pair {
+  vec3<S> normal;       ///< unit vector from the other to the particle
+  S overlap;            ///< by how much the two are in each other; below 0: they are apart
+  S closing;            ///< speed at which the overlap grows
+  vec3<S> slip;         ///< velocity of the particle's surface against the other's, at right angles to the normal
+  vec3<S> turning;      ///< angular velocity of the particle minus that of the other, without the part along the normal
+  vec3<S> own_turning;  ///< angular velocity of the particle, without the part along the normal
+  S radius;             ///< effective: 1/R* = 1/R_i + 1/R_j; of a wall R
+  S mass;               ///< effective: 1/m* = 1/m_i + 1/m_j; of a wall m
+  S rolling_inertia;    ///< 1.4 (m_i R_i^2 m_j R_j^2) / (m_i R_i^2 + m_j R_j^2); of a wall 1.4 m R^2
+  S own_radius;         ///< of the particle
+};
+
+/// The force along the normal.
+template <class S>
+struct normal_force {
+  S elastic;             ///< what is not of damping; below 0: it pulls
+  S stiffness;           ///< change of the elastic force with the overlap
+  S contact_radius;      ///< of the area of contact
+  S damping = 0;         ///< force per closing speed: damping_factor beta sqrt(stiffness m*), after cohesion
+  S pull_off = 0;        ///< the largest pull of cohesion, by which friction has a greater limit
+  bool goes_on = false;  ///< the two hold each other, though apart
+
+  COLLIDE_HD_INLINE S total(granular_pair<S> const& p) const { return elastic + damping * p.closing; }
+};
+
+/// The radius of the area of contact when the contact was looked at before.
+struct contact_radius {
+  template <class S>
+  using value = S;
+};
+
+/// In place of a law: no force, no torque, nothing that is remembered.
+struct none {
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE void pull(normal_force<S>&, granular_pair<S> const&, detail::contact_material const&,
+                              Memory const&) const {}
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const&, detail::contact_material const&, normal_force<S> const&,
+                                  Memory const&) const {
+    return {S(0), S(0), S(0)};
+  }
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE vec3<S> torque(granular_pair<S> const&, detail::contact_material const&, normal_force<S> const&,
+                                   Memory const&) const {
+    return {S(0), S(0), S(0)};
+  }
+};
+
+namespace detail {
+
+template <class S>
+COLLIDE_HD_INLINE S length_of(vec3<S> const& v) {
+  return sqrt_rn(dot(v, v));
+}
+
+/// Coulomb's limit of friction.
+template <class S>
+COLLIDE_HD_INLINE S friction_limit(granular_pair<S> const& p, contact_material const& m, normal_force<S> const& n) {
+  S const normal = n.total(p) + 2 * n.pull_off;
+  return S(m.friction) * (normal < 0 ? -normal : normal);
+}
+
+}  // namespace detail
+
+}  // namespace collide

@@ -1,0 +1,29 @@
+/// \file
+/// Normal force of a linear spring and dashpot.
+#pragma once
+
+#include <collide/effects/granular/law.hpp>
+
+namespace collide {
+
+/// A spring of constant stiffness, with the dashpot that gives the coefficient of restitution at any speed: P. A.
+/// Cundall and O. D. L. Strack, "A discrete numerical model for granular assemblies", Geotechnique 29(1), 1979; damping
+/// 2 beta sqrt(k m*).
+struct linear {
+  static constexpr bool is_hertzian = false;
+  static constexpr double damping_factor = 2;  ///< of beta sqrt(stiffness m*)
+
+  double stiffness = 1000;  ///< force per overlap, above 0
+
+  void check_parameters() const {
+    detail::check_parameter(detail::is_positive(stiffness), "linear: stiffness is above 0, and finite");
+  }
+
+  template <class S>
+  COLLIDE_HD_INLINE normal_force<S> force(granular_pair<S> const& p, detail::contact_material const&) const {
+    S const k = S(stiffness), overlap = detail::larger(p.overlap, S(0));
+    return {k * overlap, k, detail::sqrt_rn(p.radius * overlap)};
+  }
+};
+
+}  // namespace collide

@@ -1,0 +1,195 @@
+/// \file
+/// What granular particles and walls are made of.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include <collide/effect.hpp>
+
+namespace collide {
+
+/// What a particle is made of, as a number: see `materials`. Scenes have it that name `granular_contact` with
+/// `materials`.
+struct material {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+/// An elastic solid.
+struct solid {
+  double young;    ///< Young's modulus, force per area, above 0
+  double poisson;  ///< Poisson's ratio, -1 < poisson <= 0.5
+  double density;  ///< mass per volume, above 0
+};
+
+/// What two solids do where they touch.
+struct surface_pair {
+  double restitution = 1;       ///< coefficient of restitution, 0 < restitution <= 1
+  double friction = 0;          ///< coefficient of sliding friction, not negative
+  double rolling_friction = 0;  ///< coefficient of rolling friction, a ratio of lengths, not negative
+  double cohesion = 0;  ///< `sjkr`: energy per volume; `jkr`, `dmt`: surface energy, energy per area; not negative
+};
+
+namespace detail {
+
+/// Two solids and their surfaces as laws of contact need them.
+struct contact_material {
+  double young = 0;    ///< effective: 1/E* = (1 - nu_i^2) / E_i + (1 - nu_j^2) / E_j; 0: nobody has said
+  double shear = 0;    ///< effective: 1/G* = (2 - nu_i) / G_i + (2 - nu_j) / G_j
+  double damping = 0;  ///< beta = -ln e / sqrt(ln^2 e + pi^2), 0 to 1
+  double friction = 0, rolling_friction = 0, cohesion = 0;
+
+  contact_material() = default;
+  contact_material(solid const& a, solid const& b, surface_pair const& p)
+      : young{1 / ((1 - a.poisson * a.poisson) / a.young + (1 - b.poisson * b.poisson) / b.young)},
+        shear{1 / (2 * (1 + a.poisson) * (2 - a.poisson) / a.young + 2 * (1 + b.poisson) * (2 - b.poisson) / b.young)},
+        friction{p.friction},
+        rolling_friction{p.rolling_friction},
+        cohesion{p.cohesion} {
+    constexpr double pi = 3.14159265358979323846;
+    double const log_e = std::log(p.restitution);
+    damping = p.restitution < 1 ? -log_e / std::sqrt(log_e * log_e + pi * pi) : 0;
+  }
+};
+
+inline void check(solid const& s) {
+  check_parameter(is_positive(s.young) && is_positive(s.density),
+                  "materials: Young's modulus and density of a solid are above 0, and finite");
+  check_parameter(s.poisson > -1 && s.poisson <= 0.5, "materials: Poisson's ratio is above -1, and at most 0.5");
+}
+inline void check(surface_pair const& p) {
+  check_parameter(p.restitution > 0 && p.restitution <= 1,
+                  "materials: the coefficient of restitution is above 0, and at most 1");
+  check_parameter(is_amount(p.friction) && is_amount(p.rolling_friction) && is_amount(p.cohesion),
+                  "materials: friction, rolling friction and cohesion of a pair are not negative, and finite");
+}
+
+}  // namespace detail
+
+/// Particles and walls of one material. There is no column for it.
+class one_material {
+ public:
+  using reads = columns<>;
+
+  /// Throws `error` if a number is out of its range.
+  explicit one_material(solid const& of = {1e7, 0.3, 1000}, surface_pair const& surfaces = {}) : solid_{of} {
+    detail::check(of);
+    detail::check(surfaces);
+    pair_ = detail::contact_material(of, of, surfaces);
+  }
+
+  void check_parameters() const {}
+  /// The solid, and the largest stiffness, for time steps.
+  solid const& stiffest() const { return solid_; }
+
+  template <class S, class Particle>
+  COLLIDE_HD_INLINE S density_of(Particle const&) const {
+    return S(solid_.density);
+  }
+  template <class Particle>
+  COLLIDE_HD_INLINE detail::contact_material const& between(Particle const&, Particle const&) const {
+    return pair_;
+  }
+  template <class Particle>
+  COLLIDE_HD_INLINE detail::contact_material const& with_wall(Particle const&, id, id) const {
+    return pair_;
+  }
+
+ private:
+  solid solid_;
+  detail::contact_material pair_;
+};
+
+/// `N` solids, 1 to 32, and what each pair of them does. Particles have a column `material`, 0 to N - 1: which solid.
+/// Walls are of `wall_material`, or of one each triangle or body.
+///
+///     materials<2> m;
+///     m.set(0, {1e9, 0.2, 2500});
+///     m.set(1, {210e9, 0.2, 7200});
+///     m.set_pair(0, 0, {0.5, 0.3});   // all of them: also 0-1 and 1-1
+template <int N>
+class materials {
+  static_assert(N >= 1 && N <= 32, "collide: materials has 1 to 32 solids");
+
+ public:
+  using reads = columns<material>;
+
+  int wall_material = 0;                             ///< of the mesh, 0 to N - 1
+  std::uint8_t const* triangle_materials = nullptr;  ///< of each triangle, in memory of the space; null: all the same
+  std::uint8_t const* body_materials = nullptr;      ///< of each body, in memory of the space; null: all the same
+  static constexpr bool saves_parameters = false;    ///< they may have pointers
+
+  /// Says what solid number `i` is. Throws `error` if a number is out of its range.
+  void set(int i, solid const& s) {
+    check_number(i);
+    detail::check(s);
+    solids_[i] = s;
+    is_set_[i] = true;
+  }
+  /// Says what solids `i` and `j`, which are set, do where they touch. Throws `error` if a number is out of its range.
+  void set_pair(int i, int j, surface_pair const& p) {
+    check_number(i);
+    check_number(j);
+    detail::check(p);
+    if (!is_set_[i] || !is_set_[j]) throw error("collide: materials: set both solids before their pair");
+    pairs_[place(i, j)] = detail::contact_material(solids_[i], solids_[j], p);
+  }
+
+  /// Throws `error`, which names the solid or the pair that nobody has set.
+  void check_parameters() const {
+    detail::check_parameter(wall_material >= 0 && wall_material < N,
+                            "materials: wall_material is the number of a solid");
+    for (int i = 0; i < N; ++i) {
+      for (int j = i; j < N; ++j) {
+        if (pairs_[place(i, j)].young > 0) continue;
+        throw error("collide: materials: the pair of " + std::to_string(i) + " and " + std::to_string(j) +
+                    " is missing: call set_pair");
+      }
+    }
+  }
+  /// The solid in which waves are fastest.
+  solid const& stiffest() const {
+    int best = 0;
+    for (int i = 1; i < N; ++i) {
+      if (solids_[i].young / solids_[i].density > solids_[best].young / solids_[best].density) best = i;
+    }
+    return solids_[best];
+  }
+
+  template <class S, class Particle>
+  COLLIDE_HD_INLINE S density_of(Particle const& p) const {
+    return S(solids_[number_of(p)].density);
+  }
+  template <class Particle>
+  COLLIDE_HD_INLINE detail::contact_material const& between(Particle const& p, Particle const& other) const {
+    return pairs_[place(number_of(p), number_of(other))];
+  }
+  template <class Particle>
+  COLLIDE_HD_INLINE detail::contact_material const& with_wall(Particle const& p, id triangle, id body) const {
+    int wall = wall_material;
+    if (body != no_id && body_materials != nullptr) wall = body_materials[body];
+    if (triangle_materials != nullptr) wall = triangle_materials[triangle];
+    return pairs_[place(number_of(p), wall < N ? wall : N - 1)];
+  }
+
+ private:
+  static COLLIDE_HD_INLINE int place(int i, int j) { return i < j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
+  template <class Particle>
+  static COLLIDE_HD_INLINE int number_of(Particle const& p) {
+    int const number = p[material{}];
+    return number < N ? number : N - 1;
+  }
+  static void check_number(int i) {
+    detail::check_parameter(i >= 0 && i < N, "materials: the number of a solid is from 0 to N - 1");
+  }
+
+  static constexpr std::size_t number = N;
+
+  solid solids_[number] = {};
+  bool is_set_[number] = {};
+  detail::contact_material pairs_[number * (number + 1) / 2];
+};
+
+}  // namespace collide

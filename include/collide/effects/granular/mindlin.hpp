@@ -1,0 +1,102 @@
+/// \file
+/// Tangential force of a spring that remembers.
+#pragma once
+
+#include <collide/effects/granular/law.hpp>
+
+namespace collide {
+
+/// By how much the surfaces of a contact have moved against each other since they touched, a length: the tangential
+/// spring.
+struct tangential_displacement {
+  template <class S>
+  using value = vec3<S>;
+};
+
+/// Which of the dashpot's forms codes have.
+enum class tangential_damping {
+  none,        ///< MercuryDPM's benchmark
+  of_tangent,  ///< 2 sqrt(5/6) beta sqrt(k_t m*): LIGGGHTS, MUSEN
+  of_normal    ///< that of the normal force: LAMMPS
+};
+
+/// What is held against Coulomb's limit.
+enum class slip_test {
+  spring,             ///< the spring alone; what slides has no dashpot: LIGGGHTS, MUSEN
+  spring_and_dashpot  ///< S. Luding, Granular Matter 10, 2008, equation 20: LAMMPS
+};
+
+/// A spring of stiffness 8 G* a that grows with slip, turns with the contact, and slides at Coulomb's limit: R. D.
+/// Mindlin, Journal of Applied Mechanics 16, 1949; A. Di Renzo and F. P. Di Maio, Chemical Engineering Science 59,
+/// 2004. As it is by default, it is that of LIGGGHTS and MUSEN; the members are where codes differ.
+struct mindlin {
+  using remembers = contact_columns<tangential_displacement>;
+  static constexpr bool needs_hertz = true;
+
+  double stiffness_factor = 1;  ///< of 8 G* a, above 0; 2/3 in A. Di Renzo and F. P. Di Maio, 2005, equation 37
+  tangential_damping damping = tangential_damping::of_tangent;  ///< the dashpot
+  slip_test test = slip_test::spring;                           ///< what slides
+  bool keeps_length = false;  ///< the spring does not become shorter where it turns with the contact: LAMMPS, MUSEN
+
+  void check_parameters() const {
+    detail::check_parameter(detail::is_positive(stiffness_factor), "mindlin: stiffness_factor is above 0, and finite");
+  }
+
+  /// f(parameter) for each, for checkpoints: there is padding between them.
+  template <class F>
+  void for_each_part(F const& f) {
+    f(stiffness_factor);
+    f(damping);
+    f(test);
+    f(keeps_length);
+  }
+
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const& p, detail::contact_material const& m,
+                                  normal_force<S> const& n, Memory const& memory) const {
+    vec3<S>& spring = memory[tangential_displacement{}];
+    turn(spring, p.normal);
+    spring += p.slip * memory.elapsed();
+    S const stiffness = S(8 * stiffness_factor * m.shear) * n.contact_radius, limit = detail::friction_limit(p, m, n);
+    S dash = 0;
+    if (damping == tangential_damping::of_tangent)
+      dash = S(1.8257418583505538 * m.damping) * detail::sqrt_rn(stiffness * p.mass);
+    if (damping == tangential_damping::of_normal) dash = n.damping;
+    vec3<S> const damped = p.slip * dash, pull = spring * stiffness + damped;
+    bool const with_dashpot = test == slip_test::spring_and_dashpot;
+    vec3<S> const tested = with_dashpot ? pull : vec3<S>(spring * stiffness);
+    S const tested_length = detail::length_of(tested);
+    if (!(tested_length > limit)) return -pull;
+    vec3<S> const sliding = tested * (limit / tested_length);
+    if (stiffness > 0) spring = (with_dashpot ? vec3<S>(sliding - damped) : sliding) * (1 / stiffness);
+    return -sliding;
+  }
+
+ private:
+  /// Turns the spring into the plane of contact.
+  template <class S>
+  COLLIDE_HD_INLINE void turn(vec3<S>& spring, vec3<S> const& normal) const {
+    S const before = keeps_length ? detail::dot(spring, spring) : S(0);
+    spring -= normal * detail::dot(spring, normal);
+    if (!keeps_length) return;
+    S const after = detail::dot(spring, spring);
+    if (after > 0) spring = spring * detail::sqrt_rn(before / after);
+  }
+};
+
+/// `mindlin`, whose spring also becomes shorter where the area of contact does, so that a cyclic load makes no energy:
+/// C. Thornton, S. J. Cummins and P. W. Cleary, Powder Technology 233, 2013, equation 18b.
+struct mindlin_rescale : mindlin {
+  using remembers = contact_columns<tangential_displacement, contact_radius>;
+
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const& p, detail::contact_material const& m,
+                                  normal_force<S> const& n, Memory const& memory) const {
+    S& before = memory[contact_radius{}];
+    if (n.contact_radius < before) memory[tangential_displacement{}] *= n.contact_radius / before;
+    before = n.contact_radius;
+    return mindlin::force(p, m, n, memory);
+  }
+};
+
+}  // namespace collide

@@ -1,0 +1,217 @@
+/// \file
+/// Effect: granular contact between particles, and of particles with the mesh, by laws that are put together at compile
+/// time.
+#pragma once
+
+#include <limits>
+#include <type_traits>
+
+#include <collide/detail/particles/particle_access.hpp>
+#include <collide/effects/granular/cohesion.hpp>
+#include <collide/effects/granular/dashpot.hpp>
+#include <collide/effects/granular/hertz.hpp>
+#include <collide/effects/granular/linear.hpp>
+#include <collide/effects/granular/mindlin.hpp>
+#include <collide/effects/granular/rolling.hpp>
+
+namespace collide {
+
+namespace detail {
+
+template <class... List>
+struct contact_columns_of;
+template <class... C>
+struct contact_columns_of<columns<C...>> {
+  using type = contact_columns<C...>;
+};
+
+template <class L, class = void>
+inline constexpr bool needs_hertz = false;
+template <class L>
+inline constexpr bool needs_hertz<L, std::void_t<decltype(L::needs_hertz)>> = L::needs_hertz;
+
+}  // namespace detail
+
+/// The discrete element method's contact: of spheres with each other, and with the mesh, which is solid then. Laws are
+/// in effects/granular/; one of your own has the members of law.hpp.
+///
+/// Forces are those where particles are when they meet; use `velocity_verlet`, with which dashpots see the velocity of
+/// half the step. Particles turn, if the tangential or the rolling law is not `none`. Of the mesh, a contact is each
+/// point that is nearest to the centre among all points of the surface near it: one on a flat wall, whatever its
+/// triangles, two in an edge between walls. A contact goes on as the sphere goes from triangle to triangle. A surface
+/// has two sides. A wall has no mass and no radius: 1/R* = 1/R.
+///
+/// \tparam Normal      `linear` or `hertz`
+/// \tparam Tangential  `none`, `dashpot`, `mindlin` or `mindlin_rescale`
+/// \tparam Rolling     `none`, `constant_torque` or `epsd`
+/// \tparam Cohesion    `none`, `sjkr`, `jkr` or `dmt`
+/// \tparam Materials   `one_material`, or `materials<N>` with a column `material`
+template <class Normal, class Tangential = none, class Rolling = none, class Cohesion = none,
+          class Materials = one_material>
+struct granular_contact {
+  static_assert(Normal::is_hertzian || !(detail::needs_hertz<Tangential> || detail::needs_hertz<Cohesion>),
+                "collide: mindlin, jkr and dmt are made for spheres that touch as hertz says: name hertz as the normal "
+                "law, or dashpot and sjkr with linear");
+
+  static constexpr bool turns = !std::is_same<Tangential, none>::value || !std::is_same<Rolling, none>::value;
+  static constexpr bool repels = true;  ///< the mesh is solid
+
+  using reads = detail::union_of<columns<position>, typename Materials::reads>;
+  using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;
+  using remembers =
+      typename detail::contact_columns_of<detail::union_of<columns<>, typename detail::remembers_of<Tangential>::type,
+                                                           typename detail::remembers_of<Rolling>::type,
+                                                           typename detail::remembers_of<Cohesion>::type>>::type;
+
+  static constexpr bool is_memoryless = remembers::list::size == 0;
+
+  Materials made_of{};  ///< Young's moduli, densities, coefficients
+  Normal normal{};      ///< parameters of the laws
+  Tangential tangential{};
+  Rolling rolling{};
+  Cohesion cohesion{};
+  /// Torques have the arm radius - arm_shortening overlap: 0.5 in LIGGGHTS and MercuryDPM, 0 in MUSEN, and in LAMMPS at
+  /// walls.
+  double arm_shortening = 0.5;
+
+  void check_parameters() const {
+    made_of.check_parameters();
+    detail::check_part(normal);
+    detail::check_part(tangential);
+    detail::check_part(rolling);
+    detail::check_part(cohesion);
+  }
+
+  template <class F>
+  void for_each_part(F const& f) {
+    detail::for_each_part_of(made_of, f);
+    detail::for_each_part_of(normal, f);
+    detail::for_each_part_of(tangential, f);
+    detail::for_each_part_of(rolling, f);
+    detail::for_each_part_of(cohesion, f);
+    f(arm_shortening);
+  }
+
+  /// The longest step that `simulation::step` takes. With `hertz` the time in which a wave crosses the smallest sphere
+  /// (Lord Rayleigh): pi r sqrt(density / G) / (0.1631 nu + 0.8766); with `linear` a fifth of a collision of two such.
+  double longest_step(double smallest_radius) const {
+    solid const& s = made_of.stiffest();
+    if constexpr (Normal::is_hertzian) {
+      double const shear = s.young / (2 * (1 + s.poisson));
+      return 3.14159265358979323846 * smallest_radius * std::sqrt(s.density / shear) / (0.1631 * s.poisson + 0.8766);
+    } else {
+      return 0.628318530717959 * std::sqrt(detail::sphere_mass(s.density, smallest_radius) / (2 * normal.stiffness));
+    }
+  }
+
+  template <class Particle, class Seen, class S, std::enable_if_t<is_memoryless && sizeof(S) != 0, int> = 0>
+  COLLIDE_HD_INLINE void on_pair_contact(Particle& p, Seen const& self, Seen const& other, S dt) const {
+    meet(p, self, other, no_memory<S>{dt}, dt);
+  }
+  template <class Particle, class Seen, class Memory, class S>
+  COLLIDE_HD_INLINE bool on_pair_contact(Particle& p, Seen const& self, Seen const& other, Memory const& memory,
+                                         S dt) const {
+    return meet(p, self, other, memory, dt);
+  }
+  template <class Particle, class Seen, class S, std::enable_if_t<is_memoryless && sizeof(S) != 0, int> = 0>
+  COLLIDE_HD_INLINE void on_mesh_overlap(Particle& p, Seen const& self, mesh_overlap<S> const& wall, S dt) const {
+    press(p, self, wall, no_memory<S>{dt}, dt);
+  }
+  template <class Particle, class Seen, class Memory, class S>
+  COLLIDE_HD_INLINE bool on_mesh_overlap(Particle& p, Seen const& self, mesh_overlap<S> const& wall,
+                                         Memory const& memory, S dt) const {
+    return press(p, self, wall, memory, dt);
+  }
+
+ private:
+  /// In place of the memory of a contact.
+  template <class S>
+  struct no_memory {
+    S dt;
+    COLLIDE_HD_INLINE S elapsed() const { return dt; }
+  };
+
+  /// Two spheres. True if the contact goes on.
+  template <class Particle, class Seen, class Memory, class S>
+  COLLIDE_HD_INLINE bool meet(Particle& p, Seen const& self, Seen const& other, Memory const& memory, S dt) const {
+    S const r = self.radius(), other_r = other.radius();
+    vec3<S> const between = self[position{}] - other[position{}];
+    S const distance = detail::length_of(between);
+    granular_pair<S> c;
+    c.normal = distance > 0 ? vec3<S>(between * (1 / distance))
+                            : vec3<S>(S(0), S(0), self.number() < other.number() ? S(-1) : S(1));
+    c.overlap = (r + other_r) - distance;
+    c.radius = r * other_r / (r + other_r);
+    c.own_radius = r;
+    S const m = detail::sphere_mass(S(1), r) * made_of.template density_of<S>(self);
+    S const other_m = detail::sphere_mass(S(1), other_r) * made_of.template density_of<S>(other);
+    c.mass = m * other_m / (m + other_m);
+    vec3<S> turned(S(0), S(0), S(0));
+    c.own_turning = c.turning = turned;
+    c.rolling_inertia = 0;
+    if constexpr (turns) {
+      vec3<S> const &w = self[angular_velocity{}], &other_w = other[angular_velocity{}];
+      turned = w * r + other_w * other_r;
+      c.own_turning = along_surface(w, c.normal);
+      c.turning = along_surface(vec3<S>(w - other_w), c.normal);
+      S const inertia = m * r * r, other_inertia = other_m * other_r * other_r;
+      c.rolling_inertia = S(1.4) * (inertia * other_inertia / (inertia + other_inertia));
+    }
+    set_velocity(c, vec3<S>(self[velocity{}] - other[velocity{}]), turned);
+    return apply(p, c, m, made_of.between(self, other), memory, dt);
+  }
+
+  /// A sphere and a wall.
+  template <class Particle, class Seen, class Memory, class S>
+  COLLIDE_HD_INLINE bool press(Particle& p, Seen const& self, mesh_overlap<S> const& wall, Memory const& memory,
+                               S dt) const {
+    S const r = self.radius(), m = detail::sphere_mass(S(1), r) * made_of.template density_of<S>(self);
+    granular_pair<S> c;
+    c.normal = wall.normal;
+    c.overlap = wall.overlap;
+    c.radius = c.own_radius = r;
+    c.mass = m;
+    c.rolling_inertia = S(1.4) * m * r * r;
+    vec3<S> turned(S(0), S(0), S(0));
+    c.own_turning = c.turning = turned;
+    if constexpr (turns) {
+      turned = self[angular_velocity{}] * r;
+      c.own_turning = c.turning = along_surface(self[angular_velocity{}], c.normal);
+    }
+    set_velocity(c, vec3<S>(self[velocity{}] - wall.surface_velocity), turned);
+    return apply(p, c, m, made_of.with_wall(self, wall.triangle, wall.body), memory, dt);
+  }
+
+  template <class S>
+  static COLLIDE_HD_INLINE vec3<S> along_surface(vec3<S> const& x, vec3<S> const& normal) {
+    return x - normal * detail::dot(x, normal);
+  }
+  template <class S>
+  static COLLIDE_HD_INLINE void set_velocity(granular_pair<S>& c, vec3<S> const& relative, vec3<S> const& turned) {
+    S const apart = detail::dot(relative, c.normal);
+    c.closing = -apart;
+    c.slip = relative - c.normal * apart - detail::cross(turned, c.normal);
+  }
+
+  template <class Particle, class S, class Memory>
+  COLLIDE_HD_INLINE bool apply(Particle& p, granular_pair<S> const& c, S m, detail::contact_material const& of,
+                               Memory const& memory, S dt) const {
+    normal_force<S> n = normal.force(c, of);
+    cohesion.pull(n, c, of, memory);
+    if (!(c.overlap > 0) && !n.goes_on) return false;
+    n.damping = S(Normal::damping_factor * of.damping) * detail::sqrt_rn(n.stiffness * c.mass);
+    vec3<S> force = c.normal * n.total(c);
+    S const impulse = dt / m;
+    if constexpr (turns) {
+      vec3<S> const aside = tangential.force(c, of, n, memory), resistance = rolling.torque(c, of, n, memory);
+      force += aside;
+      S const arm = c.own_radius - S(arm_shortening) * c.overlap;
+      vec3<S> const torque = detail::cross(aside, c.normal) * arm + resistance;
+      p[angular_velocity{}] += torque * (S(2.5) * impulse / (c.own_radius * c.own_radius));
+    }
+    p[velocity{}] += force * impulse;
+    return true;
+  }
+};
+
+}  // namespace collide

@@ -1,0 +1,29 @@
+/// Granular contact, on the host and as blocks of threads go.
+#include "compositions.hpp"
+#include "simulation/granular.hpp"
+
+using collide::host;
+using blocks = tests::lockstep<64, true>;
+
+TEST_CASE("granular contact: two bodies to the digits of other codes") {
+  tests::check_hertz_rebound(host(1));
+  tests::check_oblique_pair(host(1));
+  tests::check_pulled_ball(host(1));
+}
+
+TEST_CASE("granular contact: a wall does not depend on its triangles") {
+  tests::check_divided_walls<double>(host(1));
+  tests::check_divided_walls<float>(host(1));
+}
+
+TEST_CASE("granular contact: contacts remember the same everywhere, and after a checkpoint") {
+  tests::check_same_grains<double>(host(2));
+  tests::check_same_grains<float>(blocks());
+}
+
+TEST_CASE("granular contact: walls that move take grains along, and feel them") {
+  tests::check_moving_walls<double>(host(1));
+  tests::check_moving_walls<float>(blocks());
+}
+
+TEST_CASE("granular contact: grains sleep and press on") { tests::check_sleeping_grains<double>(host(1)); }

@@ -1,0 +1,32 @@
+/// Granular contact on a GPU.
+#include <collide/cuda.cuh>
+
+#include "compositions.hpp"
+#include "simulation/granular.hpp"
+
+using collide::cuda_shared;
+
+TEST_CASE("granular contact: two bodies to the digits of other codes, on a GPU") {
+  tests::check_hertz_rebound(cuda_shared());
+  tests::check_oblique_pair(cuda_shared());
+  tests::check_pulled_ball(cuda_shared());
+}
+
+TEST_CASE("granular contact: a wall does not depend on its triangles, on a GPU") {
+  tests::check_divided_walls<double>(cuda_shared());
+  tests::check_divided_walls<float>(cuda_shared());
+}
+
+TEST_CASE("granular contact: contacts remember the same as on the host, and after a checkpoint, on a GPU") {
+  tests::check_same_grains<double>(cuda_shared());
+  tests::check_same_grains<float>(cuda_shared());
+}
+
+TEST_CASE("granular contact: walls that move take grains along, and feel them, on a GPU") {
+  tests::check_moving_walls<double>(cuda_shared());
+  tests::check_moving_walls<float>(cuda_shared());
+}
+
+TEST_CASE("granular contact: grains sleep and press on, on a GPU") {
+  tests::check_sleeping_grains<double>(cuda_shared());
+}
