@@ -3,6 +3,8 @@
 /// test_where_features_meet_cuda.cpp.
 #pragma once
 
+#include <random>
+
 #include <collide/effects/adhesion.hpp>
 #include <collide/effects/contact_forces.hpp>
 #include <collide/effects/lost.hpp>
@@ -304,6 +306,46 @@ void check_energy_in_a_corner(Space const& space) {
   }
   CHECK(most < 1 + 1e-5);
   CHECK(most > 0.5);
+}
+
+/// Balls that bounce elastically in a corner of three slanted walls have no more energy afterwards, with gravity too.
+template <class NarrowPhase, class S, class Space>
+void check_elastic_corner(Space const& space, double g, double most_growth) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, velocity_verlet, gravity, bounce>;
+  world<S> w;
+  w.radius = S(0.1);
+  w.triangle({0, 0, 0, 9, 0, 4, -3, 8, 5});
+  w.triangle({0, 0, 0, -3, 8, 5, -5, -7, 6});
+  w.triangle({0, 0, 0, -5, -7, 6, 9, 0, 4});
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int i = 0; i < 300; ++i) {
+    w.particle(0.1 * uniform(engine), 0.1 * uniform(engine), 0.6 + 0.1 * uniform(engine), uniform(engine),
+               uniform(engine), -2 + uniform(engine));
+  }
+  running<simulation> made(space, w, velocity_verlet{}, gravity{0, 0, -g}, bounce{1});
+  auto const energies = [&] {
+    auto const x = made.positions(), v = made.velocities();
+    std::vector<double> all;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      double square = 0;
+      for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) square += double(v[k]) * double(v[k]);
+      all.push_back(square / 2 + g * double(x[3 * i + 2]));
+    }
+    return all;
+  };
+  auto const before = energies();
+  made.simulation.steps(150, S(2e-3));
+  auto const after = energies();
+  double most = 0, total = 0, total_before = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    most = std::max(most, after[i] / before[i] - 1);
+    total += after[i];
+    total_before += before[i];
+  }
+  CHECK(most < most_growth);
+  CHECK(total < total_before * (1 + most_growth));
+  CHECK(total > total_before * 0.5);
 }
 
 /// Friction between spheres that overlap keeps the angular momentum of the two: its arms are the distance.
