@@ -101,7 +101,7 @@ struct held {
 };
 
 /// What other particles add to the velocity, per unit of time, in length per time squared. Scenes have it that name an
-/// effect with `on_pair_contact`, and `velocity_verlet` or `adhesion`.
+/// effect with `on_pair_contact`, and `velocity_verlet`, `adhesion`, or `sleep` with `reaction` or `mesh_forces`.
 struct pair_acceleration {
   template <class S>
   using value = vec3<S>;
@@ -115,7 +115,8 @@ struct pair_angular_acceleration {
 };
 
 /// What the mesh adds to the velocity per unit of time, on the mean over the steps in which the particle has been slow:
-/// so a particle that sleeps goes on to press. Scenes have it that name `sleep` and an effect with `on_mesh_impulse`.
+/// so it is known on what a particle presses that sleeps. Scenes have it that name `sleep` and an effect with
+/// `on_mesh_impulse`.
 struct support {
   template <class S>
   using value = vec3<S>;

@@ -41,14 +41,16 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
   static constexpr bool adheres = touches && contains<named, adhered>;
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
-  /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
-  static constexpr bool keeps_pair_forces = (meets || overlaps) && (adheres || has_half_kicks);
-  static constexpr bool keeps_pair_torques =
-      (meets || overlaps) && has_half_kicks && contains<named, angular_velocity>;
-  /// A step ends once particles have met where they then are.
-  static constexpr bool ends_after_meeting = (meets || overlaps) && has_half_kicks;
   /// What sleeps presses on.
   static constexpr bool keeps_support = books && contains<named, slow_steps>;
+  /// Effects that know no mesh may hold particles where they are.
+  static constexpr bool holds_without_mesh =
+      ((finishes_in<E, S>::value && contains<typename writes_of<E>::type, velocity>) || ...);
+  /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
+  static constexpr bool keeps_pair_forces = (meets || overlaps) && (adheres || has_half_kicks || keeps_support);
+  static constexpr bool keeps_pair_torques = (meets || overlaps) && has_half_kicks && contains<named, angular_velocity>;
+  /// A step ends once particles have met where they then are.
+  static constexpr bool ends_after_meeting = (meets || overlaps) && has_half_kicks;
 
  private:
   template <bool Needed, class... C>
@@ -118,8 +120,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
                support_columns,
                reads_if<E, overlaps_in<E, S> || skips_in<E, S>::value || (overlaps && books_in<E, S>::value)>...>;
   using overlap_writes = difference_of<
-      union_of<pair_kicks, support_columns,
-               writes_if<E, overlaps_in<E, S> || (overlaps && books_in<E, S>::value)>...>,
+      union_of<pair_kicks, support_columns, writes_if<E, overlaps_in<E, S> || (overlaps && books_in<E, S>::value)>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
 
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
@@ -130,6 +131,13 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   /// Whether what a source makes where something is, is not born.
   bool makes_only_where_free() const { return (is_careful<E>() || ...); }
   S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+
+  /// True of a particle that is left out, if that is because it sleeps.
+  template <class P>
+  COLLIDE_HD_INLINE bool only_sleeps(P p) const {
+    p[slow_steps{}] = 0;
+    return !is_skipped(p);
+  }
 
   template <class F>
   COLLIDE_HD_INLINE F const& of() const {
@@ -208,8 +216,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   }
   /// With what the contact remembers; `overlap` if the two do. True if the contact goes on.
   template <class P, class Values>
-  COLLIDE_HD_INLINE bool on_pair_contact(P& p, P& self, P& other, bool overlap, Values& values, S elapsed,
-                                         S dt) const {
+  COLLIDE_HD_INLINE bool on_pair_contact(P& p, P& self, P& other, bool overlap, Values& values, S elapsed, S dt) const {
     if (overlap) on_pair_contact(p, self, other, dt);
     bool goes_on = false;
     ((goes_on = meet_with_memory_by<E>(p, self, other, values, elapsed, dt) || goes_on), ...);
@@ -342,9 +349,9 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
     }
   }
   template <class F, class P, class Values>
-  COLLIDE_HD_INLINE bool meet_with_memory_by([[maybe_unused]] P& p, [[maybe_unused]] P& self,
-                                             [[maybe_unused]] P& other, [[maybe_unused]] Values& values,
-                                             [[maybe_unused]] S elapsed, [[maybe_unused]] S dt) const {
+  COLLIDE_HD_INLINE bool meet_with_memory_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
+                                             [[maybe_unused]] Values& values, [[maybe_unused]] S elapsed,
+                                             [[maybe_unused]] S dt) const {
     if constexpr (remembers_in<F, S>::value) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_self(self), seen_other(other);
