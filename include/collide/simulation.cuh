@@ -437,7 +437,7 @@ class simulation {
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_tuning<execution_space> there(space_);
       S const room = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.room());
-      S const most = detail::larger(radii_.largest, least_radius_) + room;
+      S const most = detail::reach_of<effects_type>(detail::larger(radii_.largest, least_radius_)) + room;
       bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < most);
       index_.prepare(there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }

@@ -32,7 +32,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
   static constexpr bool books = (books_in<E, S>::value || ...);
   static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
-  static constexpr bool touches =                               ///< or by impulses
+  static constexpr double farther = farthest_of<E...>();
+  static constexpr bool touches =  ///< or by impulses
       (touches_in<E, S>::value || ...) || (settles_in<E, S>::value || ...) || (books && !overlaps);
   static constexpr bool resists = (resists_in<E, S>::value || ...);
   static constexpr bool flows = (flows_in<E, S>::value || ...);
@@ -43,8 +44,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
   /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
   static constexpr bool keeps_pair_forces = (meets || overlaps) && (adheres || has_half_kicks);
-  static constexpr bool keeps_pair_torques =
-      (meets || overlaps) && has_half_kicks && contains<named, angular_velocity>;
+  static constexpr bool keeps_pair_torques = (meets || overlaps) && has_half_kicks && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
   static constexpr bool ends_after_meeting = (meets || overlaps) && has_half_kicks;
   /// What sleeps presses on.
@@ -118,8 +118,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
                support_columns,
                reads_if<E, overlaps_in<E, S> || skips_in<E, S>::value || (overlaps && books_in<E, S>::value)>...>;
   using overlap_writes = difference_of<
-      union_of<pair_kicks, support_columns,
-               writes_if<E, overlaps_in<E, S> || (overlaps && books_in<E, S>::value)>...>,
+      union_of<pair_kicks, support_columns, writes_if<E, overlaps_in<E, S> || (overlaps && books_in<E, S>::value)>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
 
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
@@ -208,8 +207,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   }
   /// With what the contact remembers; `overlap` if the two do. True if the contact goes on.
   template <class P, class Values>
-  COLLIDE_HD_INLINE bool on_pair_contact(P& p, P& self, P& other, bool overlap, Values& values, S elapsed,
-                                         S dt) const {
+  COLLIDE_HD_INLINE bool on_pair_contact(P& p, P& self, P& other, bool overlap, Values& values, S elapsed, S dt) const {
     if (overlap) on_pair_contact(p, self, other, dt);
     bool goes_on = false;
     ((goes_on = meet_with_memory_by<E>(p, self, other, values, elapsed, dt) || goes_on), ...);
@@ -342,9 +340,9 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
     }
   }
   template <class F, class P, class Values>
-  COLLIDE_HD_INLINE bool meet_with_memory_by([[maybe_unused]] P& p, [[maybe_unused]] P& self,
-                                             [[maybe_unused]] P& other, [[maybe_unused]] Values& values,
-                                             [[maybe_unused]] S elapsed, [[maybe_unused]] S dt) const {
+  COLLIDE_HD_INLINE bool meet_with_memory_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
+                                             [[maybe_unused]] Values& values, [[maybe_unused]] S elapsed,
+                                             [[maybe_unused]] S dt) const {
     if constexpr (remembers_in<F, S>::value) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_self(self), seen_other(other);
