@@ -109,7 +109,7 @@ class simulation {
     if (asks_mesh && n != 0 && radii_.smallest == 0)
       throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
     radii_ = radii_.with(own);
-    if constexpr (effects_type::meets) neighbours_.clear(space_, room, radii_.largest);
+    if constexpr (effects_type::meets) neighbours_.clear(space_, room, radii_.largest, radii_.smallest);
     if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
     prepare();
   }

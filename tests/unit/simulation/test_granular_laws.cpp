@@ -367,6 +367,58 @@ world<double> small_pile() {
 
 }  // namespace
 
+TEST_CASE("granular laws: energy and contacts of a scene, by hand") {
+  using law =
+      collide::granular_contact<collide::hertz, collide::mindlin, collide::none, collide::none, collide::materials<3>>;
+  world<double> w;
+  w.radii = {0.01, 0.02, 0.01};
+  w.particle(0, 0, 0.1, 2);
+  w.particle(0.0299, 0, 0.1);
+  w.particle(0.0299, 0, 0.1275);  // a quarter of its radius in the other
+  law by;
+  by.made_of = tests::benchmark_materials();
+  running<simulation<collide::polydisperse, gravity, law, collide::velocity_verlet>> made(
+      host(1), w, collide::polydisperse{}, gravity{0, 0, -10}, by, collide::velocity_verlet{});
+  made.simulation.assign<collide::material>(std::vector<std::uint8_t>{0, 2, 1});
+  made.simulation.assign<collide::angular_velocity>(std::vector<double>{0, 3, 0, 0, 0, 0, 0, 0, 0});
+  double const ball = 4.0 / 3 * pi * 1e-6;
+  auto const found = collide::energy(made.simulation);
+  CHECK(found.kinetic == doctest::Approx(0.5 * 2500 * ball * 4));
+  CHECK(found.rotational == doctest::Approx(0.2 * 2500 * ball * 1e-4 * 9));
+  CHECK(found.potential == doctest::Approx(10 * ball * (2500 * 0.1 + 8 * 7200 * 0.1 + 2000 * 0.1275)));
+  double const root = std::sqrt(0.02 / 3);
+  CHECK(found.elastic == doctest::Approx(8.0 / 15 * root *
+                                         (1036729857.820 * std::pow(1e-4, 2.5) + 519596199.525 * std::pow(0.0025, 2.5)))
+                             .epsilon(1e-8));
+  auto const report = collide::contact_report(made.simulation);
+  CHECK(report.contacts == 2);
+  CHECK(report.coordination == doctest::Approx(4.0 / 3));
+  CHECK(report.deep == 1);
+  CHECK(report.largest_overlap == doctest::Approx(0.25));
+  CHECK(report.longest_good_step == doctest::Approx(0.8 * largest_time_step(made.simulation)));
+  CHECK(report.is_good_step(report.longest_good_step));
+  CHECK_FALSE(report.is_good_step(1.01 * report.longest_good_step));
+}
+
+TEST_CASE("granular laws: energy never grows") {
+  using law = collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>;
+  for (double const restitution : {0.3, 1.0}) {
+    world<double> w = tests::falling_grains<double>(4, false);
+    running<simulation<gravity, law, collide::velocity_verlet>> made(
+        host(1), w, gravity{}, law{one_material({1e7, 0.2, 2500}, {restitution, 0.4, 0.1})},
+        collide::velocity_verlet{});
+    double const start = collide::energy(made.simulation).total();
+    double last = start;
+    for (int k = 0; k < 40; ++k) {
+      made.simulation.steps(200, 1e-5);
+      double const now = collide::energy(made.simulation).total();
+      CHECK(now < start * (1 + 1e-4));
+      last = now;
+    }
+    CHECK(last < 0.97 * start);
+  }
+}
+
 TEST_CASE("granular laws: a pile at rest stays") {
   using law = collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>;
   law const by{one_material({1e7, 0.2, 2500}, {0.2, 0.5, 0.1})};

@@ -124,17 +124,6 @@ struct overlaps_with_memory<
                     std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
                     std::declval<mesh_overlap<S> const&>(), std::declval<archetype_memory<E, S> const&>(), S{}))>>
     : std::true_type {};
-/// By how many of its radii more than its radius a particle sees the mesh for an effect, or for a law of cohesion.
-template <class E, class = void>
-inline constexpr double farther_of = 0;
-template <class E>
-inline constexpr double farther_of<E, std::void_t<decltype(E::farther)>> = E::farther;
-template <class... E>
-constexpr double farthest_of() {
-  double most = 0;
-  ((most = farther_of<E> > most ? farther_of<E> : most), ...);
-  return most;
-}
 template <class E, class S>
 inline constexpr bool overlaps_in = overlaps_without_memory<E, S>::value || overlaps_with_memory<E, S>::value;
 template <class E, class S, class = void>
