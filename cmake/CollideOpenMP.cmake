@@ -7,6 +7,7 @@ option(COLLIDE_OPENMP "Link OpenMP to collide::collide where it is found: the ho
 function(collide_link_openmp target)
   if(COLLIDE_OPENMP)
     find_package(OpenMP QUIET COMPONENTS CXX)
+    set(OpenMP_CXX_FOUND ${OpenMP_CXX_FOUND} PARENT_SCOPE)
   endif()
   if(COLLIDE_OPENMP AND OpenMP_CXX_FOUND)
     # an installed collide looks for it anew

@@ -1,4 +1,4 @@
-# `cpack` in the build folder makes libcollide-dev_VERSION_all.deb: the headers and the package files of CMake.
+# `cpack` in the build folder makes libcollide-dev_VERSION_ARCHITECTURE.deb: the headers, collide::compiled, and the package files of CMake.
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME libcollide-dev)
@@ -6,17 +6,22 @@ set(CPACK_PACKAGE_VENDOR "the collide authors")
 set(CPACK_PACKAGE_CONTACT "the collide authors <maintainers@collide.example>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "collision detection between a triangle mesh and very many spheres")
 set(CPACK_PACKAGE_DESCRIPTION
-    "A header-only C++17 library. It finds every pair of a sphere and a
+    "A C++17 library of headers, and some of it compiled. It finds every pair of a sphere and a
 triangle that touch, on CPUs and NVIDIA GPUs, with the results of
 exact arithmetic, and simulates particles that collide with a mesh.")
-set(CPACK_PACKAGE_FILE_NAME ${CPACK_PACKAGE_NAME}_${PROJECT_VERSION}_all)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES OFF)
 
 set(CPACK_COMPONENTS_ALL headers debian_doc)
+if(COLLIDE_INSTALL_COMPILED)
+  list(APPEND CPACK_COMPONENTS_ALL compiled)
+endif()
 set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
+if(NOT COLLIDE_INSTALL_COMPILED)
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
+endif()
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4)")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake (>= 3.25), nvidia-cuda-toolkit (>= 12)")

@@ -2,7 +2,7 @@
 # collide_program(NAME SOURCE...): its sources are .cpp files that are compiled as CUDA where COLLIDE_CUDA is ON and as
 # C++ otherwise.
 # collide_host_program(NAME SOURCE...): nothing in it is for CUDA.
-# Both link collide::compiled, so that they compile what is theirs alone.
+# They link collide::compiled, the former collide::compiled_cuda too, so that they compile what is theirs alone.
 
 set(COLLIDE_EXTRA_INCLUDE "" CACHE PATH "Folder of third-party headers that the system lacks")
 
@@ -33,6 +33,7 @@ endfunction()
 function(collide_program name)
   collide_host_program(${name} ${ARGN})
   if(COLLIDE_CUDA)
+    target_link_libraries(${name} PRIVATE collide::compiled_cuda)
     set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
   endif()
 endfunction()

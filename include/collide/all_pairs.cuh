@@ -183,11 +183,7 @@ struct all_pairs {
 };
 
 #if defined(COLLIDE_COMPILED)
-COLLIDE_COMPILED_ELSEWHERE(all_pairs, host)
-#if defined(__CUDACC__) && defined(COLLIDE_COMPILED_CUDA)
-COLLIDE_COMPILED_ELSEWHERE(all_pairs, cuda)
-COLLIDE_COMPILED_ELSEWHERE(all_pairs, cuda_shared)
-#endif
+COLLIDE_ELSEWHERE(all_pairs)
 #endif
 
 }  // namespace collide

@@ -101,4 +101,8 @@ struct automatic {
   };
 };
 
+#if defined(COLLIDE_COMPILED)
+COLLIDE_ELSEWHERE(automatic)
+#endif
+
 }  // namespace collide

@@ -68,7 +68,7 @@ struct body_motion {
     sin_cos const wave = sin_cos_of_turns(mul(frequency, time) + phase);
     double const wave_rate = mul(mul(two_pi, frequency), wave.cos);
     vec3<double> const given(axis[0], axis[1], axis[2]);
-    vec3<double> const direction = scaled(given, inverse_power_of_two(max_component<double>(given.cwiseAbs())));
+    vec3<double> const direction = scaled(given, inverse_power_of_two(max_component<double>(detail::absolute(given))));
     double const length = sqrt_rn(dot(direction, direction));
     double const angle = mul(rate, time) + mul(swing, wave.sin), angle_rate = rate + mul(swing, wave_rate);
     sin_cos const half = sin_cos_of_turns(div(angle, 2 * two_pi));

@@ -339,11 +339,7 @@ class bucket::index {
 };
 
 #if defined(COLLIDE_COMPILED)
-COLLIDE_COMPILED_ELSEWHERE(bucket, host)
-#if defined(__CUDACC__) && defined(COLLIDE_COMPILED_CUDA)
-COLLIDE_COMPILED_ELSEWHERE(bucket, cuda)
-COLLIDE_COMPILED_ELSEWHERE(bucket, cuda_shared)
-#endif
+COLLIDE_ELSEWHERE(bucket)
 #endif
 
 }  // namespace collide

@@ -1,6 +1,6 @@
 /// \file
-/// What marks functions and loops for host and device: the only macros of the library, but for those of version.hpp and
-/// compiled.hpp.
+/// What marks functions and loops for host and device: the only macros of the library, but for those of version.hpp,
+/// compiled.hpp and detail/step/compiled_search.hpp.
 #pragma once
 
 #include <collide/version.hpp>
@@ -33,6 +33,24 @@
 #else
 /// Marks a function that is called rarely.
 #define COLLIDE_HD_RARE COLLIDE_HD_NOINLINE inline
+#endif
+
+#if defined(__CUDA_ARCH__)
+/// Marks a template that a program for the host may link instead of compiling it (compiled.hpp): it is not inline
+/// there.
+#define COLLIDE_HD_LINKED COLLIDE_HD_INLINE
+#else
+/// Marks a template that a program for the host may link instead of compiling it (compiled.hpp): it is not inline
+/// there.
+#define COLLIDE_HD_LINKED COLLIDE_HD
+#endif
+
+#if defined(__GNUC__) && !defined(__CUDACC__)
+/// Marks a function that is called once in a while: small, and quick to compile.
+#define COLLIDE_COLD __attribute__((cold))
+#else
+/// Marks a function that is called once in a while: small, and quick to compile.
+#define COLLIDE_COLD
 #endif
 
 #if defined(__CUDA_ARCH__)

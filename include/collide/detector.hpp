@@ -90,7 +90,13 @@ class detector {
   /// After an exception, also one of the memory resource, the detector has no mesh, and can be built again.
   /// \complexity O(triangles). Allocates if there were fewer triangles before.
   /// \sync None but what allocating takes: the work is put on the space's stream.
-  void build(mesh_view<Scalar> mesh);
+  void build(mesh_view<Scalar> mesh) {
+    mesh_ = {};
+    is_built_ = false;
+    if (mesh.size() != 0) detail::build_index(index_, space_, options_, mesh);
+    mesh_ = mesh;
+    is_built_ = true;
+  }
 
   /// Prepares what depends on the mesh, and what spheres at rest of a radius need, so that a query has nothing left to
   /// prepare. Many spheres that move may still want a grid of their own on the host.
@@ -102,7 +108,11 @@ class detector {
   /// \throws cuda_error  if a CUDA call fails
   /// \complexity O(triangles). Allocates if something has grown.
   /// \sync May wait for the device, to read a size back.
-  void build(mesh_view<Scalar> mesh, Scalar radius);
+  void build(mesh_view<Scalar> mesh, Scalar radius) {
+    if (!(radius >= 0)) throw error("collide: detector: the radius passed to build is negative or NaN");
+    build(mesh);
+    if (mesh.size() != 0) detail::prepare_index(index_, space_, options_, radius);
+  }
 
   /// Makes room for queries ahead: what depends on the numbers of spheres and pairs alone is then not allocated by a
   /// query. What depends on the mesh, or on the radii, is allocated by `build` and the first two queries.
@@ -145,7 +155,7 @@ class detector {
                   "or visit: an "
                   "object with a member run(space, query)");
     prepare(spheres);
-    sink.run(space_, pass{index_, space_, mesh_, spheres, deferred_});
+    detail::run_sink(sink, space_, pass{index_, space_, mesh_, spheres, deferred_});
     return std::forward<Sink>(sink);
   }
 
@@ -163,7 +173,7 @@ class detector {
 
   /// The width of the finest cells in use, in the units of the coordinates; 0 if there are none. In the CUDA spaces it
   /// waits for the device.
-  double cell_width() const;
+  double cell_width() const { return mesh_.size() == 0 ? 0.0 : index_.cell_width(space_); }
 
   // What makes no sense ends here, with a sentence instead of a list of candidates: another scalar type,
   template <class S, class = std::enable_if_t<!std::is_same<S, Scalar>::value>>
@@ -215,7 +225,10 @@ class detector {
   }
 
   /// Prepares what depends on the spheres.
-  void prepare(spheres_type const& spheres);
+  void prepare(spheres_type const& spheres) {
+    if (!is_built_) throw error("collide: detector: query needs a mesh: call build before it");
+    if (mesh_.size() != 0 && spheres.size() != 0) detail::prepare_index(index_, space_, options_, spheres);
+  }
 
   ExecutionSpace space_;
   BroadPhase options_;
@@ -224,36 +237,6 @@ class detector {
   typename BroadPhase::template index<Scalar> index_;
   detail::deferred_pair_buffer deferred_;
 };
-
-// What follows is not in the class, for then it would be inline, and compiled also where an `extern template` says that
-// it is compiled elsewhere; see compiled.hpp.
-
-template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
-void detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::build(mesh_view<Scalar> mesh) {
-  mesh_ = {};
-  is_built_ = false;
-  if (mesh.size() != 0) index_.build(space_, options_, mesh);
-  mesh_ = mesh;
-  is_built_ = true;
-}
-
-template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
-void detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::build(mesh_view<Scalar> mesh, Scalar radius) {
-  if (!(radius >= 0)) throw error("collide: detector: the radius passed to build is negative or NaN");
-  build(mesh);
-  if (mesh.size() != 0) index_.prepare(space_, options_, radius);
-}
-
-template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
-void detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::prepare(spheres_type const& spheres) {
-  if (!is_built_) throw error("collide: detector: query needs a mesh: call build before it");
-  if (mesh_.size() != 0 && spheres.size() != 0) index_.prepare(space_, options_, spheres);
-}
-
-template <class BroadPhase, class NarrowPhase, class ExecutionSpace, class Scalar>
-double detector<BroadPhase, NarrowPhase, ExecutionSpace, Scalar>::cell_width() const {
-  return mesh_.size() == 0 ? 0.0 : index_.cell_width(space_);
-}
 
 #if !defined(__CUDACC__)
 /// Ends with a sentence; that it is a detector keeps the compiler from saying more.

@@ -78,7 +78,7 @@ inline constexpr S contact_tolerance = sizeof(S) == sizeof(float) ? S(1e-5) : S(
 /// The rounding of a position: at least 1 unit in the last place of its largest coordinate.
 template <class S>
 COLLIDE_HD_INLINE S rounding_at(vec3<S> const& position) {
-  return std::numeric_limits<S>::epsilon() * max_component<S>(position.cwiseAbs());
+  return std::numeric_limits<S>::epsilon() * max_component<S>(detail::absolute(position));
 }
 
 /// The mass of a sphere.

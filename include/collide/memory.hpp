@@ -88,7 +88,7 @@ class buffer {
   }
 
   /// Returns the memory to its resource.
-  void release() noexcept {
+  COLLIDE_COLD void release() noexcept {
     if (data_ != nullptr) resource_->deallocate(data_, capacity_ * sizeof(T), alignment);
     data_ = nullptr;
     capacity_ = 0;

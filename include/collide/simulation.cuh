@@ -18,6 +18,9 @@
 #include <collide/detail/step/particle_kernels.hpp>
 #include <collide/detail/step/step.hpp>
 #include <collide/detector.hpp>
+#if defined(COLLIDE_COMPILED)
+#include <collide/detail/step/compiled_search.hpp>
+#endif
 
 namespace collide {
 
@@ -99,7 +102,7 @@ class simulation {
   /// per time), or null for particles that rest. The other columns get their initial values. `capacity` is for how many
   /// there is room, if an effect makes more; more than 2^32 - 2 are refused (`error`), as is room that no effect of the
   /// scene fills, and radii that differ without `polydisperse` in the scene. O(particles). Allocates; may wait.
-  void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
+  COLLIDE_COLD void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
     std::size_t const n = particles.size(), room = detail::larger(n, capacity);
     S const own = effects_.source_radius();
     detail::check_particles<columns>(particles.one_radius(), n, room, own, particles.common_radius());
@@ -116,7 +119,7 @@ class simulation {
 
   /// Makes room for up to so many particles, so that a later `set` takes no memory for them. There are none until
   /// then. More than 2^32 - 2 are refused (`error`).
-  void reserve(std::size_t particles) {
+  COLLIDE_COLD void reserve(std::size_t particles) {
     detail::check_places(particles);
     state_ = {};
     is_set_ = false;
@@ -143,12 +146,12 @@ class simulation {
   /// Only with `moving_bodies` in the scene (bodies.hpp): `bodies`, parts of the mesh that move, and `velocities` of
   /// all vertices (packed, in memory of the space) where the rest deforms: at the end of the next step, as the mesh is.
   /// `error` if there are more than 64 bodies, triangles not in the mesh or in two, or a motion is not finite.
-  void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
+  COLLIDE_COLD void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
     bodies_.check(bodies, mesh.size(), velocities);
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
-    if (mesh.size() != 0) index_.build(there, options_, mesh);
+    if (mesh.size() != 0) detail::build_index(index_, there, options_, mesh);
     bodies_.build(space_, mesh, bodies, velocities);
     mesh_ = mesh;
     has_mesh_ = true;
@@ -317,7 +320,7 @@ class simulation {
   }
 
   /// Puts particles into new columns, with places for more.
-  void place(sphere_view<S> const& particles, S const* velocities, std::size_t room) {
+  COLLIDE_COLD void place(sphere_view<S> const& particles, S const* velocities, std::size_t room) {
     reserve(room);
     state_ = memory_.state(room, particles.size(), particles.common_radius());
     if constexpr (has_begin_step) {
@@ -429,7 +432,7 @@ class simulation {
     return state_.size * std::size_t(detail::column_layout<Column, S>::width);
   }
 
-  void prepare() {
+  COLLIDE_COLD void prepare() {
     advance_bodies(0, true);
     if constexpr (asks_mesh) {
       constexpr bool is_part = detail::contains<columns, global_number>;  // others come from other ranks
@@ -439,11 +442,11 @@ class simulation {
       S const room = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.room());
       S const most = detail::reach_of<effects_type>(detail::larger(radii_.largest, least_radius_)) + room;
       bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < most);
-      index_.prepare(there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
+      detail::prepare_index(index_, there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }
   }
 
-  void check_step(S dt) const {
+  COLLIDE_COLD void check_step(S dt) const {
     if (!is_set_) throw error("collide: simulation: step needs particles: call set before it");
     if (asks_mesh && !has_mesh_)
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");

@@ -13,8 +13,8 @@ class CollideConan(ConanFile):
     name = "collide"
     description = "Collision detection between a triangle mesh and very many spheres, on CPU and GPU"
     license = "BSD-3-Clause"
-    topics = ("collision-detection", "simulation", "cuda", "header-only")
-    package_type = "header-library"
+    topics = ("collision-detection", "simulation", "cuda")
+    package_type = "static-library"
     settings = "os", "arch", "compiler", "build_type"
     no_copy_source = True
 
@@ -42,23 +42,22 @@ class CollideConan(ConanFile):
     def generate(self):
         CMakeDeps(self).generate()
         toolchain = CMakeToolchain(self)
-        for part in ("TESTS", "EXAMPLES", "BENCH", "INSTALL_COMPILED"):
+        for part in ("TESTS", "EXAMPLES", "BENCH"):
             toolchain.cache_variables[f"COLLIDE_{part}"] = False
         toolchain.generate()
 
     def build(self):
-        CMake(self).configure()
+        cmake = CMake(self)
+        cmake.configure()
+        cmake.build()
 
     def package(self):
         copy(self, "LICENSE", self.source_folder, os.path.join(self.package_folder, "licenses"))
         CMake(self).install()
-
-    def package_id(self):
-        self.info.clear()
 
     def package_info(self):
         # the package's own collide-config.cmake links OpenMP where it is found, which CMakeDeps cannot say
         self.cpp_info.set_property("cmake_find_mode", "none")
         self.cpp_info.builddirs.append(os.path.join("share", "cmake", "collide"))
         self.cpp_info.bindirs = []
-        self.cpp_info.libdirs = []
+        self.cpp_info.libs = ["collide_compiled"]

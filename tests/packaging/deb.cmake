@@ -1,6 +1,6 @@
-# cmake -D SOURCE=... -D FOLDER=... -D GENERATOR=... -D CXX=... -P deb.cmake
+# cmake -D SOURCE=... -D BUILD=... -D FOLDER=... -D GENERATOR=... -D CXX=... -P deb.cmake
 #
-# Makes the package for Debian, looks at what it says of itself, unpacks it into a folder, as dpkg would into the root, and
+# Makes the package for Debian of what is built in BUILD, looks at what it says of itself, unpacks it into a folder, as dpkg would into the root, and
 # compiles the README's program with it.
 
 function(run result)
@@ -15,23 +15,23 @@ function(expect text pattern)
 endfunction()
 
 file(REMOVE_RECURSE ${FOLDER})
-run(said ${CMAKE_COMMAND} -S ${SOURCE} -B ${FOLDER}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
-    -DCOLLIDE_TESTS=OFF -DCOLLIDE_EXAMPLES=OFF -DCOLLIDE_BENCH=OFF)
 cmake_path(GET CMAKE_COMMAND PARENT_PATH programs)
-run(said ${programs}/cpack --config ${FOLDER}/build/CPackConfig.cmake -B ${FOLDER})
+run(said ${programs}/cpack --config ${BUILD}/CPackConfig.cmake -B ${FOLDER})
 file(GLOB package ${FOLDER}/*.deb)
 include(${SOURCE}/cmake/CollideVersion.cmake)
 collide_read_version(version)
-expect("${package}" "/libcollide-dev_${version}_all\\.deb$")
+run(architecture dpkg --print-architecture)
+string(STRIP "${architecture}" architecture)
+expect("${package}" "/libcollide-dev_${version}_${architecture}\\.deb$")
 
 run(said dpkg-deb --field ${package})
-foreach(field IN ITEMS "Package: libcollide-dev\n" "Version: ${version}\n" "Architecture: all\n" "Depends: libeigen3-dev [^\n]*\n"
+foreach(field IN ITEMS "Package: libcollide-dev\n" "Version: ${version}\n" "Architecture: ${architecture}\n" "Depends: libeigen3-dev [^\n]*\n"
                        "Section: libdevel\n" "Maintainer: [^\n]+ <[^\n]+>\n" "Description: [a-z][^\n]*\n [^\n]*\n")
   expect("\n${said}" "\n${field}")
 endforeach()
 
 run(said dpkg-deb --extract ${package} ${FOLDER}/root)
-foreach(file IN ITEMS include/collide/version.hpp share/doc/libcollide-dev/copyright share/doc/libcollide-dev/changelog.gz)
+foreach(file IN ITEMS include/collide/version.hpp lib/libcollide_compiled.a share/doc/libcollide-dev/copyright share/doc/libcollide-dev/changelog.gz)
   if(NOT EXISTS ${FOLDER}/root/usr/${file})
     message(FATAL_ERROR "the package has no ${file}")
   endif()

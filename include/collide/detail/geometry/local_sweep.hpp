@@ -16,7 +16,7 @@ struct local_sweep {
 /// Subtracts the centre. `W` holds all values of `S`.
 template <class W, class S>
 COLLIDE_HD_INLINE local_sweep<W> to_local(triangle<S> const& t, moving_sphere<S> const& s) {
-  return {to_local<W>(t, static_cast<sphere<S> const&>(s)), s.displacement.template cast<W>()};
+  return {to_local<W>(t, static_cast<sphere<S> const&>(s)), cast_to<W>(s.displacement)};
 }
 
 /// The largest absolute value of all coordinates, the radius and the displacement.
@@ -48,7 +48,7 @@ COLLIDE_HD_INLINE local_sweep<W> to_unit_range(local_sweep<W> l, triangle<S> con
 /// Rounds scaled local coordinates to `T`, whose range they fit.
 template <class T, class W>
 COLLIDE_HD_INLINE local_sweep<T> narrow_to(local_sweep<W> const& l) {
-  return {narrow_to<T>(l.shape), l.path.template cast<T>()};
+  return {narrow_to<T>(l.shape), cast_to<T>(l.path)};
 }
 
 /// False if, on some axis, the triangle's box is farther than `reach` from the whole path.

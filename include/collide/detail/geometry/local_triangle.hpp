@@ -20,7 +20,7 @@ struct local_triangle {
 /// The largest of |x|, |y| and |z|.
 template <class T>
 COLLIDE_HD_INLINE T max_norm(vec3<T> const& v) {
-  return max_component<T>(v.cwiseAbs());
+  return max_component<T>(absolute(v));
 }
 
 /// Subtracts the centre. `W` holds all values of `S`.
@@ -63,7 +63,7 @@ COLLIDE_HD_INLINE local_triangle<W> to_unit_range(local_triangle<W> l, triangle<
 /// Rounds scaled local coordinates to `T`, whose range they fit.
 template <class T, class W>
 COLLIDE_HD_INLINE local_triangle<T> narrow_to(local_triangle<W> const& l) {
-  return {l.a.template cast<T>(), l.b.template cast<T>(), l.c.template cast<T>(), static_cast<T>(l.radius), T(0)};
+  return {cast_to<T>(l.a), cast_to<T>(l.b), cast_to<T>(l.c), static_cast<T>(l.radius), T(0)};
 }
 
 /// False if the triangle's box is farther from the origin than `reach` along some axis. Exact: rounding is monotone.

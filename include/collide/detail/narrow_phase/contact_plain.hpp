@@ -25,10 +25,10 @@ COLLIDE_HD contact<S> plain_contact(local_triangle<T> const& l, double scale, S 
   closest_point<T> const foot = closest_to_origin(l, n);
   double const distance = div(static_cast<double>(sqrt_rn(foot.distance_squared)), scale);
   measured_contact const found{{distance, static_cast<double>(radius) - distance},
-                               plain_normal(l, n, foot).template cast<double>(),
+                               cast_to<double>(plain_normal(l, n, foot)),
                                foot.kind,
                                foot.index};
-  return contact_at_point<S>(found, foot.point.template cast<double>(), scale, centre);
+  return contact_at_point<S>(found, cast_to<double>(foot.point), scale, centre);
 }
 
 /// The contact of a finite triangle and a sphere at rest in `T`.
@@ -37,7 +37,7 @@ COLLIDE_HD_NOINLINE contact<S> plain_contact_of_pair(triangle<S> const& t, spher
   using W = std::common_type_t<S, T>;
   sphere<S> const centre{s.centre, 0};
   local_triangle<W> const l = to_unit_range(to_local<W>(t, centre), t, centre);
-  return plain_contact(narrow_to<T>(l), static_cast<double>(l.scale), s.radius, s.centre.template cast<double>());
+  return plain_contact(narrow_to<T>(l), static_cast<double>(l.scale), s.radius, cast_to<double>(s.centre));
 }
 
 /// The contact of a finite triangle and a moving sphere, at a time within the step, in `T`.
@@ -46,9 +46,9 @@ COLLIDE_HD_NOINLINE contact<S> plain_contact_at_time(triangle<S> const& t, movin
   using W = std::common_type_t<S, T>;
   moving_sphere<S> const centre{{s.centre, 0}, s.displacement};
   local_sweep<W> const l = to_unit_range(to_local<W>(t, centre), t, centre);
-  vec3<double> const path = s.displacement.template cast<double>();
+  vec3<double> const path = cast_to<double>(s.displacement);
   return plain_contact(narrow_to<T>(at_time(l, static_cast<W>(time))), static_cast<double>(l.shape.scale), s.radius,
-                       s.centre.template cast<double>() + scaled(path, static_cast<double>(time)));
+                       cast_to<double>(s.centre) + scaled(path, static_cast<double>(time)));
 }
 
 }  // namespace collide::detail

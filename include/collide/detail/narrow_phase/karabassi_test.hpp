@@ -53,8 +53,8 @@ COLLIDE_HD_INLINE bool karabassi_local(triangle<S> const& of, sphere<S> const& s
 /// The four steps in `T` and in world coordinates, as in the literature.
 template <class T, class S>
 COLLIDE_HD_INLINE bool karabassi_world(triangle<S> const& of, sphere<S> const& s) {
-  vec3<T> const a = of.a.template cast<T>(), b = of.b.template cast<T>(), c = of.c.template cast<T>();
-  vec3<T> const p = s.centre.template cast<T>();
+  vec3<T> const a = cast_to<T>(of.a), b = cast_to<T>(of.b), c = cast_to<T>(of.c);
+  vec3<T> const p = cast_to<T>(s.centre);
   T const r = static_cast<T>(s.radius);
   auto const within = [&](vec3<T> const& q) { return (q - p).dot(q - p) <= r * r; };
   vec3<T> n = cross<T>(b - a, c - a);

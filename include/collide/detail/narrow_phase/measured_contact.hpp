@@ -16,7 +16,7 @@ COLLIDE_HD inline vec3<T> unit(vec3<T> const& v) {
 /// A unit vector perpendicular to `v`, or (0, 0, 1) if `v` is zero.
 template <class T>
 COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
-  vec3<T> const m = v.cwiseAbs();
+  vec3<T> const m = absolute(v);
   if (m.x() == 0 && m.y() == 0) return m.z() == 0 ? vec3<T>{0, 0, 1} : vec3<T>{1, 0, 0};
   return m.z() >= larger(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
 }

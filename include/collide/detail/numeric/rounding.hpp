@@ -187,4 +187,16 @@ COLLIDE_HD_INLINE T max_component(vec3<T> const& a) {
   return larger(larger(a.x(), a.y()), a.z());
 }
 
+/// A vector in another scalar, rounded where that is narrower.
+template <class T, class S>
+COLLIDE_HD_INLINE vec3<T> cast_to(vec3<S> const& a) {
+  return {static_cast<T>(a.x()), static_cast<T>(a.y()), static_cast<T>(a.z())};
+}
+
+/// The absolute values of the coordinates.
+template <class T>
+COLLIDE_HD_INLINE vec3<T> absolute(vec3<T> const& a) {
+  return {std::abs(a.x()), std::abs(a.y()), std::abs(a.z())};
+}
+
 }  // namespace collide::detail

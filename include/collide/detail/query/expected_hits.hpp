@@ -76,7 +76,7 @@ struct sample_hits {
     return found;
   }
 
-  bool touches(std::uint32_t place, triangle_aabb<S> const& around, triangle<S> const& t) const {
+  COLLIDE_COLD bool touches(std::uint32_t place, triangle_aabb<S> const& around, triangle<S> const& t) const {
     sphere<S> const here = in.spheres[place];
     if (!around.overlaps(here.centre, here.radius)) return false;
     if constexpr (is_discrete<NarrowPhase, S>) {

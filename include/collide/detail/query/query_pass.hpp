@@ -13,6 +13,27 @@
 
 namespace collide::detail {
 
+// What a program may link instead of compiling it: functions that are not inline, which an `extern template` declares
+// in compiled.hpp.
+
+/// Makes of a mesh what an index keeps of it.
+template <class Index, class Space, class Options, class S>
+void build_index(Index& index, Space& space, Options const& options, mesh_view<S> const& mesh) {
+  index.build(space, options, mesh);
+}
+
+/// Makes what an index needs for a radius, or for spheres.
+template <class Index, class Space, class Options, class Spheres>
+void prepare_index(Index& index, Space& space, Options const& options, Spheres const& spheres) {
+  index.prepare(space, options, spheres);
+}
+
+/// Lets a sink run its passes.
+template <class Sink, class Space, class Pass>
+void run_sink(Sink& sink, Space& space, Pass const& pass) {
+  sink.run(space, pass);
+}
+
 /// One pass of a query over the scene, as a sink sees it; see concepts.hpp.
 template <class Index, class NarrowPhase, class Space, class S>
 struct query_pass {
@@ -25,7 +46,6 @@ struct query_pass {
   sphere_view_for<NarrowPhase, S> spheres;
   deferred_pair_buffer& deferred;
 
-  /// Not defined in the class, so not inline; see compiled.hpp.
   template <class Handle>
   void operator()(Handle const& handle) const;
 

@@ -20,7 +20,7 @@ namespace collide::detail {
 template <class S>
 COLLIDE_HD_INLINE S swept_radius(S r, vec3<S> const& centre, vec3<S> const& displacement, S largest) {
   S const reach =
-      collide::detail::max_component<S>(centre.cwiseAbs()) + collide::detail::max_component<S>(displacement.cwiseAbs());
+      collide::detail::max_component<S>(absolute(centre)) + collide::detail::max_component<S>(absolute(displacement));
   S const least = 4 * std::numeric_limits<S>::epsilon() * reach;
   return r >= 0 && r < largest ? larger(r, smaller(least, largest)) : r;
 }
@@ -63,7 +63,7 @@ struct contact_response {
     });
     span_counts seen{0, 0};
     for (std::uint32_t active_before = 0;;) {
-      search.find(block, s, n, seen);
+      find_contacts(search, block, s, n, seen);
       for_each_particle([&](active& a, std::uint32_t) {
         if (!a.is_active) return;
         respond(a);

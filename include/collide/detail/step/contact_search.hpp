@@ -318,4 +318,12 @@ struct contact_search {
   }
 };
 
+/// Finds the next contact of each active particle; see `contact_search::find`. Not inline: what does not depend on the
+/// effects of a scene is in collide::compiled; see compiled.hpp.
+template <class Search, class Block, class Scratch>
+COLLIDE_HD_LINKED void find_contacts(Search const& search, Block& block, Scratch& s, std::uint32_t n,
+                                     span_counts& seen) {
+  search.find(block, s, n, seen);
+}
+
 }  // namespace collide::detail

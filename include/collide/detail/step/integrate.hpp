@@ -16,6 +16,15 @@
 
 namespace collide::detail {
 
+/// Bit k is set if shape k may touch a triangle. `triangles` is a look-up that is opened.
+template <class Triangles, class Shape, int N>
+COLLIDE_HD_LINKED std::uint32_t near_triangles(Triangles const& triangles, Shape const (&shapes)[N]) {
+  std::uint32_t found = 0;
+  COLLIDE_NO_UNROLL
+  for (int k = 0; k < N; ++k) found |= triangles.empty(shapes[k]) ? 0u : 1u << k;
+  return found;
+}
+
 /// In place of a mesh filter, where nothing touches the mesh.
 struct no_filter {
   template <class Particles, class Flags>
@@ -235,9 +244,7 @@ struct integration {
     triangles_type const triangles = context.triangles.opened();
     decltype(shape_of(p[0])) shapes[N];
     for (int k = 0; k < N; ++k) shapes[k] = shape_of(p[k]);
-    std::uint32_t found = 0;
-    COLLIDE_NO_UNROLL
-    for (int k = 0; k < N; ++k) found |= triangles.empty(shapes[k]) ? 0u : 1u << k;
+    std::uint32_t const found = near_triangles(triangles, shapes);
     for (int k = 0; k < N; ++k) near[k] = (found >> k & 1) != 0;
   }
 

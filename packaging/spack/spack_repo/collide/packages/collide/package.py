@@ -4,7 +4,7 @@ from spack.package import *
 
 
 class Collide(CMakePackage):
-    """Collision detection between a triangle mesh and very many spheres, on CPU and GPU. Header-only."""
+    """Collision detection between a triangle mesh and very many spheres, on CPU and GPU."""
 
     license("BSD-3-Clause")
 
@@ -16,4 +16,4 @@ class Collide(CMakePackage):
     depends_on("eigen@3.4:")
 
     def cmake_args(self):
-        return [self.define(f"COLLIDE_{part}", False) for part in ("TESTS", "EXAMPLES", "BENCH", "INSTALL_COMPILED")]
+        return [self.define(f"COLLIDE_{part}", False) for part in ("TESTS", "EXAMPLES", "BENCH")]
