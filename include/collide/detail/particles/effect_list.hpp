@@ -32,7 +32,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   static constexpr bool finishes = (finishes_in<E, S>::value || ...);
   static constexpr bool books = (books_in<E, S>::value || ...);
   static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
-  static constexpr bool touches =                               ///< or by impulses
+  static constexpr double farther = farthest_of<E...>();
+  static constexpr bool touches =  ///< or by impulses
       (touches_in<E, S>::value || ...) || (settles_in<E, S>::value || ...) || (books && !overlaps);
   static constexpr bool resists = (resists_in<E, S>::value || ...);
   static constexpr bool flows = (flows_in<E, S>::value || ...);
