@@ -3,6 +3,8 @@
 The pages of docs/ are those that one reads in the repository. Here their links are changed: one to a source file leads to a
 page that shows it, one to a folder to a page that lists it, one to data to a download. The pages are arranged as NAV says.
 """
+import base64
+import json
 import os
 import pathlib
 import re
@@ -16,7 +18,7 @@ DOCS = ROOT / "docs"
 
 # The navigation: parts, and their pages in this order. `*` is all pages of a folder. The last part has the rest too.
 NAV = {
-    "Use": ["install", "guide", "choosing", "programs", "gallery"],
+    "Use": ["install", "guide", "python", "choosing", "programs", "gallery"],
     "Tutorials": ["tutorials/*"],
     "Simulations": ["simulation", "granular", "effects", "ranks"],
     "Reference": ["api/index", "accuracy", "performance", "glossary"],
@@ -25,7 +27,8 @@ NAV = {
 }
 # Pages that stand elsewhere in the repository.
 ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHANGELOG.md", "index": ROOT / "README.md",
-             "measurements": ROOT / "bench" / "results" / "README.md"}
+             "measurements": ROOT / "bench" / "results" / "README.md",
+             "tutorials/8-python": ROOT / "examples" / "python" / "tutorial.ipynb"}
 LISTS = {DOCS / "README.md", DOCS / "index.md"}  # the navigation takes their place
 CODE = {".hpp": "cpp", ".cuh": "cuda", ".cpp": "cpp", ".cu": "cuda", ".py": "python", ".cmake": "cmake", ".md": "markdown"}
 
@@ -43,6 +46,23 @@ def pages():
     """The name of each page, and its file."""
     found = {path.relative_to(DOCS).with_suffix("").as_posix(): path for path in sorted(DOCS.rglob("*.md"))}
     return {name: path for name, path in {**found, **ELSEWHERE}.items() if path not in LISTS}
+
+
+def notebook(path, folder, name):
+    """A notebook as the text of a page; its pictures go to the folder."""
+    text = ""
+    for number, cell in enumerate(json.loads(path.read_text())["cells"]):
+        source = "".join(cell["source"])
+        text += f"{source}\n\n" if cell["cell_type"] == "markdown" else f"```python\n{source}\n```\n\n"
+        for output in cell.get("outputs", []):
+            if output["output_type"] == "stream":
+                text += f"```text\n{''.join(output['text'])}```\n\n"
+            elif "image/png" in output.get("data", {}):
+                picture = folder / f"{name}-{number}.png"
+                picture.parent.mkdir(parents=True, exist_ok=True)
+                picture.write_bytes(base64.b64decode(output["data"]["image/png"]))
+                text += f"![Drawn by the cell above]({picture.name})\n\n"
+    return text
 
 
 class Site:
@@ -97,6 +117,9 @@ class Site:
         def outside_code(text):
             text = re.sub(r"<!--.*?-->", "", text, flags=re.S)  # one at the beginning of a line would end a paragraph
             return re.sub(r"(\]\()([^)\s]+)(\))", lambda m: m[1] + self.link(m[2], path, name) + m[3], text)
+        if path.suffix == ".ipynb":
+            self.write(name, notebook(path, self.out, name))
+            return
         text = path.read_text().replace("```mermaid", "```text")  # which Sphinx does not draw
         parts = re.split(r"(^```.*?^```$|`[^`\n]+`)", text, flags=re.M | re.S)
         text = "".join(part if i % 2 else outside_code(part) for i, part in enumerate(parts))

@@ -100,8 +100,8 @@ struct held {
   using value = std::uint8_t;
 };
 
-/// Acceleration by other particles, in length per time squared. Scenes have it that name an
-/// effect with `on_pair_contact`, and `velocity_verlet` or `adhesion`.
+/// Acceleration by other particles, in length per time squared. Scenes have it that name an effect with
+/// `on_pair_contact`, and `velocity_verlet`, `adhesion`, or `sleep` with `reaction` or `mesh_forces`.
 struct pair_acceleration {
   template <class S>
   using value = vec3<S>;
@@ -114,8 +114,8 @@ struct pair_angular_acceleration {
   using value = vec3<S>;
 };
 
-/// Acceleration by the mesh, on the mean over the steps in which the particle has been slow:
-/// so a particle that sleeps goes on to press. Scenes have it that name `sleep` and an effect with `on_mesh_impulse`.
+/// Acceleration by the mesh, on the mean over the steps in which the particle has been slow: so it is known on what a
+/// particle presses that sleeps. Scenes have it that name `sleep` and an effect with `on_mesh_impulse`.
 struct support {
   template <class S>
   using value = vec3<S>;

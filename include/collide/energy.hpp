@@ -1,7 +1,13 @@
 /// \file
-/// The energy of a simulation's particles.
+/// The energy of a simulation's particles, and what their contacts are like.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/sphere_contact.hpp>
 #include <collide/simulation.cuh>
@@ -11,50 +17,168 @@ namespace collide {
 /// The result of `energy`, in mass times length squared per time squared.
 struct energy_sums {
   double kinetic = 0;     ///< of the motion of centres
-  double rotational = 0;  ///< of solid spheres that turn; 0 without `spin` in the scene
-  double elastic = 0;     ///< of the springs of `sphere_contact` between spheres that overlap
+  double rotational = 0;  ///< of solid spheres that turn; 0 in scenes in which none turns
+  double elastic = 0;     ///< of the normal springs of `sphere_contact` and `granular_contact` between spheres
   double potential = 0;   ///< in `gravity`, 0 at the origin
 
   double total() const { return kinetic + rotational + elastic + potential; }  ///< the sum of all
 };
 
+/// What `contact_report` finds of the contacts between spheres.
+struct contact_counts {
+  std::size_t contacts = 0;    ///< pairs that overlap
+  double coordination = 0;     ///< contacts of a particle, the mean of all that are alive
+  std::size_t deep = 0;        ///< contacts whose overlap is above a fifth of the smaller radius: too soft
+  double largest_overlap = 0;  ///< over the smaller radius
+  double longest_good_step =
+      0;  ///< a fifth of the time in which a wave crosses the smallest sphere (Rayleigh); of
+          ///< `linear` and `sphere_contact` of a 1/5 collision; infinite without contacts' effects
+
+  bool is_good_step(double dt) const { return dt <= longest_good_step; }  ///< not above it
+};
+
+namespace detail {
+
+template <class E>
+inline constexpr bool is_granular = false;
+template <class... Law>
+inline constexpr bool is_granular<granular_contact<Law...>> = true;
+
+/// The first of the effects that is `granular_contact`, or `none`.
+template <class... E>
+struct granular_of {
+  using type = none;
+};
+template <class E, class... Rest>
+struct granular_of<E, Rest...> {
+  using type = std::conditional_t<is_granular<E>, E, typename granular_of<Rest...>::type>;
+};
+
+/// Particles on the host, in double.
+template <class Detector, class... Effect>
+struct particles_on_host {
+  using list = typename simulation<Detector, Effect...>::columns;
+  using S = typename Detector::scalar;
+
+  std::vector<S> x, v, w, r;
+  std::vector<std::uint8_t> is_there, solid;
+
+  explicit particles_on_host(simulation<Detector, Effect...> const& of)
+      : x{of.template to_host<position>()},
+        v{of.template to_host<velocity>()},
+        w(x.size()),
+        r(of.size(), of.state().common_radius),
+        is_there(of.size(), 1),
+        solid(of.size(), 0) {
+    if constexpr (contains<list, radius>) r = of.template to_host<radius>();
+    if constexpr (contains<list, angular_velocity>) w = of.template to_host<angular_velocity>();
+    if constexpr (contains<list, alive>) is_there = of.template to_host<alive>();
+    if constexpr (contains<list, material>) solid = of.template to_host<material>();
+  }
+
+  static vec3<double> at(std::vector<S> const& all, std::size_t i) {
+    return vec3<S>(all[3 * i], all[3 * i + 1], all[3 * i + 2]).template cast<double>();
+  }
+  double radius_of(std::size_t i) const { return static_cast<double>(r[i]); }
+
+  /// As materials see a particle.
+  struct made_of {
+    std::uint8_t number;
+    std::uint8_t operator[](material) const { return number; }
+  };
+  made_of solid_of(std::size_t i) const { return {solid[i]}; }
+
+  /// f(i, k, overlap) for each two that overlap: a sweep along x. O(n log n) and the pairs that are near along x.
+  template <class F>
+  void for_each_contact(F const& f) const {
+    std::vector<std::size_t> order;
+    double largest = 0;
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      largest = std::max(largest, radius_of(i));
+      if (is_there[i] != 0 && std::isfinite(static_cast<double>(x[3 * i]))) order.push_back(i);
+    }
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[3 * a] < x[3 * b]; });
+    for (std::size_t a = 0; a < order.size(); ++a) {
+      std::size_t const i = order[a];
+      vec3<double> const xi = at(x, i);
+      for (std::size_t b = a + 1; b < order.size(); ++b) {
+        std::size_t const k = order[b];
+        vec3<double> const between = at(x, k) - xi;
+        if (between.x() > radius_of(i) + largest) break;
+        double const overlap = radius_of(i) + radius_of(k) - between.norm();
+        if (overlap > 0) f(i, k, overlap);
+      }
+    }
+  }
+};
+
+/// The energy of the normal spring of two spheres: 2/5 force overlap of `hertz`, 1/2 of `linear`.
+template <class Law, class Particles>
+double elastic_energy(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
+  granular_pair<double> p{};
+  double const a = all.radius_of(i), b = all.radius_of(k);
+  p.overlap = overlap;
+  p.radius = a * b / (a + b);
+  auto const& of = law.made_of.between(all.solid_of(i), all.solid_of(k));
+  return (decltype(law.normal)::is_hertzian ? 0.4 : 0.5) * law.normal.force(p, of).elastic * overlap;
+}
+
+}  // namespace detail
+
 /// The energy of all particles that are alive, those that sleep included; NaN if one is nowhere. With
 /// `semi_implicit_euler` velocities are those of half a step before the positions, and the sum goes up and down with
-/// them. `density` is the mass per volume, 0 that of `sphere_contact`; `error` if there is none, or it is not above 0
-/// and finite. Waits, and copies columns to the host. O(particles), O(particles^2) with `sphere_contact` in the scene.
+/// them. `density` is the mass per volume, 0 that of `granular_contact`'s materials or of `sphere_contact`; `error` if
+/// there is none, or it is not above 0 and finite. What tangential springs, cohesion and contacts with the mesh hold is
+/// not in it. Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
 template <class Detector, class... Effect>
 energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0) {
-  using S = typename Detector::scalar;
-  using list = typename simulation<Detector, Effect...>::columns;
+  using law_type = typename detail::granular_of<Effect...>::type;
+  constexpr bool is_granular = detail::is_granular<law_type>;
   gravity field{0, 0, 0};
   sphere_contact springs{0, 0, 0, 0, density};
   if constexpr ((std::is_same<Effect, gravity>::value || ...)) field = of.template effect<gravity>();
   if constexpr ((std::is_same<Effect, sphere_contact>::value || ...)) springs = of.template effect<sphere_contact>();
+  bool const is_of_material = is_granular && density == 0;
   if (density == 0) density = springs.density;
-  detail::check_parameter(detail::is_positive(density), "energy: density is above 0: give it, or name sphere_contact");
-  std::vector<S> const x = of.template to_host<position>(), v = of.template to_host<velocity>();
-  std::vector<S> r(of.size(), of.state().common_radius), w(x.size());
-  std::vector<std::uint8_t> is_there(of.size(), 1);
-  if constexpr (detail::contains<list, radius>) r = of.template to_host<radius>();
-  if constexpr (detail::contains<list, angular_velocity>) w = of.template to_host<angular_velocity>();
-  if constexpr (detail::contains<list, alive>) is_there = of.template to_host<alive>();
-  auto const at = [](auto const& all, std::size_t i) -> vec3<double> {
-    return vec3<S>(all[i], all[i + 1], all[i + 2]).template cast<double>();
-  };
+  detail::check_parameter(is_of_material || detail::is_positive(density),
+                          "energy: density is above 0: give it, or name sphere_contact");
+  detail::particles_on_host<Detector, Effect...> const all(of);
   energy_sums sum;
   for (std::size_t i = 0; i < of.size(); ++i) {
-    if (is_there[i] == 0) continue;
-    vec3<double> const xi = at(x, 3 * i), vi = at(v, 3 * i), wi = at(w, 3 * i);
-    double const ri = static_cast<double>(r[i]), m = detail::sphere_mass(density, ri);
-    sum.kinetic += 0.5 * m * vi.squaredNorm();
-    sum.rotational += 0.2 * m * ri * ri * wi.squaredNorm();
-    sum.potential -= m * vec3<double>(field.x, field.y, field.z).dot(xi);
-    for (std::size_t k = 0; k < i && springs.stiffness > 0; ++k) {
-      double const overlap = ri + static_cast<double>(r[k]) - (xi - at(x, 3 * k)).norm();
-      if (is_there[k] != 0 && overlap > 0) sum.elastic += 0.5 * springs.stiffness * overlap * overlap;
+    if (all.is_there[i] == 0) continue;
+    double own = density;
+    if constexpr (is_granular) {
+      if (is_of_material) own = of.template effect<law_type>().made_of.template density_of<double>(all.solid_of(i));
     }
+    double const r = all.radius_of(i), m = detail::sphere_mass(own, r);
+    sum.kinetic += 0.5 * m * all.at(all.v, i).squaredNorm();
+    sum.rotational += 0.2 * m * r * r * all.at(all.w, i).squaredNorm();
+    sum.potential -= m * vec3<double>(field.x, field.y, field.z).dot(all.at(all.x, i));
   }
+  if (!is_granular && !(springs.stiffness > 0)) return sum;
+  all.for_each_contact([&](std::size_t i, std::size_t k, double overlap) {
+    sum.elastic += 0.5 * springs.stiffness * overlap * overlap;
+    if constexpr (is_granular) sum.elastic += elastic_energy(of.template effect<law_type>(), all, i, k, overlap);
+  });
   return sum;
+}
+
+/// What contacts between spheres are like, and which steps are short enough for them: what to look at when a scene is
+/// new. Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
+template <class Detector, class... Effect>
+contact_counts contact_report(simulation<Detector, Effect...> const& of) {
+  detail::particles_on_host<Detector, Effect...> const all(of);
+  contact_counts found;
+  all.for_each_contact([&](std::size_t i, std::size_t k, double overlap) {
+    double const part = overlap / std::min(all.radius_of(i), all.radius_of(k));
+    ++found.contacts;
+    found.deep += part > 0.2;
+    found.largest_overlap = std::max(found.largest_overlap, part);
+  });
+  auto const alive = std::count_if(all.is_there.begin(), all.is_there.end(), [](auto there) { return there != 0; });
+  if (alive > 0) found.coordination = 2 * static_cast<double>(found.contacts) / static_cast<double>(alive);
+  found.longest_good_step = 0.8 * largest_time_step(of);  // that is a quarter
+  return found;
 }
 
 }  // namespace collide

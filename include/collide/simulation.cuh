@@ -113,7 +113,7 @@ class simulation {
     if (asks_mesh && n != 0 && radii_.smallest == 0)
       throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
     radii_ = radii_.with(own);
-    if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, room, radii_.largest);
+    if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, room, radii_.largest, radii_.smallest);
     if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
     prepare();
   }
@@ -442,7 +442,7 @@ class simulation {
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_tuning<execution_space> there(space_);
       S const room = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.room());
-      S const most = detail::max(radii_.largest, least_radius_) + room;
+      S const most = detail::reach_of<effects_type>(detail::max(radii_.largest, least_radius_)) + room;
       bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < most);
       detail::prepare_index(index_, there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }

@@ -1,5 +1,5 @@
-// expect: collide: nearest, contains and signed_distance need a broad phase that finds what is near, at any distance:
-// bvh, or all_pairs
+// expect: collide: nearest, contains, signed_distance and winding_number need a broad phase that finds what is near,
+// at any distance: bvh, or all_pairs
 #include <collide/bucket.cuh>
 #include <collide/sinks/nearest.hpp>
 

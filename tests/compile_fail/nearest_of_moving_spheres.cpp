@@ -1,4 +1,4 @@
-// expect: collide: nearest, contains and signed_distance are for points and spheres that rest
+// expect: collide: nearest, contains, signed_distance and winding_number are for points and spheres that rest
 #include <collide/bvh.cuh>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/nearest.hpp>

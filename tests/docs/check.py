@@ -1,6 +1,6 @@
 """check.py code|links|examples|glossary|members|english|numbers: the README, the pages below docs/ and what they promise.
 
-code      The first block of C++ in the README is examples/minimal.cpp, and every other block of C++ stands word for word in
+code      The first block of C++ in the README is examples/minimal.cpp, and every other block of C++ or Python stands word for word in
           the file that the comment before it names (`<!-- from: FILE -->`). Pages that teach have no other C++.
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
@@ -68,7 +68,7 @@ def without_code(text):
 def code():
     for page in PAGES:
         text = page.read_text()
-        for match in re.finditer(r"^(?:<!-- from: (\S+) -->\n)?```cpp\n(.*?)^```", text, flags=re.M | re.S):
+        for match in re.finditer(r"^(?:<!-- from: (\S+) -->\n)?```(?:cpp|python)\n(.*?)^```", text, flags=re.M | re.S):
             source = match[1] or ("examples/minimal.cpp" if page.name == "README.md" and page.parent == ROOT else None)
             line = text.count("\n", 0, match.start()) + 1
             if source is None:
@@ -105,7 +105,8 @@ def links():
 
 def examples():
     text = "".join(page.read_text() for page in PAGES)
-    for program in sorted([*(ROOT / "examples").glob("*.cpp"), *(ROOT / "examples" / "tutorials").glob("*.cpp")]):
+    for program in sorted([*(ROOT / "examples").glob("*.cpp"), *(ROOT / "examples" / "tutorials").glob("*.cpp"),
+                           *(ROOT / "examples" / "python").glob("*.py")]):
         if program.name not in text and f"`{program.stem}`" not in text:
             yield f"no page mentions {program.relative_to(ROOT)}"
     for source in sorted((ROOT / "examples").rglob("*.?pp")):

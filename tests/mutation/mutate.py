@@ -239,8 +239,6 @@ MUTATIONS = {
         [('    if (!(by.high >= limit && square.high >= mul_rn(limit, by.high))) return false;\n', '')]),
     "measured-face": ('the same, faces', 'nearest', 'plain',
         [(' && mul_rn(height.high, height.high) >= limit', '')]),
-    "measured-scale": ('lengths that under- or overflow', 'nearest', 'plain',
-        [('  if (!(scale >= 0x1p-1000 && scale <= 0x1p850)) return false;\n', '')]),
 }
 
 # The same without a mutation: nothing may be wrong.
@@ -250,6 +248,7 @@ SOUND["none.regions"] = (None, "stages", "plain", NO_REGIONS)
 
 # (file, the text of the guard, with any names, why no row goes wrong without it)
 UNSEEN = [
+    ('nearest/measure_nearest.hpp', 'scale >= 0x1p-1000 && scale <= 0x1p850', 'differences that overflow become NaN, which the tests that follow refuse; those that are scaled up stay exact'),
     ('nearest/distance_bounds.hpp', ' && size <= most)', 'products that overflow are infinite or NaN: no comparison holds that would separate, and the upper bound is infinite'),
     ("predicates/exact.hpp", "if (square.value == 0) return {0, -4000};",
      "a distance of 0 has no exponent; the depth, which then is infinite or too large, is limited by the radius, and that is right"),

@@ -69,6 +69,16 @@ using list_30 = scene_list<mesh_kind::moving, collide::karabassi_swept<>, float,
     collide::velocity_verlet, collide::bounce, collide::adhesion, collide::moving_bodies<>>;
 using list_31 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
     collide::bounce, collide::sleep, collide::friction, collide::moving_bodies<>>;
+using list_32 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, double,
+    collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::velocity_verlet, collide::box_walls, collide::wind<>, collide::drag, collide::pair_forces, collide::periodic_box, collide::gravity, collide::polydisperse, collide::moving_bodies<collide::driven>>;
+using list_33 = scene_list<mesh_kind::moving, collide::karabassi<>, float,
+    collide::emit, collide::granular_contact<collide::linear, collide::dashpot>, collide::lost, collide::sphere_contact, collide::reaction, collide::lost_motion, collide::absorbing_box, collide::mesh_forces, collide::sleep, collide::moving_bodies<>>;
+using list_34 = scene_list<mesh_kind::moving, collide::karabassi_swept<>, float,
+    collide::polydisperse, collide::velocity_verlet, collide::box_walls, collide::wind<>, collide::granular_contact<collide::linear, collide::dashpot>, collide::periodic_box, collide::drag, collide::gravity, collide::pair_forces, collide::moving_bodies<>>;
+using list_35 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, double,
+    collide::sphere_contact, collide::sleep, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::mesh_forces, collide::lost, collide::absorbing_box, collide::lost_motion, collide::emit, collide::reaction, collide::moving_bodies<collide::driven>>;
+using list_36 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
+    collide::wind<>, collide::polydisperse, collide::gravity, collide::drag, collide::box_walls, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::pair_forces, collide::velocity_verlet, collide::periodic_box, collide::moving_bodies<>>;
 // clang-format on
 
 }  // namespace tests::pairs

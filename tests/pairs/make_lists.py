@@ -23,7 +23,14 @@ TRIES = 60  # of which the list that covers most is taken
 
 EFFECTS = """velocity_verlet gravity drag wind bounce friction spin adhesion sphere_contact sleep emit absorb
     absorbing_box box_walls periodic_box polydisperse lost_motion lost mesh_forces pair_forces reaction warms""".split()
+# Makes the mesh solid by forces. It joins lists of its own, so that those without it stay as they are.
+BY_FORCES = "granular_contact"
+ACTS_BY_IMPULSES = ["bounce", "friction", "spin", "adhesion", "absorb", "warms"]  # these do not compile beside it
 TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms"}
+LAWS = {  # of contact by forces: one that remembers nothing, and one that does
+    "float": "granular_contact<collide::linear, collide::dashpot>",
+    "double": "granular_contact<collide::hertz, collide::mindlin, collide::epsd>",
+}
 BODIES = {"fixed": [], "moving": ["collide::moving_bodies<>"], "driven": ["collide::moving_bodies<collide::driven>"]}
 SURFACES = {  # of the kinds of mesh
     "fixed": ["at_rest"],
@@ -41,9 +48,9 @@ AFTER = {
     "friction": ["bounce"],
     "spin": ["bounce"],
     "adhesion": ["bounce"],
-    "mesh_forces": ["bounce", "friction", "spin", "adhesion"],
-    "reaction": ["bounce", "friction", "spin", "adhesion"],
-    "pair_forces": ["sphere_contact", "warms"],
+    "mesh_forces": ["bounce", "friction", "spin", "adhesion", BY_FORCES],
+    "reaction": ["bounce", "friction", "spin", "adhesion", BY_FORCES],
+    "pair_forces": ["sphere_contact", "warms", BY_FORCES],
 }
 # Where momentum closes, energy does not grow, and what rests presses with its weight: few of the other lists say
 # anything of these.
@@ -62,6 +69,9 @@ REFUSED = {
     "spin_without_contacts": "spin without bounce, sphere_contact or an effect of a user's that does the same",
     "forces_before_bounce": "mesh_forces before bounce, friction, spin or adhesion",
     "reaction_before_bounce": "reaction before bounce, friction, spin or adhesion",
+    "granular_contact_with_bounce": "granular_contact beside bounce, friction, spin, adhesion or absorb, which act where "
+    "particles hit the mesh",
+    "contact_memory_on_ranks": "granular_contact whose laws remember something, on ranks",
     "two_integrators": "two integrators",
     "two_sources": "two sources",
     "two_kinds_of_bodies": "two kinds of bodies",
@@ -83,6 +93,10 @@ def meeting(a, b, circumstance):
 
 def all_meetings():
     return {(*p, c) for p in itertools.combinations(sorted(EFFECTS), 2) for c in CIRCUMSTANCES}
+
+
+def meetings_by_forces():
+    return {meeting(BY_FORCES, e, c) for e in EFFECTS if e not in ACTS_BY_IMPULSES for c in CIRCUMSTANCES}
 
 
 def covered(one):
@@ -115,7 +129,8 @@ def try_list(left, in_order, file, rng):
     add(first)
     add(second)
     while len(chosen) < LONGEST:
-        rest = [e for e in EFFECTS if e not in chosen and len(chosen) + 1 + len(needed(e, chosen, rng)) <= LONGEST]
+        others = [e for e in EFFECTS if BY_FORCES not in chosen or e not in ACTS_BY_IMPULSES]
+        rest = [e for e in others if e not in chosen and len(chosen) + 1 + len(needed(e, chosen, rng)) <= LONGEST]
         gains = {e: gain(e) for e in rest}
         most = max(gains.values(), default=0)
         if most == 0:
@@ -143,7 +158,8 @@ def make_lists():
 
     for names, (kind, narrow, scalar) in FIRST:
         add(List(names.split(), kind, narrow, scalar))
-    while left:
+    while left or not any(BY_FORCES in one.effects for one in lists):
+        left = left or meetings_by_forces()
         ordered = sorted(left)
         files = sorted(TESTS, key=lambda t: sum((one.narrow, one.scalar) == t for one in lists))[:2]
         tries = [try_list(left, ordered, rng.choice(files), rng) for _ in range(TRIES)]
@@ -151,9 +167,9 @@ def make_lists():
     return lists
 
 
-def type_of(effect):
-    name = TYPES.get(effect, effect)
-    return name if "::" in name else f"collide::{name}"
+def type_of(effect, scalar):
+    name = LAWS[scalar] if effect == BY_FORCES else TYPES.get(effect, effect)
+    return name if name.startswith("tests::") else f"collide::{name}"
 
 
 def header(lists):
@@ -169,7 +185,7 @@ def header(lists):
         "// clang-format off",
     ]
     for number, (effects, kind, narrow, scalar) in enumerate(lists, 1):
-        types = [*map(type_of, effects), *BODIES[kind]]
+        types = [*(type_of(e, scalar) for e in effects), *BODIES[kind]]
         lines.append(f"using list_{number} = scene_list<mesh_kind::{kind}, collide::{narrow}<>, {scalar},")
         lines.append(f"    {', '.join(types)}>;")
     return "\n".join([*lines, "// clang-format on", "", "}  // namespace tests::pairs", ""])
@@ -193,7 +209,7 @@ def problems(lists):
     for path, text in files(lists).items():
         if not path.exists() or path.read_text() != text:
             yield f"{path.name} is not what make_lists.py makes: run it"
-    left = all_meetings()
+    left = all_meetings() | meetings_by_forces()
     for number, one in enumerate(lists, 1):
         effects = one.effects
         left -= covered(one)
@@ -210,7 +226,7 @@ def problems(lists):
 
 
 def print_pairs(lists, name):
-    for a, b in itertools.combinations(sorted(EFFECTS), 2):
+    for a, b in itertools.combinations(sorted([*EFFECTS, BY_FORCES]), 2):
         if name is None or name in (a, b):
             of = {n: one for n, one in enumerate(lists, 1) if {a, b} <= set(one.effects)}
             where = [f"{c} {'/'.join(str(n) for n in of if c in circumstances(of[n]))}" for c in CIRCUMSTANCES]
@@ -227,7 +243,7 @@ def main(arguments):
         print_pairs(lists, arguments[1] if len(arguments) > 1 else None)
     elif arguments == ["--check"]:
         found = list(problems(lists))
-        print("\n".join(found) or f"{len(lists)} lists cover {len(all_meetings())} meetings of two effects")
+        print("\n".join(found) or f"{len(lists)} lists cover {len(all_meetings() | meetings_by_forces())} meetings of two effects")
         return bool(found)
     elif arguments:
         print(__doc__)

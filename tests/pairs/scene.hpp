@@ -12,6 +12,7 @@
 
 #include <collide/effects/lost.hpp>
 #include <collide/effects/lost_motion.hpp>
+#include <collide/energy.hpp>
 
 #include "ranks/simulations.hpp"
 
@@ -96,6 +97,12 @@ E parameters(trial const& t, collide::reaction_sums const& sums, bool several_si
   } else if constexpr (std::is_same<E, collide::sphere_contact>::value) {
     return collide::sphere_contact::from_restitution(t.draw(0.6, 0.1, 0.95, 20), t.duration(), grain_radius, density,
                                                      t.draw(0.3, 0.01, 1, 21));
+  } else if constexpr (collide::detail::is_granular<E>) {  // collisions take about as long as with sphere_contact
+    collide::solid const solid{t.draw(2e5, 1e5, 3e5, 26), 0.25, density};
+    E law{collide::one_material(solid, {t.draw(0.5, 0.1, 0.8, 27), t.draw(0.3, 0.01, 1, 28), 0.05})};
+    if constexpr (std::is_same<decltype(law.normal), collide::linear>::value) law.normal.stiffness = 2850;
+    if constexpr (std::is_same<decltype(law.tangential), collide::dashpot>::value) law.tangential.damping = 2;
+    return law;
   } else if constexpr (std::is_same<E, collide::sleep>::value) {
     double const speed = t.draw(0.02, 0.001, 0.01, 22);
     int const steps = static_cast<int>(t.draw(20, 60, 120, 23)), at_top = static_cast<int>(2 * speed / (9.81 * t.dt()));

@@ -20,3 +20,5 @@ TEST_CASE("pairs: list 27") { check_list<list_27>(); }
 static bool const list_27_is_hunted = hunt<list_27>("27");
 TEST_CASE("pairs: list 31") { check_list<list_31>(); }
 static bool const list_31_is_hunted = hunt<list_31>("31");
+TEST_CASE("pairs: list 36") { check_list<list_36>(); }
+static bool const list_36_is_hunted = hunt<list_36>("36");

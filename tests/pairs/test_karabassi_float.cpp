@@ -20,3 +20,5 @@ TEST_CASE("pairs: list 25") { check_list<list_25>(); }
 static bool const list_25_is_hunted = hunt<list_25>("25");
 TEST_CASE("pairs: list 28") { check_list<list_28>(); }
 static bool const list_28_is_hunted = hunt<list_28>("28");
+TEST_CASE("pairs: list 33") { check_list<list_33>(); }
+static bool const list_33_is_hunted = hunt<list_33>("33");

@@ -18,3 +18,7 @@ TEST_CASE("pairs: list 23") { check_list<list_23>(); }
 static bool const list_23_is_hunted = hunt<list_23>("23");
 TEST_CASE("pairs: list 29") { check_list<list_29>(); }
 static bool const list_29_is_hunted = hunt<list_29>("29");
+TEST_CASE("pairs: list 32") { check_list<list_32>(); }
+static bool const list_32_is_hunted = hunt<list_32>("32");
+TEST_CASE("pairs: list 35") { check_list<list_35>(); }
+static bool const list_35_is_hunted = hunt<list_35>("35");

@@ -20,3 +20,5 @@ TEST_CASE("pairs: list 26") { check_list<list_26>(); }
 static bool const list_26_is_hunted = hunt<list_26>("26");
 TEST_CASE("pairs: list 30") { check_list<list_30>(); }
 static bool const list_30_is_hunted = hunt<list_30>("30");
+TEST_CASE("pairs: list 34") { check_list<list_34>(); }
+static bool const list_34_is_hunted = hunt<list_34>("34");

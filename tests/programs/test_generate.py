@@ -87,11 +87,14 @@ class Study(GenerateTest):
 MEASURED = ("study", "few", "hits", "many_hits", "radii_1000", "radii_100", "many_triangles", "drum", "camera", "grains", "soup", "crowd", "sparse")
 OTHERS = ("radii", "ball", "terrain", "slivers", "long_slivers", "giant", "clusters", "pile", "cube", "octahedron")
 
+NEEDLES = ("tube_10", "tube_1000", "shaft_100", "shaft_1000", "cage_30", "cage_100", "truss_100", "truss_300", "needles_100", "needles_1000",
+           "giants_1", "giants_10")
+
 
 class Scenes(GenerateTest):
     def test_every_scene_runs(self):
         found = {}
-        for scene in MEASURED + OTHERS:
+        for scene in MEASURED + OTHERS + NEEDLES:
             summary = self.succeed("generate", "--scene", scene, "--spheres", 2000, "--triangles", 600, "mesh.obj", "spheres.csv")
             vertices, triangles = self.mesh()
             self.assertTrue(all(0 <= i < len(vertices) for t in triangles for i in t))
@@ -102,6 +105,7 @@ class Scenes(GenerateTest):
             self.assertEqual(radius == [], scene.startswith("radii"))
             pairs = self.detect("mesh.obj", "spheres.csv", *radius)
             self.assertEqual(self.detect("mesh.obj", "spheres.csv", *radius, "--broad", "all_pairs"), pairs, scene)
+            self.assertEqual(self.detect("mesh.obj", "spheres.csv", *radius, "--broad", "bvh"), pairs, scene)
             found[scene] = len(pairs)
         self.assertEqual(found["octahedron"], 4)
         self.assertEqual([scene for scene, pairs in found.items() if pairs == 0], [])

@@ -98,9 +98,10 @@ inline scene bars_scene(bars_in layout, double slender, double reach, std::size_
     size /= 4;
   } else {
     bool const braced = layout == bars_in::truss;
-    auto const side = static_cast<std::size_t>(std::max(1.0, std::round(std::cbrt(count / (braced ? 6 : 3)))));
+    std::size_t const cells = std::max<std::size_t>(n / (braced ? 6 : 3), 1);
+    auto const side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(cells)) - 1e-9));
     apart = size /= static_cast<double>(side);
-    for (std::size_t i = 0; i < side * side * side; ++i) {
+    for (std::size_t i = 0; i < cells; ++i) {
       auto const c = [&](std::size_t k) { return size * static_cast<double>(k) - 500; };
       point const at{c(i % side), c(i / side % side), c(i / side / side)};
       for (std::size_t k = 0; k < 3; ++k) {

@@ -36,7 +36,7 @@ COLLIDE_HD_INLINE S force_per_change(double density, S radius, S dt) {
 
 /// Sums the forces with which the mesh acts on each particle in a step: mass times what its contacts change of the
 /// velocity, over dt. So it is the mean over the step, of an impact as of what rests: that is pressed by its weight.
-/// It includes what `adhesion` holds, and the pressure of particles that sleep: as it was while they were slow.
+/// It includes what `adhesion` holds, and the pressure of particles that sleep, with all that would accelerate them.
 /// `to_host<mesh_force>()` reads it after a step, `data<mesh_force>()` is where it is. An effect for the end of the
 /// list: of those behind it it sees nothing. 3 scalars a particle.
 struct mesh_forces {

@@ -54,7 +54,8 @@ struct granular_contact {
                 "law, or dashpot and sjkr with linear");
 
   static constexpr bool turns = !std::is_same<Tangential, none>::value || !std::is_same<Rolling, none>::value;
-  static constexpr bool repels = true;  ///< the mesh is solid
+  static constexpr bool repels = true;                             ///< the mesh is solid
+  static constexpr double farther = detail::farther_of<Cohesion>;  ///< than its radius a sphere sees the mesh, in radii
 
   using reads = detail::union_of<columns<position>, typename Materials::reads>;
   using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;

@@ -7,6 +7,7 @@
 
 #include <collide/detail/nearest/ray_parity.hpp>
 #include <collide/detail/sinks/array_in_space.hpp>
+#include <collide/detail/sinks/search_mesh.hpp>
 
 namespace collide {
 
@@ -63,7 +64,7 @@ class contains : public detail::array_in_space<std::uint8_t> {
     size_ = query.spheres.size();
     data_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), size_);
     download_ = detail::host_copier<std::uint8_t>(space);
-    query.search(detail::find_inside{data_});
+    detail::search_mesh(query, detail::find_inside{data_});
   }
 
  private:

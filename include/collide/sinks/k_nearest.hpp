@@ -135,7 +135,7 @@ class k_nearest : public detail::array_in_space<nearest_triangle<S>> {
     download_ = detail::host_copier<nearest_triangle<S>>(space);
     size_ = query.spheres.size() * static_cast<std::size_t>(k_);
     data_ = own_.reserve(space.resource(), size_);
-    query.search(detail::find_k_nearest<S, precision>{max_distance_, k_, data_});
+    detail::search_mesh(query, detail::find_k_nearest<S, precision>{max_distance_, k_, data_});
   }
 
  private:

@@ -6,9 +6,9 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/concepts.hpp>
 #include <collide/detail/nearest/nearest_search.hpp>
 #include <collide/detail/sinks/array_in_space.hpp>
+#include <collide/detail/sinks/search_mesh.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/nearest_triangle.hpp>
 
@@ -83,7 +83,7 @@ class nearest : public detail::array_in_space<nearest_triangle<S>> {
     download_ = detail::host_copier<nearest_triangle<S>>(space);
     size_ = query.spheres.size();
     data_ = own_.reserve(space.resource(), size_);
-    query.search(detail::find_nearest<S, precision>{max_distance_, data_});
+    detail::search_mesh(query, detail::find_nearest<S, precision>{max_distance_, data_});
   }
 
  private:

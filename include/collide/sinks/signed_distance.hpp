@@ -86,7 +86,7 @@ class signed_distance : public detail::array_in_space<signed_nearest_triangle<S>
     download_ = detail::host_copier<signed_nearest_triangle<S>>(space);
     size_ = query.spheres.size();
     data_ = own_.reserve(space.resource(), size_);
-    query.search(detail::find_signed_distance<S, precision>{max_distance_, data_});
+    detail::search_mesh(query, detail::find_signed_distance<S, precision>{max_distance_, data_});
   }
 
  private:

@@ -8,6 +8,7 @@
 
 #include <collide/detail/nearest/solid_angle.hpp>
 #include <collide/detail/sinks/array_in_space.hpp>
+#include <collide/detail/sinks/search_mesh.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
 
@@ -76,7 +77,7 @@ class winding_number : public detail::array_in_space<winding<S>> {
     download_ = detail::host_copier<winding<S>>(space);
     size_ = query.spheres.size();
     data_ = own_.reserve(space.resource(), size_);
-    query.search(detail::find_winding<S>{data_});
+    detail::search_mesh(query, detail::find_winding<S>{data_});
   }
 
  private:

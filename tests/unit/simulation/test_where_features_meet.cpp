@@ -61,6 +61,13 @@ TEST_CASE("where features meet: spin and friction give no energy in a corner, an
   tests::check_arms_of_spheres<float>(blocks());
 }
 
+TEST_CASE("where features meet: elastic bounces in a corner of slanted walls give no energy") {
+  for (double const g : {0.0, 9.81}) {
+    tests::check_elastic_corner<karabassi<>, double>(host(1), g, 1e-9);
+    tests::check_elastic_corner<karabassi_swept<>, double>(host(1), g, 1e-9);
+  }
+}
+
 TEST_CASE("where features meet: adhesion holds against other particles, and a surface that is there") {
   tests::check_adhesion_and_others<karabassi<>, semi_implicit_euler, double>(host(1));
   tests::check_adhesion_and_others<karabassi<>, velocity_verlet, float>(blocks());

@@ -128,7 +128,8 @@ COLLIDE_HD inline vec3<double> point_of_weights(triangle<double> const& t, doubl
   vec3<double> point;
   for (int k = 0; k < 3; ++k) {
     double const a = t.a[k], b = t.b[k], c = t.c[k];
-    if (max(max(max(a, -a), max(b, -b)), max(c, -c)) < 0x1p900) {
+    double const size = max(max(max(a, -a), max(b, -b)), max(c, -c));
+    if (size > 0x1p-900 && size < 0x1p900) {  // else parts of products would under- or overflow
       double_double const sum =
           double_double{a, 0} * weight[0] + double_double{b, 0} * weight[1] + double_double{c, 0} * weight[2];
       point[k] = sum.high;

@@ -40,15 +40,15 @@ struct pair_interaction {
 
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
-    bool const is_active = !is_inactive(p.self), is_other = !is_inactive(other);
+    bool const is_active = takes_part(p.self), is_other = !is_inactive(other);
     if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
     if (is_other && !p.woken) effects.try_wake(p.changed, other);
     p.met = p.met || is_active || is_other;
   }
-  /// True once if the particle has been woken: then it meets those that were awake again, which have got their part of
-  /// what the two do to each other.
+  /// True once if a particle has been woken that took no part: then it meets those that were awake again, which have
+  /// got their part of what the two do to each other.
   COLLIDE_HD_INLINE bool must_meet_again(pair_state& p) const {
-    if constexpr (Effects::any_inactive) {
+    if constexpr (Effects::any_inactive && !Effects::keeps_support) {
       p.woken = !p.woken && p.met && is_inactive(p.self) && !is_inactive(p.changed);
     }
     return p.woken;
@@ -58,12 +58,14 @@ struct pair_interaction {
   template <class Record>
   COLLIDE_HD_INLINE bool interact(pair_state& p, std::uint32_t place, bool overlap, bool was, Record& record) const {
     interaction other = order.load(place);
-    bool const is_active = !is_inactive(p.self), is_other = overlap && !is_inactive(other);
+    bool const is_active = takes_part(p.self), is_awake = !is_inactive(other), is_other = overlap && is_awake;
     bool goes_on = was;
     if (p.woken ? is_other : is_active) {
       contact_values<S, typename Effects::remembered> values;
       if (was) values = record.values();
-      goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, only_kicks ? S(0) : dt, dt);
+      bool const stays =
+          only_kicks || (!is_awake && is_inactive(p.self));  // of two that sleep the contact is as it was
+      goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, stays ? S(0) : dt, dt);
       if (goes_on) record.set(values);
     }
     if (is_other && !p.woken) effects.try_wake(p.changed, other);
@@ -71,9 +73,11 @@ struct pair_interaction {
     return goes_on;
   }
 
-  COLLIDE_HD_INLINE void store(pair_state const& p) const {
+  COLLIDE_HD_INLINE void store(pair_state& p) const {
     if (!p.met) return;
-    if (!only_kicks) state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
+    bool is_asleep = false;
+    if constexpr (Effects::keeps_support) is_asleep = is_inactive(p.self) && is_inactive(p.changed);
+    if (!only_kicks && !is_asleep) state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
     if constexpr (Effects::keeps_pair_forces) {
       particle<S, typename Effects::interaction_kicks> kicks;
       kicks[pair_acceleration{}] = (p.changed[velocity{}] - p.self[velocity{}]) * (1 / dt);
@@ -85,6 +89,14 @@ struct pair_interaction {
   }
 
  private:
+  /// What others press a particle with that sleeps is known where that presses on what it lies on.
+  COLLIDE_HD_INLINE bool takes_part(interaction& p) const {
+    if constexpr (Effects::keeps_support) {
+      return effects.only_sleeps(p);  // or is awake
+    } else {
+      return !is_inactive(p);
+    }
+  }
   COLLIDE_HD_INLINE bool is_inactive(interaction& p) const {
     if constexpr (Effects::any_inactive) {
       return effects.is_inactive(p);

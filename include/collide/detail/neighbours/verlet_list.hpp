@@ -55,11 +55,12 @@ class verlet_list {
     contacts_.reserve(resource, n, order::listed, n);
   }
 
-  /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet.
+  /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet. `smallest` keeps the
+  /// skin so thin that small particles beside large ones have few neighbours: too many have no list.
   template <class Space>
-  void clear(Space& space, std::size_t n, S radius) {
+  void clear(Space& space, std::size_t n, S radius, S smallest) {
     blocks_ = blocks_for(n);
-    skin_ = skin_fraction * 2 * radius;
+    skin_ = skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
     // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
     // away from the origin
     S const width = max((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());

@@ -36,7 +36,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   static constexpr bool any_end_step = (has_end_step<E, S>::value || ...);
   static constexpr bool any_mesh_impulse = (has_on_mesh_impulse<E, S>::value || ...);
   static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
-  static constexpr bool any_mesh_contact =                      ///< or by impulses
+  static constexpr double farther = farthest_of<E...>();
+  static constexpr bool any_mesh_contact =  ///< or by impulses
       (has_on_mesh_contact<E, S>::value || ...) || (has_after_mesh_contact<E, S>::value || ...) ||
       (any_mesh_impulse && !overlaps);
   static constexpr bool any_resistance = (has_resistance<E, S>::value || ...);
@@ -46,14 +47,19 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
   static constexpr bool adheres = any_mesh_contact && contains<named, adhered>;
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
-  /// The effect of particles on each other is kept as an acceleration, for each half kick, and for adhesion.
-  static constexpr bool keeps_pair_forces = (any_pair_contact || overlaps) && (adheres || has_half_kicks);
+  /// Particles that sleep still press on what they lie on.
+  static constexpr bool keeps_support = any_mesh_impulse && contains<named, slow_steps>;
+  /// Effects that know no mesh may hold particles where they are.
+  static constexpr bool holds_without_mesh =
+      ((has_end_step<E, S>::value && contains<typename writes_of<E>::type, velocity>) || ...);
+  /// The effect of particles on each other is kept as an acceleration, for each half kick, for adhesion and for
+  /// sleepers.
+  static constexpr bool keeps_pair_forces =
+      (any_pair_contact || overlaps) && (adheres || has_half_kicks || keeps_support);
   static constexpr bool keeps_pair_torques =
       (any_pair_contact || overlaps) && has_half_kicks && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
   static constexpr bool ends_after_meeting = (any_pair_contact || overlaps) && has_half_kicks;
-  /// Particles that sleep still press on what they lie on.
-  static constexpr bool keeps_support = any_mesh_impulse && contains<named, slow_steps>;
 
  private:
   template <bool Needed, class... C>
@@ -137,6 +143,13 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   /// Whether what a source makes where something is, is not born.
   bool makes_only_where_free() const { return (is_careful<E>() || ...); }
   S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+
+  /// True of a particle that is left out, if that is because it sleeps.
+  template <class P>
+  COLLIDE_HD_INLINE bool only_sleeps(P p) const {
+    p[slow_steps{}] = 0;
+    return !is_inactive(p);
+  }
 
   template <class F>
   COLLIDE_HD_INLINE F const& of() const {

@@ -59,6 +59,18 @@ struct remembers_of<E, std::void_t<typename E::remembers>> {
   using type = typename E::remembers::list;
 };
 
+/// By how many of its radii more than its radius a particle sees the mesh for an effect, or for a law of cohesion.
+template <class E, class = void>
+inline constexpr double farther_of = 0;
+template <class E>
+inline constexpr double farther_of<E, std::void_t<decltype(E::farther)>> = E::farther;
+template <class... E>
+constexpr double farthest_of() {
+  double most = 0;
+  ((most = farther_of<E> > most ? farther_of<E> : most), ...);
+  return most;
+}
+
 /// A particle as an effect sees it: with the columns that it names and no others.
 template <class Effect, class Particle>
 class particle_access {

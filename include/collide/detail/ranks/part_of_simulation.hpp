@@ -233,7 +233,8 @@ class part_of_simulation {
   void expect_copies(std::size_t n) {
     make_room(own() + n);
     copies_ = n;
-    if constexpr (any_pair_contact) simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_.largest);
+    if constexpr (any_pair_contact)
+      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_.largest, simulation_.radii_.smallest);
     auto* const resource = space().resource();
     last_centres_.reserve(resource, 3 * capacity_);
     if constexpr (has_absent) last_there_.reserve(resource, capacity_);

@@ -227,7 +227,8 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     S const into = -dot(seen.displacement, normal);
     constexpr S tolerance = contact_tolerance<S>;
     vec3<S> const here(centre[0], centre[1], centre[2]);
-    return into > 4 * rounding_at(here) &&
+    S const off = std::numeric_limits<S>::epsilon() * dot(vec3<S>(here.cwiseAbs()), vec3<S>(normal.cwiseAbs()));
+    return into > 4 * off &&
            (into * into > tolerance * tolerance * dot(seen.displacement, seen.displacement) || into > radius / 4);
   }
   COLLIDE_HD_INLINE bool is_approaching(vec3<S> const& normal, seen_at_rest) const { return is_approaching(normal); }

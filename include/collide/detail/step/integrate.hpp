@@ -165,7 +165,7 @@ struct integration {
         inactive[k] = inactive[k] && !woken[k];
       }
       if constexpr (effects_type::keeps_support) {
-        if (i < context.state.size && inactive[k] && only_sleeps(maybe_inactive[k])) press(i);
+        if (i < context.state.size && inactive[k] && context.effects.only_sleeps(maybe_inactive[k])) press(i);
       }
       all = all && inactive[k];
     }
@@ -186,7 +186,7 @@ struct integration {
   /// True of a particle that sleeps where a body that moves may touch it.
   template <class Skipping>
   COLLIDE_HD_INLINE bool is_woken(Skipping const& p, std::size_t i) const {
-    if (!only_sleeps(p)) return false;
+    if (!context.effects.only_sleeps(p)) return false;
     S const* const x = context.state.at(position{}) + 3 * i;
     sphere<S> const here{{x[0], x[1], x[2]}, context.state.radius_at(i)};
     if constexpr (is_swept) {
@@ -196,18 +196,12 @@ struct integration {
     }
   }
 
-  /// True of a particle that is left out, if that is because it sleeps.
-  template <class Skipping>
-  COLLIDE_HD_INLINE bool only_sleeps(Skipping p) const {
-    p[slow_steps{}] = 0;
-    return !context.effects.is_inactive(p);
-  }
-
   /// A particle that sleeps presses on what it lies on.
   COLLIDE_HD_INLINE void press(std::size_t i) const {
     integrated p;
     context.state.load(p, i);
-    book_sleeping(context, p);
+    book_sleeping(context, p,
+                  first_kick<Context>(p) + (effects_type::ends_after_meeting ? S(0) : last_kick<Context>(p)));
     context.state.store(p, i, typename effects_type::integration_writes{});
   }
 

@@ -43,15 +43,41 @@ COLLIDE_HD_INLINE void book(Context const& context, Particle& p, mesh_impulse<ty
   }
 }
 
-/// Tells the effects how a particle presses that sleeps: as it did while it was slow.
+/// Tells the effects what holds a particle that sleeps against what would accelerate it for a part of the step: it does
+/// not move. The surfaces that have supported it give that: what they gave on the mean, and of the difference each has
+/// a part as large as what it gave. What lies on others that sleep is held by these but for a rest, which goes to what
+/// rests, unless effects may hold it that know no mesh.
 template <class Context, class Particle>
-COLLIDE_HD_INLINE void book_sleeping(Context const& context, Particle& p) {
+COLLIDE_HD_INLINE void book_sleeping(Context const& context, Particle& p, typename Context::scalar part) {
   using S = typename Context::scalar;
-  for_each_support(p, [&](vec3<S> const& of, std::uint8_t const& by) {
-    if (by == 0) return;
-    vec3<S> const none(S(0), S(0), S(0)), change = of * context.dt;
-    mesh_impulse<S> const given{change, none, p[position{}], none, none, no_id, body_of_frame(by - 1)};
+  if (part == 0) return;
+  vec3<S> const none(S(0), S(0), S(0));
+  S const time = part * context.dt;
+  Particle next = p;
+  context.effects.accelerate(next, time);
+  vec3<S> const change = p[velocity{}] - next[velocity{}];
+  auto const tell = [&](vec3<S> const& of_it, id body) {
+    mesh_impulse<S> const given{of_it, none, p[position{}], none, p[velocity{}], no_id, body};
     context.effects.on_mesh_impulse(p, given, context.dt);
+  };
+  int surfaces = 0;
+  S sizes = 0;
+  vec3<S> rest = change;
+  for_each_support(p, [&](vec3<S> const& of, std::uint8_t by) {
+    if (by == 0) return;
+    ++surfaces;
+    sizes += sqrt_rn(dot(of, of));
+    rest -= of * time;
+  });
+  if (surfaces == 0) {
+    if constexpr (!Context::effects_type::holds_without_mesh) tell(change, no_id);
+    return;
+  }
+  for_each_support(p, [&](vec3<S> const& of, std::uint8_t by) {
+    if (by == 0) return;
+    S const size = sqrt_rn(dot(of, of));
+    tell(surfaces == 1 ? change : vec3<S>(of * time + rest * (sizes > 0 ? size / sizes : 1 / S(surfaces))),
+         body_of_frame(by - 1));
   });
 }
 
@@ -130,7 +156,7 @@ COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p) {
     p[adhered{}] = 0;
     return false;
   }
-  vec3<double> const given = surface.after - own - scaled(by, static_cast<double>(first_kick<Context>(p)));
+  vec3<double> const given = surface.drift - own - scaled(by, static_cast<double>(first_kick<Context>(p)));
   v = rounded_to<S>(surface.drift);
   if (p.number < context.state.size) book_held(context, p, rounded_to<S>(given));  // behind are places of none
   if constexpr (contains<typename Particle::list, held>) p[held{}] = 2;
@@ -170,7 +196,9 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
     if (int const frame = frame_ridden(p)) {
       auto const& f = context.triangles.mesh.frames[frame];
       using S = typename Context::scalar;
+      vec3<S> const before = p[velocity{}];
       p[velocity{}] = rounded_to<S>(velocity_at(f.moving, f.now, p[position{}].template cast<double>()));
+      if (p.number < context.state.size) book_held(context, p, p[velocity{}] - before);
     }
   }
   if constexpr (contains<typename Particle::list, held>) {
@@ -178,6 +206,16 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
       if (p[held{}] == 2 && p[adhered{}] != 0) return;  // it stuck all the time
     }
     p[held{}] = holds;
+  }
+}
+
+/// The part of a step's acceleration with which it ends, of a particle that the mesh does not hold.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE auto last_kick([[maybe_unused]] Particle const& p) {
+  if constexpr (contains<typename Particle::list, held>) {
+    return p[held{}] == 1 ? typename Context::scalar(0) : Context::kick_after;
+  } else {
+    return Context::kick_after;
   }
 }
 

@@ -113,6 +113,13 @@ struct pressing_list {
   id* numbers;
 };
 
+/// How far from its centre a particle sees the mesh.
+template <class Effects, class S>
+COLLIDE_HD_INLINE S reach_of(S radius) {
+  if constexpr (Effects::farther > 0) return radius * S(1 + Effects::farther);
+  return radius;
+}
+
 /// Kernel functor of `for_each` over particles: lists those that may press on the mesh. These are few, and much work.
 template <class S, class Effects, class Triangles, class Memory>
 struct list_pressing {
@@ -130,7 +137,7 @@ struct list_pressing {
     }
     particle<S, union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>> p;
     state.load(p, i);
-    sphere<S> const shape{p[position{}], p.the_radius};
+    sphere<S> const shape{p[position{}], reach_of<Effects>(p.the_radius)};
     if (is_finite(shape.centre) && !triangles.without_overflown_grids().empty(shape)) {
       found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
     } else if constexpr (Effects::remembered::size != 0) {
@@ -169,7 +176,7 @@ struct press_on_mesh {
     vec3<S> const centre(x[0], x[1], x[2]);
     Triangles const open = triangles.without_overflown_grids();
     overlap_list near;
-    find(open, sphere<S>{centre, state.radius_at(i)}, near);
+    find(open, sphere<S>{centre, reach_of<Effects>(state.radius_at(i))}, near);
     int before = 0;
     if constexpr (has_memory) before = memory.counts[i];
     if (near.size != 0) return press(open, i, near, before);
@@ -231,10 +238,12 @@ struct press_on_mesh {
       for (int n = 0; n < size; ++n)
         merged = merged || (bodies[n] == o.body && dot(normals[n], o.normal) > S(1 - same_normal));
       if (merged) continue;
+      values_type own;
+      bool is_known = false;
+      if constexpr (has_memory) is_known = remember(i, o, before, used, own);
+      if (Effects::farther > 0 && !is_known && !(o.overlap > 0)) continue;
       normals[size] = o.normal;
       bodies[size] = o.body;
-      values_type own;
-      if constexpr (has_memory) remember(i, o, before, used, own);
       bool const goes_on = meet(p, self, o, own);
       if (size < most) values[size] = own, kept[size] = goes_on;
       ++size;
@@ -282,8 +291,8 @@ struct press_on_mesh {
     return {rounded_to<S>(normal), overlap, rounded_to<S>(surface), item.triangle, body_of_frame(item.frame)};
   }
 
-  /// Finds what a contact remembers among what the particle's contacts were before.
-  COLLIDE_HD_INLINE void remember(std::size_t i, mesh_overlap<S> const& o, int before, unsigned& used,
+  /// Finds what a contact remembers among what the particle's contacts were before; false if it is new.
+  COLLIDE_HD_INLINE bool remember(std::size_t i, mesh_overlap<S> const& o, int before, unsigned& used,
                                   values_type& values) const {
     int best = -1;
     S best_cosine = S(0.5);
@@ -294,9 +303,10 @@ struct press_on_mesh {
       S const cosine = dot(vec3<S>(r.normal[0], r.normal[1], r.normal[2]), o.normal);
       if (cosine > best_cosine) best_cosine = cosine, best = k;
     }
-    if (best < 0) return;
+    if (best < 0) return false;
     used |= 1u << best;
     values = memory.records[std::size_t(best) * memory.capacity + i].record.values();
+    return true;
   }
 
   COLLIDE_HD_INLINE void keep(std::size_t i, int size, vec3<S> const* normals, id const* bodies,

@@ -51,10 +51,21 @@ struct end_particles {
     particle<S, typename Effects::integration_reads> p;
     state.load(p, i);
     if constexpr (Effects::any_inactive) {
-      if (effects.is_inactive(p)) return;
+      if (effects.is_inactive(p)) {
+        if constexpr (Effects::keeps_support) press(p);
+        return;
+      }
     }
     end_particle(*this, p);
     state.store(p, i, typename Effects::integration_writes{});
+  }
+
+ private:
+  template <class Particle>
+  COLLIDE_HD_INLINE void press(Particle& p) const {
+    if (!effects.only_sleeps(p)) return;
+    book_sleeping(*this, p, last_kick<end_particles>(p));
+    state.store(p, p.number, typename Effects::integration_writes{});
   }
 };
 

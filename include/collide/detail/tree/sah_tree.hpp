@@ -63,14 +63,21 @@ struct triangle_range {
   box_ends box, middles;
 
   std::uint32_t size() const { return end - begin; }
+};
 
-  static triangle_range of(boxed_triangle const* from, std::uint32_t begin, std::uint32_t end) {
+/// Divides ranges of triangles. Nodes at the lowest level get as many as they have room for.
+class range_divider {
+ public:
+  explicit range_divider(boxed_triangle* triangles) : all_{triangles} {}
+
+  /// A part of the triangles.
+  triangle_range range_of(std::uint32_t begin, std::uint32_t end) const {
     triangle_range r{begin, end, box_ends::empty(), box_ends::empty()};
     multiversioned([&] {
       for (std::uint32_t i = begin; i < end; ++i) {
-        box_ends const& b = from[i].box;
+        box_ends const& b = all_[i].box;
         r.box.add(b);
-        box_ends middle;
+        box_ends middle{};
         for (int k = 0; k < 4; ++k) middle.ends[k + 4] = b.ends[k + 4] - b.ends[k];
         for (int k = 0; k < 4; ++k) middle.ends[k] = -middle.ends[k + 4];
         r.middles.add(middle);
@@ -78,12 +85,6 @@ struct triangle_range {
     });
     return r;
   }
-};
-
-/// Divides ranges of triangles. Nodes at the lowest level get as many as they have room for.
-class range_divider {
- public:
-  explicit range_divider(boxed_triangle* triangles) : all_{triangles} {}
 
   /// Divides a range of more triangles than a node has room for; `halves`: at its middle, however that is.
   void divide(triangle_range const& range, bool halves, triangle_range& left, triangle_range& right) {
@@ -99,8 +100,8 @@ class range_divider {
     constexpr std::uint32_t few = 8 * tree_node::width;
     bool const large = range.size() > 8 * few && middle - range.begin >= few && range.end - middle >= few;
     if (!large || p.axis < 0) middle = fill_nodes(range, middle, max(p.axis, 0));
-    left = triangle_range::of(all_, range.begin, middle);
-    right = triangle_range::of(all_, middle, range.end);
+    left = range_of(range.begin, middle);
+    right = range_of(middle, range.end);
   }
 
  private:
@@ -210,7 +211,7 @@ class sah_tree {
     tasks_ = 0;
     nodes_[0].parent = nodes_[0].slot = 0;
     most_at_once_ = max(finite / 64, 4096u);
-    task const root{triangle_range::of(all_, 0, finite), 0, 0};
+    task const root{range_divider(all_).range_of(0, finite), 0, 0};
     build_node(root, true);
     for_each_block(space, tasks_, [&](std::size_t i) { build_node(waiting_[i], false); });
     return true;

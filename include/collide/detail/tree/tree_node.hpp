@@ -124,16 +124,9 @@ struct alignas(32) tree_node {
 
   /// Bit k: box k is within a distance, given as its square. Without branches, for the processor's vector unit.
   COLLIDE_HD_INLINE std::uint32_t reached(tree_point const& p, float reach_squared) const {
-#if defined(__CUDA_ARCH__)
     std::uint32_t mask = 0;
-#pragma unroll
-    for (int k = 0; k < width; ++k) mask |= distance_squared(k, p) <= reach_squared ? 1u << k : 0u;
+    for (int k = 0; k < width; ++k) mask |= distance_squared(k, p) <= reach_squared ? bit(k) : 0u;
     return mask & there;
-#else
-    std::uint32_t mask = 0;
-    for (int k = 0; k < width; ++k) mask |= distance_squared(k, p) <= reach_squared ? bit[k] : 0u;
-    return mask & there;
-#endif
   }
 
   /// Bit k: box k and another have a point in common; see `overlap`.
@@ -143,7 +136,7 @@ struct alignas(32) tree_node {
       bool const apart = (lower[0][k] > other.upper[0]) | (upper[0][k] < other.lower[0]) |
                          (lower[1][k] > other.upper[1]) | (upper[1][k] < other.lower[1]) |
                          (lower[2][k] > other.upper[2]) | (upper[2][k] < other.lower[2]);
-      mask |= apart ? 0u : bit[k];
+      mask |= apart ? 0u : bit(k);
     }
     return mask & there;
   }
@@ -177,8 +170,14 @@ struct alignas(32) tree_node {
   static constexpr std::uint32_t none = 0xffffffffu;
 
  private:
-  /// SSE cannot shift lanes by different amounts.
-  static constexpr std::uint32_t bit[width] = {1, 2, 4, 8, 16, 32, 64, 128};
+  static COLLIDE_HD_INLINE std::uint32_t bit(int k) {
+#if defined(__CUDA_ARCH__)
+    return 1u << k;
+#else
+    constexpr std::uint32_t bits[width] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
+    return bits[k];
+#endif
+  }
 
   COLLIDE_HD_INLINE float gap(int axis, int k, tree_point const& p) const {
     float const outside = max(lower[axis][k] - p.upper[axis], p.lower[axis] - upper[axis][k]);

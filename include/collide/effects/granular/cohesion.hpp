@@ -31,9 +31,11 @@ struct dmt {
 
 /// Soft grains that stick: K. L. Johnson, K. Kendall and A. D. Roberts, Proceedings of the Royal Society A 324, 1971.
 /// With x^2 = a, the overlap is x^4 / R* - 2 x sqrt(pi gamma / E*), and the force 4 E* a^3 / (3 R*) - 4 sqrt(pi gamma
-/// E* a^3). They hold each other by up to 3 pi gamma R*, also a little apart, once they have touched.
+/// E* a^3). They hold each other by up to 3 pi gamma R*, also a little apart, once they have touched: up to 1.19 R* (pi
+/// gamma / (E* R*))^(2/3). Farther apart than a twentieth of its radius a sphere loses a wall.
 struct jkr {
   using remembers = contact_columns<contact_radius>;
+  static constexpr double farther = 0.05;
   static constexpr bool needs_hertz = true;
 
   template <class S, class Memory>

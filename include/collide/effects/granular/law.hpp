@@ -5,7 +5,9 @@
 /// A law is a small copyable struct. It may name what a contact remembers for it, `using remembers =
 /// contact_columns<...>`, and has one member template, `COLLIDE_HD`, const:
 ///   - normal: `normal_force<S> force(granular_pair<S> const&, contact_material const&)`;
-///   - cohesion: `void pull(normal_force<S>&, granular_pair<S> const&, contact_material const&, Memory const&)`;
+///   - cohesion: `void pull(normal_force<S>&, granular_pair<S> const&, contact_material const&, Memory const&)`; if it
+///     remembers something and pulls where the two are apart, `static constexpr double farther`, in radii of the
+///     sphere, says how far it is from a wall then at most;
 ///   - tangential: `vec3<S> force(granular_pair<S> const&, contact_material const&, normal_force<S> const&,
 ///     Memory const&)`, on the particle, at right angles to the normal;
 ///   - rolling: `vec3<S> torque(...)` with the same arguments, on the particle.

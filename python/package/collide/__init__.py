@@ -1,0 +1,22 @@
+"""Collision detection between a triangle mesh and very many spheres: exact, on CPUs and NVIDIA GPUs.
+
+    import collide, numpy
+    mesh = collide.Mesh(vertices, triangles)          # float32 or float64; where they lie, it runs
+    pairs = mesh.query(centres, radius)               # pairs.sphere, pairs.triangle
+    touched = mesh.any(centres, radius)
+
+Arrays are those of numpy, PyTorch, CuPy, JAX or Warp, or of anything with ``__dlpack__``, of any strides that are not
+negative along the rows. Nothing is ever converted or copied: a wrong dtype, shape or device is an error that names the
+argument. Results are arrays of the library that the call's centres are of, on the same device. Lengths are in any unit,
+the same for all arguments. `Mesh` has the queries, `Simulation` particles that move.
+"""
+
+from ._errors import Error
+from ._mesh import Contacts, Csr, Impacts, Mesh, Pairs
+from ._simulation import Body, Simulation
+from . import effects
+from .effects import *  # noqa: F403: collide.gravity() and all the others
+from .effects import Effect
+
+__all__ = ["Body", "Contacts", "Csr", "Effect", "Error", "Impacts", "Mesh", "Pairs", "Simulation", "effects"]
+__all__ += effects.__all__

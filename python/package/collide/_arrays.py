@@ -1,0 +1,213 @@
+"""Which library an array is of, on which stream it works, and how results become arrays of it."""
+
+from . import _host
+
+try:
+    from . import _cuda  # in the package collide-cu13 only
+except ImportError as reason:
+    _cuda = None
+    _why_no_cuda = str(reason)
+
+CPU_TYPES = (1, 3)  # of DLPack: memory of the host, and such that a GPU can read, too
+CUDA = 2
+NO_STREAM = (0, -1)  # what calls on the host are given
+
+
+def device_of(array, name):
+    """(type, number) of the device that an array is on, as DLPack counts them."""
+    try:
+        kind, number = array.__dlpack_device__()
+        return int(kind), int(number)
+    except AttributeError:
+        if hasattr(array, "__array_interface__"):
+            return 1, 0
+        raise TypeError(
+            f"{name}: expected an array (numpy, torch, cupy, jax, warp: with __dlpack__), got {type(array).__name__}"
+        ) from None
+
+
+def module_for(device, name):
+    """The compiled module for a device."""
+    if device[0] in CPU_TYPES:
+        return _host
+    if device[0] != CUDA:
+        raise ValueError(f"{name}: is on a device of DLPack's type {device[0]}; there are the host and NVIDIA GPUs")
+    if _cuda is None:
+        raise ValueError(f"{name}: is on a GPU, which needs the package collide-cu13 ({_why_no_cuda})")
+    return _cuda
+
+
+class _Numpy:
+    """Arrays of numpy, and of whatever else is on the host and has no class of its own here."""
+
+    is_numpy = True
+
+    def stream(self, device):
+        """The stream that the library works on now, and what its arrays' __dlpack__ is given."""
+        raise ValueError("numpy has no arrays on a GPU")
+
+    def array(self, result, stream):
+        """A result of a compiled module as an array of this library, without a copy."""
+        return result
+
+    def shown(self, view):
+        """An array that shows memory which changes later."""
+        return view
+
+    def dtype(self, name):
+        """The library's dtype of a name."""
+        return name
+
+    def flags(self, result):
+        """Bytes 0 and 1 as booleans."""
+        return result.view(self.dtype("bool"))
+
+    def field(self, records, first, last, kind):
+        """Columns first to last of records, which are rows of int32, as numbers of a kind; the column alone if last is
+        None."""
+        width = 2 if kind == "float64" else 1
+        whole = records.view(self.dtype(kind))
+        return whole[:, first // width] if last is None else whole[:, first // width : last // width]
+
+
+class _Torch(_Numpy):
+    is_numpy = False
+
+    def __init__(self):
+        import torch
+
+        self.torch = torch
+
+    def stream(self, device):
+        return self.torch.cuda.current_stream(device).cuda_stream, -1
+
+    def array(self, result, stream):
+        return self.torch.from_dlpack(result)
+
+    def dtype(self, name):
+        return getattr(self.torch, name)
+
+
+class _Cupy(_Numpy):
+    is_numpy = False
+
+    def __init__(self):
+        import cupy
+
+        self.cupy = cupy
+
+    def stream(self, device):
+        return self.cupy.cuda.get_current_stream(device).ptr, -1
+
+    def array(self, result, stream):
+        return self.cupy.from_dlpack(result)
+
+
+class _Ordered:
+    """A result on a GPU that the stream of whoever takes it waits for."""
+
+    def __init__(self, result, stream):
+        self.result, self.stream_of_result = result, stream
+
+    def __dlpack_device__(self):
+        return self.result.__dlpack_device__()
+
+    def __dlpack__(self, *, stream=None, **others):
+        if self.__dlpack_device__()[0] == CUDA and stream != -1:
+            _cuda.order(self.__dlpack_device__()[1], self.stream_of_result[0], stream or 1)
+        return self.result.__dlpack__(**others)
+
+
+class _Jax(_Numpy):
+    is_numpy = False
+
+    def __init__(self):
+        import jax
+
+        self.jax = jax
+
+    def stream(self, device):  # it has no stream to work on: its arrays have ours wait for them, and its stream ours
+        own = _cuda.own_stream(device)
+        return own, own
+
+    def array(self, result, stream):
+        return self.jax.dlpack.from_dlpack(_Ordered(result, stream))
+
+    def shown(self, view):  # its arrays never change: a copy
+        return self.jax.numpy.array(view, copy=True).block_until_ready()
+
+    def flags(self, result):
+        return result != 0
+
+    def field(self, records, first, last, kind):  # it has no arrays with gaps
+        if kind == "int32":
+            return super().field(records, first, last, kind)
+        words = records[:, first : last if last is not None else first + (2 if kind == "float64" else 1)]
+        if kind == "float64":
+            words = words.reshape(len(words), -1, 2)
+        numbers = self.jax.lax.bitcast_convert_type(words, kind)
+        return numbers[:, 0] if last is None else numbers
+
+
+class _Warp(_Numpy):
+    is_numpy = False
+
+    def __init__(self):
+        import warp
+
+        self.warp = warp
+
+    def stream(self, device):
+        return self.warp.get_stream(f"cuda:{device}").cuda_stream, -1
+
+    def array(self, result, stream):
+        return self.warp.from_dlpack(result)
+
+    def flags(self, result):
+        return result.view(self.warp.bool)
+
+    def field(self, records, first, last, kind):
+        size = 8 if kind == "float64" else 4
+        rows, gap = records.shape[0], records.strides[0]
+        columns = () if last is None else ((last - first) * 4 // size,)
+        part = self.warp.array(
+            ptr=records.ptr + 4 * first if rows else None,
+            dtype=getattr(self.warp, kind),
+            shape=(rows, *columns),
+            strides=(gap, size)[: 1 + len(columns)],
+            device=records.device,
+        )
+        part.records = records  # whose memory it is
+        return part
+
+
+class _Stranger(_Numpy):
+    """Arrays on a GPU of a library that is not known here: results have __dlpack__."""
+
+    is_numpy = False
+
+    def stream(self, device):
+        return _cuda.own_stream(device), _cuda.own_stream(device)
+
+    def array(self, result, stream):
+        return _Ordered(result, stream)
+
+    def flags(self, result):
+        return result
+
+    def field(self, records, first, last, kind):
+        raise TypeError("results are arrays of a library that is unknown here: take `records`, rows of 32-bit words")
+
+
+_classes = {"numpy": _Numpy, "torch": _Torch, "cupy": _Cupy, "jax": _Jax, "jaxlib": _Jax, "warp": _Warp}
+_known = {}
+
+
+def library_of(array, device):
+    """The library that an array is of."""
+    root = type(array).__module__.partition(".")[0]
+    if root not in _classes:
+        root = "numpy" if device[0] in CPU_TYPES else "stranger"
+    if root not in _known:
+        _known[root] = _classes.get(root, _Stranger)()
+    return _known[root]

@@ -1,0 +1,273 @@
+"""Meshes, and what their queries find."""
+
+from typing import Any, Literal, NamedTuple, Optional, Union
+
+from ._arrays import CUDA, NO_STREAM, device_of, library_of, module_for
+
+Array = Any  #: an array of numpy, torch, cupy, jax or warp, or anything with __dlpack__
+Precision = Literal["exact", "double", "single"]
+Order = Literal["unspecified", "canonical"]
+
+
+class Pairs:
+    """Colliding pairs of a sphere and a triangle, each exactly once. ``sphere, triangle = pairs`` works, too."""
+
+    def __init__(self, library, records, size, total, wide=False):
+        self.records = records  #: the memory of all: (n, words) int32, where a row is one result
+        self.total = total  #: how many collide; more than len() where there was no room for all
+        self._library, self._size = library, size
+
+    def __len__(self) -> int:
+        return self._size
+
+    @property
+    def complete(self) -> bool:
+        """Whether there was room for all of them."""
+        return self._size == self.total
+
+    @property
+    def sphere(self) -> Array:
+        """(n,) int32: numbers of the spheres; -1 where a sphere has no triangle (``closest``, ``first``)."""
+        return self._library.field(self.records, 0, None, "int32")
+
+    @property
+    def triangle(self) -> Array:
+        """(n,) int32: numbers of the triangles; -1 where a sphere has none (``closest``, ``first``)."""
+        return self._library.field(self.records, 1, None, "int32")
+
+    def __iter__(self):
+        return iter((self.sphere, self.triangle))
+
+    def __repr__(self):
+        return f"<collide.{type(self).__name__}: {self._size} of {self.total}>"
+
+
+class Contacts(Pairs):
+    """Colliding pairs with their contacts: where and how each sphere touches each triangle."""
+
+    def __init__(self, library, records, size, total, wide=False):
+        super().__init__(library, records, size, total)
+        self._kind, self._word = ("float64", 2) if wide else ("float32", 1)
+
+    def _numbers(self, first, count=None):
+        begin = 2 + first * self._word
+        return self._library.field(self.records, begin, None if count is None else begin + count * self._word, self._kind)
+
+    @property
+    def point(self) -> Array:
+        """(n, 3): the point of the triangle that is closest to the centre."""
+        return self._numbers(0, 3)
+
+    @property
+    def normal(self) -> Array:
+        """(n, 3): unit vector from the triangle to the centre; a normal of the triangle if the centre is on it."""
+        return self._numbers(3, 3)
+
+    @property
+    def distance(self) -> Array:
+        """(n,): from the centre to the triangle; infinite where a sphere has none (``closest``)."""
+        return self._numbers(6)
+
+    @property
+    def depth(self) -> Array:
+        """(n,): radius - distance, how deep the triangle is in the sphere."""
+        return self._numbers(7)
+
+    @property
+    def feature(self) -> Array:
+        """(n,) int32: where on the triangle the point is: 0 face, 1 edge, 2 vertex."""
+        return self._library.field(self.records, 2 + 8 * self._word, None, "int32")
+
+    @property
+    def feature_index(self) -> Array:
+        """(n,) int32: edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0."""
+        return self._library.field(self.records, 3 + 8 * self._word, None, "int32")
+
+
+class Impacts(Contacts):
+    """Pairs that touch while the sphere moves, with the contact at the time of impact."""
+
+    @property
+    def time(self) -> Array:
+        """(n,): when it first touches, 0 at the beginning of the displacement to 1 at its end; infinite where a sphere
+        touches nothing (``first``)."""
+        begin = 4 + 8 * self._word
+        return self._library.field(self.records, begin, None, self._kind)
+
+
+class Csr(NamedTuple):
+    """Rows of triangles: those of sphere i are ``triangle[offsets[i]:offsets[i + 1]]``."""
+
+    offsets: Array  #: (n + 1,) int64
+    triangle: Array  #: (total,) int32
+
+
+class Mesh:
+    """A triangle mesh, and the queries that spheres may ask of it. Where its vertices lie, it runs.
+
+    vertices   (n, 3) float32 or float64, in any unit of length. The arrays are read where they are, not copied: keep
+               them as they are while the mesh is used, or call `update` when they have changed.
+    triangles  (m, 3) int32 or uint32: numbers of vertices, from 0. None: rows 3 i, 3 i + 1, 3 i + 2 of vertices are
+               triangle i.
+    validate   check that triangles name vertices that exist: reading others is undefined behaviour. O(m); on a GPU it
+               waits for the result.
+    threads    on the host: how many at most. 0: as many as there are cores where that pays.
+
+    Raises TypeError for another dtype, ValueError for another shape, device, or triangles of vertices that are not
+    there. The first query of a kind (at rest, moving, and each precision) prepares what depends on the mesh, O(m).
+
+    Other Python threads run while a call works; two meshes may be used by two threads at once, calls to one mesh wait
+    for each other. On a GPU work is put on the current stream of the library that the centres are of, and a call waits
+    only as far as it must read a number back: `any` does not.
+    """
+
+    def __init__(self, vertices: Array, triangles: Optional[Array] = None, *, validate: bool = True, threads: int = 0):
+        self._device = device_of(vertices, "vertices")
+        self._library = library_of(vertices, self._device)
+        module = module_for(self._device, "vertices")
+        self._is_wide = _is_wide(vertices)
+        make = module.MeshDouble if self._is_wide else module.MeshFloat
+        self._mesh = make(threads, self._device[1])
+        self._mesh.take(self._stream(self._library), vertices, triangles, validate)
+
+    def __len__(self) -> int:
+        """How many triangles there are."""
+        return len(self._mesh)
+
+    def __repr__(self):
+        place = "host" if self._device[0] != CUDA else f"GPU {self._device[1]}"
+        return f"<collide.Mesh: {len(self)} triangles, {'float64' if self._is_wide else 'float32'}, {place}>"
+
+    def update(self, vertices: Array, triangles: Optional[Array] = None) -> None:
+        """The mesh has moved: takes other vertices, or the same array with other contents, and triangles if they have
+        changed, too. What depends on them is prepared again by the next query; nothing is allocated if the mesh has not
+        grown. Raises as the constructor does; the mesh is then as it was. Triangles are not checked."""
+        stream = self._stream(library_of(vertices, self._device))
+        self._mesh.take(stream, vertices, triangles, False)
+
+    def count(
+        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
+        precision: Precision = "exact"
+    ) -> int:
+        """How many pairs of a sphere and a triangle touch. Arguments as for `query`."""
+        stream = self._stream(library_of(centres, self._device))
+        return self._mesh.count(stream, precision, centres, radius, displacements, False, None, None, True)
+
+    def any(
+        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
+        precision: Precision = "exact", out: Optional[Array] = None
+    ) -> Array:
+        """(n,) bool: whether each sphere touches anything. Arguments as for `query`.
+
+        out  (n,) uint8 or bool: where flags go. On a GPU such a call allocates nothing and does not wait, once a first
+             one has been made: it can be captured in a CUDA graph.
+        """
+        library = library_of(centres, self._device)
+        stream = self._stream(library)
+        flags = self._mesh.any(stream, precision, centres, radius, displacements, False, None, out, library.is_numpy)
+        return flags if out is not None else library.flags(library.array(flags, stream))
+
+    def query(
+        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
+        precision: Precision = "exact", order: Order = "unspecified", output: Literal["pairs", "csr"] = "pairs",
+        capacity: Optional[int] = None, out: Optional[Array] = None
+    ) -> Union[Pairs, Csr]:
+        """All pairs of a sphere and a triangle that touch, each exactly once.
+
+        centres        (n, 3), of the dtype of the vertices and on the same device
+        radius         a number for all, or (n,) of the same dtype. A sphere whose radius is negative or NaN is empty.
+        displacements  (n, 3): spheres move by so much along straight lines, and a pair touches if it does at any time.
+                       None: they rest.
+        precision      'exact': as with real arithmetic on the numbers as given. 'double', 'single': rounded, and so
+                       wrong for pairs within a few units in the last place of contact.
+        order          'canonical': by sphere, then by triangle; costs a sort. 'unspecified': any.
+        output         'csr': offsets and triangles, a row for each sphere
+        capacity       room for so many results at most; ``total`` tells how many there are all the same
+        out            (capacity, 2) int32, packed: where results go, in place of memory of their own
+
+        Returns `Pairs`, or `Csr`. Results own their memory. Raises TypeError or ValueError for arguments that do not
+        fit, `Error` if the library or CUDA fails, MemoryError without memory. O(n + candidates).
+        """
+        if output == "csr":
+            _refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
+            _refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
+            library = library_of(centres, self._device)
+            stream = self._stream(library)
+            arrays = self._mesh.csr(
+                stream, precision, centres, radius, displacements, _is_canonical(order), None, None, library.is_numpy
+            )
+            return Csr(*(library.array(a, stream) for a in arrays))
+        _refuse(output != "pairs", "output", f"is {output!r}, expected 'pairs' or 'csr'")
+        return self._ask("pairs", Pairs, centres, radius, displacements, precision, order, capacity, out)
+
+    def contacts(
+        self, centres: Array, radius: Union[float, Array], *, closest: bool = False,
+        displacements: Optional[Array] = None, precision: Precision = "exact", order: Order = "unspecified",
+        capacity: Optional[int] = None, out: Optional[Array] = None
+    ) -> Contacts:
+        """The contact of every pair that touches: closest point, normal, distance, depth, feature. With displacements,
+        at the time of impact.
+
+        closest  one row for each sphere, of the triangle closest to its centre (of equally close ones the first). Of a
+                 sphere that touches nothing ``triangle`` is -1, ``distance`` infinite, and the other numbers NaN.
+        out      (capacity, 12) int32, of float64 (capacity, 20): what ``records`` is
+
+        Other arguments, errors and costs as for `query`.
+        """
+        _refuse(closest and out is not None, "out", "of the closest contacts is not taken")
+        _refuse(closest and capacity is not None, "capacity", "there is a contact for each sphere")
+        call = "closest" if closest else "contacts"
+        return self._ask(call, Contacts, centres, radius, displacements, precision, order, capacity, out)
+
+    def impacts(
+        self, centres: Array, displacements: Array, radius: Union[float, Array], *, first: bool = False,
+        order: Order = "unspecified", capacity: Optional[int] = None, out: Optional[Array] = None
+    ) -> Impacts:
+        """Moving spheres: every pair that touches on the way from ``centres`` to ``centres + displacements``, with the
+        time of impact and the contact then.
+
+        first  one row for each sphere, of the triangle that it hits first (of equal times the one of the smallest
+               number). Of a sphere that touches nothing ``triangle`` is -1, ``time`` infinite, and the rest NaN.
+        out    (capacity, 13) int32, of float64 (capacity, 22): what ``records`` is
+
+        Other arguments, errors and costs as for `query`.
+        """
+        _refuse(displacements is None, "displacements", "expected an array of shape (n, 3)")
+        _refuse(first and out is not None, "out", "of the first impacts is not taken")
+        _refuse(first and capacity is not None, "capacity", "there is an impact for each sphere")
+        call = "earliest" if first else "impacts"
+        return self._ask(call, Impacts, centres, radius, displacements, "exact", order, capacity, out)
+
+    def _ask(self, call, kind, centres, radius, displacements, precision, order, capacity, out):
+        library = library_of(centres, self._device)
+        stream = self._stream(library)
+        records, size, total = getattr(self._mesh, call)(
+            stream, precision, centres, radius, displacements, _is_canonical(order), capacity, out, library.is_numpy
+        )
+        if out is None:
+            records = library.array(records, stream)
+        elif size < len(out):
+            records = out[:size]
+        return kind(library, records, size, total, self._is_wide)
+
+    def _stream(self, library):
+        """What a call to the compiled module begins with: on a GPU the stream that the library works on now."""
+        return library.stream(self._device[1]) if self._device[0] == CUDA else NO_STREAM
+
+
+def _is_wide(array):
+    if not hasattr(array, "dtype") and device_of(array, "vertices")[0] != CUDA:
+        import numpy
+
+        array = numpy.from_dlpack(array)
+    return "float64" in str(getattr(array, "dtype", ""))
+
+
+def _is_canonical(order):
+    _refuse(order not in ("unspecified", "canonical"), "order", f"is {order!r}, expected 'unspecified' or 'canonical'")
+    return order == "canonical"
+
+
+def _refuse(wrong, name, why):
+    if wrong:
+        raise ValueError(f"{name}: {why}")

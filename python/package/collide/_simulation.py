@@ -1,0 +1,186 @@
+"""Particles that move, and collide with a mesh and with each other."""
+
+import dataclasses
+import os
+from typing import Dict, List, Optional, Sequence, Tuple, Union
+
+from . import _build
+from ._arrays import CUDA, NO_STREAM, library_of, module_for
+from ._mesh import Array, Mesh
+from .effects import Effect, Vector
+
+
+@dataclasses.dataclass
+class Body:
+    """Triangles of the mesh that move as a whole: ``size`` of them from number ``first`` on.
+
+    At time t, with s = sin(2 pi (frequency t + phase)), the pivot is at pivot + velocity t + amplitude s, and the body is
+    turned around ``axis`` through it by the angle rate t + swing s, in radians. ``belt`` is the velocity of the surface of
+    a belt that stays where it is. At most 64 bodies; the simulation's list has `moving_bodies`.
+    """
+
+    first: int
+    size: int
+    pivot: Vector = (0, 0, 0)
+    velocity: Vector = (0, 0, 0)
+    axis: Vector = (0, 0, 1)
+    rate: float = 0
+    amplitude: Vector = (0, 0, 0)
+    swing: float = 0
+    frequency: float = 0
+    phase: float = 0
+    belt: Vector = (0, 0, 0)
+
+    def _numbers(self):
+        numbers = []
+        for value in dataclasses.astuple(self):
+            numbers += value if isinstance(value, tuple) else [value]
+        return [float(number) for number in numbers]
+
+
+class Simulation:
+    """Particles that do what a list of effects says, in its order.
+
+        sim = collide.Simulation(mesh, [collide.gravity(0, 0, -9.81), collide.bounce(0.5)])
+        sim.set(centres, radius, velocities)
+        sim.steps(1000, 1e-3)
+        sim["velocity"]
+
+    mesh       what particles touch, and where it runs: host or GPU, float32 or float64
+    effects    of `collide.effects`, or `Effect`s of your own
+    bodies     parts of the mesh that move, with `moving_bodies` in the list
+    swept      particles pass through nothing, however fast: several times a step's cost
+    precision  of contacts with the mesh, as for `Mesh.query`
+    threads    on the host, as for `Mesh`
+
+    A list that is not in the package is compiled by g++, or nvcc, when it is first used, and kept in COLLIDE_CACHE or
+    ~/.cache/collide: some ten seconds. Raises `Error` without a compiler, or where effects do not fit together. Units are
+    those of the scene. The same steps give the same bits on every run, and on host and GPU.
+    """
+
+    def __init__(
+        self, mesh: Mesh, effects: Sequence[Effect], *, bodies: Sequence[Body] = (), swept: bool = False,
+        precision: str = "exact", threads: int = 0,
+    ):
+        for effect in effects:
+            if not isinstance(effect, Effect):
+                raise TypeError(f"effects: expected effects such as collide.gravity(), got {effect!r}")
+        if precision not in ("exact", "double", "single"):
+            raise ValueError(f"precision: is {precision!r}, expected 'exact', 'double' or 'single'")
+        self.effects = tuple(effects)
+        self._mesh, self._bodies = mesh, list(bodies)
+        self._device, self._library = mesh._device, mesh._library
+        module = module_for(self._device, "mesh")
+        on_gpu = self._device[0] == CUDA
+        path = _build.library(
+            [effect._source for effect in effects],
+            [effect.name for effect in effects],
+            "cuda_shared" if on_gpu else "host",
+            module.capability(self._device[1]) if on_gpu else None,
+            scalar="double" if mesh._is_wide else "float",
+            precision=precision,
+            swept=swept,
+        )
+        make = module.SimulationDouble if mesh._is_wide else module.SimulationFloat
+        self._simulation = make(path, threads, self._device[1])
+        for number, effect in enumerate(effects):
+            for name, values in effect.parameters.items():
+                self._simulation.set_parameter(self._stream(), number, name, values)
+        self.set_mesh()
+
+    def set_mesh(self, mesh: Optional[Mesh] = None, bodies: Optional[Sequence[Body]] = None) -> None:
+        """Call it when the mesh has moved, after `Mesh.update`; or gives another mesh, or other bodies. O(triangles)."""
+        if mesh is not None:
+            if mesh._device != self._device or mesh._is_wide != self._mesh._is_wide:
+                raise ValueError("mesh: has another device or dtype than the simulation's")
+            self._mesh = mesh
+        if bodies is not None:
+            self._bodies = list(bodies)
+        self._simulation.set_mesh(self._stream(), self._mesh._mesh, [body._numbers() for body in self._bodies])
+
+    def set(
+        self, centres: Array, radius: Union[float, Array], velocities: Optional[Array] = None, *, capacity: int = 0
+    ) -> None:
+        """Copies particles: those of before are gone, and the time is 0.
+
+        centres     (n, 3) of the mesh's dtype and device
+        radius      a number, or with `polydisperse` in the list (n,)
+        velocities  (n, 3), packed; None: at rest
+        capacity    for how many there is room, if an effect makes some
+        """
+        self._library = library_of(centres, self._device)
+        self._simulation.set(self._stream(), centres, radius, velocities, capacity)
+
+    def step(self, dt: float) -> None:
+        """Advances by the time dt, above 0."""
+        self._simulation.steps(self._stream(), 1, dt)
+
+    def steps(self, n: int, dt: float) -> None:
+        """Advances n times by dt. On a GPU it does not wait."""
+        self._simulation.steps(self._stream(), n, dt)
+
+    def __getitem__(self, name: str) -> Array:
+        """A column of the particles: (n, 3) for ``position`` and ``velocity``, (n, 3) or (n,) for those of `columns`. It
+        shows the simulation's own memory: it changes with steps, and may be written to between them. After `set` it shows
+        the particles of before. Of jax, whose arrays never change, it is a copy."""
+        stream = self._stream()
+        column = self._simulation.column(stream, name, self._library.is_numpy)
+        return self._library.shown(self._library.array(column, stream))
+
+    def __setitem__(self, name: str, values: Array) -> None:
+        """Gives all particles a column's values, packed and of its dtype."""
+        self._simulation.assign(self._stream(), name, values)
+
+    def change(self, effect: Union[int, str], **parameters: Union[float, Vector]) -> None:
+        """Changes parameters of an effect, by its name or its place in the list: ``sim.change('gravity', z=-1.62)``."""
+        names = [e.name for e in self.effects]
+        if effect not in names and not (isinstance(effect, int) and 0 <= effect < len(names)):
+            raise ValueError(f"effect: there is no {effect!r} in the list {', '.join(names)}")
+        number = effect if isinstance(effect, int) else names.index(effect)
+        changed = self.effects[number]
+        changed = Effect(changed.name, {**_given(changed), **parameters}, changed.code)
+        for name in parameters:
+            self._simulation.set_parameter(self._stream(), number, name, changed.parameters[name])
+        self.effects = (*self.effects[:number], changed, *self.effects[number + 1 :])
+
+    @property
+    def columns(self) -> List[str]:
+        """The names of the columns."""
+        return self._simulation.columns()
+
+    @property
+    def time(self) -> float:
+        """The sum of the steps since `set`."""
+        return self._simulation.time()
+
+    def __len__(self) -> int:
+        """How many particles there are, or places for them."""
+        return len(self._simulation)
+
+    def largest_time_step(self) -> float:
+        """A step that is good for springs between particles; infinite without any."""
+        return self._simulation.largest_time_step()
+
+    def energy(self, density: float = 0) -> Dict[str, float]:
+        """Kinetic, rotational, elastic and potential energy. ``density`` is mass per volume, 0 that of `sphere_contact`.
+        Waits; O(n), O(n^2) with `sphere_contact`."""
+        four = self._simulation.energy(self._stream(), density)
+        return dict(zip(("kinetic", "rotational", "elastic", "potential"), four))
+
+    def save(self, path: Union[str, os.PathLike]) -> None:
+        """Writes particles and parameters to a file; not the mesh."""
+        self._simulation.save(self._stream(), os.fspath(path))
+
+    def load(self, path: Union[str, os.PathLike]) -> None:
+        """Goes on where `save` was called, by a simulation of the same list: the same bits as without a break."""
+        self._simulation.load(self._stream(), os.fspath(path))
+
+    def __repr__(self):
+        return f"<collide.Simulation: {len(self)} particles, {', '.join(e.name for e in self.effects)}>"
+
+    def _stream(self) -> Tuple[int, int]:
+        return self._library.stream(self._device[1]) if self._device[0] == CUDA else NO_STREAM
+
+
+def _given(effect):
+    return {name: values[0] if len(values) == 1 else values for name, values in effect.parameters.items()}

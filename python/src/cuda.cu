@@ -1,0 +1,22 @@
+// The module for arrays in the memory of NVIDIA GPUs.
+#include "module.hpp"
+#include "runtime_cuda.cuh"
+
+NB_MODULE(_cuda, m) {
+  using namespace collide_python;
+  bind<collide::cuda_shared>(m);
+  m.def("own_stream", [](int device) { return reinterpret_cast<std::uintptr_t>(own_stream(device)); });
+  m.def("order", [](int device, std::uintptr_t first, std::uintptr_t second) {
+    on_device const here(device);
+    order(reinterpret_cast<cudaStream_t>(first), reinterpret_cast<cudaStream_t>(second));
+  });
+  m.def("capability", [](int device) {
+    int major = 0, minor = 0;
+    collide::cuda_check(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device),
+                        "cudaDeviceGetAttribute");
+    collide::cuda_check(cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, device),
+                        "cudaDeviceGetAttribute");
+    return 10 * major + minor;
+  });
+  m.def("device_count", &collide::cuda_device_count);
+}

@@ -1,0 +1,55 @@
+/// \file
+/// A simulation as Python sees it, whatever its list of effects: what the package, and code that was compiled on the
+/// machine of the user, know of each other.
+#pragma once
+
+#include <cstddef>
+#include <memory_resource>
+
+namespace collide_python {
+
+/// A column of particles in memory of the space.
+struct column {
+  char const* name;
+  std::size_t width;  ///< 3, or 1
+  char kind;          ///< 'f' float, 'u' unsigned, 'i' signed
+  std::size_t bytes;  ///< of one number
+  void* data;
+};
+
+/// Where a simulation runs: threads on the host; stream and memory on a GPU.
+struct whereabouts {
+  int threads;
+  void* stream;
+  std::pmr::memory_resource* memory;
+};
+
+class simulation_base {
+ public:
+  virtual ~simulation_base() = default;
+
+  /// On which stream, or with how many threads, from now on.
+  virtual void use(whereabouts const& w) = 0;
+  /// Sets a parameter of the effect of a number; false if it has none of that name and size.
+  virtual bool set_parameter(std::size_t effect, char const* name, double const* values, std::size_t n) = 0;
+  /// `mesh` is a collide::mesh_view, `bodies` are collide::body.
+  virtual void set_mesh(void const* mesh, void const* bodies, std::size_t body_count) = 0;
+  /// `spheres` is a collide::sphere_view; velocities are packed, or null.
+  virtual void set(void const* spheres, void const* velocities, std::size_t capacity) = 0;
+  virtual void steps(std::size_t n, double dt) = 0;
+  virtual std::size_t size() const = 0;
+  virtual double time() const = 0;
+  virtual double largest_time_step() const = 0;
+  /// Kinetic, rotational, elastic and potential.
+  virtual void energy(double density, double* four) = 0;
+  virtual std::size_t column_count() const = 0;
+  virtual column column_at(std::size_t i) const = 0;
+  virtual void assign(std::size_t column, void const* values) = 0;
+  virtual void save(char const* path) const = 0;
+  virtual void load(char const* path) = 0;
+};
+
+/// What a compiled list of effects exports under the name `collide_simulation`.
+using make_simulation = simulation_base*(whereabouts const&);
+
+}  // namespace collide_python

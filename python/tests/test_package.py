@@ -1,0 +1,59 @@
+"""What is in the wheel, and what it needs."""
+
+import glob
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+import collide
+
+EXPECTED = {
+    "minimal.py": "sphere 0 touches triangle 0",
+    "first_simulation.py": "after 5 s the centres are 0.25 and 0.25 m high",
+    "own_effect.py": "after a period it is at 1.000",
+}
+HERE = pathlib.Path(collide.__file__).parent
+
+
+def test_the_wheel_is_small():
+    wheels = glob.glob(os.environ.get("COLLIDE_WHEELS", "") + "/collide-*.whl")
+    if not wheels:
+        pytest.skip("COLLIDE_WHEELS does not name the folder of the wheel")
+    assert os.path.getsize(wheels[0]) < 5e6
+
+
+def test_modules_need_nothing_but_what_every_debian_has():
+    """libc, libm, libgcc and libstdc++; OpenMP's library is in the wheel."""
+    for path in [*HERE.glob("_host*.so"), *HERE.glob("lists/*.so")]:
+        lines = subprocess.run(["ldd", path], capture_output=True, text=True, check=True).stdout.splitlines()
+        needed = {line.split()[0].rpartition("/")[2].split(".so")[0] for line in lines if "=>" in line}
+        assert needed <= {"libc", "libm", "libgcc_s", "libstdc++", "libgomp"}, path
+        assert all("libgomp" not in line or str(HERE) in line for line in lines), path
+
+
+def test_without_anything_else(tmp_path):
+    """With nothing on the PATH, and nothing but numpy."""
+    code = "import collide, numpy; m = collide.Mesh(numpy.eye(3, dtype='float32')); print(m.count(numpy.zeros((1, 3), 'float32'), 1))"
+    done = subprocess.run([sys.executable, "-c", code], env={"PATH": str(tmp_path)}, capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("1\n", "")
+
+
+def test_headers_and_types_are_there():
+    for name in ("include/collide/bucket.cuh", "include/Eigen/Core", "src/simulation_of.hpp", "py.typed"):
+        assert (HERE / name).exists()
+
+
+@pytest.mark.parametrize("name", ["minimal.py", "first_simulation.py", "own_effect.py"])
+def test_examples(name):
+    path = pathlib.Path(__file__).parents[2] / "examples" / "python" / name
+    if not path.exists():
+        pytest.skip("the examples are not here")
+    if name == "own_effect.py" and not shutil.which("g++"):
+        pytest.skip("there is no g++ here")
+    done = subprocess.run([sys.executable, path], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == [EXPECTED[name]]

@@ -1,0 +1,232 @@
+"""Simulations: columns, parameters, lists that are compiled, errors."""
+
+import os
+import subprocess
+import sys
+
+import numpy
+import pytest
+
+import collide
+from collide import _build, _source
+
+SQUARE = numpy.array([[-5, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0]], numpy.float32)
+TRIANGLES = numpy.array([[0, 1, 2], [0, 2, 3]], numpy.int32)
+ABOVE = numpy.array([[0, 0, 2], [1, 0, 3]], numpy.float32)
+FALL = [collide.gravity(0, 0, -9.81), collide.bounce(0.5)]
+HAS_COMPILER = any(os.access(os.path.join(p, "g++"), os.X_OK) for p in os.environ["PATH"].split(":"))
+compiles = pytest.mark.skipif(not HAS_COMPILER, reason="there is no g++ here")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def cache(tmp_path_factory):
+    os.environ.setdefault("COLLIDE_CACHE", str(tmp_path_factory.mktemp("cache")))
+
+
+def floor(dtype=numpy.float32):
+    return collide.Mesh(SQUARE.astype(dtype), TRIANGLES)
+
+
+def falling(dtype=numpy.float32, **options):
+    sim = collide.Simulation(floor(dtype), FALL, **options)
+    sim.set(ABOVE.astype(dtype), 0.25)
+    return sim
+
+
+def test_first_simulation():
+    sim = falling()
+    assert len(sim) == 2 and sim.columns == ["position", "velocity"] and sim.time == 0
+    sim.steps(5000, 1e-3)
+    assert numpy.allclose(sim["position"][:, 2], 0.25, atol=1e-3) and abs(sim.time - 5) < 1e-3
+    assert sim.largest_time_step() == numpy.inf and sim.energy(1)["kinetic"] == 0
+
+
+def test_columns_are_views():
+    sim = falling()
+    position = sim["position"]
+    sim.step(1e-3)
+    assert position[0, 2] < 2 and numpy.shares_memory(position, sim["position"])
+    position[0] = (3, 3, 3)
+    assert (sim["position"][0] == 3).all()
+    sim["velocity"] = numpy.ones((2, 3), numpy.float32)
+    assert (sim["velocity"] == 1).all()
+
+
+def test_views_outlive_what_they_show():
+    sim = falling()
+    position, mesh = sim["position"], floor()
+    sim.set(ABOVE[:1], 0.25)  # elsewhere, as the old columns are looked at
+    assert position.shape == (2, 3) and (position == ABOVE).all() and len(sim) == 1
+    sim.steps(5000, 1e-3)  # with effects and mesh as before
+    assert abs(sim["position"][0, 2] - 0.25) < 1e-3
+    del sim, mesh
+    assert (position == ABOVE).all()
+
+
+def test_velocities_strides_and_errors():
+    sim = falling()
+    wide = numpy.zeros((2, 5), numpy.float32)
+    wide[:, 1:4] = ABOVE
+    sim.set(wide[:, 1:4], 0.25, numpy.full((2, 3), 2, numpy.float32))
+    assert (sim["velocity"] == 2).all() and (sim["position"] == ABOVE).all()
+    bad = [
+        (lambda: sim.set(ABOVE.astype(float), 0.25), TypeError, "centres: has dtype float64"),
+        (lambda: sim.set(ABOVE, 0.25, wide[:, 1:4]), ValueError, "velocities: .* packed"),
+        (lambda: sim.set(ABOVE, 0.25, ABOVE[:1]), ValueError, "velocities: has shape"),
+        (lambda: sim.set(ABOVE, numpy.float32([1, 2])), collide.Error, "radii differ: name the effect polydisperse"),
+        (lambda: sim.step(0), collide.Error, "dt of a step"),
+        (lambda: sim.steps(-1, 0.1), TypeError, "steps"),
+        (lambda: sim["spin"], KeyError, "there is no column 'spin' in this simulation; there are position, velocity"),
+        (lambda: sim.__setitem__("velocity", ABOVE[:1]), ValueError, "velocity: has shape"),
+        (lambda: sim.__setitem__("velocity", ABOVE.astype(float)), TypeError, "velocity: has dtype float64"),
+        (lambda: sim.change("spin", x=1), ValueError, "effect: there is no 'spin'"),
+        (lambda: sim.change("gravity", w=1), ValueError, "w: gravity has no such parameter; it has x, y, z"),
+        (lambda: sim.change("gravity", z=(1, 2, 3)), ValueError, "z: of gravity is one number"),
+        (lambda: collide.gravity(z="down"), TypeError, "z: expected a number"),
+        (lambda: collide.box_walls((0, 0), (1, 1, 1)), ValueError, "lower: expected a number or three, got 2"),
+        (lambda: collide.Effect("snow"), ValueError, "there is no effect 'snow'; there are gravity"),
+        (lambda: collide.Simulation(floor(), ["gravity"]), TypeError, "effects: expected effects"),
+        (lambda: collide.Simulation(floor(), FALL, precision="good"), ValueError, "precision: is 'good'"),
+    ]
+    for call, error, text in bad:
+        with pytest.raises(error, match=text):
+            call()
+    fresh = collide.Simulation(floor(), FALL)
+    with pytest.raises(collide.Error, match="call set before it"):
+        fresh.step(1e-3)
+
+
+def test_parameters_change():
+    sim = falling()
+    sim.change("gravity", z=0)
+    sim.steps(100, 1e-3)
+    assert (sim["position"] == ABOVE).all() and "z=0" in repr(sim.effects[0])
+    with pytest.raises(collide.Error, match="restitution"):
+        sim.change(1, restitution=3)
+        sim.step(1e-3)
+
+
+def test_mesh_moves():
+    vertices = SQUARE.copy()
+    mesh = collide.Mesh(vertices, TRIANGLES)
+    sim = collide.Simulation(mesh, FALL)
+    sim.set(ABOVE, 0.25)
+    sim.steps(5000, 1e-3)
+    vertices[:, 2] = -2
+    mesh.update(vertices)
+    sim.set_mesh()
+    sim.steps(5000, 1e-3)
+    assert numpy.allclose(sim["position"][:, 2], -1.75, atol=1e-3)
+
+
+def test_save_and_load(tmp_path):
+    whole, first, second = falling(), falling(), falling()
+    whole.steps(400, 1e-3)
+    first.steps(150, 1e-3)
+    first.save(tmp_path / "state")
+    second.load(tmp_path / "state")
+    second.steps(250, 1e-3)
+    assert (whole["position"] == second["position"]).all() and whole.time == second.time
+    with pytest.raises(collide.Error):
+        second.load(tmp_path / "nothing")
+
+
+def test_all_lists_of_the_package_work():
+    there = os.listdir(os.path.join(os.path.dirname(collide.__file__), "lists"))
+    tried = 0
+    for names in _source.BUILT_IN:
+        if _source.name_of(_source.source(names.split())) + ".so" not in there:
+            continue
+        effects = [collide.emit(10, (0, 0, 1)) if n == "emit" else collide.Effect(n) for n in names.split()]
+        sim = collide.Simulation(floor(), effects)
+        sim.set(ABOVE, numpy.float32([0.25, 0.2]) if "polydisperse" in names else 0.25, capacity=5 if "emit" in names else 0)
+        sim.steps(100, 1e-3)
+        assert numpy.isfinite(sim["position"]).all()
+        tried += 1
+    assert tried == len(there) > 0
+
+
+@compiles
+def test_a_list_is_compiled_once(tmp_path, monkeypatch, capfd):
+    monkeypatch.setenv("COLLIDE_CACHE", str(tmp_path / "cache"))
+    results = []
+    for _ in range(2):
+        sim = collide.Simulation(floor(), [collide.wind(1, 0, 0, linear=2)])
+        sim.set(ABOVE, 0.25)
+        sim.steps(2000, 1e-3)
+        results.append(sim["velocity"].copy())
+    progress = capfd.readouterr().err
+    assert progress.count("compiles a simulation of wind") == 1 and "kept in" in progress
+    assert numpy.allclose(results[0], [1, 0, 0], atol=0.1) and (results[0] == results[1]).all()
+    assert len(list((tmp_path / "cache").iterdir())) == 1
+
+
+SPRING = """struct spring {
+  using reads = collide::columns<collide::position>;
+  using writes = collide::columns<collide::velocity>;
+  double stiffness = 1;
+  double centre[3] = {0, 0, 0};
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
+    collide::vec3<S> const x = p[collide::position{}];
+    collide::vec3<S>& v = p[collide::velocity{}];
+    for (int k = 0; k < 3; ++k) v[k] += (S(centre[k]) - x[k]) * (S(stiffness) * dt);
+  }
+};"""
+
+
+@compiles
+def test_own_effect_in_doubles_and_swept():
+    spring = collide.Effect("spring", {"stiffness": 4.0, "centre": (0, 0, 1)}, code=SPRING)
+    sim = collide.Simulation(floor(numpy.float64), [spring, collide.bounce()], swept=True)
+    sim.set(ABOVE.astype(float), 0.25)
+    sim.steps(1, 1e-3)
+    assert numpy.allclose(sim["velocity"], (numpy.array([0, 0, 1]) - ABOVE) * 4e-3)
+    assert sim["velocity"].dtype == float
+    sim.change("spring", stiffness=0)
+    before = sim["velocity"].copy()
+    sim.steps(1, 1e-3)
+    assert (before == sim["velocity"]).all()
+
+
+@compiles
+def test_bodies():
+    effects = [collide.gravity(), collide.bounce(0), collide.friction(0.9), collide.moving_bodies()]
+    belt = collide.Body(0, 2, belt=(1, 0, 0))
+    sim = collide.Simulation(floor(), effects, bodies=[belt])
+    sim.set(numpy.float32([[0, 0, 0.25]]), 0.25)
+    sim.steps(1000, 1e-3)
+    assert abs(sim["velocity"][0, 0] - 1) < 1e-3
+    with pytest.raises(collide.Error, match="triangles"):
+        sim.set_mesh(bodies=[collide.Body(1, 2)])
+
+
+@compiles
+def test_what_does_not_fit_together_says_so():
+    with pytest.raises(collide.Error, match="friction and adhesion act where the mesh is solid: name bounce before them"):
+        collide.Simulation(floor(), [collide.friction()])
+
+
+def test_without_a_compiler(monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CXX", raising=False)
+    falling()  # in the package
+    with pytest.raises(collide.Error, match="(?s)no compiler for it.*gravity, bounce"):
+        collide.Simulation(floor(), [collide.lost()])
+
+
+def test_the_cache_knows_what_a_library_is_made_of(monkeypatch, tmp_path):
+    monkeypatch.setenv("COLLIDE_CACHE", str(tmp_path))
+    assert _build.cache() == tmp_path
+    monkeypatch.delenv("COLLIDE_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert _build.cache() == tmp_path / "collide"
+
+
+def test_two_processes_compile_at_once(tmp_path):
+    if not HAS_COMPILER:
+        pytest.skip("there is no g++ here")
+    code = "import collide, numpy; m = collide.Mesh(numpy.zeros((3, 3), 'float32')); collide.Simulation(m, [collide.drag(1)])"
+    env = {**os.environ, "COLLIDE_CACHE": str(tmp_path)}
+    running = [subprocess.Popen([sys.executable, "-c", code], env=env) for _ in range(2)]
+    assert [p.wait() for p in running] == [0, 0] and len(list(tmp_path.iterdir())) == 1

@@ -1,0 +1,473 @@
+/// Laws of granular contact on the host in double, against closed forms and an integrator of one contact that shares no
+/// code with the library.
+#include <collide/energy.hpp>
+
+#include "simulation/granular.hpp"
+
+namespace {
+
+using collide::host;
+using collide::one_material;
+using tests::gravity;
+using tests::pi;
+using tests::running;
+using tests::world;
+template <class... Effect>
+using simulation = collide::simulation<tests::meets_mesh<host, collide::karabassi<>, double>, Effect...>;
+
+/// Two solids that meet: sphere 0 comes down onto sphere 1, or onto a wall.
+struct impact {
+  collide::solid solid;
+  collide::surface_pair surfaces;
+  double radius, other_radius;                                          ///< of the other: 0 is a wall
+  double normal_speed, tangential_speed = 0, turn = 0, other_turn = 0;  ///< turns about y
+};
+
+/// What comes of it: relative velocity of centres, turns; the largest overlap and the time of contact.
+struct outcome {
+  double normal, tangential, turn, other_turn, overlap = 0, duration = 0;
+};
+
+/// Effective numbers, written out once more.
+struct effective {
+  double radius, mass, young, shear, beta, own_mass, other_mass;
+
+  explicit effective(impact const& of) {
+    auto const mass_of = [&](double r) { return of.solid.density * 4 / 3 * pi * r * r * r; };
+    bool const is_wall = of.other_radius == 0;
+    own_mass = mass_of(of.radius), other_mass = mass_of(of.other_radius);
+    radius = is_wall ? of.radius : 1 / (1 / of.radius + 1 / of.other_radius);
+    mass = is_wall ? own_mass : 1 / (1 / own_mass + 1 / other_mass);
+    young = of.solid.young / (2 * (1 - of.solid.poisson * of.solid.poisson));
+    shear = of.solid.young / (4 * (1 + of.solid.poisson) * (2 - of.solid.poisson));
+    double const log_e = std::log(of.surfaces.restitution);
+    beta = -log_e / std::sqrt(log_e * log_e + pi * pi);
+  }
+  /// Of an elastic impact: (5 m* v^2 / (4 K))^(2/5), K = 4/3 E* sqrt(R*).
+  double largest_overlap(double speed) const {
+    return std::pow(5 * mass * speed * speed / (16.0 / 3 * young * std::sqrt(radius)), 0.4);
+  }
+  double duration(double speed) const { return 2.94327 * largest_overlap(speed) / speed; }
+};
+
+/// One contact with a normal that stays, by the midpoint rule: Hertz, Tsuji's damping, a tangential spring 8 G* a with
+/// its dashpot, which slides at Coulomb's limit.
+outcome integrated(impact const& of, int steps) {
+  effective const e(of);
+  double const dt = e.duration(of.normal_speed) / steps, r = of.radius, other_r = of.other_radius;
+  double const factor = 2 * std::sqrt(5.0 / 6) * e.beta;
+  double overlap = 0, closing = of.normal_speed, slide = of.tangential_speed, w = of.turn, other_w = of.other_turn,
+         spring = 0;
+  outcome found{};
+  do {
+    double const middle = std::max(overlap + closing * dt / 2, 0.0), a = std::sqrt(e.radius * middle);
+    double const normal = 4.0 / 3 * e.young * a * middle + factor * std::sqrt(2 * e.young * a * e.mass) * closing;
+    double const slip = slide - w * r - other_w * other_r;  // turns about y move the lowest point by -w r
+    spring += slip * dt;
+    double const k = 8 * e.shear * a, limit = of.surfaces.friction * std::abs(normal);
+    double tangential = k * spring + factor * std::sqrt(k * e.mass) * slip;
+    if (k * std::abs(spring) > limit) {
+      tangential = std::copysign(limit, spring);
+      if (k > 0) spring = tangential / k;
+    }
+    closing -= normal / e.mass * dt;
+    slide -= tangential / e.mass * dt;
+    double const arm = middle / 2;
+    w += tangential * (r - arm) / (0.4 * e.own_mass * r * r) * dt;
+    if (other_r > 0) other_w += tangential * (other_r - arm) / (0.4 * e.other_mass * other_r * other_r) * dt;
+    overlap += closing * dt;
+    found.overlap = std::max(found.overlap, overlap);
+    found.duration += dt;
+  } while (overlap > 0);
+  found.normal = -closing, found.tangential = slide, found.turn = w, found.other_turn = other_w;
+  return found;
+}
+
+/// The same in the library.
+outcome simulated(impact const& of, int steps, collide::mindlin const& tangential = {}) {
+  using law = collide::granular_contact<collide::hertz, collide::mindlin>;
+  using made_of = simulation<collide::polydisperse, law, collide::velocity_verlet>;
+  effective const e(of);
+  bool const is_wall = of.other_radius == 0;
+  double const dt = e.duration(of.normal_speed) / steps;
+  world<double> w;
+  if (is_wall) tests::add_divided_floor(w, 50 * of.radius, 3);
+  w.particle(0, 0, of.radius + of.other_radius, of.tangential_speed, 0, -of.normal_speed);
+  w.radii = {of.radius};
+  if (!is_wall) w.particle(0, 0, 0), w.radii.push_back(of.other_radius);
+  law by{one_material(of.solid, of.surfaces), {}, tangential};
+  running<made_of> made(host(1), w, collide::polydisperse{}, by, collide::velocity_verlet{});
+  std::vector<double> turns{0, of.turn, 0, 0, of.other_turn, 0};
+  turns.resize(w.centres.size());
+  made.simulation.assign<collide::angular_velocity>(turns);
+  outcome found{};
+  for (int k = 0; k < 3 * steps; ++k) {
+    made.simulation.step(dt);
+    auto const x = made.positions();
+    double const z = is_wall ? 0 : x[5], dx = is_wall ? 0 : x[3] - x[0];
+    double const overlap = of.radius + of.other_radius - std::sqrt((x[2] - z) * (x[2] - z) + dx * dx);
+    found.overlap = std::max(found.overlap, overlap);
+    found.duration += dt;
+    if (!(overlap > 0)) break;
+  }
+  made.simulation.step(dt);
+  auto const v = made.velocities(), turn = made.simulation.to_host<collide::angular_velocity>();
+  found.normal = v[2] - (is_wall ? 0 : v[5]), found.tangential = v[0] - (is_wall ? 0 : v[3]);
+  found.turn = turn[1], found.other_turn = is_wall ? 0 : turn[4];
+  return found;
+}
+
+/// As the integrator says, to a part of the speeds. Where it slides all the time, as Coulomb says.
+void check(impact const& of, double close = 2e-4) {
+  CAPTURE(of.tangential_speed);
+  CAPTURE(of.turn);
+  outcome const found = simulated(of, 2000), expected = integrated(of, 200000);
+  double const speed = of.normal_speed + std::abs(of.tangential_speed) + std::abs(of.turn * of.radius) +
+                       std::abs(of.other_turn * of.other_radius);
+  CHECK(std::abs(found.normal - expected.normal) < close * speed);
+  CHECK(std::abs(found.tangential - expected.tangential) < close * speed);
+  CHECK(std::abs(found.turn - expected.turn) * of.radius < close * speed);
+  CHECK(std::abs(found.other_turn - expected.other_turn) * of.other_radius < close * speed);
+  double const e = of.surfaces.restitution, slip = of.tangential_speed - of.turn * of.radius;
+  double const given = of.surfaces.friction * (1 + e) * of.normal_speed;
+  if (of.other_radius == 0 && std::abs(slip) > 2 * 3.5 * given && e > 0.9) {
+    CHECK(found.tangential == doctest::Approx(of.tangential_speed - std::copysign(given, slip)).epsilon(3e-3));
+    CHECK(found.turn * of.radius ==
+          doctest::Approx(of.turn * of.radius + 2.5 * std::copysign(given, slip)).epsilon(1e-2));
+  }
+}
+
+// Y. C. Chung and J. Y. Ooi, Granular Matter 13, 2011
+constexpr collide::solid glass_beads{4.8e10, 0.2, 2800}, limestone{2.5e10, 0.25, 2500}, aluminium{7e10, 0.33, 2700},
+    magnesium{4e10, 0.35, 1800}, alumina{3.8e11, 0.23, 4000}, steel_alloy{2.08e11, 0.3, 7850}, nylon{2.5e9, 0.4, 1000};
+
+}  // namespace
+
+TEST_CASE("granular laws: impacts of Chung and Ooi 1 and 2, elastic, along the normal") {
+  for (impact const& of : {impact{glass_beads, {1, 0.35}, 0.01, 0.01, 20}, impact{limestone, {1, 0.35}, 0.01, 0.01, 20},
+                           impact{aluminium, {1, 0.35}, 0.1, 0, 0.2}, impact{magnesium, {1, 0.35}, 0.1, 0, 0.2}}) {
+    effective const e(of);
+    outcome const found = simulated(of, 4000);
+    CHECK(found.normal == doctest::Approx(of.normal_speed).epsilon(1e-6));
+    CHECK(found.overlap == doctest::Approx(e.largest_overlap(of.normal_speed)).epsilon(1e-5));
+    CHECK(found.duration == doctest::Approx(e.duration(of.normal_speed)).epsilon(1e-3));
+    CHECK(found.turn == 0);
+  }
+}
+
+TEST_CASE("granular laws: impacts of Chung and Ooi 3, any restitution at any speed") {
+  for (double const restitution : {0.1, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0})
+    for (double const speed : {0.01, 3.9})
+      CHECK(simulated({alumina, {restitution, 0}, 0.0025, 0, speed}, 4000).normal ==
+            doctest::Approx(restitution * speed).epsilon(2e-3));
+}
+
+TEST_CASE("granular laws: impacts of Chung and Ooi 4, a speed at all angles") {
+  for (int degrees = 5; degrees < 90; degrees += 10) {
+    double const angle = degrees * pi / 180;
+    check({alumina, {0.98, 0.092}, 0.0025, 0, 3.9 * std::cos(angle), 3.9 * std::sin(angle)});
+  }
+}
+
+TEST_CASE("granular laws: impacts of Chung and Ooi 5, a normal speed at all angles") {
+  for (double const tangent : {0.05, 0.2, 0.5, 1.0, 2.0, 3.0, 6.0})
+    check({steel_alloy, {0.999, 0.3}, 1e-5, 0, 5, 5 * tangent});
+}
+
+TEST_CASE("granular laws: impacts of Chung and Ooi 6 to 8, spheres that turn") {
+  for (auto const& solid : {aluminium, nylon})
+    for (double const turn : {0.175, 0.75, 2.0, 8.0, 24.0}) {
+      check({solid, {0.5, 0.4}, 0.1, 0, 0.2, 0, turn});
+      check({solid, {0.5, 0.4}, 0.1, 0.1, 0.2, 0, turn, turn});
+      check({solid, {0.5, 0.4}, 0.1, 0.5, 0.2, 0, turn});
+    }
+}
+
+TEST_CASE("granular laws: angles of rebound of Tsuji, Tanaka and Ishida, and of Thornton: from sticking to sliding") {
+  // The slip of rebound is the same for all solids of one Poisson's ratio; beyond 7 times the friction it slides all
+  // the time.
+  double last = -10;
+  for (double const tangent : {0.2, 0.5, 1.0, 2.0, 2.8, 4.0, 8.0}) {
+    impact of{{7e10, 0.3, 2650}, {1, 0.4}, 0.01, 0, 1, tangent};
+    outcome const found = simulated(of, 2000);
+    of.solid = {7e8, 0.3, 1300};
+    of.radius = 0.003;
+    outcome const other = simulated(of, 2000);
+    double const slip = found.tangential - found.turn * 0.01, other_slip = other.tangential - other.turn * 0.003;
+    CHECK(std::abs(slip - other_slip) < 0.02 * tangent);
+    if (tangent >= 4) CHECK(slip == doctest::Approx(tangent - 7 * 0.4).epsilon(1e-2));
+    if (tangent < 1) CHECK(slip > 0);  // the surface springs back, and once more
+    if (tangent == 1 || tangent == 2) CHECK(slip < 0);
+    if (tangent > 2) CHECK(slip > last);
+    last = slip;
+    check({{7e10, 0.3, 2650}, {1, 0.4}, 0.01, 0, 1, tangent});
+  }
+}
+
+TEST_CASE("granular laws: grazing impacts make no energy") {
+  // https://github.com/lammps/lammps/issues/5007
+  for (double const restitution : {0.5, 1.0})
+    for (double const friction : {0.1, 0.5, 2.0})
+      for (double const degrees : {0.2, 1.0, 5.0, 20.0}) {
+        impact const of{{1e8, 0.3, 2500},
+                        {restitution, friction},
+                        0.001,
+                        0,
+                        std::sin(degrees * pi / 180),
+                        std::cos(degrees * pi / 180)};
+        for (auto const& variant : {collide::mindlin{}, tests::mindlin_of_lammps(true)}) {
+          outcome const found = simulated(of, 1000, variant);
+          double const after = found.normal * found.normal + found.tangential * found.tangential +
+                               0.4 * std::pow(found.turn * of.radius, 2);
+          CHECK(after < 1 + 1e-6);
+        }
+      }
+}
+
+TEST_CASE("granular laws: epsd is a spring that slides, with its dashpot below the limit") {
+  using values = collide::detail::contact_values<double, collide::columns<collide::rolling_torque>>;
+  collide::epsd const law;
+  collide::detail::contact_material const m({1e7, 0.2, 2500}, {1e7, 0.2, 2500}, {1, 0.5, 0.1});
+  collide::granular_pair<double> p{};
+  p.normal = {0, 0, 1};
+  p.radius = p.own_radius = 0.01;
+  p.overlap = 1e-5, p.mass = 0.01;
+  p.rolling_inertia = 1.4 * 0.01 * 1e-4;
+  auto const n = collide::hertz{}.force(p, m);
+  double const a = std::sqrt(0.01 * 1e-5), k_n = 4.0 / 3 * (1e7 / (2 * (1 - 0.04))) * a;
+  double const k = 2.25 * k_n * 0.1 * 0.1 * 1e-4, limit = 0.1 * 0.01 * k_n * 1e-5;
+  double const dash = 2 * 0.3 * std::sqrt(p.rolling_inertia * k), rate = 0.5, dt = 1e-5;
+  values kept;
+  collide::detail::contact_access<collide::columns<collide::rolling_torque>, values, double> const memory(kept, dt);
+  double spring = 0;
+  int slid = 0;
+  for (int step = 0; step < 3000; ++step) {
+    double const w = step < 2000 ? rate : -rate;  // it turns back
+    p.turning = p.own_turning = {0, w, 0};
+    double const y = law.torque(p, m, n, memory).y();
+    spring += k * w * dt;
+    bool const slides = std::abs(spring) > limit;
+    if (slides) spring = std::copysign(limit, spring), ++slid;
+    CHECK(y == doctest::Approx(-(spring + (slides ? 0 : dash * w))).epsilon(1e-9));
+  }
+  CHECK(slid > 100);
+}
+
+namespace {
+
+/// How far a ball rolls that begins with a speed, and how it turns in the end.
+template <class Rolling>
+std::array<double, 2> rolled(double speed) {
+  using law = collide::granular_contact<collide::hertz, collide::mindlin, Rolling>;
+  world<double> w;
+  w.radius = 0.01;
+  tests::add_divided_floor(w, 1, 4);
+  w.particle(0, 0, 0.01, speed);
+  running<simulation<gravity, law, collide::velocity_verlet>> made(
+      host(1), w, gravity{}, law{one_material({1e7, 0.2, 2500}, {0.3, 0.5, 0.05})}, collide::velocity_verlet{});
+  made.simulation.template assign<collide::angular_velocity>(std::vector<double>{0, speed / 0.01, 0});
+  made.simulation.steps(60000, 2e-5);
+  return {made.positions()[0], made.simulation.template to_host<collide::angular_velocity>()[1]};
+}
+
+}  // namespace
+
+TEST_CASE("granular laws: a ball that rolls stops where rolling friction says") {
+  // torque mu_r R N against inertia 1.4 m R^2 about the point of contact
+  double const far = 0.1 * 0.1 * 1.4 / (2 * 0.05 * 9.81);
+  CHECK(rolled<collide::constant_torque>(0.1)[0] == doctest::Approx(far).epsilon(0.01));
+  auto const [at, turn] = rolled<collide::epsd>(0.1);
+  CHECK(at == doctest::Approx(far).epsilon(0.03));
+  CHECK(std::abs(turn) < 1e-3);
+  CHECK(rolled<collide::none>(0.1)[0] == doctest::Approx(0.1 * 60000 * 2e-5).epsilon(1e-3));
+}
+
+TEST_CASE("granular laws: jkr is the force of Johnson, Kendall and Roberts, in contact and apart") {
+  using values = collide::detail::contact_values<double, collide::columns<collide::contact_radius>>;
+  collide::detail::contact_material const m({1e7, 0.2, 2500}, {1e7, 0.2, 2500}, {1, 0, 0, 0.05});
+  double const young = 1e7 / (2 * (1 - 0.04)), gamma = 0.05, r = 0.002;
+  double const least = std::cbrt(pi * gamma * r * r / (4 * young));  // radius of contact where they part
+  values kept;
+  collide::detail::contact_access<collide::columns<collide::contact_radius>, values, double> const memory(kept, 1e-6);
+  double pull = 0;
+  for (double a = least * 1.001; a < 40 * least; a *= 1.05) {
+    collide::granular_pair<double> p{};
+    p.radius = r;
+    p.overlap = a * a / r - 2 * std::sqrt(pi * gamma * a / young);
+    auto n = collide::hertz{}.force(p, m);
+    collide::jkr{}.pull(n, p, m, memory);
+    double const expected = 4 * young * a * a * a / (3 * r) - 2 * pi * a * a * std::sqrt(4 * gamma * young / (pi * a));
+    CHECK(n.contact_radius == doctest::Approx(a).epsilon(1e-6));
+    CHECK(n.elastic == doctest::Approx(expected).epsilon(1e-5));
+    CHECK(n.pull_off == doctest::Approx(3 * pi * gamma * r));
+    pull = std::max(pull, -n.elastic);
+  }
+  CHECK(pull == doctest::Approx(3 * pi * gamma * r).epsilon(3e-3));
+}
+
+namespace {
+
+/// The pull at which a ball leaves a wall, or a ball that is held, over 3 pi gamma R*.
+template <class Cohesion>
+double pull_that_parts(double gamma) {
+  using law = collide::granular_contact<collide::hertz, collide::none, collide::none, Cohesion>;
+  world<double> w;
+  w.radius = 0.001;
+  tests::add_divided_floor(w, 0.01, 3);
+  w.particle(0.0001, 0.0002, 0.001 - 1e-9);
+  running<simulation<gravity, law, collide::velocity_verlet>> made(
+      host(1), w, gravity{0, 0, 0}, law{one_material({1e6, 0.2, 2500}, {0.1, 0, 0, gamma})},
+      collide::velocity_verlet{});
+  double const mass = 2500 * 4 / 3 * pi * 1e-9, largest = 3 * pi * gamma * 0.001, dt = 2e-6;
+  made.simulation.steps(4000, dt);
+  for (int k = 100; k < 300; ++k) {
+    made.simulation.template effect<gravity>().z = k * 0.005 * largest / mass;
+    made.simulation.steps(1600, dt);
+    if (made.positions()[2] > 0.00102) return k * 0.005;
+  }
+  return 10;
+}
+
+}  // namespace
+
+TEST_CASE("granular laws: jkr holds a ball at a wall until 3 pi gamma R pull, dmt until 4 pi gamma R") {
+  CHECK(pull_that_parts<collide::jkr>(0.05) == doctest::Approx(1).epsilon(0.02));
+  CHECK(pull_that_parts<collide::dmt>(0.05) == doctest::Approx(4.0 / 3).epsilon(0.02));
+}
+
+TEST_CASE("granular laws: momentum closes") {
+  using law = collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>;
+  world<double> w = tests::falling_grains<double>(3, false);
+  w.corners.clear();
+  for (std::size_t i = 0; i < w.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) w.velocities[3 * i + c] -= 20 * (w.centres[3 * i + c] - (c == 2 ? 0.03 : 0));
+  running<simulation<law, collide::velocity_verlet>> made(
+      host(1), w, law{one_material({1e7, 0.2, 2500}, {0.5, 0.3, 0.1})}, collide::velocity_verlet{});
+  double before[3] = {}, after[3] = {};
+  for (std::size_t i = 0; i < w.velocities.size(); ++i) before[i % 3] += w.velocities[i];
+  made.simulation.steps(2000, 1e-5);
+  auto const v = made.velocities();
+  double changed = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) after[i % 3] += v[i], changed += std::abs(v[i] - w.velocities[i]);
+  CHECK(changed > 1);
+  for (int c = 0; c < 3; ++c) CHECK(std::abs(after[c] - before[c]) < 1e-12);
+}
+
+namespace {
+
+/// Four grains and one on top of them.
+world<double> small_pile() {
+  world<double> w;
+  w.radius = 0.01;
+  tests::add_divided_floor(w, 1, 4);
+  for (int k = 0; k < 4; ++k) w.particle(0.0199 * (k % 2), 0.0199 * (k / 2), 0.01);
+  w.particle(0.00995, 0.00995, 0.0242);
+  return w;
+}
+
+}  // namespace
+
+TEST_CASE("granular laws: energy and contacts of a scene, by hand") {
+  using law =
+      collide::granular_contact<collide::hertz, collide::mindlin, collide::none, collide::none, collide::materials<3>>;
+  world<double> w;
+  w.radii = {0.01, 0.02, 0.01};
+  w.particle(0, 0, 0.1, 2);
+  w.particle(0.0299, 0, 0.1);
+  w.particle(0.0299, 0, 0.1275);  // a quarter of its radius in the other
+  law by;
+  by.made_of = tests::benchmark_materials();
+  running<simulation<collide::polydisperse, gravity, law, collide::velocity_verlet>> made(
+      host(1), w, collide::polydisperse{}, gravity{0, 0, -10}, by, collide::velocity_verlet{});
+  made.simulation.assign<collide::material>(std::vector<std::uint8_t>{0, 2, 1});
+  made.simulation.assign<collide::angular_velocity>(std::vector<double>{0, 3, 0, 0, 0, 0, 0, 0, 0});
+  double const ball = 4.0 / 3 * pi * 1e-6;
+  auto const found = collide::energy(made.simulation);
+  CHECK(found.kinetic == doctest::Approx(0.5 * 2500 * ball * 4));
+  CHECK(found.rotational == doctest::Approx(0.2 * 2500 * ball * 1e-4 * 9));
+  CHECK(found.potential == doctest::Approx(10 * ball * (2500 * 0.1 + 8 * 7200 * 0.1 + 2000 * 0.1275)));
+  double const root = std::sqrt(0.02 / 3);
+  CHECK(found.elastic == doctest::Approx(8.0 / 15 * root *
+                                         (1036729857.820 * std::pow(1e-4, 2.5) + 519596199.525 * std::pow(0.0025, 2.5)))
+                             .epsilon(1e-8));
+  auto const report = collide::contact_report(made.simulation);
+  CHECK(report.contacts == 2);
+  CHECK(report.coordination == doctest::Approx(4.0 / 3));
+  CHECK(report.deep == 1);
+  CHECK(report.largest_overlap == doctest::Approx(0.25));
+  CHECK(report.longest_good_step == doctest::Approx(0.8 * largest_time_step(made.simulation)));
+  CHECK(report.is_good_step(report.longest_good_step));
+  CHECK_FALSE(report.is_good_step(1.01 * report.longest_good_step));
+}
+
+TEST_CASE("granular laws: energy never grows") {
+  using law = collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>;
+  for (double const restitution : {0.3, 1.0}) {
+    world<double> w = tests::falling_grains<double>(4, false);
+    running<simulation<gravity, law, collide::velocity_verlet>> made(
+        host(1), w, gravity{}, law{one_material({1e7, 0.2, 2500}, {restitution, 0.4, 0.1})},
+        collide::velocity_verlet{});
+    double const start = collide::energy(made.simulation).total();
+    double last = start;
+    for (int k = 0; k < 40; ++k) {
+      made.simulation.steps(200, 1e-5);
+      double const now = collide::energy(made.simulation).total();
+      CHECK(now < start * (1 + 1e-4));
+      last = now;
+    }
+    CHECK(last < 0.97 * start);
+  }
+}
+
+TEST_CASE("granular laws: a pile at rest stays") {
+  using law = collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>;
+  law const by{one_material({1e7, 0.2, 2500}, {0.2, 0.5, 0.1})};
+  world<double> const w = small_pile();
+  running<simulation<gravity, law, collide::velocity_verlet>> awake(host(1), w, gravity{}, by,
+                                                                    collide::velocity_verlet{});
+  awake.simulation.steps(60000, 2e-5);
+  auto const before = awake.positions();
+  awake.simulation.steps(20000, 2e-5);
+  auto const after = awake.positions();
+  for (std::size_t i = 0; i < before.size(); ++i) CHECK(std::abs(after[i] - before[i]) / 0.4 < 1e-9 * 0.01);
+
+  running<simulation<collide::sleep, gravity, law, collide::velocity_verlet>> asleep(
+      host(1), w, collide::sleep{1e-3, 100}, gravity{}, by, collide::velocity_verlet{});
+  asleep.simulation.steps(20000, 2e-5);
+  auto const slept = asleep.positions();
+  asleep.simulation.steps(100000, 2e-5);
+  CHECK(std::memcmp(slept.data(), asleep.positions().data(), slept.size() * sizeof(double)) == 0);
+}
+
+namespace {
+
+/// The slope of a heap that a column of grains makes: twice its mean height over its mean distance from the axis, less
+/// that of a layer, of a cone 4/3 (height - radius) over the base's radius.
+template <class Rolling>
+double slope_of_heap() {
+  using law = collide::granular_contact<collide::hertz, collide::mindlin, Rolling>;
+  world<double> w;
+  w.radius = 0.005;
+  tests::add_divided_floor(w, 1, 2);
+  for (int k = 0; k < 300; ++k) {
+    double const shift = 1e-4 * (k % 7);
+    w.particle((k % 5 - 2) * 0.0101 + shift, (k / 5 % 5 - 2) * 0.0101 - shift, 0.006 + k / 25 * 0.0101);
+  }
+  running<simulation<gravity, law, collide::velocity_verlet>> made(
+      host(1), w, gravity{}, law{one_material({1e6, 0.2, 2500}, {0.3, 0.5, 0.3})}, collide::velocity_verlet{});
+  double const dt = largest_time_step(made.simulation);
+  made.simulation.steps(static_cast<std::size_t>(1.0 / dt), dt);
+  auto const x = made.positions();
+  double height = 0, away = 0;
+  for (std::size_t i = 0; i < x.size(); i += 3) height += x[i + 2] - 0.005, away += std::hypot(x[i], x[i + 1]);
+  return 2 * height / away;
+}
+
+}  // namespace
+
+TEST_CASE("granular laws: a heap is steeper with rolling resistance") {
+  double const with = slope_of_heap<collide::epsd>(), without = slope_of_heap<collide::none>();
+  MESSAGE("slopes with and without: ", with, ", ", without);
+  CHECK(with > 0.1);
+  CHECK(with > 1.5 * without);
+}
