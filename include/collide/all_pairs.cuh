@@ -171,7 +171,7 @@ struct all_pairs {
     /// The triangles near a single sphere, for a kernel; valid until the next build.
     detail::all_pairs_ref<S> triangle_ref() const { return {{mesh_, nullptr}}; }
 
-    /// What a kernel asks for the triangles near a point; valid until the next build.
+    /// A reference for kernels to the triangles near a point; valid until the next build.
     detail::all_pairs_ref<S> ref() const { return triangle_ref(); }
 
     template <class Space>

@@ -24,7 +24,7 @@ struct energy_sums {
   double total() const { return kinetic + rotational + elastic + potential; }  ///< the sum of all
 };
 
-/// What `contact_report` finds of the contacts between spheres.
+/// The result of `contact_report` on the contacts between spheres.
 struct contact_counts {
   std::size_t contacts = 0;    ///< pairs that overlap
   double coordination = 0;     ///< contacts of a particle, the mean of all that are alive
@@ -163,8 +163,8 @@ energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0
   return sum;
 }
 
-/// What contacts between spheres are like, and which steps are short enough for them: what to look at when a scene is
-/// new. Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
+/// Reports how the contacts between spheres are, and which steps are short enough for them: what to look at when a
+/// scene is new. Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
 template <class Detector, class... Effect>
 contact_counts contact_report(simulation<Detector, Effect...> const& of) {
   detail::particles_on_host<Detector, Effect...> const all(of);

@@ -227,7 +227,7 @@ struct per_sphere {
       return detail::per_sphere_ref<S, decltype(index_.ref())>{{mesh_, nullptr}, index_.ref()};
     }
 
-    /// What a kernel asks for the triangles near a point, see `nearest`; valid until the next build.
+    /// A reference for kernels to the triangles near a point, see `nearest`; valid until the next build.
     auto ref() const { return index_.ref(); }
 
     template <class Space>

@@ -21,7 +21,7 @@ COLLIDE_HD ray_parity<S> parity_of(vec3<S> const& point, mesh_view<S> const& mes
   return parity;
 }
 
-/// What `contains` does for each point.
+/// Search functor of `contains` for each point.
 struct find_inside {
   std::uint8_t* to;
 

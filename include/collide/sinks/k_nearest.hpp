@@ -74,7 +74,7 @@ class k_nearest_search {
   id numbers_[most_nearest];
 };
 
-/// What `k_nearest` does for each sphere.
+/// Search functor of `k_nearest` for each sphere.
 template <class S, class Precision>
 struct find_k_nearest {
   S max_distance;

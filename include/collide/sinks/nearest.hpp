@@ -26,7 +26,7 @@ struct nearest_precision<karabassi<Precision>> {
   using type = std::conditional_t<std::is_same<Precision, baseline>::value, single_precision, Precision>;
 };
 
-/// What `nearest` does for each sphere.
+/// Search functor of `nearest` for each sphere.
 template <class S, class Precision>
 struct find_nearest {
   S max_distance;

@@ -16,8 +16,8 @@ namespace collide {
 /// the surface.
 template <class S>
 struct signed_nearest_triangle : nearest_triangle<S> {
-  /// Of the signed distance: a unit vector, from the surface to a point outside, and from a point inside to the
-  /// surface. On the surface the normal (b - a) x (c - a) of the triangle; 0 if that is a segment or a point.
+  /// The gradient of the signed distance: a unit vector, from the surface to a point outside, and from a point inside
+  /// to the surface. On the surface the normal (b - a) x (c - a) of the triangle; 0 if that is a segment or a point.
   vec3<S> gradient;
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// Where the closest point of a triangle is, and how far: to all digits, once it is known which foot it is.
+/// The closest point of a triangle and its distance, to all digits, once it is known which foot it is.
 ///
 /// In numbers of twice the digits of a double where these suffice, else exactly: 2^-56 bounds the relative error of the
 /// distance before it is rounded.

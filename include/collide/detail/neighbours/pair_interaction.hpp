@@ -89,7 +89,7 @@ struct pair_interaction {
   }
 
  private:
-  /// What others press a particle with that sleeps is known where that presses on what it lies on.
+  /// Particles that sleep are pressed by others too, where that is passed on to what they lie on.
   COLLIDE_HD_INLINE bool takes_part(interaction& p) const {
     if constexpr (Effects::keeps_support) {
       return effects.only_sleeps(p);  // or is awake

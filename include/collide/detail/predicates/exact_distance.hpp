@@ -9,7 +9,7 @@
 
 namespace collide::detail {
 
-/// Where the numbers of a second triangle stand in the table: after those of `exact_slot`.
+/// Places of the numbers of a second triangle in the table: after those of `exact_slot`.
 struct exact_second_slot {
   enum : int {
     corner = exact_slot::end,  ///< relative to the point

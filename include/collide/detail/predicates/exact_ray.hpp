@@ -12,7 +12,7 @@
 
 namespace collide::detail {
 
-/// Where the ray crosses a triangle: nowhere, above its beginning, or there.
+/// The place where the ray crosses a triangle: nowhere, above its beginning, or there.
 enum class ray_crossing { none, above, at_point };
 
 COLLIDE_HD inline int sign_of(double x) { return x < 0 ? -1 : (x > 0 ? 1 : 0); }
@@ -77,8 +77,8 @@ COLLIDE_HD_INLINE int sign_of_height(triangle<double> const& t, vec3<double> con
   return sign_of_height_in_integers(t, p);
 }
 
-/// Where the ray from p, moved, along +z crosses a finite triangle. `on_line`: p itself lies on the line of an edge, as
-/// seen from +z; else p is on the triangle only if the result is `at_point`.
+/// Decides where the ray from p, moved, along +z crosses a finite triangle. `on_line`: p itself lies on the line of an
+/// edge, as seen from +z; else p is on the triangle only if the result is `at_point`.
 COLLIDE_HD_NOINLINE inline ray_crossing cross_ray(triangle<double> const& t, vec3<double> const& p, bool& on_line) {
   int const ab = side_of_line(t.a, t.b, p), bc = side_of_line(t.b, t.c, p), ca = side_of_line(t.c, t.a, p);
   on_line = ab == 0 || bc == 0 || ca == 0;

@@ -1,5 +1,5 @@
 /// \file
-/// What sinks share that search a mesh for each point.
+/// Shared by sinks that search a mesh for each point.
 #pragma once
 
 #include <utility>

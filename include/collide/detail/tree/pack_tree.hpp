@@ -21,8 +21,8 @@
 
 namespace collide::detail {
 
-/// Where a place is on Hilbert's curve through a cube, from coordinates of `Bits` bits (J. Skilling, "Programming the
-/// Hilbert curve", 2004).
+/// The position of a place on Hilbert's curve through a cube, from coordinates of `Bits` bits (J. Skilling,
+/// "Programming the Hilbert curve", 2004).
 template <int Bits>
 COLLIDE_HD_INLINE std::uint64_t place_on_curve(std::uint32_t (&x)[3]) {
   constexpr std::uint32_t top = 1u << (Bits - 1);
@@ -75,7 +75,7 @@ struct find_places {
   }
 };
 
-/// Where the levels of a packed tree are, the root first: how many nodes each has, and the number of its first.
+/// The levels of a packed tree, the root first: how many nodes each has, and the number of its first.
 struct tree_levels {
   static constexpr int most = 12;
 

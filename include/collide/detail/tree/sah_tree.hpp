@@ -217,7 +217,7 @@ class sah_tree {
     return true;
   }
 
-  /// Of each node; null if no triangle is cut.
+  /// The boxes before, of each node; null if no triangle is cut.
   boxes_before const* before() const { return is_cut_ ? before_.data() : nullptr; }
 
  private:
@@ -230,8 +230,8 @@ class sah_tree {
     int level;
   };
 
-  /// Of the parts of ranges that are divided anywhere, of at least 64 triangles, one node each is not full; and a node
-  /// above the lowest level has at least two below.
+  /// An upper bound: of the parts of ranges that are divided anywhere, of at least 64 triangles, one node each is not
+  /// full; and a node above the lowest level has at least two below.
   static std::size_t most_nodes(std::size_t triangles) { return triangles / 4 + triangles / 32 + 16; }
 
   /// Makes a node and all below. `postpones`: what has few triangles waits until threads do it.

@@ -36,7 +36,7 @@ COLLIDE_HD_INLINE float float_above(S x) {
   return -float_below(-x);
 }
 
-/// What the boxes of a tree are relative to: nothing for floats, a corner of the mesh for doubles.
+/// The point that the boxes of a tree are relative to: nothing for floats, a corner of the mesh for doubles.
 template <class S>
 COLLIDE_HD_INLINE vec3<S> tree_origin(mesh_view<S> const& mesh) {
   if constexpr (sizeof(S) == sizeof(float)) {
@@ -185,7 +185,7 @@ struct alignas(32) tree_node {
   }
 };
 
-/// Of the boxes of a node that are of pieces of triangles, those of the pieces before them.
+/// For the boxes of a node that are of pieces of triangles: the boxes of the pieces before them.
 struct boxes_before {
   aabb<float> of[tree_node::width];
 };

@@ -82,7 +82,7 @@ class triangle_pieces {
       length = std::sqrt(std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
     }
 
-    /// What its box has more than that of a triangle of its area that is not long and thin.
+    /// The surface that its box has more than that of a triangle of its area that is not long and thin.
     double wasted() const {
       double const w = half_surface - 8 * area;
       return w > 0 ? w : 0;
