@@ -87,7 +87,7 @@ void detect(benchmark::State& state, bench::scene_kind const& kind, Space space)
   state.counters["spheres"] = static_cast<double>(kind.spheres);
 }
 
-/// Kernel body of `for_each` over candidates.
+/// Kernel functor of `for_each` over candidates.
 template <class NarrowPhase, class S>
 struct decide_all {
   collide::mesh_view<S> mesh;

@@ -74,7 +74,7 @@ __global__ void read_centres(float4 const* centres, std::size_t n, float* never)
   if (sum == 0.12345f) *never = sum;
 }
 
-/// Kernel body of `for_each` over pairs that are told: tests each, as a query does before it finishes what is left
+/// Kernel functor of `for_each` over pairs that are told: tests each, as a query does before it finishes what is left
 /// open, and writes it where it belongs.
 struct test_told {
   collide::mesh_view<float> mesh;

@@ -321,7 +321,7 @@ void add_all(suite<Space> const& scene) {
   scene.add_mixing("packed, fast: sphere_contact, gravity, box_walls", 2000, contact, gravity{}, scene.around_packed());
 }
 
-/// Kernel body of `for_each` over spheres that fill space.
+/// Kernel functor of `for_each` over spheres that fill space.
 struct fill_space {
   float* xyz;
   std::size_t side;

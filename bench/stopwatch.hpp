@@ -78,7 +78,7 @@ struct stopwatch_of {
 template <class Space>
 using stopwatch = typename stopwatch_of<Space>::type;
 
-/// Kernel body of `for_each` over groups of four scalars, for CUDA: reads them all, and writes where they sum to a
+/// Kernel functor of `for_each` over groups of four scalars, for CUDA: reads them all, and writes where they sum to a
 /// value that they never sum to.
 template <class S>
 struct read_all {

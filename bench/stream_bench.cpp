@@ -29,7 +29,7 @@
 
 namespace {
 
-/// Kernel body of `for_each` over coordinates: uniform in the study's cube, the same everywhere.
+/// Kernel functor of `for_each` over coordinates: uniform in the study's cube, the same everywhere.
 struct scatter {
   float* to;
   COLLIDE_HD void operator()(std::size_t i) const {

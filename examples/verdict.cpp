@@ -17,7 +17,7 @@
 
 namespace verdict {
 
-/// Kernel body of `for_each` over cases.
+/// Kernel functor of `for_each` over cases.
 template <class Precision, class S>
 struct judge {
   collide::mesh_view<S> triangles;

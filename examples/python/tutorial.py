@@ -57,7 +57,7 @@ effects = [
     collide.box_walls((-9, -9, -0.2), (9, 9, 0.2)),
     collide.moving_bodies(),
 ]
-sim = collide.Simulation(drum, effects, bodies=[collide.Body(0, len(drum), rate=1.5)])
+sim = collide.Simulation(drum, effects, bodies=[collide.Kernel(0, len(drum), rate=1.5)])
 
 # %%
 radius = 0.03

@@ -20,14 +20,14 @@ namespace collide {
 
 namespace detail {
 
-/// Kernel body: each thread keeps some spheres; tiles of bounding spheres of the triangles pass by, in shared memory
+/// Kernel functor: each thread keeps some spheres; tiles of bounding spheres of the triangles pass by, in shared memory
 /// where there is some. Where one is reached by some sphere of a thread, the two are listed, and looked at closely by
 /// all threads together. With few spheres the mesh is split among `splits` blocks.
 template <class S, class NarrowPhase, class Output>
 struct all_pairs_query {
   static constexpr int items = 8;
   template <class Block>
-  static constexpr int residency = 3;
+  static constexpr int min_blocks_per_sm = 3;
   static constexpr int tile = 512;
 
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
@@ -45,7 +45,7 @@ struct all_pairs_query {
     typename Block::template staging<lifted_bounds<S>, tile> staged;
     encounter encounters[capacity];
     std::uint32_t count;  ///< may be more than there is room for
-    pipeline_storage<Block> hits;
+    pipeline_storage<Block> pipeline;
   };
 
   template <class Block>
@@ -55,17 +55,17 @@ struct all_pairs_query {
     std::size_t const triangles = pipeline.mesh.size();
     std::size_t const share = (triangles + splits - 1) / splits;
     std::size_t const begin = block.index() % splits * share;
-    std::size_t const end = smaller(begin + share, triangles);
+    std::size_t const end = min(begin + share, triangles);
 
     typename Block::template thread_private<lifted_batch<S, n>> own;
     vec3<S> const origin = lifted_origin(pipeline.mesh);
     block.for_each_thread([&](int thread_rank) {
-      pipeline.reset(s.hits, thread_rank);
+      pipeline.reset(s.pipeline, thread_rank);
       if (thread_rank == 0) s.count = 0;
       own[thread_rank].load(pipeline.spheres, first + static_cast<std::size_t>(thread_rank) * n, origin);
     });
     for (std::size_t base = begin; base < end; base += tile) {
-      int const m = static_cast<int>(smaller(static_cast<std::size_t>(tile), end - base));
+      int const m = static_cast<int>(min(static_cast<std::size_t>(tile), end - base));
       auto const* const staged = block.stage(s.staged, bounds + base, m);
       typename Block::template thread_private<int> next;
       bool more = false;
@@ -77,10 +77,10 @@ struct all_pairs_query {
         });
         std::uint32_t const found = block.broadcast(s.count);
         more = found > scratch<Block>::capacity;
-        test(block, s, smaller(found, scratch<Block>::capacity), first, base);
+        test(block, s, min(found, scratch<Block>::capacity), first, base);
       } while (more);
     }
-    pipeline.drain(block, s.hits);
+    pipeline.drain(block, s.pipeline);
   }
 
  private:
@@ -112,7 +112,7 @@ struct all_pairs_query {
         test_one(block, s, first + std::size_t{e.thread_rank} * thread_private + own % thread_private,
                  base + e.triangle);
       });
-      pipeline.drain_if_full(block, s.hits);
+      pipeline.drain_if_full(block, s.pipeline);
     }
   }
 
@@ -122,11 +122,11 @@ struct all_pairs_query {
     auto const shape = pipeline.spheres[i];
     sphere<S> const around = swept_bounding_sphere(shape);
     if (!bounding_sphere_of(pipeline.mesh[triangle]).overlaps(around.centre, around.radius)) return;
-    pipeline.push(block, s.hits, {static_cast<id>(i), static_cast<id>(triangle)}, shape);
+    pipeline.push(block, s.pipeline, {static_cast<id>(i), static_cast<id>(triangle)}, shape);
   }
 };
 
-/// Kernel body of `for_each` over triangles.
+/// Kernel functor of `for_each` over triangles.
 template <class S>
 struct compute_lifted_bounds {
   mesh_view<S> mesh;
@@ -160,19 +160,19 @@ struct all_pairs {
 
     template <class NarrowPhase, class Space, class Output>
     void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) const {
-      detail::all_pairs_query<S, NarrowPhase, Output> body{{mesh_, spheres, output}, bounds_.data(), 1};
-      std::size_t const blocks = detail::grid_size<Space>(spheres.size(), body);
-      std::size_t const tiles = (mesh_.size() + body.tile - 1) / body.tile;
+      detail::all_pairs_query<S, NarrowPhase, Output> kernel{{mesh_, spheres, output}, bounds_.data(), 1};
+      std::size_t const blocks = detail::grid_size<Space>(spheres.size(), kernel);
+      std::size_t const tiles = (mesh_.size() + kernel.tile - 1) / kernel.tile;
       std::size_t const wanted = (space.saturating_blocks() + blocks - 1) / blocks;
-      body.splits = detail::larger<std::size_t>(1, detail::smaller(wanted, tiles));
-      space.launch(blocks * body.splits, body);
+      kernel.splits = detail::max<std::size_t>(1, detail::min(wanted, tiles));
+      space.launch(blocks * kernel.splits, kernel);
     }
 
     /// What a kernel asks for the triangles near a single sphere; valid until the next build.
-    detail::all_pairs_ref<S> lookup() const { return {{mesh_, nullptr}}; }
+    detail::all_pairs_ref<S> triangle_ref() const { return {{mesh_, nullptr}}; }
 
     /// What a kernel asks for the triangles near a point; valid until the next build.
-    detail::all_pairs_ref<S> ref() const { return lookup(); }
+    detail::all_pairs_ref<S> ref() const { return triangle_ref(); }
 
     template <class Space>
     double cell_width(Space&) const {

@@ -65,26 +65,26 @@ struct body_motion {
   COLLIDE_HD body_state operator()(double time) const {
     using namespace detail;
     constexpr double two_pi = 6.283185307179586;
-    sin_cos const wave = sin_cos_of_turns(mul(frequency, time) + phase);
-    double const wave_rate = mul(mul(two_pi, frequency), wave.cos);
+    sin_cos const wave = sin_cos_of_turns(mul_rn(frequency, time) + phase);
+    double const wave_rate = mul_rn(mul_rn(two_pi, frequency), wave.cos);
     vec3<double> const given(axis[0], axis[1], axis[2]);
     vec3<double> const direction = scaled(given, inverse_power_of_two(max_component<double>(detail::absolute(given))));
     double const length = sqrt_rn(dot(direction, direction));
-    double const angle = mul(rate, time) + mul(swing, wave.sin), angle_rate = rate + mul(swing, wave_rate);
-    sin_cos const half = sin_cos_of_turns(div(angle, 2 * two_pi));
+    double const angle = mul_rn(rate, time) + mul_rn(swing, wave.sin), angle_rate = rate + mul_rn(swing, wave_rate);
+    sin_cos const half = sin_cos_of_turns(div_rn(angle, 2 * two_pi));
     body_state s;
     s.at.rotation[0] = length > 0 ? half.cos : 1;
     for (int k = 0; k < 3; ++k) {
-      double const along = length > 0 ? div(direction[k], length) : 0;
-      s.at.rotation[k + 1] = mul(along, half.sin);
-      s.moving.angular[k] = mul(along, angle_rate);
+      double const along = length > 0 ? div_rn(direction[k], length) : 0;
+      s.at.rotation[k + 1] = mul_rn(along, half.sin);
+      s.moving.angular[k] = mul_rn(along, angle_rate);
       s.belt[k] = belt[k];
     }
     vec3<double> const arm = rotated(s.at.rotation, vec3<double>(pivot[0], pivot[1], pivot[2]));
     vec3<double> const w(s.moving.angular[0], s.moving.angular[1], s.moving.angular[2]), turning = cross(w, arm);
     for (int k = 0; k < 3; ++k) {
-      s.at.position[k] = (pivot[k] - arm[k]) + mul(velocity[k], time) + mul(amplitude[k], wave.sin);
-      s.moving.linear[k] = velocity[k] + mul(amplitude[k], wave_rate) - turning[k];
+      s.at.position[k] = (pivot[k] - arm[k]) + mul_rn(velocity[k], time) + mul_rn(amplitude[k], wave.sin);
+      s.moving.linear[k] = velocity[k] + mul_rn(amplitude[k], wave_rate) - turning[k];
     }
     return s;
   }

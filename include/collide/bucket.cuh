@@ -82,8 +82,8 @@ class bucket::index {
     }
     if (!affords(fixed_bytes)) return summary_.release();
     auto* const summary = clear_summary(space);
-    detail::compute_mesh_statistics<S> const body{mesh, summary, boxes_.data()};
-    space.launch(detail::grid_size<Space>(mesh.size(), body), body);
+    detail::compute_mesh_statistics<S> const kernel{mesh, summary, boxes_.data()};
+    space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
   /// Makes a grid for spheres up to `radius`, which serves until the next build, or until many spheres that move want
@@ -103,7 +103,7 @@ class bucket::index {
     request_grids(space, options, spheres);
     // entering the triangles pays where few spheres come again and again (docs/development/experiments.md)
     bool const pays = queries_ == 0 || spheres.size() >= mesh_.size() / 8;
-    choose(space, options, pays && stage_ != stage::none && can_bin<Space>(options, spheres.size()));
+    select_algorithm(space, options, pays && stage_ != stage::none && can_bin<Space>(options, spheres.size()));
   }
 
   /// Spheres that move are binned, too, if there are many, of one radius, and none moves far; else they look for
@@ -136,7 +136,7 @@ class bucket::index {
       whole_boxes_ = true;
       request_grids(space, options, spheres);
     }
-    choose(space, options, bins);
+    select_algorithm(space, options, bins);
   }
 
   /// Makes room for queries of up to so many spheres.
@@ -170,13 +170,14 @@ class bucket::index {
         return;
       }
     }
-    detail::bucket_query<S, NarrowPhase, Output> body{pipeline{mesh_, spheres, output, boxes()}, lookup(), 0, 0};
-    body.share(space, spheres.size());
-    space.launch(body.blocks, body);
+    detail::bucket_query<S, NarrowPhase, Output> kernel{pipeline{mesh_, spheres, output, boxes()}, triangle_ref(), 0,
+                                                        0};
+    kernel.choose_grid_size(space, spheres.size());
+    space.launch(kernel.blocks, kernel);
   }
 
   /// What a kernel asks for the triangles near a single sphere; valid until the next build or prepare.
-  detail::bucket_ref<S> lookup() const {
+  detail::bucket_ref<S> triangle_ref() const {
     return {{mesh_, boxes()}, grids_.data(),  grid_count_,      lists_.occupied(),
             lists_.data(),    lists_.total(), lists_.entries(), lists_.capacity()};
   }
@@ -203,7 +204,7 @@ class bucket::index {
 
   /// Up to so many triangles entries have memory for as many as there may be; the device is asked how many there are if
   /// there are more triangles, or several grids.
-  static constexpr std::size_t most_unasked = std::size_t{1} << 18;
+  static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
 
   /// True if spheres can be binned into the cells: what that takes is not part of a budget.
   template <class Space>
@@ -227,7 +228,7 @@ class bucket::index {
 
   /// Chooses the algorithm of the next query, and makes what it needs of the mesh.
   template <class Space>
-  void choose(Space& space, bucket const& options, bool bins) {
+  void select_algorithm(Space& space, bucket const& options, bool bins) {
     algorithm_ = bins ? algorithm::triangle_major : algorithm::sphere_major;
     bins_.clear();
     ++queries_;
@@ -308,8 +309,9 @@ class bucket::index {
       if (bins_spheres<Space>(options) && !has_boxes_) detail::compute_boxes<S>::run(space, mesh_, boxes_);
       has_boxes_ = has_boxes_ || bins_spheres<Space>(options);
     }
-    bool const asks = mesh_.size() > most_unasked || grid_count_ > 1 || options.cell_width > 0;
-    lists_.enter(space, mesh_, boxes(), {grids_.data(), grid_count_, table_bits_, cells_}, entry_limit_, asks);
+    bool const waits_for_size = mesh_.size() > max_without_readback || grid_count_ > 1 || options.cell_width > 0;
+    lists_.enter(space, mesh_, boxes(), {grids_.data(), grid_count_, table_bits_, cells_}, entry_limit_,
+                 waits_for_size);
     stage_ = stage::entered;
   }
 

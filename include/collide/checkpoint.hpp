@@ -175,7 +175,7 @@ class checkpoint {
     to.reverse_order_ = numbers_.reverse_order != 0;
     to.knows_pair_forces_ = numbers_.knows_pair_forces != 0;
     to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius};
-    if constexpr (simulated::effects_type::meets)
+    if constexpr (simulated::effects_type::any_pair_contact)
       to.neighbours_.clear(space, places, to.radii_.largest, to.radii_.smallest);
     to.is_set_ = true;
     to.prepare();
@@ -287,7 +287,7 @@ class checkpoint {
   }
 
   using remembered = typename simulated::effects_type::remembered;
-  static constexpr bool remembers_pairs = remembered::size != 0 && simulated::effects_type::meets;
+  static constexpr bool remembers_pairs = remembered::size != 0 && simulated::effects_type::any_pair_contact;
   static constexpr bool remembers_surfaces = remembered::size != 0 && simulated::effects_type::overlaps;
   static constexpr std::uint64_t contact_width = std::uint64_t(contact_values<S, remembered>::width);
 

@@ -27,21 +27,21 @@ class cuda : public detail::cuda_space {
   /// The name of the space, for messages.
   static constexpr char const* name() { return "cuda"; }
 
-  template <class Body>
-  using block = detail::serial_block<Body::items, 0>;
+  template <class Kernel>
+  using block = detail::serial_block<Kernel::items, 0>;
 
-  /// Puts a kernel on the stream that runs `body` once for each of `blocks` blocks. Throws `cuda_error`.
-  template <class Body>
-  void launch(std::size_t blocks, Body const& body) const {
+  /// Puts a kernel on the stream that runs `kernel` once for each of `blocks` blocks. Throws `cuda_error`.
+  template <class Kernel>
+  void launch(std::size_t blocks, Kernel const& kernel) const {
     if (blocks == 0) return;
-    launch_kernel("launch of run_threads", detail::run_threads<block<Body>, Body>, grid_of(blocks), blocks, body);
+    launch_kernel("launch of run_threads", detail::run_threads<block<Kernel>, Kernel>, grid_of(blocks), blocks, kernel);
   }
 
   /// How many blocks keep the device busy.
   std::size_t saturating_blocks() const { return static_cast<std::size_t>(sm_count_) * 2048; }
 
-  /// How many blocks of a body can be at work at a time; here that does not matter.
-  template <class Body>
+  /// How many blocks of a kernel can be at work at a time; here that does not matter.
+  template <class Kernel>
   std::size_t max_resident_blocks() const {
     return std::numeric_limits<std::size_t>::max();
   }
@@ -63,27 +63,28 @@ class cuda_shared : public detail::cuda_space {
   /// The name of the space, for messages.
   static constexpr char const* name() { return "cuda_shared"; }
 
-  template <class Body>
-  using block = detail::cuda_block<Body::items>;
+  template <class Kernel>
+  using block = detail::cuda_block<Kernel::items>;
 
-  /// Puts a kernel on the stream that runs `body` once for each of `blocks` blocks. Throws `cuda_error`, and `error` if
-  /// there are 2^31 blocks or more.
-  template <class Body>
-  void launch(std::size_t blocks, Body const& body) const {
+  /// Puts a kernel on the stream that runs `kernel` once for each of `blocks` blocks. Throws `cuda_error`, and `error`
+  /// if there are 2^31 blocks or more.
+  template <class Kernel>
+  void launch(std::size_t blocks, Kernel const& kernel) const {
     if (blocks == 0) return;
     if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
       throw error("collide: too much work for one CUDA launch");
     }
-    launch_kernel("launch of run_blocks", detail::run_blocks<block<Body>, Body>, static_cast<unsigned>(blocks), body);
+    launch_kernel("launch of run_blocks", detail::run_blocks<block<Kernel>, Kernel>, static_cast<unsigned>(blocks),
+                  kernel);
   }
 
   /// How many blocks keep the device busy.
   std::size_t saturating_blocks() const { return static_cast<std::size_t>(sm_count_) * 8; }
 
-  /// How many blocks of a body are at work at a time.
-  template <class Body>
+  /// How many blocks of a kernel are at work at a time.
+  template <class Kernel>
   std::size_t max_resident_blocks() const {
-    return static_cast<std::size_t>(sm_count_) * detail::residency<Body, block<Body>>;
+    return static_cast<std::size_t>(sm_count_) * detail::min_blocks_per_sm<Kernel, block<Kernel>>;
   }
 };
 

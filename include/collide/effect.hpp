@@ -173,7 +173,7 @@ struct mesh_overlap {
 /// sphere, where the particle is now: an effect that pushes the particle out takes off what it pushed.
 ///
 /// Where a particle touches several triangles at the same place, each contact knows of those before it. In a groove
-/// the surface of the second can only be left along the first: `move_out` and `repel` do so.
+/// the surface of the second can only be left along the first: `push_out` and `repel` do so.
 template <class S>
 struct mesh_contact : contact<S> {
   vec3<S> force_dv;         ///< what a step's acceleration adds to the velocity
@@ -182,25 +182,26 @@ struct mesh_contact : contact<S> {
   S remaining;              ///< what is left of the step for a swept particle, in the units of `dt`; else 0
   vec3<S> velocity_before;  ///< the particle's velocity before this contact
   S approach_speed;         ///< speed towards the surface, before the contacts at this place changed it
-  vec3<S> lift;        ///< displacement that raises the particle above the surface by 1, and leaves it on those before
-  S free_change;       ///< change of speed along the normal up to which no contact before is pressed on
-  S normal_impulse;    ///< what the effects have added to the velocity along the normal: 0, or what repels
-  S friction_reserve;  ///< impulse along the surface that static friction has in reserve; 0 where the particle slides
-  bool is_resting;     ///< an effect has found that the particle rests on the surface, or slides on it
+  vec3<S>
+      wedge_direction;  ///< displacement that raises the particle above the surface by 1, and leaves it on those before
+  S unconstrained_dv;   ///< change of speed along the normal up to which no contact before is pressed on
+  S normal_impulse;     ///< what the effects have added to the velocity along the normal: 0, or what repels
+  S friction_reserve;   ///< impulse along the surface that static friction has in reserve; 0 where the particle slides
+  bool is_resting;      ///< an effect has found that the particle rests on the surface, or slides on it
   vec3<S> surface_velocity;  ///< of the surface at the point, in the world: 0 of what rests; see bodies.hpp
   id body;                   ///< number of the body whose surface it is; `no_id` of what rests
 
   /// Raises a particle above the surface by `height`.
-  COLLIDE_HD_INLINE void move_out(vec3<S>& position, S height) {
-    position += lift * height;
+  COLLIDE_HD_INLINE void push_out(vec3<S>& position, S height) {
+    position += wedge_direction * height;
     this->depth -= height;
   }
 
   /// Makes a particle leave the surface faster by `change` > 0.
   COLLIDE_HD_INLINE void repel(vec3<S>& velocity, S change) {
-    S const direct = detail::smaller(change, free_change), wedged = change - direct;
-    velocity += this->normal * direct + lift * wedged;
-    normal_impulse += direct + wedged * detail::dot(lift, lift);
+    S const direct = detail::min(change, unconstrained_dv), wedged = change - direct;
+    velocity += this->normal * direct + wedge_direction * wedged;
+    normal_impulse += direct + wedged * detail::dot(wedge_direction, wedge_direction);
   }
 
   /// Stops a particle that something holds: its velocity is 0, and it is where it was when the step began, raised or
@@ -211,7 +212,7 @@ struct mesh_contact : contact<S> {
     this->depth += detail::dot(this->normal, vec3<S>(p[position{}] - start));
     p[position{}] = start;
     S const rounding = detail::contact_tolerance<S> * p.radius() + detail::rounding_at(start);
-    if (this->depth > rounding || this->depth < -rounding) move_out(p[position{}], this->depth);
+    if (this->depth > rounding || this->depth < -rounding) push_out(p[position{}], this->depth);
   }
 };
 

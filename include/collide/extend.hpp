@@ -156,7 +156,9 @@ struct per_sphere {
     }
 
     /// What a kernel of a simulation asks for the triangles near a single sphere; valid until the next build.
-    auto lookup() const { return detail::per_sphere_lookup<S, decltype(index_.ref())>{{mesh_, nullptr}, index_.ref()}; }
+    auto triangle_ref() const {
+      return detail::per_sphere_ref<S, decltype(index_.ref())>{{mesh_, nullptr}, index_.ref()};
+    }
 
     /// What a kernel asks for the triangles near a point, see `nearest`; valid until the next build.
     auto ref() const { return index_.ref(); }

@@ -61,7 +61,7 @@ class host {
 
   // What the library's algorithms need of a space:
 
-  template <class Body>
+  template <class Kernel>
   using block = detail::serial_block<64, 256>;
 
   /// True if the host reads this memory without waiting for anything.
@@ -70,15 +70,15 @@ class host {
   /// False if the memory at `p` is known not to be this space's.
   static bool reads(void const* p) { return detail::in_device_memory == nullptr || !detail::in_device_memory(p); }
 
-  /// Runs `body` once for each of `blocks` blocks.
-  template <class Body>
-  void launch(std::size_t blocks, Body const& body) const {
-    using block_type = block<Body>;
+  /// Runs `kernel` once for each of `blocks` blocks.
+  template <class Kernel>
+  void launch(std::size_t blocks, Kernel const& kernel) const {
+    using block_type = block<Kernel>;
     run(blocks, [&](std::size_t first, std::size_t last) {
-      typename Body::template scratch<block_type> scratch;
+      typename Kernel::template scratch<block_type> scratch;
       for (std::size_t i = first; i < last; ++i) {
         block_type here(i);
-        body(here, scratch);
+        kernel(here, scratch);
       }
     });
   }
@@ -94,8 +94,8 @@ class host {
   /// How many blocks keep all threads busy.
   std::size_t saturating_blocks() const { return threads() == 1 ? 1 : 4 * static_cast<std::size_t>(threads()); }
 
-  /// How many blocks of a body can be at work at a time; here that does not matter.
-  template <class Body>
+  /// How many blocks of a kernel can be at work at a time; here that does not matter.
+  template <class Kernel>
   std::size_t max_resident_blocks() const {
     return std::numeric_limits<std::size_t>::max();
   }

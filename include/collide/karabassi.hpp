@@ -4,7 +4,7 @@
 
 #include <collide/contact.hpp>
 #include <collide/detail/narrow_phase/contact.hpp>
-#include <collide/detail/narrow_phase/contact_plain.hpp>
+#include <collide/detail/narrow_phase/contact_in_precision.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/narrow_phase/karabassi_test.hpp>
 #include <collide/precision.hpp>
@@ -46,7 +46,7 @@ struct karabassi {
     if constexpr (std::is_same<Precision, exact>::value) {
       return detail::contact_of_pair(t, s);
     } else {
-      return detail::plain_contact_of_pair<typename Precision::scalar>(t, s);
+      return detail::contact_of_pair_in_precision<typename Precision::scalar>(t, s);
     }
   }
 };

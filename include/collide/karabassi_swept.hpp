@@ -2,7 +2,7 @@
 /// Karabassi's intersection test for moving spheres: continuous collision detection.
 #pragma once
 
-#include <collide/detail/narrow_phase/contact_plain.hpp>
+#include <collide/detail/narrow_phase/contact_in_precision.hpp>
 #include <collide/detail/narrow_phase/contact_swept.hpp>
 #include <collide/detail/narrow_phase/intersects_swept.hpp>
 #include <collide/detail/narrow_phase/karabassi_swept_test.hpp>
@@ -61,7 +61,7 @@ struct karabassi_swept {
     if constexpr (std::is_same<Precision, exact>::value) {
       return {detail::contact_at_time(t, s, time), time};
     } else {
-      return {detail::plain_contact_at_time<typename Precision::scalar>(t, s, time), time};
+      return {detail::contact_at_time_in_precision<typename Precision::scalar>(t, s, time), time};
     }
   }
 };

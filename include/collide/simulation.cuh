@@ -59,12 +59,13 @@ class simulation {
   using index = typename broad_phase::template index<S>;
   using bodies_memory = detail::bodies_of<S, Effect...>;
   static constexpr bool has_bodies = bodies_memory::exist;
-  static constexpr bool asks_mesh = effects_type::touches || effects_type::overlaps;
+  static constexpr bool asks_mesh = effects_type::any_mesh_contact || effects_type::overlaps;
 
   static_assert(detail::check_effects<execution_space, S, Effect...>());
-  static_assert(!asks_mesh || detail::has_lookup<index>::value,
-                "collide: effects that touch the mesh need a broad phase whose index has a member lookup(), such as "
-                "bucket or all_pairs");
+  static_assert(
+      !asks_mesh || detail::has_triangle_ref<index>::value,
+      "collide: effects that touch the mesh need a broad phase whose index has a member triangle_ref(), such as "
+      "bucket or all_pairs");
 
  public:
   /// The state that a particle has.
@@ -103,7 +104,7 @@ class simulation {
   /// there is room, if an effect makes more; more than 2^32 - 2 are refused (`error`), as is room that no effect of the
   /// scene fills, and radii that differ without `polydisperse` in the scene. O(particles). Allocates; may wait.
   COLLIDE_COLD void set(sphere_view<S> const& particles, S const* velocities = nullptr, std::size_t capacity = 0) {
-    std::size_t const n = particles.size(), room = detail::larger(n, capacity);
+    std::size_t const n = particles.size(), room = detail::max(n, capacity);
     S const own = effects_.source_radius();
     detail::check_particles<columns>(particles.one_radius(), n, room, own, particles.common_radius());
     place(particles, velocities, room);
@@ -112,7 +113,7 @@ class simulation {
     if (asks_mesh && n != 0 && radii_.smallest == 0)
       throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
     radii_ = radii_.with(own);
-    if constexpr (effects_type::meets) neighbours_.clear(space_, room, radii_.largest, radii_.smallest);
+    if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, room, radii_.largest, radii_.smallest);
     if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
     prepare();
   }
@@ -126,13 +127,13 @@ class simulation {
     auto* const resource = space_.resource();
     memory_.reserve(resource, detail::padded_size(particles));
     if constexpr (has_begin_step) device_time_.reserve(resource, detail::clock_size);
-    if constexpr (effects_type::touches) {
-      using kernel = detail::step_kernel<step_context<decltype(lookup(S{}))>>;
-      if constexpr (kernel::template has_many_tiles<typename execution_space::template block<kernel>>) {
+    if constexpr (effects_type::any_mesh_contact) {
+      using kernel_type = detail::step_kernel<step_context<decltype(mesh_ref(S{}))>>;
+      if constexpr (kernel_type::template has_many_tiles<typename execution_space::template block<kernel_type>>) {
         overflow_.reserve(resource, detail::padded_size(particles));
       }
     }
-    if constexpr (effects_type::meets) neighbours_.reserve(resource, particles);
+    if constexpr (effects_type::any_pair_contact) neighbours_.reserve(resource, particles);
     if constexpr (effects_type::overlaps) {
       surfaces_.reserve(resource, particles);
       pressing_.reserve(resource, particles);
@@ -163,7 +164,7 @@ class simulation {
     if constexpr (effects_type::adheres) {
       if (is_set_)
         space_.for_each(state_.size,
-                        detail::release_adhered{state_, lookup(S(0)), bodies_.are_driven(), bodies_.size()});
+                        detail::release_adhered{state_, mesh_ref(S(0)), bodies_.are_driven(), bodies_.size()});
     }
   }
 
@@ -203,7 +204,7 @@ class simulation {
   /// is known of bodies: a byte a triangle, about 700 bytes a body. What is prepared of the mesh is not in it.
   std::size_t bytes() const {
     std::size_t lists = 0;
-    if constexpr (effects_type::meets) lists = neighbours_.bytes();
+    if constexpr (effects_type::any_pair_contact) lists = neighbours_.bytes();
     if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes();
     return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
@@ -276,7 +277,7 @@ class simulation {
   /// if no effect limits steps. See `sphere_contact::longest_step`.
   friend double largest_time_step(simulation const& of) {
     double most = std::numeric_limits<double>::infinity();
-    ((most = detail::smaller(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
+    ((most = detail::min(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
     return most;
   }
 
@@ -299,21 +300,21 @@ class simulation {
   friend class detail::checkpoint<Detector, Effect...>;
   friend class detail::part_of_simulation<simulation>;
 
-  static constexpr bool sweeps = effects_type::touches && !detail::is_discrete<narrow_phase, S>;
-  static constexpr bool has_begin_step = (detail::begins_in<Effect, execution_space, state_type, S>::value || ...);
+  static constexpr bool sweeps = effects_type::any_mesh_contact && !detail::is_discrete<narrow_phase, S>;
+  static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S>::value || ...);
   template <class Triangles>
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   using neighbour_lists =
-      std::conditional_t<effects_type::meets, detail::verlet_list<S, effects_type>, detail::null_ref>;
+      std::conditional_t<effects_type::any_pair_contact, detail::verlet_list<S, effects_type>, detail::null_ref>;
   using surface_memory =
       std::conditional_t<effects_type::overlaps, detail::surface_memory<S, typename effects_type::remembered>,
                          detail::null_ref>;
   /// What a step asks for the triangles near a particle, if it `asks`.
-  template <bool Asks = effects_type::touches>
-  auto lookup([[maybe_unused]] S dt) const {
+  template <bool Asks = effects_type::any_mesh_contact>
+  auto mesh_ref([[maybe_unused]] S dt) const {
     if constexpr (Asks) {
-      auto const whole = mesh_.size() != 0 ? index_.lookup() : std::decay_t<decltype(index_.lookup())>{};
-      return bodies_.lookup(whole, mesh_, dt);
+      auto const whole = mesh_.size() != 0 ? index_.triangle_ref() : std::decay_t<decltype(index_.triangle_ref())>{};
+      return bodies_.ref(whole, mesh_, dt);
     } else {
       return detail::null_ref{};
     }
@@ -348,7 +349,7 @@ class simulation {
     [[maybe_unused]] bool const is_first = !knows_pair_forces_;
     knows_pair_forces_ = true;
     if (state_.size == 0) return;
-    if constexpr (effects_type::meets) {
+    if constexpr (effects_type::any_pair_contact) {
       if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
       neighbours_.renew(space_, with_copies);
       settle_births(with_copies, dt);
@@ -358,7 +359,7 @@ class simulation {
     }
     if constexpr (effects_type::overlaps) {
       auto const memory = surfaces_.ref(state_.size);
-      auto const triangles = lookup<true>(dt);
+      auto const triangles = mesh_ref<true>(dt);
       using mesh_type = std::decay_t<decltype(triangles)>;
       using memory_type = std::decay_t<decltype(memory)>;
       detail::pressing_list const pressing{pressing_count_.data(), pressing_.data()};
@@ -393,12 +394,13 @@ class simulation {
   /// Moves particles, and resolves their contacts with the mesh.
   void move(S dt) {
     if (state_.size == 0) return;
-    using kernel = detail::step_kernel<step_context<decltype(lookup(dt))>>;
-    using block = typename execution_space::template block<kernel>;
-    kernel const body{{state_, effects_, lookup(dt), overflow_.data(), dt, reverse_order_, least_radius_},
-                      kernel::template grid_size<block>(state_.size, detail::resident_blocks<kernel>(space_))};
+    using kernel_type = detail::step_kernel<step_context<decltype(mesh_ref(dt))>>;
+    using block = typename execution_space::template block<kernel_type>;
+    kernel_type const kernel{
+        {state_, effects_, mesh_ref(dt), overflow_.data(), dt, reverse_order_, least_radius_},
+        kernel_type::template grid_size<block>(state_.size, detail::resident_blocks<kernel_type>(space_))};
     reverse_order_ = !reverse_order_;
-    space_.launch(body.blocks, body);
+    space_.launch(kernel.blocks, kernel);
   }
 
   void wake_all() {
@@ -436,11 +438,11 @@ class simulation {
     advance_bodies(0, true);
     if constexpr (asks_mesh) {
       constexpr bool is_part = detail::contains<columns, global_number>;  // others come from other ranks
-      std::size_t const n = detail::larger(state_.size, std::size_t{is_part});
+      std::size_t const n = detail::max(state_.size, std::size_t{is_part});
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
       detail::lookup_tuning<execution_space> there(space_);
       S const room = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.room());
-      S const most = detail::reach_of<effects_type>(detail::larger(radii_.largest, least_radius_)) + room;
+      S const most = detail::reach_of<effects_type>(detail::max(radii_.largest, least_radius_)) + room;
       bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < most);
       detail::prepare_index(index_, there, options_, wider ? spheres_xyz(state_.at(position{}), n, most) : spheres());
     }
@@ -454,7 +456,7 @@ class simulation {
       throw error("collide: simulation: the time dt of a step is finite and above 0");
     ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
     ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
-    if (!effects_type::meets && effects_.makes_only_where_free())
+    if (!effects_type::any_pair_contact && effects_.makes_only_where_free())
       throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
   }
 

@@ -100,7 +100,7 @@ struct inspection {
   }
 };
 
-/// Kernel body of `for_each` over triangles.
+/// Kernel functor of `for_each` over triangles.
 template <class S>
 struct inspect_triangle : inspection {
   mesh_view<S> mesh;
@@ -121,7 +121,7 @@ struct inspect_triangle : inspection {
   }
 };
 
-/// Kernel body of `for_each` over spheres.
+/// Kernel functor of `for_each` over spheres.
 template <class S>
 struct inspect_sphere : inspection {
   sphere_view<S> spheres;

@@ -99,7 +99,7 @@ class fancy_allocator {
 
 /// A sink whose handle wants to know when a pass has ended.
 struct ending_sink {
-  struct handle {
+  struct output {
     std::uint64_t* stored;
     std::uint64_t* ended;
     std::uint64_t* stored_then;
@@ -121,7 +121,7 @@ struct ending_sink {
   void run(Space& space, Query const& query) {
     std::uint64_t* const to = memory.reserve(space.resource(), 3);
     space.fill(to, 0, 3 * sizeof *to);
-    query(handle{to, to + 1, to + 2});
+    query(output{to, to + 1, to + 2});
     space.copy_to_host(numbers.data(), to, 3);
   }
 };

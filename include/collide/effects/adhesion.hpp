@@ -34,13 +34,13 @@ struct adhesion {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
     auto& v = p[velocity{}];
-    S const pressed = detail::smaller(detail::dot(t.force_dv, t.normal), S(0)), most = S(max_acceleration) * dt;
+    S const pressed = detail::min(detail::dot(t.force_dv, t.normal), S(0)), most = S(max_acceleration) * dt;
     vec3<S> const pull = t.force_dv - t.normal * pressed;
     if (!(touching_speed(t) <= S(capture_speed) && detail::dot(pull, pull) <= most * most)) return;
     if (t.is_resting) p[position{}] -= v * t.elapsed;  // it was held all the time
     v = vec3<S>(S(0), S(0), S(0));
     if (t.depth > 0) p[position{}] += t.normal * t.depth;
-    t.depth = detail::smaller(t.depth, S(0));
+    t.depth = detail::min(t.depth, S(0));
     p[adhered{}] = t.body == no_id ? std::uint8_t{1} : static_cast<std::uint8_t>(t.body + 2);
   }
 
@@ -49,7 +49,7 @@ struct adhesion {
   template <class S>
   COLLIDE_HD_INLINE static S touching_speed(mesh_contact<S> const& t) {
     S const force = detail::dot(t.force_dv, t.force_dv), with = detail::dot(t.velocity_before, t.force_dv);
-    S const part = with > 0 ? detail::smaller(with / force, S(1)) : S(0);
+    S const part = with > 0 ? detail::min(with / force, S(1)) : S(0);
     vec3<S> const own = t.velocity_before - t.force_dv * part;
     return detail::sqrt_rn(detail::dot(own, own));
   }

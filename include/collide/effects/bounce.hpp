@@ -28,16 +28,16 @@ struct bounce {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
     S const e = S(restitution), speed = -detail::dot(p[velocity{}], t.normal);
-    S back = detail::larger(t.depth, S(0));
+    S back = detail::max(t.depth, S(0));
     if (speed > 0) {
-      S const rebound = e * detail::larger(detail::smaller(t.approach_speed, speed), S(0));
-      S const a = detail::dot(t.force_dv, t.normal), late = detail::smaller(back / speed, dt);
+      S const rebound = e * detail::max(detail::min(t.approach_speed, speed), S(0));
+      S const a = detail::dot(t.force_dv, t.normal), late = detail::min(back / speed, dt);
       t.is_resting = rebound <= 3 * -a;
       S const leaves = t.is_resting ? S(0) : leaving_speed(e, rebound, a, (t.remaining + late) / dt);
       t.repel(p[velocity{}], speed + leaves);
       back += leaves * late;
     }
-    t.move_out(p[position{}], back);
+    t.push_out(p[position{}], back);
   }
 
  private:
@@ -49,7 +49,7 @@ struct bounce {
   COLLIDE_HD_INLINE static S leaving_speed(S e, S rebound, S a, S left) {
     if (a == 0 || !(rebound > 0)) return rebound;
     S const push = a * (1 - 2 * left), hit = 4 * rebound * (rebound - e * push) + e * e * a * a;
-    return detail::larger((detail::sqrt_rn(detail::larger(hit + push * push - a * a, S(0))) - push) / 2, S(0));
+    return detail::max((detail::sqrt_rn(detail::max(hit + push * push - a * a, S(0))) - push) / 2, S(0));
   }
 };
 

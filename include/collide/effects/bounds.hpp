@@ -38,9 +38,9 @@ struct box_walls {
       S& x = p[position{}][k];
       S const low = S(lower[k]) + p.radius(), high = S(upper[k]) - p.radius();
       if (x < low) {
-        x = detail::smaller(reflect(p, k, S(1), low - x, forces, dt) + low, detail::larger(low, high));
+        x = detail::min(reflect(p, k, S(1), low - x, forces, dt) + low, detail::max(low, high));
       } else if (x > high) {
-        x = detail::larger(high - reflect(p, k, S(-1), x - high, forces, dt), detail::smaller(low, high));
+        x = detail::max(high - reflect(p, k, S(-1), x - high, forces, dt), detail::min(low, high));
       }
     }
   }
@@ -54,7 +54,7 @@ struct box_walls {
     S const e = S(restitution), a = inward * forces.change(dt)[k], late = Forces::kick_after * a;
     S const v = inward * p[velocity{}][k] - late;
     if (!(v < 0)) return S(0);
-    S const part = detail::smaller(depth / (-v * dt), S(1)), there = v + a / 2, lift = -2 * a * v * part;
+    S const part = detail::min(depth / (-v * dt), S(1)), there = v + a / 2, lift = -2 * a * v * part;
     S const speed = e * detail::sqrt_rn(there * there + lift);  // after the impact, at the wall
     bool const rests = speed <= -3 * a;
     S const square = speed * speed + e * lift;  // 0 or less: it does not come as high
@@ -94,10 +94,10 @@ struct periodic_box {
     double const from = static_cast<double>(low), length = static_cast<double>(high) - from;
     double at = static_cast<double>(x), lengths;
     do {  // more than once if the number of lengths is not exact
-      lengths = std::floor(detail::div(at - from, length));
+      lengths = std::floor(detail::div_rn(at - from, length));
       at = detail::fma_rn(-lengths, length, at);
     } while (lengths > 0x1p51 || lengths < -0x1p51);
-    S const inside = detail::larger(static_cast<S>(at), low);
+    S const inside = detail::max(static_cast<S>(at), low);
     return inside >= high ? detail::next_below(high) : inside;
   }
 };

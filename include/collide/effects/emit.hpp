@@ -46,7 +46,7 @@ struct nozzle {
 
 namespace detail {
 
-/// Kernel body of `for_each` over the particles of a step, the latest first.
+/// Kernel functor of `for_each` over the particles of a step, the latest first.
 template <class S, class State, class Source>
 struct emit_particles {
   State state;
@@ -82,7 +82,7 @@ struct emit_particles {
   }
 };
 
-/// Kernel body of `for_each` over the places of a rank: particles of a step that begin there.
+/// Kernel functor of `for_each` over the places of a rank: particles of a step that begin there.
 template <class S, class State, class Source>
 struct emit_at_places : emit_particles<S, State, Source> {
   COLLIDE_HD void operator()(std::size_t i) const {
@@ -142,7 +142,7 @@ struct emit_from {
     } else {
       std::size_t const room = state.size - state.placed;
       std::size_t const most = due < static_cast<double>(room) ? static_cast<std::size_t>(due) + 2 : room;
-      space.for_each(detail::smaller(most, room),
+      space.for_each(detail::min(most, room),
                      detail::emit_particles<S, State, Source>{state, source, due, mark, only_where_free});
     }
   }

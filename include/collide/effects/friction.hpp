@@ -37,7 +37,7 @@ struct friction {
     if (needed <= most) t.friction_reserve = most - needed;
     if (!spins && t.is_resting && needed <= most) return t.hold(p);
     if (!(needed > 0)) return;
-    S const applied = needed <= most ? needed : detail::smaller(needed, S(kinetic_coefficient) * t.normal_impulse);
+    S const applied = needed <= most ? needed : detail::min(needed, S(kinetic_coefficient) * t.normal_impulse);
     vec3<S> const change = slip * (applied / speed);
     p[velocity{}] -= change;
     if (t.is_resting) p[position{}] -= change * t.elapsed;  // it acted all the time, not only now

@@ -70,12 +70,12 @@ struct reaction {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_impulse(Particle& p, mesh_impulse<S> const& t, S) const {
     using namespace detail;
-    double const radius = static_cast<double>(p.radius()), mass = div(sphere_mass(density, radius), unit);
+    double const radius = static_cast<double>(p.radius()), mass = div_rn(sphere_mass(density, radius), unit);
     vec3<double> const change = t.change.template cast<double>(), turn = t.spin_change.template cast<double>();
     vec3<double> const centre = t.centre.template cast<double>(), shift = t.shift.template cast<double>();
     vec3<double> const velocity = t.velocity.template cast<double>(), impulse = scaled(change, -mass);
     vec3<double> const moment = cross(centre, impulse) - scaled(cross(shift, velocity), mass) -
-                                scaled(turn, mul(0.4 * mass, mul(radius, radius)));
+                                scaled(turn, mul_rn(0.4 * mass, mul_rn(radius, radius)));
     bool const has_counts = dot(impulse, impulse) + dot(moment, moment) < most_squared;  // false for NaN
     if (!has_counts) {
       atomic_add(refused, 1);

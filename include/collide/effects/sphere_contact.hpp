@@ -88,7 +88,7 @@ struct sphere_contact {
                                    : vec3<S>(S(0), S(0), self.number() < other.number() ? S(-1) : S(1));
     vec3<S> approach = self[velocity{}] - other[velocity{}];
     S const along = detail::dot(approach, n);
-    S const normal_force = detail::larger(S(stiffness) * overlap - S(damping) * along, S(0));
+    S const normal_force = detail::max(S(stiffness) * overlap - S(damping) * along, S(0));
     S const inverse_mass = S(0.238732414637843) / (S(density) * r * r * r);  // 3 / (4 pi)
     vec3<S> force = n * normal_force;
     if (friction > 0) {
@@ -101,7 +101,7 @@ struct sphere_contact {
       vec3<S> const slip = approach - n * along;
       S const speed = detail::sqrt_rn(detail::dot(slip, slip));
       if (speed > 0) {
-        S const tangential_force = detail::smaller(S(tangential_damping) * speed, S(friction) * normal_force);
+        S const tangential_force = detail::min(S(tangential_damping) * speed, S(friction) * normal_force);
         vec3<S> const drag = slip * (tangential_force / speed);
         force -= drag;
         if constexpr (spins) p[angular_velocity{}] += detail::cross(n, drag) * (S(2.5) * inverse_mass / r * part * dt);

@@ -28,7 +28,7 @@ struct spin {
     if (t.friction_reserve > 0) most = slow_rolling(p, t, most);
     auto& w = p[angular_velocity{}];
     S const rate = detail::sqrt_rn(detail::dot(w, w));
-    if (rate > 0) w = w * (detail::larger(rate - S(2.5) * most / p.radius(), S(0)) / rate);
+    if (rate > 0) w = w * (detail::max(rate - S(2.5) * most / p.radius(), S(0)) / rate);
   }
 
  private:
@@ -40,7 +40,7 @@ struct spin {
     vec3<S> const turning = w - t.normal * detail::dot(w, t.normal);
     vec3<S> const rolled = detail::cross(turning, vec3<S>(t.normal * p.radius()));
     S const speed = detail::sqrt_rn(detail::dot(rolled, rolled)), needed = S(1.4) * speed;
-    S const resistance = detail::smaller(most, S(1.4) * t.friction_reserve);
+    S const resistance = detail::min(most, S(1.4) * t.friction_reserve);
     if (needed <= resistance) {
       w -= turning;
       if (t.is_resting) {

@@ -48,7 +48,7 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
     });
     format::for_each_column([&](auto column) {
       using type = decltype(column);
-      mail<column_element<type, S>> mine, all;
+      exchange_buffer<column_element<type, S>> mine, all;
       auto const values = from.template to_host<type>();
       together(ranks, [&] {
         mine.clear(ranks.size());
@@ -79,7 +79,7 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
     to.starts_ = std::move(starts);
     std::uint64_t const first = to.starts_[static_cast<std::size_t>(ranks.rank())],
                         end = to.starts_[static_cast<std::size_t>(ranks.rank()) + 1];
-    numbers_of_all all{first, found->numbers().placed, found->numbers().places, 0, 0};
+    global_counts all{first, found->numbers().placed, found->numbers().places, 0, 0};
     to.share_free(all);
     to.reverse_order_ = found->numbers().reverse_order != 0;
     to.exchange_.clear();

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <collide/detail/ranks/particle_exchange.hpp>
-#include <collide/detail/ranks/sums_of_ranks.hpp>
+#include <collide/detail/ranks/rank_reduction.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/ranks/distributed.hpp>
 #include <collide/simulation.cuh>
@@ -56,7 +56,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   using S = scalar;
   using part_type = detail::part_of_simulation<simulation_type>;
   using broad_phase = typename Detector::broad_phase;
-  static constexpr bool meets = part_type::meets;
+  static constexpr bool any_pair_contact = part_type::any_pair_contact;
   static_assert((detail::check_on_ranks<Effect, execution_space, typename simulation_type::state_type, S>() && ...));
 
  public:
@@ -73,7 +73,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   /// the numbers of all. `capacity` is for how many particles there is room on all ranks together: the same number on
   /// each. There are at most 2^32 - 2 on all ranks.
   void set(sphere_view<S> const& mine, S const* velocities = nullptr, std::size_t capacity = 0) {
-    detail::numbers_of_all all{count_before(ranks_, mine.size()), 0, 0, 0, 0};
+    detail::global_counts all{count_before(ranks_, mine.size()), 0, 0, 0, 0};
     std::uint64_t const n = mine.size();
     ranks_.reduce(&n, &all.placed, 1, reduction::sum);
     all.size = std::max(all.placed, std::uint64_t{capacity});
@@ -127,15 +127,15 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     using pair_of = collide::columns<global_number, Column>;
     using row = detail::particle_row<S, pair_of>;
     constexpr auto width = std::size_t(detail::column_layout<Column, S>::width);
-    detail::mail<row> out, in;
+    detail::exchange_buffer<row> out, in;
     std::vector<detail::column_element<Column, S>> found;
     std::uint64_t const first = starts_.empty() ? 0 : starts_[static_cast<std::size_t>(ranks_.rank())];
     check_sound();
     together(ranks_, [&] {
       if (!part_.is_set()) throw error("collide: simulation: to_host needs particles: call set before it");
       std::vector<id> const numbers = part_.template on_host<global_number>();
-      detail::mail<std::uint32_t> places;
-      detail::fill_mail(places, ranks_.size(), [&](auto const& put) {
+      detail::exchange_buffer<std::uint32_t> places;
+      detail::fill_exchange_buffer(places, ranks_.size(), [&](auto const& put) {
         for (std::size_t i = 0; i < numbers.size(); ++i) put(home_of(numbers[i]), static_cast<std::uint32_t>(i));
       });
       part_.template pack<pair_of>(places.items, out.items);
@@ -206,7 +206,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   /// The sums over all ranks of the counts that read() gives, as impulses.
   template <class Read>
   std::vector<body_impulse> impulses(reaction_sums const& mine, Read const& read) const {
-    std::vector<std::int64_t> const counts = detail::sums_of_ranks(ranks_, read);
+    std::vector<std::int64_t> const counts = detail::rank_reduction(ranks_, read);
     std::vector<body_impulse> found;
     together(ranks_, [&] { found = mine.impulses(counts); });
     return found;
@@ -232,7 +232,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       part_.check_step(dt);
       mine[1] = 1;
       part_.begin_step(dt);
-      if (meets && part_.knows_others()) exchange_.pack(ranks_, part_);
+      if (any_pair_contact && part_.knows_others()) exchange_.pack(ranks_, part_);
       mine[0] = part_.has_moved() ? 1 : 0;
     } catch (...) {
       failed = std::current_exception();
@@ -241,9 +241,9 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     ranks_.reduce(mine, all, 2, reduction::max);
     is_sound_ = is_sound_ && all[1] == 0;
     if (all[0] == 2) agree(ranks_, failed);
-    if (meets && all[0] == 1) exchange_.exchange(ranks_, part_);
+    if (any_pair_contact && all[0] == 1) exchange_.exchange(ranks_, part_);
     try {
-      if constexpr (meets) {
+      if constexpr (any_pair_contact) {
         exchange_.send(ranks_, part_);
         exchange_.unpack(ranks_, part_);
         if (part_.refuses_births(dt)) {
@@ -262,7 +262,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   }
 
   /// Says with which free places this rank begins.
-  void share_free(detail::numbers_of_all& all) const {
+  void share_free(detail::global_counts& all) const {
     auto const ranks = static_cast<std::uint64_t>(ranks_.size()), rank = static_cast<std::uint64_t>(ranks_.rank());
     std::uint64_t const room = all.size - all.placed;
     all.first_free = all.placed + room * rank / ranks;

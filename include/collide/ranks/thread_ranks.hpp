@@ -22,21 +22,21 @@ namespace collide {
 namespace detail {
 
 /// Where threads wait for each other, and see what the others have laid out. Who waits for one that has left throws.
-class meeting {
+class exchange_barrier {
  public:
-  static constexpr std::size_t few = 8;  ///< numbers that a rank can lay out here
+  static constexpr std::size_t max_values = 8;  ///< numbers that a rank can lay out here
 
-  explicit meeting(int size) : places_(static_cast<std::size_t>(size)) {}
+  explicit exchange_barrier(int size) : places_(static_cast<std::size_t>(size)) {}
 
   /// What a rank shows to the others.
   struct place {
     void const* data = nullptr;
     std::uint64_t const* counts = nullptr;
-    std::uint64_t numbers[2][few] = {};  ///< in even and in odd rounds
+    std::uint64_t numbers[2][max_values] = {};  ///< in even and in odd rounds
   };
 
   int size() const { return static_cast<int>(places_.size()); }
-  place& of(int rank) { return places_[static_cast<std::size_t>(rank)]; }
+  place& slot(int rank) { return places_[static_cast<std::size_t>(rank)]; }
 
   /// How often all have waited, as a rank sees it that does not wait.
   std::uint64_t round() const { return round_.load(std::memory_order_relaxed); }
@@ -46,7 +46,7 @@ class meeting {
   void wait() {
     std::uint64_t const before = round();
     std::unique_lock<std::mutex> lock(mutex_);
-    if (!gone_.empty()) throw rank_error(gone_);
+    if (!failed_rank_.empty()) throw rank_error(failed_rank_);
     if (++waiting_ == places_.size()) {
       waiting_ = 0;
       round_.store(before + 1, std::memory_order_release);
@@ -59,17 +59,17 @@ class meeting {
       std::this_thread::yield();
     }
     lock.lock();
-    changed_.wait(lock, [&] { return round() != before || !gone_.empty(); });
-    if (round() == before) throw rank_error(gone_);
+    changed_.wait(lock, [&] { return round() != before || !failed_rank_.empty(); });
+    if (round() == before) throw rank_error(failed_rank_);
   }
 
   /// A rank will not come again, because of `failure` or, if that is null, because it has ended.
   void leave(int rank, std::exception_ptr const& failure) {
     std::lock_guard<std::mutex> const lock(mutex_);
-    bool const is_first = gone_.empty();
+    bool const is_first = failed_rank_.empty();
     if (is_first) {
-      gone_ = "collide: rank " + std::to_string(rank) + " of " + std::to_string(size()) +
-              (failure ? " failed: " + message_of(failure) : " has ended, and others wait for it");
+      failed_rank_ = "collide: rank " + std::to_string(rank) + " of " + std::to_string(size()) +
+                     (failure ? " failed: " + message_of(failure) : " has ended, and others wait for it");
     }
     if (failure && (!failure_ || (is_of_another(failure_) && !is_of_another(failure)))) failure_ = failure;
     changed_.notify_all();
@@ -94,7 +94,7 @@ class meeting {
   std::vector<place> places_;
   std::size_t waiting_ = 0;
   std::atomic<std::uint64_t> round_{0};
-  std::string gone_;
+  std::string failed_rank_;
   std::exception_ptr failure_;
 };
 
@@ -110,46 +110,46 @@ class thread_ranks {
   template <class F>
   static void run(int n, F const& f) {
     if (n < 1) throw error("collide: thread_ranks: there must be at least one rank");
-    detail::meeting meeting(n);
+    detail::exchange_barrier barrier(n);
     std::vector<std::thread> threads;
     int started = 0;
     try {
       threads.reserve(static_cast<std::size_t>(n));
-      for (; started < n; ++started) threads.emplace_back([&meeting, &f, started] { work(meeting, started, f); });
+      for (; started < n; ++started) threads.emplace_back([&barrier, &f, started] { work(barrier, started, f); });
     } catch (...) {
-      meeting.leave(started, std::current_exception());
+      barrier.leave(started, std::current_exception());
     }
     for (auto& thread : threads) thread.join();
-    if (meeting.failure()) std::rethrow_exception(meeting.failure());
+    if (barrier.failure()) std::rethrow_exception(barrier.failure());
   }
 
   /// The number of this rank, from 0.
   int rank() const { return rank_; }
   /// How many ranks there are.
-  int size() const { return meeting_->size(); }
+  int size() const { return barrier_->size(); }
 
   void all_gather(void const* mine, std::size_t bytes, void* all) const {
     show(mine, nullptr, [&] {
-      for (int r = 0; r < size(); ++r) copy(meeting_->of(r).data, bytes, all, static_cast<std::size_t>(r) * bytes);
+      for (int r = 0; r < size(); ++r) copy(barrier_->slot(r).data, bytes, all, static_cast<std::size_t>(r) * bytes);
     });
   }
 
   void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, reduction how) const {
-    if (n > detail::meeting::few) {
+    if (n > detail::exchange_barrier::max_values) {
       return show(mine, nullptr, [&] {
-        combine(all, n, how, [&](int r) { return static_cast<std::uint64_t const*>(meeting_->of(r).data); });
+        combine(all, n, how, [&](int r) { return static_cast<std::uint64_t const*>(barrier_->slot(r).data); });
       });
     }
     // few numbers stay where they are until all have waited once more, and so have read them
-    std::uint64_t const parity = meeting_->round() % 2;
-    copy(mine, n * sizeof *mine, meeting_->of(rank_).numbers[parity], 0);
-    meeting_->wait();
-    combine(all, n, how, [&](int r) { return meeting_->of(r).numbers[parity]; });
+    std::uint64_t const parity = barrier_->round() % 2;
+    copy(mine, n * sizeof *mine, barrier_->slot(rank_).numbers[parity], 0);
+    barrier_->wait();
+    combine(all, n, how, [&](int r) { return barrier_->slot(r).numbers[parity]; });
   }
 
   void exchange_counts(std::uint64_t const* to_each, std::uint64_t* of_each) const {
     show(nullptr, to_each, [&] {
-      for (int r = 0; r < size(); ++r) of_each[r] = meeting_->of(r).counts[rank_];
+      for (int r = 0; r < size(); ++r) of_each[r] = barrier_->slot(r).counts[rank_];
     });
   }
 
@@ -177,20 +177,20 @@ class thread_ranks {
   }
 
  private:
-  thread_ranks(detail::meeting& meeting, int rank) : meeting_{&meeting}, rank_{rank} {}
+  thread_ranks(detail::exchange_barrier& barrier, int rank) : barrier_{&barrier}, rank_{rank} {}
 
   template <class F>
-  static void work(detail::meeting& meeting, int rank, F const& f) {
+  static void work(detail::exchange_barrier& barrier, int rank, F const& f) {
 #if defined(_OPENMP)
-    omp_set_num_threads(std::max(1, omp_get_max_threads() / meeting.size()));  // of this thread
+    omp_set_num_threads(std::max(1, omp_get_max_threads() / barrier.size()));  // of this thread
 #endif
     std::exception_ptr failure;
     try {
-      f(thread_ranks(meeting, rank));
+      f(thread_ranks(barrier, rank));
     } catch (...) {
       failure = std::current_exception();
     }
-    meeting.leave(rank, failure);
+    barrier.leave(rank, failure);
   }
 
   /// Calls copy(to, from, bytes) for what comes from each rank, and finish() before others may change what they sent.
@@ -200,7 +200,7 @@ class thread_ranks {
     show(from, to_each, [&] {
       std::size_t filled = 0;
       for (int r = 0; r < size(); ++r) {
-        detail::meeting::place const theirs = meeting_->of(r);
+        detail::exchange_barrier::place const theirs = barrier_->slot(r);
         std::size_t before = 0;
         for (int q = 0; q < rank_; ++q) before += static_cast<std::size_t>(theirs.counts[q]) * bytes;
         std::size_t const n = static_cast<std::size_t>(of_each[r]) * bytes;
@@ -233,14 +233,14 @@ class thread_ranks {
   /// Shows something to the others, calls take(), which looks at what they show, and waits until all have.
   template <class Take>
   void show(void const* data, std::uint64_t const* counts, Take const& take) const {
-    meeting_->of(rank_).data = data;
-    meeting_->of(rank_).counts = counts;
-    meeting_->wait();
+    barrier_->slot(rank_).data = data;
+    barrier_->slot(rank_).counts = counts;
+    barrier_->wait();
     take();
-    meeting_->wait();
+    barrier_->wait();
   }
 
-  detail::meeting* meeting_;
+  detail::exchange_barrier* barrier_;
   int rank_;
 };
 

@@ -11,7 +11,7 @@ namespace collide {
 
 namespace detail {
 
-/// Kernel body of `for_each` over pairs: how many each sphere has.
+/// Kernel functor of `for_each` over pairs: how many each sphere has.
 struct count_rows {
   pair const* pairs;
   std::uint64_t* counts;
@@ -22,7 +22,7 @@ struct count_rows {
   }
 };
 
-/// Kernel body of `for_each` over pairs: brings triangles to the rows of their spheres.
+/// Kernel functor of `for_each` over pairs: brings triangles to the rows of their spheres.
 struct scatter_triangles {
   pair const* pairs;
   std::uint64_t const* offsets;

@@ -41,7 +41,7 @@ class k_nearest_search {
     numbers_[place] = number;
     if (size_ < k_) ++size_;
     // rounded up: the last one itself is in reach
-    if (size_ == k_) reach_ = smaller(reach_, distances_[k_ - 1] * (1 + doubt) + std::numeric_limits<S>::min());
+    if (size_ == k_) reach_ = min(reach_, distances_[k_ - 1] * (1 + doubt) + std::numeric_limits<S>::min());
   }
 
   /// As that of `nearest_search`.

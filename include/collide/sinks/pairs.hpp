@@ -8,7 +8,7 @@ namespace collide {
 
 namespace detail {
 
-/// Kernel body of `for_each` over pairs.
+/// Kernel functor of `for_each` over pairs.
 struct copy_pairs {
   pair const* from;
   pair* to;

@@ -41,9 +41,9 @@ struct find_winding {
       triangle<S> const shape = mesh[t];
       if (is_finite(shape)) sum.add(shape, s.centre);
     }
-    double const value = div(sum.angle, whole), size = value < 0 ? -value : value;
-    double const rounding = mul(size, 2 * static_cast<double>(ieee_traits<S>::unit_roundoff));
-    to[i] = {static_cast<S>(value), static_cast<S>(mul(div(sum.error, whole) + rounding, 1.0000005))};
+    double const value = div_rn(sum.angle, whole), size = value < 0 ? -value : value;
+    double const rounding = mul_rn(size, 2 * static_cast<double>(ieee_traits<S>::unit_roundoff));
+    to[i] = {static_cast<S>(value), static_cast<S>(mul_rn(div_rn(sum.error, whole) + rounding, 1.0000005))};
   }
 };
 

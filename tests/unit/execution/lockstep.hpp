@@ -18,9 +18,9 @@ template <class Block>
 struct balancing {
   typename Block::scan_storage scan;
 
-  template <class Item, class Find, class Look, class Take, class Round>
-  void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find, Look const& look,
-           Take const& take, Round const& after_round) {
+  template <class Item, class Load, class Filter, class Consume, class EndRound>
+  void run(Block& block, std::uint32_t* counts, std::uint32_t n, Item const& item, Load const& load,
+           Filter const& filter, Consume const& consume, EndRound const& end_round) {
     std::uint32_t const total = block.scan(scan, counts, n);
     for (std::uint32_t base = 0; base < total; base += Block::num_threads) {
       block.for_each_thread([&](int thread_rank) {
@@ -36,10 +36,10 @@ struct balancing {
           }
         }
         auto const one = item(i);
-        auto const found = find(one, work - counts[i]);
-        if (look(one, found)) take(one, found);
+        auto const found = load(one, work - counts[i]);
+        if (filter(one, found)) consume(one, found);
       });
-      after_round(base + Block::num_threads >= total);
+      end_round(base + Block::num_threads >= total);
     }
   }
 };
@@ -49,7 +49,7 @@ struct balancing {
 template <int Lanes, int Items, bool Reversed>
 class lockstep_block {
  public:
-  static constexpr int num_threads = Lanes, items = Items, pending = 2 * Lanes, warp_size = 1;
+  static constexpr int num_threads = Lanes, items = Items, hit_capacity = 2 * Lanes, warp_size = 1;
 
   template <class T>
   struct thread_private {
@@ -116,10 +116,10 @@ class lockstep_block {
     return sum;
   }
 
-  template <int Ahead, class Item, class Find, class Look, class Take, class Round>
-  void for_each_balanced(balance_storage& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Find const& find,
-                         Look const& look, Take const& take, Round const& after_round) {
-    s.run(*this, counts, n, item, find, look, take, after_round);
+  template <int ItemsPerThread, class Item, class Load, class Filter, class Consume, class EndRound>
+  void for_each_balanced(balance_storage& s, std::uint32_t* counts, std::uint32_t n, Item const& item, Load const& load,
+                         Filter const& filter, Consume const& consume, EndRound const& end_round) {
+    s.run(*this, counts, n, item, load, filter, consume, end_round);
   }
 
   template <class T, class Combine>
@@ -141,23 +141,23 @@ class lockstep : public collide::host {
   using host::host;
   static constexpr char const* name() { return Reversed ? "lockstep_reversed" : "lockstep"; }
 
-  template <class Body>
-  using block = lockstep_block<Lanes, Body::items, Reversed>;
+  template <class Kernel>
+  using block = lockstep_block<Lanes, Kernel::items, Reversed>;
 
-  template <class Body>
+  template <class Kernel>
   std::size_t max_resident_blocks() const {
     return Reversed ? 1 : 3;
   }
 
-  template <class Body>
-  void launch(std::size_t blocks, Body const& body) const {
-    using scratch_type = typename Body::template scratch<block<Body>>;
+  template <class Kernel>
+  void launch(std::size_t blocks, Kernel const& kernel) const {
+    using scratch_type = typename Kernel::template scratch<block<Kernel>>;
     static_assert(std::is_trivially_copyable<scratch_type>::value, "scratch memory is never constructed on CUDA");
     auto const memory = std::make_unique<storage<scratch_type>>();
     for (std::size_t i = 0; i < blocks; ++i) {
       std::memset(memory->bytes, Reversed ? 0x7f : 0xff, sizeof(scratch_type));
-      block<Body> here(i);
-      body(here, *reinterpret_cast<scratch_type*>(memory->bytes));
+      block<Kernel> here(i);
+      kernel(here, *reinterpret_cast<scratch_type*>(memory->bytes));
     }
   }
 

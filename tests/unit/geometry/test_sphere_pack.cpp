@@ -30,7 +30,7 @@ struct scene {
 
 template <class S>
 void check_still(collide::sphere_view<S> const& spheres) {
-  sphere_batch<S, 4> batch;
+  sphere_pack<S, 4> batch;
   for (std::size_t first = 0; first < n + 4; first += 4) {
     batch.load(spheres, first);
     for (int k = 0; k < 4; ++k) {
@@ -48,8 +48,8 @@ void check_still(collide::sphere_view<S> const& spheres) {
 
 template <class S>
 void check_moving(collide::moving_sphere_view<S> const& spheres) {
-  moving_batch<S, 4> batch;
-  sphere_batch<S, 4> around;
+  moving_pack<S, 4> batch;
+  sphere_pack<S, 4> around;
   for (std::size_t first = 0; first < n + 4; first += 4) {
     batch.load(spheres, first);
     around.load(spheres, first);

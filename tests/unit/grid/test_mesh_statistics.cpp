@@ -34,8 +34,8 @@ void check(Space space, std::size_t n) {
   mesh_statistics<S> seen;
   std::vector<triangle_aabb<S>> boxes(n);
   mesh_statistics<S>::clear(space, &seen);
-  compute_mesh_statistics<S> const body{mesh, &seen, boxes.data()};
-  space.launch(grid_size<Space>(n, body), body);
+  compute_mesh_statistics<S> const kernel{mesh, &seen, boxes.data()};
+  space.launch(grid_size<Space>(n, kernel), kernel);
 
   constexpr S infinity = std::numeric_limits<S>::infinity();
   S lower[3] = {infinity, infinity, infinity}, upper[3] = {-infinity, -infinity, -infinity}, largest = 0;
@@ -101,9 +101,9 @@ TEST_CASE_TEMPLATE("mesh statistics: a histogram of the radii that are valid", S
   centres.resize(3 * radii.size());
   auto const spheres = collide::spheres_xyz(centres.data(), radii.size(), radii.data());
   size_histogram seen{};
-  radius_histogram_kernel<S> const body{spheres, &seen};
+  radius_histogram_kernel<S> const kernel{spheres, &seen};
   tests::lockstep<8, false> const space;
-  space.launch(grid_size<tests::lockstep<8, false>>(radii.size(), body), body);
+  space.launch(grid_size<tests::lockstep<8, false>>(radii.size(), kernel), kernel);
   std::vector<std::uint64_t> counts(size_bins, 0);
   for (S r : radii) {
     if (r >= 0 && std::isfinite(r)) ++counts[size_bin(r + S(0))];

@@ -17,7 +17,7 @@ template <class S>
 struct scene {
   grid<S> cells{};
   std::vector<std::uint8_t> occupied;
-  occupancy_view<S> marks;
+  occupancy_view<S> occupancy;
 
   explicit scene(S x = 0) : occupied(8 * 4 * 16 / 8 + 1) {
     S const lower[3] = {x - 2, -1, 3};
@@ -27,8 +27,8 @@ struct scene {
       cells.lower[k] = lower[k];
       cells.upper[k] = lower[k] + S(0.5) * static_cast<S>(across[k]) - S(1e-3);
       cells.level[0].mask[k] = across[k] - 1;
-      marks.lower[k] = lower[k];
-      marks.extent[k] = to_bits(cells.upper[k] - lower[k]);
+      occupancy.lower[k] = lower[k];
+      occupancy.extent[k] = to_bits(cells.upper[k] - lower[k]);
     }
     cells.level[0].width = S(0.5);
     cells.level[0].inverse_width = 2;
@@ -39,8 +39,8 @@ struct scene {
     for (std::uint32_t c = 3; c < 3 + 8 * 4 * 16; ++c) {
       if (engine() % 3 == 0) occupied[c / 8] = static_cast<std::uint8_t>(occupied[c / 8] | 1 << c % 8);
     }
-    marks.level = cells.level[0];
-    marks.occupied = occupied.data();
+    occupancy.level = cells.level[0];
+    occupancy.occupied = occupied.data();
   }
 
   /// Whether a point is in a cell with triangles.
@@ -67,11 +67,11 @@ TEST_CASE_TEMPLATE("occupancy: centres, inside the grid and outside, and what is
       x[k] = uniform(engine) / 3, y[k] = uniform(engine) / 5, z[k] = uniform(engine);
       if (round % 100 == 0) (k == 0 ? x : k == 1 ? y : z)[k] = strange[round / 100 % 4];
     }
-    auto const places = made.marks.places_of(x, y, z);
-    made.marks.mark(places, near);
+    auto const places = made.occupancy.places_of(x, y, z);
+    made.occupancy.test_occupied(places, near);
     for (int k = 0; k < 4; ++k) {
       CHECK(near[k] == made.expects({x[k], y[k], z[k]}));
-      if (places.inside[k] != 0) CHECK(near[k] == made.marks.is_occupied(places.cells[k]));
+      if (places.inside[k] != 0) CHECK(near[k] == made.occupancy.is_occupied(places.cells[k]));
       found += near[k];
     }
   }
@@ -84,7 +84,7 @@ TEST_CASE_TEMPLATE("occupancy: a path that comes through a cell with triangles i
   std::uniform_real_distribution<S> uniform(-1, 1);
   int known = 0, marked = 0, missed = 0;
   for (int round = 0; round < 20000; ++round) {
-    moving_batch<S, 4> batch;
+    moving_pack<S, 4> batch;
     S const length = round % 2 == 0 ? S(0.2) : S(0.6);
     for (int k = 0; k < 4; ++k) {
       batch.x[k] = 3 * uniform(engine), batch.y[k] = 2 * uniform(engine), batch.z[k] = 7 + 5 * uniform(engine);
@@ -93,7 +93,7 @@ TEST_CASE_TEMPLATE("occupancy: a path that comes through a cell with triangles i
       batch.radius[k] = 1;
     }
     bool near[4];
-    if (!made.marks.test_swept(batch, near)) continue;
+    if (!made.occupancy.test_swept(batch, near)) continue;
     ++known;
     for (int k = 0; k < 4; ++k) {
       bool passes = false;
@@ -110,19 +110,19 @@ TEST_CASE_TEMPLATE("occupancy: a path that comes through a cell with triangles i
 
 TEST_CASE_TEMPLATE("occupancy: what is long, or not finite, is not known", S, float, double) {
   scene<S> const made;
-  moving_batch<S, 4> batch{};
+  moving_pack<S, 4> batch{};
   for (int k = 0; k < 4; ++k) batch.z[k] = 5, batch.radius[k] = 1;
   bool near[4];
-  CHECK(made.marks.test_swept(batch, near));
+  CHECK(made.occupancy.test_swept(batch, near));
   batch.dx[1] = 1.5;
-  CHECK(!made.marks.test_swept(batch, near));
+  CHECK(!made.occupancy.test_swept(batch, near));
   batch.dx[1] = std::numeric_limits<S>::quiet_NaN();
-  CHECK(!made.marks.test_swept(batch, near));
+  CHECK(!made.occupancy.test_swept(batch, near));
   batch.dx[1] = 0;
   batch.y[2] = std::numeric_limits<S>::infinity();
-  CHECK(!made.marks.test_swept(batch, near));
+  CHECK(!made.occupancy.test_swept(batch, near));
   batch.y[2] = 1000;  // a long path outside of the grid
   batch.dy[2] = 1000;
-  CHECK(made.marks.test_swept(batch, near));
+  CHECK(made.occupancy.test_swept(batch, near));
   CHECK(!near[2]);
 }

@@ -37,7 +37,7 @@ void check(Space space, std::vector<S> const& vertices, S radius, double width, 
   collide::bucket::index<S> index;
   index.build(space, options, mesh);
   index.prepare(space, options, radius);
-  auto const made = index.lookup();
+  auto const made = index.triangle_ref();
   if (made.grid_count == 0) {
     CHECK(budget != 0);
     return;

@@ -49,13 +49,13 @@ TEST_CASE_TEMPLATE("swept cells: of moving spheres, a few bits tell what walking
   for (auto& byte : occupied) byte = static_cast<std::uint8_t>(1u << dice.integer(0, 7));
   std::uint32_t const total = 0;
   collide::detail::bucket_ref<S> lookup{{{}, nullptr}, &grid, 1, occupied.data(), nullptr, &total, nullptr, 0};
-  auto const marks = lookup.occupancy();
+  auto const occupancy = lookup.occupancy();
   S const bad[] = {std::numeric_limits<S>::infinity(), -std::numeric_limits<S>::infinity(),
                    std::numeric_limits<S>::quiet_NaN()};
   int empty = 0, near_some = 0, unknown = 0, away = 0;
   for (int i = 0; i < 5000; ++i) {
     double const length = i % 20 == 0 ? 4 : i % 3 * 0.04;
-    collide::detail::moving_batch<S, 4> batch;
+    collide::detail::moving_pack<S, 4> batch;
     for (int k = 0; k < 4; ++k) {
       auto const from = dice.in_cube(0.7), along = dice.in_cube(length);
       batch.x[k] = S(from.x + 0.5), batch.y[k] = S(from.y + 0.5), batch.z[k] = S(from.z + 0.5);
@@ -64,7 +64,7 @@ TEST_CASE_TEMPLATE("swept cells: of moving spheres, a few bits tell what walking
     bool const is_bad = i % 50 == 7;
     if (is_bad) (i % 4 < 2 ? batch.x : batch.dz)[i % 3] = bad[i / 50 % 3];
     bool near[4], all_short = true;
-    bool const known = marks.test_swept(batch, near);
+    bool const known = occupancy.test_swept(batch, near);
     for (int k = 0; k < 4 && !is_bad; ++k) {
       bool const inside = swept_cells<S>::overlaps_slab(0, 1, batch.x[k], batch.dx[k]) &&
                           swept_cells<S>::overlaps_slab(0, 1, batch.y[k], batch.dy[k]) &&

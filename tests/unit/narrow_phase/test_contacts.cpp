@@ -56,9 +56,9 @@ any_pair next_pair(tests::dice& roll, double smallest, double thinnest) {
 bool is_measured_without(any_pair const& p) {
   collide::sphere<double> const centre{p.ball.centre, 0};
   auto const l = collide::detail::to_unit_range(collide::detail::to_local<double>(p.shape, centre), p.shape, centre);
-  vec3<double> foot;
-  collide::detail::measured_contact found;
-  return collide::detail::measure_compensated(p.shape, {p.ball, {0, 0, 0}}, 0, l.scale, true, foot, found);
+  vec3<double> closest;
+  collide::detail::contact_without_point found;
+  return collide::detail::contact_compensated(p.shape, {p.ball, {0, 0, 0}}, 0, l.scale, true, closest, found);
 }
 
 std::atomic<int> contacts_computed;

@@ -56,7 +56,7 @@ TEST_CASE_TEMPLATE("near contact: a simulation knows the depth of a ball whose c
   collide::triangle<S> const t{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
   for (S const height : {S(0), S(0x1p-21), S(-0x1p-30)}) {
     CAPTURE(height);
-    collide::contact<S> const c = collide::detail::relaxed_contact(t, collide::sphere<S>{{1, 1, height}, S(0.5)});
+    collide::contact<S> const c = collide::detail::contact_double(t, collide::sphere<S>{{1, 1, height}, S(0.5)});
     CHECK(c.distance == std::abs(height));
     CHECK(c.depth == S(0.5) - std::abs(height));
   }
@@ -79,16 +79,16 @@ TEST_CASE_TEMPLATE("near contact: what a simulation tells at once is right", S, 
   auto const point_of = [](collide::vec3<S> const& v) { return oracle::point{v.x(), v.y(), v.z()}; };
   auto const check = [&](collide::triangle<S> const& shape, collide::sphere<S> const& ball) {
     collide::contact<S> found;
-    auto const quick = collide::detail::relaxed_contact_fast(shape, ball, false, found);
+    auto const quick = collide::detail::try_contact_double(shape, ball, false, found);
     if (quick == collide::detail::verdict::uncertain) return;
     bool const expected = oracle::hit({point_of(shape.a), point_of(shape.b), point_of(shape.c)},
                                       {point_of(ball.centre), static_cast<double>(ball.radius)});
     CHECK((quick == collide::detail::verdict::hit) == expected);
     ++(expected ? hits : misses);
     if (!expected) return;
-    auto const whole = collide::detail::relaxed_contact(shape, ball);
+    auto const whole = collide::detail::contact_double(shape, ball);
     CHECK(std::memcmp(static_cast<void const*>(&found), static_cast<void const*>(&whole), sizeof found) == 0);
-    CHECK((collide::detail::relaxed_contact_fast(shape, ball, true, found) == collide::detail::verdict::hit));
+    CHECK((collide::detail::try_contact_double(shape, ball, true, found) == collide::detail::verdict::hit));
   };
   for (auto const& cases :
        {tests::near_contact<S>(61, 1500), tests::ties<S>(62, 2000), tests::mixed_exponents<S>(63, 2000)})

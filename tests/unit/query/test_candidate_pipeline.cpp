@@ -115,7 +115,7 @@ TEST_CASE_TEMPLATE("candidate pipeline: what the filter leaves open goes to a li
     std::vector<collide::pair> found, later(n, {collide::no_id, collide::no_id});
     int allocations = 0;
     deferred_pairs::counters counters{0, 0};
-    using output = deferring<counted_output>;
+    using output = output_with_deferral<counted_output>;
     static_assert(defers_pairs<output>);
     candidate_pipeline<float, collide::karabassi<>, output> const pipeline{
         mesh,

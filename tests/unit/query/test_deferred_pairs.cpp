@@ -30,7 +30,7 @@ struct nothing_touches final : collide::karabassi<> {
 
 /// A sink whose handle has members of its own, with names that the library uses elsewhere.
 struct counting_sink {
-  struct handle final {
+  struct output final {
     int* count;
     static bool needed() { return false; }
     static bool takes() { return false; }
@@ -42,7 +42,7 @@ struct counting_sink {
 
   template <class Space, class Query>
   void run(Space&, Query const& query) {
-    query(handle{&total});
+    query(output{&total});
   }
 };
 

@@ -55,8 +55,8 @@ TEST_CASE_TEMPLATE("groups of triangles: the host finds the statistics of a mesh
     compute_mesh_statistics<S> const reference{mesh, &expected, nullptr};
     device.launch(grid_size<tests::lockstep<8, false>>(n, reference), reference);
     std::vector<triangle_aabb<S>> groups(triangle_group<S>::count(n));
-    measure_groups<S> const body{mesh, &seen, groups.data()};
-    collide::host(2).launch(body.blocks(), body);
+    measure_groups<S> const kernel{mesh, &seen, groups.data()};
+    collide::host(2).launch(kernel.blocks(), kernel);
     for (int k = 0; k < 3; ++k) {
       CHECK(seen.lower_of(k) == expected.lower_of(k));
       CHECK(seen.upper_of(k) == expected.upper_of(k));
@@ -87,8 +87,8 @@ TEST_CASE_TEMPLATE("groups of triangles: the histogram of radii that the host fi
   radii.push_back(S(0)), radii.push_back(S(-0.));
   std::vector<S> const centres(3 * radii.size());
   size_histogram seen{};
-  measure_radii<S> const body{collide::spheres_xyz(centres.data(), radii.size(), radii.data()), &seen};
-  collide::host(2).launch(body.blocks(), body);
+  measure_radii<S> const kernel{collide::spheres_xyz(centres.data(), radii.size(), radii.data()), &seen};
+  collide::host(2).launch(kernel.blocks(), kernel);
   std::vector<std::uint64_t> counts(size_bins, 0);
   for (S r : radii) {
     if (r >= 0 && std::isfinite(r)) ++counts[size_bin(r + S(0))];

@@ -63,7 +63,7 @@ TEST_CASE("per sphere: a lookup gives each candidate once, by rising number") {
   std::vector<float> const vertices(9 * 100, 0.f);
   std::vector<collide::id> const all{70, 3, 99, 3, 0, 42};
   collide::sphere<float> seen{};
-  per_sphere_lookup<float, listed> lookup{{collide::triangle_soup(vertices.data(), 100), nullptr}, {&all, &seen}};
+  per_sphere_ref<float, listed> lookup{{collide::triangle_soup(vertices.data(), 100), nullptr}, {&all, &seen}};
   auto cursor = lookup.begin(moves);
   candidate_range range;
   std::vector<collide::id> found;
@@ -96,9 +96,9 @@ TEST_CASE("per sphere: kernels try all candidates, however many there are for th
   auto const check = [&](auto const& space) {
     using space_type = std::decay_t<decltype(space)>;
     std::vector<collide::pair> found;
-    per_sphere_query<float, collide::karabassi<>, pair_output, listed> const body{{mesh, spheres, {&found}, nullptr},
-                                                                                  {&all, &seen}};
-    space.launch(grid_size<space_type>(3, body), body);
+    per_sphere_query<float, collide::karabassi<>, pair_output, listed> const kernel{{mesh, spheres, {&found}, nullptr},
+                                                                                    {&all, &seen}};
+    space.launch(grid_size<space_type>(3, kernel), kernel);
     std::sort(found.begin(), found.end());
     CHECK(std::equal(found.begin(), found.end(), expected.begin(), expected.end(),
                      [](auto const& a, auto const& b) { return a.sphere == b.sphere && a.triangle == b.triangle; }));

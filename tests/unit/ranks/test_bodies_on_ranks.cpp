@@ -234,14 +234,14 @@ TEST_CASE("bodies on ranks: sums that do not fit are errors on all ranks") {
       std::string said;
       std::vector<std::int64_t> const mine{-large / n, large, -1, 7 + ranks.rank()};
       try {
-        auto const all = collide::detail::sums_of_ranks(ranks, [&] { return mine; });
+        auto const all = collide::detail::rank_reduction(ranks, [&] { return mine; });
         wrong.expect(n == 1 && all == mine, "two of these are too large");
       } catch (collide::error const& e) {
         said = e.what();
       }
       wrong.expect(said.empty() == (n == 1), said);
       std::vector<std::int64_t> const fits{-large / n, large / n, -1, 7 + ranks.rank()};
-      auto const all = collide::detail::sums_of_ranks(ranks, [&] { return fits; });
+      auto const all = collide::detail::rank_reduction(ranks, [&] { return fits; });
       wrong.expect(all == std::vector<std::int64_t>{-large / n * n, large / n * n, -n, 7 * n + n * (n - 1) / 2},
                    "sums, also of negative numbers");
     });

@@ -408,7 +408,7 @@ void check_crowded_blocks(Space const& space, Other const& other, Effect const&.
   CHECK((run(space) == run(other)));
 }
 
-/// A kernel body as far as a space asks for blocks.
+/// A kernel functor as far as a space asks for blocks.
 struct any_body {
   static constexpr int items = 1;
 };

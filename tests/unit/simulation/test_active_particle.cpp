@@ -64,7 +64,7 @@ TEST_CASE_TEMPLATE("active particle: what lies on a recorded contact's surface i
 
   collide::mesh_contact<S> wall{};
   wall.normal = vec3<S>(1, 0, S(-0.5)) / std::sqrt(S(1.25));  // leads into the floor
-  a.find_lift(wall, {0, 0, -1});
-  CHECK(std::abs(wall.lift.z()) <= S(1e-6));
-  CHECK(dot(wall.lift, wall.normal) == doctest::Approx(1));
+  a.project_onto_contacts(wall, {0, 0, -1});
+  CHECK(std::abs(wall.wedge_direction.z()) <= S(1e-6));
+  CHECK(dot(wall.wedge_direction, wall.normal) == doctest::Approx(1));
 }

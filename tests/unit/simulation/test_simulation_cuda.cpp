@@ -21,7 +21,7 @@ using falls_in = simulation<tests::meets_mesh<cuda_shared, NarrowPhase>, gravity
 template <std::size_t Blocks>
 struct narrow : cuda_shared {
   using cuda_shared::cuda_shared;
-  template <class Body>
+  template <class Kernel>
   std::size_t max_resident_blocks() const {
     return Blocks;
   }

@@ -3,8 +3,8 @@
 /// members are those of triangle_ref.hpp.
 #pragma once
 
+#include <collide/detail/bodies/float_frames.hpp>
 #include <collide/detail/bodies/moving_mesh.hpp>
-#include <collide/detail/bodies/quick_frames.hpp>
 #include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/triangle_ref.hpp>
 
@@ -35,9 +35,11 @@ template <class S, class Triangles>
 struct bodies_ref {
   Triangles whole;  ///< the lookup of all triangles, each in its frame
   moving_mesh<S> mesh;
-  quick_frames<S> quick;
+  float_frames<S> quick;
 
-  COLLIDE_HD_INLINE bodies_ref opened() const { return {whole.opened(), mesh, quick}; }
+  COLLIDE_HD_INLINE bodies_ref without_overflown_grids() const {
+    return {whole.without_overflown_grids(), mesh, quick};
+  }
 
   /// True if `mark` can tell of spheres of this radius whether they may touch a triangle.
   COLLIDE_HD_INLINE bool has_single_cell_lookup(S radius) const {
@@ -46,11 +48,11 @@ struct bodies_ref {
   COLLIDE_HD_INLINE auto occupancy() const { return whole.occupancy(); }
 
   /// Sets near[k] for those of some spheres at rest, of one radius, that may touch a triangle at the end of the step.
-  /// False if that is not known. `marks` is `occupancy()`.
+  /// False if that is not known. `occupancy` is `occupancy()`.
   template <int N>
-  COLLIDE_HD_INLINE bool mark(occupancy_view<S> const& marks, S const (&x)[N], S const (&y)[N], S const (&z)[N],
-                              S radius, bool (&near)[N]) const {
-    return quick.mark(marks, mesh.first_frame, mesh.frame_count, x, y, z, radius, near);
+  COLLIDE_HD_INLINE bool test_occupied(occupancy_view<S> const& occupancy, S const (&x)[N], S const (&y)[N],
+                                       S const (&z)[N], S radius, bool (&near)[N]) const {
+    return quick.test_occupied(occupancy, mesh.first_frame, mesh.frame_count, x, y, z, radius, near);
   }
 
   /// True if the sphere can touch no triangle in the step.
@@ -101,8 +103,8 @@ struct bodies_ref {
   /// `around` is in the triangle's frame.
   COLLIDE_HD_INLINE bool near(sphere<S> const& around, id triangle) const { return whole.near(around, triangle); }
   template <class NarrowPhase, class Sphere>
-  COLLIDE_HD_INLINE bool passes_coverage(Sphere const& shape, id triangle) const {
-    return whole.template passes_coverage<NarrowPhase>(shape, triangle);
+  COLLIDE_HD_INLINE bool aabb_overlaps_unless_filtered(Sphere const& shape, id triangle) const {
+    return whole.template aabb_overlaps_unless_filtered<NarrowPhase>(shape, triangle);
   }
 
  private:

@@ -26,7 +26,7 @@ struct body_box {
   uint_for<S> lower[3], upper[3];
 };
 
-/// Kernel body of `for_each` over groups of triangles: adds them to the boxes of their bodies.
+/// Kernel functor of `for_each` over groups of triangles: adds them to the boxes of their bodies.
 template <class S>
 struct bound_bodies {
   static constexpr std::size_t group = 64;
@@ -37,7 +37,7 @@ struct bound_bodies {
 
   COLLIDE_HD void operator()(std::size_t g) const {
     std::size_t i = g * group;
-    std::size_t const end = smaller(i + group, mesh.size());
+    std::size_t const end = min(i + group, mesh.size());
     while (i < end) {
       std::uint8_t const frame = frame_numbers[i];
       aabb<S> all = aabb<S>::empty();
@@ -54,13 +54,13 @@ struct bound_bodies {
   }
 };
 
-/// Kernel body of `for_each` over bodies: where each is at the end of the step, or, if it `starts`, now.
+/// Kernel functor of `for_each` over bodies: where each is at the end of the step, or, if it `starts`, now.
 template <class S, class Motion>
 struct advance_bodies {
   body_record const* records;
   body_state* states;
   body_frame<S>* frames;
-  quick_frame<S>* quick;
+  float_frame<S>* quick;
   body_report* report;
   double const* time;
   double dt;
@@ -82,9 +82,9 @@ struct advance_bodies {
     f.moved = is_placed ? f.moving : s.moving;
     f.now = now;
     f.moving = s.moving;
-    f.belt = vector_of(s.belt);
+    f.conveyor_velocity = vector_of(s.belt);
     bound(f, records[i]);
-    if (!swept) quick[i + 1] = quick_frame<S>::of(f);
+    if (!swept) quick[i + 1] = float_frame<S>::of(f);
   }
 
  private:
@@ -111,7 +111,7 @@ struct advance_bodies {
   /// Makes the rotation's length 1. False if it is not nearly that, or something is not finite.
   static COLLIDE_HD_INLINE bool make_unit(body_state& s) {
     double(&q)[4] = s.at.rotation;
-    double const squared = mul(q[0], q[0]) + mul(q[1], q[1]) + mul(q[2], q[2]) + mul(q[3], q[3]);
+    double const squared = mul_rn(q[0], q[0]) + mul_rn(q[1], q[1]) + mul_rn(q[2], q[2]) + mul_rn(q[3], q[3]);
     bool sound = is_finite(squared) && squared > 1 - 1e-4 && squared < 1 + 1e-4;
     for (int k = 0; k < 3; ++k) {
       sound = sound && is_finite(s.at.position[k]) && is_finite(s.moving.linear[k]) && is_finite(s.moving.angular[k]) &&
@@ -119,7 +119,7 @@ struct advance_bodies {
     }
     if (!sound) return false;
     double const length = sqrt_rn(squared);
-    for (double& c : q) c = div(c, length);
+    for (double& c : q) c = div_rn(c, length);
     return true;
   }
 
@@ -131,17 +131,17 @@ struct advance_bodies {
     vec3<double> const sine =
         scaled(f.now.axis, f.before.w) - scaled(f.before.axis, f.now.w) - cross(f.before.axis, f.now.axis);
     double const turned = 2 * norm(sine);  // |R x - x| / |x|
-    double const shifted = sqrt_rn(dot(shift, shift)), moved = shifted + mul(turned, norm(r.centre));
+    double const shifted = sqrt_rn(dot(shift, shift)), moved = shifted + mul_rn(turned, norm(r.centre));
     vec3<double> const from = f.before.to_world(r.centre), to = f.now.to_world(r.centre), by = to - from;
-    f.moves = !(f.before == f.now) || dot(f.belt, f.belt) > 0 ? 1 : 0;
+    f.moves = !(f.before == f.now) || dot(f.conveyor_velocity, f.conveyor_velocity) > 0 ? 1 : 0;
     f.centre = rounded_to<S>(swept ? from : to);
     double const reach = swept ? r.radius + 2 * moved : r.radius;
-    f.reach = static_cast<S>(mul(reach, 1 + 1e-5) + mul(16 * eps, norm(from) + norm(to)));
+    f.reach = static_cast<S>(mul_rn(reach, 1 + 1e-5) + mul_rn(16 * eps, norm(from) + norm(to)));
     f.shrink = static_cast<S>(swept ? 1 - 1e-5 - turned : 1 - 1e-5);
     if (starts) return;
     double const radius = static_cast<double>(most);
-    if (!swept && norm(by) + mul(turned, r.radius) > radius) fetch_add(&report->fast_steps, 1u);
-    bool const is_rough = mul(512 * eps, norm(from) + norm(to) + r.radius) > radius;
+    if (!swept && norm(by) + mul_rn(turned, r.radius) > radius) fetch_add(&report->fast_steps, 1u);
+    bool const is_rough = mul_rn(512 * eps, norm(from) + norm(to) + r.radius) > radius;
     if (swept && is_rough && turned > 0.05) fetch_add(&report->rough_steps, 1u);
   }
 
@@ -232,11 +232,11 @@ class body_memory {
     std::vector<body_frame<S>> at_rest(
         frames, body_frame<S>{
                     identity(), identity(), {}, {}, {0, 0, 0}, {0, 0, 0}, std::numeric_limits<S>::infinity(), S(0), 0});
-    std::vector<quick_frame<S>> quick(frames, quick_frame<S>::at_rest());
+    std::vector<float_frame<S>> quick(frames, float_frame<S>::at_rest());
     for (std::size_t k = 1; k < frames; ++k) quick[k].slack = std::numeric_limits<S>::infinity();  // not known yet
     double extent = 0;
-    for (body_record const& r : records) extent = larger(extent, sqrt_rn(dot(r.centre, r.centre)) + r.radius);
-    room_ = quick_room<S>(extent);
+    for (body_record const& r : records) extent = max(extent, sqrt_rn(dot(r.centre, r.centre)) + r.radius);
+    room_ = float_frame_margin<S>(extent);
     std::vector<body_state> const states(count_);
     space.copy_from_host(records_.reserve(resource, count_), records.data(), count_);
     space.copy_from_host(states_.reserve(resource, count_), states.data(), count_);
@@ -259,7 +259,7 @@ class body_memory {
   }
 
   template <class Triangles>
-  bodies_ref<S, Triangles> lookup(Triangles const& whole, mesh_view<S> const& mesh, S dt) const {
+  bodies_ref<S, Triangles> ref(Triangles const& whole, mesh_view<S> const& mesh, S dt) const {
     return {whole,
             {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt},
             {quick_.data(), room_}};
@@ -309,7 +309,7 @@ class body_memory {
   buffer<body_record> records_;
   buffer<body_state> states_;
   buffer<body_frame<S>> frames_;
-  buffer<quick_frame<S>> quick_;
+  buffer<float_frame<S>> quick_;
   S room_ = 0;
   bool is_placed_ = false;  ///< of bodies that the caller drives: they have begun where the caller wants them
   buffer<body_report> report_;
@@ -332,7 +332,7 @@ struct no_bodies {
   template <class Space, class Mesh>
   void build(Space&, Mesh const&, std::vector<body> const&, void const*) {}
   template <class Triangles, class Mesh, class S>
-  Triangles const& lookup(Triangles const& whole, Mesh const&, S) const {
+  Triangles const& ref(Triangles const& whole, Mesh const&, S) const {
     return whole;
   }
 };

@@ -44,12 +44,12 @@ COLLIDE_HD_INLINE frame_pose frame_pose_of(pose const& p) {
 
 /// The pose at a fraction of the motion from one to another.
 COLLIDE_HD_INLINE frame_pose between(frame_pose const& a, frame_pose const& b, double t) {
-  double const same = mul(a.w, b.w) + dot(a.axis, b.axis) < 0 ? -1.0 : 1.0, s = 1 - t;
-  double const w = mul(s, a.w) + mul(mul(t, same), b.w);
-  vec3<double> const axis = scaled(a.axis, s) + scaled(b.axis, mul(t, same));
-  double const length = sqrt_rn(mul(w, w) + dot(axis, axis));
-  vec3<double> const unit(div(axis.x(), length), div(axis.y(), length), div(axis.z(), length));
-  return {scaled(a.position, s) + scaled(b.position, t), div(w, length), unit};
+  double const same = mul_rn(a.w, b.w) + dot(a.axis, b.axis) < 0 ? -1.0 : 1.0, s = 1 - t;
+  double const w = mul_rn(s, a.w) + mul_rn(mul_rn(t, same), b.w);
+  vec3<double> const axis = scaled(a.axis, s) + scaled(b.axis, mul_rn(t, same));
+  double const length = sqrt_rn(mul_rn(w, w) + dot(axis, axis));
+  vec3<double> const unit(div_rn(axis.x(), length), div_rn(axis.y(), length), div_rn(axis.z(), length));
+  return {scaled(a.position, s) + scaled(b.position, t), div_rn(w, length), unit};
 }
 
 /// The velocity of what is at `x` in a body with this pose.
@@ -62,7 +62,7 @@ template <class S>
 struct body_frame {
   frame_pose before, now;  ///< when the step begins, and ends
   twist moved, moving;     ///< its twists at these times
-  vec3<double> belt;
+  vec3<double> conveyor_velocity;
   vec3<S> centre;     ///< of a bounding sphere of the body when the step begins; if not `swept`, when it ends
   S reach;            ///< no particle of radius r that moves by d can touch the body in the step if `shrink` times its
   S shrink;           ///< distance from the centre is above reach + r + d
@@ -72,7 +72,7 @@ struct body_frame {
   COLLIDE_HD_INLINE bool is_far(Vector const& x, S r, S path) const {
     S const at_least = reach + r + path;
     vec3<S> const apart = x - centre;
-    return shrink > 0 && mul(dot(apart, apart), mul(shrink, shrink)) > mul(at_least, at_least);
+    return shrink > 0 && mul_rn(dot(apart, apart), mul_rn(shrink, shrink)) > mul_rn(at_least, at_least);
   }
 };
 
@@ -106,15 +106,15 @@ struct moving_mesh : mesh_view<S> {
     vec3<double> const to_point = point.template cast<double>() - a, normal = cross(ab, ac);
     double const area = dot(normal, normal);
     auto const part = [&](vec3<double> const& opposite) {
-      double const p = area > 0 ? div(dot(opposite, normal), area) : 0;
-      return p > 0 ? smaller(p, 1.0) : 0.0;
+      double const p = area > 0 ? div_rn(dot(opposite, normal), area) : 0;
+      return p > 0 ? min(p, 1.0) : 0.0;
     };
     double const b = part(cross(to_point, ac)), c = part(cross(ab, to_point));
     auto const of_corner = [&](unsigned k) {
       S const* const v = vertex_velocities + 3 * this->corner(triangle, k);
       return vec3<double>(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
     };
-    return scaled(of_corner(0), larger(1 - b - c, 0.0)) + scaled(of_corner(1), b) + scaled(of_corner(2), c);
+    return scaled(of_corner(0), max(1 - b - c, 0.0)) + scaled(of_corner(1), b) + scaled(of_corner(2), c);
   }
 
   /// A body's pose at a part of the step.

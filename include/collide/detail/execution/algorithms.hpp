@@ -12,7 +12,7 @@
 
 namespace collide::detail {
 
-/// Kernel body: calls f(i) for all i < n if *condition is not 0, each thread for several i.
+/// Kernel functor: calls f(i) for all i < n if *condition is not 0, each thread for several i.
 template <class F>
 struct for_each_if_nonzero_kernel {
   static constexpr int items = 1;
@@ -48,7 +48,7 @@ void for_each_if_nonzero(Space const& space, std::uint32_t const* condition, std
   }
 }
 
-/// Kernel body that calls f(number of the block), on memory that the host can access.
+/// Kernel functor that calls f(number of the block), on memory that the host can access.
 template <class F>
 struct for_each_block_kernel {
   static constexpr int items = 1;

@@ -1,7 +1,7 @@
 /// \file
-/// What a kernel body is written against: a block of threads that work together.
+/// What a kernel functor is written against: a block of threads that work together.
 ///
-/// A body is a function object `body(block, scratch)`. It runs once per block, on any execution space:
+/// A kernel is a function object `kernel(block, scratch)`. It runs once per block, on any execution space:
 ///   - `block.for_each_thread(f)` calls f(thread) for every thread, then waits for all of them;
 ///   - `Block::thread_private<T>` is a value per thread (a register on CUDA);
 ///   - `block.broadcast(x)` reads a value of the scratch memory, alike for all threads, that later code may overwrite;
@@ -11,13 +11,14 @@
 ///     of a few values, one row for each thread, that follow each other: `warp_size` threads call them at a time and
 ///     read and write what lies side by side together, so all of these rows must exist; what a thread has read is its
 ///     own row after the exchange, and not before;
-///   - `block.for_each_balanced<Ahead>(...)` spreads work evenly over the threads: for all k < counts[i], which are at
-///     least 1, it finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f). `find` and `look` only
-///     read, and a thread does them up to `Ahead` times before it takes, so that it waits for all of them at once if
-///     they do not branch; after each round the whole block calls `after_round(is_last)`;
+///   - `block.for_each_balanced<ItemsPerThread>(...)` spreads work evenly over the threads: for all k < counts[i],
+///   which are at
+///     least 1, it finds f = find(item(i), k), and if look(item(i), f), calls take(item(i), f). `load` and `filter`
+///     only read, and a thread does them up to `ItemsPerThread` times before it takes, so that it waits for all of them
+///     at once if they do not branch; after each round the whole block calls `end_round(is_last)`;
 ///   - `block.scan(...)` makes of at most as many values as threads the sums of those before each;
 ///   - `block.reduce(...)` combines a value per thread.
-/// `scratch` is the body's scratch memory of the block (shared memory on CUDA); it is not initialised.
+/// `scratch` is the kernel's scratch memory of the block (shared memory on CUDA); it is not initialised.
 /// Here is the block of plain C++: `serial_block`, a single thread that does everything itself (the host's block, and a
 /// CUDA thread without shared memory). That of CUDA threads that work together is in cuda_block.cuh.
 #pragma once
@@ -33,11 +34,11 @@
 
 namespace collide::detail {
 
-/// A block of one thread with `Items` items; `Pending` hits are gathered before they go to the sink.
-template <int Items, int Pending>
+/// A block of one thread with `Items` items; `HitCapacity` hits are gathered before they go to the sink.
+template <int Items, int HitCapacity>
 class serial_block {
  public:
-  static constexpr int num_threads = 1, items = Items, pending = Pending, warp_size = 1;
+  static constexpr int num_threads = 1, items = Items, hit_capacity = HitCapacity, warp_size = 1;
 
   template <class T>
   struct thread_private {
@@ -97,17 +98,17 @@ class serial_block {
     return sum;
   }
 
-  template <int Ahead, class Item, class Find, class Look, class Take, class Round>
+  template <int ItemsPerThread, class Item, class Load, class Filter, class Consume, class EndRound>
   COLLIDE_HD_INLINE void for_each_balanced(balance_storage&, std::uint32_t const* counts, std::uint32_t n,
-                                           Item const& item, Find const& find, Look const& look, Take const& take,
-                                           Round const& after_round) {
+                                           Item const& item, Load const& load, Filter const& filter,
+                                           Consume const& consume, EndRound const& end_round) {
     for (std::uint32_t i = 0; i < n; ++i) {
       auto const one = item(i);
       for (std::uint32_t k = 0; k < counts[i]; ++k) {
-        auto const found = find(one, k);
-        if (look(one, found)) take(one, found);
+        auto const found = load(one, k);
+        if (filter(one, found)) consume(one, found);
       }
-      after_round(i + 1 == n);
+      end_round(i + 1 == n);
     }
   }
 

@@ -24,7 +24,7 @@ template <int Items>
 class cuda_block {
  public:
   static constexpr int num_threads = threads_per_block, items = Items;
-  static constexpr int pending = 2 * threads_per_block, warp_size = cuda_warp;
+  static constexpr int hit_capacity = 2 * threads_per_block, warp_size = cuda_warp;
 
   template <class T>
   struct thread_private {
@@ -76,7 +76,7 @@ class cuda_block {
   /// A warp reads what lies side by side,
   template <class T, int N>
   __device__ __forceinline__ void load_striped(T const* from, std::uint32_t row, T (&side)[N]) {
-    from += first_beside<N>(row);
+    from += striped_offset<N>(row);
     for (int k = 0; k < N; ++k) side[k] = from[k * cuda_warp];
   }
 
@@ -84,11 +84,11 @@ class cuda_block {
   template <class Scratch, class T, int N>
   __device__ __forceinline__ void striped_to_blocked(Scratch& s, T (&values)[N]) {
     if constexpr (N > 1) {
-      T* const line = line_of_warp<N>(s.values);
-      std::uint32_t const own = threadIdx.x % cuda_warp;
-      for (std::uint32_t k = 0; k < N; ++k) line[k * cuda_warp + own] = values[k];
+      T* const line = warp_slice<N>(s.values);
+      std::uint32_t const lane = threadIdx.x % cuda_warp;
+      for (std::uint32_t k = 0; k < N; ++k) line[k * cuda_warp + lane] = values[k];
       __syncwarp();
-      for (std::uint32_t k = 0; k < N; ++k) values[k] = line[own * N + k];
+      for (std::uint32_t k = 0; k < N; ++k) values[k] = line[lane * N + k];
       __syncwarp();
     }
   }
@@ -98,12 +98,12 @@ class cuda_block {
     if constexpr (N == 1) {
       to[row] = from[0];
     } else {
-      T* const line = line_of_warp<N>(s.values);
-      std::uint32_t const own = threadIdx.x % cuda_warp;
-      for (int k = 0; k < N; ++k) line[own * N + k] = from[k];
+      T* const line = warp_slice<N>(s.values);
+      std::uint32_t const lane = threadIdx.x % cuda_warp;
+      for (int k = 0; k < N; ++k) line[lane * N + k] = from[k];
       __syncwarp();
-      to += first_beside<N>(row);
-      for (int k = 0; k < N; ++k) to[k * cuda_warp] = line[own + k * cuda_warp];
+      to += striped_offset<N>(row);
+      for (int k = 0; k < N; ++k) to[k * cuda_warp] = line[lane + k * cuda_warp];
       __syncwarp();
     }
   }
@@ -111,9 +111,9 @@ class cuda_block {
   /// Exclusive scan of at most as many values in shared memory as there are threads; returns their sum.
   __device__ std::uint32_t scan(scan_storage& s, std::uint32_t* values, std::uint32_t n) {
     auto const i = static_cast<std::uint32_t>(thread_rank());
-    std::uint32_t own = i < n ? values[i] : 0, sum;
-    block_scan(s).ExclusiveSum(own, own, sum);
-    if (i < n) values[i] = own;
+    std::uint32_t value = i < n ? values[i] : 0, sum;
+    block_scan(s).ExclusiveSum(value, value, sum);
+    if (i < n) values[i] = value;
     sync();
     return sum;
   }
@@ -122,35 +122,35 @@ class cuda_block {
   /// word of bits tells all its lanes which of the next pieces are the first ones of others. A lane finds and looks at
   /// all its pieces without a branch between them, so that what it reads for them comes together; where there is no
   /// more work, at the last piece again.
-  template <int Ahead, class Item, class Find, class Look, class Take, class Round>
+  template <int ItemsPerThread, class Item, class Load, class Filter, class Consume, class EndRound>
   __device__ __forceinline__ void for_each_balanced(scan_storage& s, std::uint32_t* counts, std::uint32_t n,
-                                                    Item const& item, Find const& find, Look const& look,
-                                                    Take const& take, Round const& after_round) {
-    constexpr std::uint32_t stretch = Ahead * cuda_warp;
+                                                    Item const& item, Load const& load, Filter const& filter,
+                                                    Consume const& consume, EndRound const& end_round) {
+    constexpr std::uint32_t warp_tile = ItemsPerThread * cuda_warp;
     std::uint32_t const total = scan(s, counts, n);  // `counts` are begins now
-    auto const own = static_cast<std::uint32_t>(threadIdx.x) % cuda_warp;
-    for (std::uint32_t base = 0; base < total; base += Ahead * num_threads) {
-      std::uint32_t const first = base + static_cast<std::uint32_t>(thread_rank()) / cuda_warp * stretch;
+    auto const lane = static_cast<std::uint32_t>(threadIdx.x) % cuda_warp;
+    for (std::uint32_t base = 0; base < total; base += ItemsPerThread * num_threads) {
+      std::uint32_t const first = base + static_cast<std::uint32_t>(thread_rank()) / cuda_warp * warp_tile;
       if (first < total) {
-        std::uint32_t before = last_begun(counts, n, first), i[Ahead], k[Ahead];
-        for (std::uint32_t a = 0; a < Ahead; ++a) {
-          std::uint32_t const piece = first + a * cuda_warp, next = before + 1 + own;
-          std::uint32_t const to_begin = next < n ? counts[next] - piece : cuda_warp;
-          unsigned const begun = all_bits(to_begin < cuda_warp ? 1u << to_begin : 0u);
-          i[a] = before + static_cast<std::uint32_t>(__popc(begun & ((2u << own) - 1)));
-          k[a] = (piece + own < total ? piece + own : total - 1) - counts[i[a]];
-          before += static_cast<std::uint32_t>(__popc(begun));
+        std::uint32_t segment = warp_upper_bound(counts, n, first), i[ItemsPerThread], k[ItemsPerThread];
+        for (std::uint32_t a = 0; a < ItemsPerThread; ++a) {
+          std::uint32_t const work_item = first + a * cuda_warp, next = segment + 1 + lane;
+          std::uint32_t const head_offset = next < n ? counts[next] - work_item : cuda_warp;
+          unsigned const segment_heads = warp_or(head_offset < cuda_warp ? 1u << head_offset : 0u);
+          i[a] = segment + static_cast<std::uint32_t>(__popc(segment_heads & ((2u << lane) - 1)));
+          k[a] = (work_item + lane < total ? work_item + lane : total - 1) - counts[i[a]];
+          segment += static_cast<std::uint32_t>(__popc(segment_heads));
         }
-        decltype(find(item(0), 0)) found[Ahead];
-        bool taken[Ahead];
-        for (int a = 0; a < Ahead; ++a) found[a] = find(item(i[a]), k[a]);
-        for (int a = 0; a < Ahead; ++a) taken[a] = look(item(i[a]), found[a]);
-        for (std::uint32_t a = 0; a < Ahead; ++a) {
-          if (taken[a] && first + a * cuda_warp + own < total) take(item(i[a]), found[a]);
+        decltype(load(item(0), 0)) found[ItemsPerThread];
+        bool taken[ItemsPerThread];
+        for (int a = 0; a < ItemsPerThread; ++a) found[a] = load(item(i[a]), k[a]);
+        for (int a = 0; a < ItemsPerThread; ++a) taken[a] = filter(item(i[a]), found[a]);
+        for (std::uint32_t a = 0; a < ItemsPerThread; ++a) {
+          if (taken[a] && first + a * cuda_warp + lane < total) consume(item(i[a]), found[a]);
         }
       }
       sync();
-      after_round(base + Ahead * num_threads >= total);
+      end_round(base + ItemsPerThread * num_threads >= total);
     }
   }
 
@@ -164,37 +164,37 @@ class cuda_block {
 
  private:
   /// The last of `n` rising numbers that is not above `x`, as the first is not; asked by a whole warp.
-  static __device__ __forceinline__ std::uint32_t last_begun(std::uint32_t const* begins, std::uint32_t n,
-                                                             std::uint32_t x) {
+  static __device__ __forceinline__ std::uint32_t warp_upper_bound(std::uint32_t const* begins, std::uint32_t n,
+                                                                   std::uint32_t x) {
     static_assert(num_threads <= cuda_warp * cuda_warp);
     constexpr std::uint32_t apart = num_threads / cuda_warp;
-    std::uint32_t const own = threadIdx.x % cuda_warp;
+    std::uint32_t const lane = threadIdx.x % cuda_warp;
     auto const not_above = [&](std::uint32_t i) { return __ballot_sync(~0u, i < n && begins[i] <= x); };
-    std::uint32_t const i = static_cast<std::uint32_t>(__popc(not_above(own * apart)) - 1) * apart;
-    return i + static_cast<std::uint32_t>(__popc(not_above(i + own) & ((1u << apart) - 1))) - 1;
+    std::uint32_t const i = static_cast<std::uint32_t>(__popc(not_above(lane * apart)) - 1) * apart;
+    return i + static_cast<std::uint32_t>(__popc(not_above(i + lane) & ((1u << apart) - 1))) - 1;
   }
 
   /// The bits of all lanes of a warp.
-  static __device__ __forceinline__ unsigned all_bits(unsigned own) {
+  static __device__ __forceinline__ unsigned warp_or(unsigned bits) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
-    return __reduce_or_sync(~0u, own);
+    return __reduce_or_sync(~0u, bits);
 #else
-    for (int apart = 1; apart < cuda_warp; apart *= 2) own |= __shfl_xor_sync(~0u, own, apart);
-    return own;
+    for (int apart = 1; apart < cuda_warp; apart *= 2) bits |= __shfl_xor_sync(~0u, bits, apart);
+    return bits;
 #endif
   }
 
   /// What a warp's rows of `N` values pass through.
   template <int N, class T>
-  static __device__ __forceinline__ T* line_of_warp(T* values) {
+  static __device__ __forceinline__ T* warp_slice(T* values) {
     return values + threadIdx.x / cuda_warp * (cuda_warp * N);
   }
 
   /// The first of a lane's values of its warp's rows, side by side: the others are `cuda_warp` apart.
   template <int N>
-  static __device__ __forceinline__ std::uint32_t first_beside(std::uint32_t row) {
-    std::uint32_t const own = threadIdx.x % cuda_warp;
-    return (row - own) * N + own;
+  static __device__ __forceinline__ std::uint32_t striped_offset(std::uint32_t row) {
+    std::uint32_t const lane = threadIdx.x % cuda_warp;
+    return (row - lane) * N + lane;
   }
 
   static __device__ __forceinline__ int thread_rank() { return static_cast<int>(threadIdx.x); }

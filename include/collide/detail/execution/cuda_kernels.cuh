@@ -1,5 +1,5 @@
 /// \file
-/// The kernels that run bodies and function objects on an NVIDIA GPU. Needs nvcc.
+/// The kernels that run kernels and function objects on an NVIDIA GPU. Needs nvcc.
 #pragma once
 
 #if !defined(__CUDACC__)
@@ -14,13 +14,14 @@
 
 namespace collide::detail {
 
-/// How many blocks of a body a processor should hold at a time, which limits the registers of a thread: its member
-/// `residency<Block>`, or 1.
-template <class Body, class Block, class = void>
-inline constexpr int residency = 1;
-template <class Body, class Block>
-inline constexpr int residency<Body, Block, std::enable_if_t<(Body::template residency<Block> > 0)>> =
-    Body::template residency<Block>;
+/// How many blocks of a kernel a processor should hold at a time, which limits the registers of a thread: its member
+/// `min_blocks_per_sm<Block>`, or 1.
+template <class Kernel, class Block, class = void>
+inline constexpr int min_blocks_per_sm = 1;
+template <class Kernel, class Block>
+inline constexpr int
+    min_blocks_per_sm<Kernel, Block, std::enable_if_t<(Kernel::template min_blocks_per_sm<Block> > 0)>> =
+        Kernel::template min_blocks_per_sm<Block>;
 
 /// A kernel begins with these two. It lets the next kernel of the stream start, which then waits for its turn: so a
 /// launch takes its time while the kernel before is at work. Where it was compiled for compute capability 9.0 or more,
@@ -36,27 +37,27 @@ __device__ __forceinline__ void pdl_wait() {
 #endif
 }
 
-/// Runs a body in one thread per block.
-template <class Block, class Body>
-__global__ void __launch_bounds__(threads_per_block, (residency<Body, Block>))
-    run_threads(std::size_t blocks, Body body) {
+/// Runs a kernel in one thread per block.
+template <class Block, class Kernel>
+__global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<Kernel, Block>))
+    run_threads(std::size_t blocks, Kernel kernel) {
   pdl_launch_dependents();
   pdl_wait();
   std::size_t const i = std::size_t{blockIdx.x} * threads_per_block + threadIdx.x;
   if (i >= blocks) return;
-  typename Body::template scratch<Block> scratch;
+  typename Kernel::template scratch<Block> scratch;
   Block here(i);
-  body(here, scratch);
+  kernel(here, scratch);
 }
 
-/// Runs a body in one CUDA block per block.
-template <class Block, class Body>
-__global__ void __launch_bounds__(threads_per_block, (residency<Body, Block>)) run_blocks(Body body) {
+/// Runs a kernel in one CUDA block per block.
+template <class Block, class Kernel>
+__global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<Kernel, Block>)) run_blocks(Kernel kernel) {
   pdl_launch_dependents();
   pdl_wait();
-  __shared__ typename Body::template scratch<Block> scratch;
+  __shared__ typename Kernel::template scratch<Block> scratch;
   Block here(blockIdx.x);
-  body(here, scratch);
+  kernel(here, scratch);
 }
 
 template <class F>
@@ -67,7 +68,7 @@ __global__ void __launch_bounds__(threads_per_block) run_for_each(std::size_t n,
   if (i < n) f(i);
 }
 
-/// Kernel body of `for_each` over bytes.
+/// Kernel functor of `for_each` over bytes.
 struct fill_bytes {
   unsigned char* to;
   unsigned char byte;

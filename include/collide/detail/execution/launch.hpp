@@ -7,17 +7,17 @@
 namespace collide::detail {
 
 /// Number of blocks that cover `n` items of a kernel functor on the space.
-template <class Space, class Body>
-std::size_t grid_size(std::size_t n, Body const&) {
-  using block = typename Space::template block<Body>;
+template <class Space, class Kernel>
+std::size_t grid_size(std::size_t n, Kernel const&) {
+  using block = typename Space::template block<Kernel>;
   constexpr std::size_t per_block = static_cast<std::size_t>(block::num_threads) * block::items;
   return (n + per_block - 1) / per_block;
 }
 
-/// How many blocks of a body are at work at a time.
-template <class Body, class Space>
+/// How many blocks of a kernel are at work at a time.
+template <class Kernel, class Space>
 std::size_t resident_blocks(Space const& space) {
-  std::size_t const most = space.saturating_blocks(), of_body = space.template max_resident_blocks<Body>();
+  std::size_t const most = space.saturating_blocks(), of_body = space.template max_resident_blocks<Kernel>();
   return most < of_body ? most : of_body;
 }
 

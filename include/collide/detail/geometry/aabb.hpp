@@ -24,15 +24,15 @@ struct aabb {
 
   /// The largest side; +infinity if it overflows.
   COLLIDE_HD_INLINE S max_extent() const {
-    return larger(larger(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+    return max(max(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
   }
 
   struct merge {
     COLLIDE_HD aabb operator()(aabb const& a, aabb const& b) const {
       aabb c;
       for (int k = 0; k < 3; ++k) {
-        c.lower[k] = smaller(a.lower[k], b.lower[k]);
-        c.upper[k] = larger(a.upper[k], b.upper[k]);
+        c.lower[k] = min(a.lower[k], b.lower[k]);
+        c.upper[k] = max(a.upper[k], b.upper[k]);
       }
       return c;
     }
@@ -44,7 +44,7 @@ template <class S>
 COLLIDE_HD_INLINE aabb<S> aabb_of(triangle<S> const& t) {
   constexpr S far = std::numeric_limits<S>::max();
   if (!is_finite(t)) return {{far, far, far}, {-far, -far, -far}};
-  vec3<S> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
+  vec3<S> const lower = min(min(t.a, t.b), t.c), upper = max(max(t.a, t.b), t.c);
   return {{lower.x(), lower.y(), lower.z()}, {upper.x(), upper.y(), upper.z()}};
 }
 
@@ -70,7 +70,7 @@ struct alignas(4 * sizeof(S)) triangle_aabb : aabb<S> {
 
   /// How far a coordinate is outside the box along an axis.
   COLLIDE_HD_INLINE S axis_distance(int axis, S x) const {
-    S const outside = larger(this->lower[axis] - x, x - this->upper[axis]);
+    S const outside = max(this->lower[axis] - x, x - this->upper[axis]);
     return select(outside > 0, outside, S(0));
   }
 };

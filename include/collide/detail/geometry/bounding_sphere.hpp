@@ -39,12 +39,12 @@ struct alignas(4 * sizeof(S)) bounding_sphere {
 template <class S>
 COLLIDE_HD_INLINE bounding_sphere<S> bounding_sphere_of(triangle<S> const& t) {
   if (!is_finite(t)) return {S(0), S(0), S(0), std::numeric_limits<S>::quiet_NaN()};
-  vec3<S> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
+  vec3<S> const lower = min(min(t.a, t.b), t.c), upper = max(max(t.a, t.b), t.c);
   vec3<S> const m = lower * S(0.5) + upper * S(0.5);
   bounding_sphere<S> const at{m.x(), m.y(), m.z(), S(0)};
   S const far_squared =
-      larger(larger(at.distance_squared(t.a.x(), t.a.y(), t.a.z()), at.distance_squared(t.b.x(), t.b.y(), t.b.z())),
-             at.distance_squared(t.c.x(), t.c.y(), t.c.z()));
+      max(max(at.distance_squared(t.a.x(), t.a.y(), t.a.z()), at.distance_squared(t.b.x(), t.b.y(), t.b.z())),
+          at.distance_squared(t.c.x(), t.c.y(), t.c.z()));
   // -ffast-math makes a NaN of the root of infinity
   if (!is_finite(far_squared)) return {m.x(), m.y(), m.z(), std::numeric_limits<S>::infinity()};
   // the root of the smallest normal number covers squares that underflow

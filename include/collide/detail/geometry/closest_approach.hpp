@@ -19,7 +19,7 @@ struct closest_approach {
 /// 1 / y, or 0 unless y > 0.
 template <class T>
 COLLIDE_HD_INLINE T inverse(T y) {
-  return y > std::numeric_limits<T>::min() ? div(T(1), y) : T(0);
+  return y > std::numeric_limits<T>::min() ? div_rn(T(1), y) : T(0);
 }
 
 /// The closest approach is that to an edge, or to the face where the path meets the plane or comes nearest to it.
@@ -37,9 +37,9 @@ COLLIDE_HD_INLINE closest_approach<T> approach(local_sweep<T> const& l) {
   auto const along = [&](vec3<T> const& from, vec3<T> const& to, T d_from, T d_to, auto const& weights) {
     vec3<T> const e = to - from;
     T const ee = dot(e, e), de = d_to - d_from, ev = dot(e, from);
-    T const first = saturate(mul(mul(d_from, ee) - mul(de, ev), inverse(mul(dd, ee) - mul(de, de))));
-    T const part = saturate(mul(mul(de, first) - ev, inverse(ee)));
-    T const time = saturate(mul(mul(de, part) + d_from, inverse_dd));
+    T const first = saturate(mul_rn(mul_rn(d_from, ee) - mul_rn(de, ev), inverse(mul_rn(dd, ee) - mul_rn(de, de))));
+    T const part = saturate(mul_rn(mul_rn(de, first) - ev, inverse(ee)));
+    T const time = saturate(mul_rn(mul_rn(de, part) + d_from, inverse_dd));
     vec3<T> const offset = from + scaled(e, part) - scaled(d, time);
     T const square = dot(offset, offset);
     if (square <= best.distance_squared) {
@@ -61,12 +61,12 @@ COLLIDE_HD_INLINE closest_approach<T> approach(local_sweep<T> const& l) {
 
   vec3<T> const n = cross<T>(t.b - t.a, t.c - t.a);
   T const height = dot(t.a, n), fall = dot(d, n);
-  T const time = saturate(fall < 0 ? mul(-height, inverse(-fall)) : mul(height, inverse(fall)));
+  T const time = saturate(fall < 0 ? mul_rn(-height, inverse(-fall)) : mul_rn(height, inverse(fall)));
   local_triangle<T> const there = at_time(l, time);
   T const wa = dot(cross(there.b, there.c), n), wb = dot(cross(there.c, there.a), n),
           wc = dot(cross(there.a, there.b), n);
   if (wa > 0 && wb > 0 && wc > 0) {
-    T const part = div(T(1), wa + wb + wc), v = saturate(mul(wb, part)), w = smaller(mul(wc, part), 1 - v);
+    T const part = div_rn(T(1), wa + wb + wc), v = saturate(mul_rn(wb, part)), w = min(mul_rn(wc, part), 1 - v);
     vec3<T> const offset = there.a + (scaled<T>(t.b - t.a, v) + scaled<T>(t.c - t.a, w));
     T const square = dot(offset, offset);
     if (square <= best.distance_squared) best = {time, v, w, offset, square, n};

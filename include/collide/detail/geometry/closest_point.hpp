@@ -7,14 +7,14 @@
 
 namespace collide::detail {
 
-/// True if the origin projects strictly inside the triangle along its normal `n`; then `foot` is where, as a convex
+/// True if the origin projects strictly inside the triangle along its normal `n`; then `closest` is where, as a convex
 /// combination of the corners, and so a point of the triangle even where `n` is inaccurate.
 template <class T>
-COLLIDE_HD_INLINE bool project_onto_face(local_triangle<T> const& t, vec3<T> const& n, vec3<T>& foot) {
+COLLIDE_HD_INLINE bool project_onto_face(local_triangle<T> const& t, vec3<T> const& n, vec3<T>& closest) {
   T const wa = dot(cross(t.b, t.c), n), wb = dot(cross(t.c, t.a), n), wc = dot(cross(t.a, t.b), n);
   if (!(wa > 0 && wb > 0 && wc > 0)) return false;
   T const sum = wa + wb + wc;
-  foot = t.a + (scaled<T>(t.b - t.a, div(wb, sum)) + scaled<T>(t.c - t.a, div(wc, sum)));
+  closest = t.a + (scaled<T>(t.b - t.a, div_rn(wb, sum)) + scaled<T>(t.c - t.a, div_rn(wc, sum)));
   return true;
 }
 
@@ -41,14 +41,14 @@ COLLIDE_HD inline closest_point<T> closest_to_origin(local_triangle<T> const& t,
   auto const edge = [&](vec3<T> const& a, vec3<T> const& b, int index) {
     vec3<T> const e = b - a;
     T const along = -dot(a, e), ee = dot(e, e);
-    if (along > 0 && along < ee) consider(a + scaled(e, div(along, ee)), feature::edge, index);
+    if (along > 0 && along < ee) consider(a + scaled(e, div_rn(along, ee)), feature::edge, index);
   };
   edge(t.a, t.b, 0);
   edge(t.b, t.c, 1);
   edge(t.c, t.a, 2);
-  vec3<T> foot;
-  if (project_onto_face(t, n, foot) && dot(foot, foot) <= best.distance_squared) {
-    best = {foot, dot(foot, foot), feature::face, 0};
+  vec3<T> closest;
+  if (project_onto_face(t, n, closest) && dot(closest, closest) <= best.distance_squared) {
+    best = {closest, dot(closest, closest), feature::face, 0};
   }
   return best;
 }

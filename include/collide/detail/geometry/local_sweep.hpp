@@ -22,7 +22,7 @@ COLLIDE_HD_INLINE local_sweep<W> to_local(triangle<S> const& t, moving_sphere<S>
 /// The largest absolute value of all coordinates, the radius and the displacement.
 template <class T>
 COLLIDE_HD_INLINE T max_norm(local_sweep<T> const& l) {
-  return larger(max_norm(l.shape), max_norm(l.path));
+  return max(max_norm(l.shape), max_norm(l.path));
 }
 
 /// The problem scaled by a power of two.
@@ -38,7 +38,7 @@ COLLIDE_HD_INLINE local_sweep<W> to_unit_range(local_sweep<W> l, triangle<S> con
     if (!is_finite(max_norm(l))) {  // a difference was beyond the range
       constexpr W tiny = std::numeric_limits<W>::min();
       l = to_local<W>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
-                      moving_sphere<S>{{scaled(s.centre, tiny), mul(s.radius, tiny)}, scaled(s.displacement, tiny)});
+                      moving_sphere<S>{{scaled(s.centre, tiny), mul_rn(s.radius, tiny)}, scaled(s.displacement, tiny)});
       l.shape.scale = tiny;
     }
   }
@@ -55,8 +55,8 @@ COLLIDE_HD_INLINE local_sweep<T> narrow_to(local_sweep<W> const& l) {
 template <class T>
 COLLIDE_HD_INLINE bool aabb_within(local_sweep<T> const& l, T reach) {
   vec3<T> const still = vec3<T>(T(0), T(0), T(0));
-  vec3<T> const lower = smaller(smaller(l.shape.a, l.shape.b), l.shape.c) - larger(l.path, still);
-  vec3<T> const upper = larger(larger(l.shape.a, l.shape.b), l.shape.c) - smaller(l.path, still);
+  vec3<T> const lower = min(min(l.shape.a, l.shape.b), l.shape.c) - max(l.path, still);
+  vec3<T> const upper = max(max(l.shape.a, l.shape.b), l.shape.c) - min(l.path, still);
   return !(max_component<T>(lower) > reach || max_component<T>(-upper) > reach);
 }
 

@@ -36,13 +36,13 @@ COLLIDE_HD_INLINE local_triangle<W> to_local(triangle<S> const& t, sphere<S> con
 /// The largest absolute value of all coordinates and the radius.
 template <class T>
 COLLIDE_HD_INLINE T max_norm(local_triangle<T> const& t) {
-  return larger(larger(max_norm(t.a), max_norm(t.b)), larger(max_norm(t.c), t.radius));
+  return max(max(max_norm(t.a), max_norm(t.b)), max(max_norm(t.c), t.radius));
 }
 
 /// The problem scaled by a power of two.
 template <class T>
 COLLIDE_HD_INLINE local_triangle<T> scaled(local_triangle<T> const& t, T s) {
-  return {scaled(t.a, s), scaled(t.b, s), scaled(t.c, s), mul(t.radius, s), mul(t.scale, s)};
+  return {scaled(t.a, s), scaled(t.b, s), scaled(t.c, s), mul_rn(t.radius, s), mul_rn(t.scale, s)};
 }
 
 /// `relative` scaled so that its largest coordinate and the radius are below 4 and the larger of them is at least 1,
@@ -53,7 +53,7 @@ COLLIDE_HD_INLINE local_triangle<W> to_unit_range(local_triangle<W> l, triangle<
     if (!is_finite(max_norm(l))) {  // a difference was beyond the range
       constexpr W tiny = std::numeric_limits<W>::min();
       l = to_local<W>(triangle<S>{scaled(t.a, tiny), scaled(t.b, tiny), scaled(t.c, tiny)},
-                      sphere<S>{scaled(s.centre, tiny), mul(s.radius, tiny)});
+                      sphere<S>{scaled(s.centre, tiny), mul_rn(s.radius, tiny)});
       l.scale = tiny;
     }
   }
@@ -69,7 +69,7 @@ COLLIDE_HD_INLINE local_triangle<T> narrow_to(local_triangle<W> const& l) {
 /// False if the triangle's box is farther from the origin than `reach` along some axis. Exact: rounding is monotone.
 template <class T>
 COLLIDE_HD_INLINE bool aabb_within(local_triangle<T> const& t, T reach) {
-  vec3<T> const lower = smaller(smaller(t.a, t.b), t.c), upper = larger(larger(t.a, t.b), t.c);
+  vec3<T> const lower = min(min(t.a, t.b), t.c), upper = max(max(t.a, t.b), t.c);
   bool const below = max_component<T>(lower) <= reach, above = max_component<T>(-upper) <= reach;
   return below & above;
 }

@@ -16,7 +16,7 @@ namespace collide::detail {
 /// `Items` consecutive spheres: in registers on CUDA, eight or sixteen to a vector register on a CPU. Spheres beyond
 /// the end of the set are far from everything, and have a NaN radius.
 template <class S, int Items>
-struct sphere_batch {
+struct sphere_pack {
   static_assert(Items % 4 == 0, "packed centres are loaded four at a time");
 
   S x[Items], y[Items], z[Items], radius[Items];
@@ -64,17 +64,17 @@ struct sphere_batch {
 #endif
   }
 
-  /// Centres only, which are all there; `first` is a multiple of four, and `quads` is aligned_centres(spheres), not
+  /// Centres only, which are all there; `first` is a multiple of four, and `aligned` is aligned_centres(spheres), not
   /// null.
-  COLLIDE_HD_INLINE void load_xyz4(S const* quads, std::size_t first) { load_xyz4(quads, first, x, y, z); }
+  COLLIDE_HD_INLINE void load_xyz4(S const* aligned, std::size_t first) { load_xyz4(aligned, first, x, y, z); }
 
-  /// Loads `Items` packed vectors from vector `first` on, a multiple of four; `quads` is aligned to 16 bytes.
-  static COLLIDE_HD_INLINE void load_xyz4([[maybe_unused]] S const* quads, [[maybe_unused]] std::size_t first,
+  /// Loads `Items` packed vectors from vector `first` on, a multiple of four; `aligned` is aligned to 16 bytes.
+  static COLLIDE_HD_INLINE void load_xyz4([[maybe_unused]] S const* aligned, [[maybe_unused]] std::size_t first,
                                           [[maybe_unused]] S (&x)[Items], [[maybe_unused]] S (&y)[Items],
                                           [[maybe_unused]] S (&z)[Items]) {
 #if defined(__CUDA_ARCH__)
     if constexpr (sizeof(S) == 4) {  // four packed vectors are three 16-byte loads
-      auto const* const from = reinterpret_cast<float4 const*>(quads + 3 * first);
+      auto const* const from = reinterpret_cast<float4 const*>(aligned + 3 * first);
       for (int k = 0; k < Items; k += 4) {
         float4 const read[3] = {from[3 * k / 4], from[3 * k / 4 + 1], from[3 * k / 4 + 2]};
         x[k] = read[0].x, y[k] = read[0].y, z[k] = read[0].z;
@@ -106,8 +106,8 @@ struct sphere_batch {
   }
 
   COLLIDE_HD_INLINE void load_centres(sphere_view<S> const& spheres, std::size_t first) {
-    if (S const* const quads = aligned_centres(spheres)) {
-      load_xyz4(quads, first);
+    if (S const* const aligned = aligned_centres(spheres)) {
+      load_xyz4(aligned, first);
     } else if (spheres.centres().packed()) {  // a stride that the compiler knows
       S const* const from = spheres.centres().address(first);
       for (int k = 0; k < Items; ++k) {
@@ -127,7 +127,7 @@ struct sphere_batch {
 
 /// `Items` consecutive moving spheres; those beyond the end of the set have a NaN radius.
 template <class S, int Items>
-struct moving_batch {
+struct moving_pack {
   S x[Items], y[Items], z[Items], dx[Items], dy[Items], dz[Items], radius[Items];
 
   COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
@@ -155,7 +155,7 @@ struct moving_batch {
  private:
   COLLIDE_HD_INLINE void load_packed(moving_sphere_view<S> const& spheres, std::size_t first) {
 #if defined(__CUDA_ARCH__)
-    using still = sphere_batch<S, Items>;
+    using still = sphere_pack<S, Items>;
     S const *const centres = still::aligned_or_null(spheres.centres().address(0)), *const ways = still::aligned_or_null(
                                                                                        spheres.displacements().address(
                                                                                            0));

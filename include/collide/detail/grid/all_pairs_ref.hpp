@@ -13,7 +13,7 @@ namespace collide::detail {
 /// The lookup of `all_pairs`.
 template <class S>
 struct all_pairs_ref : triangle_ref<S> {
-  COLLIDE_HD all_pairs_ref const& opened() const { return *this; }
+  COLLIDE_HD all_pairs_ref const& without_overflown_grids() const { return *this; }
 
   template <class Sphere>
   COLLIDE_HD bool empty(Sphere const&) const {

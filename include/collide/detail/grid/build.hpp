@@ -50,8 +50,8 @@ struct fill_entries {
   }
 };
 
-/// Kernel body: counts or fills, with `Pass`, the cells of triangles. A thread enters a triangle that meets few cells
-/// at once; the slabs of the others are spread evenly over the threads.
+/// Kernel functor: counts or fills, with `Pass`, the cells of triangles. A thread enters a triangle that meets few
+/// cells at once; the slabs of the others are spread evenly over the threads.
 template <class S, class Pass>
 struct enter_triangles {
   static constexpr int items = 1;
@@ -124,7 +124,7 @@ struct enter_triangles {
         std::uint32_t const row = ((i + k) * of_x) >> 8, z = (row * of_y) >> 8;
         some[k] = cells.at(r.lower[0] + (i + k - row * nx), r.lower[1] + (row - z * ny), r.lower[2] + z);
       }
-      pass(some, (1u << smaller(n - i, std::uint32_t{together})) - 1, triangle);
+      pass(some, (1u << min(n - i, std::uint32_t{together})) - 1, triangle);
     }
   }
 
@@ -133,7 +133,7 @@ struct enter_triangles {
     for (std::uint32_t x = first; x <= last; x += together) {
       cell_ref some[together];
       for (std::uint32_t k = 0; k < together; ++k) some[k] = cells.at(x + k, y, z);
-      pass(some, (1u << smaller(last - x + 1, std::uint32_t{together})) - 1, triangle);
+      pass(some, (1u << min(last - x + 1, std::uint32_t{together})) - 1, triangle);
     }
   }
 
@@ -160,8 +160,8 @@ struct enter_triangles {
   }
 };
 
-/// Kernel body: finds a place for the entries of each cell, and sets a bit for every cell that has some. Which cell's
-/// come first is open; those of cells next to each other are next to each other, but for the ends of blocks.
+/// Kernel functor: finds a place for the entries of each cell, and sets a bit for every cell that has some. Which
+/// cell's come first is open; those of cells next to each other are next to each other, but for the ends of blocks.
 template <class S>
 struct allocate_entries {
   static constexpr int items = 8;  ///< cells of a thread: their bits are a byte

@@ -23,7 +23,7 @@ struct cell_coverage {
   template <class S>
   static COLLIDE_HD_INLINE std::uint32_t subcell_of(S fraction) {
     auto const sixteenths = static_cast<std::uint32_t>(static_cast<std::int32_t>(fraction * S(16)));
-    return smaller(sixteenths, last - first) + first;
+    return min(sixteenths, last - first) + first;
   }
 
   /// A box from the step `from` to the step `to` of an axis; to be united by `|` with the other axes.

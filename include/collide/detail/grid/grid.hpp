@@ -69,7 +69,7 @@ struct grid_level {
   /// How many cells fit below an offset that is not above the grid's upper end; any number for other offsets.
   COLLIDE_HD_INLINE std::uint32_t coordinate_inside(S offset) const {
 #if defined(__CUDA_ARCH__)
-    if constexpr (sizeof(S) == 4) return __float2uint_rz(mul(offset, inverse_width));  // 0 of what is less
+    if constexpr (sizeof(S) == 4) return __float2uint_rz(mul_rn(offset, inverse_width));  // 0 of what is less
 #endif
     return coordinate(offset);
   }
@@ -95,9 +95,7 @@ struct grid_level {
 
  private:
   /// Without branches.
-  COLLIDE_HD_INLINE S cells_below(S offset) const {
-    return smaller(larger(S(0), mul(offset, inverse_width)), S(1 << 30));
-  }
+  COLLIDE_HD_INLINE S cells_below(S offset) const { return min(max(S(0), mul_rn(offset, inverse_width)), S(1 << 30)); }
 
   /// Through a signed integer, for which all processors have an instruction.
   static COLLIDE_HD_INLINE std::uint32_t whole(S x) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(x)); }

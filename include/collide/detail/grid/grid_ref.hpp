@@ -27,9 +27,9 @@ struct bucket_ref : triangle_ref<S> {
   cell_item const* entries;
   std::size_t capacity;
 
-  static constexpr std::int8_t no_cell = candidate_cursor::ended, everywhere = -2;  ///< in place of a grid's number
+  static constexpr std::int8_t no_candidates = candidate_cursor::ended, no_grid = -2;  ///< in place of a grid's number
 
-  COLLIDE_HD bucket_ref opened() const {
+  COLLIDE_HD bucket_ref without_overflown_grids() const {
     bucket_ref open = *this;
     if (grid_count > 0 && *total > capacity) open.grid_count = 0;
     return open;
@@ -37,13 +37,13 @@ struct bucket_ref : triangle_ref<S> {
 
   COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (occupied[cell / 8] >> cell % 8 & 1) != 0; }
 
-  /// Which grid serves each of the spheres of a pack, if there may be triangles near it; `no_cell` if not, `everywhere`
-  /// if no grid serves it.
+  /// Which grid serves each of the spheres of a pack, if there may be triangles near it; `no_candidates` if not,
+  /// `no_grid` if no grid serves it.
   template <class Pack, int N>
   COLLIDE_HD_INLINE void locate(Pack const& pack, std::int8_t (&number)[N]) const {
     select_grids(pack, number);
     for (int k = 0; k < N; ++k) {
-      if (number[k] >= 0 && has_no_candidates_in(grids[number[k]], pack.shape(k))) number[k] = no_cell;
+      if (number[k] >= 0 && has_no_candidates_in(grids[number[k]], pack.shape(k))) number[k] = no_candidates;
     }
   }
 
@@ -53,7 +53,7 @@ struct bucket_ref : triangle_ref<S> {
     if (this->mesh.size() == 0) return true;
     std::int8_t number[1];
     locate(pack_of_one<Sphere>{shape}, number);
-    return number[0] == no_cell;
+    return number[0] == no_candidates;
   }
 
   /// True if a sphere of this radius looks into one cell of one level, wherever it is, or into the few cells of its
@@ -76,22 +76,22 @@ struct bucket_ref : triangle_ref<S> {
 
   template <class Sphere>
   COLLIDE_HD candidate_cursor begin(Sphere const& shape) const {
-    std::int8_t number[1] = {no_cell};
+    std::int8_t number[1] = {no_candidates};
     if (this->mesh.size() != 0) select_grids(pack_of_one<Sphere>{shape}, number);
     return {number[0], 0, 0, 0};
   }
 
   template <class Sphere>
   COLLIDE_HD bool next(Sphere const& shape, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
-    if (c.grid == no_cell) return false;
-    if (c.grid == everywhere) return this->next_of_all(c, most, range);
+    if (c.grid == no_candidates) return false;
+    if (c.grid == no_grid) return this->next_of_all(c, most, range);
     grid<S> const& g = grids[c.grid];
     for (; c.level < g.levels; ++c.level, c.step = 0) {
       if (!next_of_level(g, g.level[c.level], shape, c, most, range)) continue;
-      if (c.level + 1 == g.levels && was_last(shape, c)) c.grid = no_cell;
+      if (c.level + 1 == g.levels && was_last(shape, c)) c.grid = no_candidates;
       return true;
     }
-    c.grid = no_cell;
+    c.grid = no_candidates;
     return false;
   }
 
@@ -105,13 +105,13 @@ struct bucket_ref : triangle_ref<S> {
   /// The tightest grid that serves each sphere; grids come by falling reach.
   template <class Pack, int N>
   COLLIDE_HD_INLINE void select_grids(Pack const& pack, std::int8_t (&number)[N]) const {
-    for (int k = 0; k < N; ++k) number[k] = is_sound(pack.shape(k)) ? everywhere : no_cell;
+    for (int k = 0; k < N; ++k) number[k] = is_sound(pack.shape(k)) ? no_grid : no_candidates;
     COLLIDE_NO_UNROLL
     for (int g = 0; g < grid_count; ++g) {
       for (int k = 0; k < N; ++k) {
         // a sphere that is nowhere stays there: its radius may be NaN, and comparisons with that are up to -ffast-math
-        bool const served = (number[k] != no_cell) & serves(grids[g], pack.shape(k));
-        std::int8_t const there = meets(grids[g], pack.shape(k)) ? static_cast<std::int8_t>(g) : no_cell;
+        bool const served = (number[k] != no_candidates) & serves(grids[g], pack.shape(k));
+        std::int8_t const there = meets(grids[g], pack.shape(k)) ? static_cast<std::int8_t>(g) : no_candidates;
         number[k] = served ? there : number[k];
       }
     }
@@ -176,7 +176,7 @@ struct bucket_ref : triangle_ref<S> {
   COLLIDE_HD bool next_of_cell(std::uint32_t cell, std::uint32_t place, candidate_cursor& c, std::uint32_t most,
                                candidate_range& range) const {
     item_range const list = lists[cell];
-    std::uint32_t const left = list.count - c.skip, some = smaller(left, most);
+    std::uint32_t const left = list.count - c.skip, some = min(left, most);
     if (left != 0) range = {entries + (list.end - left), 0, some, place};
     c.skip += some;
     if (some == left) {

@@ -33,7 +33,7 @@ struct mesh_statistics {
   COLLIDE_HD S largest_coordinate() const {
     S most = 0;
     if (extents.empty()) return most;
-    for (int k = 0; k < 3; ++k) most = larger(most, larger(-lower_of(k), upper_of(k)));
+    for (int k = 0; k < 3; ++k) most = max(most, max(-lower_of(k), upper_of(k)));
     return most;
   }
 
@@ -59,7 +59,7 @@ COLLIDE_HD_INLINE std::uint32_t relative_area(triangle<S> const& t, std::uint32_
   return relative_area(u, v);
 }
 
-/// Kernel body: fills the summary, and the boxes of triangles if there is room for them.
+/// Kernel functor: fills the summary, and the boxes of triangles if there is room for them.
 template <class S>
 struct compute_mesh_statistics {
   static constexpr int items = 2;
@@ -115,12 +115,12 @@ template <class Space, class S>
 S largest_coordinate(Space& space, mesh_view<S> const& mesh, buffer<mesh_statistics<S>>& memory) {
   auto* const seen = memory.reserve(space.resource(), 1);
   mesh_statistics<S>::clear(space, seen);
-  compute_mesh_statistics<S> const body{mesh, seen, nullptr};
-  space.launch(grid_size<Space>(mesh.size(), body), body);
+  compute_mesh_statistics<S> const kernel{mesh, seen, nullptr};
+  space.launch(grid_size<Space>(mesh.size(), kernel), kernel);
   return space.read(seen).largest_coordinate();
 }
 
-/// Kernel body: the histogram of the finite, valid radii.
+/// Kernel functor: the histogram of the finite, valid radii.
 template <class S>
 struct radius_histogram_kernel {
   static constexpr int items = 4;
@@ -160,7 +160,7 @@ int reaches_of(size_histogram const& radii, S (&reaches)[max_grids]) {
   for (int b = radii.last(); b >= radii.first() && n < max_grids; b -= bins_per_factor_4) {
     while (radii.counts[b] == 0) --b;
     float const end = bin_end(static_cast<std::uint32_t>(b));
-    reaches[n++] = static_cast<S>(smaller(end, std::numeric_limits<float>::max()));
+    reaches[n++] = static_cast<S>(min(end, std::numeric_limits<float>::max()));
   }
   return n;
 }

@@ -47,16 +47,16 @@ struct occupancy_view {
 
   /// Whether there may be triangles near each of the centres, or spheres. False if that is not known.
   template <int N>
-  COLLIDE_HD_INLINE void mark(places<N> const& p, bool (&near)[N]) const {
+  COLLIDE_HD_INLINE void test_occupied(places<N> const& p, bool (&near)[N]) const {
     for (int k = 0; k < N; ++k) near[k] = (p.inside[k] & occupied[p.cells[k] / 8] >> p.cells[k] % 8 & 1) != 0;
   }
   template <int N>
-  COLLIDE_HD_INLINE bool mark(sphere_batch<S, N> const& b, bool (&near)[N]) const {
-    mark(places_of(b.x, b.y, b.z), near);
+  COLLIDE_HD_INLINE bool test_occupied(sphere_pack<S, N> const& b, bool (&near)[N]) const {
+    test_occupied(places_of(b.x, b.y, b.z), near);
     return true;
   }
   template <int N>
-  COLLIDE_HD_INLINE bool mark(moving_batch<S, N> const& b, bool (&near)[N]) const {
+  COLLIDE_HD_INLINE bool test_occupied(moving_pack<S, N> const& b, bool (&near)[N]) const {
     return test_swept(b, near);
   }
   COLLIDE_HD_INLINE bool is_occupied(std::uint32_t cell) const { return (bit_of(cell) & 1) != 0; }
@@ -64,7 +64,7 @@ struct occupancy_view {
   /// Which of some moving spheres may be near a triangle: sets near[k]. Returns false if that is not known, since one
   /// of them is not finite or moves through many cells.
   template <int N>
-  COLLIDE_HD_INLINE bool test_swept(moving_batch<S, N> const& b, bool (&near)[N]) const {
+  COLLIDE_HD_INLINE bool test_swept(moving_pack<S, N> const& b, bool (&near)[N]) const {
     bool known = true;
     std::uint32_t first[N], apart[N][3];  // the first cell, and how far from it the second on each axis is
     for (int k = 0; k < N; ++k) {
@@ -102,9 +102,9 @@ struct occupancy_view {
 
   COLLIDE_HD_INLINE cells_on_axis cells_on(int axis, S from, S along) const {
     S const to = from + along, slack = swept_cells<S>::rounding_slack(from, along), most = from_bits<S>(extent[axis]);
-    S const least = smaller(from, to) - slack - lower[axis], last = larger(from, to) + slack - lower[axis];
-    std::uint32_t const begin = level.coordinate_inside(smaller(least, most)),
-                        end = level.coordinate_inside(smaller(last, most));
+    S const least = min(from, to) - slack - lower[axis], last = max(from, to) + slack - lower[axis];
+    std::uint32_t const begin = level.coordinate_inside(min(least, most)),
+                        end = level.coordinate_inside(min(last, most));
     std::uint32_t const stride = axis == 0 ? 1 : level.stride[axis - 1];
     return {(least <= most ? 1u : 0u) & (last >= 0 ? 1u : 0u), (begin & level.mask[axis]) * stride,
             (end & level.mask[axis]) * stride, end - begin, last - least};

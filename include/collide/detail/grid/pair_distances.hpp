@@ -42,7 +42,7 @@ COLLIDE_HD_INLINE S path_of(sphere<S> const&) {
 template <class S>
 COLLIDE_HD_INLINE S path_of(moving_sphere<S> const& s) {
   S most = 0;
-  for (int k = 0; k < 3; ++k) most = larger(most, larger(s.displacement[k], -s.displacement[k]));
+  for (int k = 0; k < 3; ++k) most = max(most, max(s.displacement[k], -s.displacement[k]));
   return most;
 }
 
@@ -65,7 +65,7 @@ struct pair_distances {
   /// Bin k is of distances below 2^(k - 28); those of 8 and more are in the last.
   COLLIDE_HD_INLINE static std::uint32_t bin_of(float distance) {
     std::uint32_t const octave = to_bits(distance) >> 23;
-    return smaller(larger(octave, 127u - 29) - (127u - 29), bins - 1);
+    return min(max(octave, 127u - 29) - (127u - 29), bins - 1);
   }
   COLLIDE_HD_INLINE static float end_of(std::uint32_t bin) { return from_bits<float>((bin + 127 - 28) << 23); }
 };
@@ -89,13 +89,13 @@ class share_of_pairs {
     share_ = static_cast<float>(below) / static_cast<float>(all);
     // by what power the share grows: 3 where spheres fill a volume, 2 where they lie on the surface
     power_ = 0.5f * log2f(static_cast<float>(farther) / static_cast<float>(below));
-    power_ = smaller(larger(power_, 1.f), 3.f);
+    power_ = min(max(power_, 1.f), 3.f);
   }
 
   /// Of triangles with this mean extent.
   COLLIDE_HD float operator()(float distance, float extent) const {
     float const x = (extent + 2 * distance) / (extent + 2 * distance_);
-    return x > 0 ? smaller(1.f, share_ * exp2f(power_ * log2f(x))) : 0.f;
+    return x > 0 ? min(1.f, share_ * exp2f(power_ * log2f(x))) : 0.f;
   }
 
  private:

@@ -39,9 +39,9 @@ struct cell_choice {
   };
 };
 
-/// Kernel body of a block per grid: chooses widths, levels and table sizes such that entering the triangles and testing
-/// the candidates cost least together, from the summary of the mesh and from the distances of some triangles and some
-/// spheres. Some microseconds' work, so that a build on the device need not wait for the host.
+/// Kernel functor of a block per grid: chooses widths, levels and table sizes such that entering the triangles and
+/// testing the candidates cost least together, from the summary of the mesh and from the distances of some triangles
+/// and some spheres. Some microseconds' work, so that a build on the device need not wait for the host.
 template <class S, class Spheres>
 struct plan_grid {
   static constexpr int items = 1;
@@ -160,8 +160,8 @@ struct plan_grid {
         for (std::uint32_t k = 0; k < pairs_of_sphere; ++k) {
           triangle_aabb<S> const& b = s.boxes[j % parts * pairs_of_sphere + k];
           if (b.is_empty()) continue;
-          S const distance = larger(b.axis_distance(0, here.centre.x()),
-                                    larger(b.axis_distance(1, here.centre.y()), b.axis_distance(2, here.centre.z())));
+          S const distance = max(b.axis_distance(0, here.centre.x()),
+                                 max(b.axis_distance(1, here.centre.y()), b.axis_distance(2, here.centre.z())));
           block.add(s.distances.counts[pair_distances::bin_of(static_cast<float>(distance * scale))], 1);
         }
       }
@@ -206,7 +206,7 @@ struct plan_grid {
                             s.distances.mean_path(), share};
       best[thread_rank] = {unlimited, width_at(0), 0, 0};
       if (request.cell_width > 0) {
-        float const asked = larger(narrowest, static_cast<float>(request.cell_width / s.extent));
+        float const asked = max(narrowest, static_cast<float>(request.cell_width / s.extent));
         best[thread_rank].width = wide_enough(all, asked, cost.reach);
         return;
       }
@@ -255,7 +255,7 @@ struct plan_grid {
         cell_choice const next = of_width(some, width_at(i), request.entry_limit / 2, cost);
         if (next.cost < best.cost) best = next, around = i;
       }
-      begin = larger(around - 3, 0), end = smaller(around + 4, widths);
+      begin = max(around - 3, 0), end = min(around + 4, widths);
     }
     return best;
   }
@@ -271,7 +271,7 @@ struct plan_grid {
   /// About how many spheres the grid serves.
   template <class Scratch>
   COLLIDE_HD_INLINE float spheres_served(Scratch const& s) const {
-    return static_cast<float>(spheres.size()) * static_cast<float>(larger(s.distances.sampled, 1u)) /
+    return static_cast<float>(spheres.size()) * static_cast<float>(max(s.distances.sampled, 1u)) /
            pair_distances::spheres;
   }
 
@@ -280,7 +280,7 @@ struct plan_grid {
     bool const two = chosen.coarse_width > 0;
     auto const first_cell = static_cast<std::uint32_t>(number) << request.table_bits;
     std::uint32_t const bits = request.table_bits - (two ? 1 : 0);
-    planned.width = larger(static_cast<S>(chosen.width) * extent, request.cell_width);
+    planned.width = max(static_cast<S>(chosen.width) * extent, request.cell_width);
     constexpr S all = std::numeric_limits<S>::infinity();
     set_level(planned, g.level[0], planned.width, two ? S(chosen.small_end) : all, first_cell, bits);
     if (two) set_level(planned, g.level[1], static_cast<S>(chosen.coarse_width) * extent, all, first_cell, bits);
@@ -298,7 +298,7 @@ struct plan_grid {
   COLLIDE_HD void set_level(grid_header<S>& g, grid_level<S>& l, S width, S largest, std::uint32_t first_cell,
                             std::uint32_t bits) const {
     l.width = width;
-    l.inverse_width = div(S(1), width);
+    l.inverse_width = div_rn(S(1), width);
     l.largest = largest;
     l.first = first_cell + g.cells;
     g.cells += dimension(g, l, std::uint64_t{1} << bits);
@@ -311,14 +311,14 @@ struct plan_grid {
     for (int k = 0; k < 3; ++k) {
       g.lower[k] = summary->lower_of(k);
       g.upper[k] = summary->upper_of(k);
-      far = larger(far, larger(larger(g.lower[k], -g.lower[k]), larger(g.upper[k], -g.upper[k])));
+      far = max(far, max(max(g.lower[k], -g.lower[k]), max(g.upper[k], -g.upper[k])));
     }
     g.dilation = g.reach * (1 + 4 * S(ieee_traits<float>::unit_roundoff)) + 64 * ieee_traits<S>::unit_roundoff * far +
                  64 * std::numeric_limits<S>::min();
     for (int k = 0; k < 3; ++k) {
       g.lower[k] -= g.dilation;
       g.upper[k] += g.dilation;
-      extent = larger(extent, g.upper[k] - g.lower[k]);
+      extent = max(extent, g.upper[k] - g.lower[k]);
     }
     return far;
   }

@@ -27,8 +27,8 @@ class swept_cells {
       : grid_{&g}, level_{&l}, from_{from}, along_{along} {
     for (int k = 0; k < 3; ++k) {
       S const to = from[k] + along[k], slack = rounding_slack(from[k], along[k]);
-      box_.lower[k] = l.coordinate(offset(g, smaller(from[k], to) - slack, k), steps_.lower[k]);
-      box_.upper[k] = l.coordinate(offset(g, larger(from[k], to) + slack, k), steps_.upper[k]);
+      box_.lower[k] = l.coordinate(offset(g, min(from[k], to) - slack, k), steps_.lower[k]);
+      box_.upper[k] = l.coordinate(offset(g, max(from[k], to) + slack, k), steps_.upper[k]);
       segment_extent_[k] = box_.upper[k] - box_.lower[k] + 1;
     }
     if (!is_short(box_)) subdivide();
@@ -40,8 +40,8 @@ class swept_cells {
     cell_box r;
     for (int k = 0; k < 3; ++k) {
       S const to = from[k] + along[k], slack = rounding_slack(from[k], along[k]);
-      r.lower[k] = coordinate(g, l, smaller(from[k], to) - slack, k);
-      r.upper[k] = coordinate(g, l, larger(from[k], to) + slack, k);
+      r.lower[k] = coordinate(g, l, min(from[k], to) - slack, k);
+      r.upper[k] = coordinate(g, l, max(from[k], to) + slack, k);
     }
     return r;
   }
@@ -54,15 +54,15 @@ class swept_cells {
   /// True if the path comes through the grid's box, which a sphere must to touch a triangle.
   static COLLIDE_HD_INLINE bool overlaps_slab(S lower, S upper, S from, S along) {
     S const to = from + along, slack = rounding_slack(from, along);
-    return smaller(from, to) - slack <= upper && larger(from, to) + slack >= lower;
+    return min(from, to) - slack <= upper && max(from, to) + slack >= lower;
   }
 
   /// True if its cells can be counted.
   static COLLIDE_HD_INLINE bool is_traversable(S lower, S upper, S inverse_width, S from, S along) {
     constexpr S end = std::numeric_limits<S>::max() / 16;
-    S const length = smaller(abs_of(along), upper - lower);
-    return abs_of(from) < end && abs_of(along) < end && mul(length, inverse_width) < S(1 << 20) &&
-           mul(rounding_slack(from, along), inverse_width) < 1;
+    S const length = min(abs_of(along), upper - lower);
+    return abs_of(from) < end && abs_of(along) < end && mul_rn(length, inverse_width) < S(1 << 20) &&
+           mul_rn(rounding_slack(from, along), inverse_width) < 1;
   }
 
   /// Steps are numbered; in each there is one cell, or none. A cell of the piece before is not come to again.
@@ -84,7 +84,7 @@ class swept_cells {
     COLLIDE_HD_INLINE bool owns_pair(cell_box const& r) const {
       bool here = true, earlier = true;
       for (int k = 0; k < 3; ++k) {
-        here = here && cell[k] == larger(r.lower[k], lower[k]) && cell[k] <= r.upper[k];
+        here = here && cell[k] == max(r.lower[k], lower[k]) && cell[k] <= r.upper[k];
         earlier = earlier && before.lower[k] <= r.upper[k] && r.lower[k] <= before.upper[k];
       }
       return here && !earlier;
@@ -137,21 +137,21 @@ class swept_cells {
 
   /// A bit farther in a direction than `t`, which may be inaccurate.
   static COLLIDE_HD S widened(S t, S direction) {
-    return t + mul(direction * 8 * ieee_traits<S>::unit_roundoff, abs_of(t));
+    return t + mul_rn(direction * 8 * ieee_traits<S>::unit_roundoff, abs_of(t));
   }
 
   /// What is beyond the grid, where there are no cells, counts as its first or last cell.
   static COLLIDE_HD_INLINE std::uint32_t coordinate(grid<S> const& g, grid_level<S> const& l, S x, int k) {
     return l.coordinate(offset(g, x, k));
   }
-  static COLLIDE_HD_INLINE S offset(grid<S> const& g, S x, int k) { return smaller(x, g.upper[k]) - g.lower[k]; }
+  static COLLIDE_HD_INLINE S offset(grid<S> const& g, S x, int k) { return min(x, g.upper[k]) - g.lower[k]; }
 
   COLLIDE_HD std::uint32_t cells_per_segment() const {
     return segment_extent_[0] * segment_extent_[1] * segment_extent_[2];
   }
 
   COLLIDE_HD S position(std::uint32_t subdivide, int k) const {
-    return from_[k] + mul(begin_ + mul(static_cast<S>(subdivide), segment_dt_), along_[k]);
+    return from_[k] + mul_rn(begin_ + mul_rn(static_cast<S>(subdivide), segment_dt_), along_[k]);
   }
 
   /// Cuts a path through many cells into pieces.
@@ -160,20 +160,20 @@ class swept_cells {
     for (int k = 0; k < 3; ++k) {
       if (along_[k] == 0) continue;
       S const slack = rounding_slack(from_[k], along_[k]);
-      S const to_lower = div(grid_->lower[k] - slack - from_[k], along_[k]),
-              to_upper = div(grid_->upper[k] + slack - from_[k], along_[k]);
-      begin_ = larger(begin_, widened(smaller(to_lower, to_upper), -1));
-      end = smaller(end, widened(larger(to_lower, to_upper), 1));
+      S const to_lower = div_rn(grid_->lower[k] - slack - from_[k], along_[k]),
+              to_upper = div_rn(grid_->upper[k] + slack - from_[k], along_[k]);
+      begin_ = max(begin_, widened(min(to_lower, to_upper), -1));
+      end = min(end, widened(max(to_lower, to_upper), 1));
     }
     is_subdivided_ = true;
     segments_ = 0;
     if (!(begin_ <= end)) return;
-    for (int k = 0; k < 3; ++k) longest = larger(longest, mul(abs_of(along_[k]), end - begin_));
-    segments_ = static_cast<std::uint32_t>(mul(longest, 2 * level_->inverse_width)) + 1;
-    segment_dt_ = div(end - begin_, static_cast<S>(segments_));
+    for (int k = 0; k < 3; ++k) longest = max(longest, mul_rn(abs_of(along_[k]), end - begin_));
+    segments_ = static_cast<std::uint32_t>(mul_rn(longest, 2 * level_->inverse_width)) + 1;
+    segment_dt_ = div_rn(end - begin_, static_cast<S>(segments_));
     for (int k = 0; k < 3; ++k) {
-      S const extent = mul(abs_of(along_[k]), segment_dt_) + 2 * rounding_slack(from_[k], along_[k]);
-      segment_extent_[k] = static_cast<std::uint32_t>(mul(extent, level_->inverse_width) + S(0.125)) + 2;
+      S const extent = mul_rn(abs_of(along_[k]), segment_dt_) + 2 * rounding_slack(from_[k], along_[k]);
+      segment_extent_[k] = static_cast<std::uint32_t>(mul_rn(extent, level_->inverse_width) + S(0.125)) + 2;
     }
   }
 
@@ -182,8 +182,8 @@ class swept_cells {
     cell_box r;
     for (int k = 0; k < 3; ++k) {
       S const a = position(piece, k), b = position(piece + 1, k), slack = rounding_slack(from_[k], along_[k]);
-      r.lower[k] = coordinate(*grid_, *level_, smaller(a, b) - slack, k);
-      r.upper[k] = coordinate(*grid_, *level_, larger(a, b) + slack, k);
+      r.lower[k] = coordinate(*grid_, *level_, min(a, b) - slack, k);
+      r.upper[k] = coordinate(*grid_, *level_, max(a, b) + slack, k);
     }
     return r;
   }

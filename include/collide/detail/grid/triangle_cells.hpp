@@ -33,7 +33,7 @@ class triangle_slab {
       S ends[2][2] = {{v[i], x[i]}, {v[j], x[j]}};
       auto const cut = [&](S const(&distance)[2], int line, bool& begun, int outside) {
         S const t = fraction(distance[0], distance[1]),
-                at[2] = {v[i] + mul(t, v[j] - v[i]), x[i] + mul(t, x[j] - x[i])};
+                at[2] = {v[i] + mul_rn(t, v[j] - v[i]), x[i] + mul_rn(t, x[j] - x[i])};
         for (int k = 0; k < 2; ++k) {
           if (outside == 0) ends[0][k] = at[k];
           if (outside == 1) ends[1][k] = at[k];
@@ -55,8 +55,8 @@ class triangle_slab {
     lower = std::numeric_limits<S>::max(), upper = -lower;
     for (int i = 0; i < segment_count; ++i) {
       if (!there_[i]) continue;
-      lower = smaller(lower, smaller(segments_[i][0][0], segments_[i][1][0]));
-      upper = larger(upper, larger(segments_[i][0][0], segments_[i][1][0]));
+      lower = min(lower, min(segments_[i][0][0], segments_[i][1][0]));
+      upper = max(upper, max(segments_[i][0][0], segments_[i][1][0]));
     }
   }
 
@@ -69,8 +69,8 @@ class triangle_slab {
       S from = p[1], to = q[1];
       if ((p[0] < begin) != (q[0] < begin)) (p[0] < begin ? from : to) = x_at(p, q, begin);
       if ((p[0] > end) != (q[0] > end)) (p[0] > end ? from : to) = x_at(p, q, end);
-      lower = smaller(lower, smaller(from, to));
-      upper = larger(upper, larger(from, to));
+      lower = min(lower, min(from, to));
+      upper = max(upper, max(from, to));
     }
   }
 
@@ -78,7 +78,7 @@ class triangle_slab {
   static constexpr int segment_count = 5;
 
   static COLLIDE_HD_INLINE S x_at(S const (&p)[2], S const (&q)[2], S v) {
-    return p[1] + mul(fraction(p[0] - v, q[0] - v), q[1] - p[1]);
+    return p[1] + mul_rn(fraction(p[0] - v, q[0] - v), q[1] - p[1]);
   }
 
   /// How far along the line between two points a plane lies that they are so far from, on different sides.
@@ -97,7 +97,7 @@ void each_range_of_row(grid_level<S> const& l, std::uint32_t y, std::uint32_t z,
                        std::uint32_t last, F const& f) {
   std::uint32_t const row = l.row(y, z), begin = first & l.mask[0], n = last - first + 1;
   std::uint32_t const to_end = l.mask[0] + 1 - begin;
-  f(row + begin, smaller(n, to_end));
+  f(row + begin, min(n, to_end));
   if (n > to_end) f(row, n - to_end);
 }
 
@@ -156,7 +156,7 @@ class triangle_cells {
     }
     int const u_axis = slab_axis(), v_axis = 3 - u_axis;
     S const reach = grid_.padded_reach, begin = cell_begin(slab, u_axis), end = begin + level_.width;
-    S const reach_squared = mul(reach, reach),
+    S const reach_squared = mul_rn(reach, reach),
             left = squared_rest(reach_squared, begin, end, on(box_.lower, u_axis), on(box_.upper, u_axis));
     if (left < 0) return;
     S const u[3] = {on(t.a, u_axis), on(t.b, u_axis), on(t.c, u_axis)},
@@ -166,8 +166,8 @@ class triangle_cells {
     part.extent_on_v(lower, upper);
     if (!(lower <= upper)) return;
     S const reach_on_v = sqrt_rn(left);
-    first_row = larger(first_row, coordinate(lower - reach_on_v, v_axis));
-    last_row = smaller(last_row, coordinate(upper + reach_on_v, v_axis));
+    first_row = max(first_row, coordinate(lower - reach_on_v, v_axis));
+    last_row = min(last_row, coordinate(upper + reach_on_v, v_axis));
     for (std::uint32_t row = first_row; row <= last_row; ++row) {
       S const row_begin = cell_begin(row, v_axis), row_end = row_begin + level_.width;
       S const rest = squared_rest(left, row_begin, row_end, lower, upper);
@@ -176,8 +176,8 @@ class triangle_cells {
       part.extent_on_x(row_begin - reach_on_v, row_end + reach_on_v, from, to);
       if (!(from <= to)) continue;
       S const reach_on_x = sqrt_rn(rest);
-      std::uint32_t const first = larger(range_.lower[0], coordinate(from - reach_on_x, 0)),
-                          last = smaller(range_.upper[0], coordinate(to + reach_on_x, 0));
+      std::uint32_t const first = max(range_.lower[0], coordinate(from - reach_on_x, 0)),
+                          last = min(range_.upper[0], coordinate(to + reach_on_x, 0));
       if (first <= last) call(row, first, last);
     }
   }
@@ -215,7 +215,7 @@ class triangle_cells {
   }
 
   COLLIDE_HD_INLINE S cell_begin(std::uint32_t cell, int axis) const {
-    return (axis == 2 ? grid_.lower[2] : grid_.lower[1]) + mul(static_cast<S>(cell), level_.width);
+    return (axis == 2 ? grid_.lower[2] : grid_.lower[1]) + mul_rn(static_cast<S>(cell), level_.width);
   }
   COLLIDE_HD_INLINE std::uint32_t coordinate(S x, int axis) const {
     return level_.coordinate(x - (axis == 0 ? grid_.lower[0] : (axis == 1 ? grid_.lower[1] : grid_.lower[2])));
@@ -223,8 +223,8 @@ class triangle_cells {
 
   /// A squared length, less the squared distance of two ranges.
   static COLLIDE_HD_INLINE S squared_rest(S squared, S begin, S end, S lower, S upper) {
-    S const apart = larger(S(0), larger(begin - upper, lower - end));
-    return squared - mul(apart, apart);
+    S const apart = max(S(0), max(begin - upper, lower - end));
+    return squared - mul_rn(apart, apart);
   }
 
   COLLIDE_HD_INLINE std::uint32_t covered(std::uint32_t cell, int axis) const {
@@ -248,7 +248,7 @@ void each_range(grid<S> const& g, aabb<S> const& b, GetTriangle const& get_trian
   grid_level<S> const& l = g.level_of(b);
   cell_box const r = g.range_of(l, b);
   bool few = true;  // nearly always: then nothing else has to be known
-  for (int k = 0; k < 3; ++k) few = few && r.upper[k] - r.lower[k] <= smaller(1u, l.mask[k]);
+  for (int k = 0; k < 3; ++k) few = few && r.upper[k] - r.lower[k] <= min(1u, l.mask[k]);
   if (few) return each_range_of_box(l, r, f);
   triangle_cells<S>(g, l, b).each_range(get_triangle, f);
 }

@@ -1,10 +1,10 @@
 /// \file
 /// Which triangles a single sphere could touch, asked from inside a kernel: what a broad phase gives a simulation.
 ///
-/// An index gives a trivially copyable `lookup()`. Of that, `has_single_cell_lookup(radius)` is true if spheres of this
-/// radius are best asked several at a time whether they can touch a triangle:
-/// `occupancy().mark(occupancy().places_of(x, y, z), near)`, or `occupancy().test_swept(batch, near)` of those that
-/// move. In a kernel, `opened()` is that lookup for use, and then
+/// An index gives a trivially copyable `triangle_ref()`. Of that, `has_single_cell_lookup(radius)` is true if spheres
+/// of this radius are best asked several at a time whether they can touch a triangle:
+/// `occupancy().test_occupied(occupancy().places_of(x, y, z), near)`, or `occupancy().test_swept(batch, near)` of those
+/// that move. In a kernel, `without_overflown_grids()` is that lookup for use, and then
 ///   - `empty(sphere)` is true if the sphere can touch no triangle: it is quick;
 ///   - `begin(sphere)` is a cursor, and `next(sphere, cursor, most, range)` moves it on and gives at most `most` more
 ///     entries, until it returns false; one may appear more than once if the sphere moves; `cursor.at_end()` is true if
@@ -29,13 +29,13 @@ struct candidate_range {
   cell_item const* listed;  ///< those of a cell; null: there are all, numbered from `first`
   id first;
   std::uint32_t count;
-  std::uint32_t place;  ///< of the sphere, or of its path, in the cell
+  std::uint32_t coverage;  ///< of the sphere, or of its path, in the cell
 
   COLLIDE_HD_INLINE cell_item at(std::uint32_t k) const {
     return listed != nullptr ? listed[k] : cell_item{first + k, cell_coverage::full_box};
   }
   COLLIDE_HD_INLINE bool passes_coverage(cell_item const& e) const {
-    return cell_coverage::overlaps(e.coverage, place);
+    return cell_coverage::overlaps(e.coverage, coverage);
   }
 };
 
@@ -63,7 +63,7 @@ struct triangle_ref {
   /// Whether a triangle that has passed the quick tests is near, unless the narrow phase asks that itself before
   /// anything else.
   template <class NarrowPhase, class Sphere>
-  COLLIDE_HD_INLINE bool passes_coverage(Sphere const& shape, id triangle) const {
+  COLLIDE_HD_INLINE bool aabb_overlaps_unless_filtered(Sphere const& shape, id triangle) const {
     if constexpr (filtered_predicate<NarrowPhase>::value) {
       return true;
     } else {
@@ -79,7 +79,7 @@ struct triangle_ref {
   COLLIDE_HD bool next_of_all(candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
     auto const n = static_cast<std::uint32_t>(mesh.size());
     if (c.skip >= n) return false;
-    range = {nullptr, c.skip, smaller(n - c.skip, most), cell_coverage::full_query};
+    range = {nullptr, c.skip, min(n - c.skip, most), cell_coverage::full_query};
     c.skip += range.count;
     if (c.skip == n) c.grid = candidate_cursor::ended;
     return true;

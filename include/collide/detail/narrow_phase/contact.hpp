@@ -5,64 +5,66 @@
 #include <limits>
 
 #include <collide/detail/geometry/closest_point.hpp>
-#include <collide/detail/narrow_phase/measure_compensated.hpp>
-#include <collide/detail/narrow_phase/measured_contact.hpp>
+#include <collide/detail/narrow_phase/contact_compensated.hpp>
+#include <collide/detail/narrow_phase/contact_without_point.hpp>
 
 namespace collide::detail {
 
 /// Distance, depth and normal of a contact in exact arithmetic, to nearly all digits however small they are. `l` is the
 /// triangle as seen from where the sphere is at the time, and `distance_squared` what doubles take for the square of
 /// its distance.
-COLLIDE_HD_NOINLINE inline measured_contact measure_exact(triangle<double> const& t, moving_sphere<double> const& s,
-                                                          double time, local_triangle<double> const& l,
-                                                          double distance_squared) {
+COLLIDE_HD_NOINLINE inline contact_without_point contact_exact(triangle<double> const& t,
+                                                               moving_sphere<double> const& s, double time,
+                                                               local_triangle<double> const& l,
+                                                               double distance_squared) {
   exact_slot::memory memory;
   exact_triangle const e(exact_numbers_of(memory.table(), t, s, decoded(time)));
   separation measured{0, 0};
-  int const foot = e.nearest(l, distance_squared, measured);
-  vec3<double> normal = e.direction_to_centre(foot);
+  int const closest = e.nearest(l, distance_squared, measured);
+  vec3<double> normal = e.direction_to_centre(closest);
   if (max_norm(normal) == 0) normal = e.normal();
   if (max_norm(normal) == 0) {  // a segment or a point, and the centre lies on it
     normal = perpendicular(longest_edge(l));
   } else {
     normal = unit(normal);
   }
-  return {measured, normal, exact_triangle::feature_of(foot), exact_triangle::feature_index_of(foot)};
+  return {measured, normal, exact_triangle::feature_of(closest), exact_triangle::feature_index_of(closest)};
 }
 
 /// The smallest length that doubles give to within 2^-45, in a problem of at most size 4; see
 /// docs/development/numerics.md.
 inline constexpr double well_conditioned_length = 0x1p-20;
 
-/// The contact of a finite triangle, as seen from a sphere's centre, in doubles; `foot` is the point of the triangle.
-/// False if their digits do not suffice: `well_conditioned(distance, depth)`, both local, tells whether they do.
+/// The contact of a finite triangle, as seen from a sphere's centre, in doubles; `closest` is the point of the
+/// triangle. False if their digits do not suffice: `well_conditioned(distance, depth)`, both local, tells whether they
+/// do.
 template <class WellConditioned>
-COLLIDE_HD_INLINE bool measure_if_well_conditioned(local_triangle<double> const& l, double radius,
-                                                   WellConditioned const& well_conditioned, closest_point<double>& foot,
-                                                   measured_contact& found) {
+COLLIDE_HD_INLINE bool contact_if_well_conditioned(local_triangle<double> const& l, double radius,
+                                                   WellConditioned const& well_conditioned,
+                                                   closest_point<double>& closest, contact_without_point& found) {
   vec3<double> const normal = cross<double>(l.b - l.a, l.c - l.a);
-  foot = closest_to_origin(l, normal);
-  double const local_distance = sqrt_rn(foot.distance_squared), distance = div(local_distance, l.scale);
-  found = {{distance, radius - distance}, normal, foot.kind, foot.index};
-  if (!well_conditioned(local_distance, mul(found.measured.depth, l.scale))) return false;
-  if (foot.kind == feature::face) {
+  closest = closest_to_origin(l, normal);
+  double const local_distance = sqrt_rn(closest.distance_squared), distance = div_rn(local_distance, l.scale);
+  found = {{distance, radius - distance}, normal, closest.kind, closest.index};
+  if (!well_conditioned(local_distance, mul_rn(found.measured.depth, l.scale))) return false;
+  if (closest.kind == feature::face) {
     found.normal = unit(found.normal);
     if (dot(l.a, found.normal) > 0) found.normal = -found.normal;
   } else {
-    found.normal = unit<double>(-foot.point);
+    found.normal = unit<double>(-closest.point);
   }
   return true;
 }
 
-/// The contact at the point `foot`, rounded once; the caller sets the ids.
+/// The contact at the point `closest`, rounded once; the caller sets the ids.
 template <class S>
-COLLIDE_HD_INLINE contact<S> contact_at_point(measured_contact const& m, vec3<double> const& foot, double scale,
+COLLIDE_HD_INLINE contact<S> contact_at_point(contact_without_point const& m, vec3<double> const& closest, double scale,
                                               vec3<double> const& centre) {
-  vec3<double> point = centre + scaled(foot, div(1.0, scale));
+  vec3<double> point = centre + scaled(closest, div_rn(1.0, scale));
   if (!is_finite(point)) {  // the way there is longer than the largest number, or rounded up to more than that
     constexpr double most = std::numeric_limits<double>::max() / 4;
-    point = scaled(centre, 0.25) + scaled(foot, div(0.25, scale));
-    for (int k = 0; k < 3; ++k) point[k] = mul(4.0, smaller(larger(point[k], -most), most));
+    point = scaled(centre, 0.25) + scaled(closest, div_rn(0.25, scale));
+    for (int k = 0; k < 3; ++k) point[k] = mul_rn(4.0, min(max(point[k], -most), most));
   }
   return {no_id,
           no_id,
@@ -104,17 +106,17 @@ COLLIDE_HD_NOINLINE inline contact<double> contact_with_fallback(local_triangle<
     // guard: near-depth
     return wanted == digits::of_float && distance >= enough && (!exact_depth || depth >= enough || depth <= -enough);
   };
-  measured_contact found;
-  vec3<double> foot;
-  if (wanted == digits::of_double && measure_compensated(t, s, time, l.scale, exact_depth, foot, found)) {
-    return contact_at_point<double>(found, foot, l.scale, centre);
+  contact_without_point found;
+  vec3<double> closest;
+  if (wanted == digits::of_double && contact_compensated(t, s, time, l.scale, exact_depth, closest, found)) {
+    return contact_at_point<double>(found, closest, l.scale, centre);
   }
   closest_point<double> nearest;
-  if (!measure_if_well_conditioned(l, s.radius, well_conditioned, nearest, found)) {
+  if (!contact_if_well_conditioned(l, s.radius, well_conditioned, nearest, found)) {
     bool const all = is_infinite(s.radius);
-    found = measure_exact(t, {{s.centre, all ? 0 : s.radius}, s.displacement}, time, l, nearest.distance_squared);
+    found = contact_exact(t, {{s.centre, all ? 0 : s.radius}, s.displacement}, time, l, nearest.distance_squared);
     if (all) found.measured.depth = s.radius;
-    double const away = mul(found.measured.distance, l.scale);
+    double const away = mul_rn(found.measured.distance, l.scale);
     if (found.kind != feature::vertex && away <= 4) nearest.point = scaled(found.normal, -away);
   }
   return contact_at_point<double>(found, nearest.point, l.scale, centre);

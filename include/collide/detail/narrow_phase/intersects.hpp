@@ -52,7 +52,7 @@ COLLIDE_HD_NOINLINE decision intersects_exact_slow(triangle<S> const& t, sphere<
 template <class S>
 COLLIDE_HD_INLINE bool box_is_near(local_triangle<S> const& l) {
   // guard: box
-  return aabb_within(l, larger(l.radius, ieee_traits<S>::min_sum_under_ftz));
+  return aabb_within(l, max(l.radius, ieee_traits<S>::min_sum_under_ftz));
 }
 
 /// The box test and the filter in float. What they leave `uncertain` is for `resolve_exact`.

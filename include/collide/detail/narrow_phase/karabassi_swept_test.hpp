@@ -20,7 +20,7 @@ COLLIDE_HD_INLINE bool karabassi_swept_local(triangle<S> const& of, moving_spher
     return karabassi_local<T>(of, static_cast<sphere<S> const&>(s));
   }
   local_sweep<T> const t = narrow_to<T>(to_unit_range(l, of, s));
-  return approach(t).distance_squared <= mul(t.shape.radius, t.shape.radius);
+  return approach(t).distance_squared <= mul_rn(t.shape.radius, t.shape.radius);
 }
 
 }  // namespace collide::detail

@@ -15,7 +15,7 @@ template <class T>
 COLLIDE_HD_INLINE bool plane_separates(vec3<T> const& a, vec3<T> const& n, T uuvv, T rr) {
   constexpr T error = 512 * ieee_traits<T>::unit_roundoff * ieee_traits<T>::unit_roundoff;
   T const d = dot(n, a);
-  return mul(mul(d, d), T(0.875)) > mul(rr, dot(n, n)) + mul(mul(error, uuvv), dot(a, a));
+  return mul_rn(mul_rn(d, d), T(0.875)) > mul_rn(rr, dot(n, n)) + mul_rn(mul_rn(error, uuvv), dot(a, a));
 }
 
 /// True if a point strictly between a and b is within the root of `rr` of the origin.
@@ -25,7 +25,7 @@ COLLIDE_HD_INLINE bool edge_intersects(vec3<T> const& a, vec3<T> const& b, T rr)
   T const along = -dot(a, e);
   T const ee = dot(e, e);
   if (!(along > 0 && along < ee)) return false;
-  vec3<T> const q = a + scaled(e, div(along, ee));
+  vec3<T> const q = a + scaled(e, div_rn(along, ee));
   return dot(q, q) <= rr;
 }
 
@@ -40,12 +40,12 @@ COLLIDE_HD_INLINE bool karabassi_local(triangle<S> const& of, sphere<S> const& s
   if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(of)) return false;
   if (is_infinite(s.radius)) return true;
   local_triangle<T> const t = narrow_to<T>(to_unit_range(l, of, s));
-  T const rr = mul(t.radius, t.radius);
+  T const rr = mul_rn(t.radius, t.radius);
   vec3<T> const u = t.b - t.a, v = t.c - t.a, n = cross(u, v);
-  if (plane_separates(t.a, n, mul(dot(u, u), dot(v, v)), rr)) return false;              // 1: the plane
-  if (smaller(smaller(dot(t.a, t.a), dot(t.b, t.b)), dot(t.c, t.c)) <= rr) return true;  // 2: the vertices
-  vec3<T> foot;
-  if (project_onto_face(t, n, foot) && dot(foot, foot) <= rr) return true;  // 3: the face
+  if (plane_separates(t.a, n, mul_rn(dot(u, u), dot(v, v)), rr)) return false;   // 1: the plane
+  if (min(min(dot(t.a, t.a), dot(t.b, t.b)), dot(t.c, t.c)) <= rr) return true;  // 2: the vertices
+  vec3<T> closest;
+  if (project_onto_face(t, n, closest) && dot(closest, closest) <= rr) return true;  // 3: the face
   return edge_intersects(t.a, t.b, rr) || edge_intersects(t.b, t.c, rr) ||
          edge_intersects(t.c, t.a, rr);  // 4: the edges
 }
@@ -62,9 +62,9 @@ COLLIDE_HD_INLINE bool karabassi_world(triangle<S> const& of, sphere<S> const& s
   T const d = n.dot(p - a);
   if (d > r || d < -r) return false;                     // 1: the plane
   if (within(a) || within(b) || within(c)) return true;  // 2: the vertices
-  vec3<T> const foot = p - d * n;
+  vec3<T> const closest = p - d * n;
   auto const left_of = [&](vec3<T> const& from, vec3<T> const& to) {
-    return n.dot(cross<T>(to - from, foot - from)) >= 0;
+    return n.dot(cross<T>(to - from, closest - from)) >= 0;
   };
   if (left_of(a, b) && left_of(b, c) && left_of(c, a)) return true;  // 3: the face
   auto const edge = [&](vec3<T> const& from, vec3<T> const& to) {

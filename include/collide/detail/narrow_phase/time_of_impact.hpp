@@ -27,10 +27,10 @@ COLLIDE_HD_NOINLINE inline double conservative_advancement(triangle<double> cons
   double time = 0;
   for (int i = 0; i < enough; ++i) {
     vec3<double> const g = closest_to_origin(at_time(l, time), n).point;
-    double const least = smaller(smaller(dot(l.shape.a, g), dot(l.shape.b, g)), dot(l.shape.c, g));
-    double const away = least - mul(outer, sqrt_rn(dot(g, g))), nearer = dot(l.path, g);
+    double const least = min(min(dot(l.shape.a, g), dot(l.shape.b, g)), dot(l.shape.c, g));
+    double const away = least - mul_rn(outer, sqrt_rn(dot(g, g))), nearer = dot(l.path, g);
     if (!(away > 0 && nearer > 0)) return time;
-    double const next = div(away, nearer);
+    double const next = div_rn(away, nearer);
     if (!(next > time)) return time;
     if (next >= 1) return 1;
     time = next;
@@ -52,9 +52,9 @@ COLLIDE_HD_NOINLINE inline double refine_time_of_impact(triangle<double> const& 
   double const time = conservative_advancement(t, s);
   std::uint32_t const steps = std::uint32_t{1} << bits;
   // no contact until `lower` steps, or just then; contact until `hit` steps
-  auto lower = smaller(static_cast<std::uint32_t>(time * steps), steps - 1), hit = steps;
+  auto lower = min(static_cast<std::uint32_t>(time * steps), steps - 1), hit = steps;
   for (std::uint32_t step = 1; hit - lower > 1;) {
-    std::uint32_t const middle = lower + smaller(step, (hit - lower) / 2);
+    std::uint32_t const middle = lower + min(step, (hit - lower) / 2);
     if (intersects_exact_slow(t, s, reduced(middle, -bits), exact_near_tangency).hit) {
       hit = middle;
     } else {
@@ -62,7 +62,7 @@ COLLIDE_HD_NOINLINE inline double refine_time_of_impact(triangle<double> const& 
       if (step < steps) step *= 2;
     }
   }
-  return larger(time, lower * value_of({1, -bits}));
+  return max(time, lower * value_of({1, -bits}));
 }
 
 /// Time of impact in double, to within 2^-bits, before it is rounded to the scalar.

@@ -13,7 +13,7 @@ COLLIDE_HD_NOINLINE inline int closest_foot(triangle<double> const& t, vec3<doub
   fixed_width_units units;
   units.include(point);
   units.include(t);
-  return units.fit() ? fixed_width_distance(units, t, point).foot() : closest_foot_in_integers(t, point);
+  return units.fit() ? fixed_width_distance(units, t, point).projection() : closest_foot_in_integers(t, point);
 }
 
 /// -1 if the point is nearer to s than to t, 0 if it is as near, else 1: exactly. Finite coordinates.

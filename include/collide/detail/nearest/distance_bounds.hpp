@@ -58,20 +58,20 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
   vec3<double> const a = difference_in_double(t.a, point), b = difference_in_double(t.b, point),
                      c = difference_in_double(t.c, point), ab = difference_in_double(t.b, t.a),
                      ac = difference_in_double(t.c, t.a);
-  double const size = larger(larger(max_norm(a), max_norm(b)), max_norm(c));
+  double const size = max(max(max_norm(a), max_norm(b)), max_norm(c));
   // flushed numbers of S are below u M and u L, and no product of six numbers is out of range
   constexpr double least = sizeof(S) == sizeof(float) ? 0x1p-70 : 0x1p-120, most = 0x1p140;
-  double const length = larger(larger(max_norm(ab), max_norm(ac)), least);
+  double const length = max(max(max_norm(ab), max_norm(ac)), least);
   // guard: bounds-smallest
   if (!(size >= least && size <= most)) {
-    found = {0, size <= most ? mul(2.0, size) + 2 * least : none, 6, false};
+    found = {0, size <= most ? mul_rn(2.0, size) + 2 * least : none, 6, false};
     return true;
   }
-  double const d1 = -fused_dot(ab, a), d2 = -fused_dot(ac, a), d3 = -fused_dot(ab, b), d4 = -fused_dot(ac, b),
-               d5 = -fused_dot(ab, c), d6 = -fused_dot(ac, c);
-  auto const minor = [](double p, double q, double r, double s) { return fused(p, q, -mul(r, s)); };
+  double const d1 = -dot_mul_add(ab, a), d2 = -dot_mul_add(ac, a), d3 = -dot_mul_add(ab, b), d4 = -dot_mul_add(ac, b),
+               d5 = -dot_mul_add(ab, c), d6 = -dot_mul_add(ac, c);
+  auto const minor = [](double p, double q, double r, double s) { return mul_add(p, q, -mul_rn(r, s)); };
   double const va = minor(d3, d6, d5, d4), vb = minor(d5, d2, d1, d6), vc = minor(d1, d4, d3, d2);
-  double const e = mul(16 * u, mul(length, size)), f = mul(mul(e, 16.0), mul(length, size));
+  double const e = mul_rn(16 * u, mul_rn(length, size)), f = mul_rn(mul_rn(e, 16.0), mul_rn(length, size));
   // C. Ericson, Real-Time Collision Detection, 5.1.5
   double v = vb, w = vc, sum = va + vb + vc;
   int foot = 6;
@@ -92,32 +92,32 @@ COLLIDE_HD_INLINE bool bound_distance(triangle<S> const& t, vec3<S> const& point
   region((d6 >= 0) & (d5 <= d6), (d6 > e) & (from_c < -4 * e), 2, 0, 1, 1);
   region((d3 >= 0) & (d4 <= d3), (d3 > e) & (from_b < -4 * e), 1, 1, 0, 1);
   region((d1 <= 0) & (d2 <= 0), (d1 < -e) & (d2 < -e), 0, 0, 0, 1);
-  double const inverse = sum > 0 ? div(1.0, sum) : 0;
-  v = saturate(mul(v, inverse));
-  w = smaller(saturate(mul(w, inverse)), 1 - v);
-  auto const combined = [&](int k) { return a[k] + fused(v, ab[k], mul(w, ac[k])); };
+  double const inverse = sum > 0 ? div_rn(1.0, sum) : 0;
+  v = saturate(mul_rn(v, inverse));
+  w = min(saturate(mul_rn(w, inverse)), 1 - v);
+  auto const combined = [&](int k) { return a[k] + mul_add(v, ab[k], mul_rn(w, ac[k])); };
   vec3<double> const q = {combined(0), combined(1), combined(2)};
   if (foot < 3 && is_same_point(point, corner_of(t, foot))) {
     found = {0, 0, foot, true};
     return true;
   }
   // guard: bounds
-  double const error = mul(64 * u, size), beyond = reach + error;
+  double const error = mul_rn(64 * u, size), beyond = reach + error;
   found.low = 0;
   auto const is_separating = [&](vec3<double> const& g) {
-    double const gg = fused_dot(g, g), along = smaller(smaller(fused_dot(a, g), fused_dot(b, g)), fused_dot(c, g));
+    double const gg = dot_mul_add(g, g), along = min(min(dot_mul_add(a, g), dot_mul_add(b, g)), dot_mul_add(c, g));
     // guard: bounds-least
     if (!(along > 0) || !(gg > 0x1p-600)) return false;
-    if (mul(along, along) > mul(mul(beyond, beyond), gg)) return true;
-    found.low = larger(found.low, div(along, sqrt_rn(gg)) - error);
+    if (mul_rn(along, along) > mul_rn(mul_rn(beyond, beyond), gg)) return true;
+    found.low = max(found.low, div_rn(along, sqrt_rn(gg)) - error);
     return false;
   };
   if (is_separating(q)) return false;
   if (foot == 6 || !certain) {  // close to the plane, its normal has a smaller relative error than q
     vec3<double> const n = cross(ab, ac);
-    if (is_separating(fused_dot(a, n) < 0 ? vec3<double>(-n) : n)) return false;
+    if (is_separating(dot_mul_add(a, n) < 0 ? vec3<double>(-n) : n)) return false;
   }
-  found.high = sqrt_rn(fused_dot(q, q)) + error;
+  found.high = sqrt_rn(dot_mul_add(q, q)) + error;
   found.foot = foot;
   found.certain = certain;
   return true;

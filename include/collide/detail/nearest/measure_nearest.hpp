@@ -5,7 +5,7 @@
 /// distance before it is rounded.
 #pragma once
 
-#include <collide/detail/narrow_phase/measure_compensated.hpp>
+#include <collide/detail/narrow_phase/contact_compensated.hpp>
 #include <collide/detail/predicates/exact_distance.hpp>
 
 namespace collide::detail {
@@ -57,7 +57,7 @@ COLLIDE_HD_NOINLINE inline measured_foot measure_foot_exactly(triangle<double> c
     int const exponent = square.exponent - by.exponent, half = exponent / 2;
     double_double const quotient = digits_of_scaled(square) / digits_of_scaled(by);
     found.distance = times_power(root(scaled(quotient, times_power(1, exponent - 2 * half))).high, half);
-    found.distance = larger(found.distance, std::numeric_limits<double>::denorm_min());  // 0 only on the triangle
+    found.distance = max(found.distance, std::numeric_limits<double>::denorm_min());  // 0 only on the triangle
   }
   if (foot < 3) {
     set_weights(found, foot, {}, {});
@@ -92,19 +92,19 @@ COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<
   } else if (foot < 6) {
     long_vector const c = cross(l.corner[i], l.edge[i]);
     double_double const square = dot(c, c), by = dot(l.edge[i], l.edge[i]);
-    double const limit = mul(least, larger(dot(r.corner[i], r.corner[i]), 1.0));
+    double const limit = mul_rn(least, max(dot(r.corner[i], r.corner[i]), 1.0));
     // guard: measured-edge
-    if (!(by.high >= limit && square.high >= mul(limit, by.high))) return false;
+    if (!(by.high >= limit && square.high >= mul_rn(limit, by.high))) return false;
     distance = root(square / by);
     found.direction = cross(c.rounded(), r.edge[i]);
     set_weights(found, foot, -dot(l.corner[i], l.edge[i]) / by, {});
   } else {
     long_vector const n = cross(l.edge[0], l.edge[1]);
     double_double const height = dot(l.corner[0], n), by = dot(n, n);
-    double const longest = larger(larger(r.length_squared[0], r.length_squared[1]), r.length_squared[2]);
-    double const limit = mul(mul(least, 64.0), mul(longest, longest));
+    double const longest = max(max(r.length_squared[0], r.length_squared[1]), r.length_squared[2]);
+    double const limit = mul_rn(mul_rn(least, 64.0), mul_rn(longest, longest));
     // guard: measured-face
-    if (!(longest >= 0x1p-160 && by.high >= mul(least * 64, longest) && mul(height.high, height.high) >= limit))
+    if (!(longest >= 0x1p-160 && by.high >= mul_rn(least * 64, longest) && mul_rn(height.high, height.high) >= limit))
       return false;
     distance = height / root(by);
     bool const above = distance.high < 0;  // on the side that the normal points to
@@ -112,7 +112,7 @@ COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<
     found.direction = above ? n.rounded() : vec3<double>(-n.rounded());
     set_weights(found, foot, dot(cross(l.corner[2], l.edge[2]), n) / by, dot(cross(l.corner[0], l.edge[0]), n) / by);
   }
-  found.distance = div(distance.high, scale);
+  found.distance = div_rn(distance.high, scale);
   return true;
 }
 
@@ -128,13 +128,13 @@ COLLIDE_HD inline vec3<double> point_of_weights(triangle<double> const& t, doubl
   vec3<double> point;
   for (int k = 0; k < 3; ++k) {
     double const a = t.a[k], b = t.b[k], c = t.c[k];
-    double const size = larger(larger(larger(a, -a), larger(b, -b)), larger(c, -c));
+    double const size = max(max(max(a, -a), max(b, -b)), max(c, -c));
     if (size > 0x1p-900 && size < 0x1p900) {  // else parts of products would under- or overflow
       double_double const sum =
           double_double{a, 0} * weight[0] + double_double{b, 0} * weight[1] + double_double{c, 0} * weight[2];
       point[k] = sum.high;
     } else {
-      point[k] = mul(a, weight[0].high) + mul(b, weight[1].high) + mul(c, weight[2].high);
+      point[k] = mul_rn(a, weight[0].high) + mul_rn(b, weight[1].high) + mul_rn(c, weight[2].high);
     }
   }
   return point;

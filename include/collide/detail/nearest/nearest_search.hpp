@@ -5,7 +5,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/detail/narrow_phase/contact_plain.hpp>
+#include <collide/detail/narrow_phase/contact_in_precision.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/nearest/compare_distances.hpp>
 #include <collide/detail/nearest/measure_nearest.hpp>
@@ -19,7 +19,7 @@ template <class S>
 COLLIDE_HD_INLINE S rounded_up(double x) {
   constexpr double least = static_cast<double>(std::numeric_limits<S>::min());
   constexpr double most = static_cast<double>(std::numeric_limits<S>::max());
-  double const above = larger(mul(x, 1 + 4 * static_cast<double>(ieee_traits<S>::unit_roundoff)), least);
+  double const above = max(mul_rn(x, 1 + 4 * static_cast<double>(ieee_traits<S>::unit_roundoff)), least);
   return above < most ? static_cast<S>(above) : std::numeric_limits<S>::infinity();
 }
 
@@ -40,7 +40,7 @@ class exact_nearest_search {
  public:
   COLLIDE_HD exact_nearest_search(vec3<S> const& point, S max_distance)
       : point_(point), max_distance_(max_distance), high_(-1) {
-    if (is_finite(point) && is_valid_radius(max_distance)) high_ = larger(widened(max_distance), 0.0);  // -0 is 0
+    if (is_finite(point) && is_valid_radius(max_distance)) high_ = max(widened(max_distance), 0.0);  // -0 is 0
   }
 
   COLLIDE_HD void consider(triangle<S> const& corners, id number) {
@@ -55,7 +55,7 @@ class exact_nearest_search {
       // guard: nearest-tie
       nearer = order < 0 || (order == 0 && number < number_);
     }
-    high_ = smaller(high_, found.high);
+    high_ = min(high_, found.high);
     if (!nearer) return;
     low_ = found.low;
     foot_ = found.foot;
@@ -64,7 +64,7 @@ class exact_nearest_search {
     number_ = number;
   }
 
-  COLLIDE_HD S squared_bound() const { return high_ < 0 ? S(-1) : rounded_up<S>(mul(high_, high_)); }
+  COLLIDE_HD S squared_bound() const { return high_ < 0 ? S(-1) : rounded_up<S>(mul_rn(high_, high_)); }
 
   /// The nearest triangle. `direction` is then set: from the closest point to the point, but for the length; on the
   /// triangle its normal, or 0.
@@ -77,7 +77,7 @@ class exact_nearest_search {
     int const foot = certain_ ? foot_ : closest_foot(t, p);
     measured_foot const there = measure_foot(t, p, foot);
     direction = there.direction;
-    auto const weight = [&](int i) { return larger(there.weight[i].high, 0.0); };
+    auto const weight = [&](int i) { return max(there.weight[i].high, 0.0); };
     return {rounded_to<S>(point_of_weights(t, there.weight)),
             rounded_to<S>({weight(0), weight(1), weight(2)}),
             rounded_distance(there.distance),
@@ -116,14 +116,14 @@ class plain_nearest_search {
 
  public:
   COLLIDE_HD plain_nearest_search(vec3<S> const& point, S max_distance) : point_(point), distance_(-1) {
-    if (is_finite(point) && is_valid_radius(max_distance)) distance_ = larger(static_cast<wide>(max_distance), wide(0));
+    if (is_finite(point) && is_valid_radius(max_distance)) distance_ = max(static_cast<wide>(max_distance), wide(0));
   }
 
   COLLIDE_HD void consider(triangle<S> const& corners, id number) {
     if (distance_ < 0 || !is_finite(corners)) return;
     wide scale;
     closest_point<T> const foot = foot_on(local(corners, scale));
-    wide const there = div(static_cast<wide>(sqrt_rn(foot.distance_squared)), scale);
+    wide const there = div_rn(static_cast<wide>(sqrt_rn(foot.distance_squared)), scale);
     if (!(there < distance_ || (there == distance_ && number < number_))) return;
     distance_ = there;
     corners_ = corners;
@@ -132,8 +132,8 @@ class plain_nearest_search {
 
   COLLIDE_HD S squared_bound() const {
     if (distance_ < 0) return S(-1);
-    double const reach = mul(static_cast<double>(distance_), 1 + 0x1p-12);  // a box may be nearer than was computed
-    return rounded_up<S>(mul(reach, reach));
+    double const reach = mul_rn(static_cast<double>(distance_), 1 + 0x1p-12);  // a box may be nearer than was computed
+    return rounded_up<S>(mul_rn(reach, reach));
   }
 
   COLLIDE_HD nearest_triangle<S> result(vec3<double>& direction) const {
@@ -142,9 +142,9 @@ class plain_nearest_search {
     local_triangle<T> const l = local(corners_, scale);
     vec3<T> const n = cross<T>(l.b - l.a, l.c - l.a);
     closest_point<T> const foot = closest_to_origin(l, n);
-    direction = plain_normal(l, n, foot).template cast<double>();
+    direction = contact_normal(l, n, foot).template cast<double>();
     vec3<double> const at = point_.template cast<double>() +
-                            scaled<double>(foot.point.template cast<double>(), div(1.0, static_cast<double>(scale)));
+                            scaled<double>(foot.point.template cast<double>(), div_rn(1.0, static_cast<double>(scale)));
     return {rounded_to<S>(at), rounded_to<S>(weights_of(l, n, foot)), static_cast<S>(distance_), number_,
             foot.kind,         static_cast<std::uint32_t>(foot.index)};
   }
@@ -174,12 +174,13 @@ class plain_nearest_search {
     } else if (foot.kind == feature::edge) {
       vec3<T> const from = foot.index == 0 ? l.a : (foot.index == 1 ? l.b : l.c);
       vec3<T> const e = (foot.index == 0 ? l.b : (foot.index == 1 ? l.c : l.a)) - from;
-      auto const along = static_cast<double>(div(-dot(from, e), dot(e, e)));
+      auto const along = static_cast<double>(div_rn(-dot(from, e), dot(e, e)));
       weight[foot.index] = 1 - along;
       weight[(foot.index + 1) % 3] = along;
     } else {
       T const a = dot(cross(l.b, l.c), n), b = dot(cross(l.c, l.a), n), c = dot(cross(l.a, l.b), n), sum = a + b + c;
-      weight = {static_cast<double>(div(a, sum)), static_cast<double>(div(b, sum)), static_cast<double>(div(c, sum))};
+      weight = {static_cast<double>(div_rn(a, sum)), static_cast<double>(div_rn(b, sum)),
+                static_cast<double>(div_rn(c, sum))};
     }
     return weight;
   }

@@ -26,15 +26,15 @@ struct solid_angle_sum {
     sphere<S> const centre{point, 0};
     local_triangle<double> const l = to_unit_range(to_local<double>(t, centre), t, centre);
     double const a = sqrt_rn(dot(l.a, l.a)), b = sqrt_rn(dot(l.b, l.b)), c = sqrt_rn(dot(l.c, l.c));
-    double const product = mul(mul(a, b), c), across = dot(l.a, cross(l.b, l.c));
-    double const along = ((product + mul(dot(l.a, l.b), c)) + mul(dot(l.b, l.c), a)) + mul(dot(l.c, l.a), b);
-    double const most = larger(across < 0 ? -across : across, along < 0 ? -along : along);
-    double const limit = mul(product, 80 * u);
+    double const product = mul_rn(mul_rn(a, b), c), across = dot(l.a, cross(l.b, l.c));
+    double const along = ((product + mul_rn(dot(l.a, l.b), c)) + mul_rn(dot(l.b, l.c), a)) + mul_rn(dot(l.c, l.a), b);
+    double const most = max(across < 0 ? -across : across, along < 0 ? -along : along);
+    double const limit = mul_rn(product, 80 * u);
     // as far as the point is away, the angle changes by the quotient, and by pi / 2 at most for each of the two
-    double const off = most > 8 * limit && most > 0x1p-900 ? div(mul(limit, 4.0), most) + 8 * u : all;
-    double const there = mul(2.0, angle_of(across, along));
+    double const off = most > 8 * limit && most > 0x1p-900 ? div_rn(mul_rn(limit, 4.0), most) + 8 * u : all;
+    double const there = mul_rn(2.0, angle_of(across, along));
     angle += there;
-    error += smaller(off, all) + mul(2 * u, (angle < 0 ? -angle : angle) + 8);
+    error += min(off, all) + mul_rn(2 * u, (angle < 0 ? -angle : angle) + 8);
   }
 };
 

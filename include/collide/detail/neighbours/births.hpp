@@ -20,8 +20,8 @@ COLLIDE_HD_INLINE std::size_t own_places(State const& state) {
   }
 }
 
-/// Kernel body of `for_each` over places in the order: marks newborns that overlap what was there before, or of those
-/// of this step one with a smaller number. A thread writes the mark of its own particle alone.
+/// Kernel functor of `for_each` over places in the order: marks newborns that overlap what was there before, or of
+/// those of this step one with a smaller number. A thread writes the mark of its own particle alone.
 template <class S, class Effects>
 struct find_crowded_births {
   particle_state<S, typename Effects::all> state;
@@ -42,8 +42,8 @@ struct find_crowded_births {
   }
 };
 
-/// Kernel body of `for_each` over particles: counts the newborns that are marked, and takes the marks off; if `refuse`,
-/// those that are marked are not born.
+/// Kernel functor of `for_each` over particles: counts the newborns that are marked, and takes the marks off; if
+/// `refuse`, those that are marked are not born.
 template <class S, class Effects>
 struct settle_births {
   particle_state<S, typename Effects::all> state;
@@ -62,7 +62,7 @@ struct settle_births {
   }
 };
 
-/// Kernel body of `for_each` over places in the order: nobody meets what was not born.
+/// Kernel functor of `for_each` over places in the order: nobody meets what was not born.
 template <class S, class Effects>
 struct leave_out_unborn {
   particle_state<S, typename Effects::all> state;

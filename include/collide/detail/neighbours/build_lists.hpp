@@ -14,7 +14,7 @@
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over particles, and places in the order: copies what particles must know of each other,
+/// Kernel functor of `for_each` over particles, and places in the order: copies what particles must know of each other,
 /// and asks for new lists if these may lack something: where a particle has come, or has moved too far.
 template <class S, class Effects>
 struct update_and_check_skin {
@@ -40,7 +40,7 @@ struct update_and_check_skin {
     auto const before = order.references[i];
     vec3<S> const moved(now.x - before.x, now.y - before.y, now.z - before.z);
     S const left = most - before.growth(now);
-    bool const stayed = dot(moved, moved) < mul(left, left) && left > 0;
+    bool const stayed = dot(moved, moved) < mul_rn(left, left) && left > 0;
     if (!stayed) order.ask_to_rebuild();
   }
 
@@ -48,7 +48,7 @@ struct update_and_check_skin {
   COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(alive{})[number] != 0; }
 };
 
-/// Kernel body of `for_each_if_nonzero` over the table: empties it.
+/// Kernel functor of `for_each_if_nonzero` over the table: empties it.
 template <class S, class Effects>
 struct clear_cells {
   sorted_particles<S, Effects> order;
@@ -62,8 +62,8 @@ struct clear_cells {
   }
 };
 
-/// Kernel body of `for_each_if_nonzero` over particles: counts them into cells, or, once blocks have their share of the
-/// order, fills in their numbers.
+/// Kernel functor of `for_each_if_nonzero` over particles: counts them into cells, or, once blocks have their share of
+/// the order, fills in their numbers.
 template <class S, class Effects, bool Fill>
 struct count_or_scatter {
   particle_state<S, typename Effects::all> state;
@@ -86,7 +86,7 @@ struct count_or_scatter {
   }
 };
 
-/// Kernel body of `for_each_if_nonzero` over blocks: counts become where cells begin.
+/// Kernel functor of `for_each_if_nonzero` over blocks: counts become where cells begin.
 template <class S, class Effects>
 struct scan_cells {
   sorted_particles<S, Effects> order;
@@ -107,7 +107,7 @@ struct scan_cells {
   }
 };
 
-/// Kernel body of `for_each_if_nonzero` over places in the order: copies particles there.
+/// Kernel functor of `for_each_if_nonzero` over places in the order: copies particles there.
 template <class S, class Effects>
 struct gather {
   particle_state<S, typename Effects::all> state;
@@ -121,7 +121,7 @@ struct gather {
   }
 };
 
-/// Kernel body of `for_each_if_nonzero` over places in the old order: keeps what contacts remember, by numbers.
+/// Kernel functor of `for_each_if_nonzero` over places in the old order: keeps what contacts remember, by numbers.
 template <class S, class Effects>
 struct keep_contacts {
   sorted_particles<S, Effects> order;
@@ -141,7 +141,7 @@ struct keep_contacts {
   }
 };
 
-/// Kernel body of `for_each_if_nonzero` over places in the order: lists what is near.
+/// Kernel functor of `for_each_if_nonzero` over places in the order: lists what is near.
 template <class S, class Effects>
 struct build_lists {
   sorted_particles<S, Effects> order;

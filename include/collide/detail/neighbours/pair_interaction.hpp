@@ -40,7 +40,7 @@ struct pair_interaction {
 
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
-    bool const is_active = takes_part(p.self), is_other = !is_skipped(other);
+    bool const is_active = takes_part(p.self), is_other = !is_inactive(other);
     if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
     if (is_other && !p.woken) effects.try_wake(p.changed, other);
     p.met = p.met || is_active || is_other;
@@ -48,8 +48,8 @@ struct pair_interaction {
   /// True once if a particle has been woken that took no part: then it meets those that were awake again, which have
   /// got their part of what the two do to each other.
   COLLIDE_HD_INLINE bool must_meet_again(pair_state& p) const {
-    if constexpr (Effects::skips && !Effects::keeps_support) {
-      p.woken = !p.woken && p.met && is_skipped(p.self) && !is_skipped(p.changed);
+    if constexpr (Effects::any_inactive && !Effects::keeps_support) {
+      p.woken = !p.woken && p.met && is_inactive(p.self) && !is_inactive(p.changed);
     }
     return p.woken;
   }
@@ -58,12 +58,13 @@ struct pair_interaction {
   template <class Record>
   COLLIDE_HD_INLINE bool interact(pair_state& p, std::uint32_t place, bool overlap, bool was, Record& record) const {
     interaction other = order.load(place);
-    bool const is_active = takes_part(p.self), is_awake = !is_skipped(other), is_other = overlap && is_awake;
+    bool const is_active = takes_part(p.self), is_awake = !is_inactive(other), is_other = overlap && is_awake;
     bool goes_on = was;
     if (p.woken ? is_other : is_active) {
       contact_values<S, typename Effects::remembered> values;
       if (was) values = record.values();
-      bool const stays = only_kicks || (!is_awake && is_skipped(p.self));  // of two that sleep the contact is as it was
+      bool const stays =
+          only_kicks || (!is_awake && is_inactive(p.self));  // of two that sleep the contact is as it was
       goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, stays ? S(0) : dt, dt);
       if (goes_on) record.set(values);
     }
@@ -75,7 +76,7 @@ struct pair_interaction {
   COLLIDE_HD_INLINE void store(pair_state& p) const {
     if (!p.met) return;
     bool is_asleep = false;
-    if constexpr (Effects::keeps_support) is_asleep = is_skipped(p.self) && is_skipped(p.changed);
+    if constexpr (Effects::keeps_support) is_asleep = is_inactive(p.self) && is_inactive(p.changed);
     if (!only_kicks && !is_asleep) state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
     if constexpr (Effects::keeps_pair_forces) {
       particle<S, typename Effects::interaction_kicks> kicks;
@@ -93,19 +94,19 @@ struct pair_interaction {
     if constexpr (Effects::keeps_support) {
       return effects.only_sleeps(p);  // or is awake
     } else {
-      return !is_skipped(p);
+      return !is_inactive(p);
     }
   }
-  COLLIDE_HD_INLINE bool is_skipped(interaction& p) const {
-    if constexpr (Effects::skips) {
-      return effects.is_skipped(p);
+  COLLIDE_HD_INLINE bool is_inactive(interaction& p) const {
+    if constexpr (Effects::any_inactive) {
+      return effects.is_inactive(p);
     } else {
       return false;
     }
   }
 };
 
-/// Kernel body of `for_each` over places in the order: a particle meets those on its list that overlap it.
+/// Kernel functor of `for_each` over places in the order: a particle meets those on its list that overlap it.
 template <class S, class Effects>
 struct interact_listed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
@@ -159,9 +160,9 @@ struct interact_listed : pair_interaction<S, Effects> {
   }
 };
 
-/// Kernel body of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have room
-/// for meet those of their run. Where there was no room for that, all that overlap them are looked for, as many as can
-/// be held at a time, by rising numbers.
+/// Kernel functor of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have
+/// room for meet those of their run. Where there was no room for that, all that overlap them are looked for, as many as
+/// can be held at a time, by rising numbers.
 template <class S, class Effects>
 struct interact_overflowed : pair_interaction<S, Effects> {
   using ordered = sorted_particles<S, Effects>;

@@ -31,7 +31,7 @@ template <class S>
 struct reference<S, true> : packed_sphere<S> {
   COLLIDE_HD_INLINE void set(packed_sphere<S> const& s) { static_cast<packed_sphere<S>&>(*this) = s; }
   /// By how much it has grown; 0 if it has shrunk.
-  COLLIDE_HD_INLINE S growth(packed_sphere<S> const& s) const { return larger(s.radius - this->radius, S(0)); }
+  COLLIDE_HD_INLINE S growth(packed_sphere<S> const& s) const { return max(s.radius - this->radius, S(0)); }
 };
 
 /// What all particles in the order have in common.
@@ -107,7 +107,7 @@ struct sorted_particles {
   static COLLIDE_HD_INLINE bool within_skin(packed_sphere<S> const& a, packed_sphere<S> const& b, S skin) {
     vec3<S> const between(a.x - b.x, a.y - b.y, a.z - b.z);
     S const reach = a.radius + b.radius + skin;
-    return dot(between, between) < mul(reach, reach);
+    return dot(between, between) < mul_rn(reach, reach);
   }
 
   /// Puts a particle that is not there, or nowhere, so far away, and makes it so small, that it is near nothing, not
@@ -128,7 +128,7 @@ struct sorted_particles {
     COLLIDE_NO_UNROLL
     for (int row = 0; row < 9; ++row) {
       cell const from = first_of(here, row);
-      std::int32_t const together = smaller(3, 16 - (from.x & 15));  // those in the same block follow each other
+      std::int32_t const together = min(3, 16 - (from.x & 15));  // those in the same block follow each other
       std::uint32_t const first = cells.number(from);
       std::uint32_t const begin = ends[first], size = ends[first + static_cast<std::uint32_t>(together)] - begin;
       std::uint32_t jump = 0, both = size;

@@ -35,7 +35,7 @@ struct spatial_hash {
   /// Rounded down; NaN and what is too far away are somewhere.
   COLLIDE_HD_INLINE std::int32_t coordinate(S x) const {
     constexpr S end = S(1 << 30);
-    S const c = smaller(end, larger(-end, mul(x, inverse_width)));
+    S const c = min(end, max(-end, mul_rn(x, inverse_width)));
     auto const i = static_cast<std::int32_t>(c);
     return static_cast<S>(i) > c ? i - 1 : i;
   }

@@ -60,10 +60,10 @@ class verlet_list {
   template <class Space>
   void clear(Space& space, std::size_t n, S radius, S smallest) {
     blocks_ = blocks_for(n);
-    skin_ = skin_fraction * 2 * (smallest > 0 ? smaller(radius, 2 * smallest) : radius);
+    skin_ = skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
     // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
     // away from the origin
-    S const width = larger((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
+    S const width = max((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
     cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
     list_state* const header = header_.data();
     space.fill(header, 0, sizeof *header);

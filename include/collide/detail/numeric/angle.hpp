@@ -11,14 +11,14 @@ namespace collide::detail {
 COLLIDE_HD_INLINE double angle_of(double y, double x) {
   constexpr double pi = 3.141592653589793;
   double const across = y < 0 ? -y : y, along = x < 0 ? -x : x;
-  double const least = smaller(across, along), most = larger(across, along);
+  double const least = min(across, along), most = max(across, along);
   if (!(most > 0)) return 0;
   // atan(t) = pi/4 + atan((t - 1) / (t + 1)), where t is above tan(pi/8)
-  bool const steep = least > mul(most, 0.41421356237309503);
-  double const t = steep ? div(least - most, least + most) : div(least, most), tt = mul(t, t);
+  bool const steep = least > mul_rn(most, 0.41421356237309503);
+  double const t = steep ? div_rn(least - most, least + most) : div_rn(least, most), tt = mul_rn(t, t);
   double series = 0;
-  for (int k = 43; k > 0; k -= 2) series = div(1.0, k) - mul(tt, series);
-  double angle = (steep ? pi / 4 : 0) + mul(t, series);
+  for (int k = 43; k > 0; k -= 2) series = div_rn(1.0, k) - mul_rn(tt, series);
+  double angle = (steep ? pi / 4 : 0) + mul_rn(t, series);
   if (across > along) angle = pi / 2 - angle;
   if (x < 0) angle = pi - angle;
   return y < 0 ? -angle : angle;

@@ -30,20 +30,20 @@ COLLIDE_HD_INLINE double_double exact_sum_of_ordered(double a, double b) {
 
 /// The upper half of the digits; what is left of x has 26 bits too.
 COLLIDE_HD_INLINE double upper_digits(double x) {
-  double const shifted = opaque_value(mul(x, 0x1p27 + 1)), rest = opaque_value(shifted - x);
+  double const shifted = opaque_value(mul_rn(x, 0x1p27 + 1)), rest = opaque_value(shifted - x);
   return opaque_value(shifted - rest);
 }
 
 /// a * b without error.
 COLLIDE_HD_INLINE double_double exact_product_of(double a, double b) {
-  double const product = opaque_value(mul(a, b));
+  double const product = opaque_value(mul_rn(a, b));
 #if defined(__CUDA_ARCH__) || defined(__FP_FAST_FMA) || defined(__FMA__)
   return {product, fma_rn(a, b, -product)};
 #else
   double const a1 = upper_digits(a), b1 = upper_digits(b), a2 = opaque_value(a - a1), b2 = opaque_value(b - b1);
-  double const first = opaque_value(mul(a1, b1) - product), second = opaque_value(first + mul(a1, b2));
-  double const third = opaque_value(second + mul(a2, b1));
-  return {product, third + mul(a2, b2)};
+  double const first = opaque_value(mul_rn(a1, b1) - product), second = opaque_value(first + mul_rn(a1, b2));
+  double const third = opaque_value(second + mul_rn(a2, b1));
+  return {product, third + mul_rn(a2, b2)};
 #endif
 }
 
@@ -58,13 +58,13 @@ COLLIDE_HD_INLINE double_double operator-(double_double const& x, double_double 
 
 COLLIDE_HD_INLINE double_double operator*(double_double const& x, double_double const& y) {
   double_double const p = exact_product_of(x.high, y.high);
-  return exact_sum_of_ordered(p.high, p.low + (mul(x.high, y.low) + mul(x.low, y.high)));
+  return exact_sum_of_ordered(p.high, p.low + (mul_rn(x.high, y.low) + mul_rn(x.low, y.high)));
 }
 
 COLLIDE_HD_INLINE double_double operator/(double_double const& x, double_double const& y) {
-  double const first = div(x.high, y.high);
+  double const first = div_rn(x.high, y.high);
   double_double const rest = x - double_double{first, 0} * y;
-  return exact_sum_of_ordered(first, div(rest.high, y.high));
+  return exact_sum_of_ordered(first, div_rn(rest.high, y.high));
 }
 
 COLLIDE_HD_INLINE bool operator<(double_double const& x, double_double const& y) {
@@ -75,12 +75,12 @@ COLLIDE_HD_INLINE bool operator<(double_double const& x, double_double const& y)
 COLLIDE_HD_INLINE double_double root(double_double const& x) {
   double const first = sqrt_rn(x.high);
   double_double const rest = x - exact_product_of(first, first);
-  return exact_sum_of_ordered(first, div(rest.high, 2 * first));
+  return exact_sum_of_ordered(first, div_rn(rest.high, 2 * first));
 }
 
 /// x times a power of two.
 COLLIDE_HD_INLINE double_double scaled(double_double const& x, double power) {
-  return {mul(x.high, power), mul(x.low, power)};
+  return {mul_rn(x.high, power), mul_rn(x.low, power)};
 }
 
 /// A vector of such numbers.

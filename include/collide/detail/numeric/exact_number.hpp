@@ -30,7 +30,7 @@ COLLIDE_HD_RARE double widened(float x) {
   std::uint32_t const u = to_bits(x), magnitude = u & ~f::sign_mask;
   // guard: widened
   if (magnitude >> f::mantissa_bits != 0) return static_cast<double>(x);
-  double const subnormal = mul(static_cast<double>(magnitude), 0x1p-149);
+  double const subnormal = mul_rn(static_cast<double>(magnitude), 0x1p-149);
   return (u & f::sign_mask) != 0 ? -subnormal : subnormal;
 }
 COLLIDE_HD inline double widened(double x) { return x; }
@@ -78,13 +78,14 @@ COLLIDE_HD inline dyadic decoded(double x) {
   // guard: hidden-bit
   std::int64_t const m = biased == 0 ? fraction : fraction | std::int64_t{1} << f::mantissa_bits;
   // guard: subnormal
-  dyadic const d = reduced(m, larger(biased, 1) - f::bias - f::mantissa_bits);
+  dyadic const d = reduced(m, max(biased, 1) - f::bias - f::mantissa_bits);
   return {(u & f::sign_mask) != 0 ? -d.mantissa : d.mantissa, d.exponent};
 }
 
 /// A number as a double, exactly: of at most 53 bits, and with an exponent of at least -1022.
 COLLIDE_HD inline double value_of(dyadic const& x) {
-  return mul(static_cast<double>(x.mantissa), from_bits<double>(static_cast<std::uint64_t>(x.exponent + 1023) << 52));
+  return mul_rn(static_cast<double>(x.mantissa),
+                from_bits<double>(static_cast<std::uint64_t>(x.exponent + 1023) << 52));
 }
 
 /// The components whose sum a number is, wherever they are stored. No components are the number zero.

@@ -72,14 +72,14 @@ class exact_sum {
       if (f.count == 0) return;
       int from = f[0].exponent, to = from + f[0].length();
       for (int k = 1; k < f.count; ++k) {
-        from = smaller(from, f[k].exponent);
-        to = larger(to, f[k].exponent + f[k].length());
+        from = min(from, f[k].exponent);
+        to = max(to, f[k].exponent + f[k].length());
       }
       low += from;
       high += to;
     }
-    lowest_ = smaller(lowest_, low);
-    highest_ = larger(highest_, high);
+    lowest_ = min(lowest_, low);
+    highest_ = max(highest_, high);
   }
 
   /// Adds all up, times `sign`. Returns true if the sum is negative; if not, its highest digits are known.

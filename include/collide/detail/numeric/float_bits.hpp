@@ -76,7 +76,7 @@ COLLIDE_HD_INLINE bool is_finite(T x) {
 template <class T>
 COLLIDE_HD_INLINE uint_for<T> largest_bits(vec3<T> const& v) {
   constexpr uint_for<T> mask = ~ieee_traits<T>::sign_mask;
-  return larger(larger(to_bits(v.x()) & mask, to_bits(v.y()) & mask), to_bits(v.z()) & mask);
+  return max(max(to_bits(v.x()) & mask, to_bits(v.y()) & mask), to_bits(v.z()) & mask);
 }
 
 template <class T>
@@ -87,7 +87,7 @@ COLLIDE_HD_INLINE bool is_finite(vec3<T> const& v) {
 template <class T>
 COLLIDE_HD_INLINE bool is_finite(triangle<T> const& t) {
   // guard: finite-corner
-  return larger(larger(largest_bits(t.a), largest_bits(t.b)), largest_bits(t.c)) < ieee_traits<T>::exponent_mask;
+  return max(max(largest_bits(t.a), largest_bits(t.b)), largest_bits(t.c)) < ieee_traits<T>::exponent_mask;
 }
 
 /// A radius that a point can be within: not NaN, not below zero (-0 is 0); decided on bits. +infinity passes.
@@ -128,7 +128,7 @@ template <class T>
 COLLIDE_HD_INLINE T inverse_power_of_two(T x) {
   auto const e = static_cast<int>((to_bits(x) & ieee_traits<T>::exponent_mask) >> ieee_traits<T>::mantissa_bits);
   int const r = 2 * ieee_traits<T>::bias - e;  // biased exponent of 2^-(e - bias)
-  return from_bits<T>(static_cast<uint_for<T>>(larger(r, 1)) << ieee_traits<T>::mantissa_bits);
+  return from_bits<T>(static_cast<uint_for<T>>(max(r, 1)) << ieee_traits<T>::mantissa_bits);
 }
 
 }  // namespace collide::detail

@@ -14,7 +14,7 @@
 
 namespace collide::detail {
 
-COLLIDE_HD_INLINE float mul(float a, float b) {
+COLLIDE_HD_INLINE float mul_rn(float a, float b) {
 #if defined(__CUDA_ARCH__)
   return __fmul_rn(a, b);
 #else
@@ -22,7 +22,7 @@ COLLIDE_HD_INLINE float mul(float a, float b) {
 #endif
 }
 
-COLLIDE_HD_INLINE double mul(double a, double b) {
+COLLIDE_HD_INLINE double mul_rn(double a, double b) {
 #if defined(__CUDA_ARCH__)
   return __dmul_rn(a, b);
 #else
@@ -30,7 +30,7 @@ COLLIDE_HD_INLINE double mul(double a, double b) {
 #endif
 }
 
-COLLIDE_HD_INLINE float div(float a, float b) {
+COLLIDE_HD_INLINE float div_rn(float a, float b) {
 #if defined(__CUDA_ARCH__)
   return __fdiv_rn(a, b);
 #else
@@ -38,7 +38,7 @@ COLLIDE_HD_INLINE float div(float a, float b) {
 #endif
 }
 
-COLLIDE_HD_INLINE double div(double a, double b) {
+COLLIDE_HD_INLINE double div_rn(double a, double b) {
 #if defined(__CUDA_ARCH__)
   return __ddiv_rn(a, b);
 #else
@@ -73,7 +73,7 @@ COLLIDE_HD_INLINE double sqrt_rn(double a) {
 }
 
 /// a * b + c: fused on the device; on the host the compiler chooses.
-COLLIDE_HD_INLINE float fused(float a, float b, float c) {
+COLLIDE_HD_INLINE float mul_add(float a, float b, float c) {
 #if defined(__CUDA_ARCH__)
   return __fmaf_rn(a, b, c);
 #else
@@ -81,7 +81,7 @@ COLLIDE_HD_INLINE float fused(float a, float b, float c) {
 #endif
 }
 
-COLLIDE_HD_INLINE double fused(double a, double b, double c) {
+COLLIDE_HD_INLINE double mul_add(double a, double b, double c) {
 #if defined(__CUDA_ARCH__)
   return __fma_rn(a, b, c);
 #else
@@ -133,23 +133,23 @@ COLLIDE_HD_INLINE vec3<S> rounded_to(vec3<double> const& x) {
 
 template <class T>
 COLLIDE_HD_INLINE T dot(vec3<T> const& a, vec3<T> const& b) {
-  return mul(a.x(), b.x()) + mul(a.y(), b.y()) + mul(a.z(), b.z());
+  return mul_rn(a.x(), b.x()) + mul_rn(a.y(), b.y()) + mul_rn(a.z(), b.z());
 }
 
 template <class T>
-COLLIDE_HD_INLINE T fused_dot(vec3<T> const& a, vec3<T> const& b) {
-  return fused(a.x(), b.x(), fused(a.y(), b.y(), mul(a.z(), b.z())));
+COLLIDE_HD_INLINE T dot_mul_add(vec3<T> const& a, vec3<T> const& b) {
+  return mul_add(a.x(), b.x(), mul_add(a.y(), b.y(), mul_rn(a.z(), b.z())));
 }
 
 template <class T>
 COLLIDE_HD_INLINE vec3<T> cross(vec3<T> const& a, vec3<T> const& b) {
-  return {mul(a.y(), b.z()) - mul(a.z(), b.y()), mul(a.z(), b.x()) - mul(a.x(), b.z()),
-          mul(a.x(), b.y()) - mul(a.y(), b.x())};
+  return {mul_rn(a.y(), b.z()) - mul_rn(a.z(), b.y()), mul_rn(a.z(), b.x()) - mul_rn(a.x(), b.z()),
+          mul_rn(a.x(), b.y()) - mul_rn(a.y(), b.x())};
 }
 
 template <class T>
 COLLIDE_HD_INLINE vec3<T> scaled(vec3<T> const& a, T s) {
-  return {mul(a.x(), s), mul(a.y(), s), mul(a.z(), s)};
+  return {mul_rn(a.x(), s), mul_rn(a.y(), s), mul_rn(a.z(), s)};
 }
 
 /// 1 / x to within two units in the last place, for x between 2^-126 and 2^126.
@@ -163,28 +163,28 @@ COLLIDE_HD_INLINE float approx_reciprocal(float x) {
 COLLIDE_HD_INLINE double approx_reciprocal(double x) { return 1 / x; }
 
 template <class T>
-COLLIDE_HD_INLINE T smaller(T a, T b) {
+COLLIDE_HD_INLINE T min(T a, T b) {
   return b < a ? b : a;
 }
 
 template <class T>
-COLLIDE_HD_INLINE T larger(T a, T b) {
+COLLIDE_HD_INLINE T max(T a, T b) {
   return a < b ? b : a;
 }
 
 template <class T>
-COLLIDE_HD_INLINE vec3<T> smaller(vec3<T> const& a, vec3<T> const& b) {
-  return {smaller(a.x(), b.x()), smaller(a.y(), b.y()), smaller(a.z(), b.z())};
+COLLIDE_HD_INLINE vec3<T> min(vec3<T> const& a, vec3<T> const& b) {
+  return {min(a.x(), b.x()), min(a.y(), b.y()), min(a.z(), b.z())};
 }
 
 template <class T>
-COLLIDE_HD_INLINE vec3<T> larger(vec3<T> const& a, vec3<T> const& b) {
-  return {larger(a.x(), b.x()), larger(a.y(), b.y()), larger(a.z(), b.z())};
+COLLIDE_HD_INLINE vec3<T> max(vec3<T> const& a, vec3<T> const& b) {
+  return {max(a.x(), b.x()), max(a.y(), b.y()), max(a.z(), b.z())};
 }
 
 template <class T>
 COLLIDE_HD_INLINE T max_component(vec3<T> const& a) {
-  return larger(larger(a.x(), a.y()), a.z());
+  return max(max(a.x(), a.y()), a.z());
 }
 
 /// A vector in another scalar, rounded where that is narrower.

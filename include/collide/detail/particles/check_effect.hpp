@@ -13,8 +13,7 @@ namespace collide::detail {
 /// Has a member of each name. What also derives from a class with such a member has two, and its name says nothing.
 struct every_effect_member {
   int is_inactive, accelerate, on_mesh_contact, after_mesh_contact, on_mesh_impulse, holds, on_pair_contact,
-      on_mesh_overlap, try_wake,
-      end_step, begin_step, check_parameters;
+      on_mesh_overlap, try_wake, end_step, begin_step, check_parameters;
 };
 template <class E>
 struct effect_and_every_member : E, every_effect_member {};
@@ -53,20 +52,20 @@ constexpr bool check_effect() {
   if constexpr (std::is_class<E>::value && !std::is_final<E>::value) {
     using m = effect_lacks;
     using state = particle_state<S, typename archetype<E, S>::list>;
-    static_assert(skips_in<E, S>::value || is_valid<m::template is_inactive, E>,
+    static_assert(has_is_inactive<E, S>::value || is_valid<m::template is_inactive, E>,
                   "collide: an effect's is_inactive is called as is_inactive(particle) const, with any particle");
-    static_assert(accelerates_in<E, S>::value || is_valid<m::template accelerate, E>,
+    static_assert(has_accelerate<E, S>::value || is_valid<m::template accelerate, E>,
                   "collide: an effect's accelerate is called as accelerate(particle&, dt) const, with any particle");
-    static_assert(touches_in<E, S>::value || is_valid<m::template on_mesh_contact, E>,
+    static_assert(has_on_mesh_contact<E, S>::value || is_valid<m::template on_mesh_contact, E>,
                   "collide: an effect's on_mesh_contact is called as on_mesh_contact(particle&, mesh_contact&, dt) "
                   "const, with any particle");
-    static_assert(settles_in<E, S>::value || is_valid<m::template after_mesh_contact, E>,
+    static_assert(has_after_mesh_contact<E, S>::value || is_valid<m::template after_mesh_contact, E>,
                   "collide: an effect's after_mesh_contact is called as after_mesh_contact(particle&, mesh_contact&, "
                   "dt) const, with any particle");
-    static_assert(books_in<E, S>::value || is_valid<m::template on_mesh_impulse, E>,
+    static_assert(has_on_mesh_impulse<E, S>::value || is_valid<m::template on_mesh_impulse, E>,
                   "collide: an effect's on_mesh_impulse is called as on_mesh_impulse(particle&, mesh_impulse const&, "
                   "dt) const, with any particle");
-    static_assert(holds_in<E, S>::value || is_valid<m::template holds, E>,
+    static_assert(has_holds<E, S>::value || is_valid<m::template holds, E>,
                   "collide: an effect's holds is called as holds(particle, pull, dt) const, with any particle");
     static_assert(pairs_in<E, S> || is_valid<m::template on_pair_contact, E>,
                   "collide: an effect's on_pair_contact is called as on_pair_contact(particle&, self, other, dt) "
@@ -76,12 +75,12 @@ constexpr bool check_effect() {
                   "collide: an effect's on_mesh_overlap is called as on_mesh_overlap(particle&, self, mesh_overlap "
                   "const&, dt) const, or with the memory of the contact before dt if the effect remembers something, "
                   "with any particle");
-    static_assert(disturbs_in<E, S>::value || is_valid<m::template try_wake, E>,
+    static_assert(has_try_wake<E, S>::value || is_valid<m::template try_wake, E>,
                   "collide: an effect's try_wake is called as try_wake(particle&, other) const, with any particle");
-    static_assert(finishes_in<E, S>::value || is_valid<m::template end_step, E>,
+    static_assert(has_end_step<E, S>::value || is_valid<m::template end_step, E>,
                   "collide: an effect's end_step is called as end_step(particle&, dt) const, with any particle");
     static_assert(
-        begins_in<E, Space, state, S>::value || is_valid<m::template begin_step, E>,
+        has_begin_step<E, Space, state, S>::value || is_valid<m::template begin_step, E>,
         "collide: an effect's begin_step is called as begin_step(space&, state, dt), with any space and state");
     static_assert(checks_parameters<E>::value || is_valid<m::template check_parameters, E>,
                   "collide: an effect's check_parameters is called as check_parameters() const");
@@ -121,10 +120,11 @@ constexpr bool check_effects() {
   static_assert(is_solid || !(needs_solid_mesh<Effect> || ...),
                 "collide: friction and adhesion act where the mesh is solid: name bounce before them, or an effect of "
                 "yours that says static constexpr bool repels = true");
-  static_assert(!(overlaps_in<Effect, S> || ...) ||
-                    !((touches_in<Effect, S>::value || settles_in<Effect, S>::value) || ...),
-                "collide: granular_contact makes the mesh solid by forces: leave out bounce, friction, adhesion and spin, "
-                "whose impulses would come on top; it has laws of its own for them");
+  static_assert(
+      !(overlaps_in<Effect, S> || ...) ||
+          !((has_on_mesh_contact<Effect, S>::value || has_after_mesh_contact<Effect, S>::value) || ...),
+      "collide: granular_contact makes the mesh solid by forces: leave out bounce, friction, adhesion and spin, "
+      "whose impulses would come on top; it has laws of its own for them");
   static_assert(is_solid || meets || !(needs_contacts<Effect> || ...),
                 "collide: spin needs contacts that turn particles: name bounce or sphere_contact with it");
   return true;

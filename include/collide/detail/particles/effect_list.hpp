@@ -23,42 +23,45 @@ struct resistance_slot<true> {
 
 /// The effects of a simulation and what follows from their list at compile time.
 template <class S, class... E>
-struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value || ...)> {
+struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::value || ...)> {
   using integrator = typename integrator_of<E...>::type;
 
-  static constexpr bool skips = (skips_in<E, S>::value || ...);
-  static constexpr bool meets = (pairs_in<E, S> || ...);
+  static constexpr bool any_inactive = (has_is_inactive<E, S>::value || ...);
+  static constexpr bool any_pair_contact = (pairs_in<E, S> || ...);
   using remembered = union_of<columns<>, typename remembers_of<E>::type...>;  ///< by contacts between particles
-  static constexpr bool finishes = (finishes_in<E, S>::value || ...);
-  static constexpr bool books = (books_in<E, S>::value || ...);
+  static constexpr bool any_end_step = (has_end_step<E, S>::value || ...);
+  static constexpr bool any_mesh_impulse = (has_on_mesh_impulse<E, S>::value || ...);
   static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
   static constexpr double farther = farthest_of<E...>();
-  static constexpr bool touches =  ///< or by impulses
-      (touches_in<E, S>::value || ...) || (settles_in<E, S>::value || ...) || (books && !overlaps);
-  static constexpr bool resists = (resists_in<E, S>::value || ...);
+  static constexpr bool any_mesh_contact =  ///< or by impulses
+      (has_on_mesh_contact<E, S>::value || ...) || (has_after_mesh_contact<E, S>::value || ...) ||
+      (any_mesh_impulse && !overlaps);
+  static constexpr bool any_resistance = (has_resistance<E, S>::value || ...);
   static constexpr bool flows = (flows_in<E, S>::value || ...);
 
   using base = columns<position, velocity>;
   using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
-  static constexpr bool adheres = touches && contains<named, adhered>;
+  static constexpr bool adheres = any_mesh_contact && contains<named, adhered>;
   static constexpr bool has_half_kicks = integrator::kick_after != 0;
   /// What sleeps presses on.
-  static constexpr bool keeps_support = books && contains<named, slow_steps>;
+  static constexpr bool keeps_support = any_mesh_impulse && contains<named, slow_steps>;
   /// Effects that know no mesh may hold particles where they are.
   static constexpr bool holds_without_mesh =
-      ((finishes_in<E, S>::value && contains<typename writes_of<E>::type, velocity>) || ...);
+      ((has_end_step<E, S>::value && contains<typename writes_of<E>::type, velocity>) || ...);
   /// What particles do to each other is kept as an acceleration, for each half kick, and to know what pulls.
-  static constexpr bool keeps_pair_forces = (meets || overlaps) && (adheres || has_half_kicks || keeps_support);
-  static constexpr bool keeps_pair_torques = (meets || overlaps) && has_half_kicks && contains<named, angular_velocity>;
+  static constexpr bool keeps_pair_forces =
+      (any_pair_contact || overlaps) && (adheres || has_half_kicks || keeps_support);
+  static constexpr bool keeps_pair_torques =
+      (any_pair_contact || overlaps) && has_half_kicks && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
-  static constexpr bool ends_after_meeting = (meets || overlaps) && has_half_kicks;
+  static constexpr bool ends_after_meeting = (any_pair_contact || overlaps) && has_half_kicks;
 
  private:
   template <bool Needed, class... C>
   using columns_if = std::conditional_t<Needed, columns<C...>, columns<>>;
   using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
                               columns_if<keeps_pair_torques, pair_angular_acceleration>>;
-  using held_columns = columns_if<touches && has_half_kicks, held>;
+  using held_columns = columns_if<any_mesh_contact && has_half_kicks, held>;
   using support_columns = union_of<columns_if<keeps_support, support, supported_by>,
                                    columns_if<keeps_support && (is_moving_bodies<E> || ...), second_support,
                                               second_supported_by, third_support, third_supported_by>>;
@@ -80,15 +83,16 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
       Has, union_of<typename writes_of<F>::type, intersection_of<typename optional_writes_of<F>::type, all>>,
       columns<>>;
   template <class F>
-  static constexpr bool is_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value ||
-                                        skips_in<F, S>::value || holds_in<F, S>::value ||
-                                        (books_in<F, S>::value && (adheres || keeps_support));
+  static constexpr bool is_integrated = changes_velocity<F, S> || has_end_step<F, S>::value ||
+                                        has_is_inactive<F, S>::value || has_holds<F, S>::value ||
+                                        (has_on_mesh_impulse<F, S>::value && (adheres || keeps_support));
   template <class F>
-  static constexpr bool writes_while_integrated = changes_velocity_in<F, S> || finishes_in<F, S>::value ||
-                                                  holds_in<F, S>::value ||
-                                                  (books_in<F, S>::value && (adheres || keeps_support));
+  static constexpr bool writes_while_integrated = changes_velocity<F, S> || has_end_step<F, S>::value ||
+                                                  has_holds<F, S>::value ||
+                                                  (has_on_mesh_impulse<F, S>::value && (adheres || keeps_support));
   template <class F>
-  static constexpr bool interacts_or_skips = pairs_in<F, S> || disturbs_in<F, S>::value || skips_in<F, S>::value;
+  static constexpr bool interacts_or_skips =
+      pairs_in<F, S> || has_try_wake<F, S>::value || has_is_inactive<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
   using own_number = intersection_of<columns<global_number>, all>;
   template <bool Needed>
@@ -96,32 +100,34 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
 
  public:
   /// What is read to find out which particles are left out.
-  using skipping = union_of<own_number, reads_if<E, skips_in<E, S>::value>...>;
+  using inactive_reads = union_of<own_number, reads_if<E, has_is_inactive<E, S>::value>...>;
   /// What is read and written for every particle,
-  using integration_reads = union_of<base, reads_if<E, is_integrated<E>>..., radius_if<touches>, own_number, pair_kicks,
-                                     columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
+  using integration_reads =
+      union_of<base, reads_if<E, is_integrated<E>>..., radius_if<any_mesh_contact>, own_number, pair_kicks,
+               columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
   using integration_writes = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
                                       columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns,
                                       writes_if<E, writes_while_integrated<E>>...>;
   /// and for those that may touch the mesh.
-  using contact = union_of<integration_reads, reads_if<E, touches_mesh_in<E, S>>...>;
-  using contact_writes = union_of<integration_writes, writes_if<E, touches_mesh_in<E, S>>...>;
+  using contact = union_of<integration_reads, reads_if<E, has_mesh_contact<E, S>>...>;
+  using contact_writes = union_of<integration_writes, writes_if<E, has_mesh_contact<E, S>>...>;
   /// What is read and written for particles that meet others; what is read is also copied.
   using interaction = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
                                columns_if<keeps_pair_torques, angular_velocity>, reads_if<E, interacts_or_skips<E>>...,
-                               radius_if<meets>, own_number>;
+                               radius_if<any_pair_contact>, own_number>;
   using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
   using interaction_writes = difference_of<
-      union_of<columns<>, writes_if<E, pairs_in<E, S> || disturbs_in<E, S>::value>...>,
+      union_of<columns<>, writes_if<E, pairs_in<E, S> || has_try_wake<E, S>::value>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
   /// What is read and written for particles that press on the mesh.
-  using overlap_reads =
-      union_of<base, own_radius, own_number, pair_kicks, columns_if<keeps_pair_torques, angular_velocity>,
-               support_columns,
-               reads_if<E, overlaps_in<E, S> || skips_in<E, S>::value || (overlaps && books_in<E, S>::value)>...>;
+  using overlap_reads = union_of<base, own_radius, own_number, pair_kicks,
+                                 columns_if<keeps_pair_torques, angular_velocity>, support_columns,
+                                 reads_if<E, overlaps_in<E, S> || has_is_inactive<E, S>::value ||
+                                                 (overlaps && has_on_mesh_impulse<E, S>::value)>...>;
   using overlap_writes = difference_of<
-      union_of<pair_kicks, support_columns, writes_if<E, overlaps_in<E, S> || (overlaps && books_in<E, S>::value)>...>,
+      union_of<pair_kicks, support_columns,
+               writes_if<E, overlaps_in<E, S> || (overlaps && has_on_mesh_impulse<E, S>::value)>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
 
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
@@ -137,7 +143,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   template <class P>
   COLLIDE_HD_INLINE bool only_sleeps(P p) const {
     p[slow_steps{}] = 0;
-    return !is_skipped(p);
+    return !is_inactive(p);
   }
 
   template <class F>
@@ -151,24 +157,24 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
 
   /// Of two scenes' worth of reasons to leave a particle out, one suffices.
   template <class P>
-  COLLIDE_HD_INLINE bool is_skipped([[maybe_unused]] P& p) const {
-    return (skipped_by<E>(p) || ...);
+  COLLIDE_HD_INLINE bool is_inactive([[maybe_unused]] P& p) const {
+    return (is_inactive_of<E>(p) || ...);
   }
 
   /// Makes ready for steps of the time `dt`.
   void prepare([[maybe_unused]] S dt) {
-    if constexpr (resists) this->resistance = resistance_over(S(integrator::kick_before) * dt);
+    if constexpr (any_resistance) this->resistance = resistance_over(S(integrator::kick_before) * dt);
   }
   template <class P>
   COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (resists) {
+    if constexpr (any_resistance) {
       vec3<S> const before = p[velocity{}];
       vec3<double> const flow = flow_around(p);
-      push(p, dt);
+      accelerate_without_resistance(p, dt);
       bool const is_ready = this->resistance.time == static_cast<double>(dt);
       p[velocity{}] = velocity_in(is_ready ? this->resistance : resistance_over(dt), flow, before, p[velocity{}]);
     } else {
-      push(p, dt);
+      accelerate_without_resistance(p, dt);
     }
   }
   /// Accelerates some particles, each for its own time, on a CPU; those for 0 are left out.
@@ -187,7 +193,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
     velocities_in<S, N, flows> velocities;
     for (int k = 0; k < N; ++k) {
       velocities.set_before(k, flow_around(p[k]), p[k][velocity{}]);
-      if (dt[k] != 0) push(p[k], time);
+      if (dt[k] != 0) accelerate_without_resistance(p[k], time);
       velocities.set_pushed(k, p[k][velocity{}]);
     }
     multiversioned([&] { r.quadratic == 0 ? velocities.ease(r) : velocities.find(r); });
@@ -198,22 +204,22 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   }
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_contact(P& p, mesh_contact<S>& t, S dt) const {
-    (touch_by<E>(p, t, dt), ...);
-    (settle_by<E>(p, t, dt), ...);
+    (on_mesh_contact_of<E>(p, t, dt), ...);
+    (after_mesh_contact_of<E>(p, t, dt), ...);
   }
   /// Tells effects of what the mesh gives to a particle.
   template <class P>
   COLLIDE_HD_INLINE void on_mesh_impulse(P& p, mesh_impulse<S> const& given, S dt) const {
-    (book_by<E>(p, given, dt), ...);
+    (on_mesh_impulse_of<E>(p, given, dt), ...);
   }
   /// True if an effect holds a particle that is adhered.
   template <class P>
   COLLIDE_HD_INLINE bool holds(P& p, vec3<S> const& pull, S dt) const {
-    return (held_by<E>(p, pull, dt) || ...);
+    return (holds_of<E>(p, pull, dt) || ...);
   }
   template <class P>
   COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
-    (meet_by<E>(p, self, other, dt), ...);
+    (on_pair_contact_of<E>(p, self, other, dt), ...);
   }
   /// With what the contact remembers; `overlap` if the two do. True if the contact goes on.
   template <class P, class Values>
@@ -233,11 +239,11 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   }
   template <class P>
   COLLIDE_HD_INLINE void try_wake(P& p, P& other) const {
-    (disturb_by<E>(p, other), ...);
+    (try_wake_of<E>(p, other), ...);
   }
   template <class P>
   COLLIDE_HD_INLINE void end_step([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    (finish_by<E>(p, dt), ...);
+    (end_step_of<E>(p, dt), ...);
   }
 
  private:
@@ -257,8 +263,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
     return 0;
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE bool skipped_by([[maybe_unused]] P& p) const {
-    if constexpr (skips_in<F, S>::value) {
+  COLLIDE_HD_INLINE bool is_inactive_of([[maybe_unused]] P& p) const {
+    if constexpr (has_is_inactive<F, S>::value) {
       particle_access<F, P> const seen(p);
       return of<F>().is_inactive(seen);
     } else {
@@ -266,8 +272,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void resist_by([[maybe_unused]] P& p, [[maybe_unused]] media& around) const {
-    if constexpr (resists_in<F, S>::value) {
+  COLLIDE_HD_INLINE void resistance_of([[maybe_unused]] P& p, [[maybe_unused]] media& around) const {
+    if constexpr (has_resistance<F, S>::value) {
       particle_access<F, P> const seen(p);
       around.add(of<F>().resistance(seen));
     }
@@ -277,12 +283,12 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   COLLIDE_HD_INLINE vec3<double> flow_around(P& p) const {
     if constexpr (!flows) return {0, 0, 0};
     media around(p[velocity{}].template cast<double>());
-    (resist_by<E>(p, around), ...);
+    (resistance_of<E>(p, around), ...);
     return around.flow();
   }
   template <class F>
   COLLIDE_HD_INLINE void add_resistance([[maybe_unused]] double& linear, [[maybe_unused]] double& quadratic) const {
-    if constexpr (resists_in<F, S>::value) {
+    if constexpr (has_resistance<F, S>::value) {
       linear += of<F>().linear;
       quadratic += of<F>().quadratic;
     }
@@ -294,46 +300,46 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
   }
   /// What all accelerate but those that resist.
   template <class P>
-  COLLIDE_HD_INLINE void push([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+  COLLIDE_HD_INLINE void accelerate_without_resistance([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
     if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;
     if constexpr (keeps_pair_torques) p[angular_velocity{}] += p[pair_angular_acceleration{}] * dt;
-    (accelerate_by<E>(p, dt), ...);
+    (accelerate_of<E>(p, dt), ...);
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void accelerate_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (accelerates_in<F, S>::value) {
+  COLLIDE_HD_INLINE void accelerate_of([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (has_accelerate<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().accelerate(seen, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void touch_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
-                                  [[maybe_unused]] S dt) const {
-    if constexpr (touches_in<F, S>::value) {
+  COLLIDE_HD_INLINE void on_mesh_contact_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
+                                            [[maybe_unused]] S dt) const {
+    if constexpr (has_on_mesh_contact<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().on_mesh_contact(seen, t, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void settle_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
-                                   [[maybe_unused]] S dt) const {
-    if constexpr (settles_in<F, S>::value) {
+  COLLIDE_HD_INLINE void after_mesh_contact_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
+                                               [[maybe_unused]] S dt) const {
+    if constexpr (has_after_mesh_contact<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().after_mesh_contact(seen, t, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void book_by([[maybe_unused]] P& p, [[maybe_unused]] mesh_impulse<S> const& given,
-                                 [[maybe_unused]] S dt) const {
-    if constexpr (books_in<F, S>::value) {
+  COLLIDE_HD_INLINE void on_mesh_impulse_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_impulse<S> const& given,
+                                            [[maybe_unused]] S dt) const {
+    if constexpr (has_on_mesh_impulse<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().on_mesh_impulse(seen, given, dt);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE bool held_by([[maybe_unused]] P& p, [[maybe_unused]] vec3<S> const& pull,
-                                 [[maybe_unused]] S dt) const {
-    if constexpr (holds_in<F, S>::value) {
+  COLLIDE_HD_INLINE bool holds_of([[maybe_unused]] P& p, [[maybe_unused]] vec3<S> const& pull,
+                                  [[maybe_unused]] S dt) const {
+    if constexpr (has_holds<F, S>::value) {
       particle_access<F, P> const seen(p);
       return of<F>().holds(seen, pull, dt);
     } else {
@@ -341,9 +347,9 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void meet_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
-                                 [[maybe_unused]] S dt) const {
-    if constexpr (meets_in<F, S>::value) {
+  COLLIDE_HD_INLINE void on_pair_contact_of([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
+                                            [[maybe_unused]] S dt) const {
+    if constexpr (has_on_pair_contact<F, S>::value) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_self(self), seen_other(other);
       of<F>().on_pair_contact(seen, seen_self, seen_other, dt);
@@ -379,16 +385,16 @@ struct effect_list : effect_slot<E>..., resistance_slot<(resists_in<E, S>::value
     return false;
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void disturb_by([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {
-    if constexpr (disturbs_in<F, S>::value) {
+  COLLIDE_HD_INLINE void try_wake_of([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {
+    if constexpr (has_try_wake<F, S>::value) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_other(other);
       of<F>().try_wake(seen, seen_other);
     }
   }
   template <class F, class P>
-  COLLIDE_HD_INLINE void finish_by([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
-    if constexpr (ends_in<F, S>::value) {
+  COLLIDE_HD_INLINE void end_step_of([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (has_end_step_alone<F, S>::value) {
       particle_access<F, P> seen(p);
       of<F>().end_step(seen, dt);
     } else if constexpr (asks_forces<F>) {

@@ -20,15 +20,15 @@ using archetype_access = particle_access<E, archetype<E, S>>;
 // ---- what an effect has
 
 template <class E, class S, class = void>
-struct skips_in : std::false_type {};
+struct has_is_inactive : std::false_type {};
 template <class E, class S>
-struct skips_in<
+struct has_is_inactive<
     E, S, std::void_t<decltype(std::declval<E const&>().is_inactive(std::declval<archetype_access<E, S> const&>()))>>
     : std::true_type {};
 template <class E, class S, class = void>
-struct accelerates_in : std::false_type {};
+struct has_accelerate : std::false_type {};
 template <class E, class S>
-struct accelerates_in<
+struct has_accelerate<
     E, S, std::void_t<decltype(std::declval<E const&>().accelerate(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
 template <class Effect>
@@ -37,9 +37,9 @@ template <class Motion>
 inline constexpr bool is_moving_bodies<moving_bodies<Motion>> = true;
 /// Drag and wind: what resists the motion that all others accelerate.
 template <class E, class S, class = void>
-struct resists_in : std::false_type {};
+struct has_resistance : std::false_type {};
 template <class E, class S>
-struct resists_in<
+struct has_resistance<
     E, S, std::void_t<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>()))>>
     : std::true_type {};
 /// Wind: what resists motion in a medium that may move.
@@ -52,42 +52,42 @@ struct flows_in<
           !std::is_same<decltype(std::declval<E const&>().resistance(std::declval<archetype_access<E, S> const&>())),
                         medium_at_rest>::value> {};
 template <class E, class S>
-inline constexpr bool changes_velocity_in = accelerates_in<E, S>::value || resists_in<E, S>::value;
+inline constexpr bool changes_velocity = has_accelerate<E, S>::value || has_resistance<E, S>::value;
 template <class E, class S, class = void>
-struct touches_in : std::false_type {};
+struct has_on_mesh_contact : std::false_type {};
 template <class E, class S>
-struct touches_in<E, S,
-                  std::void_t<decltype(std::declval<E const&>().on_mesh_contact(
-                      std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
+struct has_on_mesh_contact<E, S,
+                           std::void_t<decltype(std::declval<E const&>().on_mesh_contact(
+                               std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
     : std::true_type {};
 template <class E, class S, class = void>
-struct settles_in : std::false_type {};
+struct has_after_mesh_contact : std::false_type {};
 template <class E, class S>
-struct settles_in<E, S,
-                  std::void_t<decltype(std::declval<E const&>().after_mesh_contact(
-                      std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
+struct has_after_mesh_contact<E, S,
+                              std::void_t<decltype(std::declval<E const&>().after_mesh_contact(
+                                  std::declval<archetype_access<E, S>&>(), std::declval<mesh_contact<S>&>(), S{}))>>
     : std::true_type {};
 template <class E, class S, class = void>
-struct books_in : std::false_type {};
+struct has_on_mesh_impulse : std::false_type {};
 template <class E, class S>
-struct books_in<E, S,
-                std::void_t<decltype(std::declval<E const&>().on_mesh_impulse(
-                    std::declval<archetype_access<E, S>&>(), std::declval<mesh_impulse<S> const&>(), S{}))>>
+struct has_on_mesh_impulse<E, S,
+                           std::void_t<decltype(std::declval<E const&>().on_mesh_impulse(
+                               std::declval<archetype_access<E, S>&>(), std::declval<mesh_impulse<S> const&>(), S{}))>>
     : std::true_type {};
 template <class E, class S, class = void>
-struct holds_in : std::false_type {};
+struct has_holds : std::false_type {};
 template <class E, class S>
-struct holds_in<E, S,
-                std::void_t<decltype(std::declval<E const&>().holds(std::declval<archetype_access<E, S> const&>(),
-                                                                    std::declval<vec3<S> const&>(), S{}))>>
+struct has_holds<E, S,
+                 std::void_t<decltype(std::declval<E const&>().holds(std::declval<archetype_access<E, S> const&>(),
+                                                                     std::declval<vec3<S> const&>(), S{}))>>
     : std::true_type {};
 template <class E, class S, class = void>
-struct meets_in : std::false_type {};
+struct has_on_pair_contact : std::false_type {};
 template <class E, class S>
-struct meets_in<E, S,
-                std::void_t<decltype(std::declval<E const&>().on_pair_contact(
-                    std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
-                    std::declval<archetype_access<E, S> const&>(), S{}))>> : std::true_type {};
+struct has_on_pair_contact<E, S,
+                           std::void_t<decltype(std::declval<E const&>().on_pair_contact(
+                               std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>(),
+                               std::declval<archetype_access<E, S> const&>(), S{}))>> : std::true_type {};
 /// True for an effect whose `on_pair_contact` has what contacts remember as its fourth argument.
 template <class E, class S>
 using archetype_memory =
@@ -103,7 +103,7 @@ struct remembers_in<
                     std::declval<archetype_access<E, S> const&>(), std::declval<archetype_memory<E, S> const&>(),
                     S{}))>> : std::true_type {};
 template <class E, class S>
-inline constexpr bool pairs_in = meets_in<E, S>::value || remembers_in<E, S>::value;
+inline constexpr bool pairs_in = has_on_pair_contact<E, S>::value || remembers_in<E, S>::value;
 /// True for an effect with `on_mesh_overlap`, if it remembers nothing, or with what the contact remembers.
 template <class E, class S, class = void>
 struct overlaps_without_memory : std::false_type {};
@@ -127,17 +127,17 @@ struct overlaps_with_memory<
 template <class E, class S>
 inline constexpr bool overlaps_in = overlaps_without_memory<E, S>::value || overlaps_with_memory<E, S>::value;
 template <class E, class S, class = void>
-struct disturbs_in : std::false_type {};
+struct has_try_wake : std::false_type {};
 template <class E, class S>
-struct disturbs_in<E, S,
-                   std::void_t<decltype(std::declval<E const&>().try_wake(
-                       std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>()))>>
+struct has_try_wake<E, S,
+                    std::void_t<decltype(std::declval<E const&>().try_wake(
+                        std::declval<archetype_access<E, S>&>(), std::declval<archetype_access<E, S> const&>()))>>
     : std::true_type {};
 template <class E, class S, class = void>
-struct ends_in : std::false_type {};
+struct has_end_step_alone : std::false_type {};
 template <class E, class S>
-struct ends_in<E, S,
-               std::void_t<decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}))>>
+struct has_end_step_alone<
+    E, S, std::void_t<decltype(std::declval<E const&>().end_step(std::declval<archetype_access<E, S>&>(), S{}))>>
     : std::true_type {};
 
 /// What an effect may ask at the end of a step: what the forces of a list of effects are.
@@ -156,18 +156,19 @@ struct forces_on {
   }
 };
 template <class E, class S>
-struct finishes_in : std::bool_constant<ends_in<E, S>::value || asks_forces<E>> {};
+struct has_end_step : std::bool_constant<has_end_step_alone<E, S>::value || asks_forces<E>> {};
 template <class E, class Space, class State, class S, class = void>
-struct begins_in : std::false_type {};
+struct has_begin_step : std::false_type {};
 template <class E, class Space, class State, class S>
-struct begins_in<
+struct has_begin_step<
     E, Space, State, S,
     std::void_t<decltype(std::declval<E&>().begin_step(std::declval<Space&>(), std::declval<State const&>(), S{}))>>
     : std::true_type {};
 
 /// True for an effect that contacts with the mesh concern.
 template <class E, class S>
-inline constexpr bool touches_mesh_in = touches_in<E, S>::value || settles_in<E, S>::value || books_in<E, S>::value;
+inline constexpr bool has_mesh_contact =
+    has_on_mesh_contact<E, S>::value || has_after_mesh_contact<E, S>::value || has_on_mesh_impulse<E, S>::value;
 
 /// An integrator is named in the same list; see integrators.hpp.
 template <class E, class = void>
@@ -182,9 +183,9 @@ inline constexpr bool is_effect = [] {
     return false;
   } else {
     using state = particle_state<S, typename archetype<E, S>::list>;
-    return skips_in<E, S>::value || changes_velocity_in<E, S> || touches_mesh_in<E, S> || holds_in<E, S>::value ||
-           pairs_in<E, S> || overlaps_in<E, S> || finishes_in<E, S>::value || begins_in<E, Space, state, S>::value ||
-           is_integrator<E>::value || archetype<E, S>::list::size != 0;
+    return has_is_inactive<E, S>::value || changes_velocity<E, S> || has_mesh_contact<E, S> || has_holds<E, S>::value ||
+           pairs_in<E, S> || overlaps_in<E, S> || has_end_step<E, S>::value ||
+           has_begin_step<E, Space, state, S>::value || is_integrator<E>::value || archetype<E, S>::list::size != 0;
   }
 }();
 

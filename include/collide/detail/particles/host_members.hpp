@@ -110,8 +110,8 @@ auto raw_pointer(Pointer const& p) -> decltype(p.get()) {
 template <class E, class Effects, class Space, class State, class S>
 void begin_step_of(Effects& effects, Space& space, State const& state, S dt) {
   if constexpr (is_source<E>) {
-    effects.template of<E>().begin_step(space, state, dt, Effects::meets ? newborn : std::uint8_t{1});
-  } else if constexpr (begins_in<E, Space, State, S>::value) {
+    effects.template of<E>().begin_step(space, state, dt, Effects::any_pair_contact ? newborn : std::uint8_t{1});
+  } else if constexpr (has_begin_step<E, Space, State, S>::value) {
     effects.template of<E>().begin_step(space, state, dt);
   }
 }
@@ -123,9 +123,7 @@ struct radius_range {
   S largest = 0;
 
   /// With those of what a source makes, if they have one of their own.
-  radius_range with(S own) const {
-    return own > 0 ? radius_range{smaller(smallest, own), larger(largest, own)} : *this;
-  }
+  radius_range with(S own) const { return own > 0 ? radius_range{min(smallest, own), max(largest, own)} : *this; }
 };
 
 /// The radii that particles have of their own. Waits.
@@ -137,7 +135,7 @@ auto radius_range_of(Simulation const& simulation) {
     auto const radii = simulation.template to_host<radius>();
     if (!radii.empty()) found.largest = *std::max_element(radii.begin(), radii.end());
     for (S const r : radii) {
-      if (r >= 0) found.smallest = smaller(found.smallest, r);
+      if (r >= 0) found.smallest = min(found.smallest, r);
     }
   }
   return found;

@@ -62,11 +62,11 @@ struct pointer_of {
 };
 
 /// How many particles are read or written together: four coordinates are 16 bytes.
-inline constexpr int particles_per_group = 4;
+inline constexpr int particles_per_pack = 4;
 
 /// What is read or written at once.
 template <class T>
-struct alignas(4 * sizeof(T)) four {
+struct alignas(4 * sizeof(T)) pack4 {
   T v[4];
 };
 
@@ -81,11 +81,11 @@ inline std::size_t padded_size(std::size_t particles) {
 
 /// What a rank knows of the particles of all, of which it has some. Those at places from `own` on are copies of others'
 /// particles.
-struct share_of_all {
+struct rank_share {
   std::size_t own;
   std::size_t all_size, all_placed;  ///< `size` and `placed` of the simulation of all
 };
-struct all_of_all {};
+struct single_rank {};
 
 /// Numbers at `particle_state::time`: the time, then those of a source: how many particles have come due, what part of
 /// the next one is, how many came in this step; how many overlapped others, and how many were not born.
@@ -105,7 +105,7 @@ template <class S, class List>
 struct particle_state;
 template <class S, class... C>
 struct particle_state<S, columns<C...>>
-    : pointer_of<C, S>..., std::conditional_t<contains<columns<C...>, global_number>, share_of_all, all_of_all> {
+    : pointer_of<C, S>..., std::conditional_t<contains<columns<C...>, global_number>, rank_share, single_rank> {
   using list = columns<C...>;
 
   std::size_t size;    ///< number of particles, or of places for them
@@ -148,45 +148,45 @@ struct particle_state<S, columns<C...>>
 
   /// Scratch memory of a block that reads and writes groups. Of all columns, vectors take the most.
   template <class Block>
-  using group_scratch = typename Block::template warp_exchange_storage<four<S>, 3>;
+  using pack_scratch = typename Block::template warp_exchange_storage<pack4<S>, 3>;
 
   /// A group's values of a column, and of all columns of a list, as they are read.
   template <class D>
-  struct quads {
-    four<column_element<D, S>> of[column_layout<D, S>::width];
+  struct column_pack {
+    pack4<column_element<D, S>> of[column_layout<D, S>::width];
   };
   template <class List>
-  struct group_of;
+  struct pack_of;
   template <class... D>
-  struct group_of<columns<D...>> : quads<D>... {};
+  struct pack_of<columns<D...>> : column_pack<D>... {};
 
   /// A group of particles from `first` on, which is a multiple of their number; see `load_striped` in block.hpp.
   template <class Block, class... D>
-  COLLIDE_HD_INLINE void load_group(Block& block, group_scratch<Block>& s, particle<S, columns<D...>>* p,
-                                    std::size_t first) const {
-    group_of<columns<D...>> read;
-    begin_group(block, read, first);
-    end_group(block, s, read, p, first);
+  COLLIDE_HD_INLINE void load_pack(Block& block, pack_scratch<Block>& s, particle<S, columns<D...>>* p,
+                                   std::size_t first) const {
+    pack_of<columns<D...>> read;
+    begin_load(block, read, first);
+    end_load(block, s, read, p, first);
   }
 
-  /// `load_group` in two parts: all is on its way before something is waited for.
+  /// `load_pack` in two parts: all is on its way before something is waited for.
   template <class Block, class... D>
-  COLLIDE_HD_INLINE void begin_group(Block& block, group_of<columns<D...>>& read, std::size_t first) const {
-    (load_values(block, D{}, static_cast<quads<D>&>(read).of, first), ...);
+  COLLIDE_HD_INLINE void begin_load(Block& block, pack_of<columns<D...>>& read, std::size_t first) const {
+    (load_values(block, D{}, static_cast<column_pack<D>&>(read).of, first), ...);
   }
   template <class Block, class... D>
-  COLLIDE_HD_INLINE void end_group(Block& block, group_scratch<Block>& s, group_of<columns<D...>>& read,
-                                   particle<S, columns<D...>>* p, std::size_t first) const {
-    (take_values(block, s, D{}, static_cast<quads<D>&>(read).of, p), ...);
-    for (int k = 0; k < particles_per_group; ++k) {
+  COLLIDE_HD_INLINE void end_load(Block& block, pack_scratch<Block>& s, pack_of<columns<D...>>& read,
+                                  particle<S, columns<D...>>* p, std::size_t first) const {
+    (take_values(block, s, D{}, static_cast<column_pack<D>&>(read).of, p), ...);
+    for (int k = 0; k < particles_per_pack; ++k) {
       p[k].number = static_cast<id>(first) + static_cast<id>(k);
       p[k].the_radius = radius_of(p[k]);
     }
   }
 
   template <class Block, class P, class... E>
-  COLLIDE_HD_INLINE void store_group(Block& block, group_scratch<Block>& s, P const* p, std::size_t first,
-                                     columns<E...>) const {
+  COLLIDE_HD_INLINE void store_pack(Block& block, pack_scratch<Block>& s, P const* p, std::size_t first,
+                                    columns<E...>) const {
     (store_values(block, s, E{}, p, first), ...);
   }
 
@@ -218,29 +218,29 @@ struct particle_state<S, columns<C...>>
 
   template <class Block, class D, class Q, int N>
   COLLIDE_HD_INLINE void load_values(Block& block, D, Q (&read)[N], std::size_t first) const {
-    block.load_striped(reinterpret_cast<Q const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
+    block.load_striped(reinterpret_cast<Q const*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_pack),
                        read);
   }
 
   template <class Block, class D, class Q, int N, class P>
-  COLLIDE_HD_INLINE void take_values(Block& block, group_scratch<Block>& s, D, Q (&read)[N], P* p) const {
+  COLLIDE_HD_INLINE void take_values(Block& block, pack_scratch<Block>& s, D, Q (&read)[N], P* p) const {
     block.striped_to_blocked(s, read);
-    for (int k = 0; k < particles_per_group; ++k) {
+    for (int k = 0; k < particles_per_pack; ++k) {
       for (int c = 0; c < N; ++c) column_layout<D, S>::at(p[k][D{}], c) = read[(k * N + c) / 4].v[(k * N + c) % 4];
     }
   }
 
   template <class Block, class D, class P>
-  COLLIDE_HD_INLINE void store_values(Block& block, group_scratch<Block>& s, D, P const* p, std::size_t first) const {
+  COLLIDE_HD_INLINE void store_values(Block& block, pack_scratch<Block>& s, D, P const* p, std::size_t first) const {
     using layout = column_layout<D, S>;
-    using quad = four<column_element<D, S>>;
+    using pack_type = pack4<column_element<D, S>>;
     constexpr int width = layout::width;
-    quad write[width];
-    for (int k = 0; k < particles_per_group; ++k) {
+    pack_type write[width];
+    for (int k = 0; k < particles_per_pack; ++k) {
       for (int c = 0; c < width; ++c) write[(k * width + c) / 4].v[(k * width + c) % 4] = layout::at(p[k][D{}], c);
     }
-    block.store_transposed(s, reinterpret_cast<quad*>(at(D{})), static_cast<std::uint32_t>(first / particles_per_group),
-                           write);
+    block.store_transposed(s, reinterpret_cast<pack_type*>(at(D{})),
+                           static_cast<std::uint32_t>(first / particles_per_pack), write);
   }
 };
 

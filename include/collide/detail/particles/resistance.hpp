@@ -21,43 +21,43 @@ COLLIDE_HD_INLINE double length_of(vec3<double> const& x) { return sqrt_rn(dot(x
 /// The speed after a time of what a push, not negative, makes faster all the time. All terms are positive: it is right
 /// to rounding.
 COLLIDE_HD_INLINE double speed_after(double speed, double push, double linear, double quadratic, double time) {
-  double const h = linear / 2, rate = sqrt_rn(mul(h, h) + mul(push, quadratic));
-  decay const d = decay_after(mul(2 * rate, time));
-  double const grown = rate > 0 ? div(d.lost, rate) : 2 * time, share = rate > 0 ? div(h, rate) : 0;
-  double const other = rate > 0 ? div(mul(push, quadratic), mul(rate, rate + h)) : 1;  // 1 - share
-  double const up = mul(speed, other + mul(d.left, 1 + share)) + mul(push, grown);
-  return div(up, 1 + d.left + mul(mul(quadratic, speed) + h, grown));
+  double const h = linear / 2, rate = sqrt_rn(mul_rn(h, h) + mul_rn(push, quadratic));
+  decay const d = decay_after(mul_rn(2 * rate, time));
+  double const grown = rate > 0 ? div_rn(d.lost, rate) : 2 * time, share = rate > 0 ? div_rn(h, rate) : 0;
+  double const other = rate > 0 ? div_rn(mul_rn(push, quadratic), mul_rn(rate, rate + h)) : 1;  // 1 - share
+  double const up = mul_rn(speed, other + mul_rn(d.left, 1 + share)) + mul_rn(push, grown);
+  return div_rn(up, 1 + d.left + mul_rn(mul_rn(quadratic, speed) + h, grown));
 }
 
 /// The time t at which tanh(r t) / r is x, where r^2 = `square`, which may be negative: tan is meant then.
 COLLIDE_HD_INLINE double time_of_tangent(double x, double square) {
-  for (int i = 0; i < 10; ++i) x = div(x, 1 + sqrt_rn(larger(1 - mul(square, mul(x, x)), 0.0)));  // half the time
-  double const y = mul(square, mul(x, x));
+  for (int i = 0; i < 10; ++i) x = div_rn(x, 1 + sqrt_rn(max(1 - mul_rn(square, mul_rn(x, x)), 0.0)));  // half the time
+  double const y = mul_rn(square, mul_rn(x, x));
   double sum = 0;
-  for (double const f : {1.0 / 11, 1.0 / 9, 1.0 / 7, 1.0 / 5, 1.0 / 3, 1.0}) sum = f + mul(y, sum);
-  return 1024 * mul(x, sum);
+  for (double const f : {1.0 / 11, 1.0 / 9, 1.0 / 7, 1.0 / 5, 1.0 / 3, 1.0}) sum = f + mul_rn(y, sum);
+  return 1024 * mul_rn(x, sum);
 }
 /// Its inverse at the time 1; r is imaginary and above -pi / 2, or real.
 COLLIDE_HD_INLINE double tangent_of_one(double square) {
   if (square > 1e-3) {
     double const r = sqrt_rn(square);
     decay const d = decay_after(2 * r);
-    return div(d.lost, mul(r, 1 + d.left));
+    return div_rn(d.lost, mul_rn(r, 1 + d.left));
   }
   double const y = square / 1048576;  // at a time of 1 / 1024
-  double x = (1 - mul(y, 1.0 / 3 - mul(y, 2.0 / 15))) / 1024;
-  for (int i = 0; i < 10; ++i) x = div(2 * x, 1 + mul(square, mul(x, x)));
+  double x = (1 - mul_rn(y, 1.0 / 3 - mul_rn(y, 2.0 / 15))) / 1024;
+  for (int i = 0; i < 10; ++i) x = div_rn(2 * x, 1 + mul_rn(square, mul_rn(x, x)));
   return x;
 }
 
 /// The velocity along a push after a step: against it first, until it stops, if it is negative.
 COLLIDE_HD_INLINE double velocity_along(double v, double push, double linear, double quadratic) {
   if (v >= 0) return speed_after(v, push, linear, quadratic, 1);
-  double const h = linear / 2, square = mul(h, h) - mul(push, quadratic), slowing = push - mul(h, v);
-  double const stop = time_of_tangent(div(-v, slowing), square);
+  double const h = linear / 2, square = mul_rn(h, h) - mul_rn(push, quadratic), slowing = push - mul_rn(h, v);
+  double const stop = time_of_tangent(div_rn(-v, slowing), square);
   if (stop < 1) return speed_after(0, push, linear, quadratic, 1 - stop);
   double const x = tangent_of_one(square);
-  return div(v + mul(slowing, x), 1 + mul(h - mul(quadratic, v), x));
+  return div_rn(v + mul_rn(slowing, x), 1 + mul_rn(h - mul_rn(quadratic, v), x));
 }
 
 /// What a medium does in a step that is the same for all particles.
@@ -69,11 +69,11 @@ struct resistance_in_step {
 
   resistance_in_step() = default;
   COLLIDE_HD_INLINE resistance_in_step(double by_time, double by_length, double step)
-      : time{step}, linear{mul(by_time, step)}, quadratic{mul(by_length, step)} {
+      : time{step}, linear{mul_rn(by_time, step)}, quadratic{mul_rn(by_length, step)} {
     decay const d = decay_after(linear);
     left = d.left;
-    if (linear > 0) gained = div(d.lost, linear);
-    gentle = linear <= 0.6 ? div(0.01, mul(quadratic, quadratic)) : -1;
+    if (linear > 0) gained = div_rn(d.lost, linear);
+    gentle = linear <= 0.6 ? div_rn(0.01, mul_rn(quadratic, quadratic)) : -1;
   }
   COLLIDE_HD_INLINE bool is_none() const { return linear == 0 && quadratic == 0; }
 };
@@ -93,7 +93,7 @@ struct response {
 /// branch and no call, and is vectorised.
 COLLIDE_HD_INLINE double reciprocal_root(double x) {
   double r = from_bits<double>(0x5fe6eb50c7b537a9u - (to_bits(x) >> 1));
-  for (int i = 0; i < 4; ++i) r = mul(r, 1.5 - mul(mul(x / 2, r), r));  // Newton: from 3 % to 1e-21
+  for (int i = 0; i < 4; ++i) r = mul_rn(r, 1.5 - mul_rn(mul_rn(x / 2, r), r));  // Newton: from 3 % to 1e-21
   return r;
 }
 
@@ -109,21 +109,23 @@ COLLIDE_HD_INLINE double reciprocal_root(double x) {
 COLLIDE_HD_INLINE response gentle_response(double vv, double va, double aa, resistance_in_step const& r) {
   double const h = r.linear / 2, q = r.quadratic;
   bool const moves = vv > 1e-200;  // else it goes along the push
-  double const xx = select(moves, vv, aa) + 1e-200, inverse = reciprocal_root(xx), length = mul(xx, inverse);
-  double const along = mul(select(moves, va, aa), inverse), share = mul(along, inverse);
-  double const y = mul(h, h) + mul(q, along);
-  double const top = 135135 + mul(y, 17325 + mul(y, 378 + y));  // T = top / bottom
-  double const bottom = 135135 + mul(y, 62370 + mul(y, 3150 + mul(28, y)));
-  double const kept = bottom - mul(h, top), speed = select(moves, length, 0.0);
-  double const scale = div(1, bottom + mul(h + mul(q, speed), top));
-  double const left = mul(kept, scale), gained = mul(top, scale), across = select(moves, 0.5 + left / 2, gained);
-  double const of_v = left + mul(share, gained - across);
-  double const ss = mul(mul(of_v, of_v), vv) + mul(across, mul(2 * of_v, va) + mul(across, aa));  // speed afterwards
-  double const most = mul(mul(ss, inverse) + length, 0.5);                                        // is not above this
-  double const force = mul(r.linear, r.linear) + mul(q, mul(2 * r.linear, most) + mul(q, ss));    // square, by speed
+  double const xx = select(moves, vv, aa) + 1e-200, inverse = reciprocal_root(xx), length = mul_rn(xx, inverse);
+  double const along = mul_rn(select(moves, va, aa), inverse), share = mul_rn(along, inverse);
+  double const y = mul_rn(h, h) + mul_rn(q, along);
+  double const top = 135135 + mul_rn(y, 17325 + mul_rn(y, 378 + y));  // T = top / bottom
+  double const bottom = 135135 + mul_rn(y, 62370 + mul_rn(y, 3150 + mul_rn(28, y)));
+  double const kept = bottom - mul_rn(h, top), speed = select(moves, length, 0.0);
+  double const scale = div_rn(1, bottom + mul_rn(h + mul_rn(q, speed), top));
+  double const left = mul_rn(kept, scale), gained = mul_rn(top, scale), across = select(moves, 0.5 + left / 2, gained);
+  double const of_v = left + mul_rn(share, gained - across);
+  double const ss =
+      mul_rn(mul_rn(of_v, of_v), vv) + mul_rn(across, mul_rn(2 * of_v, va) + mul_rn(across, aa));  // speed afterwards
+  double const most = mul_rn(mul_rn(ss, inverse) + length, 0.5);                                   // is not above this
+  double const force =
+      mul_rn(r.linear, r.linear) + mul_rn(q, mul_rn(2 * r.linear, most) + mul_rn(q, ss));  // square, by speed
   constexpr double rounding = 1 + 8e-15;
-  bool const bounded = (ss <= mul(vv, rounding)) | (mul(ss, force) <= mul(aa, rounding));
-  bool const right = (aa <= r.gentle) & (kept + mul(share, top) >= 0) & bounded;
+  bool const bounded = (ss <= mul_rn(vv, rounding)) | (mul_rn(ss, force) <= mul_rn(aa, rounding));
+  bool const right = (aa <= r.gentle) & (kept + mul_rn(share, top) >= 0) & bounded;
   return {of_v, across, select(right, 0.0, -1.0)};
 }
 
@@ -132,21 +134,21 @@ COLLIDE_HD_INLINE response gentle_response(double vv, double va, double aa, resi
 COLLIDE_HD_RARE vec3<double> resisted_strongly(vec3<double> const& v, vec3<double> const& push, double linear,
                                                double quadratic) {
   double const a = length_of(push), speed = length_of(v);
-  vec3<double> const along = a > 0 ? scaled(push, div(1, a)) : scaled(v, speed > 0 ? div(1, speed) : 0);
+  vec3<double> const along = a > 0 ? scaled(push, div_rn(1, a)) : scaled(v, speed > 0 ? div_rn(1, speed) : 0);
   double const part = dot(v, along);
   if (length_of(v - scaled(along, part)) <= 1e-15 * speed) {
     return scaled(along, velocity_along(part, a, linear, quadratic));
   }
   vec3<double> const ahead = v + push;
   double const gain = dot(push, ahead), to = length_of(ahead);  // how fast the speed grows is gain / to
-  double const middle = gain >= 0 && to > 0 ? speed_after(speed, div(gain, to), linear, quadratic, 0.5)
+  double const middle = gain >= 0 && to > 0 ? speed_after(speed, div_rn(gain, to), linear, quadratic, 0.5)
                                             : speed_after(length_of(v + scaled(push, 0.5)), 0, linear, quadratic, 0.5);
-  double const rate = linear + mul(quadratic, middle);
+  double const rate = linear + mul_rn(quadratic, middle);
   decay const d = decay_after(rate);
-  vec3<double> const after = response{d.left, rate > 0 ? div(d.lost, rate) : 1}(v, push);
-  double const terminal = div(2 * a, linear + sqrt_rn(mul(linear, linear) + mul(4 * quadratic, a)));
-  double const found = length_of(after), most = larger(speed, terminal);
-  return found > most ? scaled(after, div(most, found)) : after;
+  vec3<double> const after = response{d.left, rate > 0 ? div_rn(d.lost, rate) : 1}(v, push);
+  double const terminal = div_rn(2 * a, linear + sqrt_rn(mul_rn(linear, linear) + mul_rn(4 * quadratic, a)));
+  double const found = length_of(after), most = max(speed, terminal);
+  return found > most ? scaled(after, div_rn(most, found)) : after;
 }
 
 /// The velocity after a step against any resistance: `resisted_strongly`, but exact if it is linear, and fast if the
@@ -191,7 +193,7 @@ class velocities_in {
       }
       response const by = gentle_response(product(v, v), product(v, push), product(push, push), in);
       for (int d = 0; d < 3; ++d) {
-        after_[d][k] = static_cast<S>(flow(d, k) + (mul(v[d], by.of_velocity) + mul(push[d], by.of_push)));
+        after_[d][k] = static_cast<S>(flow(d, k) + (mul_rn(v[d], by.of_velocity) + mul_rn(push[d], by.of_push)));
       }
       margin_[k] = by.margin;
     }
@@ -202,7 +204,7 @@ class velocities_in {
       for (int k = 0; k < N; ++k) {
         double const from = static_cast<double>(before_[d][k]), v = from - flow(d, k);
         double const push = static_cast<double>(pushed_[d][k]) - from;
-        after_[d][k] = static_cast<S>(flow(d, k) + (mul(v, left) + mul(push, gained)));
+        after_[d][k] = static_cast<S>(flow(d, k) + (mul_rn(v, left) + mul_rn(push, gained)));
       }
     }
     for (int k = 0; k < N; ++k) margin_[k] = 0;
@@ -223,7 +225,7 @@ class velocities_in {
 
  private:
   static COLLIDE_HD_INLINE double product(double const (&a)[3], double const (&b)[3]) {
-    return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
+    return mul_rn(a[0], b[0]) + mul_rn(a[1], b[1]) + mul_rn(a[2], b[2]);
   }
   COLLIDE_HD_INLINE double flow([[maybe_unused]] int d, [[maybe_unused]] int k) const {
     if constexpr (Flows) return flow_[d][k];
@@ -245,7 +247,7 @@ class media {
 
   COLLIDE_HD_INLINE void add(medium const& m) {
     vec3<double> const v = velocity_ - m.flow;
-    resisting_ += scaled(v, m.linear + mul(m.quadratic, length_of(v)));
+    resisting_ += scaled(v, m.linear + mul_rn(m.quadratic, length_of(v)));
     sum_.linear += m.linear;
     sum_.quadratic += m.quadratic;
     sum_.flow = m.flow;
@@ -254,8 +256,9 @@ class media {
   /// How it flows; it is as strong as all are together.
   COLLIDE_HD_INLINE vec3<double> flow() const {
     if (count_ == 1) return sum_.flow;
-    double const force = length_of(resisting_), root = mul(sum_.linear, sum_.linear) + mul(4 * sum_.quadratic, force);
-    double const speed_by_force = force > 0 ? div(2, sum_.linear + sqrt_rn(root)) : 0;
+    double const force = length_of(resisting_),
+                 root = mul_rn(sum_.linear, sum_.linear) + mul_rn(4 * sum_.quadratic, force);
+    double const speed_by_force = force > 0 ? div_rn(2, sum_.linear + sqrt_rn(root)) : 0;
     return velocity_ - scaled(resisting_, speed_by_force);
   }
 

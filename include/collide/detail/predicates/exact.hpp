@@ -1,11 +1,11 @@
 /// \file
 /// A sphere and a triangle in exact arithmetic: the last stage of the predicate, and depths without cancellation.
 ///
-/// The closest point of a triangle is a corner, or the foot of a perpendicular inside an edge or inside the face. The
-/// sphere touches the triangle if and only if one of these, where there is such a foot, is within the radius. With
-/// everything relative to the centre, and so a corner v, an edge e from v, and the normal n:
+/// The closest point of a triangle is a corner, or the projection of a perpendicular inside an edge or inside the face.
+/// The sphere touches the triangle if and only if one of these, where there is such a projection, is within the radius.
+/// With everything relative to the centre, and so a corner v, an edge e from v, and the normal n:
 ///
-///                foot is inside if                       squared distance
+///                projection is inside if                       squared distance
 ///     corner                                             v.v
 ///     edge       -v.e > 0 and (v + e).e > 0              |v x e|^2 / e.e
 ///     face       (v x e).n > 0 for all three edges       (v.n)^2 / n.n
@@ -86,23 +86,23 @@ class exact_triangle {
                                      int edges = exact_slot::edge)
       : numbers_(numbers), corners_(corners), edges_(edges) {}
 
-  static COLLIDE_HD feature feature_of(int foot) {
-    return foot < 3 ? feature::vertex : (foot < 6 ? feature::edge : feature::face);
+  static COLLIDE_HD feature feature_of(int projection) {
+    return projection < 3 ? feature::vertex : (projection < 6 ? feature::edge : feature::face);
   }
   /// Which corner or edge it is.
-  static COLLIDE_HD int feature_index_of(int foot) { return foot % 3; }
+  static COLLIDE_HD int feature_index_of(int projection) { return projection % 3; }
 
   /// True if the sphere touches the triangle.
   COLLIDE_HD bool intersects() const {
-    for (int foot = 0; foot < feet; ++foot) {
+    for (int projection = 0; projection < projections; ++projection) {
       // guard: touching
-      if (exists(foot) && excess(foot, false).value >= 0) return true;
+      if (exists(projection) && excess(projection, false).value >= 0) return true;
     }
     return false;
   }
 
-  /// The foot that is the closest point, by signs alone: the face or an edge if the centre projects into its interior,
-  /// else a corner.
+  /// The projection that is the closest point, by signs alone: the face or an edge if the centre projects into its
+  /// interior, else a corner.
   COLLIDE_HD int closest_foot() const {
     if (exists(face)) return face;
     for (int i = 0; i < 3; ++i) {
@@ -113,13 +113,13 @@ class exact_triangle {
     return i;
   }
 
-  /// The square of the distance of a foot is a quotient of two sums of products. This is the denominator: the squared
-  /// length of the edge or of the normal, or 1.
-  COLLIDE_HD void add_length(exact_products& sum, int foot) const {
-    int const e = edge(feature_index_of(foot));
-    if (foot < 3) {
+  /// The square of the distance of a projection is a quotient of two sums of products. This is the denominator: the
+  /// squared length of the edge or of the normal, or 1.
+  COLLIDE_HD void add_length(exact_products& sum, int projection) const {
+    int const e = edge(feature_index_of(projection));
+    if (projection < 3) {
       sum.add(1);
-    } else if (foot < face) {
+    } else if (projection < face) {
       add_dot(sum, 1, e, e);
     } else {
       add_cross_squared(sum, 1, e, edge(1));
@@ -127,11 +127,11 @@ class exact_triangle {
   }
 
   /// The numerator of that quotient.
-  COLLIDE_HD void add_distance_squared(exact_products& sum, int weight, int foot) const {
-    int const v = corner(feature_index_of(foot)), e = edge(feature_index_of(foot));
-    if (foot < 3) {
+  COLLIDE_HD void add_distance_squared(exact_products& sum, int weight, int projection) const {
+    int const v = corner(feature_index_of(projection)), e = edge(feature_index_of(projection));
+    if (projection < 3) {
       add_dot(sum, weight, v, v);
-    } else if (foot < face) {
+    } else if (projection < face) {
       add_cross_squared(sum, weight, v, e);
     } else {
       add_determinant_squared(sum, weight, v, e, edge(1));
@@ -139,14 +139,14 @@ class exact_triangle {
   }
 
   /// The denominator, and the numerator, as numbers.
-  COLLIDE_HD_NOINLINE scaled_double length(int foot) const {
+  COLLIDE_HD_NOINLINE scaled_double length(int projection) const {
     exact_products sum;
-    add_length(sum, foot);
+    add_length(sum, projection);
     return exact_sum::of(numbers_, sum);
   }
-  COLLIDE_HD_NOINLINE scaled_double distance_squared(int foot) const {
+  COLLIDE_HD_NOINLINE scaled_double distance_squared(int projection) const {
     exact_products sum;
-    add_distance_squared(sum, 1, foot);
+    add_distance_squared(sum, 1, projection);
     return exact_sum::of(numbers_, sum);
   }
 
@@ -156,28 +156,28 @@ class exact_triangle {
     add_dot(sum, -1, corner(i), edge(i));
     return exact_sum::of(numbers_, sum);
   }
-  /// The weight, at the foot on the face, of the corner that is opposite edge i, multiplied by the `length` of the
-  /// face.
+  /// The weight, at the projection on the face, of the corner that is opposite edge i, multiplied by the `length` of
+  /// the face.
   COLLIDE_HD_NOINLINE scaled_double weight_against_edge(int i) const {
     exact_products sum;
     add_cross_dot_cross(sum, corner(i), edge(i), edge(0), edge(1));
     return exact_sum::of(numbers_, sum);
   }
 
-  /// The foot that is the closest point, and how it lies to the sphere. `l` is the same triangle in doubles,
+  /// The projection that is the closest point, and how it lies to the sphere. `l` is the same triangle in doubles,
   /// `normalised`, and `around` the square of its distance.
   COLLIDE_HD int nearest(local_triangle<double> const& l, double around, separation& to_nearest) const {
     int best = 0, found = 0;
     for (unsigned wanted = candidate_feet(l, around); found == 0; wanted = all_feet) {
-      for (int foot = 0; foot < feet; ++foot) {
-        if ((wanted >> foot & 1) == 0 || !exists(foot)) continue;
-        separation const there = measured(foot);
+      for (int projection = 0; projection < projections; ++projection) {
+        if ((wanted >> projection & 1) == 0 || !exists(projection)) continue;
+        separation const there = measured(projection);
         // each of the two has all its digits where it is the smaller one
         // guard: equally-deep
         bool const nearer =
             there.depth > there.distance ? there.distance < to_nearest.distance : there.depth > to_nearest.depth;
         if (found++ == 0 || nearer) {
-          best = foot;
+          best = projection;
           to_nearest = there;
         }
       }
@@ -185,9 +185,9 @@ class exact_triangle {
     return best;
   }
 
-  /// From the foot to the centre, but for the length; 0 if the centre is there.
-  COLLIDE_HD vec3<double> direction_to_centre(int foot) const {
-    if (foot != face) return direction(foot);
+  /// From the projection to the centre, but for the length; 0 if the centre is there.
+  COLLIDE_HD vec3<double> direction_to_centre(int projection) const {
+    if (projection != face) return direction(projection);
     double const height = sign_of_height();
     return normal() * -height;
   }
@@ -196,7 +196,7 @@ class exact_triangle {
   COLLIDE_HD vec3<double> normal() const { return direction(face); }
 
  private:
-  static constexpr int feet = 7, face = 6;
+  static constexpr int projections = 7, face = 6;
   static constexpr unsigned all_feet = 0x7f;  ///< a bit for each
 
   exact_numbers numbers_;
@@ -208,10 +208,11 @@ class exact_triangle {
   // Each formula has its list of products in a function of its own, out of line, so that there is memory for one.
 
   /// The centre projects into the edge or the face.
-  COLLIDE_HD bool exists(int foot) const {
-    if (foot < 3) return true;
+  COLLIDE_HD bool exists(int projection) const {
+    if (projection < 3) return true;
     // guard: edge-begin, edge-end
-    if (foot < face) return along(foot - 3, foot - 3, -1) > 0 && along(foot - 3, (foot + 1) % 3, 1) > 0;
+    if (projection < face)
+      return along(projection - 3, projection - 3, -1) > 0 && along(projection - 3, (projection + 1) % 3, 1) > 0;
     for (int i = 0; i < 3; ++i) {
       // guard: over-face
       if (side_of_edge(i) <= 0) return false;
@@ -241,78 +242,78 @@ class exact_triangle {
   }
 
   /// What the square of the radius is above that of the distance, multiplied by `length`; or only a number of its sign.
-  COLLIDE_HD_NOINLINE scaled_double excess(int foot, bool with_value) const {
+  COLLIDE_HD_NOINLINE scaled_double excess(int projection, bool with_value) const {
     exact_products sum;
-    add_length(sum, foot);
+    add_length(sum, projection);
     sum.multiply_by(exact_slot::radius);
     sum.multiply_by(exact_slot::radius);
-    add_distance_squared(sum, -1, foot);
+    add_distance_squared(sum, -1, projection);
     return exact_sum::of(numbers_, sum, with_value);
   }
 
   /// The errors are a few units in the last place, however small the numbers are.
-  COLLIDE_HD separation measured(int foot) const {
-    scaled_double const by = length(foot), d = root_of_distance_squared(foot, by);
+  COLLIDE_HD separation measured(int projection) const {
+    scaled_double const by = length(projection), d = root_of_distance_squared(projection, by);
     double const distance = times_power(d.value, d.exponent);
-    scaled_double const above = excess(foot, true);
+    scaled_double const above = excess(projection, true);
     // guard: depth-of-a-tie
     if (above.value == 0) return {distance, 0};
     // R - d = (R^2 - d^2) / (R + d), where R and d are divided by a power of two as large as the larger one
     components_view const radius = numbers_[exact_slot::radius];
     dyadic const r = radius.count == 0 ? dyadic{0, 0} : radius[0];
-    int const top = r.mantissa == 0 ? d.exponent : larger(d.exponent, r.exponent + r.length());
+    int const top = r.mantissa == 0 ? d.exponent : max(d.exponent, r.exponent + r.length());
     double const sum =
         times_power(static_cast<double>(r.mantissa), r.exponent - top) + times_power(d.value, d.exponent - top);
-    double const depth = times_power(div(div(above.value, by.value), sum), above.exponent - by.exponent - top);
+    double const depth = times_power(div_rn(div_rn(above.value, by.value), sum), above.exponent - by.exponent - top);
     double const whole = times_power(static_cast<double>(r.mantissa), r.exponent);
-    return {distance, smaller(depth, whole)};  // rounding up from the largest number would make it infinite
+    return {distance, min(depth, whole)};  // rounding up from the largest number would make it infinite
   }
 
   /// The distance, if `by` is the denominator: a value between 1/2 and 2, or 0, times a power of two; that of 0 is
   /// below all others.
-  COLLIDE_HD scaled_double root_of_distance_squared(int foot, scaled_double const& by) const {
-    scaled_double const square = distance_squared(foot);
+  COLLIDE_HD scaled_double root_of_distance_squared(int projection, scaled_double const& by) const {
+    scaled_double const square = distance_squared(projection);
     if (square.value == 0) return {0, -4000};
     int const exponent = square.exponent - by.exponent, half = exponent / 2;
-    return {sqrt_rn(times_power(div(square.value, by.value), exponent - 2 * half)), half};
+    return {sqrt_rn(times_power(div_rn(square.value, by.value), exponent - 2 * half)), half};
   }
 
-  /// The feet that are not certainly farther than the root of `around`, as far as doubles can tell.
+  /// The projections that are not certainly farther than the root of `around`, as far as doubles can tell.
   static COLLIDE_HD unsigned candidate_feet(local_triangle<double> const& l, double around) {
     // guard: near-feet
-    double const reach = sqrt_rn(around) + 0x1p-40, limit = mul(mul(reach, reach), 1 + 0x1p-40);  // l is below 4
+    double const reach = sqrt_rn(around) + 0x1p-40, limit = mul_rn(mul_rn(reach, reach), 1 + 0x1p-40);  // l is below 4
     vec3<double> const v[3] = {l.a, l.b, l.c};
     unsigned candidates = 1u << face;
     for (int i = 0; i < 3; ++i) {
       vec3<double> const e = v[(i + 1) % 3] - v[i], c = detail::cross(v[i], e);
       double const ee = dot(e, e);
       if (dot(v[i], v[i]) <= limit) candidates |= 1u << i;
-      if (dot(c, c) <= mul(limit, ee)) candidates |= 8u << i;
+      if (dot(c, c) <= mul_rn(limit, ee)) candidates |= 8u << i;
     }
     return candidates;
   }
 
   /// From a corner or an edge to the centre, or the normal of the face; but for the length.
-  COLLIDE_HD vec3<double> direction(int foot) const {
+  COLLIDE_HD vec3<double> direction(int projection) const {
     scaled_double w[3];
     int top = -(1 << 30);
     for (int k = 0; k < 3; ++k) {
-      w[k] = component_of_direction(foot, k);
-      if (w[k].value != 0) top = larger(top, w[k].exponent);
+      w[k] = component_of_direction(projection, k);
+      if (w[k].value != 0) top = max(top, w[k].exponent);
     }
     vec3<double> d;
     for (int k = 0; k < 3; ++k) {
-      d[k] = w[k].value == 0 ? 0 : times_power(w[k].value, larger(w[k].exponent - top, -2000));
+      d[k] = w[k].value == 0 ? 0 : times_power(w[k].value, max(w[k].exponent - top, -2000));
     }
     return d;
   }
 
-  COLLIDE_HD_NOINLINE scaled_double component_of_direction(int foot, int k) const {
+  COLLIDE_HD_NOINLINE scaled_double component_of_direction(int projection, int k) const {
     exact_products sum;
-    int const v = corner(feature_index_of(foot)), e = edge(feature_index_of(foot));
-    if (foot < 3) {
+    int const v = corner(feature_index_of(projection)), e = edge(feature_index_of(projection));
+    if (projection < 3) {
       sum.add(-1, v + k);
-    } else if (foot < face) {
+    } else if (projection < face) {
       for (int i = 0; i < 3; ++i) {  // e (v.e) - v (e.e)
         sum.add(1, e + k, v + i, e + i);
         sum.add(-1, v + k, e + i, e + i);

@@ -22,7 +22,7 @@ struct exact_second_slot {
 /// A point as a sphere that takes no room.
 COLLIDE_HD inline moving_sphere<double> resting_at(vec3<double> const& point) { return {{point, 0}, {0, 0, 0}}; }
 
-/// The foot of a point on a finite triangle: corners 0, 1 and 2, edges 3, 4 and 5, the face 6.
+/// The projection of a point on a finite triangle: corners 0, 1 and 2, edges 3, 4 and 5, the face 6.
 COLLIDE_HD_NOINLINE inline int closest_foot_in_integers(triangle<double> const& t, vec3<double> const& point) {
   exact_slot::memory memory;
   return exact_triangle(exact_numbers_of(memory.table(), t, resting_at(point), {0, 0})).closest_foot();
@@ -31,12 +31,12 @@ COLLIDE_HD_NOINLINE inline int closest_foot_in_integers(triangle<double> const& 
 /// -1 or 1: the sign of a * b - c * d, none of them negative; 0 if that takes more digits than these numbers have.
 COLLIDE_HD inline int compare_roughly(scaled_double const& a, scaled_double const& b, scaled_double const& c,
                                       scaled_double const& d) {
-  double const left = mul(mul(a.value, 0x1p-64), mul(b.value, 0x1p-64)),
-               right = mul(mul(c.value, 0x1p-64), mul(d.value, 0x1p-64));
+  double const left = mul_rn(mul_rn(a.value, 0x1p-64), mul_rn(b.value, 0x1p-64)),
+               right = mul_rn(mul_rn(c.value, 0x1p-64), mul_rn(d.value, 0x1p-64));
   if (left == 0 || right == 0) return left > right ? 1 : (left < right ? -1 : 0);
-  int const shift = larger(-100, smaller(100, a.exponent + b.exponent - c.exponent - d.exponent));
+  int const shift = max(-100, min(100, a.exponent + b.exponent - c.exponent - d.exponent));
   // guard: nearest-rough
-  double const shifted = times_power(left, shift), difference = shifted - right, error = mul(right, 0x1p-48);
+  double const shifted = times_power(left, shift), difference = shifted - right, error = mul_rn(right, 0x1p-48);
   return difference > error ? 1 : (difference < -error ? -1 : 0);
 }
 

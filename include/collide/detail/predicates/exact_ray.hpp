@@ -39,9 +39,9 @@ COLLIDE_HD_INLINE int side_of_line(vec3<double> const& a, vec3<double> const& b,
   int const first = sign_of(x) * sign_of(v), second = sign_of(y) * sign_of(u);
   if (first != second) return first > second ? 1 : -1;
   if (first == 0) return 0;
-  double const p1 = mul(x, v), p2 = mul(y, u), difference = p1 - p2, sum = larger(p1, -p1) + larger(p2, -p2);
+  double const p1 = mul_rn(x, v), p2 = mul_rn(y, u), difference = p1 - p2, sum = max(p1, -p1) + max(p2, -p2);
   // guard: ray-side
-  double const error = mul(sum, 8 * ieee_traits<double>::unit_roundoff);
+  double const error = mul_rn(sum, 8 * ieee_traits<double>::unit_roundoff);
   if (sum > 0x1p-900 && sum < 0x1p1000 && (difference > error || difference < -error)) return sign_of(difference);
   return sign_of_cross_in_integers({b.x(), b.y(), p.x(), p.y()}, {a.x(), a.y(), a.x(), a.y()});
 }
@@ -67,12 +67,12 @@ COLLIDE_HD_INLINE int sign_of_height(triangle<double> const& t, vec3<double> con
   double height = 0, sum = 0;
   for (int i = 0; i < 3; ++i) {
     int const k = (i + 1) % 3, l = (i + 2) % 3;
-    double const p1 = mul(v[i], mul(e[k], f[l])), p2 = mul(v[i], mul(e[l], f[k]));
+    double const p1 = mul_rn(v[i], mul_rn(e[k], f[l])), p2 = mul_rn(v[i], mul_rn(e[l], f[k]));
     height += p1 - p2;
-    sum += larger(p1, -p1) + larger(p2, -p2);
+    sum += max(p1, -p1) + max(p2, -p2);
   }
   // guard: ray-height
-  double const error = mul(sum, 32 * ieee_traits<double>::unit_roundoff);
+  double const error = mul_rn(sum, 32 * ieee_traits<double>::unit_roundoff);
   if (sum > 0x1p-900 && sum < 0x1p1000 && (height > error || height < -error)) return sign_of(height);
   return sign_of_height_in_integers(t, p);
 }

@@ -4,8 +4,8 @@
 /// The way of the centre and the triangle are closest where one of these is the case:
 ///   - the way begins or ends, and there the triangle is closest: see exact.hpp;
 ///   - the way goes through the triangle;
-///   - the foot of a corner lies inside the way;
-///   - the common perpendicular of way and edge has its feet inside of both.
+///   - the projection of a corner lies inside the way;
+///   - the common perpendicular of way and edge has its projections inside of both.
 /// The sphere touches the triangle if and only if one of these, where it exists, is within the radius. With the way d,
 /// a corner v and the next v' as seen from the beginning and w from the end, the edge e from v to v', the normal n of
 /// the triangle, and m = d x e:

@@ -54,9 +54,9 @@ COLLIDE_HD_INLINE verdict filtered_test(local_triangle<T> const& t, T size) {
   using bounds = filter_bounds<T>;
   vec3<T> const ab = t.b - t.a, ac = t.c - t.a;
   // The closest point as in C. Ericson, Real-Time Collision Detection, 5.1.5: its weights are v and w, as fractions.
-  T const d1 = -fused_dot(ab, t.a), d2 = -fused_dot(ac, t.a), d3 = -fused_dot(ab, t.b), d4 = -fused_dot(ac, t.b),
-          d5 = -fused_dot(ab, t.c), d6 = -fused_dot(ac, t.c);
-  auto const minor = [](T p, T q, T r, T s) { return fused(p, q, -mul(r, s)); };
+  T const d1 = -dot_mul_add(ab, t.a), d2 = -dot_mul_add(ac, t.a), d3 = -dot_mul_add(ab, t.b),
+          d4 = -dot_mul_add(ac, t.b), d5 = -dot_mul_add(ab, t.c), d6 = -dot_mul_add(ac, t.c);
+  auto const minor = [](T p, T q, T r, T s) { return mul_add(p, q, -mul_rn(r, s)); };
   T const va = minor(d3, d6, d5, d4), vb = minor(d5, d2, d1, d6), vc = minor(d1, d4, d3, d2);
   T v = vb, w = vc, weight_sum = va + vb + vc;
   // decided on bits; not finite if some coordinate is not
@@ -80,35 +80,36 @@ COLLIDE_HD_INLINE verdict filtered_test(local_triangle<T> const& t, T size) {
   bool const divides = weight_sum > std::numeric_limits<T>::min();
   T const inverse = select(divides, approx_reciprocal(select(divides, weight_sum, T(1))), T(0));
   // guard: v-from-below, v-from-above
-  v = saturate(mul(v, inverse));
+  v = saturate(mul_rn(v, inverse));
   // guard: w-from-below
-  T const remainder = T(1) - v, limited = saturate(mul(w, inverse));
+  T const remainder = T(1) - v, limited = saturate(mul_rn(w, inverse));
   // guard: v-and-w
   w = select(limited < remainder, limited, remainder);
-  auto const combined = [&](int k) { return t.a[k] + fused(v, ab[k], mul(w, ac[k])); };
+  auto const combined = [&](int k) { return t.a[k] + mul_add(v, ab[k], mul_rn(w, ac[k])); };
   vec3<T> const q = {combined(0), combined(1), combined(2)};
-  T const s = fused_dot(q, q);
-  T const error = mul(bounds::error, size);
+  T const s = dot_mul_add(q, q);
+  T const error = mul_rn(bounds::error, size);
 
   // guard: error-of-hit
   T const radius_low = t.radius - error;
   // guard: inner
-  bool const hit = (radius_low > 0) & (s <= mul(radius_low, radius_low));
+  bool const hit = (radius_low > 0) & (s <= mul_rn(radius_low, radius_low));
   if (!Branchless && hit) return verdict::hit;
 
   // guard: error-of-miss
   T const radius_high = t.radius + error;
   auto const is_separating = [&](vec3<T> const& g, T gg) {
-    T const least = smaller(smaller(fused_dot(t.a, g), fused_dot(t.b, g)), fused_dot(t.c, g));
+    T const least = min(min(dot_mul_add(t.a, g), dot_mul_add(t.b, g)), dot_mul_add(t.c, g));
     // guard: least, shortest
-    return (gg >= bounds::shortest) & (least > 0) & (mul(least, least) > mul(mul(radius_high, radius_high), gg));
+    return (gg >= bounds::shortest) & (least > 0) &
+           (mul_rn(least, least) > mul_rn(mul_rn(radius_high, radius_high), gg));
   };
   bool miss = is_separating(q, s);
   if (Branchless || (face && !miss)) {  // close to the plane, its normal has a smaller relative error than q
     vec3<T> n = cross(ab, ac);
-    T const sign = select(fused_dot(t.a, n) < 0, T(-1), T(1));
+    T const sign = select(dot_mul_add(t.a, n) < 0, T(-1), T(1));
     n = scaled(n, sign);
-    bool const above = is_separating(n, fused_dot(n, n));
+    bool const above = is_separating(n, dot_mul_add(n, n));
     miss = miss | (face & above);
   }
   // hit is 1, miss is 0

@@ -7,11 +7,11 @@
 ///
 ///     m_ik = v_i.v_k - R^2
 ///
-/// So a corner is in reach if m_ii <= 0. If no corner is, an edge is, at the foot of the perpendicular, if
+/// So a corner is in reach if m_ii <= 0. If no corner is, an edge is, at the projection of the perpendicular, if
 ///
 ///     m_ik < 0  and  m_ii m_kk <= m_ik^2
 ///
-/// and the face is, at its foot, whose weights are proportional to w_i, if
+/// and the face is, at its projection, whose weights are proportional to w_i, if
 ///
 ///     w_i > 0 for all three  and  det m <= 0
 ///
@@ -106,7 +106,7 @@ class fixed_width_predicate {
 
   COLLIDE_HD void lower_exponent(double x) {
     dyadic const d = decoded(x);
-    if (d.mantissa != 0) exponent_ = smaller(exponent_, d.exponent);
+    if (d.mantissa != 0) exponent_ = min(exponent_, d.exponent);
   }
 
   COLLIDE_HD uint128 to_fixed_point(double x) {

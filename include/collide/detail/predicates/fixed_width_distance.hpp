@@ -1,6 +1,6 @@
 /// \file
 /// The distance of a point from a triangle in integers of fixed width, for numbers whose exponents are not too far
-/// apart: its foot, and the square of the distance as a quotient.
+/// apart: its projection, and the square of the distance as a quotient.
 ///
 /// With the corners v_i relative to the point, all is told by the products g_ik = v_i.v_k:
 ///
@@ -9,7 +9,7 @@
 ///     edge ij    g_ij < g_ii, g_ij < g_jj and w_k <= 0            (g_ii g_jj - g_ij^2) / (g_ii + g_jj - 2 g_ij)
 ///     face       w_i > 0 for all three                            det g / (w_i + w_j + w_k)
 ///
-/// where w_i is the sum of row i of the adjugate of g: proportional to the weight of corner i at the foot of the
+/// where w_i is the sum of row i of the adjugate of g: proportional to the weight of corner i at the projection of the
 /// perpendicular. What is on a line or a point has no w_i but 0, so edges and corners decide.
 #pragma once
 
@@ -28,8 +28,8 @@ class fixed_width_units {
     for (int k = 0; k < 3; ++k) {
       dyadic const d = decoded(point[k]);
       if (d.mantissa == 0) continue;
-      exponent_ = smaller(exponent_, d.exponent);
-      top_ = larger(top_, d.exponent + d.length());
+      exponent_ = min(exponent_, d.exponent);
+      top_ = max(top_, d.exponent + d.length());
     }
   }
   COLLIDE_HD void include(triangle<double> const& t) {
@@ -110,8 +110,8 @@ class fixed_width_distance {
     square_ = extended<12>(diagonal[0]);
   }
 
-  /// The foot of the point: corners 0, 1 and 2, edges 3, 4 and 5, the face 6.
-  COLLIDE_HD int foot() const { return foot_; }
+  /// The projection of the point: corners 0, 1 and 2, edges 3, 4 and 5, the face 6.
+  COLLIDE_HD int projection() const { return foot_; }
 
   /// -1 if s is nearer than t, 0 if both are as near, else 1. Both are in the same units.
   static COLLIDE_HD_NOINLINE int compare(fixed_width_distance const& s, fixed_width_distance const& t) {

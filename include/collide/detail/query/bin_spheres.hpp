@@ -1,5 +1,5 @@
 /// \file
-/// Kernel bodies that sort spheres into the cells of grids, for the CPU: those near triangles are listed, counted by
+/// Kernel kernels that sort spheres into the cells of grids, for the CPU: those near triangles are listed, counted by
 /// cells, numbered and copied in the order of the cells.
 #pragma once
 
@@ -45,14 +45,14 @@ struct swept_bounding_spheres {
 
 /// The centres and radii of consecutive spheres.
 template <class S, int Items>
-void load(sphere_batch<S, Items>& batch, sphere_view<S> const& spheres, std::size_t first) {
+void load(sphere_pack<S, Items>& batch, sphere_view<S> const& spheres, std::size_t first) {
   batch.load(spheres, first);
 }
 
 /// The bounding spheres of consecutive moving spheres. A centre that is not finite is in no cell.
 template <class S, int Items>
-void load(sphere_batch<S, Items>& batch, swept_bounding_spheres<S> const& bounds, std::size_t first) {
-  moving_batch<S, Items> ways;
+void load(sphere_pack<S, Items>& batch, swept_bounding_spheres<S> const& bounds, std::size_t first) {
+  moving_pack<S, Items> ways;
   ways.load(bounds.spheres, first);
   for (int k = 0; k < Items; ++k) {
     batch.x[k] = ways.x[k] + S(0.5) * ways.dx[k];
@@ -70,7 +70,7 @@ struct binned_sphere {
   std::uint32_t cell;
 };
 
-/// Kernel body of a block of one thread: lists the spheres that are in cells with triangles. A sphere that no grid
+/// Kernel functor of a block of one thread: lists the spheres that are in cells with triangles. A sphere that no grid
 /// serves counts as in the cell behind the last, into which all triangles look.
 template <class S, class Spheres>
 struct place_spheres {
@@ -109,7 +109,7 @@ struct place_spheres {
     bool const one_radius = spheres.one_radius();
     s.count = 0;
     for (std::size_t first = begin; first < begin + batches * n && first < spheres.size(); first += n) {
-      sphere_batch<S, n> batch;
+      sphere_pack<S, n> batch;
       load(batch, spheres, first);
       auto const list = [&](int k, std::uint32_t cell, bool wanted) {
         s.found[s.count] = {
@@ -166,7 +166,7 @@ struct place_spheres {
   }
 };
 
-/// Kernel body of `for_each` over placed spheres: counts those of each cell.
+/// Kernel functor of `for_each` over placed spheres: counts those of each cell.
 template <class S>
 struct count_bins {
   binned_sphere<S> const* from;
@@ -254,7 +254,7 @@ struct spheres_in_cells {
   }
 };
 
-/// Kernel body of `for_each` over placed spheres: gives each its place in the order of the cells.
+/// Kernel functor of `for_each` over placed spheres: gives each its place in the order of the cells.
 template <class S>
 struct rank_spheres {
   binned_sphere<S> const* from;
@@ -263,7 +263,7 @@ struct rank_spheres {
   void operator()(std::size_t i) const { order[fetch_add(begins + from[i].cell, 1u)] = static_cast<std::uint32_t>(i); }
 };
 
-/// Kernel body of `for_each` over places: brings the spheres there. Threads write next to themselves only.
+/// Kernel functor of `for_each` over places: brings the spheres there. Threads write next to themselves only.
 template <class S, class Spheres>
 struct scatter_spheres {
   binned_sphere<S> const* from;

@@ -15,27 +15,27 @@
 namespace collide::detail {
 
 /// True for handles that want to know when all hits of a pass are stored; see concepts.hpp.
-template <class Handle, class = void>
-struct finishes : std::false_type {};
-template <class Handle>
-struct finishes<Handle, std::void_t<decltype(std::declval<Handle const&>().end_pass())>> : std::true_type {};
+template <class Output, class = void>
+struct has_end_pass : std::false_type {};
+template <class Output>
+struct has_end_pass<Output, std::void_t<decltype(std::declval<Output const&>().end_pass())>> : std::true_type {};
 
-template <class Handle>
-COLLIDE_HD_INLINE void finish_pass([[maybe_unused]] Handle const& handle) {
-  if constexpr (finishes<Handle>::value) handle.end_pass();
+template <class Output>
+COLLIDE_HD_INLINE void end_pass([[maybe_unused]] Output const& output) {
+  if constexpr (has_end_pass<Output>::value) output.end_pass();
 }
 
 /// False if the handle has no use for `end_pass` in this pass, though its type has one.
-template <class Handle>
-bool has_end_pass(Handle const&) {
-  return finishes<Handle>::value;
+template <class Output>
+bool wants_end_pass(Output const&) {
+  return has_end_pass<Output>::value;
 }
 
-/// Kernel body of `for_each` over one item.
-template <class Handle>
-struct finish_only {
-  Handle handle;
-  COLLIDE_HD void operator()(std::size_t) const { handle.end_pass(); }
+/// Kernel functor of `for_each` over one item.
+template <class Output>
+struct end_pass_kernel {
+  Output output;
+  COLLIDE_HD void operator()(std::size_t) const { output.end_pass(); }
 };
 
 /// Pairs that the narrow phase's filter left open, for a kernel of their own; see deferred_pairs.hpp.
@@ -57,32 +57,32 @@ struct deferred_pairs {
 };
 
 /// Where the hits of a pass go, and the pairs that are decided later.
-template <class Handle>
-struct deferring {
-  Handle handle;
+template <class Output>
+struct output_with_deferral {
+  Output output;
   deferred_pairs deferred;
 
-  COLLIDE_HD_INLINE std::uint64_t allocate(std::uint64_t n) const { return handle.allocate(n); }
+  COLLIDE_HD_INLINE std::uint64_t allocate(std::uint64_t n) const { return output.allocate(n); }
   template <class Hit>
   COLLIDE_HD_INLINE void store(std::uint64_t slot, Hit const& hit) const {
-    handle.store(slot, hit);
+    output.store(slot, hit);
   }
 };
 
 template <class Output>
 inline constexpr bool defers_pairs = false;
-template <class Handle>
-inline constexpr bool defers_pairs<deferring<Handle>> = true;
+template <class Output>
+inline constexpr bool defers_pairs<output_with_deferral<Output>> = true;
 
 /// Scratch memory of a block for its candidates and hits. Where threads work together, each step is made for many pairs
 /// at once, so that no thread waits for another that has more to do: candidates are gathered, then decided; hits are
 /// gathered, then written, so that the sink's atomic counter is touched once per batch. A single thread decides each
-/// candidate at once. `Ahead` is how many candidates a thread pushes before there is room for as many again.
-template <class Block, int Ahead = 1>
+/// candidate at once. `ItemsPerThread` is how many candidates a thread pushes before there is room for as many again.
+template <class Block, int ItemsPerThread = 1>
 struct pipeline_storage {
-  static constexpr std::uint32_t capacity = Block::pending;
+  static constexpr std::uint32_t capacity = Block::hit_capacity;
   static constexpr bool is_cooperative = Block::num_threads > 1;
-  static constexpr std::uint32_t candidate_capacity = is_cooperative ? (Ahead + 1) * Block::num_threads : 1;
+  static constexpr std::uint32_t candidate_capacity = is_cooperative ? (ItemsPerThread + 1) * Block::num_threads : 1;
 
   pair candidates[candidate_capacity];
   std::uint32_t candidate_count;
@@ -103,16 +103,16 @@ struct candidate_pipeline {
   triangle_aabb<S> const* boxes = nullptr;  ///< of candidates that may be out of reach; null if there are no such
 
   /// To be called first, by every thread; what follows may be done when the block has waited.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void reset(pipeline_storage<Block, Ahead>& b, int thread_rank) const {
+  template <class Block, int ItemsPerThread>
+  COLLIDE_HD_INLINE void reset(pipeline_storage<Block, ItemsPerThread>& b, int thread_rank) const {
     if (thread_rank == 0) b.candidate_count = b.hit_count = 0;
   }
 
-  /// Takes a candidate. Called by any thread; where threads work together, at most `Ahead` times between two calls of
-  /// `drain_if_full`.
-  template <class Block, int Ahead, class Sphere>
-  COLLIDE_HD_INLINE void push(Block& block, pipeline_storage<Block, Ahead>& b, pair p, Sphere const& s) const {
-    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
+  /// Takes a candidate. Called by any thread; where threads work together, at most `ItemsPerThread` times between two
+  /// calls of `drain_if_full`.
+  template <class Block, int ItemsPerThread, class Sphere>
+  COLLIDE_HD_INLINE void push(Block& block, pipeline_storage<Block, ItemsPerThread>& b, pair p, Sphere const& s) const {
+    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
       push(block, b, p);
     } else {
       process_one(block, b, p, s);
@@ -120,30 +120,31 @@ struct candidate_pipeline {
   }
 
   /// Takes a candidate whose sphere is not at hand.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void push(Block& block, pipeline_storage<Block, Ahead>& b, pair p) const {
-    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
+  template <class Block, int ItemsPerThread>
+  COLLIDE_HD_INLINE void push(Block& block, pipeline_storage<Block, ItemsPerThread>& b, pair p) const {
+    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
       b.candidates[block.add(b.candidate_count, 1)] = p;
     } else {
       process_one(block, b, p, spheres[p.sphere]);
     }
   }
 
-  /// Makes room for `Ahead` more candidates per thread. Called by the whole block.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void drain_if_full(Block& block, pipeline_storage<Block, Ahead>& b) const {
-    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
+  /// Makes room for `ItemsPerThread` more candidates per thread. Called by the whole block.
+  template <class Block, int ItemsPerThread>
+  COLLIDE_HD_INLINE void drain_if_full(Block& block, pipeline_storage<Block, ItemsPerThread>& b) const {
+    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
       std::uint32_t const n = block.broadcast(b.candidate_count);
-      if (n + Ahead * Block::num_threads > pipeline_storage<Block, Ahead>::candidate_capacity) process(block, b, n);
+      if (n + ItemsPerThread * Block::num_threads > pipeline_storage<Block, ItemsPerThread>::candidate_capacity)
+        process(block, b, n);
     } else {
-      if (b.hit_count == pipeline_storage<Block, Ahead>::capacity) write_hits(block, b, b.hit_count);
+      if (b.hit_count == pipeline_storage<Block, ItemsPerThread>::capacity) write_hits(block, b, b.hit_count);
     }
   }
 
   /// Decides and writes everything. Called by the whole block, last.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void drain(Block& block, pipeline_storage<Block, Ahead>& b) const {
-    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
+  template <class Block, int ItemsPerThread>
+  COLLIDE_HD_INLINE void drain(Block& block, pipeline_storage<Block, ItemsPerThread>& b) const {
+    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
       std::uint32_t const n = block.broadcast(b.candidate_count);
       if (n != 0) process(block, b, n);
     }
@@ -151,11 +152,11 @@ struct candidate_pipeline {
   }
 
   /// Takes a hit of a thread; see `push_hits`.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void push_hit(Block& block, pipeline_storage<Block, Ahead>& b, pair p) const {
-    if constexpr (pipeline_storage<Block, Ahead>::is_cooperative) {
+  template <class Block, int ItemsPerThread>
+  COLLIDE_HD_INLINE void push_hit(Block& block, pipeline_storage<Block, ItemsPerThread>& b, pair p) const {
+    if constexpr (pipeline_storage<Block, ItemsPerThread>::is_cooperative) {
       b.hits[block.add(b.hit_count, 1)] = p;
-    } else if (b.hit_count != pipeline_storage<Block, Ahead>::capacity) {
+    } else if (b.hit_count != pipeline_storage<Block, ItemsPerThread>::capacity) {
       b.hits[b.hit_count++] = p;
     } else {
       write(output.allocate(1), p);
@@ -165,20 +166,21 @@ struct candidate_pipeline {
   /// Takes the pairs of those threads that have a hit. Called by the whole block. What decides a pair may call a
   /// function, from which the threads of a warp come back one after another; ptxas 13.0 lets some of them run on past a
   /// barrier that follows if there is an atomic operation in between. So they meet at a barrier before they push.
-  template <class Block, int Ahead, class Pairs, class Flags>
-  COLLIDE_HD_INLINE void push_hits(Block& block, pipeline_storage<Block, Ahead>& b, Pairs& pairs,
+  template <class Block, int ItemsPerThread, class Pairs, class Flags>
+  COLLIDE_HD_INLINE void push_hits(Block& block, pipeline_storage<Block, ItemsPerThread>& b, Pairs& pairs,
                                    Flags& are_hits) const {
     block.for_each_thread([&](int thread_rank) {
       if (are_hits[thread_rank]) push_hit(block, b, pairs[thread_rank]);
     });
     std::uint32_t const hits = block.broadcast(b.hit_count);
-    if (hits + Block::num_threads > pipeline_storage<Block, Ahead>::capacity) write_hits(block, b, hits);
+    if (hits + Block::num_threads > pipeline_storage<Block, ItemsPerThread>::capacity) write_hits(block, b, hits);
   }
 
  private:
   /// Decides a candidate of a thread that works alone.
-  template <class Block, int Ahead, class Sphere>
-  COLLIDE_HD_INLINE void process_one(Block& block, pipeline_storage<Block, Ahead>& b, pair p, Sphere const& s) const {
+  template <class Block, int ItemsPerThread, class Sphere>
+  COLLIDE_HD_INLINE void process_one(Block& block, pipeline_storage<Block, ItemsPerThread>& b, pair p,
+                                     Sphere const& s) const {
     if (decide<Block>(p, s)) push_hit(block, b, p);
   }
 
@@ -206,8 +208,8 @@ struct candidate_pipeline {
   }
 
   /// Decides the `n` candidates that were gathered.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void process(Block& block, pipeline_storage<Block, Ahead>& b, std::uint32_t n) const {
+  template <class Block, int ItemsPerThread>
+  COLLIDE_HD_INLINE void process(Block& block, pipeline_storage<Block, ItemsPerThread>& b, std::uint32_t n) const {
     typename Block::template thread_private<pair> own;
     typename Block::template thread_private<bool> hits;
     for (std::uint32_t base = 0; base < n; base += Block::num_threads) {
@@ -224,9 +226,9 @@ struct candidate_pipeline {
   }
 
   /// Writes the `n` hits that were gathered.
-  template <class Block, int Ahead>
-  COLLIDE_HD_INLINE void write_hits(Block& block, pipeline_storage<Block, Ahead>& b, std::uint32_t n) const {
-    if constexpr (pipeline_storage<Block, Ahead>::capacity > 0) {
+  template <class Block, int ItemsPerThread>
+  COLLIDE_HD_INLINE void write_hits(Block& block, pipeline_storage<Block, ItemsPerThread>& b, std::uint32_t n) const {
+    if constexpr (pipeline_storage<Block, ItemsPerThread>::capacity > 0) {
       if (n == 0) return;
       block.for_each_thread([&](int thread_rank) {
         if (thread_rank != 0) return;

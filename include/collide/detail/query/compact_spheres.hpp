@@ -25,14 +25,14 @@ struct compact_spheres {
 
   sphere_view_for<NarrowPhase, S> const& spheres;
   bucket_ref<S> const& grids;
-  occupancy_view<S> const& marks;
-  bool has_one_level;  ///< all spheres are in one grid of one level: `marks` knows of them
-  std::size_t blocks;  ///< that share the spheres
-  std::size_t beside;  ///< so many threads of a block take packs next to each other
+  occupancy_view<S> const& occupancy;
+  bool has_one_level;      ///< all spheres are in one grid of one level: `occupancy` knows of them
+  std::size_t blocks;      ///< that share the spheres
+  std::size_t run_length;  ///< so many threads of a block take packs next to each other
 
   /// How many spheres are active, how many of them no grid serves, and how many threads have more.
   struct counts {
-    std::uint32_t active, ungridded, pending;
+    std::uint32_t active, ungridded, threads_with_more;
   };
 
   template <class Block>
@@ -45,14 +45,14 @@ struct compact_spheres {
 
   /// Consecutive spheres of a thread.
   template <class Block>
-  using pack = std::conditional_t<still, sphere_batch<S, Block::items>, moving_batch<S, Block::items>>;
+  using pack = std::conditional_t<still, sphere_pack<S, Block::items>, moving_pack<S, Block::items>>;
 
   /// Threads take packs in turn, of which those of neighbours are next to each other: where a thread begins, and how
   /// far it goes on each time.
   template <class Block>
   COLLIDE_HD_INLINE std::size_t first_of(Block const& block, int thread_rank) const {
     auto const own = static_cast<std::size_t>(thread_rank);
-    return ((own / beside * blocks + block.index()) * beside + own % beside) * Block::items;
+    return ((own / run_length * blocks + block.index()) * run_length + own % run_length) * Block::items;
   }
   template <class Block>
   COLLIDE_HD_INLINE std::size_t stride() const {
@@ -70,14 +70,14 @@ struct compact_spheres {
       return append(block, s, grid_of, first);
     };
     if constexpr (still) {
-      S const* const quads = aligned_centres<Block>();
-      if (quads != nullptr) return compact_ahead(block, s, next, quads, one_pack);
+      S const* const aligned = aligned_centres<Block>();
+      if (aligned != nullptr) return compact_ahead(block, s, next, aligned, one_pack);
     }
     each_pack<Block>(next, one_pack);
   }
 
  private:
-  static constexpr std::int8_t no_cell = bucket_ref<S>::no_cell, everywhere = bucket_ref<S>::everywhere;
+  static constexpr std::int8_t no_candidates = bucket_ref<S>::no_candidates, no_grid = bucket_ref<S>::no_grid;
 
   /// How many packs a thread goes through at most before all expand what they have found: where threads work together,
   /// one that finds less than others would else go on alone.
@@ -96,7 +96,7 @@ struct compact_spheres {
     }
   }
 
-  /// The centres, if `marks` knows of all and whole packs can be loaded at once; else null.
+  /// The centres, if `occupancy` knows of all and whole packs can be loaded at once; else null.
   template <class Block>
   COLLIDE_HD_INLINE S const* aligned_centres() const {
     return has_one_level && spheres.size() >= Block::items ? pack<Block>::aligned_centres(spheres) : nullptr;
@@ -105,20 +105,20 @@ struct compact_spheres {
   /// While the cells of a pack are asked whether they have triangles, the next pack is being read: or, where not all of
   /// that is there, some other, as ptxas 13.0 keeps in memory what it loads under a condition.
   template <class Block, class OnePack>
-  COLLIDE_HD_INLINE void compact_ahead(Block& block, scratch<Block>& s, std::size_t& next, S const* quads,
+  COLLIDE_HD_INLINE void compact_ahead(Block& block, scratch<Block>& s, std::size_t& next, S const* aligned,
                                        OnePack const& one_pack) const {
     constexpr int n = Block::items;
     pack<Block> own;
-    auto const load_ahead = [&](std::size_t first) { own.load_xyz4(quads, first + n <= spheres.size() ? first : 0); };
+    auto const load_ahead = [&](std::size_t first) { own.load_xyz4(aligned, first + n <= spheres.size() ? first : 0); };
     load_ahead(next);
     each_pack<Block>(next, [&](std::size_t first) {
       if (first + n > spheres.size()) return one_pack(first);
-      auto const places = marks.places_of(own.x, own.y, own.z);
+      auto const places = occupancy.places_of(own.x, own.y, own.z);
       load_ahead(first + stride<Block>());
       bool near[n];
-      marks.mark(places, near);
+      occupancy.test_occupied(places, near);
       std::int8_t grid_of[n];
-      for (int k = 0; k < n; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_cell;
+      for (int k = 0; k < n; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_candidates;
       return append(block, s, grid_of, first);
     });
   }
@@ -127,8 +127,8 @@ struct compact_spheres {
   template <class Pack, int N>
   COLLIDE_HD_INLINE void locate(Pack const& own, std::size_t first, std::int8_t (&grid_of)[N]) const {
     bool near[N];
-    if (has_one_level && first + N <= spheres.size() && marks.mark(own, near)) {
-      for (int k = 0; k < N; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_cell;
+    if (has_one_level && first + N <= spheres.size() && occupancy.test_occupied(own, near)) {
+      for (int k = 0; k < N; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_candidates;
       return;
     }
     grids.locate(own, grid_of);
@@ -140,14 +140,14 @@ struct compact_spheres {
                                          std::size_t first) const {
     std::uint32_t active = 0, ungridded = 0;
     for (int k = 0; k < N; ++k) {
-      active += grid_of[k] != no_cell;
-      ungridded += grid_of[k] == everywhere;
+      active += grid_of[k] != no_candidates;
+      ungridded += grid_of[k] == no_grid;
     }
     if (active == 0) return 0;
     if (ungridded != 0) block.add(s.found.ungridded, ungridded);
     std::uint32_t slot = block.add(s.found.active, active);
     for (int k = 0; k < N; ++k) {
-      if (grid_of[k] == no_cell) continue;
+      if (grid_of[k] == no_candidates) continue;
       s.active[slot] = static_cast<id>(first) + static_cast<id>(k);
       s.grid_of[slot++] = grid_of[k];
     }

@@ -42,7 +42,7 @@ class deferred_pair_buffer {
  private:
   static std::size_t capacity_for(std::size_t spheres) {
     constexpr std::size_t least = 1024, most = std::size_t{1} << 22;
-    return least + smaller(spheres, most);
+    return least + min(spheres, most);
   }
 
   buffer<deferred_pairs::counters> count_;
@@ -50,21 +50,21 @@ class deferred_pair_buffer {
   bool empty_ = false;  ///< at least when all work that was given to the space is done
 };
 
-/// Kernel body of the second pass: resolves the deferred pairs, and ends the query's pass. If not all of them found
+/// Kernel functor of the second pass: resolves the deferred pairs, and ends the query's pass. If not all of them found
 /// room, it goes through all pairs of spheres and triangles, plainly: that is slow, but hardly ever happens, and loses
 /// nothing. A filter on the device has the same outcome in every kernel, as no compiler is free to fuse or reorder what
 /// it computes there; so it tells which pairs were deferred.
-template <class S, class NarrowPhase, class Handle>
+template <class S, class NarrowPhase, class Output>
 struct resolve_deferred {
   static constexpr int items = 1;
 
-  candidate_pipeline<S, NarrowPhase, Handle> pipeline;
+  candidate_pipeline<S, NarrowPhase, Output> pipeline;
   deferred_pairs deferred;
   std::size_t blocks;
 
   template <class Block>
   struct scratch {
-    pipeline_storage<Block> hits;
+    pipeline_storage<Block> pipeline;
   };
 
   template <class Block>
@@ -74,17 +74,17 @@ struct resolve_deferred {
     bool const all_found_room = total <= deferred.capacity;
     // guard: second-time
     std::uint64_t const work = all_found_room ? total : std::uint64_t{pipeline.spheres.size()} * pipeline.mesh.size();
-    std::uint64_t const busy = smaller<std::uint64_t>(blocks, (work + Block::num_threads - 1) / Block::num_threads);
+    std::uint64_t const busy = min<std::uint64_t>(blocks, (work + Block::num_threads - 1) / Block::num_threads);
     if (block.index() >= busy) {
       if (work == 0 && block.index() == 0) {
         block.for_each_thread([&](int thread_rank) {
-          if (thread_rank == 0) finish_pass(pipeline.output);
+          if (thread_rank == 0) end_pass(pipeline.output);
         });
       }
       return;
     }
 
-    block.for_each_thread([&](int thread_rank) { pipeline.reset(s.hits, thread_rank); });
+    block.for_each_thread([&](int thread_rank) { pipeline.reset(s.pipeline, thread_rank); });
     typename Block::template thread_private<pair> own;
     typename Block::template thread_private<bool> hits;
     for (std::uint64_t base = block.index() * Block::num_threads; base < work; base += blocks * Block::num_threads) {
@@ -97,15 +97,15 @@ struct resolve_deferred {
                            : pair{static_cast<id>(i / pipeline.mesh.size()), static_cast<id>(i % pipeline.mesh.size())};
         hits[thread_rank] = is_hit(own[thread_rank], all_found_room);
       });
-      pipeline.push_hits(block, s.hits, own, hits);
+      pipeline.push_hits(block, s.pipeline, own, hits);
     }
-    pipeline.drain(block, s.hits);
+    pipeline.drain(block, s.pipeline);
     // the last block that had something to do empties the list; those that come later find it so
     block.for_each_thread([&](int thread_rank) {
       if (thread_rank != 0 || fetch_add(&deferred.count->ready, std::uint64_t{1}) + 1 != busy) return;
       // guard: left-empty
       deferred.count->total = deferred.count->ready = 0;
-      finish_pass(pipeline.output);
+      end_pass(pipeline.output);
     });
   }
 
@@ -125,16 +125,15 @@ struct resolve_deferred {
 };
 
 /// Runs both passes.
-template <class NarrowPhase, class Space, class Index, class S, class Handle>
+template <class NarrowPhase, class Space, class Index, class S, class Output>
 void query_two_pass(Space& space, Index& index, mesh_view<S> const& mesh,
-                    sphere_view_for<NarrowPhase, S> const& spheres, Handle const& handle,
+                    sphere_view_for<NarrowPhase, S> const& spheres, Output const& output,
                     deferred_pair_buffer& buffer) {
   deferred_pairs const deferred = buffer.acquire(space, spheres.size());
-  index.template query<NarrowPhase>(space, spheres, deferring<Handle>{handle, deferred});
-  resolve_deferred<S, NarrowPhase, Handle> body{{mesh, spheres, handle}, deferred, 0};
-  body.blocks =
-      smaller(larger<std::size_t>(1, space.saturating_blocks() / 8), grid_size<Space>(deferred.capacity, body));
-  space.launch(body.blocks, body);
+  index.template query<NarrowPhase>(space, spheres, output_with_deferral<Output>{output, deferred});
+  resolve_deferred<S, NarrowPhase, Output> kernel{{mesh, spheres, output}, deferred, 0};
+  kernel.blocks = min(max<std::size_t>(1, space.saturating_blocks() / 8), grid_size<Space>(deferred.capacity, kernel));
+  space.launch(kernel.blocks, kernel);
   buffer.release();
 }
 

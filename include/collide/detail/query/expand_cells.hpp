@@ -21,7 +21,7 @@ struct expand_cells {
 
   /// Entries that a thread looks at together. With room for those of spheres that move, and for where these are on
   /// their paths, 48 KB of scratch memory must suffice; and less leaves more of it to the cache.
-  static constexpr int ahead = still ? 5 : 2;
+  static constexpr int items_per_thread = still ? 5 : 2;
 
   candidate_pipeline<S, NarrowPhase, Output> const& pipeline;
   bucket_ref<S> const& grids;
@@ -34,7 +34,7 @@ struct expand_cells {
 
   /// How many spans there are, or would be with room for more, and how many spheres have more.
   struct counts {
-    std::uint32_t spans, pending;
+    std::uint32_t spans, threads_with_more;
   };
 
   /// The most entries of a span: the block numbers the candidates of all its spans in 32 bits.
@@ -44,14 +44,14 @@ struct expand_cells {
   template <class Block>
   struct scratch {
     entry_span spans[Block::num_threads];
-    std::uint32_t sizes[Block::num_threads];  ///< of the spans
-    std::uint32_t parts[Block::num_threads];  ///< where in their cells the spheres are
+    std::uint32_t sizes[Block::num_threads];      ///< of the spans
+    std::uint32_t coverages[Block::num_threads];  ///< where in their cells the spheres are
     typename swept_cells<S>::cell_visit
-        places[still ? 1 : Block::num_threads];           ///< where on its path a moving sphere is
+        cell_visits[still ? 1 : Block::num_threads];      ///< where on its path a moving sphere is
     std::int8_t grid_of[still ? 1 : Block::num_threads];  ///< of a moving sphere
     counts found;
     typename Block::balance_storage balance;
-    pipeline_storage<Block, ahead> hits;
+    pipeline_storage<Block, items_per_thread> pipeline;
   };
 
   /// Makes candidates of the active spheres: from one level of their grids after the other, in the end of those that no
@@ -60,7 +60,7 @@ struct expand_cells {
   COLLIDE_HD_INLINE void expand(Block& block, scratch<Block>& s, typename compact::template scratch<Block> const& from,
                                 typename compact::counts const& active) const {
     int levels = 0;
-    for (int g = 0; g < grids.grid_count; ++g) levels = larger(levels, grids.grids[g].levels);
+    for (int g = 0; g < grids.grid_count; ++g) levels = max(levels, grids.grids[g].levels);
     for (int l = 0; l < levels; ++l) expand_level(block, s, from, active.active, l);
     if (active.ungridded != 0) expand_level(block, s, from, active.active, all);
   }
@@ -84,7 +84,7 @@ struct expand_cells {
   COLLIDE_HD_INLINE bool find_cells(std::int8_t grid_number, int level, cells& here) const {
     if (level == all || grid_number < 0) {
       here = {nullptr, nullptr, grid_number};
-      return level == all && grid_number == bucket_ref<S>::everywhere;
+      return level == all && grid_number == bucket_ref<S>::no_grid;
     }
     grid<S> const& g = grids.grids[grid_number];
     here = {&g, &g.level[level], grid_number};
@@ -105,12 +105,12 @@ struct expand_cells {
           std::uint32_t const i = base + static_cast<std::uint32_t>(thread_rank);
           cells here;
           if (i >= n || !find_cells(from.grid_of[i], level, here)) return;
-          if (!append_spans(block, s, here, from.active[i], at[thread_rank])) block.add(s.found.pending, 1);
+          if (!append_spans(block, s, here, from.active[i], at[thread_rank])) block.add(s.found.threads_with_more, 1);
         });
         counts const found = block.broadcast(s.found);
-        more = found.pending != 0;
+        more = found.threads_with_more != 0;
         if (found.spans == 0) continue;
-        test_spans(block, s, level, smaller<std::uint32_t>(found.spans, Block::num_threads));
+        test_spans(block, s, level, min<std::uint32_t>(found.spans, Block::num_threads));
         block.for_each_thread([&](int thread_rank) {
           if (thread_rank == 0) s.found = {0, 0};
         });
@@ -126,7 +126,7 @@ struct expand_cells {
       std::uint32_t number;
     };
     bool const is_all = level == all;
-    block.template for_each_balanced<ahead>(
+    block.template for_each_balanced<items_per_thread>(
         s.balance, s.sizes, n,
         [&](std::uint32_t i) {
           return numbered_span{s.spans[i], i};
@@ -135,15 +135,15 @@ struct expand_cells {
           return is_all ? cell_item{c.of.first + k, cell_coverage::full_box} : grids.entries[c.of.first + k];
         },
         [&](numbered_span const& c, cell_item const& e) {
-          return cell_coverage::overlaps(e.coverage, s.parts[c.number]);
+          return cell_coverage::overlaps(e.coverage, s.coverages[c.number]);
         },
         [&](numbered_span const& c, cell_item const& e) {
           if constexpr (!still) {
-            if (!is_all && !owns_pair(grids.grids[s.grid_of[c.number]], level, s.places[c.number], e)) return;
+            if (!is_all && !owns_pair(grids.grids[s.grid_of[c.number]], level, s.cell_visits[c.number], e)) return;
           }
-          pipeline.push(block, s.hits, {c.of.sphere, e.triangle});
+          pipeline.push(block, s.pipeline, {c.of.sphere, e.triangle});
         },
-        [&](bool) { pipeline.drain_if_full(block, s.hits); });
+        [&](bool) { pipeline.drain_if_full(block, s.pipeline); });
   }
 
   /// True if the pair counts in this cell of a path, and not in another that has the entry too.
@@ -183,16 +183,16 @@ struct expand_cells {
   COLLIDE_HD_INLINE bool append(Block& block, scratch<Block>& s, [[maybe_unused]] cells const& here, id number,
                                 item_range cell, std::uint32_t part, cursor& at,
                                 typename swept_cells<S>::cell_visit const* place = nullptr) const {
-    std::uint32_t const left = cell.count - at.skip, size = smaller(left, longest<Block>);
+    std::uint32_t const left = cell.count - at.skip, size = min(left, longest<Block>);
     if (left == 0) return true;
     std::uint32_t const slot = block.add(s.found.spans, 1);
     if (slot >= Block::num_threads) return false;
     s.spans[slot] = {number, cell.end - left};
     s.sizes[slot] = size;
-    s.parts[slot] = part;
+    s.coverages[slot] = part;
     if constexpr (!still) {
       s.grid_of[slot] = here.number;
-      if (place != nullptr) s.places[slot] = *place;
+      if (place != nullptr) s.cell_visits[slot] = *place;
     }
     at.skip += size;
     return left == size;

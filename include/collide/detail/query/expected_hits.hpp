@@ -19,7 +19,7 @@
 
 namespace collide::detail {
 
-/// Kernel body of a block of one thread: decides every `stride`-th of the pairs of a triangle and a sphere in its
+/// Kernel functor of a block of one thread: decides every `stride`-th of the pairs of a triangle and a sphere in its
 /// cells.
 template <class S, class NarrowPhase>
 struct sample_hits {
@@ -37,7 +37,7 @@ struct sample_hits {
   template <class Block>
   void operator()(Block& block, nothing&) const {
     constexpr std::uint32_t n = triangle_group<S>::size;
-    std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, mesh.size());
+    std::size_t const begin = block.index() * Block::items, end = min(begin + Block::items, mesh.size());
     // where the first one is differs from block to block, whatever these have in common
     std::uint32_t skip = static_cast<std::uint32_t>(block.index()) * 2654435769u >> 24;
     std::uint64_t found = 0;

@@ -11,7 +11,7 @@
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over groups of triangles: sets a bit for every cell that a triangle looks into, and
+/// Kernel functor of `for_each` over groups of triangles: sets a bit for every cell that a triangle looks into, and
 /// perhaps for some more.
 template <class S>
 struct mark_occupied_cells {
@@ -50,7 +50,7 @@ struct mark_occupied_cells {
 
   void mark(std::uint32_t first, std::uint32_t n) const {
     for (std::uint32_t const end = first + n; first < end;) {
-      std::uint32_t const next = smaller((first / 32 + 1) * 32, end);
+      std::uint32_t const next = min((first / 32 + 1) * 32, end);
       std::uint32_t const bits = 0xffffffffu >> (32 - (next - first)) << first % 32;
       if ((load_relaxed(occupied + first / 32) & bits) != bits) fetch_or(occupied + first / 32, bits);
       first = next;

@@ -1,5 +1,5 @@
 /// \file
-/// Kernel bodies of one pass over a mesh or over radii, for the CPU: eight at a time, and histograms that are kept
+/// Kernel kernels of one pass over a mesh or over radii, for the CPU: eight at a time, and histograms that are kept
 /// close.
 #pragma once
 
@@ -35,8 +35,8 @@ struct histogram_of_block {
   void add(std::uint32_t bin, std::uint32_t n, std::uint32_t sum) {
     counts[bin] += n;
     sums[bin] += sum;
-    first = smaller(first, bin);
-    end = larger(end, bin + 1);
+    first = min(first, bin);
+    end = max(end, bin + 1);
   }
 
   void flush(size_histogram* to) const {
@@ -46,7 +46,7 @@ struct histogram_of_block {
   }
 };
 
-/// Kernel body of a block of one thread: what `compute_mesh_statistics` finds, and the boxes around groups of
+/// Kernel functor of a block of one thread: what `compute_mesh_statistics` finds, and the boxes around groups of
 /// triangles.
 template <class S>
 struct measure_groups {
@@ -83,7 +83,7 @@ struct measure_groups {
   template <class Scratch>
   void measure(Scratch& s, std::size_t begin) const {
     constexpr std::uint32_t n = triangle_group<S>::size;
-    std::size_t const end = smaller(begin + share, triangle_group<S>::count(mesh.size()));
+    std::size_t const end = min(begin + share, triangle_group<S>::count(mesh.size()));
     aabb<S> all = aabb<S>::empty();
     for (std::size_t i = begin; i < end; ++i) {
       s.group.load(mesh, i * n);
@@ -110,8 +110,8 @@ struct measure_groups {
     float extents[n];
     for (std::size_t i = 0; i < n; ++i) {
       S extent = 0;
-      for (int k = 0; k < 3; ++k) extent = larger(extent, group.upper[k][i] - group.lower[k][i]);
-      extents[i] = static_cast<float>(smaller(extent, S(std::numeric_limits<float>::max())));
+      for (int k = 0; k < 3; ++k) extent = max(extent, group.upper[k][i] - group.lower[k][i]);
+      extents[i] = static_cast<float>(min(extent, S(std::numeric_limits<float>::max())));
     }
     for (std::size_t i = 0; i < n; ++i) {
       bins[i] = to_bits(extents[i]) >> 21;
@@ -128,7 +128,7 @@ struct measure_groups {
   }
 };
 
-/// Kernel body of `for_each` over groups: the boxes of the triangles.
+/// Kernel functor of `for_each` over groups: the boxes of the triangles.
 template <class S>
 struct compute_boxes {
   mesh_view<S> mesh;
@@ -150,7 +150,7 @@ struct compute_boxes {
   }
 };
 
-/// Kernel body of a block of one thread: the histogram of the finite, valid radii.
+/// Kernel functor of a block of one thread: the histogram of the finite, valid radii.
 template <class S>
 struct measure_radii {
   static constexpr int items = 4;
@@ -171,7 +171,7 @@ struct measure_radii {
   void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::num_threads == 1, "collide: radii are measured by blocks of one thread");
     s.radii.clear();
-    std::size_t const begin = block.index() * share, end = smaller(begin + share, spheres.size());
+    std::size_t const begin = block.index() * share, end = min(begin + share, spheres.size());
     for (std::size_t i = begin; i < end; ++i) {
       S const r = spheres.radius(i);
       if (is_valid_radius(r) && is_finite(r)) s.radii.add(size_bin(r > 0 ? r : S(0)), 1, 0);
@@ -186,11 +186,11 @@ size_histogram histogram_of_radii(Space& space, sphere_view<S> const& spheres, b
   auto* const radii = memory.reserve(space.resource(), 1);
   size_histogram::clear(space, radii);
   if constexpr (bucket_tuning<Space>::bins_spheres) {
-    measure_radii<S> const body{spheres, radii};
-    space.launch(body.blocks(), body);
+    measure_radii<S> const kernel{spheres, radii};
+    space.launch(kernel.blocks(), kernel);
   } else {
-    radius_histogram_kernel<S> const body{spheres, radii};
-    space.launch(grid_size<Space>(spheres.size(), body), body);
+    radius_histogram_kernel<S> const kernel{spheres, radii};
+    space.launch(grid_size<Space>(spheres.size(), kernel), kernel);
   }
   return space.read(radii);
 }

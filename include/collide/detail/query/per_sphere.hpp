@@ -106,7 +106,7 @@ struct per_sphere_query {
 
   template <class Block>
   struct scratch {
-    pipeline_storage<Block, items_per_thread> hits;
+    pipeline_storage<Block, items_per_thread> pipeline;
     std::uint32_t unfinished;  ///< how often a thread had more to do; only rises
   };
 
@@ -115,7 +115,7 @@ struct per_sphere_query {
     typename Block::template thread_private<progress> own;
     std::size_t const base = block.index() * Block::num_threads * Block::items;
     block.for_each_thread([&](int thread_rank) {
-      pipeline.reset(s.hits, thread_rank);
+      pipeline.reset(s.pipeline, thread_rank);
       if (thread_rank == 0) s.unfinished = 0;
       own[thread_rank].k = 0;
       start(own[thread_rank], base + static_cast<std::size_t>(thread_rank), Block::num_threads, Block::items);
@@ -128,7 +128,7 @@ struct per_sphere_query {
           std::size_t const i = first + static_cast<std::size_t>(p.k) * Block::num_threads;
           auto const sphere = pipeline.spheres[i];
           bool const more = next_candidates(ref, sphere, p.at, room, [&](id t) {
-            pipeline.push(block, s.hits, {static_cast<id>(i), t}, sphere);
+            pipeline.push(block, s.pipeline, {static_cast<id>(i), t}, sphere);
             --room;
           });
           if (more) break;
@@ -137,12 +137,12 @@ struct per_sphere_query {
         }
         if (p.k < Block::items) block.add(s.unfinished, 1);
       });
-      pipeline.drain_if_full(block, s.hits);
+      pipeline.drain_if_full(block, s.pipeline);
       std::uint32_t const unfinished = block.broadcast(s.unfinished);
       if (unfinished == seen) break;
       seen = unfinished;
     }
-    pipeline.drain(block, s.hits);
+    pipeline.drain(block, s.pipeline);
   }
 
  private:
@@ -176,7 +176,7 @@ struct batched_per_sphere_query {
   template <class Block>
   struct scratch {
     static constexpr std::uint32_t room = 64;
-    pipeline_storage<Block> hits;
+    pipeline_storage<Block> pipeline;
     candidate_batch<S> batch;
     id found[room];
     std::uint32_t size;
@@ -184,7 +184,7 @@ struct batched_per_sphere_query {
 
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
-    pipeline.reset(s.hits, 0);
+    pipeline.reset(s.pipeline, 0);
     s.batch.size = 0;
     std::size_t const begin = block.index() * Block::items, size = pipeline.spheres.size();
     for (std::size_t i = begin; i < begin + Block::items && i < size; ++i) {
@@ -207,7 +207,7 @@ struct batched_per_sphere_query {
       if constexpr (!is_discrete<NarrowPhase, S>) flush(block, s);
     }
     flush(block, s);
-    pipeline.drain(block, s.hits);
+    pipeline.drain(block, s.pipeline);
   }
 
  private:
@@ -217,15 +217,15 @@ struct batched_per_sphere_query {
       s.batch.add(p, pipeline.mesh[p.triangle], own);
       if (s.batch.size == s.batch.room) flush(block, s);
     } else {
-      pipeline.push(block, s.hits, p, own);
-      pipeline.drain_if_full(block, s.hits);
+      pipeline.push(block, s.pipeline, p, own);
+      pipeline.drain_if_full(block, s.pipeline);
     }
   }
 
   template <class Block>
   void flush(Block& block, scratch<Block>& s) const {
     if constexpr (in_batches<NarrowPhase, S>) {
-      if (s.batch.size != 0) s.batch.decide(pipeline, block, s.hits);
+      if (s.batch.size != 0) s.batch.decide(pipeline, block, s.pipeline);
     }
   }
 };
@@ -234,10 +234,10 @@ struct batched_per_sphere_query {
 /// reference cannot go on by itself a cursor is the number of a triangle: the next candidate is that of the least
 /// number from there on, for which all are enumerated.
 template <class S, class Ref>
-struct per_sphere_lookup : triangle_ref<S> {
+struct per_sphere_ref : triangle_ref<S> {
   Ref ref;
 
-  COLLIDE_HD per_sphere_lookup const& opened() const { return *this; }
+  COLLIDE_HD per_sphere_ref const& without_overflown_grids() const { return *this; }
   template <class Sphere>
   COLLIDE_HD bool empty([[maybe_unused]] Sphere const& s) const {
     if (this->mesh.size() == 0) return true;

@@ -46,8 +46,8 @@ struct query_pass {
   sphere_view_for<NarrowPhase, S> spheres;
   deferred_pair_buffer& deferred;
 
-  template <class Handle>
-  void operator()(Handle const& handle) const;
+  template <class Output>
+  void operator()(Output const& output) const;
 
   /// About how many hits there are, rather too many; 0 if the index cannot tell.
   std::uint64_t expected_hits() const;
@@ -96,7 +96,7 @@ struct mesh_search {
   }
 };
 
-/// Kernel body of `for_each` over spheres.
+/// Kernel functor of `for_each` over spheres.
 template <class S, class Ref, class F>
 struct search_of_sphere {
   Ref ref;
@@ -125,25 +125,25 @@ void query_pass<Index, NarrowPhase, Space, S>::search(F const& f) const {
 }
 
 template <class Index, class NarrowPhase, class Space, class S>
-template <class Handle>
-void query_pass<Index, NarrowPhase, Space, S>::operator()(Handle const& handle) const {
+template <class Output>
+void query_pass<Index, NarrowPhase, Space, S>::operator()(Output const& output) const {
   static_assert(
-      is_valid<output_allocate, Handle>,
+      is_valid<output_allocate, Output>,
       "collide: what a sink passes to query has a const member allocate(n) that returns the number of a slot");
-  static_assert(is_valid<output_store, Handle, hit<NarrowPhase, S>>,
+  static_assert(is_valid<output_store, Output, hit<NarrowPhase, S>>,
                 "collide: what a sink passes to query has a const member store(slot, hit)");
-  static_assert(is_plain<Handle> || Space::host_accessible,
+  static_assert(is_plain<Output> || Space::host_accessible,
                 "collide: what a sink hands to the device must be a plain value");
   if (mesh.size() != 0 && spheres.size() != 0) {
     if constexpr (query_tuning<Space>::defers_exact_tests && filtered_predicate<NarrowPhase>::value) {
-      query_two_pass<NarrowPhase>(space, index, mesh, spheres, handle, deferred);
+      query_two_pass<NarrowPhase>(space, index, mesh, spheres, output, deferred);
       return;
     } else {
-      index.template query<NarrowPhase>(space, spheres, handle);
+      index.template query<NarrowPhase>(space, spheres, output);
     }
   }
-  if constexpr (finishes<Handle>::value) {
-    if (has_end_pass(handle)) space.for_each(1, finish_only<Handle>{handle});
+  if constexpr (has_end_pass<Output>::value) {
+    if (wants_end_pass(output)) space.for_each(1, end_pass_kernel<Output>{output});
   }
 }
 

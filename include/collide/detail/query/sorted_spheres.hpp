@@ -34,7 +34,7 @@
 
 namespace collide::detail {
 
-/// Kernel body of a block of one thread: the longest displacement, squared, and the farthest coordinate, as bits, of
+/// Kernel functor of a block of one thread: the longest displacement, squared, and the farthest coordinate, as bits, of
 /// which the larger are those of the larger number. What is NaN does not count, also where the compiler takes it that
 /// there is none.
 template <class S>
@@ -53,12 +53,12 @@ struct measure_displacements {
   template <class Block>
   void operator()(Block& block, nothing&) const {
     constexpr std::size_t share = batches * Block::items;
-    std::size_t const begin = block.index() * share, end = smaller(begin + share, spheres.size());
+    std::size_t const begin = block.index() * share, end = min(begin + share, spheres.size());
     uint_for<S> lengths[Block::items] = {}, fars[Block::items] = {};  // one would be compared one after the other
     multiversioned([&] { measure(begin, end, lengths, fars); });
     for (int k = 1; k < Block::items; ++k) {
-      lengths[0] = larger(lengths[0], lengths[k]);
-      fars[0] = larger(fars[0], fars[k]);
+      lengths[0] = max(lengths[0], lengths[k]);
+      fars[0] = max(fars[0], fars[k]);
     }
     fetch_max(squared_length, lengths[0]);
     fetch_max(farthest, fars[0]);
@@ -68,13 +68,13 @@ struct measure_displacements {
   template <std::size_t n>
   void measure(std::size_t begin, std::size_t end, uint_for<S> (&lengths)[n], uint_for<S> (&fars)[n]) const {
     for (std::size_t first = begin; first < end; first += n) {
-      moving_batch<S, n> batch;
+      moving_pack<S, n> batch;
       batch.load(spheres, first);
       for (std::size_t k = 0; k < n; ++k) {
         S const dx = batch.dx[k], dy = batch.dy[k], dz = batch.dz[k];
-        lengths[k] = larger(lengths[k], magnitude_bits(dx * dx + (dy * dy + dz * dz)));
-        uint_for<S> const xy = larger(magnitude_bits(batch.x[k]), magnitude_bits(batch.y[k]));
-        fars[k] = larger(fars[k], larger(xy, magnitude_bits(batch.z[k])));
+        lengths[k] = max(lengths[k], magnitude_bits(dx * dx + (dy * dy + dz * dz)));
+        uint_for<S> const xy = max(magnitude_bits(batch.x[k]), magnitude_bits(batch.y[k]));
+        fars[k] = max(fars[k], max(xy, magnitude_bits(batch.z[k])));
       }
     }
   }
@@ -97,8 +97,8 @@ class sorted_spheres {
   template <class Space>
   void measure(Space& space, mesh_view<S> const& mesh, mesh_statistics<S>* summary) {
     auto* const groups = groups_.reserve(space.resource(), triangle_group<S>::count(mesh.size()));
-    measure_groups<S> const body{mesh, summary, groups};
-    space.launch(body.blocks(), body);
+    measure_groups<S> const kernel{mesh, summary, groups};
+    space.launch(kernel.blocks(), kernel);
   }
 
   /// Marks the cells that triangles of the mesh measured last touch. To be called for new grids, the cells of each of
@@ -119,9 +119,9 @@ class sorted_spheres {
   S reach_of(Space& space, moving_sphere_view<S> const& spheres) {
     auto* const found = measures_.reserve(space.resource(), 2);
     space.fill(found, 0, 2 * sizeof *found);
-    measure_displacements<S> const body{spheres, found, found + 1};
+    measure_displacements<S> const kernel{spheres, found, found + 1};
     constexpr std::size_t share = measure_displacements<S>::batches * 64;
-    space.launch((spheres.size() + share - 1) / share, body);
+    space.launch((spheres.size() + share - 1) / share, kernel);
     S const length = sqrt_rn(from_bits<S>(space.read(found))), far = from_bits<S>(space.read(found + 1));
     // of none is it larger, but for some rounding
     return swept_bounding_sphere(moving_sphere<S>{{{far, far, far}, spheres.common_radius()}, {length, S(0), S(0)}})
@@ -139,17 +139,17 @@ class sorted_spheres {
     std::size_t const blocks = (spheres.size() + share - 1) / share;
     std::size_t room = placed_.capacity();
     for (bool placed = false; !placed; room = static_cast<std::size_t>(*total + *total / 4)) {
-      place body{spheres, grids_, grid_count_, occupied_.data(), everywhere(), nullptr, total, 0};
+      place kernel{spheres, grids_, grid_count_, occupied_.data(), everywhere(), nullptr, total, 0};
       space.fill(total, 0, sizeof *total);
       if (room == 0) {  // of a sample, to begin with
-        body.stride = blocks / 32 + 1;
-        space.launch((blocks - 1) / body.stride + 1, body);
-        *total = *total * body.stride + 1024;
+        kernel.stride = blocks / 32 + 1;
+        space.launch((blocks - 1) / kernel.stride + 1, kernel);
+        *total = *total * kernel.stride + 1024;
         continue;
       }
-      body.to = placed_.reserve(space.resource(), room);
-      body.capacity = room;
-      space.launch(blocks, body);
+      kernel.to = placed_.reserve(space.resource(), room);
+      kernel.capacity = room;
+      space.launch(blocks, kernel);
       placed = *total <= room;
     }
     auto const n = static_cast<std::size_t>(*total);
@@ -178,7 +178,7 @@ class sorted_spheres {
   /// Makes room for up to so many spheres.
   template <class Space>
   void reserve(Space& space, std::size_t spheres) {
-    std::size_t const room = larger(placed_.capacity(), max_levels * spheres);
+    std::size_t const room = max(placed_.capacity(), max_levels * spheres);
     placed_.reserve(space.resource(), room);
     order_.reserve(space.resource(), room);
     total_.reserve(space.resource(), 1);
@@ -197,16 +197,16 @@ class sorted_spheres {
   std::uint64_t expected_hits(Space& space, mesh_view<S> const& mesh, std::size_t all) const {
     if (*total_.data() < all / 4) return 0;
     std::uint64_t hits = 0;
-    sample_hits<S, NarrowPhase> const body{mesh, in_cells(), &hits};
-    space.launch(grid_size<Space>(mesh.size(), body), body);
-    return body.all_of(hits);
+    sample_hits<S, NarrowPhase> const kernel{mesh, in_cells(), &hits};
+    space.launch(grid_size<Space>(mesh.size(), kernel), kernel);
+    return kernel.all_of(hits);
   }
 
   /// One pass: the triangles look for the spheres.
   template <class NarrowPhase, class Space, class Output>
   void query(Space& space, candidate_pipeline<S, NarrowPhase, Output> const& pipeline) const {
-    query_triangle_major<S, NarrowPhase, Output> const body{pipeline, in_cells()};
-    space.launch(grid_size<Space>(pipeline.mesh.size(), body), body);
+    query_triangle_major<S, NarrowPhase, Output> const kernel{pipeline, in_cells()};
+    space.launch(grid_size<Space>(pipeline.mesh.size(), kernel), kernel);
   }
 
  private:

@@ -12,31 +12,32 @@
 
 namespace collide::detail {
 
-/// Kernel body: each thread locates some spheres; the few that may be near triangles are gathered in scratch memory, so
-/// that threads expand the cells of as many of them at a time as there are threads; the entries of these cells are
+/// Kernel functor: each thread locates some spheres; the few that may be near triangles are gathered in scratch memory,
+/// so that threads expand the cells of as many of them at a time as there are threads; the entries of these cells are
 /// spread evenly over all threads.
 template <class S, class NarrowPhase, class Output>
 struct bucket_query {
   static constexpr int items = 4;
   template <class Block>
-  static constexpr int residency = is_discrete<NarrowPhase, S>&& filtered_predicate<NarrowPhase>::value ? 4 : 3;
+  static constexpr int min_blocks_per_sm = is_discrete<NarrowPhase, S>&& filtered_predicate<NarrowPhase>::value ? 4 : 3;
 
   using compact_type = compact_spheres<S, NarrowPhase>;
   using expand_type = expand_cells<S, NarrowPhase, Output>;
 
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
   bucket_ref<S> triangles;
-  std::size_t blocks;  ///< that share the spheres
-  std::size_t beside;  ///< so many threads of a block take spheres next to each other
+  std::size_t blocks;      ///< that share the spheres
+  std::size_t run_length;  ///< so many threads of a block take spheres next to each other
 
   /// Shares `n` spheres among as many blocks as are at work at a time, if there are enough.
   template <class Space>
-  void share(Space const& space, std::size_t n) {
+  void choose_grid_size(Space const& space, std::size_t n) {
     using block = typename Space::template block<bucket_query>;
-    constexpr auto warp = static_cast<std::size_t>(block::warp_size), of_lane = static_cast<std::size_t>(block::items);
+    constexpr auto warp = static_cast<std::size_t>(block::warp_size),
+                   per_thread = static_cast<std::size_t>(block::items);
     std::size_t const wave = space.template max_resident_blocks<bucket_query>();
-    for (beside = warp; beside > 4 && n < 2 * wave * beside * of_lane;) beside /= 2;
-    blocks = smaller(wave, (n + beside * of_lane - 1) / (beside * of_lane));
+    for (run_length = warp; run_length > 4 && n < 2 * wave * run_length * per_thread;) run_length /= 2;
+    blocks = min(wave, (n + run_length * per_thread - 1) / (run_length * per_thread));
   }
 
   template <class Block>
@@ -47,16 +48,16 @@ struct bucket_query {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
-    occupancy_view<S> const marks = triangles.occupancy();
+    occupancy_view<S> const occupancy = triangles.occupancy();
     bool const has_one_level =
         pipeline.spheres.one_radius() && triangles.has_single_cell_lookup(pipeline.spheres.common_radius());
-    bucket_ref<S> const grids = triangles.opened();
-    compact_type const spheres{pipeline.spheres, grids, marks, has_one_level, blocks, beside};
+    bucket_ref<S> const grids = triangles.without_overflown_grids();
+    compact_type const spheres{pipeline.spheres, grids, occupancy, has_one_level, blocks, run_length};
     expand_type const cells{pipeline, grids};
     typename Block::template thread_private<std::size_t> next;
     block.for_each_thread([&](int thread_rank) {
       next[thread_rank] = spheres.first_of(block, thread_rank);
-      pipeline.reset(s.cells.hits, thread_rank);
+      pipeline.reset(s.cells.pipeline, thread_rank);
       if (thread_rank != 0) return;
       s.spheres.found = {0, 0, 0};
       s.cells.found = {0, 0};
@@ -64,16 +65,16 @@ struct bucket_query {
     for (bool more = true; more;) {
       block.for_each_thread([&](int thread_rank) {
         spheres.compact(block, s.spheres, next[thread_rank]);
-        if (next[thread_rank] < pipeline.spheres.size()) block.add(s.spheres.found.pending, 1);
+        if (next[thread_rank] < pipeline.spheres.size()) block.add(s.spheres.found.threads_with_more, 1);
       });
       typename compact_type::counts const found = block.broadcast(s.spheres.found);
-      more = found.pending != 0;
+      more = found.threads_with_more != 0;
       if (found.active != 0) cells.expand(block, s.cells, s.spheres, found);
       block.for_each_thread([&](int thread_rank) {
         if (thread_rank == 0) s.spheres.found = {0, 0, 0};
       });
     }
-    pipeline.drain(block, s.cells.hits);
+    pipeline.drain(block, s.cells.pipeline);
   }
 };
 

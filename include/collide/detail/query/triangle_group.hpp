@@ -34,22 +34,22 @@ struct triangle_group {
   /// Takes triangles `first` and the next ones of a mesh, as many as there are. The boxes of what is not finite, or not
   /// there, are empty. Its loops are for the processor's vector unit.
   void load(mesh_view<S> const& mesh, std::size_t first) {
-    std::size_t const n = smaller(mesh.size() - first, std::size_t{size});
+    std::size_t const n = min(mesh.size() - first, std::size_t{size});
     gather(mesh, first, n);
     uint_for<S> mask = 0;
     for (std::size_t i = 0; i < size; ++i) {
       uint_for<S> bits = 0;
       for (auto const& corner : corners) {
-        for (auto const& x : corner) bits = larger(bits, to_bits(x[i]) & ~ieee_traits<S>::sign_mask);
+        for (auto const& x : corner) bits = max(bits, to_bits(x[i]) & ~ieee_traits<S>::sign_mask);
       }
       bool const finite = bits < ieee_traits<S>::exponent_mask;
       constexpr S far = std::numeric_limits<S>::max();
       S extent = 0;
       for (int k = 0; k < 3; ++k) {
         S const a = corners[0][k][i], b = corners[1][k][i], c = corners[2][k][i];
-        lower[k][i] = select(finite, smaller(smaller(a, b), c), far);
-        upper[k][i] = select(finite, larger(larger(a, b), c), -far);
-        extent = larger(extent, upper[k][i] - lower[k][i]);
+        lower[k][i] = select(finite, min(min(a, b), c), far);
+        upper[k][i] = select(finite, max(max(a, b), c), -far);
+        extent = max(extent, upper[k][i] - lower[k][i]);
       }
       padding[i] = triangle_aabb<S>::padding_of(extent);
       mask |= finite ? bit[i] : uint_for<S>(0);
@@ -59,10 +59,10 @@ struct triangle_group {
     }
     there = static_cast<std::uint32_t>(mask) & ((1u << n) - 1);
     for (int k = 0; k < 3; ++k) {
-      all.lower[k] = least(lower[k], [](S a, S b) { return smaller(a, b); });
-      all.upper[k] = least(upper[k], [](S a, S b) { return larger(a, b); });
+      all.lower[k] = least(lower[k], [](S a, S b) { return min(a, b); });
+      all.upper[k] = least(upper[k], [](S a, S b) { return max(a, b); });
     }
-    all.padding = least(padding, [](S a, S b) { return larger(a, b); });
+    all.padding = least(padding, [](S a, S b) { return max(a, b); });
   }
 
   /// True if there are as many triangles, and all are finite.
@@ -94,7 +94,7 @@ struct triangle_group {
   bool is_inside(sphere<S> const& shape) const {
     S sum = 0;
     for (int k = 0; k < 3; ++k) {
-      S const far = larger(shape.centre[k] - all.lower[k], all.upper[k] - shape.centre[k]);
+      S const far = max(shape.centre[k] - all.lower[k], all.upper[k] - shape.centre[k]);
       sum += far * far;
     }
     constexpr S u = ieee_traits<S>::unit_roundoff;
@@ -131,7 +131,7 @@ struct triangle_group {
   void gather(mesh_view<S> const& mesh, std::size_t first, std::size_t n) {
     auto const take = [&](std::size_t i, auto const& corner_of) {
       for (unsigned c = 0; c < 3; ++c) {
-        auto const& p = corner_of(first + smaller(i, n - 1), c);
+        auto const& p = corner_of(first + min(i, n - 1), c);
         for (int k = 0; k < 3; ++k) corners[c][k][i] = p[k];
       }
     };
@@ -158,7 +158,7 @@ struct triangle_group {
   }
 
   S outside(int k, std::uint32_t i, S x) const {
-    S const distance = larger(lower[k][i] - x, x - upper[k][i]);
+    S const distance = max(lower[k][i] - x, x - upper[k][i]);
     return select(distance > 0, distance, S(0));
   }
 };

@@ -14,7 +14,7 @@
 
 namespace collide::detail {
 
-/// Kernel body of a block of one thread: triangles look for spheres in the cells that they touch.
+/// Kernel functor of a block of one thread: triangles look for spheres in the cells that they touch.
 template <class S, class NarrowPhase, class Output>
 struct query_triangle_major {
   static constexpr int items = 4;
@@ -37,17 +37,17 @@ struct query_triangle_major {
     triangle_group<S> group;
     bool is_loaded;  ///< the group: most groups have no sphere near them, and are not read
     candidate_batch<S> batch;
-    pipeline_storage<Block> hits;
+    pipeline_storage<Block> pipeline;
   };
 
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::num_threads == 1, "collide: triangles look for spheres in blocks of one thread");
     constexpr std::uint32_t n = triangle_group<S>::size;
-    pipeline.reset(s.hits, 0);
+    pipeline.reset(s.pipeline, 0);
     s.count = 0;
     s.batch.size = 0;
-    std::size_t const begin = block.index() * Block::items, end = smaller(begin + Block::items, pipeline.mesh.size());
+    std::size_t const begin = block.index() * Block::items, end = min(begin + Block::items, pipeline.mesh.size());
     bool const some_everywhere = in.ends[in.everywhere] != in.ends[in.everywhere + 1];
     for (std::size_t first = begin; first < end; first += n) {
       triangle_aabb<S> const& around = in.groups[first / n];
@@ -73,8 +73,8 @@ struct query_triangle_major {
       multiversioned([&] { look(block, s, first, near & ~together); });
       test(block, s);
     }
-    if constexpr (in_batches<NarrowPhase, S>) s.batch.decide(pipeline, block, s.hits);
-    pipeline.drain(block, s.hits);
+    if constexpr (in_batches<NarrowPhase, S>) s.batch.decide(pipeline, block, s.pipeline);
+    pipeline.drain(block, s.pipeline);
   }
 
  private:
@@ -93,7 +93,7 @@ struct query_triangle_major {
       auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
         std::uint32_t const last = in.ends[cell + n];
         for (std::uint32_t i = in.ends[cell]; i < last; i += in.spheres.simd_width) {
-          std::uint32_t const here = in.spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+          std::uint32_t const here = in.spheres.reaching(around, i) & (0xffu >> (8 - min(last - i, 8u)));
           s.found[s.count] = {i, static_cast<id>(first) + k, here};
           s.count += here != 0;  // no branch: it would often be mispredicted
           if (s.count == s.room) test(block, s);
@@ -115,7 +115,7 @@ struct query_triangle_major {
     auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
       std::uint32_t const last = in.ends[cell + n];
       for (std::uint32_t i = in.ends[cell]; i < last; i += in.spheres.simd_width) {
-        std::uint32_t near = in.spheres.reaching(around, i) & (0xffu >> (8 - smaller(last - i, 8u)));
+        std::uint32_t near = in.spheres.reaching(around, i) & (0xffu >> (8 - min(last - i, 8u)));
         if (near != 0) load(s, first);
         for (; near != 0; near &= near - 1) {
           std::uint32_t const k = i + static_cast<std::uint32_t>(__builtin_ctz(near));
@@ -157,8 +157,8 @@ struct query_triangle_major {
       if constexpr (is_discrete<NarrowPhase, S> && filtered_predicate<NarrowPhase>::value) {
         if (r.mask == all && s.group.is_inside(in.spheres[r.sphere])) {
           for (std::uint32_t k = 0; k < n; ++k) {
-            pipeline.push_hit(block, s.hits, {in.spheres.number[r.sphere], first + k});
-            pipeline.drain_if_full(block, s.hits);
+            pipeline.push_hit(block, s.pipeline, {in.spheres.number[r.sphere], first + k});
+            pipeline.drain_if_full(block, s.pipeline);
           }
           continue;
         }
@@ -176,11 +176,11 @@ struct query_triangle_major {
                  [[maybe_unused]] triangle<S> const& t) const {
     pair const p{in.spheres.number[place], number};
     if constexpr (in_batches<NarrowPhase, S>) {
-      if (s.batch.size == s.batch.room) s.batch.decide(pipeline, block, s.hits);
+      if (s.batch.size == s.batch.room) s.batch.decide(pipeline, block, s.pipeline);
       s.batch.add(p, t, sphere_of(place));
     } else {
-      pipeline.push(block, s.hits, p, sphere_of(place));
-      pipeline.drain_if_full(block, s.hits);
+      pipeline.push(block, s.pipeline, p, sphere_of(place));
+      pipeline.drain_if_full(block, s.pipeline);
     }
   }
 

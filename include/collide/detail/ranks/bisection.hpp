@@ -117,8 +117,8 @@ class bisection {
         std::uint64_t* const most = mine.data() + 6 * (at[i] - first);
         for (std::size_t k = 0; k < 3; ++k) {
           double const x = static_cast<double>(centres[3 * i + k]);
-          most[k] = larger(most[k], to_ordered_bits(-x));
-          most[3 + k] = larger(most[3 + k], to_ordered_bits(x));
+          most[k] = max(most[k], to_ordered_bits(-x));
+          most[3 + k] = max(most[3 + k], to_ordered_bits(x));
         }
       }
     });

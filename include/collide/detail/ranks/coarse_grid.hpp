@@ -25,8 +25,8 @@ COLLIDE_HD aabb<double> reach_of(sphere<S> const& s, vec3<S> const& displacement
     double const size = (from < 0 ? -from : from) + (along < 0 ? -along : along);
     double const most = r * (1 + 16 * unit) + 16 * unit * (extent + (along < 0 ? -along : along)) + 0x1p-48 * size +
                         2 * sqrt_rn(static_cast<double>(tiny));
-    box.lower[k] = smaller(from, from + along) - most;
-    box.upper[k] = larger(from, from + along) + most;
+    box.lower[k] = min(from, from + along) - most;
+    box.upper[k] = max(from, from + along) + most;
   }
   return box;
 }
@@ -112,7 +112,7 @@ class coarse_grid {
  private:
   /// Rises with x.
   COLLIDE_HD int cell(int axis, double x) const {
-    double const inside = smaller(larger(x, frame_.lower[axis]), frame_.upper[axis]);
+    double const inside = min(max(x, frame_.lower[axis]), frame_.upper[axis]);
     double const at = (inside / 2 - frame_.lower[axis] / 2) * scale_[axis];
     return at < cells_across - 1 ? static_cast<int>(at) : cells_across - 1;
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <collide/detail/execution/host_array.hpp>
-#include <collide/detail/ranks/mail.hpp>
+#include <collide/detail/ranks/exchange_buffer.hpp>
 #include <collide/detail/ranks/rank_map.hpp>
 #include <collide/detail/streaming/numbered_triangle.hpp>
 #include <collide/memory.hpp>
@@ -28,7 +28,7 @@ class divided_mesh {
     std::uint64_t const first = count_before(ranks, mesh.size()), size = mesh.size();
     ranks.reduce(&size, &all_, 1, reduction::sum);
     if (all_ >= no_id) throw error("collide: a mesh has at most 2^32 - 2 triangles, also on many ranks");
-    mail<numbered_triangle<S>> out, in;
+    exchange_buffer<numbered_triangle<S>> out, in;
     auto bounds = aabb<double>::empty();
     together(ranks, [&] {
       buffer<S> memory;
@@ -76,7 +76,7 @@ class divided_mesh {
   /// counted in triangles; which of a cell's places a triangle has is as good as random, and depends on its number
   /// alone.
   template <class Ranks>
-  static void sort_among(Ranks const& ranks, coarse_grid const& grid, mail<numbered_triangle<S>>& out) {
+  static void sort_among(Ranks const& ranks, coarse_grid const& grid, exchange_buffer<numbered_triangle<S>>& out) {
     std::vector<std::uint64_t> mine, ends;
     std::vector<std::size_t> places;
     together(ranks, [&] {
@@ -89,8 +89,8 @@ class divided_mesh {
     for (std::size_t p = 1; p < ends.size(); ++p) ends[p] += ends[p - 1];
     std::uint64_t const all = ends.back(), n = static_cast<std::uint64_t>(ranks.size());
     together(ranks, [&] {
-      mail<numbered_triangle<S>> sorted;
-      fill_mail(sorted, ranks.size(), [&](auto const& put) {
+      exchange_buffer<numbered_triangle<S>> sorted;
+      fill_exchange_buffer(sorted, ranks.size(), [&](auto const& put) {
         for (std::size_t i = 0; i < places.size(); ++i) {
           std::uint64_t const begin = places[i] == 0 ? 0 : ends[places[i] - 1], room = ends[places[i]] - begin;
           std::uint64_t const at = begin + out.items[i].number * std::uint64_t{0x9e3779b1} % room;

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include <collide/detail/ranks/device_exchange_buffer.hpp>
 #include <collide/detail/ranks/divided_mesh.hpp>
 #include <collide/detail/ranks/particle_places.hpp>
 #include <collide/detail/ranks/particle_rows.hpp>
-#include <collide/detail/ranks/routes.hpp>
-#include <collide/detail/ranks/space_mail.hpp>
+#include <collide/detail/ranks/send_plan.hpp>
 #include <collide/simulation.cuh>
 
 namespace collide::detail {
@@ -42,7 +42,7 @@ class part_of_simulation {
   template <class List>
   using rows = std::vector<particle_row<S, List>>;
 
-  static constexpr bool meets = effects_type::meets;
+  static constexpr bool any_pair_contact = effects_type::any_pair_contact;
   static constexpr bool has_absent = contains<all_columns, alive>;
 
   template <class... Argument>
@@ -53,10 +53,10 @@ class part_of_simulation {
   space_type& space() { return simulation_.space_; }
   std::size_t own() const { return simulation_.state_.own; }
 
-  void set(sphere_view<S> const& particles, S const* velocities, numbers_of_all const& all,
+  void set(sphere_view<S> const& particles, S const* velocities, global_counts const& all,
            radii_of_all<S> const& radii) {
     std::size_t const n = particles.size();
-    capacity_ = larger(n + static_cast<std::size_t>(all.free_size), std::size_t{1});
+    capacity_ = max(n + static_cast<std::size_t>(all.free_size), std::size_t{1});
     simulation_.place(particles, velocities, capacity_);
     start(n, all, radii);
     simulation_.prepare();
@@ -86,17 +86,17 @@ class part_of_simulation {
   /// Takes particles, time, effects and bodies of a checkpoint: `mine` particles, and free places. One rank of all
   /// `has_sums`: counts of all ranks.
   template <class Checkpoint>
-  void restore(Checkpoint const& saved, std::size_t mine, numbers_of_all const& all, bool has_sums) {
+  void restore(Checkpoint const& saved, std::size_t mine, global_counts const& all, bool has_sums) {
     auto const& numbers = saved.numbers();
-    S largest = larger(numbers.largest_radius, numbers.common_radius), widest = largest < 0 ? -largest : largest;
+    S largest = max(numbers.largest_radius, numbers.common_radius), widest = largest < 0 ? -largest : largest;
     if constexpr (contains<all_columns, radius>) {
       for (S const r : saved.template column<radius>()) {
-        largest = larger(largest, r);
-        widest = larger(widest, r < 0 ? -r : r);
+        largest = max(largest, r);
+        widest = max(widest, r < 0 ? -r : r);
       }
     }
     auto const free = static_cast<std::size_t>(all.free_size);
-    capacity_ = larger(mine + free, std::size_t{1});
+    capacity_ = max(mine + free, std::size_t{1});
     simulation_.place({}, nullptr, capacity_);
     start(mine, all, {numbers.common_radius, {numbers.smallest_radius, largest}, widest});
     auto const& state = simulation_.state_;
@@ -129,13 +129,13 @@ class part_of_simulation {
   void begin_step(S dt) {
     simulation_.time_ += static_cast<double>(dt);
     simulation_.begin_step(dt);
-    if (meets && knows_others_ && own() != 0) look_for_moved();
+    if (any_pair_contact && knows_others_ && own() != 0) look_for_moved();
   }
   /// Whether there are copies of all that this rank's own particles meet, as long as nothing has moved far.
   bool knows_others() const { return knows_others_; }
   /// After `begin_step`: true if copies of particles may be missing somewhere in the step. Waits.
   bool has_moved() const {
-    if (!meets) return false;
+    if (!any_pair_contact) return false;
     if (!knows_others_) return true;
     return own() != 0 && simulation_.space_.read(flag_.data()) != 0;
   }
@@ -149,11 +149,11 @@ class part_of_simulation {
   void meet(S dt) { simulation_.meet(with_copies(), dt); }
   /// Whether what a source makes may not be born, which others must know before particles meet.
   bool refuses_births(S dt) const {
-    return meets && effects().due(static_cast<double>(dt)) > 0 && effects().makes_only_where_free();
+    return any_pair_contact && effects().due(static_cast<double>(dt)) > 0 && effects().makes_only_where_free();
   }
   /// Says which of those that a source has made here are not born.
   void settle_births(S dt) {
-    if constexpr (meets) {
+    if constexpr (any_pair_contact) {
       if (own() == 0) return;
       simulation_.neighbours_.renew(space(), with_copies());
       simulation_.settle_births(with_copies(), dt);
@@ -200,28 +200,28 @@ class part_of_simulation {
   }
 
   /// Finds the particles that are to be on other ranks than `self`. Waits.
-  void find_leaving(brick_lookup const& bricks, int self, int ranks, routes& found) {
+  void find_leaving(brick_lookup const& bricks, int self, int ranks, send_plan& found) {
     found.find(space(), detail::find_leaving<S, state_type>{state(), bricks, self, ranks, {}}, own(), own(), ranks);
   }
   /// Finds the particles of which other ranks than `self` must have copies. Waits.
-  void find_copied(brick_lookup const& bricks, int self, int ranks, routes& found) {
+  void find_copied(brick_lookup const& bricks, int self, int ranks, send_plan& found) {
     found.find(space(), detail::find_copied<S, state_type>{state(), bricks, reach_, self, {}}, own(), own(), ranks);
   }
 
   /// Takes the rows of particles that leave.
-  void pack_all(routes const& leaving, space_mail<particle_row<S, all_columns>>& to) {
+  void pack_all(send_plan const& leaving, device_exchange_buffer<particle_row<S, all_columns>>& to) {
     to.counts = leaving.counts();
     detail::pack(space(), state(), routed_places{leaving.data()}, leaving.size(), to.resize(space()));
   }
 
   /// Takes particles away that have left, and adds others.
-  void replace(routes const& left, space_mail<particle_row<S, all_columns>> const& coming) {
+  void replace(send_plan const& left, device_exchange_buffer<particle_row<S, all_columns>> const& coming) {
     knows_others_ = false;
     std::vector<std::uint32_t> const leaving = rising_places(left);
     std::size_t const before = own(), after = before - leaving.size() + coming.size();
     make_room(after);
-    std::vector<std::uint32_t> to(
-        leaving.begin(), leaving.begin() + static_cast<std::ptrdiff_t>(smaller(leaving.size(), coming.size())));
+    std::vector<std::uint32_t> to(leaving.begin(),
+                                  leaving.begin() + static_cast<std::ptrdiff_t>(min(leaving.size(), coming.size())));
     for (std::size_t i = before; to.size() < coming.size(); ++i) to.push_back(static_cast<std::uint32_t>(i));
     unpack(to, coming.data());
     if (coming.size() < leaving.size()) close_gaps(leaving, coming.size(), after);
@@ -233,7 +233,7 @@ class part_of_simulation {
   void expect_copies(std::size_t n) {
     make_room(own() + n);
     copies_ = n;
-    if constexpr (meets)
+    if constexpr (any_pair_contact)
       simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_.largest, simulation_.radii_.smallest);
     auto* const resource = space().resource();
     last_centres_.reserve(resource, 3 * capacity_);
@@ -243,7 +243,7 @@ class part_of_simulation {
   }
 
   /// Writes what others know of particles.
-  void pack_seen(routes const& copied, particle_row<S, seen_columns>* to) {
+  void pack_seen(send_plan const& copied, particle_row<S, seen_columns>* to) {
     detail::pack(space(), state(), routed_places{copied.data()}, copied.size(), to);
   }
   /// Takes over what is known of all copies.
@@ -257,7 +257,7 @@ class part_of_simulation {
   state_type const& state() const { return simulation_.state_; }
   state_type with_copies() const {
     state_type all = simulation_.state_;
-    if constexpr (meets) all.size += copies_;
+    if constexpr (any_pair_contact) all.size += copies_;
     return all;
   }
 
@@ -268,7 +268,7 @@ class part_of_simulation {
   }
 
   /// The places of particles that go to ranks, by rising number. Those that go to a rank are so already.
-  std::vector<std::uint32_t> rising_places(routes const& of) {
+  std::vector<std::uint32_t> rising_places(send_plan const& of) {
     std::vector<pair> listed(of.size());
     if (!listed.empty()) space().copy_to_host(listed.data(), of.data(), listed.size());
     std::vector<std::uint32_t> places;
@@ -284,7 +284,7 @@ class part_of_simulation {
   }
 
   /// Numbers the particles, of which `n` are this rank's, and free places behind them.
-  void start(std::size_t n, numbers_of_all const& all, radii_of_all<S> const& radii) {
+  void start(std::size_t n, global_counts const& all, radii_of_all<S> const& radii) {
     std::size_t const room = n + static_cast<std::size_t>(all.free_size);
     describe(room, static_cast<std::size_t>(all.size), static_cast<std::size_t>(all.placed), radii.common);
     space().for_each(room, number_places<S, state_type>{simulation_.state_, n, all.first, all.first_free,

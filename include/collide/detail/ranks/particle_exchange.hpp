@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <collide/detail/ranks/bisection.hpp>
+#include <collide/detail/ranks/device_exchange_buffer.hpp>
 #include <collide/detail/ranks/part_of_simulation.hpp>
-#include <collide/detail/ranks/routes.hpp>
-#include <collide/detail/ranks/space_mail.hpp>
+#include <collide/detail/ranks/send_plan.hpp>
 
 namespace collide::detail {
 
@@ -21,7 +21,7 @@ class particle_exchange {
   using all_row = particle_row<S, typename Part::all_columns>;
   using seen_row = particle_row<S, typename Part::seen_columns>;
   template <class Ranks>
-  using transport_of = transport<Ranks, typename Part::space_type>;
+  using device_exchange_of = device_exchange<Ranks, typename Part::space_type>;
 
  public:
   /// Forgets the bricks: there are other particles.
@@ -40,7 +40,7 @@ class particle_exchange {
     });
     ranks.exchange_counts(sent_.counts.data(), received_.counts.data());
     together(ranks, [&] {
-      transport_of<Ranks>(ranks, part.space()).expect(received_);
+      device_exchange_of<Ranks>(ranks, part.space()).expect(received_);
       part.expect_copies(received_.size());
       pack(ranks, part);
     });
@@ -50,19 +50,19 @@ class particle_exchange {
   template <class Ranks>
   void pack(Ranks const& ranks, Part& part) {
     part.pack_seen(copied_, sent_.data());
-    transport_of<Ranks>(ranks, part.space()).stage(sent_);
+    device_exchange_of<Ranks>(ranks, part.space()).stage(sent_);
   }
 
   /// Sends it. All ranks come out of it.
   template <class Ranks>
   void send(Ranks const& ranks, Part& part) {
-    transport_of<Ranks>(ranks, part.space()).send(sent_, received_);
+    device_exchange_of<Ranks>(ranks, part.space()).send(sent_, received_);
   }
 
   /// Takes over what the others have sent.
   template <class Ranks>
   void unpack(Ranks const& ranks, Part& part) {
-    transport_of<Ranks>(ranks, part.space()).unstage(received_);
+    device_exchange_of<Ranks>(ranks, part.space()).unstage(received_);
     part.unpack_seen(received_.data());
   }
 
@@ -86,8 +86,8 @@ class particle_exchange {
   /// Brings particles to where they are to be. What this takes is not kept.
   template <class Ranks>
   void move(Ranks const& ranks, Part& part) {
-    routes leaving;
-    space_mail<all_row> going, coming;
+    send_plan leaving;
+    device_exchange_buffer<all_row> going, coming;
     together(ranks, [&] {
       part.find_leaving(lookup_, ranks.rank(), ranks.size(), leaving);
       part.pack_all(leaving, going);
@@ -100,8 +100,8 @@ class particle_exchange {
   buffer<brick> brick_memory_;
   brick_lookup lookup_{};
   bool is_divided_ = false;
-  routes copied_;  ///< this rank's particles of which others have copies
-  space_mail<seen_row> sent_, received_;
+  send_plan copied_;  ///< this rank's particles of which others have copies
+  device_exchange_buffer<seen_row> sent_, received_;
 };
 
 }  // namespace collide::detail

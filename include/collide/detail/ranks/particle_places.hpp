@@ -11,7 +11,7 @@
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/detail/particles/effect_list.hpp>
 #include <collide/detail/ranks/bisection.hpp>
-#include <collide/detail/ranks/routes.hpp>
+#include <collide/detail/ranks/send_plan.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {
@@ -29,7 +29,7 @@ inline constexpr bool begins_on_ranks<E, std::void_t<decltype(E::begins_on_ranks
 /// Refuses an effect that would do something else on ranks than on one.
 template <class E, class Space, class State, class S>
 constexpr bool check_on_ranks() {
-  static_assert(!begins_in<E, Space, State, S>::value || begins_on_ranks<E>,
+  static_assert(!has_begin_step<E, Space, State, S>::value || begins_on_ranks<E>,
                 "collide: an effect's begin_step sees the places of one rank alone: if it does the same to particles "
                 "wherever they are, the effect says static constexpr bool begins_on_ranks = true");
   static_assert(remembers_of<E>::type::size == 0,
@@ -39,13 +39,13 @@ constexpr bool check_on_ranks() {
 }
 
 /// What all ranks know of the particles of all when these are set.
-struct numbers_of_all {
+struct global_counts {
   std::uint64_t first;                  ///< number of this rank's first particle
   std::uint64_t placed, size;           ///< particles, and places for them, on all ranks
   std::uint64_t first_free, free_size;  ///< the free places that this rank begins with
 };
 
-/// Kernel body of `for_each` over spheres: their radii.
+/// Kernel functor of `for_each` over spheres: their radii.
 template <class S>
 struct copy_radii {
   sphere_view<S> spheres;
@@ -53,7 +53,7 @@ struct copy_radii {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = spheres.radius(i); }
 };
 
-/// Kernel body of `for_each` over places: numbers them.
+/// Kernel functor of `for_each` over places: numbers them.
 template <class S, class State>
 struct number_places {
   State state;
@@ -77,7 +77,7 @@ struct last_places {
   std::uint8_t* there;
 };
 
-/// Kernel body of `for_each` over particles: keeps where they are.
+/// Kernel functor of `for_each` over particles: keeps where they are.
 template <class S, class State>
 struct keep_places {
   State state;
@@ -89,7 +89,7 @@ struct keep_places {
   }
 };
 
-/// Kernel body of `for_each` over particles: sets a flag if one has come, or moved too far.
+/// Kernel functor of `for_each` over particles: sets a flag if one has come, or moved too far.
 template <class S, class State>
 struct find_moved {
   State state;
@@ -106,7 +106,7 @@ struct find_moved {
     vec3<S> const now(x[0], x[1], x[2]);
     if (!is_finite(now)) return;
     vec3<S> const moved(now.x() - before[0], now.y() - before[1], now.z() - before[2]);
-    bool const stayed = is_finite(moved) && dot(moved, moved) <= mul(most, most);
+    bool const stayed = is_finite(moved) && dot(moved, moved) <= mul_rn(most, most);
     if (!stayed) store_relaxed(flag, 1u);
   }
 };
@@ -130,7 +130,7 @@ COLLIDE_HD_INLINE bool is_somewhere(State const& state, std::size_t i) {
 /// How many particles one call of `count_somewhere` looks at.
 inline constexpr std::size_t count_group = 64;
 
-/// Kernel body of `for_each` over groups of particles: counts those that are somewhere.
+/// Kernel functor of `for_each` over groups of particles: counts those that are somewhere.
 template <class S, class State>
 struct count_somewhere {
   State state;
@@ -146,7 +146,7 @@ struct count_somewhere {
   }
 };
 
-/// Kernel body of `for_each` over particles: lists those that are to be on other ranks. Free places are on all ranks
+/// Kernel functor of `for_each` over particles: lists those that are to be on other ranks. Free places are on all ranks
 /// alike; what is nowhere stays.
 template <class S, class State>
 struct find_leaving {
@@ -163,11 +163,11 @@ struct find_leaving {
       std::uint64_t const number = state.at(global_number{})[i];
       rank = static_cast<int>(number * static_cast<std::uint64_t>(ranks) / state.all_size);
     }
-    if (rank != self) put_route(to, rank, i);
+    if (rank != self) add_send(to, rank, i);
   }
 };
 
-/// Kernel body of `for_each` over particles: lists those that are near the bricks of other ranks.
+/// Kernel functor of `for_each` over particles: lists those that are near the bricks of other ranks.
 template <class S, class State>
 struct find_copied {
   State state;
@@ -179,7 +179,7 @@ struct find_copied {
   COLLIDE_HD void operator()(std::size_t i) const {
     if (!is_somewhere(state, i)) return;
     bricks.for_each_rank(state.at(position{}) + 3 * i, reach, [&](int rank) {
-      if (rank != self) put_route(to, rank, i);
+      if (rank != self) add_send(to, rank, i);
     });
   }
 };

@@ -39,7 +39,7 @@ struct routed_places {
   COLLIDE_HD_INLINE std::size_t operator[](std::size_t i) const { return routes[i].triangle; }
 };
 
-/// Kernel body of `for_each` over rows: copies particles from their places.
+/// Kernel functor of `for_each` over rows: copies particles from their places.
 template <class State, class Places, class Row>
 struct pack_rows;
 template <class State, class Places, class S, class... C>
@@ -56,7 +56,7 @@ struct pack_rows<State, Places, particle_row<S, columns<C...>>> {
   }
 };
 
-/// Kernel body of `for_each` over rows: copies particles to their places.
+/// Kernel functor of `for_each` over rows: copies particles to their places.
 template <class State, class Places, class Row>
 struct unpack_rows;
 template <class State, class Places, class S, class... C>

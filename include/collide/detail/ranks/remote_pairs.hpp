@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include <collide/detail/ranks/device_exchange_buffer.hpp>
 #include <collide/detail/ranks/divided_mesh.hpp>
-#include <collide/detail/ranks/space_mail.hpp>
-#include <collide/detail/ranks/sphere_routes.hpp>
+#include <collide/detail/ranks/sphere_send_plan.hpp>
 #include <collide/detail/streaming/pair_list.hpp>
 #include <collide/detector.hpp>
 #include <collide/sinks/pairs.hpp>
@@ -25,7 +25,7 @@ struct sent_sphere {
   S numbers[size];
 };
 
-/// Kernel body of `for_each` over routes: their spheres, as they are sent.
+/// Kernel functor of `for_each` over routes: their spheres, as they are sent.
 template <class Spheres, class Sent>
 struct pack_spheres {
   Spheres spheres;
@@ -41,8 +41,8 @@ struct pack_spheres {
   }
 };
 
-/// Kernel body of `for_each` over pairs of spheres that were received from a rank, and triangles of this one: as they
-/// are sent back, with the sphere's place in the message and the triangle's number among those of all ranks.
+/// Kernel functor of `for_each` over pairs of spheres that were received from a rank, and triangles of this one: as
+/// they are sent back, with the sphere's place in the message and the triangle's number among those of all ranks.
 struct pack_answers {
   pair const* hits;
   id first;  ///< the sphere that the message begins with
@@ -51,7 +51,7 @@ struct pack_answers {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = {hits[i].sphere - first, numbers[hits[i].triangle]}; }
 };
 
-/// Kernel body of `for_each` over what has come back of some routes: pairs of this rank's spheres.
+/// Kernel functor of `for_each` over what has come back of some routes: pairs of this rank's spheres.
 struct unpack_answers {
   pair const* answers;
   pair const* routes;
@@ -79,10 +79,10 @@ class remote_pairs {
     space_type& space = detector.space();
     triangles_.clear();
     together(ranks, [&] {
-      routes_.find(space, mesh.lookup(), spheres, ranks.rank(), ranks.size());
+      sends_.find(space, mesh.lookup(), spheres, ranks.rank(), ranks.size());
       query_own(detector, mesh, spheres);
     });
-    std::uint64_t const mine = (routes_.size() + chunk - 1) / chunk;
+    std::uint64_t const mine = (sends_.size() + chunk - 1) / chunk;
     std::uint64_t rounds = 0;
     ranks.reduce(&mine, &rounds, 1, reduction::max);
     for (std::uint64_t round = 0; round < rounds; ++round) {
@@ -118,10 +118,10 @@ class remote_pairs {
 
   void pack(int ranks, space_type const& space, view const& spheres, std::uint64_t round, std::uint64_t rounds) {
     sent_.clear(ranks);
-    for (std::size_t r = 0; r < sent_.counts.size(); ++r) sent_.counts[r] = routes_.of(r, round, rounds).size;
+    for (std::size_t r = 0; r < sent_.counts.size(); ++r) sent_.counts[r] = sends_.of(r, round, rounds).size;
     sent* to = sent_.resize(space);
     for (std::size_t r = 0; r < sent_.counts.size(); ++r) {
-      auto const part = routes_.of(r, round, rounds);
+      auto const part = sends_.of(r, round, rounds);
       space.for_each(part.size, pack_spheres<view, sent>{spheres, part.first, to});
       to += part.size;
     }
@@ -180,7 +180,7 @@ class remote_pairs {
     pair* to = found_.append(space, answered_.size());
     for (std::size_t r = 0; r < answered_.counts.size(); ++r) {
       auto const n = static_cast<std::size_t>(answered_.counts[r]);
-      space.for_each(n, unpack_answers{from, routes_.of(r, round, rounds).first, to});
+      space.for_each(n, unpack_answers{from, sends_.of(r, round, rounds).first, to});
       from += n;
       to += n;
     }
@@ -193,13 +193,13 @@ class remote_pairs {
     triangles_.erase(std::unique(triangles_.begin(), triangles_.end(), same), triangles_.end());
   }
 
-  sphere_routes routes_;
-  space_mail<sent> sent_, received_;
+  sphere_send_plan sends_;
+  device_exchange_buffer<sent> sent_, received_;
   pairs hits_, received_hits_{order::canonical};
   std::vector<std::uint64_t> starts_, ends_;  ///< of each rank's spheres received, and of their hits
   pair_bounds bounds_;
-  space_mail<pair> answers_, answered_;
-  mail<numbered_triangle<S>> named_, learned_;
+  device_exchange_buffer<pair> answers_, answered_;
+  exchange_buffer<numbered_triangle<S>> named_, learned_;
   pair_list found_;
   std::vector<numbered_triangle<S>> triangles_;
 };

@@ -100,7 +100,7 @@ struct output {
 };
 
 /// Flags are complete as they are.
-inline bool has_end_pass(output const& o) { return o.count.sum != nullptr; }
+inline bool wants_end_pass(output const& o) { return o.count.sum != nullptr; }
 
 /// The memory of a hit counter.
 class hit_counter_buffer {

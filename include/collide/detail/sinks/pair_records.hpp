@@ -6,7 +6,7 @@
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over pairs. `Mesh` is a `mesh_view`, or what else `hit_of` takes.
+/// Kernel functor of `for_each` over pairs. `Mesh` is a `mesh_view`, or what else `hit_of` takes.
 template <class NarrowPhase, class S, class Record, class Mesh>
 struct compute_records {
   pair const* pairs;

@@ -8,7 +8,7 @@
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over spheres: nothing is there yet. Memory of all ones has `no_id` for the triangle
+/// Kernel functor of `for_each` over spheres: nothing is there yet. Memory of all ones has `no_id` for the triangle
 /// already.
 template <class Entry, class Key>
 struct reset_best {
@@ -19,7 +19,7 @@ struct reset_best {
   }
 };
 
-/// Kernel body of `for_each` over pairs: the number of each, which takes a contact or an impact to tell, and the
+/// Kernel functor of `for_each` over pairs: the number of each, which takes a contact or an impact to tell, and the
 /// smallest of each sphere. Numbers are not negative, so they sort like their bits. `Mesh` is a `mesh_view`, or what
 /// else `hit_of` takes.
 template <class NarrowPhase, class S, class Entry, class Key, class Mesh>
@@ -37,7 +37,7 @@ struct reduce_key {
   }
 };
 
-/// Kernel body of `for_each` over pairs: the smallest id among the triangles with that number.
+/// Kernel functor of `for_each` over pairs: the smallest id among the triangles with that number.
 template <class S, class Entry, class Key>
 struct find_best {
   pair const* pairs;
@@ -50,7 +50,7 @@ struct find_best {
   }
 };
 
-/// Kernel body of `for_each` over spheres: the contact or impact with the best triangle. Memory is all ones, so NaN.
+/// Kernel functor of `for_each` over spheres: the contact or impact with the best triangle. Memory is all ones, so NaN.
 template <class NarrowPhase, class S, class Entry, class Key, class Record, class Mesh>
 struct record_best {
   Entry const* best;

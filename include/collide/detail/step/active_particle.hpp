@@ -24,7 +24,7 @@ inline constexpr int key_bits = 29;
 template <class S>
 COLLIDE_HD_INLINE S key_time(S time) {
   constexpr auto ticks = std::uint32_t{1} << key_bits, last = ticks - (sizeof(S) == sizeof(float) ? 32 : 1);
-  return S(smaller(static_cast<std::uint32_t>(time * S(ticks)), last)) * (S(1) / S(ticks));
+  return S(min(static_cast<std::uint32_t>(time * S(ticks)), last)) * (S(1) / S(ticks));
 }
 
 /// `time` is a `key_time`.
@@ -152,14 +152,15 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
 
   /// Begins with the contacts at a place: all in a step, but those of a particle that moves on to the next one.
   template <class Seen = seen_at_rest>
-  COLLIDE_HD_INLINE void arrive(S time, vec3<S> const& velocity, vec3<S> const& from, Seen const& seen = {}) {
+  COLLIDE_HD_INLINE void begin_contact_place(S time, vec3<S> const& velocity, vec3<S> const& from,
+                                             Seen const& seen = {}) {
     bool is_same_place = contact_count > 0;
     if constexpr (IsSwept) {
       vec3<S> const moved = scaled(path_seen(seen), time);
       is_same_place = is_same_place && dot(moved, moved) <= S(1e-6) * radius * radius;
     }
     if (is_same_place) {
-      if constexpr (IsSwept) carry_start(seen);
+      if constexpr (IsSwept) advect_start(seen);
       return;
     }
     contacts_here = 0;
@@ -171,9 +172,9 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
 
   /// What a surface that has been moved has pushed by `height` does not go back to where it was: where it is held at
   /// the contacts that follow, it is there.
-  COLLIDE_HD_INLINE void shift_start(mesh_contact<S> const& c, S height) {
+  COLLIDE_HD_INLINE void offset_start(mesh_contact<S> const& c, S height) {
     if (!overlaps(height)) return;
-    for (int k = 0; k < 3; ++k) start[k] += c.lift[k] * height;
+    for (int k = 0; k < 3; ++k) start[k] += c.wedge_direction[k] * height;
   }
 
   /// True of a swept particle's triangle that it has touched before and leaves: no part of that is above the tangent
@@ -240,12 +241,12 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
   /// the projection of the normal onto what they leave free. They count where the normal leads into them, and a single
   /// one also where it leads off it but pushed harder than that relieves it, as in the two sides of an open groove.
   template <class Seen = seen_at_rest>
-  COLLIDE_HD_INLINE void find_lift(mesh_contact<S>& c, vec3<S> const& velocity,
-                                   [[maybe_unused]] Seen const& seen = {}) const {
+  COLLIDE_HD_INLINE void project_onto_contacts(mesh_contact<S>& c, vec3<S> const& velocity,
+                                               [[maybe_unused]] Seen const& seen = {}) const {
     vec3<S> const& n = c.normal;
-    c.lift = n;
-    c.free_change = std::numeric_limits<S>::max();
-    int const count = smaller(int{contacts_here}, max_recorded);
+    c.wedge_direction = n;
+    c.unconstrained_dv = std::numeric_limits<S>::max();
+    int const count = min(int{contacts_here}, max_recorded);
     if (count == 0) return;
     auto const last = [&](int i) { return normal_of((contact_count - 1 - i) % max_recorded); };
     auto const speed_off = [&](int i) {
@@ -263,7 +264,7 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     S free = 0;
     if (opposed >= 0) {
       vec3<S> const wall = last(opposed);
-      free = larger(speed_off(opposed), S(0)) / -along;
+      free = max(speed_off(opposed), S(0)) / -along;
       out -= wall * along;
       for (int i = 0; i < count; ++i) {
         if (i == opposed || dot(out, last(i)) >= -contact_tolerance<S>) continue;
@@ -274,7 +275,7 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     } else if (count == 1) {
       vec3<S> const wall = last(0);
       S const with = dot(n, wall), apart = 1 - with * with;  // the square of the sine of the angle between the two
-      S const relief = 2 * with * larger(-speed_towards(velocity, n, seen), S(0));
+      S const relief = 2 * with * max(-speed_towards(velocity, n, seen), S(0));
       if (!(apart > S(1e-2) && relief <= last_impulse * apart)) return;
       out -= wall * with;
     } else {
@@ -282,16 +283,16 @@ struct active_particle : remaining_motion<S, IsSwept>, body_contacts<S, HasBodie
     }
     S const height = dot(out, n);
     if (!(height > S(1e-4))) return;  // between two walls that are nearly parallel
-    c.lift = out * (1 / height);
-    c.free_change = free;
+    c.wedge_direction = out * (1 / height);
+    c.unconstrained_dv = free;
   }
 
  private:
   COLLIDE_HD_INLINE vec3<S> normal_of(int slot) const { return {normals[slot][0], normals[slot][1], normals[slot][2]}; }
 
   /// As the surface sees it that it touches now, the particle has stayed at a place: that has moved with the surface.
-  COLLIDE_HD_INLINE void carry_start(seen_at_rest) {}
-  COLLIDE_HD_INLINE void carry_start(seen_from_body<S> const& seen) {
+  COLLIDE_HD_INLINE void advect_start(seen_at_rest) {}
+  COLLIDE_HD_INLINE void advect_start(seen_from_body<S> const& seen) {
     for (int k = 0; k < 3; ++k) start[k] += seen.drift[k];
   }
 

@@ -22,7 +22,7 @@ COLLIDE_HD_INLINE S swept_radius(S r, vec3<S> const& centre, vec3<S> const& disp
   S const reach =
       collide::detail::max_component<S>(absolute(centre)) + collide::detail::max_component<S>(absolute(displacement));
   S const least = 4 * std::numeric_limits<S>::epsilon() * reach;
-  return r >= 0 && r < largest ? larger(r, smaller(least, largest)) : r;
+  return r >= 0 && r < largest ? max(r, min(least, largest)) : r;
 }
 
 /// What a block does with particles that may touch the mesh.
@@ -44,7 +44,8 @@ struct contact_response {
   search_type const search;
 
   /// `context` must outlive this.
-  COLLIDE_HD_INLINE explicit contact_response(Context const& c) : context{c}, search{c.triangles.opened()} {}
+  COLLIDE_HD_INLINE explicit contact_response(Context const& c)
+      : context{c}, search{c.triangles.without_overflown_grids()} {}
 
   /// Resolves the contacts of `n` particles, at most the scratch memory's `batch_size`: key_of(j) for all j < n says
   /// which they are.
@@ -98,7 +99,7 @@ struct contact_response {
   /// Lets the effects respond to the next contact of a particle. If there is none, or it was the last, its step ends.
   COLLIDE_HD_INLINE void respond(active& a) const {
     bool const has_contact = a.best_key != no_contact;
-    if constexpr (!is_swept && (!effects_type::finishes && Context::kick_after == 0)) {
+    if constexpr (!is_swept && (!effects_type::any_end_step && Context::kick_after == 0)) {
       if (!has_contact) {
         a.is_active = false;  // nothing is left to do
         return;
@@ -143,23 +144,24 @@ struct contact_response {
     vec3<S> const velocity_before = p[velocity{}];
     [[maybe_unused]] vec3<S> spin_before;
     if constexpr (spins) spin_before = p[angular_velocity{}];
-    a.arrive(time, velocity_before, is_swept ? here.centre : vec3<S>(here.centre - velocity_before * context.dt), seen);
+    a.begin_contact_place(time, velocity_before,
+                          is_swept ? here.centre : vec3<S>(here.centre - velocity_before * context.dt), seen);
     if constexpr (is_swept) {
       p[position{}] = here.centre;
       a.remaining_time -= a.remaining_time * time;
     }
     mesh_contact<S> c = contact_for_effects(p, a, surface);
-    surface.enter(p);
+    surface.to_surface_frame(p);
     // how deep when the step began: what is pushed out farther than it came in may then touch what it did not before
     S const depth_at_start = c.depth + dot(c.normal, vec3<S>(here.centre - c.start)), depth = c.depth;
     if constexpr (has_bodies) seen.velocity = c.velocity_before;
-    a.find_lift(c, velocity_before, seen);
+    a.project_onto_contacts(c, velocity_before, seen);
     context.effects.on_mesh_contact(p, c, context.dt);
-    a.shift_start(c, smaller(depth_at_start, S(depth - c.depth)));
-    surface.record(a, c);
+    a.offset_start(c, min(depth_at_start, S(depth - c.depth)));
+    surface.record_contact(a, c);
     if constexpr (has_bodies) a.is_held = p[velocity{}] == vec3<S>(S(0), S(0), S(0));
-    surface.leave(p);
-    if constexpr (effects_type::books) {
+    surface.to_world_frame(p);
+    if constexpr (effects_type::any_mesh_impulse) {
       vec3<S> const& v = p[velocity{}];
       vec3<S> const none(S(0), S(0), S(0)), shift = p[position{}] - here.centre;
       mesh_impulse<S> given{v - velocity_before, none, here.centre, shift, v, c.triangle, c.body};
@@ -177,13 +179,13 @@ struct contact_response {
         p[position{}] += p[velocity{}] * a.remaining_time;
         a.is_active = false;
       } else if constexpr (has_bodies) {
-        if (!a.is_active) ride(p, a, surface.frame);
+        if (!a.is_active) attach_to_body(p, a, surface.frame);
       }
     } else {
       a.place(p[position{}], p[velocity{}]);
       a.is_active = a.is_active && (a.candidate_count > 1 || a.overlaps(depth_at_start));
     }
-    if constexpr (effects_type::skips) a.is_active = a.is_active && !context.effects.is_skipped(p);
+    if constexpr (effects_type::any_inactive) a.is_active = a.is_active && !context.effects.is_inactive(p);
   }
 
   /// How a swept particle moves for the rest of the step, as the surface of a body sees it.
@@ -198,7 +200,7 @@ struct contact_response {
   }
 
   /// Leaves a particle, for the rest of the step, where it is on a body.
-  COLLIDE_HD_INLINE void ride(colliding& p, active const& a, int frame) const {
+  COLLIDE_HD_INLINE void attach_to_body(colliding& p, active const& a, int frame) const {
     auto const& mesh = context.triangles.mesh;
     sphere<S> const there = mesh.seen_from(frame, a.shape(), part_done(mesh, a));
     p[position{}] = mesh.in_world(frame, there.centre, 1);
@@ -224,7 +226,7 @@ struct contact_response {
     colliding next = p;
     context.effects.accelerate(next, context.dt);
     c.force_dv = surface.acceleration_seen(vec3<S>(next[velocity{}] - p[velocity{}]));
-    surface.describe(c);
+    surface.set_surface(c);
     return c;
   }
 

@@ -39,9 +39,9 @@ template <class Block>
 struct contact_queues {
   static constexpr bool used = Block::num_threads > 1;
   static_assert(Block::num_threads <= 256, "a byte counts the particles of a batch");
-  static constexpr std::uint32_t ahead = 5;  ///< cell items that a thread looks at together
+  static constexpr std::uint32_t items_per_thread = 5;  ///< cell items that a thread looks at together
 
-  pair_queue<used ? (ahead + 1) * Block::num_threads : 1> candidates;
+  pair_queue<used ? (items_per_thread + 1) * Block::num_threads : 1> candidates;
   pair_queue<used ? 2 * Block::num_threads : 1> contacts;    ///< pairs that touch, or may do so
   verdict_byte verdicts[used ? 2 * Block::num_threads : 1];  ///< on the latter; `miss` once the contact is known
   std::uint32_t unsure_count;

@@ -57,7 +57,7 @@ struct contact_search {
       more = seen.unfinished != before.unfinished;
       std::uint32_t const spans = seen.spans - before.spans;
       if (spans == 0) break;
-      block.template for_each_balanced<queues::ahead>(
+      block.template for_each_balanced<queues::items_per_thread>(
           s.balance, s.span_sizes, spans, [&](std::uint32_t i) { return span_of<Block>(s, i); },
           [](span const& c, std::uint32_t k) { return c.range.at(k); },
           [](span const& c, cell_item const& e) { return c.range.passes_coverage(e); },
@@ -74,7 +74,8 @@ struct contact_search {
           [&](bool is_last) {
             if constexpr (queues::used) {
               std::uint32_t const candidates = block.broadcast(s.queues.candidates.size);
-              bool const is_full = candidates + queues::ahead * Block::num_threads > s.queues.candidates.capacity;
+              bool const is_full =
+                  candidates + queues::items_per_thread * Block::num_threads > s.queues.candidates.capacity;
               if (is_full || (is_last && !is_swept)) drain(block, s, candidates);
             }
           });
@@ -109,7 +110,7 @@ struct contact_search {
         s.span_sizes[i] = range.count;
         s.span_items[i] = range.listed;
         s.span_first[i] = range.first;
-        s.span_coverage[i] = range.place;
+        s.span_coverage[i] = range.coverage;
         s.set_frame(i, a.cursor);
       }
     });
@@ -161,7 +162,7 @@ struct contact_search {
     // times are early by less, or by what the slack of bounding spheres covers; in keys they are rounded
     constexpr S late = S(0x1p-21);
     if (a.best_key == no_contact) return;
-    part.displacement = scaled(part.displacement, smaller(S(1), time_of_key<S>(a.best_key) + late));
+    part.displacement = scaled(part.displacement, min(S(1), time_of_key<S>(a.best_key) + late));
   }
 
   /// Filters the `n` candidates that are queued, and computes the contacts of those that may touch.
@@ -176,7 +177,9 @@ struct contact_search {
         id const number = q.candidates.triangles[i];
         active const& a = s.particles[q.candidates.particles[i]];
         shape const whole = shape_seen(triangles.mesh, a, number);
-        if (!triangles.template passes_coverage<NarrowPhase>(whole, number) || is_leaving(a, number, whole)) return;
+        if (!triangles.template aabb_overlaps_unless_filtered<NarrowPhase>(whole, number) ||
+            is_leaving(a, number, whole))
+          return;
         verdict const quick = filter<NarrowPhase>(triangles.mesh[number], whole);
         if (quick == verdict::miss) return;
         q.verdicts[q.contacts.push(block, q.candidates.particles[i], number)] = packed(quick);
@@ -197,7 +200,7 @@ struct contact_search {
       consider_all(block, s, n, [&](active& a, id number, std::uint32_t i, contact<S>& found) {
         bool const is_sure = q.verdicts[i] == packed(verdict::hit);
         verdict const quick =
-            relaxed_contact_fast(triangles.mesh[number], shape_seen(triangles.mesh, a, number), is_sure, found);
+            try_contact_double(triangles.mesh[number], shape_seen(triangles.mesh, a, number), is_sure, found);
         if (quick == verdict::uncertain) {
           block.add(q.unsure_count, 1);
           return no_contact;
@@ -267,7 +270,7 @@ struct contact_search {
     if (!is_sure && !resolve<NarrowPhase>(t, s)) return no_contact;
     S time = 0;
     if constexpr (is_swept) time = key_time(stopping_time<NarrowPhase>::of(t, s));
-    found = relaxed_contact(t, sphere_at(s, time));
+    found = contact_double(t, sphere_at(s, time));
     found.triangle = number;
     if constexpr (is_swept) face_against(found, s.displacement);
     return consider<Block>(a, mesh, s, time, found);
@@ -312,7 +315,7 @@ struct contact_search {
       fetch_min(&a.best_key, key);
     } else {
       ++a.candidate_count;
-      a.best_key = smaller(a.best_key, key);
+      a.best_key = min(a.best_key, key);
     }
     return key;
   }

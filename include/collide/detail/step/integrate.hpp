@@ -39,11 +39,11 @@ struct integration {
   using state_type = typename Context::state_type;
   using triangles_type = typename Context::triangles_type;
   using integrated = particle<S, typename effects_type::integration_reads>;
-  using loaded_pack = typename state_type::template group_of<typename effects_type::integration_reads>;
+  using loaded_pack = typename state_type::template pack_of<typename effects_type::integration_reads>;
   template <class Block>
-  using scratch = typename state_type::template group_scratch<Block>;
+  using scratch = typename state_type::template pack_scratch<Block>;
 
-  static constexpr int pack = particles_per_group;  ///< particles that are read or written together
+  static constexpr int pack = particles_per_pack;  ///< particles that are read or written together
   static constexpr bool has_one_radius = !contains<typename effects_type::all, radius>;
   static constexpr bool is_swept = Context::is_swept;
   static constexpr bool has_bodies = Context::has_bodies;
@@ -55,7 +55,7 @@ struct integration {
   /// touch the mesh: for these the step is not over.
   template <int N, class Block, class Filter>
   COLLIDE_HD_INLINE void advance(Block& block, scratch<Block>& s, std::size_t first, Filter const& filter) const {
-    if constexpr (effects_type::skips) {  // each thread alone: of particles that are left out nothing is read
+    if constexpr (effects_type::any_inactive) {  // each thread alone: of particles that are left out nothing is read
       serial_block<N, 0> alone(block.index());
       scratch<serial_block<N, 0>> none;
       if (first < context.state.size) advance_active<N>(alone, none, first, filter);
@@ -73,14 +73,14 @@ struct integration {
                                    bool const (&inactive)[N], Filter const& filter) const {
     auto const& state = context.state;
     bool near[N] = {};
-    if constexpr (effects_type::resists && N % 16 == 0) {  // on a CPU
+    if constexpr (effects_type::any_resistance && N % 16 == 0) {  // on a CPU
       S times[N];
       for (int k = 0; k < N; ++k) times[k] = inactive[k] ? S(0) : begin_with_kick(context, p[k]) * context.dt;
       context.effects.accelerate_together(p, times);
     }
     for (int k = 0; k < N; ++k) {
       if (inactive[k]) continue;
-      if constexpr (!(effects_type::resists && N % 16 == 0)) begin_particle(context, p[k]);
+      if constexpr (!(effects_type::any_resistance && N % 16 == 0)) begin_particle(context, p[k]);
       if constexpr (!is_swept) move(p[k]);
     }
     filter(p, inactive, near);
@@ -91,8 +91,8 @@ struct integration {
       if constexpr (!effects_type::ends_after_meeting) end_particle(context, p[k]);
     }
     for (int k = 0; k < N; k += pack) {
-      state.store_group(block, s, p + k, first + static_cast<std::size_t>(k),
-                        typename effects_type::integration_writes{});
+      state.store_pack(block, s, p + k, first + static_cast<std::size_t>(k),
+                       typename effects_type::integration_writes{});
     }
   }
 
@@ -108,40 +108,41 @@ struct integration {
     p[position{}] += p[velocity{}] * context.dt;
   }
 
-  /// True if `marks` alone tell whether a particle can touch a triangle.
+  /// True if `occupancy` alone tell whether a particle can touch a triangle.
   COLLIDE_HD_INLINE bool is_single_cell() const {
     return has_one_radius && !(has_bodies && is_swept) &&
-           context.triangles.has_single_cell_lookup(larger(context.state.common_radius, context.least_radius));
+           context.triangles.has_single_cell_lookup(max(context.state.common_radius, context.least_radius));
   }
 
   /// Sets near[k] for those of some particles that may touch the mesh.
   template <int N>
-  COLLIDE_HD_INLINE void test_occupancy(bool single_cell, occupancy_view<S> const& marks, integrated const (&p)[N],
+  COLLIDE_HD_INLINE void test_occupancy(bool single_cell, occupancy_view<S> const& occupancy, integrated const (&p)[N],
                                         bool (&near)[N]) const {
-    if (!single_cell || !test_marks(marks, p, near)) test_each(p, near);
+    if (!single_cell || !test_occupied(occupancy, p, near)) test_each(p, near);
   }
 
   /// Calls enqueue(number) for those of `N` particles in memory from number `first` on that may touch the mesh, from
   /// where they are now.
   template <int N, class Enqueue>
-  void enqueue_marked(std::size_t first, occupancy_view<S> const& marks, Enqueue const& enqueue) const {
+  void enqueue_occupied(std::size_t first, occupancy_view<S> const& occupancy, Enqueue const& enqueue) const {
     auto const& state = context.state;
-    sphere_batch<S, N> batch;
+    sphere_pack<S, N> batch;
     batch.load(
         sphere_view<S>{spheres_xyz(static_cast<S const*>(state.at(position{})), state.size, state.common_radius)},
         first);
     if constexpr (has_bodies) {
       bool near[N];
-      bool const known = context.triangles.mark(marks, batch.x, batch.y, batch.z, state.common_radius, near);
-      auto const triangles = context.triangles.opened();
+      bool const known =
+          context.triangles.test_occupied(occupancy, batch.x, batch.y, batch.z, state.common_radius, near);
+      auto const triangles = context.triangles.without_overflown_grids();
       for (int k = 0; k < N && first + static_cast<std::size_t>(k) < state.size; ++k) {
         if (known ? near[k] : !triangles.empty(batch.shape(k))) enqueue(static_cast<id>(first) + static_cast<id>(k));
       }
       return;
     }
-    auto const places = marks.places_of(batch.x, batch.y, batch.z);
+    auto const places = occupancy.places_of(batch.x, batch.y, batch.z);
     for (int k = 0; k < N; ++k) {
-      if (places.inside[k] == 0 || !marks.is_occupied(places.cells[k])) continue;
+      if (places.inside[k] == 0 || !occupancy.is_occupied(places.cells[k])) continue;
       enqueue(static_cast<id>(first) + static_cast<id>(k));
     }
   }
@@ -152,19 +153,19 @@ struct integration {
   COLLIDE_HD_INLINE void advance_active(Block& block, scratch<Block>& s, std::size_t first,
                                         Filter const& filter) const {
     bool inactive[N];
-    particle<S, typename effects_type::skipping> skipping[N];
-    load(block, s, skipping, first);
+    particle<S, typename effects_type::inactive_reads> maybe_inactive[N];
+    load(block, s, maybe_inactive, first);
     bool all = true;
     [[maybe_unused]] bool woken[N] = {};
     for (int k = 0; k < N; ++k) {
       std::size_t const i = first + static_cast<std::size_t>(k);
-      inactive[k] = i >= context.state.size || context.effects.is_skipped(skipping[k]);
+      inactive[k] = i >= context.state.size || context.effects.is_inactive(maybe_inactive[k]);
       if constexpr (may_wake) {
-        woken[k] = i < context.state.size && inactive[k] && is_woken(skipping[k], i);
+        woken[k] = i < context.state.size && inactive[k] && is_woken(maybe_inactive[k], i);
         inactive[k] = inactive[k] && !woken[k];
       }
       if constexpr (effects_type::keeps_support) {
-        if (i < context.state.size && inactive[k] && context.effects.only_sleeps(skipping[k])) press(i);
+        if (i < context.state.size && inactive[k] && context.effects.only_sleeps(maybe_inactive[k])) press(i);
       }
       all = all && inactive[k];
     }
@@ -180,7 +181,7 @@ struct integration {
   }
 
   /// Bodies that move wake particles that sleep.
-  static constexpr bool may_wake = has_bodies && contains<typename effects_type::skipping, slow_steps>;
+  static constexpr bool may_wake = has_bodies && contains<typename effects_type::inactive_reads, slow_steps>;
 
   /// True of a particle that sleeps where a body that moves may touch it.
   template <class Skipping>
@@ -189,9 +190,9 @@ struct integration {
     S const* const x = context.state.at(position{}) + 3 * i;
     sphere<S> const here{{x[0], x[1], x[2]}, context.state.radius_at(i)};
     if constexpr (is_swept) {
-      return !context.triangles.opened().is_left_alone(moving_sphere<S>{here, {S(0), S(0), S(0)}});
+      return !context.triangles.without_overflown_grids().is_left_alone(moving_sphere<S>{here, {S(0), S(0), S(0)}});
     } else {
-      return !context.triangles.opened().is_left_alone(here);
+      return !context.triangles.without_overflown_grids().is_left_alone(here);
     }
   }
 
@@ -206,14 +207,15 @@ struct integration {
 
   template <class Block, class P, int N>
   COLLIDE_HD_INLINE void load(Block& block, scratch<Block>& s, P (&p)[N], std::size_t first) const {
-    for (int k = 0; k < N; k += pack) context.state.load_group(block, s, p + k, first + static_cast<std::size_t>(k));
+    for (int k = 0; k < N; k += pack) context.state.load_pack(block, s, p + k, first + static_cast<std::size_t>(k));
   }
 
   /// Of one radius and in one grid of one level: without branches, for the CPU's vector unit, as which particles are
   /// near the mesh is not to be foreseen. False if it is not known: one of them goes a long way.
   template <int N>
-  COLLIDE_HD_INLINE bool test_marks(occupancy_view<S> const& marks, integrated const (&p)[N], bool (&near)[N]) const {
-    moving_batch<S, N> batch;
+  COLLIDE_HD_INLINE bool test_occupied(occupancy_view<S> const& occupancy, integrated const (&p)[N],
+                                       bool (&near)[N]) const {
+    moving_pack<S, N> batch;
     for (int k = 0; k < N; ++k) {
       vec3<S> const& c = p[k][position{}];
       batch.x[k] = c.x(), batch.y[k] = c.y(), batch.z[k] = c.z();
@@ -223,11 +225,12 @@ struct integration {
       }
     }
     if constexpr (has_bodies) {
-      return !is_swept && context.triangles.mark(marks, batch.x, batch.y, batch.z, context.state.common_radius, near);
+      return !is_swept &&
+             context.triangles.test_occupied(occupancy, batch.x, batch.y, batch.z, context.state.common_radius, near);
     } else if constexpr (is_swept) {
-      return marks.test_swept(batch, near);
+      return occupancy.test_swept(batch, near);
     } else {
-      marks.mark(marks.places_of(batch.x, batch.y, batch.z), near);
+      occupancy.test_occupied(occupancy.places_of(batch.x, batch.y, batch.z), near);
       return true;
     }
   }
@@ -235,7 +238,7 @@ struct integration {
   /// In any grids. The long code goes round: what it indexes is not in registers, so they are copies.
   template <int N>
   COLLIDE_HD_INLINE void test_each(integrated const (&p)[N], bool (&near)[N]) const {
-    triangles_type const triangles = context.triangles.opened();
+    triangles_type const triangles = context.triangles.without_overflown_grids();
     decltype(shape_of(p[0])) shapes[N];
     for (int k = 0; k < N; ++k) shapes[k] = shape_of(p[k]);
     std::uint32_t const found = near_triangles(triangles, shapes);
@@ -245,7 +248,7 @@ struct integration {
   /// What the narrow phase judges.
   COLLIDE_HD_INLINE auto shape_of(integrated const& p) const {
     if constexpr (is_swept) {
-      S const radius = p.the_radius >= 0 ? larger(p.the_radius, context.least_radius) : p.the_radius;
+      S const radius = p.the_radius >= 0 ? max(p.the_radius, context.least_radius) : p.the_radius;
       return moving_sphere<S>{{p[position{}], radius}, p[velocity{}] * context.dt};
     } else {
       return sphere<S>{p[position{}], p.the_radius};

@@ -19,9 +19,9 @@ struct lookup_tuning : Space {
 };
 
 template <class Index, class = void>
-struct has_lookup : std::false_type {};
+struct has_triangle_ref : std::false_type {};
 template <class Index>
-struct has_lookup<Index, std::void_t<decltype(std::declval<Index const&>().lookup())>> : std::true_type {};
+struct has_triangle_ref<Index, std::void_t<decltype(std::declval<Index const&>().triangle_ref())>> : std::true_type {};
 
 }  // namespace detail
 

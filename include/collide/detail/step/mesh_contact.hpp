@@ -17,16 +17,16 @@ namespace detail {
 /// The contact of a sphere and a finite triangle. Unlike that of `contact_of`, the depth of a sphere that just touches
 /// is known to within the rounding of doubles only: resting spheres do just that, all the time.
 template <class S>
-COLLIDE_HD contact<S> relaxed_contact(triangle<S> const& t, sphere<S> const& s) {
+COLLIDE_HD contact<S> contact_double(triangle<S> const& t, sphere<S> const& s) {
   return narrow_to<S>(contact_of_pair(widened(t), widened(s), digits::of_float, false));
 }
 
-/// Whether a sphere touches a finite triangle, and the contact that `relaxed_contact` tells if so, where doubles
+/// Whether a sphere touches a finite triangle, and the contact that `contact_double` tells if so, where doubles
 /// suffice for both; `sure` says that they touch. Calls nothing. The foot that it finds is a point of the triangle, so
 /// a depth that is clear means a hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but
 /// not by much: docs/development/numerics.md.
 template <class S>
-COLLIDE_HD_INLINE verdict relaxed_contact_fast(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
+COLLIDE_HD_INLINE verdict try_contact_double(triangle<S> const& t, sphere<S> const& s, bool sure, contact<S>& found) {
   constexpr double clear_depth = 0x1p-40, clear_gap = 0x1p-32;
   sphere<S> const centre{s.centre, S(0)};
   local_triangle<double> const l = to_unit_range(to_local<double>(t, centre), t, centre);
@@ -35,10 +35,10 @@ COLLIDE_HD_INLINE verdict relaxed_contact_fast(triangle<S> const& t, sphere<S> c
     apart = !sure && depth < 0;
     return distance >= well_conditioned_length && (sure || depth >= clear_depth || -depth * distance >= clear_gap);
   };
-  closest_point<double> foot;
-  measured_contact m;
-  if (!measure_if_well_conditioned(l, static_cast<double>(s.radius), clear, foot, m)) return verdict::uncertain;
-  found = contact_at_point<S>(m, foot.point, l.scale, s.centre.template cast<double>());
+  closest_point<double> closest;
+  contact_without_point m;
+  if (!contact_if_well_conditioned(l, static_cast<double>(s.radius), clear, closest, m)) return verdict::uncertain;
+  found = contact_at_point<S>(m, closest.point, l.scale, s.centre.template cast<double>());
   return apart ? verdict::miss : verdict::hit;
 }
 

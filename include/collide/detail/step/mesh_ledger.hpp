@@ -117,7 +117,7 @@ COLLIDE_HD_INLINE ridden_surface surface_ridden([[maybe_unused]] Context const& 
     double const dt = static_cast<double>(context.dt);
     s.drift = !Context::is_swept
                   ? s.after
-                  : vec3<double>(div(to.x() - x.x(), dt), div(to.y() - x.y(), dt), div(to.z() - x.z(), dt));
+                  : vec3<double>(div_rn(to.x() - x.x(), dt), div_rn(to.y() - x.y(), dt), div_rn(to.z() - x.z(), dt));
   }
   return s;
 }

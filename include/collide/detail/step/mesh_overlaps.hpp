@@ -120,7 +120,7 @@ COLLIDE_HD_INLINE S reach_of(S radius) {
   return radius;
 }
 
-/// Kernel body of `for_each` over particles: lists those that may press on the mesh. These are few, and much work.
+/// Kernel functor of `for_each` over particles: lists those that may press on the mesh. These are few, and much work.
 template <class S, class Effects, class Triangles, class Memory>
 struct list_pressing {
   particle_state<S, typename Effects::all> state;
@@ -130,15 +130,15 @@ struct list_pressing {
   pressing_list found;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if constexpr (Effects::skips) {
-      particle<S, typename Effects::skipping> p;
+    if constexpr (Effects::any_inactive) {
+      particle<S, typename Effects::inactive_reads> p;
       state.load(p, i);
-      if (effects.is_skipped(p)) return;
+      if (effects.is_inactive(p)) return;
     }
     particle<S, union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>> p;
     state.load(p, i);
     sphere<S> const shape{p[position{}], reach_of<Effects>(p.the_radius)};
-    if (is_finite(shape.centre) && !triangles.opened().empty(shape)) {
+    if (is_finite(shape.centre) && !triangles.without_overflown_grids().empty(shape)) {
       found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
     } else if constexpr (Effects::remembered::size != 0) {
       if (memory.counts[i] != 0) memory.counts[i] = 0;
@@ -146,7 +146,7 @@ struct list_pressing {
   }
 };
 
-/// Kernel body of `for_each` over as many as there are particles: those on the list press on the mesh.
+/// Kernel functor of `for_each` over as many as there are particles: those on the list press on the mesh.
 template <class S, class Effects, class Triangles, class Memory>
 struct press_on_mesh {
   using effects_type = Effects;
@@ -174,7 +174,7 @@ struct press_on_mesh {
   COLLIDE_HD_INLINE void press_with(std::size_t i) const {
     S const* const x = state.at(position{}) + 3 * i;
     vec3<S> const centre(x[0], x[1], x[2]);
-    Triangles const open = triangles.opened();
+    Triangles const open = triangles.without_overflown_grids();
     overlap_list near;
     find(open, sphere<S>{centre, reach_of<Effects>(state.radius_at(i))}, near);
     int before = 0;
@@ -197,7 +197,7 @@ struct press_on_mesh {
         id triangles_near[together];
         bool overlaps[together];
         for (std::uint32_t j = 0; j < together; ++j) {  // all are on their way at once
-          cell_item const e = range.at(smaller(k + j, range.count - 1));
+          cell_item const e = range.at(min(k + j, range.count - 1));
           triangles_near[j] = e.triangle;
           overlaps[j] = k + j < range.count && range.passes_coverage(e) &&
                         triangle_aabb_of(open.mesh[e.triangle]).overlaps(seen.centre, seen.radius);
@@ -258,7 +258,7 @@ struct press_on_mesh {
   COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values) const {
     integrated const before = p;
     bool const goes_on = effects.on_mesh_overlap(p, self, o, values, only_kicks ? S(0) : dt, dt);
-    if constexpr (Effects::books) {
+    if constexpr (Effects::any_mesh_impulse) {
       if (only_kicks) return goes_on;
       vec3<S> const none(S(0), S(0), S(0));
       vec3<S> turned = none;
@@ -282,7 +282,7 @@ struct press_on_mesh {
       if (item.frame != 0) normal = f.now.rotated(normal);
       vec3<double> const point = centre - scaled(normal, n.distance);
       if (item.frame != 0) {
-        surface = velocity_at(f.moving, f.now, point) + f.belt;
+        surface = velocity_at(f.moving, f.now, point) + f.conveyor_velocity;
       } else if (open.mesh.vertex_velocities != nullptr) {
         surface = open.mesh.velocity_of(item.triangle, rounded_to<S>(point));
       }

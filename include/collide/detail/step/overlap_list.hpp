@@ -41,15 +41,15 @@ COLLIDE_HD_NOINLINE nearest_of_triangle nearest_to(triangle<S> const& t, vec3<S>
   double distance = sqrt_rn(foot.distance_squared);
   double const area = sqrt_rn(dot(face, face));
   if (area > 0) {
-    face = vec3<double>(div(face.x(), area), div(face.y(), area), div(face.z(), area));
+    face = vec3<double>(div_rn(face.x(), area), div_rn(face.y(), area), div_rn(face.z(), area));
     vec3<double> const aside = cross(face, normal);
-    if (foot.kind == feature::face || dot(aside, aside) <= mul(straight, foot.distance_squared)) {
+    if (foot.kind == feature::face || dot(aside, aside) <= mul_rn(straight, foot.distance_squared)) {
       double const height = -dot(l.a, face);
       return {height < 0 ? vec3<double>(-face) : face, height < 0 ? -height : height, foot.kind, foot.index};
     }
   }
   if (distance > 0) {
-    normal = vec3<double>(div(normal.x(), distance), div(normal.y(), distance), div(normal.z(), distance));
+    normal = vec3<double>(div_rn(normal.x(), distance), div_rn(normal.y(), distance), div_rn(normal.z(), distance));
   } else {
     normal = area > 0 ? face : vec3<double>(0, 0, 1);
   }

@@ -11,7 +11,7 @@
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over places of particles: what each begins with.
+/// Kernel functor of `for_each` over places of particles: what each begins with.
 template <class S, class All>
 struct init_particles {
   particle_state<S, All> state;
@@ -36,7 +36,7 @@ struct init_particles {
   }
 };
 
-/// Kernel body of `for_each` over particles: ends their step, where particles have met in between.
+/// Kernel functor of `for_each` over particles: ends their step, where particles have met in between.
 template <class S, class Effects>
 struct end_particles {
   using scalar = S;
@@ -50,8 +50,8 @@ struct end_particles {
   COLLIDE_HD void operator()(std::size_t i) const {
     particle<S, typename Effects::integration_reads> p;
     state.load(p, i);
-    if constexpr (Effects::skips) {
-      if (effects.is_skipped(p)) {
+    if constexpr (Effects::any_inactive) {
+      if (effects.is_inactive(p)) {
         if constexpr (Effects::keeps_support) press(p);
         return;
       }
@@ -69,7 +69,7 @@ struct end_particles {
   }
 };
 
-/// Kernel body of `for_each` over particles: frees those that stick to the mesh where it no longer is.
+/// Kernel functor of `for_each` over particles: frees those that stick to the mesh where it no longer is.
 template <class State, class Triangles>
 struct release_adhered {
   State state;
@@ -92,7 +92,7 @@ struct release_adhered {
   /// What of the mesh a sphere touches, as `adhered` has it: of several triangles the first in memory.
   template <class S>
   COLLIDE_HD std::uint8_t find(sphere<S> const& s) const {
-    Triangles const near = triangles.opened();
+    Triangles const near = triangles.without_overflown_grids();
     id first = no_id;
     auto cursor = near.begin(s);
     candidate_range range{};
@@ -126,7 +126,7 @@ struct release_adhered {
       if (are_driven && frame != 0) return false;
       seen = near.mesh.seen_from(frame, s, 1);
     }
-    return relaxed_contact(near.mesh[triangle], seen).depth >= 0;
+    return contact_double(near.mesh[triangle], seen).depth >= 0;
   }
 };
 template <class State, class Triangles>
@@ -138,7 +138,7 @@ init_particles<S, All> initial(particle_state<S, All> const& state, sphere_view<
   return {state, spheres, velocities, effects.source_radius()};
 }
 
-/// Kernel body of `for_each`.
+/// Kernel functor of `for_each`.
 template <class T>
 struct copy_values {
   T const* from;
@@ -146,7 +146,7 @@ struct copy_values {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
 };
 
-/// Kernel body of `for_each` over one item.
+/// Kernel functor of `for_each` over one item.
 struct advance_time {
   double* time;
   double dt, due;  ///< of a source; see `begin_in_step`

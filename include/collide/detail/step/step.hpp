@@ -16,7 +16,7 @@
 
 namespace collide::detail {
 
-/// Kernel body: a step, in `blocks` blocks.
+/// Kernel functor: a step, in `blocks` blocks.
 template <class Context>
 struct step_kernel {
   using S = typename Context::scalar;
@@ -24,10 +24,10 @@ struct step_kernel {
   using integration_type = integration<Context>;
   using response_type = contact_response<Context>;
 
-  static constexpr int items = particles_per_group;
+  static constexpr int items = particles_per_pack;
   /// Waits for memory, mostly; a thread alone resolves contacts in many registers.
   template <class Block>
-  static constexpr int residency = !Context::touches ? 1 : (Block::num_threads > 1 ? 3 : 2);
+  static constexpr int min_blocks_per_sm = !Context::any_mesh_contact ? 1 : (Block::num_threads > 1 ? 3 : 2);
 
   Context context;
   std::size_t blocks;
@@ -35,7 +35,7 @@ struct step_kernel {
   /// True if a block has many tiles. It may have more particles near the mesh than its queue has room for, which need
   /// `context.overflow`.
   template <class Block>
-  static constexpr bool has_many_tiles = Context::touches&& Block::num_threads > 1;
+  static constexpr bool has_many_tiles = Context::any_mesh_contact&& Block::num_threads > 1;
 
   /// A tile: the particles of threads that read and write together. One that is a block's only one is all of the
   /// block's.
@@ -55,7 +55,7 @@ struct step_kernel {
   template <class Block>
   static std::size_t grid_size(std::size_t particles, std::size_t resident) {
     std::size_t const tiles = tile_count<Block>(particles);
-    return has_many_tiles<Block> ? smaller(tiles, resident) : tiles;
+    return has_many_tiles<Block> ? min(tiles, resident) : tiles;
   }
 
   template <class Block, bool Touches>
@@ -70,18 +70,18 @@ struct step_kernel {
       typename integration_type::template scratch<Block> packs;
       typename response_type::template scratch<Block> contacts;
     };
-    occupancy_view<S> marks;
-    bool single_cell;  ///< `marks` tell of all particles whether they may touch the mesh
+    occupancy_view<S> occupancy;
+    bool single_cell;  ///< `occupancy` tell of all particles whether they may touch the mesh
     std::uint32_t queue_size;
     id queue[capacity];  ///< the first of those that may; the others are in `context.overflow`
   };
   template <class Block>
-  using scratch = scratch_of<Block, Context::touches>;
+  using scratch = scratch_of<Block, Context::any_mesh_contact>;
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::warp_size == 1 || particle_padding % tile<Block> == 0, "there is room for whole tiles");
-    if constexpr (Context::touches) {
+    if constexpr (Context::any_mesh_contact) {
       advance_and_enqueue(block, s);
       resolve_queue(block, s);
     } else {
@@ -90,27 +90,29 @@ struct step_kernel {
   }
 
  private:
-  static constexpr int pack = particles_per_group;
+  static constexpr int pack = particles_per_pack;
 
   /// How many particles a thread moves at a time: a pack, which compilers put into vector registers, or as many as are
   /// asked together whether they are near the mesh.
   template <class Block>
-  static constexpr int at_a_time = Block::items % 16 == 0 && (Context::touches || effects_type::resists) ? 16 : pack;
+  static constexpr int at_a_time = Block::items % 16 == 0 && (Context::any_mesh_contact || effects_type::any_resistance)
+                                       ? 16
+                                       : pack;
   template <class Block>
-  static constexpr int unfiltered_at_a_time = effects_type::resists ? at_a_time<Block> : pack;
+  static constexpr int unfiltered_at_a_time = effects_type::any_resistance ? at_a_time<Block> : pack;
   static_assert(particle_padding % 16 == 0, "the last ones are read and written with those that are not there");
 
   /// On a CPU, where nothing happens to particles after they have moved, they are asked afterwards whether they may
   /// touch the mesh, as many as fill its vector registers at a time.
   template <class Block>
   static constexpr bool filters_after_integration =
-      Block::items % 16 == 0 && !Context::is_swept && integration_type::has_one_radius && !effects_type::skips &&
-      !effects_type::finishes && Context::kick_after == 0;
+      Block::items % 16 == 0 && !Context::is_swept && integration_type::has_one_radius && !effects_type::any_inactive &&
+      !effects_type::any_end_step && Context::kick_after == 0;
 
   /// The next particles are on their way while a thread moves some. To ask for the cells of motions, or for bodies,
   /// takes too many registers for that.
   template <class Block>
-  static constexpr bool prefetches = has_many_tiles<Block> && !Context::is_swept && !effects_type::skips &&
+  static constexpr bool prefetches = has_many_tiles<Block> && !Context::is_swept && !effects_type::any_inactive &&
                                      !has_moving_mesh<typename Context::triangles_type>;
 
   /// The number of a block's `k`-th tile.
@@ -150,21 +152,21 @@ struct step_kernel {
       if (thread_rank != 0) return;
       s.queue_size = 0;
       s.single_cell = integrate.is_single_cell();
-      s.marks = context.triangles.occupancy();
+      s.occupancy = context.triangles.occupancy();
     });
     auto const enqueue_one = [&](id number) { enqueue(block, s, number); };
     if constexpr (filters_after_integration<Block>) {
       if (s.single_cell) {
         advance_tiles<unfiltered_at_a_time<Block>>(block, s, no_filter{});
         auto const first = first_of<Block>(0, tile_index(block, 0), tile_count<Block>(context.state.size));
-        multiversioned([&] { integrate.template enqueue_marked<Block::items>(first, s.marks, enqueue_one); });
+        multiversioned([&] { integrate.template enqueue_occupied<Block::items>(first, s.occupancy, enqueue_one); });
         return;
       }
     }
     advance_tiles<at_a_time<Block>>(block, s,
                                     [&, size = context.state.size](auto const& p, auto const& inactive, auto& near) {
                                       constexpr int n = sizeof(near) / sizeof(near[0]);
-                                      integrate.test_occupancy(s.single_cell, s.marks, p, near);
+                                      integrate.test_occupancy(s.single_cell, s.occupancy, p, near);
                                       for (int k = 0; k < n; ++k) {
                                         near[k] = near[k] && !inactive[k] && p[k].number < size;
                                         if (near[k]) enqueue_one(p[k].number);
@@ -201,16 +203,16 @@ struct step_kernel {
                                                std::uint32_t tiles, Filter const& filter) const {
     integration_type const integrate{context};
     // in place of a tile that does not exist, the last one is read
-    auto const first = [&](std::uint32_t t) { return first_of<Block>(thread_rank, smaller(t, tiles - 1), tiles); };
+    auto const first = [&](std::uint32_t t) { return first_of<Block>(thread_rank, min(t, tiles - 1), tiles); };
     typename integration_type::loaded_pack loaded;
-    context.state.begin_group(block, loaded, first(i));
+    context.state.begin_load(block, loaded, first(i));
     COLLIDE_NO_UNROLL
     for (std::uint32_t next; i < tiles; i = next) {
       next = i + tiles_together<Block> * static_cast<std::uint32_t>(blocks);
       typename integration_type::integrated p[pack];
       bool const inactive[pack] = {};
-      context.state.end_group(block, s.packs, loaded, p, first(i));
-      context.state.begin_group(block, loaded, first(next));
+      context.state.end_load(block, s.packs, loaded, p, first(i));
+      context.state.begin_load(block, loaded, first(next));
       integrate.integrate(block, s.packs, first(i), p, inactive, filter);
     }
   }
@@ -224,7 +226,7 @@ struct step_kernel {
     response_type const response(context);
     std::uint32_t const share = (n - 1) / ((n - 1) / capacity + 1) + 1;
     for (std::uint32_t base = 0; base < n; base += share) {
-      response.resolve(block, s.contacts, smaller(n - base, share), [&](std::uint32_t j) {
+      response.resolve(block, s.contacts, min(n - base, share), [&](std::uint32_t j) {
         std::uint32_t const i = base + j;
         return !has_many_tiles<Block> || i < capacity ? s.queue[i]
                                                       : context.overflow[overflow_slot(block, i - capacity)];

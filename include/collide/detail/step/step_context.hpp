@@ -12,7 +12,7 @@ namespace collide::detail {
 
 /// The particles, the effects, the mesh, and the time. `NarrowPhase` judges spheres at rest, or spheres that move: then
 /// particles that may touch the mesh stay where they are until their contacts are resolved. `Triangles` is what an
-/// index's `lookup()` returns (triangle_ref.hpp).
+/// index's `triangle_ref()` returns (triangle_ref.hpp).
 template <class S, class NarrowPhase, class Triangles, class Effects>
 struct step_context {
   using scalar = S;
@@ -22,7 +22,7 @@ struct step_context {
   using state_type = particle_state<S, typename Effects::all>;
 
   static constexpr bool is_swept = !is_discrete<NarrowPhase, S>;
-  static constexpr bool touches = Effects::touches;
+  static constexpr bool any_mesh_contact = Effects::any_mesh_contact;
   static constexpr bool has_bodies = has_moving_mesh<Triangles>;
   /// The parts of a step's acceleration that come before positions change, and at the end of the step.
   static constexpr S kick_before = S(Effects::integrator::kick_before), kick_after = S(Effects::integrator::kick_after);

@@ -59,7 +59,7 @@ COLLIDE_HD hit<NarrowPhase, S> hit_of(pair p, partial_mesh<S> const& mesh,
   return {p, mesh.others.triangles, spheres, mesh.others.find(p.triangle)};
 }
 
-/// Kernel body of `for_each` over pairs: hands them to a sink's output. `Mesh` is `partial_mesh` or `mesh_view`.
+/// Kernel functor of `for_each` over pairs: hands them to a sink's output. `Mesh` is `partial_mesh` or `mesh_view`.
 template <class NarrowPhase, class S, class Mesh, class Output>
 struct hand_over {
   pair const* pairs;
@@ -97,8 +97,8 @@ struct found_query {
   template <class Output>
   void operator()(Output const& output) const {
     space.for_each(size, hand_over<NarrowPhase, S, Mesh, Output>{pairs, mesh, spheres, output});
-    if constexpr (finishes<Output>::value) {
-      if (has_end_pass(output)) space.for_each(1, finish_only<Output>{output});
+    if constexpr (has_end_pass<Output>::value) {
+      if (wants_end_pass(output)) space.for_each(1, end_pass_kernel<Output>{output});
     }
   }
 };

@@ -29,7 +29,7 @@ struct numbered_triangle {
   friend bool operator<(numbered_triangle const& a, numbered_triangle const& b) { return a.number < b.number; }
 };
 
-/// Kernel body of `for_each` over triangles: their corners, packed.
+/// Kernel functor of `for_each` over triangles: their corners, packed.
 template <class S>
 struct pack_triangles {
   mesh_view<S> mesh;

@@ -10,7 +10,8 @@
 
 namespace collide::detail {
 
-/// Kernel body of `for_each` over pairs of a part of a mesh that begins with triangle `first`: as pairs of the whole.
+/// Kernel functor of `for_each` over pairs of a part of a mesh that begins with triangle `first`: as pairs of the
+/// whole.
 struct shift_triangles {
   pair const* from;
   id first;

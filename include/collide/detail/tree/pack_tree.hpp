@@ -48,7 +48,7 @@ COLLIDE_HD_INLINE std::uint64_t place_on_curve(std::uint32_t (&x)[3]) {
   return place;
 }
 
-/// Kernel body of `for_each` over triangles: where each is on the curve, and its number.
+/// Kernel functor of `for_each` over triangles: where each is on the curve, and its number.
 template <class S>
 struct find_places {
   static constexpr int bits = 16;                            ///< of a coordinate
@@ -65,7 +65,7 @@ struct find_places {
     places[i] = none;
     if (box.is_empty()) return;
     S extent = 0;
-    for (int k = 0; k < 3; ++k) extent = larger(extent, summary->upper_of(k) / 2 - summary->lower_of(k) / 2);
+    for (int k = 0; k < 3; ++k) extent = max(extent, summary->upper_of(k) / 2 - summary->lower_of(k) / 2);
     std::uint32_t x[3];
     for (int k = 0; k < 3; ++k) {
       S const part = (box.lower[k] / 2 + box.upper[k] / 2 - summary->lower_of(k)) / 2 / extent;
@@ -105,7 +105,7 @@ COLLIDE_HD_INLINE void place_node(tree_node& node, std::size_t i, std::size_t bo
   node.continues = 0;
 }
 
-/// Kernel body of `for_each` over the nodes of the lowest level.
+/// Kernel functor of `for_each` over the nodes of the lowest level.
 template <class S>
 struct pack_triangles_in_nodes {
   mesh_view<S> mesh;
@@ -114,7 +114,7 @@ struct pack_triangles_in_nodes {
   std::size_t first_above;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::size_t const first = i * tree_node::width, n = smaller<std::size_t>(tree_node::width, mesh.size() - first);
+    std::size_t const first = i * tree_node::width, n = min<std::size_t>(tree_node::width, mesh.size() - first);
     tree_node& node = to[i];
     vec3<S> const origin = tree_origin(mesh);
     for (std::size_t k = 0; k < tree_node::width; ++k) {
@@ -125,13 +125,13 @@ struct pack_triangles_in_nodes {
   }
 };
 
-/// Kernel body of `for_each` over the nodes of a level above.
+/// Kernel functor of `for_each` over the nodes of a level above.
 struct pack_nodes {
   tree_node* nodes;
   std::size_t first, first_below, below, first_above;  ///< numbers of nodes, and how many there are below
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::size_t const begin = i * tree_node::width, n = smaller<std::size_t>(tree_node::width, below - begin);
+    std::size_t const begin = i * tree_node::width, n = min<std::size_t>(tree_node::width, below - begin);
     tree_node& node = nodes[first + i];
     for (std::size_t k = 0; k < tree_node::width; ++k) {
       std::size_t const child = first_below + begin + k;

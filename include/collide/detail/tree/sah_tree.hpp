@@ -36,7 +36,7 @@ struct box_ends {
   aabb<float> box() const { return {{-ends[0], -ends[1], -ends[2]}, {ends[4], ends[5], ends[6]}}; }
 
   void add(box_ends const& other) {
-    for (int k = 0; k < size; ++k) ends[k] = larger(ends[k], other.ends[k]);
+    for (int k = 0; k < size; ++k) ends[k] = max(ends[k], other.ends[k]);
   }
 
   /// Twice the middle on an axis.
@@ -99,7 +99,7 @@ class range_divider {
     if (middle == range.begin || middle == range.end) middle = range.begin + range.size() / 2;
     constexpr std::uint32_t few = 8 * tree_node::width;
     bool const large = range.size() > 8 * few && middle - range.begin >= few && range.end - middle >= few;
-    if (!large || p.axis < 0) middle = fill_nodes(range, middle, larger(p.axis, 0));
+    if (!large || p.axis < 0) middle = fill_nodes(range, middle, max(p.axis, 0));
     left = range_of(range.begin, middle);
     right = range_of(middle, range.end);
   }
@@ -114,7 +114,7 @@ class range_divider {
 
     int bin_of(boxed_triangle const& t, int of_axis) const {
       float const x = (t.middle(of_axis) - first) * scale;
-      return static_cast<int>(select(x > 0, smaller(x, float(bins - 1)), 0.0f));  // 0 where it is NaN
+      return static_cast<int>(select(x > 0, min(x, float(bins - 1)), 0.0f));  // 0 where it is NaN
     }
   };
 
@@ -172,8 +172,8 @@ class range_divider {
   /// Moves the end of the left part to where full nodes end, and triangles next to the plane to the other side.
   std::uint32_t fill_nodes(triangle_range const& range, std::uint32_t middle, int axis) {
     constexpr std::uint32_t n = tree_node::width;
-    std::uint32_t const wanted = larger((middle - range.begin + n / 2) / n, 1u) * n, most = (range.size() - 1) / n * n;
-    std::uint32_t const to = range.begin + smaller(wanted, most);
+    std::uint32_t const wanted = max((middle - range.begin + n / 2) / n, 1u) * n, most = (range.size() - 1) / n * n;
+    std::uint32_t const to = range.begin + min(wanted, most);
     if (to == middle) return to;
     auto const before = [&](boxed_triangle const& a, boxed_triangle const& b) {
       return a.middle(axis) < b.middle(axis);
@@ -210,7 +210,7 @@ class sah_tree {
     used_ = 1;
     tasks_ = 0;
     nodes_[0].parent = nodes_[0].slot = 0;
-    most_at_once_ = larger(finite / 64, 4096u);
+    most_at_once_ = max(finite / 64, 4096u);
     task const root{range_divider(all_).range_of(0, finite), 0, 0};
     build_node(root, true);
     for_each_block(space, tasks_, [&](std::size_t i) { build_node(waiting_[i], false); });

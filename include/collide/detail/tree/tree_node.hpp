@@ -109,8 +109,8 @@ struct alignas(32) tree_node {
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < width; ++k) {
         if ((there >> k & 1) == 0) continue;
-        all.lower[i] = smaller(all.lower[i], lower[i][k]);
-        all.upper[i] = larger(all.upper[i], upper[i][k]);
+        all.lower[i] = min(all.lower[i], lower[i][k]);
+        all.upper[i] = max(all.upper[i], upper[i][k]);
       }
     }
     return all;
@@ -151,8 +151,8 @@ struct alignas(32) tree_node {
   }
   static COLLIDE_HD_INLINE std::uint32_t least(std::uint32_t const (&keys)[width]) {
     std::uint32_t half[width / 2];
-    for (int k = 0; k < width / 2; ++k) half[k] = smaller(keys[k], keys[k + width / 2]);
-    return smaller(smaller(half[0], half[1]), smaller(half[2], half[3]));
+    for (int k = 0; k < width / 2; ++k) half[k] = min(keys[k], keys[k + width / 2]);
+    return min(min(half[0], half[1]), min(half[2], half[3]));
   }
   static COLLIDE_HD_INLINE void remove(std::uint32_t (&keys)[width], std::uint32_t key) {
     for (auto& other : keys) other = other == key ? none : other;
@@ -164,7 +164,7 @@ struct alignas(32) tree_node {
     if (!(squared >= 0)) return 0;
     // a computed square is at most 8 units in the last place too large, and a key drops as many
     float const most = above(float_above(squared)) * (1 + 16 * ieee_traits<float>::unit_roundoff);
-    return smaller(to_bits(larger(most, std::numeric_limits<float>::min())), 0x7f800000u) | 7u;
+    return min(to_bits(max(most, std::numeric_limits<float>::min())), 0x7f800000u) | 7u;
   }
 
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -180,7 +180,7 @@ struct alignas(32) tree_node {
   }
 
   COLLIDE_HD_INLINE float gap(int axis, int k, tree_point const& p) const {
-    float const outside = larger(lower[axis][k] - p.upper[axis], p.lower[axis] - upper[axis][k]);
+    float const outside = max(lower[axis][k] - p.upper[axis], p.lower[axis] - upper[axis][k]);
     return select(outside > 0, outside, 0.0f);
   }
 };

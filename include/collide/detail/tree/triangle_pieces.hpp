@@ -48,7 +48,7 @@ class triangle_pieces {
     for (sum const& s : sums) total = {total.wasted + s.wasted, total.roots + s.roots, total.all + s.all};
     if (!(total.wasted > total.all / 2) || !std::isfinite(total.all)) return 0;
     std::uint32_t* const first = first_.reserve(space.resource(), n + 1);
-    std::size_t const extra = smaller(15 * n, larger(3 * n, std::size_t{1} << 18));
+    std::size_t const extra = min(15 * n, max(3 * n, std::size_t{1} << 18));
     space.for_each(
         n, [&](std::size_t i) { first[i] = pieces_of(shape(mesh, i), static_cast<double>(extra) / total.roots); });
     first[n] = 0;
@@ -75,8 +75,8 @@ class triangle_pieces {
       if (!is_finite(t)) return;
       vec3<double> const a = t.a.template cast<double>(), u = t.b.template cast<double>() - a,
                          v = t.c.template cast<double>() - a;
-      vec3<double> const least = smaller(smaller<double>(u, v), vec3<double>(0, 0, 0)),
-                         sides = larger(larger<double>(u, v), vec3<double>(0, 0, 0)) - least;
+      vec3<double> const least = min(min<double>(u, v), vec3<double>(0, 0, 0)),
+                         sides = max(max<double>(u, v), vec3<double>(0, 0, 0)) - least;
       half_surface = sides.x() * sides.y() + (sides.y() * sides.z() + sides.z() * sides.x());
       area = std::sqrt(cross(u, v).squaredNorm()) / 2;
       length = std::sqrt(std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
@@ -93,7 +93,7 @@ class triangle_pieces {
   static std::uint32_t pieces_of(shape const& s, double for_root) {
     double const wanted = 1 + std::sqrt(s.wasted()) * for_root;
     double const slender = s.area > 0 ? s.length * s.length / (2 * s.area) : most;
-    return static_cast<std::uint32_t>(smaller(smaller(wanted, larger(slender, 1.0)), static_cast<double>(most)));
+    return static_cast<std::uint32_t>(min(min(wanted, max(slender, 1.0)), static_cast<double>(most)));
   }
 
   /// Cuts a triangle by planes at equal distances across the longest side of its box.
@@ -106,8 +106,8 @@ class triangle_pieces {
     vec3<double> corners[3];
     int c = 0;
     for (auto const* p : {&t.a, &t.b, &t.c}) corners[c++] = p->template cast<double>() - origin.template cast<double>();
-    vec3<double> const lower = smaller(smaller(corners[0], corners[1]), corners[2]);
-    vec3<double> const sides = larger(larger(corners[0], corners[1]), corners[2]) - lower;
+    vec3<double> const lower = min(min(corners[0], corners[1]), corners[2]);
+    vec3<double> const sides = max(max(corners[0], corners[1]), corners[2]) - lower;
     int const axis = sides[0] >= sides[1] && sides[0] >= sides[2] ? 0 : (sides[1] >= sides[2] ? 1 : 2);
     float const padding = float_above(triangle_aabb_of(t).padding);
     for (std::uint32_t k = 0; k < n; ++k) {
@@ -115,8 +115,8 @@ class triangle_pieces {
       aabb<double> const box = box_between(corners, axis, from, until);
       if (box.is_empty()) continue;
       for (int j = 0; j < 3; ++j) {
-        to[k].box.lower[j] = larger(whole.lower[j], below(float_below(box.lower[j]) - padding));
-        to[k].box.upper[j] = smaller(whole.upper[j], above(float_above(box.upper[j]) + padding));
+        to[k].box.lower[j] = max(whole.lower[j], below(float_below(box.lower[j]) - padding));
+        to[k].box.upper[j] = min(whole.upper[j], above(float_above(box.upper[j]) + padding));
       }
     }
     make_monotone(to, n);
@@ -130,8 +130,8 @@ class triangle_pieces {
       bool const rises = first.lower[j] + first.upper[j] <= last.lower[j] + last.upper[j];
       for (std::uint32_t k = 1; k < n; ++k) {
         std::uint32_t const up = rises ? k : n - 1 - k, down = rises ? n - 1 - k : k;  // where it comes from is done
-        of[up].box.upper[j] = larger(of[up].box.upper[j], of[rises ? up - 1 : up + 1].box.upper[j]);
-        of[down].box.lower[j] = smaller(of[down].box.lower[j], of[rises ? down + 1 : down - 1].box.lower[j]);
+        of[up].box.upper[j] = max(of[up].box.upper[j], of[rises ? up - 1 : up + 1].box.upper[j]);
+        of[down].box.lower[j] = min(of[down].box.lower[j], of[rises ? down + 1 : down - 1].box.lower[j]);
       }
     }
   }
@@ -142,14 +142,14 @@ class triangle_pieces {
     for (int c = 0; c < 3; ++c) {
       vec3<double> const &a = corners[c], &b = corners[(c + 1) % 3];
       double const begin = a[axis], way = b[axis] - begin;
-      if (smaller(begin, b[axis]) > until || larger(begin, b[axis]) < from) continue;
+      if (min(begin, b[axis]) > until || max(begin, b[axis]) < from) continue;
       for (double const plane : {from, until}) {
         // of an edge along the planes both ends
         double const part = way != 0 ? saturate((plane - begin) / way) : (plane == from ? 0.0 : 1.0);
         for (int j = 0; j < 3; ++j) {
           double const x = a[j] + part * (b[j] - a[j]);
-          box.lower[j] = smaller(box.lower[j], x);
-          box.upper[j] = larger(box.upper[j], x);
+          box.lower[j] = min(box.lower[j], x);
+          box.upper[j] = max(box.upper[j], x);
         }
       }
     }

@@ -12,7 +12,7 @@ struct sjkr {
   template <class S, class Memory>
   COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
                               Memory const&) const {
-    n.elastic -= S(m.cohesion) * S(12.566370614359172) * p.radius * detail::larger(p.overlap, S(0));
+    n.elastic -= S(m.cohesion) * S(12.566370614359172) * p.radius * detail::max(p.overlap, S(0));
   }
 };
 
@@ -63,9 +63,9 @@ struct jkr {
   /// parted.
   template <class S>
   static COLLIDE_HD_INLINE S root(S r, S k, S overlap) {
-    S x = detail::sqrt_rn(detail::sqrt_rn(r * detail::larger(overlap, S(0))));
+    S x = detail::sqrt_rn(detail::sqrt_rn(r * detail::max(overlap, S(0))));
     S least = detail::sqrt_rn(detail::sqrt_rn(k * r));  // grows until it is above the root
-    x = detail::larger(x, least);
+    x = detail::max(x, least);
     while (x * x * x * x / r - 2 * k * x < overlap) x *= 2;
     COLLIDE_NO_UNROLL
     for (int i = 0; i < 60; ++i) {

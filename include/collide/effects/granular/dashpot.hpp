@@ -19,7 +19,7 @@ struct dashpot {
                                   normal_force<S> const& n, Memory const&) const {
     S const speed = detail::length_of(p.slip);
     if (!(speed > 0)) return {S(0), S(0), S(0)};
-    return p.slip * (-detail::smaller(S(damping) * speed, detail::friction_limit(p, m, n)) / speed);
+    return p.slip * (-detail::min(S(damping) * speed, detail::friction_limit(p, m, n)) / speed);
   }
 };
 

@@ -15,7 +15,7 @@ struct hertz {
 
   template <class S>
   COLLIDE_HD_INLINE normal_force<S> force(granular_pair<S> const& p, detail::contact_material const& m) const {
-    S const overlap = detail::larger(p.overlap, S(0)), a = detail::sqrt_rn(p.radius * overlap);
+    S const overlap = detail::max(p.overlap, S(0)), a = detail::sqrt_rn(p.radius * overlap);
     return {S(4.0 / 3 * m.young) * a * overlap, S(2 * m.young) * a, a};
   }
 };

@@ -21,7 +21,7 @@ struct linear {
 
   template <class S>
   COLLIDE_HD_INLINE normal_force<S> force(granular_pair<S> const& p, detail::contact_material const&) const {
-    S const k = S(stiffness), overlap = detail::larger(p.overlap, S(0));
+    S const k = S(stiffness), overlap = detail::max(p.overlap, S(0));
     return {k * overlap, k, detail::sqrt_rn(p.radius * overlap)};
   }
 };

@@ -20,7 +20,7 @@ struct constant_torque {
                                    normal_force<S> const& n, Memory const&) const {
     S const rate = detail::length_of(p.turning);
     if (!(rate > 0)) return {S(0), S(0), S(0)};
-    return p.turning * (-S(m.rolling_friction) * p.radius * detail::larger(n.elastic, S(0)) / rate);
+    return p.turning * (-S(m.rolling_friction) * p.radius * detail::max(n.elastic, S(0)) / rate);
   }
 };
 
@@ -40,7 +40,7 @@ struct epsd {
   COLLIDE_HD_INLINE vec3<S> torque(granular_pair<S> const& p, detail::contact_material const& m,
                                    normal_force<S> const& n, Memory const& memory) const {
     S const arm = S(m.rolling_friction) * p.radius, normal = n.total(p);
-    S const secant = p.overlap > 0 ? detail::larger(n.elastic, S(0)) / p.overlap : S(0);
+    S const secant = p.overlap > 0 ? detail::max(n.elastic, S(0)) / p.overlap : S(0);
     S const stiffness = S(2.25) * secant * arm * arm, limit = arm * (normal < 0 ? -normal : normal);
     vec3<S>& spring = memory[rolling_torque{}];
     spring -= p.normal * detail::dot(spring, p.normal);

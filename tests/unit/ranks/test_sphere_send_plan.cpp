@@ -83,10 +83,10 @@ struct tally {
 
 /// Packs of so many spheres are tested at once.
 template <int Items, class S, class Spheres>
-std::vector<bool> passed_of(collide::detail::near_others<S> const& quick, Spheres const& spheres) {
+std::vector<bool> passed_of(collide::detail::halo_filter<S> const& quick, Spheres const& spheres) {
   std::vector<bool> passed;
   for (std::size_t first = 0; first < spheres.size(); first += Items) {
-    collide::detail::sphere_batch<S, Items> batch;
+    collide::detail::sphere_pack<S, Items> batch;
     batch.load(spheres, first);
     std::uint32_t const near = quick.mark(batch);
     for (std::size_t k = 0; k < Items && first + k < spheres.size(); ++k) passed.push_back((near >> k & 1) != 0);
@@ -96,7 +96,7 @@ std::vector<bool> passed_of(collide::detail::near_others<S> const& quick, Sphere
 
 template <class S, class Spheres>
 tally tally_of(test_map const& map, Spheres const& spheres, collide::thread_ranks const& ranks) {
-  collide::detail::near_others<S> const quick(map.lookup, map.extent, spheres.common_radius());
+  collide::detail::halo_filter<S> const quick(map.lookup, map.extent, spheres.common_radius());
   auto const passed = passed_of<32>(quick, spheres);
   tally t;
   t.is_right = passed == passed_of<4>(quick, spheres);
@@ -113,7 +113,7 @@ tally tally_of(test_map const& map, Spheres const& spheres, collide::thread_rank
     t.is_right = t.is_right && (!goes || passed[i]);
   }
   std::sort(expected.begin(), expected.end());
-  collide::detail::sphere_routes routes;
+  collide::detail::sphere_send_plan routes;
   collide::host space(1);
   routes.find(space, map.lookup, spheres, ranks.rank(), ranks.size());
   t.is_right = t.is_right && routes.size() == expected.size();
@@ -188,7 +188,7 @@ TEST_CASE("sphere routes: those that the map says, by rank and sphere, in any nu
     collide::detail::divided_mesh<float> mesh;
     mesh.build(ranks, space, part_of(made, ranks.rank(), 3));
     auto const spheres = made.moving();
-    collide::detail::sphere_routes routes;
+    collide::detail::sphere_send_plan routes;
     routes.find(space, mesh.lookup(), spheres, ranks.rank(), ranks.size());
     double const extent = mesh.map().grid().frame().max_extent();
     std::size_t all = 0;

@@ -8,9 +8,9 @@
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/geometry/sphere_pack.hpp>
 #include <collide/detail/numeric/exact_number.hpp>
-#include <collide/detail/ranks/near_others.hpp>
+#include <collide/detail/ranks/halo_filter.hpp>
 #include <collide/detail/ranks/rank_map.hpp>
-#include <collide/detail/ranks/routes.hpp>
+#include <collide/detail/ranks/send_plan.hpp>
 #include <collide/moving_spheres.hpp>
 
 namespace collide::detail {
@@ -26,14 +26,14 @@ COLLIDE_HD aabb<double> reach_of(moving_sphere_view<S> const& spheres, std::size
   return reach_of(sphere<S>{s.centre, s.radius}, s.displacement, extent);
 }
 
-/// Kernel body of `for_each` over so many spheres at a time: puts out a pair of each other rank that a sphere goes to,
-/// and the sphere.
+/// Kernel functor of `for_each` over so many spheres at a time: puts out a pair of each other rank that a sphere goes
+/// to, and the sphere.
 template <class Spheres, int Items>
-struct find_routes {
+struct find_sends {
   using S = typename Spheres::scalar;
   Spheres spheres;
   rank_lookup map;
-  near_others<S> quick;
+  halo_filter<S> quick;
   double extent;
   int self;
   output to;
@@ -41,7 +41,7 @@ struct find_routes {
     std::size_t const first = pack * Items;
     std::uint32_t near = 0;
     multiversioned([&] {
-      sphere_batch<S, Items> batch;
+      sphere_pack<S, Items> batch;
       batch.load(spheres, first);
       near = quick.mark(batch);
     });
@@ -54,22 +54,22 @@ struct find_routes {
  private:
   COLLIDE_HD void find(std::size_t i) const {
     map.for_each_rank(reach_of(spheres, i, extent), [&](int rank) {
-      if (rank != self) put_route(to, rank, i);
+      if (rank != self) add_send(to, rank, i);
     });
   }
 };
 
 /// Routes of a rank's spheres.
-class sphere_routes : public routes {
+class sphere_send_plan : public send_plan {
  public:
   /// Finds the routes of spheres to ranks other than `self`.
   template <class Space, class Spheres>
   void find(Space& space, rank_lookup const& map, Spheres const& spheres, int self, int ranks) {
     constexpr int items = Space::host_accessible ? 32 : 4;
     double const extent = map.grid.meets(map.grid.frame()) ? map.grid.frame().max_extent() : 0;
-    near_others<typename Spheres::scalar> const quick(map, extent, spheres.common_radius());
-    routes::find(space, find_routes<Spheres, items>{spheres, map, quick, extent, self, {}},
-                 (spheres.size() + items - 1) / items, spheres.size(), ranks);
+    halo_filter<typename Spheres::scalar> const quick(map, extent, spheres.common_radius());
+    send_plan::find(space, find_sends<Spheres, items>{spheres, map, quick, extent, self, {}},
+                    (spheres.size() + items - 1) / items, spheres.size(), ranks);
   }
 };
 

@@ -10,7 +10,7 @@ namespace collide::detail {
 template <class T>
 COLLIDE_HD inline vec3<T> unit(vec3<T> const& v) {
   vec3<T> const w = scaled(v, inverse_power_of_two(max_norm(v)));
-  return scaled(w, div(T(1), sqrt_rn(dot(w, w))));
+  return scaled(w, div_rn(T(1), sqrt_rn(dot(w, w))));
 }
 
 /// A unit vector perpendicular to `v`, or (0, 0, 1) if `v` is zero.
@@ -18,7 +18,7 @@ template <class T>
 COLLIDE_HD inline vec3<T> perpendicular(vec3<T> const& v) {
   vec3<T> const m = absolute(v);
   if (m.x() == 0 && m.y() == 0) return m.z() == 0 ? vec3<T>{0, 0, 1} : vec3<T>{1, 0, 0};
-  return m.z() >= larger(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
+  return m.z() >= max(m.x(), m.y()) ? unit<T>({0, -v.z(), v.y()}) : unit<T>({-v.y(), v.x(), 0});
 }
 
 /// The longest edge of a triangle.
@@ -30,7 +30,7 @@ COLLIDE_HD_INLINE vec3<T> longest_edge(local_triangle<T> const& t) {
 }
 
 /// A contact without its point.
-struct measured_contact {
+struct contact_without_point {
   separation measured;
   vec3<double> normal;
   feature kind;

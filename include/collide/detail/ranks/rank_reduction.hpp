@@ -14,7 +14,7 @@ namespace collide::detail {
 /// The sums over all ranks of the counts that `read()` returns, as many on each. Throws what that throws, and `error`
 /// if a sum does not fit into 64 bits, on all ranks.
 template <class Ranks, class Read>
-std::vector<std::int64_t> sums_of_ranks(Ranks const& ranks, Read const& read) {
+std::vector<std::int64_t> rank_reduction(Ranks const& ranks, Read const& read) {
   constexpr std::uint64_t low = 0xffffffffu;
   std::vector<std::int64_t> counts;
   std::vector<std::uint64_t> mine, all;  // of each count its upper half, with its sign, and its lower half

@@ -54,7 +54,7 @@ TEST_CASE_TEMPLATE("quick frames: no place is off by more than the bound says, o
     f.centre = rounded_to<S>(world);
     // as `advance_bodies` has it
     f.reach = static_cast<S>(size * (1 + 1e-5) + 32 * double(std::numeric_limits<S>::epsilon()) * world.norm());
-    auto const q = quick_frame<S>::of(f);
+    auto const q = float_frame<S>::of(f);
     S x[100], y[100], z[100], at[3][100];
     for (int k = 0; k < 100; ++k) {
       double const part = k % 2 == 0 ? 1 : uniform(engine);
@@ -64,7 +64,7 @@ TEST_CASE_TEMPLATE("quick frames: no place is off by more than the bound says, o
     std::uint32_t close[100];
     q.find_close(x, y, z, S(radius), close);
     q.to_local(x, y, z, at);
-    double const bound = double(q.slack) + double(quick_error<S>) * radius;
+    double const bound = double(q.slack) + double(float_frame_error<S>) * radius;
     for (int k = 0; k < 100; ++k) {
       if (close[k] == 0) continue;
       auto const exact = rounded_to<S>(f.now.to_local(vector(double(x[k]), double(y[k]), double(z[k]))));
@@ -92,7 +92,7 @@ TEST_CASE_TEMPLATE("quick frames: what `body_frame` does not find far is close",
     auto const p = rounded_to<S>(vector(f.now.position + edge * direction(engine)));
     S const x[1] = {p.x()}, y[1] = {p.y()}, z[1] = {p.z()};
     std::uint32_t close[1];
-    quick_frame<S>::of(f).find_close(x, y, z, radius, close);
+    float_frame<S>::of(f).find_close(x, y, z, radius, close);
     if (!f.is_far(p, radius, S(0))) CHECK(close[0] == 1);
   }
 }

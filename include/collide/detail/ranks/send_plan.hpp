@@ -16,7 +16,7 @@ namespace collide::detail {
 
 /// One pass over things, as a `pair_collector` sees a query. Its spheres are ranks, and its triangles things.
 template <class Space, class Find>
-struct route_query {
+struct send_query {
   struct count {
     std::size_t n;
     std::size_t size() const { return n; }
@@ -27,14 +27,15 @@ struct route_query {
   count spheres, mesh;
 
   void operator()(output const& to) const {
-    Find body = find;
-    body.to = to;
-    space.for_each(calls, body);
-    space.for_each(1, finish_only<output>{to});
+    Find kernel = find;
+    kernel.to = to;
+    space.for_each(calls, kernel);
+    space.for_each(1, end_pass_kernel<output>{to});
   }
 };
 
-/// Kernel body of `for_each` over numbers: how many of the pairs, which are in canonical order, are of lower spheres.
+/// Kernel functor of `for_each` over numbers: how many of the pairs, which are in canonical order, are of lower
+/// spheres.
 struct find_bounds {
   pair const* pairs;
   std::size_t size;
@@ -72,15 +73,15 @@ class pair_bounds {
 
 /// Pairs of a rank and the number of a thing that goes there, in canonical order, in memory of a space. 8 bytes for
 /// each, and in the space of a device twice that for the sort.
-class routes {
+class send_plan {
  public:
-  /// Finds those of so many things. `find` is a kernel body of `for_each`, which is called so often:
-  /// `put_route(to, rank, thing)`, with its member `to`, lists one.
+  /// Finds those of so many things. `find` is a kernel functor of `for_each`, which is called so often:
+  /// `add_send(to, rank, thing)`, with its member `to`, lists one.
   template <class Space, class Find>
   void find(Space& space, Find const& find, std::size_t calls, std::size_t things, int ranks) {
     ends_.resize(static_cast<std::size_t>(ranks) + 1);
     for (std::size_t r = 0; r < ends_.size(); ++r) ends_[r] = r;
-    route_query<Space, Find> const query{space, find, calls, {static_cast<std::size_t>(ranks)}, {things}};
+    send_query<Space, Find> const query{space, find, calls, {static_cast<std::size_t>(ranks)}, {things}};
     list_.fill(space, query);
     list_.sort(space, query);
     bounds_.find(space, list_.data(), list_.size(), ends_);
@@ -114,7 +115,7 @@ class routes {
   pair_bounds bounds_;
 };
 
-COLLIDE_HD_INLINE void put_route(output const& to, int rank, std::size_t thing) {
+COLLIDE_HD_INLINE void add_send(output const& to, int rank, std::size_t thing) {
   to.store(to.allocate(1), pair{static_cast<id>(rank), static_cast<id>(thing)});
 }
 

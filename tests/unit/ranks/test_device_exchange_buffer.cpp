@@ -1,7 +1,7 @@
 /// Mail of a space, from one's memory to another's or by way of the host, as the ranks say at run time.
 #include <doctest/doctest.h>
 
-#include <collide/detail/ranks/space_mail.hpp>
+#include <collide/detail/ranks/device_exchange_buffer.hpp>
 #include <collide/ranks/thread_ranks.hpp>
 
 namespace {
@@ -53,7 +53,7 @@ struct asking_ranks : collide::thread_ranks {
 /// Rank r sends r + 2 q numbers to rank q, which tell from whom they come.
 template <class Ranks>
 bool delivers(Ranks const& ranks, far_space const& space) {
-  collide::detail::space_mail<int> out, in;
+  collide::detail::device_exchange_buffer<int> out, in;
   out.clear(ranks.size());
   for (int q = 0; q < ranks.size(); ++q) out.counts[std::size_t(q)] = std::uint64_t(ranks.rank() + 2 * q);
   int* const to = out.resize(space);

@@ -18,7 +18,7 @@ namespace collide::detail {
 
 /// Items for each rank, or from each, in memory of a space: those of rank 0 first, without gaps.
 template <class T>
-class space_mail {
+class device_exchange_buffer {
   static_assert(std::is_trivially_copyable<T>::value, "collide: what ranks send is plain");
 
  public:
@@ -78,20 +78,20 @@ using ranks_takes_device_memory = decltype(std::declval<R const&>().takes_device
 /// How mail of a space goes from rank to rank: in three parts, as a rank can fail in the first and the last alone. All
 /// ranks call all of them.
 template <class Ranks, class Space>
-class transport {
+class device_exchange {
  public:
-  transport(Ranks const& ranks, Space const& space) : ranks_{ranks}, space_{space} {}
+  device_exchange(Ranks const& ranks, Space const& space) : ranks_{ranks}, space_{space} {}
 
   /// Makes mail ready to be sent: if it goes by way of the host, it is there. Then it waits.
   template <class T>
-  void stage(space_mail<T>& out) const {
+  void stage(device_exchange_buffer<T>& out) const {
     if (!is_direct()) out.to_host(space_);
   }
 
   /// Sends `out`, which has been staged, and receives `in`, which has room. All ranks come out of it; if something
   /// goes wrong on one in the space, that one throws.
   template <class T>
-  void send(space_mail<T>& out, space_mail<T>& in) const {
+  void send(device_exchange_buffer<T>& out, device_exchange_buffer<T>& in) const {
     if constexpr (can_be_direct) {
       if (is_direct()) {
         return ranks_.exchange_in_space(space_, out.data(), out.counts.data(), in.data(), in.counts.data(), sizeof(T));
@@ -102,13 +102,13 @@ class transport {
 
   /// Brings what was received to the space.
   template <class T>
-  void unstage(space_mail<T>& in) const {
+  void unstage(device_exchange_buffer<T>& in) const {
     if (!is_direct()) in.from_host(space_);
   }
 
   /// Makes room for what is received.
   template <class T>
-  void expect(space_mail<T>& in) const {
+  void expect(device_exchange_buffer<T>& in) const {
     in.resize(space_);
     if (!is_direct()) in.make_host_room(space_);
   }
@@ -131,8 +131,8 @@ class transport {
 /// Sends `out` and receives `in`, by way of memory of the host unless the ranks can do without. All ranks call it;
 /// where memory is short on one, all throw.
 template <class Ranks, class Space, class T>
-void deliver(Ranks const& ranks, Space const& space, space_mail<T>& out, space_mail<T>& in) {
-  transport<Ranks, Space> const by(ranks, space);
+void deliver(Ranks const& ranks, Space const& space, device_exchange_buffer<T>& out, device_exchange_buffer<T>& in) {
+  device_exchange<Ranks, Space> const by(ranks, space);
   together(ranks, [&] { in.clear(ranks.size()); });
   ranks.exchange_counts(out.counts.data(), in.counts.data());
   together(ranks, [&] {

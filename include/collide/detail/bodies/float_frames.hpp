@@ -11,12 +11,12 @@
 ///   - rounding x - c, R and s costs u |v|, (sqrt(3) u + 12 d) |v| and (u + 32 d) |m|;
 ///   - three products and three sums, fused or not, cost 4 u (sqrt(3) |v| + |m|).
 /// In all |q - p| <= u (11 |v| + 6 |m|) + d (44 |v| + 64 |m|), to first order, and that is below
-/// `quick_error` (|v| + |m|). The position of the body is not in it: only its place in its own frame is.
+/// `float_frame_error` (|v| + |m|). The position of the body is not in it: only its place in its own frame is.
 ///
 /// If a sphere of radius r touches a triangle at p, one of radius r + |q - p| does at q. So it is in a cell that has
 /// triangles if the grid serves spheres of that radius: grids of scenes with bodies have that much `room`. Of particles
 /// that are not far, |v| <= (1 + 2e-5) (reach + r). That, what is above the first order, and the rounding of the radius
-/// that the grid is made for take less than the 5 u by which `quick_error` exceeds 11 u.
+/// that the grid is made for take less than the 5 u by which `float_frame_error` exceeds 11 u.
 #pragma once
 
 #include <cstdint>
@@ -32,39 +32,39 @@
 namespace collide::detail {
 
 template <class S>
-inline constexpr S quick_error = 16 * ieee_traits<S>::unit_roundoff + S(128 * 0x1p-53);
+inline constexpr S float_frame_error = 16 * ieee_traits<S>::unit_roundoff + S(128 * 0x1p-53);
 
 /// How much larger than the particles' the radius is that the grid of a mesh with bodies is made for. `extent` is the
 /// largest distance of what a body has from the origin of its frame.
 template <class S>
-S quick_room(double extent) {
-  return static_cast<S>(16 * static_cast<double>(quick_error<S>) * extent);
+S float_frame_margin(double extent) {
+  return static_cast<S>(16 * static_cast<double>(float_frame_error<S>) * extent);
 }
 
 /// A body's frame at the end of a step.
 template <class S>
-struct alignas(16) quick_frame {
+struct alignas(16) float_frame {
   S centre[3], reach;  ///< no particle of radius r whose distance is above 1 + 2e-5 times reach + r touches the body
   S turn[3][3];
   S shift[3];  ///< where `centre` is in the frame
-  S slack;     ///< how far places may be off, beside `quick_error` times the radius, of particles that are not far
+  S slack;  ///< how far places may be off, beside `float_frame_error` times the radius, of particles that are not far
 
   /// The frame of what rests: all places are exact, and none is far.
-  static quick_frame at_rest() {
+  static float_frame at_rest() {
     return {{0, 0, 0}, std::numeric_limits<S>::infinity(), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}, 0};
   }
 
   /// Of a discrete step, in which `f` has the bounding sphere as it is at the end.
-  static COLLIDE_HD_INLINE quick_frame of(body_frame<S> const& f) {
-    quick_frame q;
+  static COLLIDE_HD_INLINE float_frame of(body_frame<S> const& f) {
+    float_frame q;
     double const w = f.now.w, a[3] = {f.now.axis.x(), f.now.axis.y(), f.now.axis.z()};
     double const twist[3][3] = {{0, a[2], -a[1]}, {-a[2], 0, a[0]}, {a[1], -a[0], 0}};
     vec3<double> const local = f.now.to_local(f.centre.template cast<double>());
     for (int i = 0; i < 3; ++i) {
       int const j = (i + 1) % 3, k = (i + 2) % 3;
-      q.turn[i][i] = static_cast<S>(1 - 2 * (mul(a[j], a[j]) + mul(a[k], a[k])));
-      q.turn[i][j] = static_cast<S>(2 * (mul(a[i], a[j]) + mul(w, twist[i][j])));
-      q.turn[i][k] = static_cast<S>(2 * (mul(a[i], a[k]) + mul(w, twist[i][k])));
+      q.turn[i][i] = static_cast<S>(1 - 2 * (mul_rn(a[j], a[j]) + mul_rn(a[k], a[k])));
+      q.turn[i][j] = static_cast<S>(2 * (mul_rn(a[i], a[j]) + mul_rn(w, twist[i][j])));
+      q.turn[i][k] = static_cast<S>(2 * (mul_rn(a[i], a[k]) + mul_rn(w, twist[i][k])));
       q.centre[i] = f.centre[i];
       q.shift[i] = static_cast<S>(local[i]);
     }
@@ -72,7 +72,7 @@ struct alignas(16) quick_frame {
     // where squares vanish a particle may seem not to be far
     constexpr S least = std::numeric_limits<S>::min(), most = std::numeric_limits<S>::max();
     double const tiny = 4 * sqrt_rn(static_cast<double>(least)), far = sqrt_rn(dot(local, local));
-    double const slack = mul(static_cast<double>(quick_error<S>), static_cast<double>(f.reach) + far + tiny);
+    double const slack = mul_rn(static_cast<double>(float_frame_error<S>), static_cast<double>(f.reach) + far + tiny);
     bool const has_squares = static_cast<double>(f.reach) + far < sqrt_rn(static_cast<double>(most)) / 4;
     q.slack =
         has_squares ? static_cast<S>(slack + 32 * static_cast<double>(least)) : std::numeric_limits<S>::infinity();
@@ -83,11 +83,11 @@ struct alignas(16) quick_frame {
   template <int N>
   COLLIDE_HD_INLINE std::uint32_t find_close(S const (&x)[N], S const (&y)[N], S const (&z)[N], S radius,
                                              std::uint32_t (&close)[N]) const {
-    S const at_least = mul(reach + radius, S(1 + 2e-5)), limit = mul(at_least, at_least);
+    S const at_least = mul_rn(reach + radius, S(1 + 2e-5)), limit = mul_rn(at_least, at_least);
     std::uint32_t count = 0;
     for (int k = 0; k < N; ++k) {
       S const dx = x[k] - centre[0], dy = y[k] - centre[1], dz = z[k] - centre[2];
-      close[k] = fused(dx, dx, fused(dy, dy, mul(dz, dz))) > limit ? 0u : 1u;
+      close[k] = mul_add(dx, dx, mul_add(dy, dy, mul_rn(dz, dz))) > limit ? 0u : 1u;
       count += close[k];
     }
     return count;
@@ -104,47 +104,47 @@ struct alignas(16) quick_frame {
 
  private:
   COLLIDE_HD_INLINE S place(int i, S dx, S dy, S dz) const {
-    return fused(turn[i][0], dx, fused(turn[i][1], dy, fused(turn[i][2], dz, shift[i])));
+    return mul_add(turn[i][0], dx, mul_add(turn[i][1], dy, mul_add(turn[i][2], dz, shift[i])));
   }
 };
 
 /// The frames of a mesh with bodies, for spheres at rest.
 template <class S>
-struct quick_frames {
-  quick_frame<S> const* frames;
+struct float_frames {
+  float_frame<S> const* frames;
   S room;  ///< how much larger than the particles' the radius is that the grid has to serve
 
   /// True if a particle's place may be off by no more than there is room for, but for how far bodies are.
   COLLIDE_HD_INLINE bool serve(S radius) const {
-    return mul(quick_error<S>, radius) <= room && is_finite(mul(4 * radius, radius));
+    return mul_rn(float_frame_error<S>, radius) <= room && is_finite(mul_rn(4 * radius, radius));
   }
 
   /// Sets near[k] for those of some particles that may touch a triangle of the frames from `first` to before `end`:
-  /// those in cells with triangles (`marks`). False if that is not known, as a place may be too far off.
+  /// those in cells with triangles (`occupancy`). False if that is not known, as a place may be too far off.
   template <int N>
-  COLLIDE_HD_INLINE bool mark(occupancy_view<S> const& marks, int first, int end, S const (&x)[N], S const (&y)[N],
-                              S const (&z)[N], S radius, bool (&near)[N]) const {
-    S const most = room - mul(quick_error<S>, radius);
+  COLLIDE_HD_INLINE bool test_occupied(occupancy_view<S> const& occupancy, int first, int end, S const (&x)[N],
+                                       S const (&y)[N], S const (&z)[N], S radius, bool (&near)[N]) const {
+    S const most = room - mul_rn(float_frame_error<S>, radius);
     for (int k = 0; k < N; ++k) near[k] = false;
     COLLIDE_NO_UNROLL
     for (int i = first; i < end; ++i) {
-      quick_frame<S> const& f = frames[i];
+      float_frame<S> const& f = frames[i];
       if (!(f.slack <= most)) return false;
       std::uint32_t close[N];
       std::uint32_t const count = f.find_close(x, y, z, radius, close);
       if (count == 0) continue;
       if constexpr (N >= 64) {
         if (count <= N / 4) {
-          mark_few<N / 4>(f, marks, x, y, z, close, near);
+          test_few<N / 4>(f, occupancy, x, y, z, close, near);
           continue;
         }
       }
       S at[3][N];
       f.to_local(x, y, z, at);
-      auto const places = marks.places_of(at[0], at[1], at[2]);
+      auto const places = occupancy.places_of(at[0], at[1], at[2]);
       for (int k = 0; k < N; ++k) close[k] &= places.inside[k];
       for (int k = 0; k < N; ++k) {
-        if (close[k] != 0 && marks.is_occupied(places.cells[k])) near[k] = true;
+        if (close[k] != 0 && occupancy.is_occupied(places.cells[k])) near[k] = true;
       }
     }
     return true;
@@ -153,7 +153,7 @@ struct quick_frames {
  private:
   /// Marks those that are close, of which there are at most `M`: they are gathered first.
   template <int M, int N>
-  COLLIDE_HD_INLINE static void mark_few(quick_frame<S> const& f, occupancy_view<S> const& marks, S const (&x)[N],
+  COLLIDE_HD_INLINE static void test_few(float_frame<S> const& f, occupancy_view<S> const& occupancy, S const (&x)[N],
                                          S const (&y)[N], S const (&z)[N], std::uint32_t const (&close)[N],
                                          bool (&near)[N]) {
     int numbers[M + 1], n = 0;  // one more: each is written, and kept if it is close
@@ -167,9 +167,9 @@ struct quick_frames {
       few[0][j] = x[k], few[1][j] = y[k], few[2][j] = z[k];
     }
     f.to_local(few[0], few[1], few[2], at);
-    auto const places = marks.places_of(at[0], at[1], at[2]);
+    auto const places = occupancy.places_of(at[0], at[1], at[2]);
     for (int j = 0; j < n; ++j) {
-      if (places.inside[j] != 0 && marks.is_occupied(places.cells[j])) near[numbers[j]] = true;
+      if (places.inside[j] != 0 && occupancy.is_occupied(places.cells[j])) near[numbers[j]] = true;
     }
   }
 };

@@ -20,10 +20,10 @@ namespace collide::detail {
 /// bit for these eight. Where it begins is computed in S, with room for the rounding of that and for what `reach_of`
 /// adds. Proof: docs/development/numerics.md. Wider spheres pass, and where numbers may overflow all do.
 template <class S>
-class near_others {
+class halo_filter {
  public:
   /// `extent`: as for `reach_of`; `radius`: of all spheres, or 0. Larger ones have larger cells.
-  near_others(rank_lookup const& map, double extent, S radius) : rows_{map.others} {
+  halo_filter(rank_lookup const& map, double extent, S radius) : rows_{map.others} {
     for (int level = coarse_grid::finest; level >= 0; --level) {
       if (!set(map, extent, level)) return;
       if (to_bits(2 * radius) < most_) return;
@@ -32,7 +32,7 @@ class near_others {
 
   /// Says which pass: bit k is of sphere k. Without branches, for the CPU's vector unit.
   template <int N>
-  COLLIDE_HD_INLINE std::uint32_t mark(sphere_batch<S, N> const& b) const {
+  COLLIDE_HD_INLINE std::uint32_t mark(sphere_pack<S, N> const& b) const {
     static_assert(N <= 32, "collide: a word has a bit for each");
     std::uint32_t rows[N], columns[N], inside[N], wide[N];
     for (int k = 0; k < N; ++k) {
@@ -57,13 +57,13 @@ class near_others {
     double const tiny = static_cast<double>(limits::min()), huge = static_cast<double>(limits::max());
     double most = extent;
     for (int k = 0; k < 3; ++k) {
-      double const size = larger(larger(-frame.lower[k], frame.lower[k]), larger(-frame.upper[k], frame.upper[k]));
+      double const size = max(max(-frame.lower[k], frame.lower[k]), max(-frame.upper[k], frame.upper[k]));
       double const cells = map.grid.cells_on(k, level), width = cells > 0 ? 1 / cells : extent / across;
       if (!(size < huge / 8 && 1 / width < huge)) return false;
       double const room = 0x1p-12 * width + 0x1p-19 * extent + (8 * u + 0x1p-46) * size + 4 * sqrt_rn(tiny);
       lower_[k] = static_cast<S>(frame.lower[k] + room - width);
       scale_[k] = static_cast<S>(1 / width);
-      most = smaller(most, width - 2 * room);
+      most = min(most, width - 2 * room);
     }
     most_ = most > 0 ? to_bits(static_cast<S>(most)) : 0;
     end_ = to_bits(static_cast<S>(across + 1));
@@ -73,14 +73,14 @@ class near_others {
   }
 
   /// Where a box begins, in cells, one more than from the frame on.
-  COLLIDE_HD_INLINE S place(int axis, S x, S radius) const { return mul(x - lower_[axis] - radius, scale_[axis]); }
+  COLLIDE_HD_INLINE S place(int axis, S x, S radius) const { return mul_rn(x - lower_[axis] - radius, scale_[axis]); }
 
   /// Whether a box that begins there may reach into the frame; on bits, which negative numbers and NaN have more of.
   COLLIDE_HD_INLINE std::uint32_t is_inside(S place) const { return to_bits(place) < end_ ? 1u : 0u; }
 
   /// The cell of a place; the first for one before it.
   static COLLIDE_HD_INLINE std::uint32_t cell(S place) {
-    return static_cast<std::uint32_t>(larger(static_cast<std::int32_t>(place) - 1, 0));
+    return static_cast<std::uint32_t>(max(static_cast<std::int32_t>(place) - 1, 0));
   }
 
   S lower_[3] = {}, scale_[3] = {};

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include <collide/detail/geometry/closest_point.hpp>
-#include <collide/detail/narrow_phase/measured_contact.hpp>
+#include <collide/detail/narrow_phase/contact_without_point.hpp>
 #include <collide/detail/numeric/double_double.hpp>
 
 namespace collide::detail {
@@ -44,7 +44,7 @@ COLLIDE_HD inline long_triangle long_triangle_of(triangle<double> const& t, movi
 }
 
 /// The foot of the centre on a corner (0, 1, 2), an edge (3, 4, 5) or the face (6), and how far it is.
-struct long_foot {
+struct long_projection {
   int number;
   double_double distance;
   vec3<double> normal;  ///< from there to the centre, of any length
@@ -68,19 +68,20 @@ struct rounded_triangle {
 };
 
 /// True if the centre projects into the face; then its foot. What is thinner than digits reach has no face.
-COLLIDE_HD inline bool foot_on_face(long_triangle const& l, rounded_triangle const& r, long_foot& found) {
+COLLIDE_HD inline bool project_onto_face_compensated(long_triangle const& l, rounded_triangle const& r,
+                                                     long_projection& found) {
   constexpr double error_squared = 0x1p-94;
-  double const longest = larger(larger(r.length_squared[0], r.length_squared[1]), r.length_squared[2]);
+  double const longest = max(max(r.length_squared[0], r.length_squared[1]), r.length_squared[2]);
   found.certain = true;
   if (!(longest > 0x1p-200)) return false;
   long_vector const n = cross(l.edge[0], l.edge[1]);
   vec3<double> const normal = n.rounded();
-  double const nn = dot(normal, normal), sine_squared = div(nn, mul(longest, longest));
+  double const nn = dot(normal, normal), sine_squared = div_rn(nn, mul_rn(longest, longest));
   if (!(sine_squared > 0x1p-180)) return false;
   bool inside = true, outside = false;
   for (int i = 0; i < 3; ++i) {
     double const side = dot(cross(r.corner[i], r.edge[i]), normal);
-    bool const clear = mul(side, side) > mul(error_squared, mul(r.length_squared[i], nn));
+    bool const clear = mul_rn(side, side) > mul_rn(error_squared, mul_rn(r.length_squared[i], nn));
     inside = inside && side > 0;
     outside = outside || (clear && !(side > 0));
     found.certain = found.certain && clear;
@@ -100,7 +101,8 @@ COLLIDE_HD inline bool foot_on_face(long_triangle const& l, rounded_triangle con
 }
 
 /// The nearest of the feet on corners and edges.
-COLLIDE_HD inline void foot_on_boundary(long_triangle const& l, rounded_triangle const& r, long_foot& found) {
+COLLIDE_HD inline void project_onto_boundary_compensated(long_triangle const& l, rounded_triangle const& r,
+                                                         long_projection& found) {
   // guard: compensated-nearest
   constexpr double none = std::numeric_limits<double>::max(), error = 0x1p-43, error_squared = 0x1p-96;
   double square[6], least = none;
@@ -109,27 +111,27 @@ COLLIDE_HD inline void foot_on_boundary(long_triangle const& l, rounded_triangle
     square[i] = dot(v, v);
     square[3 + i] = none;
     double const before = -dot(v, r.edge[i]), after = dot(r.corner[(i + 1) % 3], r.edge[i]);
-    double const ee = r.length_squared[i], limit = mul(error_squared, ee);
+    double const ee = r.length_squared[i], limit = mul_rn(error_squared, ee);
     if (ee > 0x1p-400) {
-      bool const clear = mul(before, before) > limit && mul(after, after) > limit;
+      bool const clear = mul_rn(before, before) > limit && mul_rn(after, after) > limit;
       found.certain = found.certain && clear;
       if (before > 0 && after > 0) {
         vec3<double> const c = cross(v, r.edge[i]);
-        square[3 + i] = div(dot(c, c), ee);
+        square[3 + i] = div_rn(dot(c, c), ee);
       }
     }
-    least = smaller(least, smaller(square[i], square[3 + i]));
+    least = min(least, min(square[i], square[3 + i]));
   }
   found = {-1, {none, 0}, {0, 0, 0}, 1, found.certain};
   COLLIDE_NO_UNROLL
-  for (int foot = 0; foot < 6; ++foot) {
-    if (!(square[foot] <= least + error)) continue;
-    int const i = foot % 3;
-    bool const is_corner = foot < 3;
+  for (int projection = 0; projection < 6; ++projection) {
+    if (!(square[projection] <= least + error)) continue;
+    int const i = projection % 3;
+    bool const is_corner = projection < 3;
     long_vector const c = is_corner ? l.corner[i] : cross(l.corner[i], l.edge[i]);
     double_double const cc = dot(c, c), there = is_corner ? cc : cc / dot(l.edge[i], l.edge[i]);
     if (found.number >= 0 && !(there < found.distance)) continue;
-    found.number = foot;
+    found.number = projection;
     found.distance = there;
     found.normal = is_corner ? vec3<double>(-r.corner[i]) : cross(c.rounded(), r.edge[i]);
   }
@@ -147,31 +149,31 @@ COLLIDE_HD inline double depth_of(double radius, double_double const& distance) 
   return depth.high + (depth.low - distance.low);
 }
 
-/// Distance, normal and, if wanted, depth of a contact to nearly all digits of a double, and `foot`, the point of the
-/// triangle as seen from where the sphere is at the time, times `scale`. The scaled triangle is in the range of
+/// Distance, normal and, if wanted, depth of a contact to nearly all digits of a double, and `closest`, the point of
+/// the triangle as seen from where the sphere is at the time, times `scale`. The scaled triangle is in the range of
 /// `to_unit_range`. False if that takes more digits than there are.
-COLLIDE_HD_NOINLINE inline bool measure_compensated(triangle<double> const& t, moving_sphere<double> const& s,
-                                                    double time, double scale, bool exact_depth, vec3<double>& foot,
-                                                    measured_contact& found) {
+COLLIDE_HD_NOINLINE inline bool contact_compensated(triangle<double> const& t, moving_sphere<double> const& s,
+                                                    double time, double scale, bool exact_depth, vec3<double>& closest,
+                                                    contact_without_point& found) {
   // guard: compensated-scale
   if (!(scale >= 0x1p-1000 && scale <= 0x1p850)) return false;
   long_triangle const l = long_triangle_of(t, s, time, scale);
   rounded_triangle const r(l);
-  long_foot nearest{};
-  if (!foot_on_face(l, r, nearest)) foot_on_boundary(l, r, nearest);
+  long_projection nearest{};
+  if (!project_onto_face_compensated(l, r, nearest)) project_onto_boundary_compensated(l, r, nearest);
   if (nearest.sine_squared == 0) return false;
   double const away = nearest.distance.high;
-  double_double const distance = scaled(nearest.distance, div(1.0, scale));
+  double_double const distance = scaled(nearest.distance, div_rn(1.0, scale));
   double const depth = depth_of(s.radius, distance);
   // guard: compensated-depth
-  double const least = exact_depth ? smaller(away, mul(depth < 0 ? -depth : depth, scale)) : away;
+  double const least = exact_depth ? min(away, mul_rn(depth < 0 ? -depth : depth, scale)) : away;
   // guard: compensated-length
-  if (!(mul(mul(least, least), nearest.sine_squared) >= 0x1p-84)) return false;
+  if (!(mul_rn(mul_rn(least, least), nearest.sine_squared) >= 0x1p-84)) return false;
   // guard: compensated-doubt
-  if (!nearest.certain && !(mul(mul(away, least), nearest.sine_squared) >= 0x1p-40)) return false;
+  if (!nearest.certain && !(mul_rn(mul_rn(away, least), nearest.sine_squared) >= 0x1p-40)) return false;
   int const index = nearest.number % 3;
   vec3<double> const normal = unit(nearest.normal);
-  foot = nearest.number < 3 ? r.corner[index] : scaled<double>(normal, -away);
+  closest = nearest.number < 3 ? r.corner[index] : scaled<double>(normal, -away);
   found = {{distance.high, depth},
            normal,
            nearest.number < 3 ? feature::vertex : (nearest.number < 6 ? feature::edge : feature::face),

@@ -14,7 +14,7 @@ namespace collide::detail {
 
 /// Items for each rank, or from each: those of rank 0 first, without gaps.
 template <class T>
-struct mail {
+struct exchange_buffer {
   static_assert(std::is_trivially_copyable<T>::value, "collide: what ranks send is plain");
 
   std::vector<T> items;
@@ -29,7 +29,7 @@ struct mail {
 /// Fills the mail for `ranks`: sort(put) calls put(rank, item) for all items, any number of times each time the same.
 /// It is called twice, to count and to place, so nothing is kept but the mail.
 template <class T, class Sort>
-void fill_mail(mail<T>& to, int ranks, Sort const& sort) {
+void fill_exchange_buffer(exchange_buffer<T>& to, int ranks, Sort const& sort) {
   to.clear(ranks);
   std::uint64_t sum = 0;
   sort([&](int rank, T const&) {
@@ -46,7 +46,7 @@ void fill_mail(mail<T>& to, int ranks, Sort const& sort) {
 
 /// Sends `out` and receives `in`. All ranks call it; where memory is short on one, all throw.
 template <class Ranks, class T>
-void deliver(Ranks const& ranks, mail<T> const& out, mail<T>& in) {
+void deliver(Ranks const& ranks, exchange_buffer<T> const& out, exchange_buffer<T>& in) {
   together(ranks, [&] { in.clear(ranks.size()); });
   ranks.exchange_counts(out.counts.data(), in.counts.data());
   together(ranks, [&] {

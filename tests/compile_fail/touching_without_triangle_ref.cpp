@@ -1,5 +1,5 @@
-// expect: collide: effects that touch the mesh need a broad phase whose index has a member lookup(), such as bucket or
-// all_pairs
+// expect: collide: effects that touch the mesh need a broad phase whose index has a member triangle_ref(), such as
+// bucket or all_pairs
 #include <collide/bucket.cuh>
 #include <collide/effects/bounce.hpp>
 #include <collide/simulation.cuh>
@@ -7,7 +7,7 @@
 struct blind : collide::bucket {
   template <class S>
   class index : public bucket::index<S> {
-    using bucket::index<S>::lookup;
+    using bucket::index<S>::triangle_ref;
   };
 };
 
