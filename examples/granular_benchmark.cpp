@@ -187,7 +187,7 @@ template <class Simulation, class Line>
 double play(Simulation& made, std::size_t steps, std::size_t every, double dt, double start, Line const& line) {
   double spent = 0;
   for (std::size_t k = 0;; k += every) {
-    std::printf("%.6g,", start + static_cast<double>(k) * dt);
+    std::printf("%.6g,", start + static_cast<double>(std::min(k, steps)) * dt);
     line();
     std::fflush(stdout);
     if (k >= steps) return spent;
