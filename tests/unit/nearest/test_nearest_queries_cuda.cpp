@@ -1,11 +1,11 @@
 /// The sink `nearest` on CUDA.
 #include "nearest/nearest_queries.hpp"
 
-using collide::all_pairs, collide::bvh, collide::cuda, collide::cuda_shared;
+using collide::all_pairs, collide::bvh, collide::cuda_shared;
 
 TEST_CASE_TEMPLATE("nearest: what a loop over all triangles finds, to the last bit, on CUDA", S, float, double) {
   tests::check_nearest<bvh, cuda_shared, S>(cuda_shared());
-  tests::check_nearest<bvh, cuda, S>(cuda());
+  tests::check_nearest<bvh, collide::cuda, S>(collide::cuda());
   tests::check_nearest<all_pairs, cuda_shared, S>(cuda_shared());
 }
 
