@@ -240,9 +240,9 @@ class checkpoint {
 
   /// The bytes of an effect's parameters, or of their parts if there is padding between them.
   template <class E>
-  static std::vector<unsigned char> bytes_of_parameters(E effect) {
+  static std::vector<unsigned char> bytes_of_parameters(E const& effect) {
     std::vector<unsigned char> bytes;
-    for_each_part_of(effect, [&](auto const& part) {
+    for_each_part_of(const_cast<E&>(effect), [&](auto const& part) {  // reads them only
       std::size_t const before = bytes.size();
       bytes.resize(before + sizeof part);
       std::memcpy(bytes.data() + before, &part, sizeof part);
