@@ -14,8 +14,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # What is taken away, or changed, in which header, and what Doxygen then speaks of.
 FAULTS = [
-    ("drag.hpp", "  ///< per time, not negative", "", "Member linear"),
-    ("count.hpp", "  /// How many pairs collide; 0 before the first query.\n", "", "Member total"),
+    ("effects/drag.hpp", "  ///< per time, not negative", "", "Member linear"),
+    ("sinks/count.hpp", "  /// How many pairs collide; 0 before the first query.\n", "", "Member total"),
     ("detail/sinks/pair_records.hpp", "  /// True if all of them are stored.\n", "", "Member complete"),
     ("simulation.cuh", "  void step(S dt) {", "  void other() {}\n  void step(S dt) {", "Member step("),
     ("detector.hpp", "\\param sink     where", "\\param sinc     where", "argument 'sinc'"),

@@ -53,6 +53,7 @@ struct granular_contact {
                 "collide: mindlin, jkr and dmt are made for spheres that touch as hertz says: name hertz as the normal "
                 "law, or dashpot and sjkr with linear");
 
+  /// Particles have an angular velocity.
   static constexpr bool turns = !std::is_same<Tangential, none>::value || !std::is_same<Rolling, none>::value;
   static constexpr bool repels = true;                             ///< the mesh is solid
   static constexpr double farther = detail::farther_of<Cohesion>;  ///< than its radius a sphere sees the mesh, in radii
@@ -64,13 +65,13 @@ struct granular_contact {
                                                            typename detail::remembers_of<Rolling>::type,
                                                            typename detail::remembers_of<Cohesion>::type>>::type;
 
-  static constexpr bool is_memoryless = remembers::list::size == 0;
+  static constexpr bool is_memoryless = remembers::list::size == 0;  ///< contacts remember nothing
 
-  Materials made_of{};  ///< Young's moduli, densities, coefficients
-  Normal normal{};      ///< parameters of the laws
-  Tangential tangential{};
-  Rolling rolling{};
-  Cohesion cohesion{};
+  Materials made_of{};      ///< Young's moduli, densities, coefficients
+  Normal normal{};          ///< parameters of the normal law
+  Tangential tangential{};  ///< parameters of the tangential law
+  Rolling rolling{};        ///< parameters of the rolling law
+  Cohesion cohesion{};      ///< parameters of the law of cohesion
   /// Torques have the arm radius - arm_shortening overlap: 0.5 in LIGGGHTS and MercuryDPM, 0 in MUSEN, and in LAMMPS at
   /// walls.
   double arm_shortening = 0.5;
