@@ -10,5 +10,7 @@ s/^  using (value|block|reads|writes|optional_writes|optional_reads|runs_after|r
 s/^  static constexpr (S initial|std::uint8_t initial|bool (saves_parameters|keeps_ids_alone|asks_forces|makes_particles)) = /\/** \\private *\/ &/
 s/^  class index/\/** \\private *\/ &/
 s/^class bucket::index/\/** \\private *\/ &/
+# and of laws of granular contact: law.hpp says what each is for
+s/^  (COLLIDE_HD(_INLINE)? )(void|S|vec3<S>|normal_force<S>|detail::contact_material const&) (force|torque|pull|density_of|between|with_wall)\(/\/** \\private *\/ &/
 # overloads that end with a sentence of static_assert
 /^  \/\/ .*(ends? here|arguments of another kind)/,/^$/s/.*//

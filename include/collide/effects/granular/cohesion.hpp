@@ -19,7 +19,7 @@ struct sjkr {
 /// Hertz' force less a constant pull, 4 pi gamma R*, of hard grains: B. V. Derjaguin, V. M. Muller and Y. P. Toporov,
 /// Journal of Colloid and Interface Science 53, 1975.
 struct dmt {
-  static constexpr bool needs_hertz = true;
+  static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
 
   template <class S, class Memory>
   COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
@@ -35,8 +35,8 @@ struct dmt {
 /// gamma / (E* R*))^(2/3). Farther apart than a twentieth of its radius a sphere loses a wall.
 struct jkr {
   using remembers = contact_columns<contact_radius>;
-  static constexpr double farther = 0.05;
-  static constexpr bool needs_hertz = true;
+  static constexpr double farther = 0.05;    ///< than its radius a sphere sees the mesh, in radii
+  static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
 
   template <class S, class Memory>
   COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,

@@ -44,6 +44,7 @@ struct normal_force {
   S pull_off = 0;        ///< the largest pull of cohesion, by which friction has a greater limit
   bool goes_on = false;  ///< the two hold each other, though apart
 
+  /// The force along the normal, with damping.
   COLLIDE_HD_INLINE S total(granular_pair<S> const& p) const { return elastic + damping * p.closing; }
 };
 

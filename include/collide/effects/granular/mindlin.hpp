@@ -31,7 +31,7 @@ enum class slip_test {
 /// 2004. As it is by default, it is that of LIGGGHTS and MUSEN; the members are where codes differ.
 struct mindlin {
   using remembers = contact_columns<tangential_displacement>;
-  static constexpr bool needs_hertz = true;
+  static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
 
   double stiffness_factor = 1;  ///< of 8 G* a, above 0; 2/3 in A. Di Renzo and F. P. Di Maio, 2005, equation 37
   tangential_damping damping = tangential_damping::of_tangent;  ///< the dashpot
