@@ -54,10 +54,10 @@ __device__ __forceinline__ void accelerated(quadruple& v, float3 g, float dt) {
   v.b.z += g.x * dt, v.b.w += g.y * dt, v.c.x += g.z * dt;
   v.c.y += g.x * dt, v.c.z += g.y * dt, v.c.w += g.z * dt;
 }
-__device__ __forceinline__ void fallen(float& x, float& y, float& z, float3 g, collide::detail::medium const& m,
-                                       float dt) {
+__device__ __noinline__ void fallen(float& x, float& y, float& z, float3 g,
+                                       collide::detail::resistance_in_step const& medium, float dt) {
   collide::vec3<float> const before(x, y, z), pushed(x + g.x * dt, y + g.y * dt, z + g.z * dt);
-  collide::vec3<float> const after = collide::detail::velocity_in(m, before, pushed, dt);
+  collide::vec3<float> const after = collide::detail::velocity_in(medium, {0, 0, 0}, before, pushed);
   x = after.x(), y = after.y(), z = after.z();
 }
 
@@ -79,18 +79,17 @@ __global__ void __launch_bounds__(256) by_hand_gravity(float* x, float* v, unsig
   store(v, i, n, speed);
 }
 
-__global__ void __launch_bounds__(256)
-    by_hand_gravity_drag(float* x, float* v, unsigned n, float dt, double3 g, double linear, double quadratic) {
+__global__ void __launch_bounds__(256) by_hand_gravity_drag(float* x, float* v, unsigned n, float dt, double3 g,
+                                                            collide::detail::resistance_in_step medium) {
   unsigned const i = blockIdx.x * 256 + threadIdx.x;
   if (i - threadIdx.x % 32 >= n) return;
   quadruple place = load(x, i, n), u = load(v, i, n);
   place = exchanged(place), u = exchanged(u);
   float3 const by{float(g.x), float(g.y), float(g.z)};
-  collide::detail::medium const m{linear, quadratic, {0, 0, 0}};
-  fallen(u.a.x, u.a.y, u.a.z, by, m, dt);
-  fallen(u.a.w, u.b.x, u.b.y, by, m, dt);
-  fallen(u.b.z, u.b.w, u.c.x, by, m, dt);
-  fallen(u.c.y, u.c.z, u.c.w, by, m, dt);
+  fallen(u.a.x, u.a.y, u.a.z, by, medium, dt);
+  fallen(u.a.w, u.b.x, u.b.y, by, medium, dt);
+  fallen(u.b.z, u.b.w, u.c.x, by, medium, dt);
+  fallen(u.c.y, u.c.z, u.c.w, by, medium, dt);
   store(x, i, n, moved(place, u, dt));
   store(v, i, n, u);
 }
@@ -108,7 +107,7 @@ void step() {
 int main() {
   by_hand_none<<<1, 1>>>(nullptr, nullptr, 0, 0);
   by_hand_gravity<<<1, 1>>>(nullptr, nullptr, 0, 0, {});
-  by_hand_gravity_drag<<<1, 1>>>(nullptr, nullptr, 0, 0, {}, 0, 0);
+  by_hand_gravity_drag<<<1, 1>>>(nullptr, nullptr, 0, 0, {}, {});
   step<>();
   step<collide::gravity>();
   step<collide::gravity, collide::drag>();
