@@ -21,7 +21,7 @@ NAV = {
     "Use": ["install", "guide", "python", "choosing", "programs", "gallery"],
     "Tutorials": ["tutorials/*"],
     "Simulations": ["simulation", "granular", "effects", "ranks"],
-    "Reference": ["api/index", "accuracy", "performance", "glossary"],
+    "Reference": ["api/index", "accuracy", "verification", "performance", "glossary"],
     "Inside": ["design", "extending", "contributing", "changelog"],
     "Development": ["development/*"],
 }

@@ -5,13 +5,15 @@ code      The first block of C++ in the README is examples/minimal.cpp, and ever
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md is in the code of the file, or folder, that it is said to be in; words are in order.
-members   The tables of members in docs/guide.md have all that the headers have, and nothing else.
+members   The tables of members in docs/guide.md have all that the headers have, and nothing else; those of docs/api/results.md
+          are what scripts/members writes.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; no docstring of include/ begins with
           a word of FOREIGN_BEGINNINGS, which name nothing.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
 import re
+import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -145,6 +147,9 @@ def members_of(name):
 
 
 def members():
+    made = subprocess.run([sys.executable, "-B", ROOT / "scripts" / "members", "--check"], stderr=subprocess.PIPE, text=True)
+    if made.returncode != 0:
+        yield made.stderr.strip()
     page = ROOT / "docs" / "guide.md"
     section = page.read_text().split("The members of a sink", 1)[1].split("\n**", 1)[0]
     rows = [[re.findall(r"`([^`]+)`", cell) for cell in line.strip("|").split("|")] for line in section.splitlines() if line.startswith("| `")]

@@ -158,6 +158,7 @@ class body_memory {
   /// States of the bodies in memory of the space: poses at the end of the last step. With `moving_bodies<driven>`
   /// kernels of yours write there, before a step, what is to be at its end. Valid until the next `set_mesh`.
   body_state* states() const { return states_.data(); }
+  /// How many bodies there are.
   std::size_t size() const { return count_; }
 
   /// A copy of the states. Waits.
