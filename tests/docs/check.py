@@ -20,10 +20,11 @@ PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"
 
 
 # Pages in which every piece of C++ is from a program that tests run.
-TAUGHT = [ROOT / "README.md", ROOT / "docs" / "guide.md", ROOT / "docs" / "simulation.md", *(ROOT / "docs" / "tutorials").glob("*.md")]
+TAUGHT = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("guide", "simulation", "bodies", "checkpoints")),
+          *(ROOT / "docs" / "tutorials").glob("*.md")]
 
 # Pages in which no one writes measured numbers by hand.
-MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "simulation", "guide", "ranks", "gallery"))]
+MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "simulation", "bodies", "guide", "ranks", "gallery"))]
 
 # Words that readers of English do not use for what is meant, and what to write instead. Patterns, in any case.
 FOREIGN = {
