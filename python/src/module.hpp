@@ -47,6 +47,7 @@ void bind_mesh(nb::module_& m, char const* name) {
   nb::class_<type> c(m, name);
   c.def(nb::init<int, int>(), nb::arg("threads"), nb::arg("device")).def("__len__", &type::size);
   bind_call(c, "take", &type::take);
+  bind_call(c, "search", &type::search);
   auto const def = [&](char const* call, auto const function) {
     c.def(
         call,

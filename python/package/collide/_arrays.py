@@ -63,11 +63,11 @@ class _Numpy:
         return result.view(self.dtype("bool"))
 
     def field(self, records, first, last, kind):
-        """Columns first to last of records, which are rows of int32, as numbers of a kind; the column alone if last is
-        None."""
+        """Columns first to last of records, whose last axis are words of int32, as numbers of a kind; the column alone if
+        last is None."""
         width = 2 if kind == "float64" else 1
         whole = records.view(self.dtype(kind))
-        return whole[:, first // width] if last is None else whole[:, first // width : last // width]
+        return whole[..., first // width] if last is None else whole[..., first // width : last // width]
 
 
 class _Torch(_Numpy):
@@ -142,11 +142,11 @@ class _Jax(_Numpy):
     def field(self, records, first, last, kind):  # it has no arrays with gaps
         if kind == "int32":
             return super().field(records, first, last, kind)
-        words = records[:, first : last if last is not None else first + (2 if kind == "float64" else 1)]
+        words = records[..., first : last if last is not None else first + (2 if kind == "float64" else 1)]
         if kind == "float64":
-            words = words.reshape(len(words), -1, 2)
+            words = words.reshape(*words.shape[:-1], -1, 2)
         numbers = self.jax.lax.bitcast_convert_type(words, kind)
-        return numbers[:, 0] if last is None else numbers
+        return numbers[..., 0] if last is None else numbers
 
 
 class _Warp(_Numpy):
@@ -168,13 +168,12 @@ class _Warp(_Numpy):
 
     def field(self, records, first, last, kind):
         size = 8 if kind == "float64" else 4
-        rows, gap = records.shape[0], records.strides[0]
         columns = () if last is None else ((last - first) * 4 // size,)
         part = self.warp.array(
-            ptr=records.ptr + 4 * first if rows else None,
+            ptr=records.ptr + 4 * first if records.shape[0] else None,
             dtype=getattr(self.warp, kind),
-            shape=(rows, *columns),
-            strides=(gap, size)[: 1 + len(columns)],
+            shape=(*records.shape[:-1], *columns),
+            strides=(*records.strides[:-1], *(size for _ in columns)),
             device=records.device,
         )
         part.records = records  # whose memory it is
