@@ -5,7 +5,6 @@
 #include <array>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -26,15 +25,24 @@
 
 namespace collide_python {
 
-/// What all queries have: their arguments as Python gives them.
+/// What all queries have: their arguments as Python gives them, in this order.
 struct question {
   std::string precision;
   nb::object centres, radius, displacements;  ///< the last one is None for spheres at rest
-  bool canonical = false;
-  std::optional<std::size_t> capacity;  ///< for how many results there is room at most
-  nb::object out;                       ///< None, or an array for them
-  bool numpy = true;                    ///< whether results are numpy arrays
-  stream_of_call stream{0, -1};
+  bool canonical;
+  nb::object capacity;  ///< None, or for how many results there is room at most
+  nb::object out;       ///< None, or an array for them
+  bool numpy;           ///< whether results are numpy arrays
+
+  explicit question(nb::tuple const& q)
+      : precision(nb::cast<std::string>(q[0])),
+        centres(q[1]),
+        radius(q[2]),
+        displacements(q[3]),
+        canonical(nb::cast<bool>(q[4])),
+        capacity(q[5]),
+        out(q[6]),
+        numpy(nb::cast<bool>(q[7])) {}
 };
 
 template <class Space, class S>
@@ -72,37 +80,42 @@ class mesh {
   collide::mesh_view<S> const& view() const { return view_; }
   runtime<Space>& where() { return runtime_; }
 
-  std::uint64_t count(question const& q) {
-    call const now(*this, q.stream);
+  std::uint64_t count(stream_of_call stream, nb::tuple const& asked) {
+    call const now(*this, stream);
+    question const q(asked);
     collide::count sink;
     ask(q, sink);
     return sink.total();
   }
 
-  nb::object any(question const& q) {
-    call const now(*this, q.stream);
+  nb::object any(stream_of_call stream, nb::tuple const& asked) {
+    call const now(*this, stream);
+    question const q(asked);
     array const centres = runtime_.keep(import_array(q.centres, "centres", runtime_.at()));
-    if (!q.out.is_none()) {
-      auto const room = import_array<nb::ndarray<>>(q.out, "out", runtime_.at());
-      collide::any_hit sink(room_of<std::uint8_t>(room, "out", {points_of<S>(centres, "centres").size()}));
-      ask(q, sink, centres);
-      return q.out;
-    }
-    auto sink = std::make_unique<kept<collide::any_hit>>(runtime_.memory());
-    ask(q, sink->sink, centres);
-    std::uint8_t const* const data = sink->sink.data();
-    std::size_t const n = sink->sink.size();
-    return give(data, {n}, owner_of(std::move(sink)), runtime_.at(), q.numpy);
+    nb::object found;
+    collide::any_hit sink(each<std::uint8_t>(found, {points_of<S>(centres, "centres").size()}, q.out, q.numpy));
+    ask(q, sink, centres);
+    return found;
   }
 
-  /// (records as rows of int32, how many there are in all).
-  nb::object pairs(question const& q) { return records<collide::pair, collide::pairs>(q); }
-  nb::object contacts(question const& q) { return records<collide::contact<S>, collide::contacts<S>>(q); }
-  nb::object impacts(question const& q) { return records<collide::impact<S>, collide::impacts<S>>(q); }
+  /// (records as rows of int32, how many there are, how many there are in all).
+  nb::object pairs(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::pair, collide::pairs>(stream, q);
+  }
+  nb::object contacts(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::contact<S>, collide::contacts<S>>(stream, q);
+  }
+  nb::object impacts(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::impact<S>, collide::impacts<S>>(stream, q);
+  }
 
   /// One record for each sphere.
-  nb::object closest(question const& q) { return per_sphere<collide::contact<S>, collide::closest_contact<S>>(q); }
-  nb::object earliest(question const& q) { return per_sphere<collide::impact<S>, collide::earliest_impact<S>>(q); }
+  nb::object closest(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::contact<S>, collide::closest_contact<S>>(stream, q);
+  }
+  nb::object earliest(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::impact<S>, collide::earliest_impact<S>>(stream, q);
+  }
 
   /// What is near each point: `what` is nearest, k_nearest, signed_distance or contains. One record, or k of them, or a
   /// flag for each point, in `out` or in memory of its own; and how many points there are.
@@ -137,9 +150,11 @@ class mesh {
     return nb::make_tuple(found, points.size());
   }
 
-  nb::object csr(question const& q) {
-    call const now(*this, q.stream);
-    auto sink = std::make_unique<kept<collide::csr>>(runtime_.memory(), order_of(q));
+  nb::object csr(stream_of_call stream, nb::tuple const& asked) {
+    call const now(*this, stream);
+    question const q(asked);
+    auto sink = std::make_unique<kept<collide::csr>>(runtime_.memory());
+    sink->sink = collide::csr(order_of(q));
     ask(q, sink->sink);
     auto const* const offsets = reinterpret_cast<std::int64_t const*>(sink->sink.offsets());
     auto const* const triangles = reinterpret_cast<std::int32_t const*>(sink->sink.triangles());
@@ -168,8 +183,7 @@ class mesh {
     std::shared_ptr<void> memory;
     collide::buffer<unsigned char> room;
     Sink sink;
-    template <class... Argument>
-    explicit kept(std::shared_ptr<void> m, Argument const&... argument) : memory(std::move(m)), sink(argument...) {}
+    explicit kept(std::shared_ptr<void> m) : memory(std::move(m)) {}
   };
 
   static collide::order order_of(question const& q) {
@@ -184,41 +198,31 @@ class mesh {
   }
 
   template <class Record, class Sink>
-  nb::object records(question const& q) {
-    call const now(*this, q.stream);
+  nb::object records(stream_of_call stream, nb::tuple const& asked) {
+    call const now(*this, stream);
+    question const q(asked);
     constexpr std::size_t words = sizeof(Record) / 4;
-    if (!q.out.is_none()) {
-      auto const room = import_array<nb::ndarray<>>(q.out, "out", runtime_.at());
-      auto* const to = room_of<std::int32_t>(room, "out", {any_number, words});
-      Sink sink(reinterpret_cast<Record*>(to), room.shape(0), order_of(q));
-      ask(q, sink);
-      return nb::make_tuple(q.out, sink.size(), sink.total());
+    auto own = std::make_unique<kept<Sink>>(runtime_.memory());
+    if constexpr (std::is_constructible<Sink, Record*, std::size_t, collide::order>::value) {  // many for a sphere
+      if (!q.out.is_none()) {
+        auto const room = import_array<nb::ndarray<>>(q.out, "out", runtime_.at());
+        auto* const to = room_of<std::int32_t>(room, "out", {any_number, words});
+        Sink sink(reinterpret_cast<Record*>(to), room.shape(0), order_of(q));
+        ask(q, sink);
+        return nb::make_tuple(q.out, sink.size(), sink.total());
+      }
+      own->sink = Sink(order_of(q));
+      if (!q.capacity.is_none()) {
+        auto const n = nb::cast<std::size_t>(q.capacity);
+        auto* const to = own->room.reserve(runtime_.space().resource(), n * sizeof(Record));
+        own->sink = Sink(reinterpret_cast<Record*>(to), n, order_of(q));
+      }
     }
-    std::unique_ptr<kept<Sink>> sink;
-    if (q.capacity) {
-      collide::buffer<unsigned char> room;
-      auto* const to = room.reserve(runtime_.space().resource(), *q.capacity * sizeof(Record));
-      sink = std::make_unique<kept<Sink>>(runtime_.memory(), reinterpret_cast<Record*>(to), *q.capacity, order_of(q));
-      sink->room = std::move(room);
-    } else {
-      sink = std::make_unique<kept<Sink>>(runtime_.memory(), order_of(q));
-    }
-    ask(q, sink->sink);
-    auto const* const data = reinterpret_cast<std::int32_t const*>(sink->sink.data());
-    std::size_t const n = sink->sink.size();
-    std::uint64_t const total = sink->sink.total();
-    return nb::make_tuple(give(data, {n, words}, owner_of(std::move(sink)), runtime_.at(), q.numpy), n, total);
-  }
-
-  template <class Record, class Sink>
-  nb::object per_sphere(question const& q) {
-    call const now(*this, q.stream);
-    auto sink = std::make_unique<kept<Sink>>(runtime_.memory());
-    ask(q, sink->sink);
-    auto const* const data = reinterpret_cast<std::int32_t const*>(sink->sink.data());
-    std::size_t const n = sink->sink.size();
-    return nb::make_tuple(give(data, {n, sizeof(Record) / 4}, owner_of(std::move(sink)), runtime_.at(), q.numpy), n,
-                          sink->sink.total());
+    ask(q, own->sink);
+    auto const* const data = reinterpret_cast<std::int32_t const*>(own->sink.data());
+    std::size_t const n = own->sink.size();
+    std::uint64_t const total = own->sink.total();
+    return nb::make_tuple(give(data, {n, words}, owner_of(std::move(own)), runtime_.at(), q.numpy), n, total);
   }
 
   template <class Sink>

@@ -167,7 +167,7 @@ class Mesh:
     ) -> int:
         """How many pairs of a sphere and a triangle touch. Arguments as for `query`."""
         stream = self._stream(library_of(centres, self._device))
-        return self._mesh.count(stream, precision, centres, radius, displacements, False, None, None, True)
+        return self._mesh.count(stream, (precision, centres, radius, displacements, False, None, None, True))
 
     def any(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
@@ -180,7 +180,8 @@ class Mesh:
         """
         library = library_of(centres, self._device)
         stream = self._stream(library)
-        flags = self._mesh.any(stream, precision, centres, radius, displacements, False, None, out, library.is_numpy)
+        asked = precision, centres, radius, displacements, False, None, out, library.is_numpy
+        flags = self._mesh.any(stream, asked)
         return flags if out is not None else library.flags(library.array(flags, stream))
 
     def query(
@@ -209,10 +210,8 @@ class Mesh:
             _refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
             library = library_of(centres, self._device)
             stream = self._stream(library)
-            arrays = self._mesh.csr(
-                stream, precision, centres, radius, displacements, _is_canonical(order), None, None, library.is_numpy
-            )
-            return Csr(*(library.array(a, stream) for a in arrays))
+            asked = precision, centres, radius, displacements, _is_canonical(order), None, None, library.is_numpy
+            return Csr(*(library.array(a, stream) for a in self._mesh.csr(stream, asked)))
         _refuse(output != "pairs", "output", f"is {output!r}, expected 'pairs' or 'csr'")
         return self._ask("pairs", Pairs, centres, radius, displacements, precision, order, capacity, out)
 
@@ -257,9 +256,8 @@ class Mesh:
     def _ask(self, call, kind, centres, radius, displacements, precision, order, capacity, out):
         library = library_of(centres, self._device)
         stream = self._stream(library)
-        records, size, total = getattr(self._mesh, call)(
-            stream, precision, centres, radius, displacements, _is_canonical(order), capacity, out, library.is_numpy
-        )
+        asked = precision, centres, radius, displacements, _is_canonical(order), capacity, out, library.is_numpy
+        records, size, total = getattr(self._mesh, call)(stream, asked)
         if out is None:
             records = library.array(records, stream)
         elif size < len(out):
