@@ -1,5 +1,5 @@
 /// \file
-/// Where a particle is in its step, and the contacts with the mesh that it has had in it.
+/// The place of a particle in its step, and the contacts with the mesh that it has had in it.
 ///
 /// `Seen` is its motion as a surface sees it: `motion_in_world` of surface_at_rest.hpp, or `motion_on_body` of
 /// moving_surface.hpp.

@@ -80,7 +80,7 @@ struct surface_at_rest {
   COLLIDE_HD_INLINE void carry(Mesh const&, Particle&, Active const&) const {}
 };
 
-/// Where a particle touches the mesh.
+/// A touch of a particle and the mesh.
 template <class S, class Surface, class Motion>
 struct touch {
   sphere<S> here;
@@ -113,7 +113,7 @@ template <class Mesh, class Active, class Shape, class S>
 COLLIDE_HD_INLINE auto contact_in_world(Mesh const& mesh, Active const& a, Shape const& whole, S, contact<S>&) {
   return motion_seen(mesh, a, only_frame{}, whole);
 }
-/// Where a particle touches the mesh, at a time of the rest of its step. `Turns`: it may turn with a body.
+/// The touch of a particle and the mesh at a time of the rest of its step. `Turns`: it may turn with a body.
 template <bool Turns, class Mesh, class Active, class S>
 COLLIDE_HD_INLINE touch<S, surface_at_rest, motion_in_world<S>> touch_at(Mesh const& mesh, Active const& a,
                                                                          contact<S> const&, S time) {
