@@ -1,5 +1,5 @@
 /// \file
-/// The members of the parts of a detector; docs/extending.md shows each with an example.
+/// The members of the parts of a detector; docs/development/extending.md shows each with an example.
 ///
 /// A sink is a class with a member `template <class Space, class Query> void run(Space& space, Query const& query)`. It
 /// calls `query(output)` as often as it needs to; each call puts one pass over the scene on the space's stream. The

@@ -114,6 +114,12 @@ inline constexpr bool asks_forces = false;
 template <class E>
 inline constexpr bool asks_forces<E, std::void_t<decltype(E::asks_forces)>> = E::asks_forces;
 
+/// True for an effect by which space repeats, from its `lower` to its `upper`.
+template <class E, class = void>
+inline constexpr bool repeats_space = false;
+template <class E>
+inline constexpr bool repeats_space<E, std::void_t<decltype(E::repeats_space)>> = E::repeats_space;
+
 /// True for a source of particles.
 template <class E, class = void>
 inline constexpr bool is_source = false;

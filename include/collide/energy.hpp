@@ -3,10 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <limits>
 #include <vector>
 
+#include <collide/detail/particles/overlaps_on_host.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/sphere_contact.hpp>
@@ -62,6 +62,7 @@ struct particles_on_host {
 
   std::vector<S> x, v, w, r;
   std::vector<std::uint8_t> is_there, solid;
+  typename simulation<Detector, Effect...>::effects_type::space_type space;
 
   explicit particles_on_host(simulation<Detector, Effect...> const& of)
       : x{of.template to_host<position>()},
@@ -69,7 +70,8 @@ struct particles_on_host {
         w(x.size()),
         r(of.size(), of.state().common_radius),
         is_there(of.size(), 1),
-        solid(of.size(), 0) {
+        solid(of.size(), 0),
+        space(typename simulation<Detector, Effect...>::effects_type(of.template effect<Effect>()...).space()) {
     if constexpr (contains<list, radius>) r = of.template to_host<radius>();
     if constexpr (contains<list, angular_velocity>) w = of.template to_host<angular_velocity>();
     if constexpr (contains<list, alive>) is_there = of.template to_host<alive>();
@@ -91,24 +93,12 @@ struct particles_on_host {
   /// f(i, k, overlap) for each two that overlap: a sweep along x. O(n log n) and the pairs that are near along x.
   template <class F>
   void for_each_contact(F const& f) const {
-    std::vector<std::size_t> order;
-    double largest = 0;
-    for (std::size_t i = 0; i < r.size(); ++i) {
-      largest = std::max(largest, radius_of(i));
-      if (is_there[i] != 0 && std::isfinite(static_cast<double>(x[3 * i]))) order.push_back(i);
-    }
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[3 * a] < x[3 * b]; });
-    for (std::size_t a = 0; a < order.size(); ++a) {
-      std::size_t const i = order[a];
-      vec3<double> const xi = at(x, i);
-      for (std::size_t b = a + 1; b < order.size(); ++b) {
-        std::size_t const k = order[b];
-        vec3<double> const between = at(x, k) - xi;
-        if (between.x() > radius_of(i) + largest) break;
-        double const overlap = radius_of(i) + radius_of(k) - between.norm();
-        if (overlap > 0) f(i, k, overlap);
-      }
-    }
+    std::vector<S> there = x;
+    for (std::size_t i = 0; i < r.size(); ++i)
+      if (is_there[i] == 0) there[3 * i] = std::numeric_limits<S>::quiet_NaN();
+    for_each_overlap(there, r, space, [&](swept_point const& a, swept_point const& b, double overlap) {
+      f(a.number, b.number, overlap);
+    });
   }
 };
 

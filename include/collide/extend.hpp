@@ -1,5 +1,5 @@
 /// \file
-/// For those who write a broad phase or an execution space: names that stay. See docs/extending.md.
+/// For those who write a broad phase or an execution space: names that stay. See docs/development/extending.md.
 #pragma once
 
 #include <cstddef>

@@ -351,7 +351,7 @@ class simulation {
     if (state_.size == 0) return;
     if constexpr (effects_type::any_pair_contact) {
       if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
-      neighbours_.renew(space_, with_copies);
+      neighbours_.renew(space_, with_copies, effects_.space());
       settle_births(with_copies, dt);
       neighbours_.interact(space_, with_copies, effects_, dt, is_first);
     } else if constexpr (effects_type::keeps_pair_forces) {
@@ -455,9 +455,22 @@ class simulation {
     if (!(dt > 0) || !detail::is_finite(dt))
       throw error("collide: simulation: the time dt of a step is finite and above 0");
     ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
+    if constexpr (effects_type::repeats) check_sides();
     ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
     if (!effects_type::any_pair_contact && effects_.makes_only_where_free())
       throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
+  }
+
+  /// Two particles must not meet on both sides at once.
+  COLLIDE_COLD void check_sides() const {
+    auto const least = 2 * static_cast<double>(neighbour_lists::width_of(radii_.largest, radii_.smallest));
+    auto const space = effects_.space();
+    for (int k = 0; k < 3; ++k) {
+      if (space.length(k) >= least) continue;
+      throw error("collide: periodic_box: particles meet across its sides, and so each must be at least " +
+                  std::to_string(least) + " long, two diameters of the largest with the skin of its neighbours: make " +
+                  "the box larger, or the particles smaller");
+    }
   }
 
   execution_space space_;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -47,7 +48,8 @@ inline std::string name_of(nb::dlpack::dtype const& type) {
   }
 }
 
-inline std::string shape_of(array const& a) {
+template <class Array>
+std::string shape_of(Array const& a) {
   std::string text = "(";
   for (std::size_t k = 0; k < a.ndim(); ++k) text += (k != 0 ? ", " : "") + std::to_string(a.shape(k));
   return text + (a.ndim() == 1 ? ",)" : ")");
@@ -162,20 +164,26 @@ collide::sphere_view<S> spheres_of(collide::point_view<S> const& centres, nb::ha
   return collide::spheres_at(centres, static_cast<S const*>(keep.data()), row_stride(keep, "radius", 1));
 }
 
-/// An array of the caller to write to: packed, with `columns` columns, or of one dimension if that is 0.
+inline constexpr std::size_t any_number = static_cast<std::size_t>(-1);  ///< of rows
+
+/// An array of the caller to write `T`s to, which is packed and of a shape.
 template <class T>
-nb::ndarray<> room_of(nb::handle from, char const* name, std::size_t columns, place const& at) {
-  nb::ndarray<> a = import_array<nb::ndarray<>>(from, name, at);
+T* room_of(nb::ndarray<> const& a, char const* name, std::vector<std::size_t> const& shape) {
   bool const is_flag = sizeof(T) == 1 && a.dtype() == nb::dtype<bool>();
   if (a.dtype() != nb::dtype<T>() && !is_flag)
     refuse_type(name, "has dtype " + name_of(a.dtype()) + ", expected " + name_of(nb::dtype<T>()));
-  bool const fits = columns == 0 ? a.ndim() == 1 : a.ndim() == 2 && a.shape(1) == columns;
-  if (!fits)
-    refuse(name, "has another shape than " + (columns == 0 ? "(n,)" : "(capacity, " + std::to_string(columns) + ")"));
-  bool const is_packed = a.size() <= 1 || (a.stride(a.ndim() - 1) == 1 &&
-                                           (columns == 0 || a.stride(0) == static_cast<std::int64_t>(columns)));
-  if (!is_packed) refuse(name, "is not packed (C order)");
-  return a;
+  bool fits = a.ndim() == shape.size(), is_packed = true;
+  std::string expected;
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    fits = fits && (shape[k] == any_number || a.shape(k) == shape[k]);
+    expected += (k != 0 ? ", " : "(") + (shape[k] == any_number ? "capacity" : std::to_string(shape[k]));
+  }
+  if (!fits) refuse(name, "has shape " + shape_of(a) + ", expected " + expected + (shape.size() == 1 ? ",)" : ")"));
+  std::int64_t step = 1;
+  for (std::size_t k = a.ndim(); k-- > 0; step *= static_cast<std::int64_t>(a.shape(k)))
+    is_packed = is_packed && (a.shape(k) <= 1 || a.stride(k) == step);
+  if (!is_packed && a.size() != 0) refuse(name, "is not packed (C order)");
+  return static_cast<T*>(a.data());
 }
 
 }  // namespace collide_python

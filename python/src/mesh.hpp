@@ -5,33 +5,44 @@
 #include <array>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/csr.hpp>
 #include <collide/sinks/earliest.hpp>
 #include <collide/sinks/impacts.hpp>
+#include <collide/sinks/k_nearest.hpp>
+#include <collide/sinks/signed_distance.hpp>
 #include <collide/validate.hpp>
 
 #include "runtime.hpp"
 
 namespace collide_python {
 
-/// What all queries have: their arguments as Python gives them.
+/// What all queries have: their arguments as Python gives them, in this order.
 struct question {
   std::string precision;
   nb::object centres, radius, displacements;  ///< the last one is None for spheres at rest
-  bool canonical = false;
-  std::optional<std::size_t> capacity;  ///< for how many results there is room at most
-  nb::object out;                       ///< None, or an array for them
-  bool numpy = true;                    ///< whether results are numpy arrays
-  stream_of_call stream{0, -1};
+  bool canonical;
+  nb::object capacity;  ///< None, or for how many results there is room at most
+  nb::object out;       ///< None, or an array for them
+  bool numpy;           ///< whether results are numpy arrays
+
+  explicit question(nb::tuple const& q)
+      : precision(nb::cast<std::string>(q[0])),
+        centres(q[1]),
+        radius(q[2]),
+        displacements(q[3]),
+        canonical(nb::cast<bool>(q[4])),
+        capacity(q[5]),
+        out(q[6]),
+        numpy(nb::cast<bool>(q[7])) {}
 };
 
 template <class Space, class S>
@@ -69,49 +80,88 @@ class mesh {
   collide::mesh_view<S> const& view() const { return view_; }
   runtime<Space>& where() { return runtime_; }
 
-  std::uint64_t count(question const& q) {
-    call const now(*this, q.stream);
+  std::uint64_t count(stream_of_call stream, nb::tuple const& asked) {
+    call const now(*this, stream);
+    question const q(asked);
     collide::count sink;
     ask(q, sink);
     return sink.total();
   }
 
-  nb::object any(question const& q) {
-    call const now(*this, q.stream);
+  nb::object any(stream_of_call stream, nb::tuple const& asked) {
+    call const now(*this, stream);
+    question const q(asked);
     array const centres = runtime_.keep(import_array(q.centres, "centres", runtime_.at()));
-    if (!q.out.is_none()) {
-      nb::ndarray<> const room = room_of<std::uint8_t>(q.out, "out", 0, runtime_.at());
-      if (room.size() != centres.shape(0)) refuse("out", "has another length than centres");
-      collide::any_hit sink(static_cast<std::uint8_t*>(room.data()));
-      ask(q, sink, centres);
-      return q.out;
-    }
-    auto sink = std::make_unique<kept<collide::any_hit>>(runtime_.memory());
-    ask(q, sink->sink, centres);
-    std::uint8_t const* const data = sink->sink.data();
-    std::size_t const n = sink->sink.size();
-    return give(data, n, 0, owner_of(std::move(sink)), runtime_.at(), q.numpy);
+    nb::object found;
+    collide::any_hit sink(each<std::uint8_t>(found, {points_of<S>(centres, "centres").size()}, q.out, q.numpy));
+    ask(q, sink, centres);
+    return found;
   }
 
-  /// (records as rows of int32, how many there are in all).
-  nb::object pairs(question const& q) { return records<collide::pair, collide::pairs>(q); }
-  nb::object contacts(question const& q) { return records<collide::contact<S>, collide::contacts<S>>(q); }
-  nb::object impacts(question const& q) { return records<collide::impact<S>, collide::impacts<S>>(q); }
+  /// (records as rows of int32, how many there are, how many there are in all).
+  nb::object pairs(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::pair, collide::pairs>(stream, q);
+  }
+  nb::object contacts(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::contact<S>, collide::contacts<S>>(stream, q);
+  }
+  nb::object impacts(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::impact<S>, collide::impacts<S>>(stream, q);
+  }
 
   /// One record for each sphere.
-  nb::object closest(question const& q) { return per_sphere<collide::contact<S>, collide::closest_contact<S>>(q); }
-  nb::object earliest(question const& q) { return per_sphere<collide::impact<S>, collide::earliest_impact<S>>(q); }
+  nb::object closest(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::contact<S>, collide::closest_contact<S>>(stream, q);
+  }
+  nb::object earliest(stream_of_call stream, nb::tuple const& q) {
+    return records<collide::impact<S>, collide::earliest_impact<S>>(stream, q);
+  }
 
-  nb::object csr(question const& q) {
-    call const now(*this, q.stream);
-    auto sink = std::make_unique<kept<collide::csr>>(runtime_.memory(), order_of(q));
+  /// What is near each point: `what` is nearest, k_nearest, signed_distance or contains. One record, or k of them, or a
+  /// flag for each point, in `out` or in memory of its own; and how many points there are.
+  nb::object search(stream_of_call stream, std::string const& what, std::string const& precision,
+                    nb::object const& from, int k, double max_distance, nb::object const& out, bool numpy) {
+    call const now(*this, stream);
+    array const kept_points = runtime_.keep(import_array(from, "points", runtime_.at()));
+    auto const points = points_of<S>(kept_points, "points");
+    if (!(max_distance >= 0)) refuse("max_distance", "is negative or NaN");
+    if (k < 1 || k > collide::detail::most_nearest) refuse("k", "is " + std::to_string(k) + ", expected 1 to 32");
+    S const farthest = static_cast<S>(max_distance);
+    nb::object found;
+    if (what == "contains") {
+      auto* const to = each<std::uint8_t>(found, {points.size()}, out, numpy);
+      look(points, collide::detail::find_inside{to});
+      return nb::make_tuple(found, points.size());
+    }
+    with_precision(precision, [&](auto const number) {
+      using exactness = std::tuple_element_t<decltype(number)::value, precisions>;
+      if (what == "signed_distance") {
+        auto* const to = each<collide::signed_nearest_triangle<S>>(found, {points.size()}, out, numpy);
+        look(points, collide::detail::find_signed_distance<S, exactness>{farthest, to});
+      } else if (what == "nearest") {
+        auto* const to = each<collide::nearest_triangle<S>>(found, {points.size()}, out, numpy);
+        look(points, collide::detail::find_nearest<S, exactness>{farthest, to});
+      } else {
+        auto* const to =
+            each<collide::nearest_triangle<S>>(found, {points.size(), static_cast<std::size_t>(k)}, out, numpy);
+        look(points, collide::detail::find_k_nearest<S, exactness>{farthest, k, to});
+      }
+    });
+    return nb::make_tuple(found, points.size());
+  }
+
+  nb::object csr(stream_of_call stream, nb::tuple const& asked) {
+    call const now(*this, stream);
+    question const q(asked);
+    auto sink = std::make_unique<kept<collide::csr>>(runtime_.memory());
+    sink->sink = collide::csr(order_of(q));
     ask(q, sink->sink);
     auto const* const offsets = reinterpret_cast<std::int64_t const*>(sink->sink.offsets());
     auto const* const triangles = reinterpret_cast<std::int32_t const*>(sink->sink.triangles());
     std::size_t const rows = sink->sink.rows(), n = sink->sink.size();
     nb::object const owner = owner_of(std::move(sink));
-    return nb::make_tuple(give(offsets, rows + 1, 0, owner, runtime_.at(), q.numpy),
-                          give(triangles, n, 0, owner, runtime_.at(), q.numpy));
+    return nb::make_tuple(give(offsets, {rows + 1}, owner, runtime_.at(), q.numpy),
+                          give(triangles, {n}, owner, runtime_.at(), q.numpy));
   }
 
  private:
@@ -133,8 +183,7 @@ class mesh {
     std::shared_ptr<void> memory;
     collide::buffer<unsigned char> room;
     Sink sink;
-    template <class... Argument>
-    explicit kept(std::shared_ptr<void> m, Argument const&... argument) : memory(std::move(m)), sink(argument...) {}
+    explicit kept(std::shared_ptr<void> m) : memory(std::move(m)) {}
   };
 
   static collide::order order_of(question const& q) {
@@ -149,40 +198,31 @@ class mesh {
   }
 
   template <class Record, class Sink>
-  nb::object records(question const& q) {
-    call const now(*this, q.stream);
+  nb::object records(stream_of_call stream, nb::tuple const& asked) {
+    call const now(*this, stream);
+    question const q(asked);
     constexpr std::size_t words = sizeof(Record) / 4;
-    if (!q.out.is_none()) {
-      nb::ndarray<> const room = room_of<std::int32_t>(q.out, "out", words, runtime_.at());
-      Sink sink(static_cast<Record*>(room.data()), room.shape(0), order_of(q));
-      ask(q, sink);
-      return nb::make_tuple(q.out, sink.size(), sink.total());
+    auto own = std::make_unique<kept<Sink>>(runtime_.memory());
+    if constexpr (std::is_constructible<Sink, Record*, std::size_t, collide::order>::value) {  // many for a sphere
+      if (!q.out.is_none()) {
+        auto const room = import_array<nb::ndarray<>>(q.out, "out", runtime_.at());
+        auto* const to = room_of<std::int32_t>(room, "out", {any_number, words});
+        Sink sink(reinterpret_cast<Record*>(to), room.shape(0), order_of(q));
+        ask(q, sink);
+        return nb::make_tuple(q.out, sink.size(), sink.total());
+      }
+      own->sink = Sink(order_of(q));
+      if (!q.capacity.is_none()) {
+        auto const n = nb::cast<std::size_t>(q.capacity);
+        auto* const to = own->room.reserve(runtime_.space().resource(), n * sizeof(Record));
+        own->sink = Sink(reinterpret_cast<Record*>(to), n, order_of(q));
+      }
     }
-    std::unique_ptr<kept<Sink>> sink;
-    if (q.capacity) {
-      collide::buffer<unsigned char> room;
-      auto* const to = room.reserve(runtime_.space().resource(), *q.capacity * sizeof(Record));
-      sink = std::make_unique<kept<Sink>>(runtime_.memory(), reinterpret_cast<Record*>(to), *q.capacity, order_of(q));
-      sink->room = std::move(room);
-    } else {
-      sink = std::make_unique<kept<Sink>>(runtime_.memory(), order_of(q));
-    }
-    ask(q, sink->sink);
-    auto const* const data = reinterpret_cast<std::int32_t const*>(sink->sink.data());
-    std::size_t const n = sink->sink.size();
-    std::uint64_t const total = sink->sink.total();
-    return nb::make_tuple(give(data, n, words, owner_of(std::move(sink)), runtime_.at(), q.numpy), n, total);
-  }
-
-  template <class Record, class Sink>
-  nb::object per_sphere(question const& q) {
-    call const now(*this, q.stream);
-    auto sink = std::make_unique<kept<Sink>>(runtime_.memory());
-    ask(q, sink->sink);
-    auto const* const data = reinterpret_cast<std::int32_t const*>(sink->sink.data());
-    std::size_t const n = sink->sink.size();
-    return nb::make_tuple(give(data, n, sizeof(Record) / 4, owner_of(std::move(sink)), runtime_.at(), q.numpy), n,
-                          sink->sink.total());
+    ask(q, own->sink);
+    auto const* const data = reinterpret_cast<std::int32_t const*>(own->sink.data());
+    std::size_t const n = own->sink.size();
+    std::uint64_t const total = own->sink.total();
+    return nb::make_tuple(give(data, {n, words}, owner_of(std::move(own)), runtime_.at(), q.numpy), n, total);
   }
 
   template <class Sink>
@@ -199,10 +239,9 @@ class mesh {
     if (radii.is_valid()) runtime_.keep(radii);
     if (q.displacements.is_none()) {
       if constexpr (!needs_motion<Sink>) {
-        if (q.precision == "exact") return run<0>(std::get<0>(at_rest_), spheres, sink);
-        if (q.precision == "single") return run<1>(std::get<1>(at_rest_), spheres, sink);
-        if (q.precision == "double") return run<2>(std::get<2>(at_rest_), spheres, sink);
-        refuse("precision", "is '" + q.precision + "', expected 'exact', 'double' or 'single'");
+        with_precision(q.precision, [&](auto const number) {
+          run<decltype(number)::value>(std::get<decltype(number)::value>(at_rest_), spheres, sink);
+        });
       } else {
         refuse("displacements", "impacts are of spheres that move");
       }
@@ -217,6 +256,52 @@ class mesh {
       if (q.precision != "exact") refuse("precision", "spheres that move are decided exactly: 'exact'");
       run<3>(swept_, collide::with_displacements(spheres, paths), sink);
     }
+  }
+
+  /// Calls f with the number of a precision, as a type.
+  template <class F>
+  static void with_precision(std::string const& precision, F const& f) {
+    if (precision == "exact") return f(std::integral_constant<std::size_t, 0>());
+    if (precision == "single") return f(std::integral_constant<std::size_t, 1>());
+    if (precision == "double") return f(std::integral_constant<std::size_t, 2>());
+    refuse("precision", "is '" + precision + "', expected 'exact', 'double' or 'single'");
+  }
+
+  /// A sink that puts a search of the library's on the stream.
+  template <class Find>
+  struct searcher {
+    Find find;
+    template <class Query>
+    void run(Space&, Query const& query) {
+      collide::detail::search_mesh(query, find);
+    }
+  };
+  template <class Find>
+  void look(collide::point_view<S> const& points, Find const& find) {
+    searcher<Find> sink{find};
+    run<4>(nearby_, points, sink);
+  }
+
+  /// Where records go, each `shape` of them, and in `found` the array that shows them: `out`, or of memory of its own.
+  template <class Record>
+  Record* each(nb::object& found, std::vector<std::size_t> shape, nb::object const& out, bool numpy) {
+    using word = std::conditional_t<sizeof(Record) == 1, std::uint8_t, std::int32_t>;
+    struct room {
+      std::shared_ptr<void> memory;
+      collide::buffer<Record> records;
+    };
+    std::size_t n = 1;
+    for (std::size_t const m : shape) n *= m;
+    if (sizeof(Record) != 1) shape.push_back(sizeof(Record) / sizeof(word));
+    if (!out.is_none()) {
+      found = out;
+      return reinterpret_cast<Record*>(
+          room_of<word>(import_array<nb::ndarray<>>(out, "out", runtime_.at()), "out", shape));
+    }
+    auto own = std::make_unique<room>(room{runtime_.memory(), {}});
+    Record* const to = own->records.reserve(runtime_.space().resource(), n);
+    found = give(reinterpret_cast<word const*>(to), shape, owner_of(std::move(own)), runtime_.at(), numpy);
+    return to;
   }
 
   template <std::size_t number, class Detector, class Spheres, class Sink>
@@ -250,13 +335,15 @@ class mesh {
   runtime<Space> runtime_;
   array vertices_, triangles_;
   collide::mesh_view<S> view_;
+  using precisions = std::tuple<collide::exact, collide::single_precision, collide::double_precision>;
   std::tuple<at_rest<collide::exact>, at_rest<collide::single_precision>, at_rest<collide::double_precision>> at_rest_{
       at_rest<collide::exact>(runtime_.space()), at_rest<collide::single_precision>(runtime_.space()),
       at_rest<collide::double_precision>(runtime_.space())};
   swept swept_{runtime_.space()};
+  collide::detector<collide::bvh, collide::karabassi<>, Space, S> nearby_{runtime_.space()};
   bool is_set_ = false;
   double pairs_a_sphere_ = 0;  ///< of the last query
-  std::array<bool, 4> is_built_{};
+  std::array<bool, 5> is_built_{};
   std::mutex mutex_;
 };
 

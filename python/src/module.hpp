@@ -3,7 +3,6 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
-#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -45,27 +44,10 @@ template <class Space, class S>
 void bind_mesh(nb::module_& m, char const* name) {
   using type = mesh<Space, S>;
   nb::class_<type> c(m, name);
+  auto const def = [&](char const* call, auto const function) { bind_call(c, call, function); };
   c.def(nb::init<int, int>(), nb::arg("threads"), nb::arg("device")).def("__len__", &type::size);
-  bind_call(c, "take", &type::take);
-  auto const def = [&](char const* call, auto const function) {
-    c.def(
-        call,
-        [function](type& of, stream_numbers stream, std::string const& precision, nb::object centres, nb::object radius,
-                   nb::object displacements, bool canonical, std::optional<std::size_t> capacity, nb::object out,
-                   bool numpy) {
-          return (of.*function)({precision,
-                                 std::move(centres),
-                                 std::move(radius),
-                                 std::move(displacements),
-                                 canonical,
-                                 capacity,
-                                 std::move(out),
-                                 numpy,
-                                 {stream.first, stream.second}});
-        },
-        nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg().none(), nb::arg(), nb::arg().none(),
-        nb::arg().none(), nb::arg());
-  };
+  def("take", &type::take);
+  def("search", &type::search);
   def("count", &type::count);
   def("any", &type::any);
   def("pairs", &type::pairs);

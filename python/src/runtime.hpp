@@ -54,16 +54,14 @@ class runtime<collide::host> {
   int threads_;
 };
 
-/// An array of `rows` x `columns` (one dimension if that is 0) whose memory `owner` keeps. For numpy it is a numpy
-/// array, else an object with __dlpack__.
+/// An array of a shape whose memory `owner` keeps. For numpy it is a numpy array, else an object with __dlpack__.
 template <class T>
-nb::object give(T const* data, std::size_t rows, std::size_t columns, nb::handle owner, place const& at, bool numpy) {
-  std::size_t const shape[2] = {rows, columns}, ndim = columns == 0 ? 1 : 2;
+nb::object give(T const* data, std::vector<std::size_t> const& shape, nb::handle owner, place const& at, bool numpy) {
   static T nothing{};
   T* const to = data != nullptr ? const_cast<T*>(data) : &nothing;
-  if (numpy) return nb::cast(nb::ndarray<nb::numpy, T>(to, ndim, shape, owner));
-  return nb::cast(
-      nb::ndarray<nb::array_api, T>(to, ndim, shape, owner, nullptr, nb::dtype<T>(), at.device_type, at.device));
+  if (numpy) return nb::cast(nb::ndarray<nb::numpy, T>(to, shape.size(), shape.data(), owner));
+  return nb::cast(nb::ndarray<nb::array_api, T>(to, shape.size(), shape.data(), owner, nullptr, nb::dtype<T>(),
+                                                at.device_type, at.device));
 }
 
 /// A Python object that owns `owned`.

@@ -104,11 +104,15 @@ class simulation {
     call const now(*this, stream);
     column const c = one().column_at(number_of(name));
     nb::object const owner = owner_of(std::make_unique<owned>(owned{one_, runtime_.memory()}));
-    std::size_t const n = one().size(), columns = c.width == 1 ? 0 : c.width;
-    if (c.kind == 'f') return give(static_cast<S const*>(c.data), n, columns, owner, runtime_.at(), numpy);
-    if (c.bytes == 1) return give(static_cast<std::uint8_t const*>(c.data), n, columns, owner, runtime_.at(), numpy);
-    if (c.bytes == 4) return give(static_cast<std::int32_t const*>(c.data), n, columns, owner, runtime_.at(), numpy);
-    return give(static_cast<std::int64_t const*>(c.data), n, columns, owner, runtime_.at(), numpy);
+    std::vector<std::size_t> shape{one().size()};
+    if (c.width != 1) shape.push_back(c.width);
+    auto const of = [&](auto const number) {
+      return give(static_cast<decltype(number) const*>(c.data), shape, owner, runtime_.at(), numpy);
+    };
+    return c.kind == 'f'  ? of(S())
+           : c.bytes == 1 ? of(std::uint8_t())
+           : c.bytes == 4 ? of(std::int32_t())
+                          : of(std::int64_t());
   }
 
   void assign(stream_of_call stream, std::string const& name, nb::object const& values) {

@@ -69,6 +69,14 @@ struct parameter_setter {
       *found = true;
     }
   }
+  /// What takes `size` numbers at once.
+  template <class Set>
+  void operator()(char const* name, std::size_t size, Set const& set) const {
+    if (n == size && std::strcmp(name, wanted) == 0) {
+      set(values);
+      *found = true;
+    }
+  }
 };
 
 template <class Space, class S, class NarrowPhase, class... Effect>

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/karabassi_swept.hpp>
@@ -18,6 +19,8 @@
 #include <collide/sinks/csr.hpp>
 #include <collide/sinks/earliest.hpp>
 #include <collide/sinks/impacts.hpp>
+#include <collide/sinks/k_nearest.hpp>
+#include <collide/sinks/signed_distance.hpp>
 
 #include "io/scenes.hpp"
 
@@ -52,6 +55,16 @@ void answer_all(Detector& detector, Spheres const& spheres, files& f) {
   f.write(detector.query(spheres, contacts<typename Detector::scalar>(order::canonical)).to_host());
 }
 
+template <class S>
+void answer_points(mesh_view<S> const& mesh, point_view<S> const& points, files& f) {
+  detector<bvh, karabassi<>, host, S> nearby;
+  nearby.build(mesh);
+  f.write(nearby.query(points, nearest<S>()).to_host());
+  f.write(nearby.query(points, k_nearest<S>(3)).to_host());
+  f.write(nearby.query(points, signed_distance<S>()).to_host());
+  f.write(nearby.query(points, contains()).to_host());
+}
+
 template <class S, class Precision>
 void answer(std::vector<std::uint64_t> const& numbers, files& f) {
   auto const vertices = f.read<S>(3 * numbers[1]);
@@ -74,6 +87,7 @@ void answer(std::vector<std::uint64_t> const& numbers, files& f) {
     at_rest.build(mesh);
     answer_all(at_rest, spheres, f);
     f.write(at_rest.query(spheres, closest_contact<S>()).to_host());
+    if (numbers[6] == 0) answer_points<S>(mesh, spheres.centres(), f);
   }
   if (numbers[7] == 0) return;
   simulation<detector<bucket, karabassi<>, host, S>, gravity, bounce> scene(host(), gravity{0, 0, -9.81}, bounce{0.5});

@@ -54,7 +54,13 @@ def test_results_are_of_the_library_that_asks(library, dtype):
     mine, other = mesh.impacts(x, d, r, first=True), expected.impacts(centres, moves, radii, first=True)
     for name in ("sphere", "triangle", "point", "normal", "distance", "depth", "feature", "feature_index", "time"):
         same(getattr(mine, name), getattr(other, name))
-    assert len(mesh.query(x[:0], 0.1)) == 0
+    same(mesh.contains(x), expected.contains(centres))
+    near = [(m.nearest(p), m.k_nearest(p, 3), m.signed_distance(p)) for m, p in ((mesh, x), (expected, centres))]
+    for mine, other in zip(*near):
+        for name in ("triangle", "distance", "point", "barycentric", "feature", "feature_index"):
+            same(getattr(mine, name), getattr(other, name))
+    same(near[0][2].gradient, near[1][2].gradient)
+    assert len(mesh.query(x[:0], 0.1)) == len(mesh.k_nearest(x[:0], 2)) == 0
 
 
 @pytest.mark.parametrize("library", MAKE)

@@ -243,7 +243,7 @@ BAD = [
     (dict(displacements=numpy.zeros((5, 3))), TypeError, "displacements: has dtype float64"),
     (dict(displacements=numpy.zeros((5, 3), numpy.float32), precision="single"), ValueError, "precision: "),
     (dict(out=numpy.zeros((5, 2))), TypeError, "out: has dtype float64, expected int32"),
-    (dict(out=numpy.zeros((5, 3), numpy.int32)), ValueError, "out: has another shape"),
+    (dict(out=numpy.zeros((5, 3), numpy.int32)), ValueError, r"out: has shape .5, 3., expected .capacity, 2."),
     (dict(out=numpy.zeros((5, 4), numpy.int32)[:, ::2]), ValueError, "out: is not packed"),
 ]
 
@@ -282,5 +282,6 @@ def test_bad_meshes_are_named(vertices, triangles, error, text):
 
 
 def test_help():
-    for thing in (collide, collide.Mesh, collide.Mesh.query, collide.Simulation, collide.Pairs, collide.gravity):
+    for thing in (collide, collide.Mesh, collide.Mesh.query, collide.Mesh.nearest, collide.Nearest.point, collide.Simulation,
+                  collide.Pairs, collide.gravity):
         assert len(thing.__doc__) > 40

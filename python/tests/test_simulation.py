@@ -81,10 +81,10 @@ def test_velocities_strides_and_errors():
         (lambda: sim.__setitem__("velocity", ABOVE.astype(float)), TypeError, "velocity: has dtype float64"),
         (lambda: sim.change("spin", x=1), ValueError, "effect: there is no 'spin'"),
         (lambda: sim.change("gravity", w=1), ValueError, "w: gravity has no such parameter; it has x, y, z"),
-        (lambda: sim.change("gravity", z=(1, 2, 3)), ValueError, "z: of gravity is one number"),
-        (lambda: collide.gravity(z="down"), TypeError, "z: expected a number"),
-        (lambda: collide.box_walls((0, 0), (1, 1, 1)), ValueError, "lower: expected a number or three, got 2"),
-        (lambda: collide.Effect("snow"), ValueError, "there is no effect 'snow'; there are gravity"),
+        (lambda: sim.change("gravity", z=(1, 2, 3)), ValueError, "z: expected a number, got .1, 2, 3."),
+        (lambda: collide.gravity(z="down"), TypeError, "z: expected numbers"),
+        (lambda: collide.box_walls((0, 0), (1, 1, 1)), ValueError, "lower: expected 3 numbers, got .0, 0."),
+        (lambda: collide.gravity(w=1), TypeError, "unexpected keyword argument 'w'"),
         (lambda: collide.Simulation(floor(), ["gravity"]), TypeError, "effects: expected effects"),
         (lambda: collide.Simulation(floor(), FALL, precision="good"), ValueError, "precision: is 'good'"),
     ]
@@ -134,10 +134,10 @@ def test_save_and_load(tmp_path):
 def test_all_lists_of_the_package_work():
     there = os.listdir(os.path.join(os.path.dirname(collide.__file__), "lists"))
     tried = 0
-    for names in _source.BUILT_IN:
-        if _source.name_of(_source.source(names.split())) + ".so" not in there:
+    for effects in _source.BUILT_IN:
+        if _source.name_of(_source.source(effects)) + ".so" not in there:
             continue
-        effects = [collide.emit(10, (0, 0, 1)) if n == "emit" else collide.Effect(n) for n in names.split()]
+        names = [effect.name for effect in effects]
         sim = collide.Simulation(floor(), effects)
         sim.set(ABOVE, numpy.float32([0.25, 0.2]) if "polydisperse" in names else 0.25, capacity=5 if "emit" in names else 0)
         sim.steps(100, 1e-3)

@@ -4,7 +4,8 @@ code      The first block of C++ in the README is examples/minimal.cpp, and ever
           the file that the comment before it names (`<!-- from: FILE -->`). Pages that teach have no other C++.
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
-glossary  Each name in docs/glossary.md is in the code of the file, or folder, that it is said to be in; words are in order.
+glossary  Each name in docs/glossary.md and docs/development/words.md is in the code of the file, or folder, that it is said to be in;
+          words are in order.
 members   The tables of members in docs/guide.md have all that the headers have, and nothing else; those of docs/api/results.md
           are what scripts/members writes.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; no docstring of include/ begins with
@@ -21,10 +22,11 @@ PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"
 
 
 # Pages in which every piece of C++ is from a program that tests run.
-TAUGHT = [ROOT / "README.md", ROOT / "docs" / "guide.md", ROOT / "docs" / "simulation.md", *(ROOT / "docs" / "tutorials").glob("*.md")]
+TAUGHT = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("guide", "simulation", "bodies", "checkpoints")),
+          *(ROOT / "docs" / "tutorials").glob("*.md")]
 
 # Pages in which no one writes measured numbers by hand.
-MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "simulation", "guide", "ranks", "gallery"))]
+MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "simulation", "bodies", "guide", "ranks", "gallery"))]
 
 # Words that readers of English do not use for what is meant, and what to write instead. Patterns, in any case.
 FOREIGN = {
@@ -117,10 +119,14 @@ def examples():
 
 
 def glossary():
-    page = ROOT / "docs" / "glossary.md"
+    for page, least in (("glossary.md", 30), ("development/words.md", 15)):
+        yield from words_of(ROOT / "docs" / page, least)
+
+
+def words_of(page, least):
     rows = re.findall(r"^\| (.+?) \| .+ \| `(\w+)` in \[.+\]\((.+)\) \|$", page.read_text(), flags=re.M)
     words = [word.lower() for word, _, _ in rows]
-    if len(rows) < 40:
+    if len(rows) < least:
         yield f"{page}: only {len(rows)} words"
     yield from (f"{page}: {word} is not in alphabetic order" for word, sorted_word in zip(words, sorted(words)) if word != sorted_word)
     for word, name, target in rows:

@@ -4,6 +4,7 @@
     mesh = collide.Mesh(vertices, triangles)          # float32 or float64; where they lie, it runs
     pairs = mesh.query(centres, radius)               # pairs.sphere, pairs.triangle
     touched = mesh.any(centres, radius)
+    distance = mesh.signed_distance(points).distance
 
 Arrays are those of numpy, PyTorch, CuPy, JAX or Warp, or of anything with ``__dlpack__``, of any strides that are not
 negative along the rows. Nothing is ever converted or copied: a wrong dtype, shape or device is an error that names the
@@ -12,11 +13,13 @@ the same for all arguments. `Mesh` has the queries, `Simulation` particles that 
 """
 
 from ._errors import Error
-from ._mesh import Contacts, Csr, Impacts, Mesh, Pairs
+from ._mesh import Contacts, Csr, Impacts, Mesh, Nearest, Pairs, SignedDistance
 from ._simulation import Body, Simulation
-from . import effects
+from . import effects, granular
 from .effects import *  # noqa: F403: collide.gravity() and all the others
-from .effects import Effect
+from .effects import Effect, Law
+from .granular import granular_contact
 
-__all__ = ["Body", "Contacts", "Csr", "Effect", "Error", "Impacts", "Mesh", "Pairs", "Simulation", "effects"]
+__all__ = ["Body", "Contacts", "Csr", "Effect", "Error", "Impacts", "Law", "Mesh", "Nearest", "Pairs", "SignedDistance"]
+__all__ += ["Simulation", "effects", "granular", "granular_contact"]
 __all__ += effects.__all__

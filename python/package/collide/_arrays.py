@@ -1,5 +1,7 @@
 """Which library an array is of, on which stream it works, and how results become arrays of it."""
 
+import importlib
+
 from . import _host
 
 try:
@@ -42,13 +44,16 @@ class _Numpy:
 
     is_numpy = True
 
+    def __init__(self, module=None):
+        self.module = module
+
     def stream(self, device):
         """The stream that the library works on now, and what its arrays' __dlpack__ is given."""
         raise ValueError("numpy has no arrays on a GPU")
 
     def array(self, result, stream):
         """A result of a compiled module as an array of this library, without a copy."""
-        return result
+        return result if self.is_numpy else self.module.from_dlpack(result)
 
     def shown(self, view):
         """An array that shows memory which changes later."""
@@ -63,44 +68,28 @@ class _Numpy:
         return result.view(self.dtype("bool"))
 
     def field(self, records, first, last, kind):
-        """Columns first to last of records, which are rows of int32, as numbers of a kind; the column alone if last is
-        None."""
+        """Columns first to last of records, whose last axis are words of int32, as numbers of a kind; the column alone if
+        last is None."""
         width = 2 if kind == "float64" else 1
         whole = records.view(self.dtype(kind))
-        return whole[:, first // width] if last is None else whole[:, first // width : last // width]
+        return whole[..., first // width] if last is None else whole[..., first // width : last // width]
 
 
 class _Torch(_Numpy):
     is_numpy = False
 
-    def __init__(self):
-        import torch
-
-        self.torch = torch
-
     def stream(self, device):
-        return self.torch.cuda.current_stream(device).cuda_stream, -1
-
-    def array(self, result, stream):
-        return self.torch.from_dlpack(result)
+        return self.module.cuda.current_stream(device).cuda_stream, -1
 
     def dtype(self, name):
-        return getattr(self.torch, name)
+        return getattr(self.module, name)
 
 
 class _Cupy(_Numpy):
     is_numpy = False
 
-    def __init__(self):
-        import cupy
-
-        self.cupy = cupy
-
     def stream(self, device):
-        return self.cupy.cuda.get_current_stream(device).ptr, -1
-
-    def array(self, result, stream):
-        return self.cupy.from_dlpack(result)
+        return self.module.cuda.get_current_stream(device).ptr, -1
 
 
 class _Ordered:
@@ -121,20 +110,15 @@ class _Ordered:
 class _Jax(_Numpy):
     is_numpy = False
 
-    def __init__(self):
-        import jax
-
-        self.jax = jax
-
     def stream(self, device):  # it has no stream to work on: its arrays have ours wait for them, and its stream ours
         own = _cuda.own_stream(device)
         return own, own
 
     def array(self, result, stream):
-        return self.jax.dlpack.from_dlpack(_Ordered(result, stream))
+        return self.module.dlpack.from_dlpack(_Ordered(result, stream))
 
     def shown(self, view):  # its arrays never change: a copy
-        return self.jax.numpy.array(view, copy=True).block_until_ready()
+        return self.module.numpy.array(view, copy=True).block_until_ready()
 
     def flags(self, result):
         return result != 0
@@ -142,39 +126,30 @@ class _Jax(_Numpy):
     def field(self, records, first, last, kind):  # it has no arrays with gaps
         if kind == "int32":
             return super().field(records, first, last, kind)
-        words = records[:, first : last if last is not None else first + (2 if kind == "float64" else 1)]
+        words = records[..., first : last if last is not None else first + (2 if kind == "float64" else 1)]
         if kind == "float64":
-            words = words.reshape(len(words), -1, 2)
-        numbers = self.jax.lax.bitcast_convert_type(words, kind)
-        return numbers[:, 0] if last is None else numbers
+            words = words.reshape(*words.shape[:-1], -1, 2)
+        numbers = self.module.lax.bitcast_convert_type(words, kind)
+        return numbers[..., 0] if last is None else numbers
 
 
 class _Warp(_Numpy):
     is_numpy = False
 
-    def __init__(self):
-        import warp
-
-        self.warp = warp
-
     def stream(self, device):
-        return self.warp.get_stream(f"cuda:{device}").cuda_stream, -1
-
-    def array(self, result, stream):
-        return self.warp.from_dlpack(result)
+        return self.module.get_stream(f"cuda:{device}").cuda_stream, -1
 
     def flags(self, result):
-        return result.view(self.warp.bool)
+        return result.view(self.module.bool)
 
     def field(self, records, first, last, kind):
         size = 8 if kind == "float64" else 4
-        rows, gap = records.shape[0], records.strides[0]
         columns = () if last is None else ((last - first) * 4 // size,)
-        part = self.warp.array(
-            ptr=records.ptr + 4 * first if rows else None,
-            dtype=getattr(self.warp, kind),
-            shape=(rows, *columns),
-            strides=(gap, size)[: 1 + len(columns)],
+        part = self.module.array(
+            ptr=records.ptr + 4 * first if records.shape[0] else None,
+            dtype=getattr(self.module, kind),
+            shape=(*records.shape[:-1], *columns),
+            strides=(*records.strides[:-1], *(size for _ in columns)),
             device=records.device,
         )
         part.records = records  # whose memory it is
@@ -209,5 +184,6 @@ def library_of(array, device):
     if root not in _classes:
         root = "numpy" if device[0] in CPU_TYPES else "stranger"
     if root not in _known:
-        _known[root] = _classes.get(root, _Stranger)()
+        module = importlib.import_module(root.replace("jaxlib", "jax")) if root in _classes else None
+        _known[root] = _classes.get(root, _Stranger)(module)
     return _known[root]

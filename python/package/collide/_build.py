@@ -16,7 +16,7 @@ from ._source import BUILT_IN, name_of, source
 _HERE = pathlib.Path(__file__).parent
 
 
-def library(effects, names, space, capability, **options):
+def library(effects, space, capability, **options):
     """The path of the library of a list of effects, from the package, from the cache, or compiled now."""
     text = source(effects, space, **options)
     built_in = _HERE / "lists" / (name_of(text) + ".so")
@@ -26,8 +26,12 @@ def library(effects, names, space, capability, **options):
     key = "\n".join([text, _version_of(command[0]), *command, _headers()])
     path = cache() / (hashlib.sha256(key.encode()).hexdigest()[:32] + ".so")
     if not path.exists():
-        _compile(text, command, path, names, space)
+        _compile(text, command, path, _names(effects), space)
     return str(path)
+
+
+def _names(effects):
+    return ", ".join(effect.name for effect in effects)
 
 
 def cache():
@@ -53,7 +57,7 @@ def _find(variable, names):
     for name in [given[0]] if given else names:
         if path := shutil.which(name):
             return [path, *given[1:]]
-    lists = "\n".join("  " + ", ".join(names.split()) for names in BUILT_IN)
+    lists = "\n".join("  " + _names(effects) for effects in BUILT_IN)
     raise Error(
         f"collide: this list of effects is not in the package, and there is no compiler for it ({' or '.join(names)}; "
         f"the environment variable {variable} may name one). Without one there are, of float32 and exact:\n{lists}"
@@ -77,7 +81,7 @@ def _compile(text, command, path, names, space):
     path.parent.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
     tool = os.path.basename(command[0])
-    print(f"collide: {tool} compiles a simulation of {', '.join(names)} ...", end="", file=sys.stderr, flush=True)
+    print(f"collide: {tool} compiles a simulation of {names} ...", end="", file=sys.stderr, flush=True)
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         file = pathlib.Path(folder) / ("simulation.cpp" if space == "host" else "simulation.cu")
         file.write_text(text)

@@ -1,5 +1,6 @@
 """Meshes, and what their queries find."""
 
+import math
 from typing import Any, Literal, NamedTuple, Optional, Union
 
 from ._arrays import CUDA, NO_STREAM, device_of, library_of, module_for
@@ -9,90 +10,105 @@ Precision = Literal["exact", "double", "single"]
 Order = Literal["unspecified", "canonical"]
 
 
-class Pairs:
-    """Colliding pairs of a sphere and a triangle, each exactly once. ``sphere, triangle = pairs`` works, too."""
+def _field(doc, integers, numbers=0, kind="int32", count=None):
+    """A property that shows a field of records, which has so many integers and numbers of the mesh's type before it: a
+    column, or ``count`` of them."""
 
-    def __init__(self, library, records, size, total, wide=False):
-        self.records = records  #: the memory of all: (n, words) int32, where a row is one result
-        self.total = total  #: how many collide; more than len() where there was no room for all
-        self._library, self._size = library, size
+    def get(self):
+        word = 2 if self._is_wide else 1
+        begin = integers + numbers * word
+        if kind == "int32":
+            return self._library.field(self.records, begin, None, kind)
+        begin += begin % word
+        return self._library.field(
+            self.records, begin, count and begin + count * word, "float64" if self._is_wide else "float32"
+        )
+
+    return property(get, doc=doc)
+
+
+class _Records:
+    def __init__(self, library, records, wide, size):
+        self.records = records  #: the memory of all: (..., words) int32, where a row is one result
+        self._library, self._is_wide, self._size = library, wide, size
 
     def __len__(self) -> int:
         return self._size
 
+    def __repr__(self):
+        return f"<collide.{type(self).__name__}: {len(self)}>"
+
+
+class Pairs(_Records):
+    """Colliding pairs of a sphere and a triangle, each exactly once. ``sphere, triangle = pairs`` works, too."""
+
+    def __init__(self, library, records, wide, size, total):
+        super().__init__(library, records, wide, size)
+        self.total = total  #: how many collide; more than len() where there was no room for all
+
     @property
     def complete(self) -> bool:
         """Whether there was room for all of them."""
-        return self._size == self.total
+        return len(self) == self.total
 
-    @property
-    def sphere(self) -> Array:
-        """(n,) int32: numbers of the spheres; -1 where a sphere has no triangle (``closest``, ``first``)."""
-        return self._library.field(self.records, 0, None, "int32")
-
-    @property
-    def triangle(self) -> Array:
-        """(n,) int32: numbers of the triangles; -1 where a sphere has none (``closest``, ``first``)."""
-        return self._library.field(self.records, 1, None, "int32")
+    sphere: Array = _field("(n,) int32: numbers of the spheres.", 0)
+    triangle: Array = _field("(n,) int32: numbers of the triangles; -1 where a sphere has none (``closest``, ``first``).", 1)
 
     def __iter__(self):
         return iter((self.sphere, self.triangle))
 
     def __repr__(self):
-        return f"<collide.{type(self).__name__}: {self._size} of {self.total}>"
+        return f"<collide.{type(self).__name__}: {len(self)} of {self.total}>"
 
 
 class Contacts(Pairs):
     """Colliding pairs with their contacts: where and how each sphere touches each triangle."""
 
-    def __init__(self, library, records, size, total, wide=False):
-        super().__init__(library, records, size, total)
-        self._kind, self._word = ("float64", 2) if wide else ("float32", 1)
-
-    def _numbers(self, first, count=None):
-        begin = 2 + first * self._word
-        return self._library.field(self.records, begin, None if count is None else begin + count * self._word, self._kind)
-
-    @property
-    def point(self) -> Array:
-        """(n, 3): the point of the triangle that is closest to the centre."""
-        return self._numbers(0, 3)
-
-    @property
-    def normal(self) -> Array:
-        """(n, 3): unit vector from the triangle to the centre; a normal of the triangle if the centre is on it."""
-        return self._numbers(3, 3)
-
-    @property
-    def distance(self) -> Array:
-        """(n,): from the centre to the triangle; infinite where a sphere has none (``closest``)."""
-        return self._numbers(6)
-
-    @property
-    def depth(self) -> Array:
-        """(n,): radius - distance, how deep the triangle is in the sphere."""
-        return self._numbers(7)
-
-    @property
-    def feature(self) -> Array:
-        """(n,) int32: where on the triangle the point is: 0 face, 1 edge, 2 vertex."""
-        return self._library.field(self.records, 2 + 8 * self._word, None, "int32")
-
-    @property
-    def feature_index(self) -> Array:
-        """(n,) int32: edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0."""
-        return self._library.field(self.records, 3 + 8 * self._word, None, "int32")
+    point: Array = _field("(n, 3): the point of the triangle that is closest to the centre.", 2, 0, "number", 3)
+    normal: Array = _field(
+        "(n, 3): unit vector from the triangle to the centre; a normal of the triangle if the centre is on it.",
+        2, 3, "number", 3,
+    )
+    distance: Array = _field(
+        "(n,): from the centre to the triangle; infinite where a sphere has none (``closest``).", 2, 6, "number"
+    )
+    depth: Array = _field("(n,): radius - distance, how deep the triangle is in the sphere.", 2, 7, "number")
+    feature: Array = _field("(n,) int32: where on the triangle the point is: 0 face, 1 edge, 2 vertex.", 2, 8)
+    feature_index: Array = _field("(n,) int32: edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0.", 3, 8)
 
 
 class Impacts(Contacts):
     """Pairs that touch while the sphere moves, with the contact at the time of impact."""
 
-    @property
-    def time(self) -> Array:
-        """(n,): when it first touches, 0 at the beginning of the displacement to 1 at its end; infinite where a sphere
-        touches nothing (``first``)."""
-        begin = 4 + 8 * self._word
-        return self._library.field(self.records, begin, None, self._kind)
+    time: Array = _field(
+        "(n,): when it first touches, 0 at the beginning of the displacement to 1 at its end; infinite where a sphere "
+        "touches nothing (``first``).",
+        4, 8, "number",
+    )
+
+
+class Nearest(_Records):
+    """The nearest triangle of each point; of `Mesh.k_nearest` the k nearest, with the shape (n, k) in place of (n,)."""
+
+    triangle: Array = _field("(n,) int32: numbers of the triangles; -1 where none is in reach.", 0, 7)
+    distance: Array = _field("(n,): from the point to the triangle; infinite where none is in reach.", 0, 6, "number")
+    point: Array = _field("(n, 3): the nearest point of the triangle; NaN where none is in reach.", 0, 0, "number", 3)
+    barycentric: Array = _field(
+        "(n, 3): weights of the triangle's corners that give the nearest point; not negative, with the sum 1.",
+        0, 3, "number", 3,
+    )
+    feature: Array = _field("(n,) int32: where on the triangle the nearest point is: 0 face, 1 edge, 2 vertex.", 1, 7)
+    feature_index: Array = _field("(n,) int32: edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0.", 2, 7)
+
+
+class SignedDistance(Nearest):
+    """The nearest triangle of each point, with a distance that is negative inside of a closed mesh and 0 on it."""
+
+    gradient: Array = _field(
+        "(n, 3): the gradient of the distance, a unit vector: from the surface to a point outside, from a point inside to "
+        "the surface. On the surface the normal (b - a) x (c - a) of the triangle.",
+        3, 7, "number", 3,
+    )
 
 
 class Csr(NamedTuple):
@@ -151,7 +167,7 @@ class Mesh:
     ) -> int:
         """How many pairs of a sphere and a triangle touch. Arguments as for `query`."""
         stream = self._stream(library_of(centres, self._device))
-        return self._mesh.count(stream, precision, centres, radius, displacements, False, None, None, True)
+        return self._mesh.count(stream, (precision, centres, radius, displacements, False, None, None, True))
 
     def any(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
@@ -164,7 +180,8 @@ class Mesh:
         """
         library = library_of(centres, self._device)
         stream = self._stream(library)
-        flags = self._mesh.any(stream, precision, centres, radius, displacements, False, None, out, library.is_numpy)
+        asked = precision, centres, radius, displacements, False, None, out, library.is_numpy
+        flags = self._mesh.any(stream, asked)
         return flags if out is not None else library.flags(library.array(flags, stream))
 
     def query(
@@ -193,10 +210,8 @@ class Mesh:
             _refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
             library = library_of(centres, self._device)
             stream = self._stream(library)
-            arrays = self._mesh.csr(
-                stream, precision, centres, radius, displacements, _is_canonical(order), None, None, library.is_numpy
-            )
-            return Csr(*(library.array(a, stream) for a in arrays))
+            asked = precision, centres, radius, displacements, _is_canonical(order), None, None, library.is_numpy
+            return Csr(*(library.array(a, stream) for a in self._mesh.csr(stream, asked)))
         _refuse(output != "pairs", "output", f"is {output!r}, expected 'pairs' or 'csr'")
         return self._ask("pairs", Pairs, centres, radius, displacements, precision, order, capacity, out)
 
@@ -241,14 +256,80 @@ class Mesh:
     def _ask(self, call, kind, centres, radius, displacements, precision, order, capacity, out):
         library = library_of(centres, self._device)
         stream = self._stream(library)
-        records, size, total = getattr(self._mesh, call)(
-            stream, precision, centres, radius, displacements, _is_canonical(order), capacity, out, library.is_numpy
-        )
+        asked = precision, centres, radius, displacements, _is_canonical(order), capacity, out, library.is_numpy
+        records, size, total = getattr(self._mesh, call)(stream, asked)
         if out is None:
             records = library.array(records, stream)
         elif size < len(out):
             records = out[:size]
-        return kind(library, records, size, total, self._is_wide)
+        return kind(library, records, self._is_wide, size, total)
+
+    def nearest(
+        self, points: Array, *, max_distance: float = math.inf, precision: Precision = "exact", out: Optional[Array] = None
+    ) -> Nearest:
+        """The nearest triangle of each point, and the nearest point of it.
+
+        points        (n, 3), of the dtype of the vertices and on the same device. One that is not finite has no triangle.
+        max_distance  triangles farther away do not count; not negative
+        precision     'exact': which triangle is nearest is as with real arithmetic on the numbers as given, and of
+                      equally near ones it is the one of the smallest number. 'double', 'single': rounded. Distances and
+                      points are rounded in any case.
+        out           (n, 10) int32, of float64 (n, 18), packed: where ``records`` go, in place of memory of their own
+
+        Returns `Nearest`. Raises TypeError or ValueError for arguments that do not fit, `Error` if the library or CUDA
+        fails. It does not wait on a GPU. The first call prepares a tree, O(m log m) for m triangles; O(log m) for a
+        point near the mesh.
+        """
+        return self._search("nearest", Nearest, points, 1, max_distance, precision, out)
+
+    def k_nearest(
+        self, points: Array, k: int, *, max_distance: float = math.inf, precision: Precision = "exact",
+        out: Optional[Array] = None
+    ) -> Nearest:
+        """The k nearest triangles of each point, by rising distance: ``distance`` has the shape (n, k), ``point`` (n, k,
+        3). Where fewer are in reach, the last ones of a row are none.
+
+        k    1 to 32
+        out  (n, k, 10) int32, of float64 (n, k, 18)
+
+        Other arguments, errors and costs as for `nearest`.
+        """
+        return self._search("k_nearest", Nearest, points, k, max_distance, precision, out)
+
+    def signed_distance(
+        self, points: Array, *, max_distance: float = math.inf, precision: Precision = "exact", out: Optional[Array] = None
+    ) -> SignedDistance:
+        """How far each point is from the surface of a closed mesh: ``distance`` is negative inside, 0 on the surface. It
+        is what `nearest` finds, with the side that `contains` finds; each says what it needs. Farther away than
+        ``max_distance`` it is infinite, with the sign.
+
+        out  (n, 13) int32, of float64 (n, 24)
+
+        Other arguments, errors and costs as for `nearest`.
+        """
+        return self._search("signed_distance", SignedDistance, points, 1, max_distance, precision, out)
+
+    def contains(self, points: Array, *, out: Optional[Array] = None) -> Array:
+        """(n,) bool: whether each point is inside of a closed mesh or on its surface. Exact, however triangles are
+        oriented: a ray from the point along +z crosses the mesh an odd number of times. Where the mesh is not closed
+        the answer depends on that ray. A point that is not finite is outside. O(triangles above or below the point).
+
+        points  (n, 3), of the dtype of the vertices and on the same device
+        out     (n,) uint8 or bool: where flags go
+
+        Errors as for `nearest`.
+        """
+        return self._search("contains", None, points, 1, math.inf, "exact", out)
+
+    def _search(self, what, kind, points, k, max_distance, precision, out):
+        library = library_of(points, self._device)
+        stream = self._stream(library)
+        found, size = self._mesh.search(stream, what, precision, points, k, max_distance, out, library.is_numpy)
+        if out is None:
+            found = library.array(found, stream)
+        if kind is None:
+            return found if out is not None else library.flags(found)
+        return kind(library, found, self._is_wide, size)
 
     def _stream(self, library):
         """What a call to the compiled module begins with: on a GPU the stream that the library works on now."""

@@ -73,8 +73,7 @@ class Simulation:
         module = module_for(self._device, "mesh")
         on_gpu = self._device[0] == CUDA
         path = _build.library(
-            [effect._source for effect in effects],
-            [effect.name for effect in effects],
+            effects,
             "cuda_shared" if on_gpu else "host",
             module.capability(self._device[1]) if on_gpu else None,
             scalar="double" if mesh._is_wide else "float",
@@ -137,8 +136,7 @@ class Simulation:
         if effect not in names and not (isinstance(effect, int) and 0 <= effect < len(names)):
             raise ValueError(f"effect: there is no {effect!r} in the list {', '.join(names)}")
         number = effect if isinstance(effect, int) else names.index(effect)
-        changed = self.effects[number]
-        changed = Effect(changed.name, {**_given(changed), **parameters}, changed.code)
+        changed = self.effects[number]._changed(parameters)
         for name in parameters:
             self._simulation.set_parameter(self._stream(), number, name, changed.parameters[name])
         self.effects = (*self.effects[:number], changed, *self.effects[number + 1 :])
@@ -180,7 +178,3 @@ class Simulation:
 
     def _stream(self) -> Tuple[int, int]:
         return self._library.stream(self._device[1]) if self._device[0] == CUDA else NO_STREAM
-
-
-def _given(effect):
-    return {name: values[0] if len(values) == 1 else values for name, values in effect.parameters.items()}

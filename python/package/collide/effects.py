@@ -1,181 +1,205 @@
-"""Effects of a simulation: descriptions, of a name and parameters. docs/simulation.md says what each does."""
+"""Effects of a simulation: descriptions, of a name and parameters. docs/simulation.md says what each does.
 
-from typing import Dict, Optional, Sequence, Tuple
+The functions here are the table of effects: their arguments are the parameters, with the defaults of C++.
+"""
 
-from ._source import EFFECTS
-
-__all__ = [*EFFECTS]
+import copy
+import functools
+import inspect
+from typing import Callable, Dict, List, Optional, Tuple, TypeVar
 
 Vector = Tuple[float, float, float]
 
 
 class Effect:
-    """What happens to particles in a step: one of the library's effects by its name, or one of your own.
+    """What happens to particles in a step: an effect of your own. Those of the library are functions that make one.
 
-    name        'gravity', 'bounce', ...; of your own, the name of the struct in C++
-    parameters  numbers, or three of them
+    name        the name of the struct in C++
+    parameters  its members of type double, or double[3]: numbers, or three of them
     code        C++ that defines the struct (docs/effects.md): ``Effect('spring', {'stiffness': 10.0}, code='struct spring
-                {...};')``. The parameters are its members of type double, or double[3].
+                {...};')``
 
-    Raises ValueError for a name or a parameter that does not exist.
+    Raises TypeError or ValueError, which name the parameter, for what is no number.
     """
 
-    def __init__(self, name: str, parameters: Optional[Dict[str, object]] = None, code: Optional[str] = None):
-        given = dict(parameters or {})
+    def __init__(self, name: str, parameters: Optional[Dict[str, object]] = None, code: str = ""):
         self.name, self.code = name, code
-        if code is None:
-            if name not in EFFECTS:
-                raise ValueError(f"effects: there is no effect {name!r}; there are {', '.join(EFFECTS)}")
-            defaults = {parameter: default for parameter, default, _ in EFFECTS[name][2]}
-            for unknown in given.keys() - defaults.keys():
-                raise ValueError(f"{unknown}: {name} has no such parameter; it has {', '.join(defaults) or 'none'}")
-            given = {**defaults, **given}
-        self.parameters = {key: _numbers(key, value) for key, value in given.items()}
-        if code is None:
-            for key, numbers in self.parameters.items():
-                if len(numbers) != len(_numbers(key, defaults[key])):
-                    raise ValueError(f"{key}: of {name} is {'three numbers' if len(numbers) == 1 else 'one number'}")
+        self.parameters = {key: _numbers(key, value) for key, value in (parameters or {}).items()}
+        self._type = name  # in C++
+        self._members = {key: f"e.{key}" for key in self.parameters}  # what sets each of them
 
     def __repr__(self):
         values = ", ".join(f"{k}={v[0] if len(v) == 1 else tuple(v)}" for k, v in self.parameters.items())
         return f"collide.{self.name}({values})"
 
-    @property
-    def _source(self):
-        if self.code is None:
-            return self.name
-        return self.name, self.code, [(key, value, key) for key, value in self.parameters.items()]
+    def _changed(self, parameters):
+        """The same with other values of some parameters."""
+        for unknown in parameters.keys() - self.parameters.keys():
+            raise ValueError(
+                f"{unknown}: {self.name} has no such parameter; it has {', '.join(self.parameters) or 'none'}"
+            )
+        changed = copy.copy(self)
+        new = {key: _numbers(key, value, len(self.parameters[key])) for key, value in parameters.items()}
+        changed.parameters = {**self.parameters, **new}
+        return changed
 
 
-def _numbers(name, value):
+class Law(Effect):
+    """A law of `collide.granular_contact`: one of `collide.granular`, or one of your own, with name, parameters and code
+    as for `Effect`."""
+
+
+def _numbers(name, value, size=None) -> List[float]:
     try:
-        numbers = [float(value)] if not isinstance(value, Sequence) else [float(v) for v in value]
+        numbers = [float(v) for v in value] if hasattr(value, "__len__") else [float(value)]
     except (TypeError, ValueError):
-        raise TypeError(f"{name}: expected a number or three, got {value!r}") from None
-    if len(numbers) not in (1, 3):
-        raise ValueError(f"{name}: expected a number or three, got {len(numbers)}")
+        raise TypeError(f"{name}: expected numbers, got {value!r}") from None
+    if size is not None and len(numbers) != size:
+        raise ValueError(f"{name}: expected {'a number' if size == 1 else f'{size} numbers'}, got {value!r}")
     return numbers
 
 
+Function = TypeVar("Function", bound=Callable)
+
+
+def _describes(kind, header="", type="", **members) -> Callable[[Function], Function]:
+    """Makes a function that describes an effect: the name and the parameters are the function's own, and what it returns,
+    if anything, are other values of some. ``type`` and ``members`` are names in C++, where they differ."""
+
+    def decorate(function):
+        name, arguments = function.__name__, inspect.signature(function)
+        sizes = {key: 3 if p.annotation is Vector else 1 for key, p in arguments.parameters.items()}
+
+        @functools.wraps(function)
+        def make(*positional, **named):
+            given = arguments.bind(*positional, **named)
+            given.apply_defaults()
+            values = {**given.arguments, **(function(*positional, **named) or {})}
+            made = kind(name, {}, f"#include <collide/{header or 'effects/' + name}.hpp>")
+            made.parameters = {key: _numbers(key, value, sizes[key]) for key, value in values.items()}
+            made._type = "collide::" + (type or name)
+            made._members = {key: "e." + members.get(key, key) for key in values}
+            return made
+
+        return make
+
+    return decorate
+
+
+@_describes(Effect)
 def gravity(x: float = 0, y: float = 0, z: float = -9.81) -> Effect:
     """Constant acceleration, in length per time squared."""
-    return Effect("gravity", {"x": x, "y": y, "z": z})
 
 
+@_describes(Effect)
 def drag(linear: float = 0, quadratic: float = 0) -> Effect:
     """A medium at rest slows particles: ``linear`` per time, ``quadratic`` per length; not negative."""
-    return Effect("drag", {"linear": linear, "quadratic": quadratic})
 
 
+@_describes(Effect, type="wind<>", x="field.x", y="field.y", z="field.z")
 def wind(x: float = 0, y: float = 0, z: float = 0, linear: float = 0, quadratic: float = 0) -> Effect:
     """Drag in a medium that moves with the velocity x, y, z (length per time)."""
-    return Effect("wind", {"linear": linear, "quadratic": quadratic, "x": x, "y": y, "z": z})
 
 
+@_describes(Effect)
 def bounce(restitution: float = 0.5) -> Effect:
     """The mesh repels particles; speed after a bounce over speed before it, 0 to 1."""
-    return Effect("bounce", {"restitution": restitution})
 
 
+@_describes(Effect)
 def friction(static_coefficient: float = 0.5, kinetic_coefficient: Optional[float] = None) -> Effect:
     """Coulomb friction at the mesh; after `bounce`. The kinetic coefficient is not above the static one, and is it if it
     is not given."""
-    kinetic = static_coefficient if kinetic_coefficient is None else kinetic_coefficient
-    return Effect("friction", {"static_coefficient": static_coefficient, "kinetic_coefficient": kinetic})
+    return {"kinetic_coefficient": static_coefficient} if kinetic_coefficient is None else None
 
 
+@_describes(Effect)
 def spin(rolling_resistance: float = 0) -> Effect:
     """Particles rotate, and friction makes them roll. Adds the column angular_velocity (radians per time)."""
-    return Effect("spin", {"rolling_resistance": rolling_resistance})
 
 
+@_describes(Effect)
 def adhesion(max_acceleration: float = 20, capture_speed: float = float("inf")) -> Effect:
     """What touches the mesh no faster than ``capture_speed`` stays until an acceleration pulls it off; after `bounce`."""
-    return Effect("adhesion", {"max_acceleration": max_acceleration, "capture_speed": capture_speed})
 
 
+@_describes(Effect)
 def sphere_contact(
     stiffness: float = 1000, damping: float = 0, friction: float = 0, tangential_damping: float = 0, density: float = 1
 ) -> Effect:
     """Particles that overlap repel each other: a spring (mass per time squared) and dashpots (mass per time)."""
-    return Effect(
-        "sphere_contact",
-        dict(
-            stiffness=stiffness, damping=damping, friction=friction, tangential_damping=tangential_damping, density=density
-        ),
-    )
 
 
+@_describes(Effect)
 def sleep(speed: float = 0.01, steps: int = 50) -> Effect:
     """What has been slower than ``speed`` for so many steps (1 to 127) is skipped until it is hit."""
-    return Effect("sleep", {"speed": speed, "steps": steps})
 
 
+@_describes(
+    Effect, position="source.position", half_width="source.half_width", velocity="source.velocity",
+    velocity_spread="source.velocity_spread",
+)
 def emit(
     rate: float, position: Vector, velocity: Vector = (0, 0, 0), half_width: float = 0, velocity_spread: float = 0,
     radius: float = 0, only_where_free: bool = False,
 ) -> Effect:
     """A source: ``rate`` particles per time from a cube around ``position``, into the places that `Simulation.set` was
     given as capacity. With `polydisperse` they have ``radius``. ``only_where_free``: none is put where another one is."""
-    return Effect(
-        "emit",
-        dict(
-            rate=rate, radius=radius, position=position, half_width=half_width, velocity=velocity,
-            velocity_spread=velocity_spread, only_where_free=only_where_free,
-        ),
-    )
 
 
+@_describes(Effect)
 def absorb() -> Effect:
     """Particles vanish at the mesh."""
-    return Effect("absorb")
 
 
+@_describes(Effect, "effects/absorb")
 def absorbing_box(lower: Vector, upper: Vector) -> Effect:
     """Particles vanish in a box."""
-    return Effect("absorbing_box", {"lower": lower, "upper": upper})
 
 
+@_describes(Effect, "effects/bounds")
 def box_walls(lower: Vector, upper: Vector, restitution: float = 0.5) -> Effect:
     """Walls of a box, without a mesh; infinite bounds are no walls."""
-    return Effect("box_walls", {"lower": lower, "upper": upper, "restitution": restitution})
 
 
+@_describes(Effect, "effects/bounds")
 def periodic_box(lower: Vector, upper: Vector) -> Effect:
     """A box that repeats: each coordinate is modulo its length."""
-    return Effect("periodic_box", {"lower": lower, "upper": upper})
 
 
+@_describes(Effect)
 def polydisperse() -> Effect:
     """Each particle has its own radius: the column radius."""
-    return Effect("polydisperse")
 
 
+@_describes(Effect)
 def lost() -> Effect:
     """Marks particles whose position or velocity is NaN or infinite: the column is_lost."""
-    return Effect("lost")
 
 
+@_describes(Effect)
 def lost_motion() -> Effect:
     """Counts steps whose displacement is lost to rounding: the column lost_steps."""
-    return Effect("lost_motion")
 
 
+@_describes(Effect, "effects/contact_forces")
 def mesh_forces(density: float = 1) -> Effect:
     """Forces of the mesh on each particle, last in the list: the column mesh_force."""
-    return Effect("mesh_forces", {"density": density})
 
 
+@_describes(Effect, "effects/contact_forces")
 def pair_forces(density: float = 1) -> Effect:
     """Forces of other particles on each particle, last in the list: the column pair_force."""
-    return Effect("pair_forces", {"density": density})
 
 
+@_describes(Effect, "bodies", type="moving_bodies<>")
 def moving_bodies() -> Effect:
     """Parts of the mesh move: see `Body`."""
-    return Effect("moving_bodies")
 
 
+@_describes(Effect, "integrators")
 def velocity_verlet() -> Effect:
     """The integrator of second order; without it semi-implicit Euler, of first."""
-    return Effect("velocity_verlet")
+
+
+__all__ = [name for name, value in globals().items() if hasattr(value, "__wrapped__")]

@@ -8,7 +8,7 @@
 #include <collide/detail/bodies/bodies_ref.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/geometry/aabb.hpp>
-#include <collide/detail/particles/effect_traits.hpp>
+#include <collide/detail/particles/host_members.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
@@ -314,28 +314,6 @@ class body_memory {
   S room_ = 0;
   bool is_placed_ = false;  ///< of bodies that the caller drives: they have begun where the caller wants them
   buffer<body_report> report_;
-};
-
-/// In a scene without `moving_bodies`: nothing.
-struct no_bodies {
-  static constexpr bool exist = false;
-
-  static std::size_t bytes() { return 0; }
-  static std::size_t size() { return 0; }
-  static int room() { return 0; }
-  static constexpr bool are_driven() { return false; }
-  static constexpr bool are_placed() { return false; }
-  static void place(bool) {}
-  static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
-    if (!bodies.empty() || velocities != nullptr)
-      throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
-  }
-  template <class Space, class Mesh>
-  void build(Space&, Mesh const&, std::vector<body> const&, void const*) {}
-  template <class Triangles, class Mesh, class S>
-  Triangles const& ref(Triangles const& whole, Mesh const&, S) const {
-    return whole;
-  }
 };
 
 /// The bodies of a scene with these effects.

@@ -38,7 +38,7 @@ struct update_and_check_skin {
     if (!is_finite(p[position{}])) return order.deactivate(i);
     packed_sphere<S> const now = order.store(i, p);
     auto const before = order.references[i];
-    vec3<S> const moved(now.x - before.x, now.y - before.y, now.z - before.z);
+    vec3<S> const moved = order.between(before, now);
     S const left = most - before.growth(now);
     bool const stayed = dot(moved, moved) < mul_rn(left, left) && left > 0;
     if (!stayed) order.ask_to_rebuild();
@@ -80,7 +80,7 @@ struct count_or_scatter {
         return;
       }
     }
-    vec3<S> const& c = p[position{}];
+    vec3<S> const c = order.inside(p[position{}]);
     std::uint32_t const slot = fetch_add(order.ends + order.cells.number(order.cells.of(c.x(), c.y(), c.z())) + 1, 1u);
     if constexpr (Fill) order.numbers[slot] = static_cast<id>(i);
   }

@@ -41,8 +41,10 @@ struct pair_interaction {
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_other = !is_inactive(other);
-    if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
-    if (is_other && !p.woken) effects.try_wake(p.changed, other);
+    side_by_side(p, other, [&] {
+      if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
+      if (is_other && !p.woken) effects.try_wake(p.changed, other);
+    });
     p.met = p.met || is_active || is_other;
   }
   /// True once if a particle has been woken that took no part: then it meets those that were awake again, which have
@@ -60,15 +62,17 @@ struct pair_interaction {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_awake = !is_inactive(other), is_other = overlap && is_awake;
     bool goes_on = was;
-    if (p.woken ? is_other : is_active) {
-      contact_values<S, typename Effects::remembered> values;
-      if (was) values = record.values();
-      bool const stays =
-          only_kicks || (!is_awake && is_inactive(p.self));  // of two that sleep the contact is as it was
-      goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, stays ? S(0) : dt, dt);
-      if (goes_on) record.set(values);
-    }
-    if (is_other && !p.woken) effects.try_wake(p.changed, other);
+    side_by_side(p, other, [&] {
+      if (p.woken ? is_other : is_active) {
+        contact_values<S, typename Effects::remembered> values;
+        if (was) values = record.values();
+        bool const stays =
+            only_kicks || (!is_awake && is_inactive(p.self));  // of two that sleep the contact is as it was
+        goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, stays ? S(0) : dt, dt);
+        if (goes_on) record.set(values);
+      }
+      if (is_other && !p.woken) effects.try_wake(p.changed, other);
+    });
     p.met = p.met || is_active || is_other;
     return goes_on;
   }
@@ -89,6 +93,23 @@ struct pair_interaction {
   }
 
  private:
+  /// Calls f() while two particles are where they meet: across a side of the box, if space repeats. By how far it moves
+  /// the one that changes is added to where that is.
+  template <class F>
+  COLLIDE_HD_INLINE void side_by_side(pair_state& p, [[maybe_unused]] interaction& other, F const& f) const {
+    if constexpr (Effects::repeats) {
+      vec3<S>&self = p.self[position{}], &changed = p.changed[position{}];
+      vec3<S> const here = self, there = changed;
+      order.space.bring_together(self, other[position{}]);
+      changed = self;
+      f();
+      changed = there + (changed - self);
+      self = here;
+    } else {
+      f();
+    }
+  }
+
   /// Particles that sleep are pressed by others too, where that is passed on to what they lie on.
   COLLIDE_HD_INLINE bool takes_part(interaction& p) const {
     if constexpr (Effects::keeps_support) {

@@ -60,16 +60,19 @@ class verlet_list {
   template <class Space>
   void clear(Space& space, std::size_t n, S radius, S smallest) {
     blocks_ = blocks_for(n);
-    skin_ = skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
-    // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
-    // away from the origin
-    S const width = max((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
-    cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
+    skin_ = skin_of(radius, smallest);
+    cells_ = {1 / width_of(radius, smallest), static_cast<std::uint32_t>(blocks_ - 1)};
     list_state* const header = header_.data();
     space.fill(header, 0, sizeof *header);
     space.fill(&header->rebuild, 1, sizeof header->rebuild);
     if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
     contacts_.clear(space, n);
+  }
+
+  /// How wide cells are: a bit wider than what is listed, so that rounding separates no pair by more than a cell, in
+  /// floats up to 2^15 cells away from the origin.
+  static S width_of(S radius, S smallest) {
+    return max((2 * radius + skin_of(radius, smallest)) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
   }
 
   /// The memory of contacts, for a checkpoint. Waits.
@@ -116,9 +119,12 @@ class verlet_list {
            references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + contacts_.bytes();
   }
 
-  /// Makes the lists complete for particles where they now are. They hold until something moves.
+  /// Makes the lists complete for particles where they now are, in a space that may have changed. They hold until
+  /// something moves.
   template <class Space>
-  void renew(Space& space, state_type const& state) {
+  void renew(Space& space, state_type const& state, typename Effects::space_type const& around) {
+    if (!(around == around_)) space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
+    around_ = around;
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
@@ -158,6 +164,9 @@ class verlet_list {
   using cells = spatial_hash<S>;
 
   static constexpr S skin_fraction = S(0.1);
+  static S skin_of(S radius, S smallest) {
+    return skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
+  }
 
   template <class Space, class T>
   static std::vector<T> copied(Space const& space, T const* from, std::size_t n) {
@@ -167,12 +176,19 @@ class verlet_list {
   }
 
   order order_of(state_type const& state) const {
-    return {cells_,          ends_.data(),
-            header_.data(),  numbers_.data(),
-            spheres_.data(), references_.data(),
-            known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
-            lists_.data(),   state.size,
-            runs_.data(),    runs_.capacity(),
+    return {around_,
+            cells_,
+            ends_.data(),
+            header_.data(),
+            numbers_.data(),
+            spheres_.data(),
+            references_.data(),
+            known_.data(),
+            memory_.state(state.size, state.placed, state.common_radius),
+            lists_.data(),
+            state.size,
+            runs_.data(),
+            runs_.capacity(),
             contacts_.ref()};
   }
 
@@ -183,6 +199,7 @@ class verlet_list {
     return std::size_t{1} << bits;
   }
 
+  typename Effects::space_type around_{};
   cells cells_{};
   S skin_{};
   std::size_t blocks_ = 0;

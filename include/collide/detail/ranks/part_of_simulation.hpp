@@ -36,6 +36,7 @@ class part_of_simulation {
   using state_type = typename Simulation::state_type;
   using effects_type = typename Simulation::effects_type;
   using all_columns = typename Simulation::columns;
+  using around_type = typename effects_type::space_type;
   /// Columns of copies: all that is read of a particle that another one meets.
   using seen_columns =
       union_of<typename effects_type::interaction, intersection_of<columns<radius, alive>, all_columns>>;
@@ -129,6 +130,7 @@ class part_of_simulation {
   void begin_step(S dt) {
     simulation_.time_ += static_cast<double>(dt);
     simulation_.begin_step(dt);
+    knows_others_ = knows_others_ && effects().space() == around_;
     if (any_pair_contact && knows_others_ && own() != 0) look_for_moved();
   }
   /// Whether there are copies of all that this rank's own particles meet, as long as nothing has moved far.
@@ -155,7 +157,7 @@ class part_of_simulation {
   void settle_births(S dt) {
     if constexpr (any_pair_contact) {
       if (own() == 0) return;
-      simulation_.neighbours_.renew(space(), with_copies());
+      simulation_.neighbours_.renew(space(), with_copies(), effects().space());
       simulation_.settle_births(with_copies(), dt);
     }
   }
@@ -201,11 +203,13 @@ class part_of_simulation {
 
   /// Finds the particles that are to be on other ranks than `self`. Waits.
   void find_leaving(brick_lookup const& bricks, int self, int ranks, send_plan& found) {
-    found.find(space(), detail::find_leaving<S, state_type>{state(), bricks, self, ranks, {}}, own(), own(), ranks);
+    detail::find_leaving<S, state_type, around_type> const leaving{state(), effects().space(), bricks, self, ranks, {}};
+    found.find(space(), leaving, own(), own(), ranks);
   }
   /// Finds the particles of which other ranks than `self` must have copies. Waits.
   void find_copied(brick_lookup const& bricks, int self, int ranks, send_plan& found) {
-    found.find(space(), detail::find_copied<S, state_type>{state(), bricks, reach_, self, {}}, own(), own(), ranks);
+    detail::find_copied<S, state_type, around_type> const copied{state(), effects().space(), bricks, reach_, self, {}};
+    found.find(space(), copied, own(), own(), ranks);
   }
 
   /// Takes the rows of particles that leave.
@@ -239,6 +243,7 @@ class part_of_simulation {
     last_centres_.reserve(resource, 3 * capacity_);
     if constexpr (has_absent) last_there_.reserve(resource, capacity_);
     space().for_each(own(), keep_places<S, state_type>{simulation_.state_, last()});
+    around_ = effects().space();
     knows_others_ = true;
   }
 
@@ -354,13 +359,15 @@ class part_of_simulation {
     std::uint32_t* const flag = flag_.reserve(space().resource(), 1);
     space().fill(flag, 0, sizeof *flag);
     // half of the skin, but for rounding
-    space().for_each(own(), find_moved<S, state_type>{simulation_.state_, last(), S(0.495) * skin_, flag});
+    find_moved<S, state_type, around_type> const moved{state(), effects().space(), last(), S(0.495) * skin_, flag};
+    space().for_each(own(), moved);
   }
 
   last_places<S> last() const { return {last_centres_.data(), last_there_.data()}; }
 
   Simulation simulation_;
   std::size_t capacity_ = 0, copies_ = 0;
+  around_type around_{};       ///< the space when ranks last exchanged some
   bool knows_others_ = false;  ///< there are copies of all that its own may meet, as long as nothing moves far
   S skin_ = 0;
   double reach_ = 0;

@@ -1,0 +1,171 @@
+"""Laws and materials of `collide.granular_contact`. docs/granular.md says what each does, and where it is from.
+
+    grains = collide.granular_contact(granular.hertz(), granular.mindlin(), granular.epsd(),
+                                      materials=granular.materials(granular.Solid(1e7, 0.2, 2500),
+                                                                   granular.SurfacePair(0.5, 0.5, 0.1)))
+"""
+
+import dataclasses
+from typing import List, Mapping, Optional, Sequence, Tuple, Union
+
+from .effects import Effect, Law, _describes, _numbers
+
+
+@_describes(Law, "effects/granular/linear")
+def linear(stiffness: float = 1000) -> Law:
+    """Normal law: a spring of constant stiffness (force per overlap), and the dashpot that gives the restitution."""
+
+
+@_describes(Law, "effects/granular/hertz")
+def hertz() -> Law:
+    """Normal law: Hertz' force of elastic spheres, and the dashpot that gives the restitution."""
+
+
+@_describes(Law, "effects/granular/law")
+def none() -> Law:
+    """In place of a tangential or rolling law, or one of cohesion: there is none."""
+
+
+@_describes(Law, "effects/granular/dashpot")
+def dashpot(damping: float = 0) -> Law:
+    """Tangential law: a dashpot (force per slip) up to Coulomb's limit. Remembers nothing; a pile creeps."""
+
+
+def _mindlin(damping, test):
+    found = {}
+    for name, value, names in (
+        ("damping", damping, ("none", "of_tangent", "of_normal")),
+        ("test", test, ("spring", "spring_and_dashpot")),
+    ):
+        if value not in names:
+            raise ValueError(f"{name}: is {value!r}, expected {' or '.join(map(repr, names))}")
+        found[name] = names.index(value)
+    return found
+
+
+@_describes(Law, "effects/granular/mindlin")
+def mindlin(
+    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False
+) -> Law:
+    """Tangential law, with `hertz`: a spring that remembers slip, after Mindlin, up to Coulomb's limit.
+
+    damping  of which spring the dashpot is: 'of_tangent', 'of_normal', or 'none'
+    test     what is compared with the limit: 'spring' or 'spring_and_dashpot'
+    keeps_length  the spring keeps its length where it turns with the contact
+    """
+    return _mindlin(damping, test)
+
+
+@_describes(Law, "effects/granular/mindlin")
+def mindlin_rescale(
+    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False
+) -> Law:
+    """`mindlin`, whose spring also becomes shorter where the area of contact does: Thornton et al., 2013."""
+    return _mindlin(damping, test)
+
+
+@_describes(Law, "effects/granular/rolling")
+def constant_torque() -> Law:
+    """Rolling law: a torque of constant size against what turns. What is nearly at rest trembles."""
+
+
+@_describes(Law, "effects/granular/rolling")
+def epsd(damping: float = 0.3) -> Law:
+    """Rolling law: a spring that remembers, and a dashpot, a ratio to critical damping. Piles stand still."""
+
+
+@_describes(Law, "effects/granular/cohesion")
+def sjkr() -> Law:
+    """Cohesion: a pull of the surfaces' cohesion (energy per volume) times the area of overlap."""
+
+
+@_describes(Law, "effects/granular/cohesion")
+def dmt() -> Law:
+    """Cohesion, with `hertz`: a constant pull of hard grains; cohesion is energy per area."""
+
+
+@_describes(Law, "effects/granular/cohesion")
+def jkr() -> Law:
+    """Cohesion, with `hertz`: soft grains that stick, also a little apart; cohesion is energy per area."""
+
+
+@dataclasses.dataclass
+class Solid:
+    """An elastic solid: Young's modulus (force per area, above 0), Poisson's ratio (above -1, at most 0.5) and density
+    (mass per volume, above 0)."""
+
+    young: float = 1e7
+    poisson: float = 0.3
+    density: float = 1000
+
+
+@dataclasses.dataclass
+class SurfacePair:
+    """What two solids do where they touch: the coefficients of restitution (above 0, at most 1), of sliding and of rolling
+    friction, and cohesion, which are not negative."""
+
+    restitution: float = 1
+    friction: float = 0
+    rolling_friction: float = 0
+    cohesion: float = 0
+
+
+def materials(
+    solids: Union[Solid, Sequence[Solid]], pairs: Union[SurfacePair, Mapping[Tuple[int, int], SurfacePair]]
+) -> List[float]:
+    """The materials of particles and walls, as numbers: one solid, or up to 32, and what each pair of them does.
+
+    solids  one, or several: particles then have the column ``material``, uint8, with the number of theirs
+    pairs   what all do, or ``{(0, 0): ..., (0, 1): ..., (1, 1): ...}``
+
+    Raises ValueError for a pair that is missing.
+    """
+    solids = [solids] if isinstance(solids, Solid) else list(solids)
+    numbers = [number for solid in solids for number in dataclasses.astuple(solid)]
+    for i in range(len(solids)):
+        for j in range(i + 1):
+            pair = pairs if isinstance(pairs, SurfacePair) else pairs.get((i, j), pairs.get((j, i)))
+            if pair is None:
+                raise ValueError(f"pairs: the pair ({j}, {i}) is missing")
+            numbers += dataclasses.astuple(pair)
+    return numbers
+
+
+def granular_contact(
+    normal: Law, tangential: Optional[Law] = None, rolling: Optional[Law] = None, cohesion: Optional[Law] = None, *,
+    materials: Sequence[float] = materials(Solid(), SurfacePair()), wall_material: int = 0, arm_shortening: float = 0.5,
+) -> Effect:
+    """Granular contact between particles, which are solid, and of particles with the mesh, which is solid then. Use float64
+    and `velocity_verlet`; no `bounce`, `friction`, `adhesion` or `spin` beside it.
+
+    normal, tangential, rolling, cohesion  laws of `collide.granular`. With a tangential or a rolling one particles turn.
+    materials       `granular.materials(...)`
+    wall_material   the number of the mesh's solid, where there are several
+    arm_shortening  torques have the arm radius - arm_shortening overlap
+
+    Parameters of a law are those of the effect with the word before them: ``sim.change('granular_contact',
+    normal_stiffness=2000)``. `Simulation.largest_time_step` says how long a step may be.
+    """
+    laws = {"normal": normal, "tangential": tangential, "rolling": rolling, "cohesion": cohesion}
+    laws = {part: law if law is not None else none() for part, law in laws.items()}
+    for part, law in laws.items():
+        if not isinstance(law, Law):
+            raise TypeError(f"{part}: expected a law such as collide.granular.hertz(), got {law!r}")
+    count = next((n for n in range(1, 33) if 3 * n + 2 * n * (n + 1) == len(materials)), None)
+    if count is None:
+        raise ValueError("materials: expected what collide.granular.materials makes of 1 to 32 solids")
+    made = Effect("granular_contact", {"materials": materials, "arm_shortening": arm_shortening})
+    solids = "collide::one_material" if count == 1 else f"collide::materials<{count}>"
+    setter = "collide_python::set_materials(e.made_of, v)"
+    made._members["materials"] = f"{len(materials)}, [&](double const* v) {{ {setter}; }}"
+    if count > 1:
+        made.parameters["wall_material"] = _numbers("wall_material", wall_material, 1)
+        made._members["wall_material"] = "e.made_of.wall_material"
+    for part, law in laws.items():
+        for key, values in law.parameters.items():
+            made.parameters[f"{part}_{key}"] = values
+            made._members[f"{part}_{key}"] = law._members[key].replace("e.", f"e.{part}.", 1)
+    codes = ["#include <collide/effects/granular_contact.hpp>", *(law.code for law in laws.values())]
+    made.code = "\n".join(dict.fromkeys([*codes, '#include "granular_materials.hpp"']))
+    made._type = f"collide::granular_contact<{', '.join([*(law._type for law in laws.values()), solids])}>"
+    return made
