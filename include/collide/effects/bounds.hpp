@@ -73,7 +73,7 @@ struct box_walls {
 /// same.
 struct periodic_box {
   using writes = columns<position>;
-  static constexpr bool repeats_space = true;
+  static constexpr bool repeats_space = true;  ///< particles meet across its sides
 
   double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; finite, each below that of `upper`
   double upper[3] = {1, 1, 1};  ///< the corner of the largest coordinates, finite
