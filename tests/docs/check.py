@@ -7,7 +7,7 @@ examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md and docs/development/words.md is in the code of the file, or folder, that it is said to be in;
           words are in order.
 members   The tables of members in docs/guide.md have all that the headers have, and nothing else.
-english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; no docstring of include/ begins with
+english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; the README is short; no docstring of include/ begins with
           a word of FOREIGN_BEGINNINGS, which name nothing.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
 """
@@ -58,6 +58,7 @@ FOREIGN = {
     r"made anew": "rebuilt",
 }
 LONGEST = 120
+README_WORDS = 850
 
 # Docstrings name what follows: "The result of ...", and not "What ... gives".
 FOREIGN_BEGINNINGS = r"(What|Where|Of)\b"
@@ -165,6 +166,9 @@ def members():
 
 def english():
     """Of all pages but the reference, and not of what scripts have written."""
+    length = len((ROOT / "README.md").read_text().split())
+    if length > README_WORDS:
+        yield f"README.md has {length} words: at most {README_WORDS}, so that it is read"
     for page in PAGES:
         if page.parent.name == "api":
             continue
