@@ -75,7 +75,7 @@ class verlet_list {
     return max((2 * radius + skin_of(radius, smallest)) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
   }
 
-  /// The memory of contacts, for a checkpoint. Waits.
+  /// The memory of contacts of `n` particles, by the numbers by which neighbours meet, for a checkpoint. Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
     saved_contacts<S> saved;
@@ -83,6 +83,9 @@ class verlet_list {
     list_state const header = copied(space, header_.data(), 1)[0];
     if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
     auto const numbers = copied(space, numbers_.data(), header.count);
+    auto others = numbers;
+    if constexpr (contains<typename Effects::interaction_copies, global_number>)
+      others = copied(space, memory_.state(n, n, S(0)).at(global_number{}), header.count);
     auto const lists = copied(space, lists_.data(), order::listed * n),
                runs = copied(space, runs_.data(), runs_.capacity());
     auto const memory = contacts_.template copied<order::listed>(space, n, header.count, runs.size());
@@ -92,7 +95,7 @@ class verlet_list {
       std::uint32_t const i = place_of[number];
       if (i == order::overflow_mark) continue;
       auto const add = [&](std::uint32_t place, std::size_t item) {
-        saved.others.push_back(numbers[place]);
+        saved.others.push_back(others[place]);
         memory.append(saved.values, item);
         ++saved.counts[number];
       };

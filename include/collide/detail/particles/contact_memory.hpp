@@ -170,6 +170,7 @@ class contact_memory {
         kept[k].record.numbers[w] = saved.values[k * std::size_t(width) + w];
     }
     if (!ranges.empty()) space.copy_from_host(kept_of_.data(), ranges.data(), ranges.size());
+    kept_.reserve(space.resource(), kept.size());
     if (!kept.empty()) space.copy_from_host(kept_.data(), kept.data(), kept.size());
   }
 
