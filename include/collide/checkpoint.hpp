@@ -74,6 +74,7 @@ class checkpoint {
   /// Writes all blocks. A column is on the host while it is written.
   static void write(simulated const& from, std::ostream& stream, std::string const& name = "the stream") {
     if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
+    from.check_contacts();
     checkpoint_writer to(stream, name);
     numbers_type numbers{from.mesh_.size(),
                          from.state_.size,

@@ -52,7 +52,7 @@ class verlet_list {
     if constexpr (order::has_absent) known_.reserve(resource, n);
     lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
-    contacts_.reserve(resource, n, order::listed, n);
+    contacts_.reserve(resource, n, order::listed, runs_.capacity());
   }
 
   /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet. `smallest` keeps the
@@ -140,6 +140,15 @@ class verlet_list {
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
+    if constexpr (order::has_memory && Space::host_accessible) {
+      if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
+    }
+  }
+
+  /// True if there was no room for what some contact remembers. Waits.
+  template <class Space>
+  bool has_forgotten(Space const& space) const {
+    return order::has_memory && header_.capacity() != 0 && copied(space, header_.data(), 1)[0].forgotten != 0;
   }
 
   /// After `renew`: counts what a source has made in this step where something is; if `refuse`, it is not born.
@@ -169,6 +178,17 @@ class verlet_list {
   static constexpr S skin_fraction = S(0.1);
   static S skin_of(S radius, S smallest) {
     return skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
+  }
+
+  /// Makes room for all runs, and then those for which there was none. Allocates, but only where a step waits anyhow.
+  template <class Space>
+  COLLIDE_COLD void grow_runs(Space& space, state_type const& state) {
+    std::size_t const before = runs_.capacity(), in_runs = header_.data()->in_runs,
+                      more = in_runs + in_runs / 4 - before;
+    runs_ = grown(space, runs_, before, more);
+    contacts_.grow(space, order::listed * state.size, before, more);
+    space.for_each(state.size, build_missing_runs<S, Effects>{{order_of(state), skin_}});
+    contacts_.grow_kept(space, more);
   }
 
   template <class Space, class T>
