@@ -74,7 +74,6 @@ class checkpoint {
   /// Writes all blocks. A column is on the host while it is written.
   static void write(simulated const& from, std::ostream& stream, std::string const& name = "the stream") {
     if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
-    from.check_contacts();
     checkpoint_writer to(stream, name);
     numbers_type numbers{from.mesh_.size(),
                          from.state_.size,
@@ -93,10 +92,16 @@ class checkpoint {
         [&](auto column) { write_column<decltype(column)>(to, from.template to_host<decltype(column)>()); });
     end(to, from);
     saved_contacts<S> pairs, surfaces;
-    if constexpr (remembers_pairs) pairs = from.neighbours_.save_contacts(from.space_, from.state_.size);
+    if constexpr (remembers_pairs) pairs = contacts_between_particles(from);
     if constexpr (remembers_surfaces) surfaces = from.surfaces_.save_contacts(from.space_, from.state_.size);
     write_contacts(to, pairs, surfaces);
     to.finish();
+  }
+
+  /// The memory of contacts between particles. Waits.
+  static saved_contacts<S> contacts_between_particles(simulated const& from) {
+    from.check_contacts();
+    return from.neighbours_.save_contacts(from.space_, from.state_.size);
   }
 
   /// Writes what is before the columns; then each column follows, and `end`.
