@@ -155,9 +155,6 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
 
   /// The same on ranks.
   void check_ranks() const {
-    if constexpr (!remembers) check_several_ranks();
-  }
-  void check_several_ranks() const {
     for (int const n : {1, 3}) {
       std::vector<complaints> wrong(static_cast<std::size_t>(n));
       collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
@@ -269,7 +266,6 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   }
 
  private:
-  static constexpr bool remembers = (collide::detail::remembers_of<Effect>::type::size + ... + 0) != 0;
   static constexpr double unit = 1e-14;  ///< of impulse
 
   using vec = Eigen::Vector3d;

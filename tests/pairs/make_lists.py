@@ -71,7 +71,6 @@ REFUSED = {
     "reaction_before_bounce": "reaction before bounce, friction, spin or adhesion",
     "granular_contact_with_bounce": "granular_contact beside bounce, friction, spin, adhesion or absorb, which act where "
     "particles hit the mesh",
-    "contact_memory_on_ranks": "granular_contact whose laws remember something, on ranks",
     "two_integrators": "two integrators",
     "two_sources": "two sources",
     "two_kinds_of_bodies": "two kinds of bodies",

@@ -151,7 +151,7 @@ struct build_lists {
     if (i < order.header->count) list(static_cast<std::uint32_t>(i));
   }
 
- private:
+ protected:
   using ordered = sorted_particles<S, Effects>;
   static constexpr std::uint32_t room = ordered::listed;
 
@@ -194,10 +194,15 @@ struct build_lists {
     order.list(0, i) = order.overflow_mark;
     store_relaxed(&order.header->overflowed, 1u);
     std::uint32_t const first = fetch_add(&order.header->in_runs, found);
+    order.list(2, i) = first;
     if (first + std::size_t{found} > order.run_capacity) {
       order.list(1, i) = order.overflow_mark;
       return;
     }
+    fill_run(i, first);
+  }
+  /// Lists at item `first` of the runs what is near.
+  COLLIDE_HD void fill_run(std::uint32_t i, std::uint32_t first) const {
     std::uint32_t* const run = order.runs + first;
     std::uint32_t size = 0;
     order.for_each_overlapping(i, skin, [&](std::uint32_t k, int row) {
@@ -258,6 +263,17 @@ struct build_lists {
       if (size == 0 || run[size - 1] != run[k]) run[size++] = run[k];
     }
     return size;
+  }
+};
+
+/// Kernel functor of `for_each` over places in the order: makes the runs for which there was no room, now that there
+/// is.
+template <class S, class Effects>
+struct build_missing_runs : build_lists<S, Effects> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& places = this->order;
+    if (i >= places.header->count || places.list(0, i) != places.overflow_mark) return;
+    if (places.list(1, i) == places.overflow_mark) this->fill_run(static_cast<std::uint32_t>(i), places.list(2, i));
   }
 };
 

@@ -52,7 +52,7 @@ class verlet_list {
     if constexpr (order::has_absent) known_.reserve(resource, n);
     lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
-    contacts_.reserve(resource, n, order::listed, n);
+    contacts_.reserve(resource, n, order::listed, runs_.capacity());
   }
 
   /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet. `smallest` keeps the
@@ -75,7 +75,7 @@ class verlet_list {
     return max((2 * radius + skin_of(radius, smallest)) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
   }
 
-  /// The memory of contacts, for a checkpoint. Waits.
+  /// The memory of contacts of `n` particles, by the numbers by which neighbours meet, for a checkpoint. Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
     saved_contacts<S> saved;
@@ -83,6 +83,9 @@ class verlet_list {
     list_state const header = copied(space, header_.data(), 1)[0];
     if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
     auto const numbers = copied(space, numbers_.data(), header.count);
+    auto others = numbers;
+    if constexpr (contains<typename Effects::interaction_copies, global_number>)
+      others = copied(space, memory_.state(n, n, S(0)).at(global_number{}), header.count);
     auto const lists = copied(space, lists_.data(), order::listed * n),
                runs = copied(space, runs_.data(), runs_.capacity());
     auto const memory = contacts_.template copied<order::listed>(space, n, header.count, runs.size());
@@ -92,7 +95,7 @@ class verlet_list {
       std::uint32_t const i = place_of[number];
       if (i == order::overflow_mark) continue;
       auto const add = [&](std::uint32_t place, std::size_t item) {
-        saved.others.push_back(numbers[place]);
+        saved.others.push_back(others[place]);
         memory.append(saved.values, item);
         ++saved.counts[number];
       };
@@ -137,6 +140,15 @@ class verlet_list {
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
+    if constexpr (order::has_memory && Space::host_accessible) {
+      if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
+    }
+  }
+
+  /// True if there was no room for what some contact remembers. Waits.
+  template <class Space>
+  bool has_forgotten(Space const& space) const {
+    return order::has_memory && header_.capacity() != 0 && copied(space, header_.data(), 1)[0].forgotten != 0;
   }
 
   /// After `renew`: counts what a source has made in this step where something is; if `refuse`, it is not born.
@@ -166,6 +178,17 @@ class verlet_list {
   static constexpr S skin_fraction = S(0.1);
   static S skin_of(S radius, S smallest) {
     return skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
+  }
+
+  /// Makes room for all runs, and then those for which there was none. Allocates, but only where a step waits anyhow.
+  template <class Space>
+  COLLIDE_COLD void grow_runs(Space& space, state_type const& state) {
+    std::size_t const before = runs_.capacity(), in_runs = header_.data()->in_runs,
+                      more = in_runs + in_runs / 4 - before;
+    runs_ = grown(space, runs_, before, more);
+    contacts_.grow(space, order::listed * state.size, before, more);
+    space.for_each(state.size, build_missing_runs<S, Effects>{{order_of(state), skin_}});
+    contacts_.grow_kept(space, more);
   }
 
   template <class Space, class T>
