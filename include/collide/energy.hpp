@@ -112,15 +112,20 @@ struct particles_on_host {
   }
 };
 
-/// The energy of the normal spring of two spheres: 2/5 force overlap of `hertz`, 1/2 of `linear`.
+/// The force of the normal spring of two spheres, without damping and cohesion.
 template <class Law, class Particles>
-double elastic_energy(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
+double elastic_force(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
   granular_pair<double> p{};
   double const a = all.radius_of(i), b = all.radius_of(k);
   p.overlap = overlap;
   p.radius = a * b / (a + b);
-  auto const& of = law.made_of.between(all.solid_of(i), all.solid_of(k));
-  return (decltype(law.normal)::is_hertzian ? 0.4 : 0.5) * law.normal.force(p, of).elastic * overlap;
+  return law.normal.force(p, law.made_of.between(all.solid_of(i), all.solid_of(k))).elastic;
+}
+
+/// The energy of the normal spring of two spheres: 2/5 force overlap of `hertz`, 1/2 of `linear`.
+template <class Law, class Particles>
+double elastic_energy(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
+  return (decltype(law.normal)::is_hertzian ? 0.4 : 0.5) * elastic_force(law, all, i, k, overlap) * overlap;
 }
 
 }  // namespace detail

@@ -1,5 +1,6 @@
 /// Files for ParaView, read back by a reader that knows VTK's format and nothing of the library's.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -121,8 +122,24 @@ TEST_CASE("vtk: particles that are there, and a line between each two that overl
   CHECK(attribute(file.text(), "NumberOfLines") == "1");
 }
 
+TEST_CASE("vtk: lines of granular contact have the force of Hertz' spring") {
+  using law = collide::granular_contact<collide::hertz>;
+  using simulation = collide::simulation<collide::detector<collide::bucket, collide::karabassi<>, host, double>, law>;
+  double const xyz[] = {0, 0, 0, 1.99, 0, 0}, young = 1e6, poisson = 0.25;
+  simulation of(host(1), law{collide::one_material({young, poisson, 1000})});
+  of.set(collide::spheres_xyz(xyz, 2, 1.0));
+  temporary file;
+  collide::write_vtk_contacts(file.path, of);
+  double const effective = young / (2 * (1 - poisson * poisson));
+  auto const forces = numbers(file.text(), "force");
+  REQUIRE(forces.size() == 2);
+  for (double const f : forces)
+    CHECK(f == doctest::Approx(4.0 / 3 * effective * std::sqrt(0.5) * std::pow(0.01, 1.5)).epsilon(1e-12));
+}
+
 /// All pairs, one by one.
 TEST_CASE("vtk: the overlaps of many spheres are those of all pairs") {
+  using detector = collide::detector<collide::bucket>;
   std::vector<float> xyz, radii;
   std::uint32_t seed = 1;
   auto const next = [&] { return static_cast<float>((seed = seed * 1664525u + 1013904223u) >> 8) / 16777216; };
@@ -130,13 +147,16 @@ TEST_CASE("vtk: the overlaps of many spheres are those of all pairs") {
     for (int k = 0; k < 3; ++k) xyz.push_back(next());
     radii.push_back(i % 50 == 0 ? 0.3f : 0.05f * next());
   }
+  collide::simulation<detector, collide::polydisperse> of(host(1), collide::polydisperse{});
+  of.set(collide::spheres_xyz(xyz.data(), radii.size(), radii.data()));
   std::vector<std::pair<std::size_t, std::size_t>> found, all;
-  collide::detail::for_each_overlap(
-      xyz, radii, [&](std::size_t i, std::size_t k, float) { found.emplace_back(std::min(i, k), std::max(i, k)); });
+  collide::detail::particles_on_host<detector, collide::polydisperse>(of).for_each_contact(
+      [&](std::size_t i, std::size_t k, double) { found.emplace_back(std::min(i, k), std::max(i, k)); });
   for (std::size_t i = 0; i < radii.size(); ++i) {
     for (std::size_t k = i + 1; k < radii.size(); ++k) {
-      float const x = xyz[3 * k] - xyz[3 * i], y = xyz[3 * k + 1] - xyz[3 * i + 1], z = xyz[3 * k + 2] - xyz[3 * i + 2];
-      if (std::sqrt(x * x + y * y + z * z) < radii[i] + radii[k]) all.emplace_back(i, k);
+      double square = 0;
+      for (std::size_t c = 0; c < 3; ++c) square += std::pow(double(xyz[3 * k + c]) - double(xyz[3 * i + c]), 2);
+      if (std::sqrt(square) < double(radii[i]) + double(radii[k])) all.emplace_back(i, k);
     }
   }
   std::sort(found.begin(), found.end());
