@@ -106,24 +106,33 @@ struct particles_on_host {
     return p;
   }
 
-  /// f(i, k, overlap) for each two that overlap: a sweep along x. O(n log n) and the pairs that are near along x.
+  /// f(a, b, overlap) for each two that overlap, `swept_point`s: a sweep along x. O(n log n) and the pairs that are
+  /// near along x.
   template <class F>
-  void for_each_contact(F const& f) const {
+  void for_each_overlap(F const& f) const {
     std::vector<S> there = x;
     for (std::size_t i = 0; i < r.size(); ++i)
       if (is_there[i] == 0) there[3 * i] = std::numeric_limits<S>::quiet_NaN();
-    for_each_overlap(there, r, space, [&](swept_point const& a, swept_point const& b, double overlap) {
-      f(a.number, b.number, overlap);
-    });
+    detail::for_each_overlap(there, r, space, f);
+  }
+  /// f(i, k, overlap) for each two that overlap.
+  template <class F>
+  void for_each_contact(F const& f) const {
+    for_each_overlap(
+        [&](swept_point const& a, swept_point const& b, double overlap) { f(a.number, b.number, overlap); });
   }
 };
+
+/// The force of the normal spring of two spheres, without damping and cohesion.
+template <class Law, class Particles>
+double elastic_force(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
+  return law.normal.force(all.pair_of(i, k, overlap), law.made_of.between(all.solid_of(i), all.solid_of(k))).elastic;
+}
 
 /// The energy of the normal spring of two spheres: 2/5 force overlap of `hertz`, 1/2 of `linear`.
 template <class Law, class Particles>
 double elastic_energy(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
-  granular_pair<double> const p = all.pair_of(i, k, overlap);
-  auto const& of = law.made_of.between(all.solid_of(i), all.solid_of(k));
-  return (decltype(law.normal)::is_hertzian ? 0.4 : 0.5) * law.normal.force(p, of).elastic * overlap;
+  return (decltype(law.normal)::is_hertzian ? 0.4 : 0.5) * elastic_force(law, all, i, k, overlap) * overlap;
 }
 
 template <class Law, class P, class N, class Memory>
