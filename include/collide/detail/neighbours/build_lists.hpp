@@ -86,27 +86,6 @@ struct count_or_scatter {
   }
 };
 
-/// Kernel functor of `for_each_if_nonzero` over blocks: counts become where cells begin.
-template <class S, class Effects>
-struct scan_cells {
-  sorted_particles<S, Effects> order;
-
-  COLLIDE_HD void operator()(std::size_t b) const {
-    constexpr std::uint32_t n = spatial_hash<S>::cells_per_brick;
-    std::uint32_t* const ends = order.ends + b * order.cells.stride;
-    std::uint32_t counts[n], sum = 0;  // all are on their way at once
-    for (std::uint32_t c = 0; c < n; ++c) counts[c] = ends[c + 1];
-    for (std::uint32_t c = 0; c < n; ++c) sum += counts[c];
-    if (sum == 0) return;
-    std::uint32_t next = fetch_add(&order.header->count, sum);
-    ends[0] = next;
-    for (std::uint32_t c = 0; c < n; ++c) {
-      ends[c + 1] = next;
-      next += counts[c];
-    }
-  }
-};
-
 /// Kernel functor of `for_each_if_nonzero` over places in the order: copies particles there.
 template <class S, class Effects>
 struct gather {

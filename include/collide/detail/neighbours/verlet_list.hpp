@@ -44,7 +44,7 @@ class verlet_list {
   /// Takes all memory that steps of up to `n` particles need.
   void reserve(std::pmr::memory_resource* resource, std::size_t n) {
     header_.reserve(resource, 1);
-    ends_.reserve(resource, blocks_for(n) * cells::stride);
+    ends_.reserve(resource, cells::blocks_for(n) * cells::stride);
     numbers_.reserve(resource, n);
     memory_.reserve(resource, n);
     spheres_.reserve(resource, n);
@@ -59,7 +59,7 @@ class verlet_list {
   /// skin so thin that small particles beside large ones have few neighbours: too many have no list.
   template <class Space>
   void clear(Space& space, std::size_t n, S radius, S smallest) {
-    blocks_ = blocks_for(n);
+    blocks_ = cells::blocks_for(n);
     skin_ = skin_of(radius, smallest);
     cells_ = {1 / width_of(radius, smallest), static_cast<std::uint32_t>(blocks_ - 1)};
     list_state* const header = header_.data();
@@ -136,7 +136,7 @@ class verlet_list {
     if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
-    for_each_if_nonzero(space, rebuild, blocks_, scan_cells<S, Effects>{o});
+    for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
@@ -213,13 +213,6 @@ class verlet_list {
             runs_.data(),
             runs_.capacity(),
             contacts_.ref()};
-  }
-
-  /// How many blocks of cells there are for so many particles.
-  static std::size_t blocks_for(std::size_t n) {
-    std::uint32_t bits = 0;
-    while (bits < 22 && (std::size_t{cells::cells_per_brick} << bits) < 2 * n) ++bits;
-    return std::size_t{1} << bits;
   }
 
   typename Effects::space_type around_{};
