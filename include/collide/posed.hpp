@@ -17,6 +17,7 @@
 #include <collide/detail/streaming/pair_list.hpp>
 #include <collide/detail/streaming/posed_hit.hpp>
 #include <collide/detector.hpp>
+#include <collide/sinks/nearest.hpp>
 
 namespace collide {
 
@@ -29,9 +30,12 @@ namespace collide {
 /// triangle, as it lies in memory, is decided as the narrow phase decides, so with `exact` as in real arithmetic.
 /// Contacts are computed there, and point and normal are taken to the world the same way. The same bits in every space.
 ///
+/// `nearest` decides within a body as the narrow phase says; of bodies it takes the one with the smaller `distance` as
+/// that is rounded, and of equal ones the smaller number. The point is in the world.
+///
 /// Triangles of no body rest where they are. Memory: an index of each body, 20 bytes of float or 32 of double for each
-/// sphere, 24 if radii differ or 40, and up to 20 for each pair, also where the sink only counts. It is kept. One
-/// object is for one thread at a time.
+/// sphere, 24 if radii differ or 40, and up to 20 for each pair, also where the sink only counts; with `nearest`
+/// an entry more for each sphere. It is kept. One object is for one thread at a time.
 ///
 /// \tparam Detector  a `detector` for spheres at rest
 template <class Detector>
@@ -84,7 +88,7 @@ class posed {
   /// \param spheres  in memory of the space, as for `detector::query`
   /// \param poses    on the host, one for each body in their order; rotations are made unit quaternions
   /// \param sink     `count`, `any_hit`, `pairs`, `csr`, `contacts`, `closest`, `closest_contact`, or `visit` of a
-  ///                 function that takes any hit
+  ///                 function that takes any hit; `nearest`, with a broad phase that finds what is near
   /// \return the sink, as `detector::query` does
   /// \throws error  if there was no `build`, there are not as many poses as bodies, or one is not finite or no rotation
   ///
@@ -94,14 +98,18 @@ class posed {
   Sink query(spheres_type const& spheres, std::vector<pose> const& poses, Sink&& sink) {
     if (!is_built_) throw error("collide: posed: query needs a mesh: call build before it");
     place(poses);
-    found_.clear();
-    if (spheres.size() != 0) find(spheres);
-    using query_type = detail::found_query<detail::in_frames<typename Detector::narrow_phase>, execution_space,
-                                           detail::moving_mesh<scalar>, scalar>;
-    static_assert(detail::is_valid<detail::sink_run, std::remove_reference_t<Sink>, execution_space, query_type>,
-                  "collide: the third argument of query is a sink: an object with a member run(space, query)");
-    sink.run(space_, query_type{space_, mesh(), spheres, found_.data(), found_.size()});
+    if constexpr (std::is_same<std::decay_t<Sink>, nearest<scalar>>::value) {
+      run_nearest(spheres, sink);
+    } else {
+      run(spheres, sink);
+    }
     return std::forward<Sink>(sink);
+  }
+
+  /// Queries points, which are spheres of radius 0; as for spheres otherwise.
+  template <class Sink>
+  Sink query(point_view<scalar> const& points, std::vector<pose> const& poses, Sink&& sink) {
+    return query(spheres_type(points, nullptr, 0, scalar(0)), poses, std::forward<Sink>(sink));
   }
 
   /// How many bodies there are.
@@ -141,6 +149,7 @@ class posed {
     }
     if (end != mesh_.size()) at_rest.push_back({end, mesh_.size() - end, 0});
     parts_.insert(parts_.end(), at_rest.begin(), at_rest.end());
+    if (parts_.empty()) parts_.push_back({0, 0, 0});
   }
 
   void place(std::vector<pose> const& poses) {
@@ -155,6 +164,44 @@ class posed {
     }
     space_.copy_from_host(bodies_.states(), states.data(), states.size());
     bodies_.advance(space_, driven(), time_.data(), 0, 0, false, true);
+  }
+
+  template <class Sink>
+  void run(spheres_type const& spheres, Sink& sink) {
+    found_.clear();
+    if (spheres.size() != 0) find(spheres);
+    using query_type = detail::found_query<detail::in_frames<typename Detector::narrow_phase>, execution_space,
+                                           detail::moving_mesh<scalar>, scalar>;
+    static_assert(detail::is_valid<detail::sink_run, std::remove_reference_t<Sink>, execution_space, query_type>,
+                  "collide: the third argument of query is a sink: an object with a member run(space, query)");
+    sink.run(space_, query_type{space_, mesh(), spheres, found_.data(), found_.size()});
+  }
+
+  /// The nearest triangle of each part, one part after the other.
+  void run_nearest(spheres_type const& spheres, nearest<scalar>& sink) {
+    auto const search = [this](spheres_type const& from, auto const& f) {
+      std::size_t const n = from.size();
+      auto* const resource = space_.resource();
+      scalar* const centres = centres_.reserve(resource, 3 * n);
+      scalar* const radii = from.one_radius() ? nullptr : radii_.reserve(resource, n);
+      auto of_part = f;
+      of_part.to = nearest_.reserve(resource, n);
+      for (std::size_t k = 0; k < parts_.size(); ++k) {
+        part const& p = parts_[k];
+        space_.for_each(n, detail::see_from_body<scalar>{mesh(), p.frame, from, centres, radii});
+        detectors_[k].query(view_of(from, centres, radii, n), detail::run_search<decltype(of_part)>{of_part});
+        space_.for_each(
+            n, detail::take_nearer<scalar>{mesh(), p.frame, static_cast<id>(p.first), of_part.to, f.to, k == 0});
+      }
+    };
+    using query_type = detail::nearest_over_bodies<typename Detector::narrow_phase, scalar, decltype(search)>;
+    sink.run(space_, query_type{spheres, search});
+  }
+
+  /// Spheres as a body sees them.
+  static spheres_type view_of(spheres_type const& spheres, scalar const* centres, scalar const* radii, std::size_t n) {
+    auto const at = points<scalar>(centres, n);
+    return radii == nullptr ? spheres_at(at, spheres.common_radius()) : spheres_at(at, radii);
   }
 
   /// Finds the pairs of all parts.
@@ -181,8 +228,7 @@ class posed {
                                                       numbers_.data(), centres_.data(), radii});
     std::size_t const size = space_.read(count);
     if (size == 0) return;
-    auto const at = points<scalar>(centres_.data(), size);
-    detector.query(radii == nullptr ? spheres_at(at, spheres.common_radius()) : spheres_at(at, radii), hits_);
+    detector.query(view_of(spheres, centres_.data(), radii, size), hits_);
     pair* const to = found_.append(space_, hits_.size());
     space_.for_each(hits_.size(), detail::number_pairs{hits_.data(), numbers_.data(), static_cast<id>(p.first), to});
   }
@@ -206,9 +252,10 @@ class posed {
   detail::pair_list found_;
   buffer<double> time_;
   buffer<std::uint32_t> count_;
-  buffer<id> near_;                 ///< spheres near any part
-  buffer<id> numbers_;              ///< of spheres near a part,
-  buffer<scalar> centres_, radii_;  ///< as it sees them
+  buffer<id> near_;                           ///< spheres near any part
+  buffer<id> numbers_;                        ///< of spheres near a part,
+  buffer<scalar> centres_, radii_;            ///< as it sees them
+  buffer<nearest_triangle<scalar>> nearest_;  ///< of a part
 };
 
 }  // namespace collide

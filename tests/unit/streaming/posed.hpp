@@ -209,6 +209,73 @@ void check_half_turns(typename Detector::execution_space const& space) {
   CHECK(same);
 }
 
+/// The nearest triangle over all bodies, each searched in its frame.
+template <class S>
+std::vector<collide::nearest_triangle<S>> nearest_posed_by_loop(posed_scene<S> const& scene,
+                                                                std::vector<collide::pose> const& poses,
+                                                                collide::sphere_view<S> const& spheres, S most) {
+  using collide::detail::rounded_to;
+  std::vector<collide::nearest_triangle<S>> all;
+  auto const owners = scene.owners();
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    collide::nearest_triangle<S> best{};
+    best.triangle = collide::no_id;
+    best.distance = std::numeric_limits<S>::infinity();
+    for (std::size_t owner = 0; owner <= poses.size(); ++owner) {
+      collide::body_state state;
+      if (owner != 0) state.at = poses[owner - 1];
+      collide::detail::make_unit(state);
+      auto const frame = collide::detail::frame_pose_of(state.at);
+      auto centre = spheres.centre(i);
+      if (owner != 0) centre = rounded_to<S>(frame.to_local(centre.template cast<double>()));
+      collide::detail::nearest_search<S, collide::exact> search(centre, most);
+      for (collide::id t = 0; t < scene.triangles(); ++t)
+        if (owners[t] == owner) search.consider(scene.mesh()[t], t);
+      auto n = search.result();
+      if (n.triangle == collide::no_id) continue;
+      if (owner != 0) n.point = rounded_to<S>(frame.to_world(n.point.template cast<double>()));
+      if (n.distance < best.distance || (n.distance == best.distance && n.triangle < best.triangle)) best = n;
+    }
+    all.push_back(best);
+  }
+  return all;
+}
+
+template <class Detector>
+void check_posed_nearest(typename Detector::execution_space const& space) {
+  using S = typename Detector::scalar;
+  posed_scene<S> scene;
+  auto const mesh = collide::upload(space, scene.mesh());
+  std::size_t const n = scene.radii.size();
+  auto const on_host = collide::spheres_xyz(scene.xyz.data(), n, S(0));
+  auto const there = collide::upload(space, on_host);
+  collide::posed<Detector> robot(space);
+  robot.build(mesh.view(), scene.bodies);
+  for (S const most : {std::numeric_limits<S>::infinity(), S(0.5)}) {
+    auto const poses = scene.any_poses();
+    auto const expected = nearest_posed_by_loop(scene, poses, on_host, most);
+    auto const found = robot.query(there.view().centres(), poses, collide::nearest<S>(most)).to_host();
+    std::size_t wrong = 0, none = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      none += expected[i].triangle == collide::no_id;
+      wrong += found[i].triangle != expected[i].triangle || found[i].distance != expected[i].distance ||
+               (found[i].triangle != collide::no_id && !(found[i].point == expected[i].point));
+    }
+    CHECK(found.size() == n);
+    CHECK(wrong == 0);
+    CHECK(none >= 2);  // a NaN and an infinite coordinate
+    CHECK(none < n);
+  }
+  // spheres with a radius each: to their surface
+  auto const spheres = collide::upload(space, collide::spheres_xyz(scene.xyz.data(), n, scene.radii.data()));
+  auto const poses = scene.any_poses();
+  auto const to_surface = robot.query(spheres.view(), poses, collide::nearest<S>()).to_host();
+  auto const to_centre = robot.query(there.view(), poses, collide::nearest<S>()).to_host();
+  for (std::size_t i = 6; i < n; ++i) CHECK(to_surface[i].distance == to_centre[i].distance - scene.radii[i]);
+  robot.build(collide::mesh_view<S>(), {});
+  CHECK(robot.query(there.view(), {}, collide::nearest<S>()).to_host()[n - 1].triangle == collide::no_id);
+}
+
 /// From the third query on nothing is allocated.
 template <class Detector>
 void check_posed_keeps_memory(typename Detector::execution_space const& space, counting_resource& memory) {

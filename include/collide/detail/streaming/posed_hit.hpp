@@ -1,5 +1,5 @@
 /// \file
-/// Hits of a mesh of which parts have poses, and what of the spheres is near a part.
+/// Hits of a mesh of which parts have poses, what of the spheres is near a part, and which part is nearest.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,9 @@
 
 #include <collide/detail/bodies/moving_mesh.hpp>
 #include <collide/detail/execution/atomic.hpp>
+#include <collide/detail/sinks/search_mesh.hpp>
 #include <collide/hit.hpp>
+#include <collide/nearest_triangle.hpp>
 #include <collide/spheres.hpp>
 
 // the numbers of elements of small arrays are int
@@ -125,6 +127,72 @@ struct number_pairs {
   pair* to;
 
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = {spheres[from[i].sphere], from[i].triangle + first}; }
+};
+
+/// Kernel functor of `for_each` over spheres: how a body sees them.
+template <class S>
+struct see_from_body {
+  moving_mesh<S> mesh;
+  int frame;
+  sphere_view<S> spheres;
+  S* centres;
+  S* radii;  ///< null if all have one
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    sphere<S> const seen = mesh.seen_from(frame, spheres[i], 1);
+    for (unsigned k = 0; k < 3; ++k) centres[3 * i + k] = seen.centre[k];
+    if (radii != nullptr) radii[i] = seen.radius;
+  }
+};
+
+/// Kernel functor of `for_each` over spheres: the nearest triangle so far, or that of a body which begins with triangle
+/// `first`.
+template <class S>
+struct take_nearer {
+  moving_mesh<S> mesh;
+  int frame;
+  id first;
+  nearest_triangle<S> const* of_body;
+  nearest_triangle<S>* to;
+  bool is_first_body;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    nearest_triangle<S> n = of_body[i];
+    if (n.triangle != no_id) {
+      n.triangle += first;
+      n.point = mesh.in_world(frame, n.point, 1);
+    }
+    nearest_triangle<S> const& best = to[i];
+    bool const is_nearer =
+        is_first_body || n.distance < best.distance || (n.distance == best.distance && best.triangle > n.triangle);
+    if (is_nearer) to[i] = n;
+  }
+};
+
+/// Sink: runs a search, and keeps nothing.
+template <class F>
+struct run_search {
+  F f;
+
+  template <class Space, class Query>
+  void run(Space&, Query const& query) {
+    search_mesh(query, f);
+  }
+};
+
+/// The query of `nearest` over bodies, as the sink sees it. `Bodies` is a function bodies(spheres, f).
+template <class NarrowPhase, class S, class Bodies>
+struct nearest_over_bodies {
+  using narrow_phase = NarrowPhase;
+  using scalar = S;
+
+  sphere_view<S> spheres;
+  Bodies const& bodies;
+
+  template <class F>
+  void search(F const& f) const {
+    bodies(spheres, f);
+  }
 };
 
 }  // namespace detail
