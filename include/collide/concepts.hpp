@@ -169,6 +169,11 @@ constexpr bool check_broad_phase() {
 template <class Index, class Space>
 using index_reserve = decltype(std::declval<Index&>().reserve(std::declval<Space&>(), std::size_t{}));
 
+/// Another: moves to a mesh whose triangles have moved.
+template <class Index, class Space, class Options, class S>
+using index_refit = decltype(std::declval<Index&>().refit(std::declval<Space&>(), std::declval<Options const&>(),
+                                                          std::declval<mesh_view<S>>()));
+
 template <class D, class = void>
 struct is_detector : std::false_type {};
 template <class D>
