@@ -86,6 +86,10 @@ struct place_on_morton_curve {
   void operator()(std::size_t i) const {
     constexpr std::size_t n = triangle_group<S>::size;
     std::size_t const first = i * n, there = min(n, mesh.size() - first);
+    constexpr std::size_t ahead = 64;
+    for (std::size_t k = first + ahead; k < first + ahead + n && k < mesh.size(); ++k) {
+      __builtin_prefetch(mesh.vertices().address(mesh.corner(k, 0)));
+    }
     S corners[3][n] = {};
     for (std::size_t k = 0; k < there; ++k) {
       vec3<S> const corner = mesh.vertices()[mesh.corner(first + k, 0)];
@@ -178,6 +182,12 @@ class group_triangles {
     id* const numbers = numbers_.reserve(space.resource(), size * groups);
     id* const corners = corners_.reserve(space.resource(), 3 * size * groups);
     space.for_each(groups, [=](std::size_t g) {
+      constexpr std::size_t ahead = 8;
+      if (mesh.packed_indices() && mesh.indices() != nullptr && g + ahead < groups) {
+        for (id k = begins[g + ahead]; k < begins[g + ahead + 1]; ++k) {
+          __builtin_prefetch(mesh.indices() + 3 * std::size_t{order[k].number});
+        }
+      }
       for (id k = 0; k < size; ++k) {
         id const at = min(begins[g] + k, begins[g + 1] - 1);
         std::size_t const i = size * g + k;
