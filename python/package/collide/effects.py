@@ -142,7 +142,7 @@ def box_walls(lower: Vector, upper: Vector, restitution: float = 0.5) -> Effect:
 
 
 def periodic_box(lower: Vector, upper: Vector) -> Effect:
-    """A box that repeats: each coordinate is modulo its length."""
+    """A box that repeats: each coordinate is modulo its length. Particles meet across its sides."""
     return Effect("periodic_box", {"lower": lower, "upper": upper})
 
 
