@@ -67,11 +67,10 @@ struct box_walls {
 
 /// A box that repeats: a particle that leaves on one side comes in on the other, however far it is outside. At the end
 /// of a step each coordinate is in [lower, upper). Particles meet across its sides as they do inside, with forces,
-/// memory and sleep; each side must be at least four of the largest radii long then, and twice the skin of the lists
-/// of neighbours: a tenth of that. The mesh does not repeat.
+/// memory and sleep; each side must be 4.42 of the largest radii long then, or 4 and a little where others are much
+/// smaller: `step` throws `error` if it is not. The mesh does not repeat.
 ///
-/// Of two that meet across a side effects see the one at the upper side where it is a length farther down: both the
-/// same.
+/// If two meet across a side, effects see the one at the upper side where it is a length farther down: both the same.
 struct periodic_box {
   using writes = columns<position>;
   static constexpr bool repeats_space = true;  ///< particles meet across its sides

@@ -164,7 +164,7 @@ def box_walls(lower: Vector, upper: Vector, restitution: float = 0.5) -> Effect:
 
 @_describes(Effect, "effects/bounds")
 def periodic_box(lower: Vector, upper: Vector) -> Effect:
-    """A box that repeats: each coordinate is modulo its length."""
+    """A box that repeats: each coordinate is modulo its length. Particles meet across its sides."""
 
 
 @_describes(Effect)

@@ -10,8 +10,8 @@
 /// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. They lie in a
 /// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
 /// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
-/// particles, and each particle looks into the 27 cells around it. What has too many neighbours for its list does so in
-/// each step.
+/// particles, and each particle looks into the 27 cells around it, in a box that repeats also around its images. What
+/// has too many neighbours for its list does so in each step.
 ///
 /// Distances must be such that their squares neither overflow nor vanish: with floats, radii from 1e-17 to 1e18.
 ///
