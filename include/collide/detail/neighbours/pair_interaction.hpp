@@ -138,6 +138,7 @@ struct interact_listed : pair_interaction<S, Effects> {
     if (places.list(0, i) == places.overflow_mark) return;
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
     packed_sphere<S> const own = places.spheres[i];
+    if constexpr (sorted_particles<S, Effects>::has_memory) fetch_records(i);
     do {
       if constexpr (sorted_particles<S, Effects>::has_memory) {
         std::uint32_t const before = places.memory.touching[i];
@@ -159,6 +160,16 @@ struct interact_listed : pair_interaction<S, Effects> {
   }
 
  private:
+  /// On a CPU: what the contacts of a particle remember comes into the cache all at a time.
+  COLLIDE_HD_INLINE void fetch_records([[maybe_unused]] std::size_t i) const {
+#if !defined(__CUDA_ARCH__)
+    auto const& places = this->order;
+    for (std::uint32_t left = places.memory.touching[i]; left != 0; left &= left - 1) {
+      __builtin_prefetch(places.memory.records + std::size_t(__builtin_ctz(left)) * places.capacity + i, 1);
+    }
+#endif
+  }
+
   /// f(place, sphere, item) for each on the list of a particle. While one is looked at, the next and the list's item
   /// behind it are on their way (docs/development/experiments.md).
   template <class F>
