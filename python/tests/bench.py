@@ -1,8 +1,8 @@
-"""bench.py [SCENE FILE]: what a call from Python costs beyond the library, and against trimesh, Open3D and Warp.
+"""bench.py [SCENE FILE]: what a call from Python costs beyond the library, on the host and on a GPU.
 
-Times are medians of 50 calls after 5, in microseconds, in one process. Of libraries that are not installed nothing is
-printed. A scene file is one that `python_reference NAME SPHERES TRIANGLES FILE` writes; without one there are random
-triangles. The C++ call is that of this package's modules with arrays of one sphere, which cost the same around it.
+Times are medians of 50 calls after 5, in microseconds, in one process. ../bench/host.py measures other libraries. A scene
+file is one that `python_reference NAME SPHERES TRIANGLES FILE` writes; without one there are random triangles. Calls with
+one sphere are almost all what Python adds.
 """
 
 import pathlib
@@ -54,8 +54,6 @@ def main():
     mesh = collide.Mesh(vertices, triangles)
     for name in ("any", "query"):
         show(f"numpy: {name}", microseconds(lambda: getattr(mesh, name)(centres, radius), n=10))
-    if not isinstance(radius, numpy.ndarray):
-        others_on_the_host(vertices, triangles, centres, radius, mesh.any(centres, radius))
     from collide import _arrays
 
     if _arrays._cuda is None or _arrays._cuda.device_count() == 0:
@@ -73,28 +71,6 @@ def main():
     for name in ("any", "query"):
         show(f"torch on a GPU: {name}", microseconds(lambda: getattr(mesh, name)(x, r), torch.cuda.synchronize))
     show("torch on a GPU: update and query", microseconds(build_and_query, torch.cuda.synchronize))
-
-
-def others_on_the_host(vertices, triangles, centres, radius, expected):
-    try:
-        import open3d
-
-        scene = open3d.t.geometry.RaycastingScene()
-        scene.add_triangles(vertices, triangles.astype(numpy.uint32))
-        show("Open3D: distance <= r", microseconds(lambda: scene.compute_distance(centres).numpy() <= radius, n=3))
-    except ImportError:
-        pass
-    try:
-        import trimesh
-
-        solid = trimesh.Trimesh(vertices, triangles, process=False)
-        part = centres[:5000]
-        begin = time.perf_counter()
-        close = trimesh.proximity.closest_point(solid, part)[1] <= radius
-        show("trimesh: distance <= r, of as many", (time.perf_counter() - begin) * 1e6 * len(centres) / len(part))
-        print(f"  other answers: {int((close != expected[:5000]).sum())} of 5000")
-    except ImportError:
-        pass
 
 
 if __name__ == "__main__":

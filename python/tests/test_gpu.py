@@ -104,6 +104,14 @@ def test_results_are_those_of_the_host(library, dtype):
         for name in ("sphere", "triangle", "point", "normal", "distance", "depth", "feature", "feature_index"):
             same(getattr(mine, name), getattr(other, name))
     same(contacts[-1][0].time, contacts[-1][1].time)
+    same(mesh.contains(x), host.contains(centres))
+    for mine, other in (
+        (mesh.nearest(x), host.nearest(centres)), (mesh.k_nearest(x, 3), host.k_nearest(centres, 3)),
+        (mesh.signed_distance(x), host.signed_distance(centres)),
+    ):
+        for name in ("triangle", "distance", "point", "barycentric", "feature", "feature_index"):
+            same(getattr(mine, name), getattr(other, name))
+    same(mine.gradient, other.gradient)
     assert len(mesh.query(library.put(centres[:0]), 0.1)) == 0
 
 
@@ -120,6 +128,9 @@ def test_scenes(name, scene):
         (mesh.contacts(put(s.centres), put(s.radius), closest=True), host.contacts(s.centres, s.radius, closest=True)),
     ):
         assert mine.total == other.total and numpy.array_equal(mine.records.cpu().numpy(), other.records)
+    mine, other = mesh.signed_distance(put(s.centres)), host.signed_distance(s.centres)
+    assert torch.equal(mine.triangle.cpu(), torch.from_numpy(other.triangle))
+    assert torch.equal(mine.distance.cpu(), torch.from_numpy(other.distance))
 
 
 def test_results_outlive_the_mesh(library):
