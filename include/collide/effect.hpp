@@ -50,8 +50,10 @@
 /// `mesh_contact::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
 ///
 /// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
-/// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. Members are
-/// called in the order of the scene's list. What a scene does not name costs nothing: neither memory nor instructions.
+/// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. An effect
+/// that asks for the radius where nothing is touched, in `accelerate` or `end_step`, says
+/// `optional_reads = columns<radius>`. Members are called in the order of the scene's list. What a scene does not name
+/// costs nothing: neither memory nor instructions.
 #pragma once
 
 #include <string>

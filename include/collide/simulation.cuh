@@ -220,10 +220,13 @@ class simulation {
     return state_.at(Column{});
   }
 
-  /// A copy of a column. Waits.
+  /// A copy of a column. Waits. Throws `error` on a GPU if contacts have found no room for what they remember: lists of
+  /// more than sixteen neighbours have room for as many as there are particles, or were in the largest `reserve`. The
+  /// host makes more room.
   template <class Column>
   std::vector<detail::column_element<Column, S>> to_host() const {
     check<Column>();
+    check_contacts();
     std::vector<detail::column_element<Column, S>> copy(numbers<Column>());
     space_.copy_to_host(copy.data(), state_.at(Column{}), copy.size());
     return copy;
@@ -459,6 +462,18 @@ class simulation {
     ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
     if (!effects_type::any_pair_contact && effects_.makes_only_where_free())
       throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
+  }
+
+  /// Nothing goes on in silence without what contacts should remember.
+  void check_contacts() const {
+    if constexpr (effects_type::any_pair_contact && effects_type::remembered::size != 0 &&
+                  !execution_space::host_accessible) {
+      if (is_set_ && neighbours_.has_forgotten(space_))
+        throw error(
+            "collide: simulation: contacts have found no room for what they remember, as many particles have "
+            "more than 16 neighbours: call reserve with several times as many particles before set, and begin "
+            "anew");
+    }
   }
 
   /// Two particles must not meet on both sides at once.

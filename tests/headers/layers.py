@@ -28,7 +28,7 @@ LAYERS = {
     "effect interface": "bodies.hpp columns.hpp effect.hpp integrators.hpp",
     "particles": "detail/particles/",
     "bodies": "detail/bodies/",
-    "neighbours": "detail/neighbours/",
+    "neighbours": "detail/neighbours/ sphere_pairs.cuh",
     "step": "detail/step/",
     "simulation": "checkpoint.hpp simulation.cuh",
     "effects": "effects/ energy.hpp",

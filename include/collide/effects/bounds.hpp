@@ -15,6 +15,7 @@ namespace collide {
 /// on the way back. So an elastic bounce loses or gains no energy, with either integrator. One that would be over
 /// within six steps is none: the particle rests at the wall. An infinite bound is no wall.
 struct box_walls {
+  using optional_reads = columns<radius>;
   using writes = columns<position, velocity>;
   static constexpr bool asks_forces = true;
 

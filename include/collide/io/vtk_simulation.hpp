@@ -10,8 +10,8 @@
 #include <vector>
 
 #include <collide/columns.hpp>
-#include <collide/detail/particles/overlaps_on_host.hpp>
 #include <collide/effects/sphere_contact.hpp>
+#include <collide/energy.hpp>
 #include <collide/io/vtk.hpp>
 #include <collide/simulation.cuh>
 
@@ -62,6 +62,19 @@ struct vtk_particles {
   }
 };
 
+/// The force of the normal spring of two spheres that overlap, if the scene has such: of `granular_contact`, else of
+/// `sphere_contact`.
+template <class Detector, class... Effect>
+double spring_force(simulation<Detector, Effect...> const& of, particles_on_host<Detector, Effect...> const& all,
+                    std::size_t i, std::size_t k, double overlap) {
+  using law_type = typename granular_of<Effect...>::type;
+  if constexpr (is_granular<law_type>) {
+    return elastic_force(of.template effect<law_type>(), all, i, k, overlap);
+  } else {
+    return of.template effect<sphere_contact>().stiffness * overlap;
+  }
+}
+
 }  // namespace detail
 
 /// Writes the particles that are there as the file `path` (.vtp), as points with `radius`, `velocity`, and
@@ -77,28 +90,27 @@ void write_vtk_particles(std::string const& path, simulation<Detector, Effect...
 }
 
 /// Writes a line between the centres of each two particles that overlap, as the file `path` (.vtp), with their
-/// `overlap`, and `force`, that of the spring of `sphere_contact`, where the scene has it: the force chains. Across a
-/// side of `periodic_box` it goes out of the box. ParaView's filter Tube, its radius by force, shows them. Waits; O(n
-/// log n), and pairs near each other along x. Throws `error` if the file cannot be written.
+/// `overlap`, and `force`, that of the normal spring of `granular_contact` or `sphere_contact`, where the scene has it:
+/// the force chains. Across a side of `periodic_box` it goes out of the box. ParaView's filter Tube, its radius by
+/// force, shows them. Waits; O(n log n), and pairs near each other along x. Throws `error` if the file cannot be
+/// written.
 template <class Detector, class... Effect>
 void write_vtk_contacts(std::string const& path, simulation<Detector, Effect...> const& of) {
   using S = typename Detector::scalar;
-  using list = typename simulation<Detector, Effect...>::columns;
-  detail::vtk_particles<S> const shown(of, of.state().common_radius, list{});
-  std::vector<S> points, overlaps;
-  auto const space = typename simulation<Detector, Effect...>::effects_type(of.template effect<Effect>()...).space();
-  detail::for_each_overlap(shown.points, shown.radii, space, [&](auto const& a, auto const& b, double overlap) {
+  constexpr bool has_springs = ((std::is_same<Effect, sphere_contact>::value || detail::is_granular<Effect>) || ...);
+  detail::particles_on_host<Detector, Effect...> const all(of);
+  std::vector<S> points, overlaps, forces;
+  all.for_each_overlap([&](auto const& a, auto const& b, double overlap) {
+    S force = 0;
+    if constexpr (has_springs) force = static_cast<S>(detail::spring_force(of, all, a.number, b.number, overlap));
     for (auto const* p : {&a, &b}) {
       for (int k = 0; k < 3; ++k) points.push_back(static_cast<S>(p->centre[k]));
       overlaps.push_back(static_cast<S>(overlap));
+      forces.push_back(force);
     }
   });
   std::vector<vtk_array> known{{"overlap", overlaps}};
-  if constexpr ((std::is_same<Effect, sphere_contact>::value || ...)) {
-    std::vector<S> forces = overlaps;
-    for (S& f : forces) f *= static_cast<S>(of.template effect<sphere_contact>().stiffness);
-    known.emplace_back("force", forces);
-  }
+  if (has_springs) known.emplace_back("force", forces);
   detail::write_file(path, [&](std::ofstream& out) {
     write_vtp(out, points, known, vtk_cells::lines, detail::first_numbers(overlaps.size()));
   });

@@ -1,5 +1,6 @@
 /// Files for ParaView, read back by a reader that knows VTK's format and nothing of the library's.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -119,6 +120,21 @@ TEST_CASE("vtk: particles that are there, and a line between each two that overl
   CHECK(numbers(file.text(), "position") == std::vector<double>{0, 0, 0, 0, 1.75, 0, 1.5, 1.5, 9});
   collide::write_vtk_contacts(file.path, of);
   CHECK(attribute(file.text(), "NumberOfLines") == "1");
+}
+
+TEST_CASE("vtk: lines of granular contact have the force of Hertz' spring") {
+  using law = collide::granular_contact<collide::hertz>;
+  using simulation = collide::simulation<collide::detector<collide::bucket, collide::karabassi<>, host, double>, law>;
+  double const xyz[] = {0, 0, 0, 1.99, 0, 0}, young = 1e6, poisson = 0.25;
+  simulation of(host(1), law{collide::one_material({young, poisson, 1000})});
+  of.set(collide::spheres_xyz(xyz, 2, 1.0));
+  temporary file;
+  collide::write_vtk_contacts(file.path, of);
+  double const effective = young / (2 * (1 - poisson * poisson));
+  auto const forces = numbers(file.text(), "force");
+  REQUIRE(forces.size() == 2);
+  for (double const f : forces)
+    CHECK(f == doctest::Approx(4.0 / 3 * effective * std::sqrt(0.5) * std::pow(0.01, 1.5)).epsilon(1e-12));
 }
 
 /// All pairs, one by one, with all images of one.

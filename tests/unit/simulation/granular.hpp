@@ -303,4 +303,44 @@ void check_sleeping_grains(Space const& space) {
   CHECK(sums.read(space)[0].linear[2] == doctest::Approx(-mass * 9.81 * 10000 * dt).epsilon(1e-2).scale(0));
 }
 
+/// Grains each of which overlaps many more than sixteen: room that steps find by themselves gives the bits of room that
+/// was reserved. A space that does not wait says that there is none.
+template <class S, class Space>
+void check_many_neighbours(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, law, velocity_verlet>;
+  law const by{collide::one_material({1e4, 0.2, 2500}, {0.5, 0.3})};
+  world<S> w;
+  w.radius = S(0.01);
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-0.01, 0.01);
+  for (int i = 0; i < 60; ++i)
+    w.particle(uniform(engine), uniform(engine), uniform(engine), 10 * uniform(engine), 10 * uniform(engine), 0);
+  auto const played = [&](std::size_t reserved) {
+    running<simulation> made(space, w, by, velocity_verlet{});
+    if (reserved != 0) {
+      made.simulation.reserve(reserved);
+      made.place(w);
+    }
+    std::size_t const before = made.simulation.bytes();
+    made.simulation.steps(150, S(2e-5));
+    CHECK((made.simulation.bytes() > before) == (reserved == 0 && Space::host_accessible));
+    auto bits = made.positions(), v = made.velocities();
+    bits.insert(bits.end(), v.begin(), v.end());
+    return bits;
+  };
+  auto const expected = played(600 * 60);
+  CHECK(std::abs(double(expected[0]) - double(w.centres[0])) > 1e-5);
+  if (Space::host_accessible) {
+    auto const found = played(0);
+    CHECK(std::memcmp(found.data(), expected.data(), found.size() * sizeof(S)) == 0);
+  } else {
+    CHECK_THROWS_WITH_AS(played(0),
+                         "collide: simulation: contacts have found no room for what they remember, as many particles "
+                         "have more than 16 neighbours: call reserve with several times as many particles before set, "
+                         "and begin anew",
+                         collide::error);
+  }
+}
+
 }  // namespace tests

@@ -31,6 +31,10 @@ TEST_CASE("granular contact: grains sleep and press on, on a GPU") {
   tests::check_sleeping_grains<double>(cuda_shared());
 }
 
+TEST_CASE("granular contact: contacts find room for what they remember, or an error, on a GPU") {
+  tests::check_many_neighbours<double>(cuda_shared());
+}
+
 TEST_CASE("periodic contacts: the same on a GPU") {
   tests::check_contacts_across<double>(cuda_shared());
   tests::check_neighbours_across<float>(cuda_shared());

@@ -44,7 +44,7 @@ class verlet_list {
   /// Takes all memory that steps of up to `n` particles need.
   void reserve(std::pmr::memory_resource* resource, std::size_t n) {
     header_.reserve(resource, 1);
-    ends_.reserve(resource, blocks_for(n) * cells::stride);
+    ends_.reserve(resource, cells::blocks_for(n) * cells::stride);
     numbers_.reserve(resource, n);
     memory_.reserve(resource, n);
     spheres_.reserve(resource, n);
@@ -52,14 +52,14 @@ class verlet_list {
     if constexpr (order::has_absent) known_.reserve(resource, n);
     lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
-    contacts_.reserve(resource, n, order::listed, n);
+    contacts_.reserve(resource, n, order::listed, runs_.capacity());
   }
 
   /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet. `smallest` keeps the
   /// skin so thin that small particles beside large ones have few neighbours: too many have no list.
   template <class Space>
   void clear(Space& space, std::size_t n, S radius, S smallest) {
-    blocks_ = blocks_for(n);
+    blocks_ = cells::blocks_for(n);
     skin_ = skin_of(radius, smallest);
     cells_ = {1 / width_of(radius, smallest), static_cast<std::uint32_t>(blocks_ - 1)};
     list_state* const header = header_.data();
@@ -75,7 +75,7 @@ class verlet_list {
     return max((2 * radius + skin_of(radius, smallest)) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
   }
 
-  /// The memory of contacts, for a checkpoint. Waits.
+  /// The memory of contacts of `n` particles, by the numbers by which neighbours meet, for a checkpoint. Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
     saved_contacts<S> saved;
@@ -83,6 +83,9 @@ class verlet_list {
     list_state const header = copied(space, header_.data(), 1)[0];
     if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
     auto const numbers = copied(space, numbers_.data(), header.count);
+    auto others = numbers;
+    if constexpr (contains<typename Effects::interaction_copies, global_number>)
+      others = copied(space, memory_.state(n, n, S(0)).at(global_number{}), header.count);
     auto const lists = copied(space, lists_.data(), order::listed * n),
                runs = copied(space, runs_.data(), runs_.capacity());
     auto const memory = contacts_.template copied<order::listed>(space, n, header.count, runs.size());
@@ -92,7 +95,7 @@ class verlet_list {
       std::uint32_t const i = place_of[number];
       if (i == order::overflow_mark) continue;
       auto const add = [&](std::uint32_t place, std::size_t item) {
-        saved.others.push_back(numbers[place]);
+        saved.others.push_back(others[place]);
         memory.append(saved.values, item);
         ++saved.counts[number];
       };
@@ -133,10 +136,19 @@ class verlet_list {
     if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
-    for_each_if_nonzero(space, rebuild, blocks_, scan_cells<S, Effects>{o});
+    for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
+    if constexpr (order::has_memory && Space::host_accessible) {
+      if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
+    }
+  }
+
+  /// True if there was no room for what some contact remembers. Waits.
+  template <class Space>
+  bool has_forgotten(Space const& space) const {
+    return order::has_memory && header_.capacity() != 0 && copied(space, header_.data(), 1)[0].forgotten != 0;
   }
 
   /// After `renew`: counts what a source has made in this step where something is; if `refuse`, it is not born.
@@ -168,6 +180,17 @@ class verlet_list {
     return skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
   }
 
+  /// Makes room for all runs, and then those for which there was none. Allocates, but only where a step waits anyhow.
+  template <class Space>
+  COLLIDE_COLD void grow_runs(Space& space, state_type const& state) {
+    std::size_t const before = runs_.capacity(), in_runs = header_.data()->in_runs,
+                      more = in_runs + in_runs / 4 - before;
+    runs_ = grown(space, runs_, before, more);
+    contacts_.grow(space, order::listed * state.size, before, more);
+    space.for_each(state.size, build_missing_runs<S, Effects>{{order_of(state), skin_}});
+    contacts_.grow_kept(space, more);
+  }
+
   template <class Space, class T>
   static std::vector<T> copied(Space const& space, T const* from, std::size_t n) {
     std::vector<T> copy(n);
@@ -190,13 +213,6 @@ class verlet_list {
             runs_.data(),
             runs_.capacity(),
             contacts_.ref()};
-  }
-
-  /// How many blocks of cells there are for so many particles.
-  static std::size_t blocks_for(std::size_t n) {
-    std::uint32_t bits = 0;
-    while (bits < 22 && (std::size_t{cells::cells_per_brick} << bits) < 2 * n) ++bits;
-    return std::size_t{1} << bits;
   }
 
   typename Effects::space_type around_{};

@@ -38,6 +38,18 @@ void add_to_sweep(repeating_box<S> const& space, std::size_t i, vec3<S> const& x
   }
 }
 
+/// From one point to another: the shortest way, if space repeats.
+template <class S>
+vec3<S> apart(open_space, vec3<S> const& a, vec3<S> const& b) {
+  return b - a;
+}
+template <class S>
+vec3<S> apart(repeating_box<S> const& space, vec3<S> a, vec3<S> b) {
+  a = space.inside(a), b = space.inside(b);
+  space.bring_together(a, b);
+  return b - a;
+}
+
 /// f(a, b, overlap) for each two spheres that overlap: `swept_point`s. Spheres that are nowhere overlap nothing. A
 /// sweep along x: O(n log n), and the pairs that are near along x.
 template <class S, class Space, class F>

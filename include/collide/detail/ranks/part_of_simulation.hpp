@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <collide/detail/ranks/contact_rows.hpp>
 #include <collide/detail/ranks/device_exchange_buffer.hpp>
 #include <collide/detail/ranks/divided_mesh.hpp>
 #include <collide/detail/ranks/particle_places.hpp>
@@ -45,6 +46,17 @@ class part_of_simulation {
 
   static constexpr bool any_pair_contact = effects_type::any_pair_contact;
   static constexpr bool has_absent = contains<all_columns, alive>;
+
+  using remembered = typename effects_type::remembered;
+  static constexpr std::size_t contact_width =
+      remembered::size != 0 ? std::size_t(contact_values<S, remembered>::width) : 1;
+  static constexpr bool remembers_pairs = remembered::size != 0 && any_pair_contact;
+  static constexpr bool remembers_surfaces = remembered::size != 0 && effects_type::overlaps;
+  /// The memory of contacts, by numbers among all.
+  struct contact_rows {
+    std::vector<contact_row<S, contact_width>> pairs;
+    std::vector<contact_row<S, contact_width + 3>> surfaces;
+  };
 
   template <class... Argument>
   explicit part_of_simulation(Argument&&... arguments) : simulation_(std::forward<Argument>(arguments)...) {}
@@ -115,6 +127,15 @@ class part_of_simulation {
     simulation_.prepare();
     saved.restore_bodies(simulation_);
     simulation_.bodies_.place(numbers.bodies_are_placed != 0);
+    if constexpr (remembers_pairs || remembers_surfaces) {
+      contact_rows contacts;
+      std::vector<id> const every = first_ids(static_cast<std::size_t>(all.size));
+      if constexpr (remembers_pairs)
+        contacts.pairs = rows_of<contact_row<S, contact_width>>(saved.pair_contacts(), every);
+      if constexpr (remembers_surfaces)
+        contacts.surfaces = rows_of<contact_row<S, contact_width + 3>>(saved.surface_contacts(), every);
+      set_contacts(contacts);
+    }
     space().synchronize();
   }
 
@@ -164,6 +185,33 @@ class part_of_simulation {
   /// Whether the next step knows what particles do to each other where it begins.
   bool knows_pair_forces() const { return simulation_.knows_pair_forces_; }
 
+  /// The memory of contacts of the rank's own particles. Waits.
+  contact_rows contacts() const {
+    contact_rows found;
+    if constexpr (remembers_pairs || remembers_surfaces) {
+      std::vector<id> const numbers = on_host<global_number>();
+      auto const& s = simulation_;
+      if constexpr (remembers_pairs)
+        found.pairs =
+            rows_of<contact_row<S, contact_width>>(s.neighbours_.save_contacts(s.space_, own() + copies_), numbers);
+      if constexpr (remembers_surfaces)
+        found.surfaces =
+            rows_of<contact_row<S, contact_width + 3>>(s.surfaces_.save_contacts(s.space_, own()), numbers);
+    }
+    return found;
+  }
+  /// Takes over what contacts remember, if lists of neighbours are to be made, and each place has its particle.
+  void set_contacts([[maybe_unused]] contact_rows const& from) {
+    if constexpr (remembers_pairs || remembers_surfaces) {
+      std::vector<id> const numbers = on_host<global_number>();
+      if constexpr (remembers_pairs)
+        simulation_.neighbours_.restore_contacts(space(), contacts_of(from.pairs, numbers));
+      if constexpr (remembers_surfaces)
+        simulation_.surfaces_.restore_contacts(space(), contacts_of(from.surfaces, numbers));
+      space().synchronize();
+    }
+  }
+
   /// A column of the rank's own particles on the host.
   template <class Column>
   std::vector<column_element<Column, S>> on_host() const {
@@ -210,6 +258,17 @@ class part_of_simulation {
   void find_copied(brick_lookup const& bricks, int self, int ranks, send_plan& found) {
     detail::find_copied<S, state_type, around_type> const copied{state(), effects().space(), bricks, reach_, self, {}};
     found.find(space(), copied, own(), own(), ranks);
+  }
+
+  /// Numbers of particles that leave, which rise, and where they go. Waits.
+  std::vector<std::pair<id, int>> new_ranks(send_plan const& leaving) const {
+    std::vector<pair> listed(leaving.size());
+    if (!listed.empty()) simulation_.space_.copy_to_host(listed.data(), leaving.data(), listed.size());
+    std::vector<id> const numbers = on_host<global_number>();
+    std::vector<std::pair<id, int>> found;
+    for (pair const& one : listed) found.emplace_back(numbers[one.triangle], static_cast<int>(one.sphere));
+    std::sort(found.begin(), found.end());
+    return found;
   }
 
   /// Takes the rows of particles that leave.
@@ -300,6 +359,9 @@ class part_of_simulation {
     reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
     copies_ = 0;
     knows_others_ = false;
+    if constexpr (remembers_pairs)
+      simulation_.neighbours_.clear(space(), room, radii.range.largest, radii.range.smallest);
+    if constexpr (remembers_surfaces) simulation_.surfaces_.clear(space(), room);
   }
 
   /// Moves the last particles to the places of those that have left, from the `filled`-th on.

@@ -32,9 +32,6 @@ constexpr bool check_on_ranks() {
   static_assert(!has_begin_step<E, Space, State, S>::value || begins_on_ranks<E>,
                 "collide: an effect's begin_step sees the places of one rank alone: if it does the same to particles "
                 "wherever they are, the effect says static constexpr bool begins_on_ranks = true");
-  static_assert(remembers_of<E>::type::size == 0,
-                "collide: what contacts remember does not go from rank to rank: on ranks, name granular_contact with "
-                "laws that remember nothing, such as dashpot");
   return true;
 }
 
