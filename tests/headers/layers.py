@@ -32,7 +32,7 @@ LAYERS = {
     "step": "detail/step/",
     "simulation": "checkpoint.hpp simulation.cuh",
     "effects": "effects/ energy.hpp",
-    "streaming": "detail/streaming/ in_passes.hpp streamed.cuh",
+    "streaming": "detail/streaming/ in_passes.hpp posed.hpp streamed.cuh",
     "ranks": "detail/ranks/ ranks/",
     "files": "io/",
 }

@@ -54,6 +54,21 @@ struct bound_bodies {
   }
 };
 
+/// Makes the rotation's length 1. False if it is not nearly that, or something is not finite.
+COLLIDE_HD_INLINE bool make_unit(body_state& s) {
+  double(&q)[4] = s.at.rotation;
+  double const squared = mul_rn(q[0], q[0]) + mul_rn(q[1], q[1]) + mul_rn(q[2], q[2]) + mul_rn(q[3], q[3]);
+  bool sound = is_finite(squared) && squared > 1 - 1e-4 && squared < 1 + 1e-4;
+  for (int k = 0; k < 3; ++k) {
+    sound = sound && is_finite(s.at.position[k]) && is_finite(s.moving.linear[k]) && is_finite(s.moving.angular[k]) &&
+            is_finite(s.belt[k]);
+  }
+  if (!sound) return false;
+  double const length = sqrt_rn(squared);
+  for (double& c : q) c = div_rn(c, length);
+  return true;
+}
+
 /// Kernel functor of `for_each` over bodies: where each is at the end of the step, or, if it `starts`, now.
 template <class S, class Motion>
 struct advance_bodies {
@@ -106,21 +121,6 @@ struct advance_bodies {
       s.at.rotation[k + 1] = at.axis[k];
     }
     return s;
-  }
-
-  /// Makes the rotation's length 1. False if it is not nearly that, or something is not finite.
-  static COLLIDE_HD_INLINE bool make_unit(body_state& s) {
-    double(&q)[4] = s.at.rotation;
-    double const squared = mul_rn(q[0], q[0]) + mul_rn(q[1], q[1]) + mul_rn(q[2], q[2]) + mul_rn(q[3], q[3]);
-    bool sound = is_finite(squared) && squared > 1 - 1e-4 && squared < 1 + 1e-4;
-    for (int k = 0; k < 3; ++k) {
-      sound = sound && is_finite(s.at.position[k]) && is_finite(s.moving.linear[k]) && is_finite(s.moving.angular[k]) &&
-              is_finite(s.belt[k]);
-    }
-    if (!sound) return false;
-    double const length = sqrt_rn(squared);
-    for (double& c : q) c = div_rn(c, length);
-    return true;
   }
 
   /// The bounding sphere of a body, and how far it moves.
@@ -190,14 +190,14 @@ class body_memory {
            report_.bytes();
   }
 
-  /// Throws `error` unless these can be bodies of a mesh of so many triangles.
-  static void check(std::vector<body> const& bodies, std::size_t triangles, S const*) {
+  /// Throws `error` unless these can be bodies of a mesh of so many triangles. `call`: what gets them, for messages.
+  static void check(std::vector<body> const& bodies, std::size_t triangles, S const*, char const* call = "set_mesh") {
     constexpr std::size_t most = moving_bodies<Motion>::max_bodies;
-    if (bodies.size() > most) throw error("collide: set_mesh: there are more than 64 bodies");
+    if (bodies.size() > most) throw error("collide: " + std::string(call) + ": there are more than 64 bodies");
     std::vector<bool> taken(triangles);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       body const& b = bodies[k];
-      std::string const name = "collide: set_mesh: body " + std::to_string(k);
+      std::string const name = "collide: " + std::string(call) + ": body " + std::to_string(k);
       if (b.first > triangles || b.size > triangles - b.first)
         throw error(name + " has triangles that the mesh does not have");
       for (std::size_t i = b.first; i < b.first + b.size; ++i) {
@@ -261,9 +261,12 @@ class body_memory {
 
   template <class Triangles>
   bodies_ref<S, Triangles> ref(Triangles const& whole, mesh_view<S> const& mesh, S dt) const {
-    return {whole,
-            {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt},
-            {quick_.data(), room_}};
+    return {whole, moving(mesh, dt), {quick_.data(), room_}};
+  }
+
+  /// The mesh, for kernels, with the frames of its bodies.
+  moving_mesh<S> moving(mesh_view<S> const& mesh, S dt) const {
+    return {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt};
   }
 
   /// Whether they have begun where the caller drives them.
