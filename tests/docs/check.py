@@ -5,7 +5,8 @@ code      The first block of C++ in the README is examples/minimal.cpp, and ever
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md and docs/development/words.md is in the code of the file, or folder, that it is said to be in;
-          words are in order.
+          words are in order. So is each name of the table of headers in docs/install.md; each effect of docs/simulation.md has a header
+          of its own name, or the page says which one it is in.
 members   The tables of members in docs/guide.md have all that the headers have, and nothing else; those of docs/api/results.md
           are what scripts/members writes.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; the README is short; no docstring of include/ begins with
@@ -123,6 +124,36 @@ def examples():
 def glossary():
     for page, least in (("glossary.md", 30), ("development/words.md", 15)):
         yield from words_of(ROOT / "docs" / page, least)
+    yield from headers_of(ROOT / "docs" / "install.md", 15)
+    yield from effects_of(ROOT / "docs" / "simulation.md", 20)
+
+
+def declares(header, name):
+    return header.is_file() and re.search(rf"\b{name}\b", re.sub(r"//.*", "", header.read_text()))
+
+
+def headers_of(page, least):
+    rows = re.findall(r"^\| (`.+`) \| `([\w/]+\.\w+)` \|$", page.read_text(), flags=re.M)
+    if len(rows) < least:
+        yield f"{page}: only {len(rows)} rows of headers"
+    for names, header in rows:
+        for name in re.findall(r"`(\w+)`", names):
+            if not declares(ROOT / "include" / "collide" / header, name):
+                yield f"{page}: there is no {name} in {header}"
+
+
+def effects_of(page, least):
+    text = page.read_text()
+    table = re.search(r"^\| effect \|.*?\n\n", text, flags=re.M | re.S)[0]
+    effects = [name for cell in re.findall(r"^\| (`.+?) \|", table, flags=re.M) for name in re.findall(r"`(\w+)", cell)]
+    elsewhere = {name: header for names, header in re.findall(r"((?:`\w+`(?:\s+and\s+|,?\s+))+)\((?:in )?`([\w/]+\.hpp)`\)", text)
+                 for name in re.findall(r"`(\w+)`", names)}
+    if len(effects) < least:
+        yield f"{page}: only {len(effects)} effects"
+    for name in effects:
+        header = elsewhere.get(name, name + ".hpp").replace("collide/", "../")
+        if not declares(ROOT / "include" / "collide" / "effects" / header, name):
+            yield f"{page}: the page does not say which header has {name}"
 
 
 def words_of(page, least):
