@@ -117,8 +117,8 @@ class distributed {
   }
 
   /// Queries points, as `detector::query` does.
-  template <class Sink>
-  Sink query(point_view<scalar> const& points, Sink&& sink) {
+  template <class Points, class Sink, class = std::enable_if_t<std::is_same<Points, point_view<scalar>>::value>>
+  Sink query(Points const& points, Sink&& sink) {
     return query(spheres_type(points, nullptr, 0, scalar(0)), std::forward<Sink>(sink));
   }
 
