@@ -206,4 +206,10 @@ struct sink_keeps_ids_alone : std::false_type {};
 template <class Sink>
 struct sink_keeps_ids_alone<Sink, std::enable_if_t<Sink::keeps_ids_alone>> : std::true_type {};
 
+/// True if a sink searches the parts of a mesh one after the other, and joins what it finds.
+template <class Sink, class = void>
+struct sink_joins_parts : std::false_type {};
+template <class Sink>
+struct sink_joins_parts<Sink, std::enable_if_t<Sink::joins_parts>> : std::true_type {};
+
 }  // namespace collide::detail
