@@ -98,8 +98,8 @@ class detector {
     is_built_ = true;
   }
 
-  /// Prepares what depends on the mesh, and what spheres at rest of a radius need, so that a query has nothing left to
-  /// prepare. Many spheres that move may still want a grid of their own on the host.
+  /// Prepares what depends on the mesh, and on a device what spheres at rest of a radius need, so that a query has
+  /// nothing left to prepare. The radius is a hint: results are the same, and on the host the first query chooses.
   ///
   /// \param mesh    triangles in memory of the space, not copied: valid and unchanged until the last query is done
   /// \param radius  the largest usual radius, in the units of the coordinates, not negative. Larger spheres are found
