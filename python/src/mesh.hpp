@@ -119,35 +119,30 @@ class mesh {
 
   /// What is near each point: `what` is nearest, k_nearest, signed_distance or contains. One record, or k of them, or a
   /// flag for each point, in `out` or in memory of its own; and how many points there are.
-  nb::object search(stream_of_call stream, std::string const& what, std::string const& precision,
-                    nb::object const& from, int k, double max_distance, nb::object const& out, bool numpy) {
+  nb::object search(stream_of_call stream, std::string const& what, nb::object const& from, int k, double max_distance,
+                    nb::object const& out, bool numpy) {
     call const now(*this, stream);
     array const kept_points = runtime_.keep(import_array(from, "points", runtime_.at()));
     auto const points = points_of<S>(kept_points, "points");
+    std::size_t const n = points.size();
     if (!(max_distance >= 0)) refuse("max_distance", "is negative or NaN");
     if (k < 1 || k > collide::detail::most_nearest) refuse("k", "is " + std::to_string(k) + ", expected 1 to 32");
     S const farthest = static_cast<S>(max_distance);
+    using collide::exact;
     nb::object found;
     if (what == "contains") {
-      auto* const to = each<std::uint8_t>(found, {points.size()}, out, numpy);
-      look(points, collide::detail::find_inside{to});
-      return nb::make_tuple(found, points.size());
+      look(points, collide::detail::find_inside{each<std::uint8_t>(found, {n}, out, numpy)});
+    } else if (what == "signed_distance") {
+      auto* const to = each<collide::signed_nearest_triangle<S>>(found, {n}, out, numpy);
+      look(points, collide::detail::find_signed_distance<S, exact>{farthest, to});
+    } else if (what == "nearest") {
+      auto* const to = each<collide::nearest_triangle<S>>(found, {n}, out, numpy);
+      look(points, collide::detail::find_nearest<S, exact>{farthest, to});
+    } else {
+      auto* const to = each<collide::nearest_triangle<S>>(found, {n, static_cast<std::size_t>(k)}, out, numpy);
+      look(points, collide::detail::find_k_nearest<S, exact>{farthest, k, to});
     }
-    with_precision(precision, [&](auto const number) {
-      using exactness = std::tuple_element_t<decltype(number)::value, precisions>;
-      if (what == "signed_distance") {
-        auto* const to = each<collide::signed_nearest_triangle<S>>(found, {points.size()}, out, numpy);
-        look(points, collide::detail::find_signed_distance<S, exactness>{farthest, to});
-      } else if (what == "nearest") {
-        auto* const to = each<collide::nearest_triangle<S>>(found, {points.size()}, out, numpy);
-        look(points, collide::detail::find_nearest<S, exactness>{farthest, to});
-      } else {
-        auto* const to =
-            each<collide::nearest_triangle<S>>(found, {points.size(), static_cast<std::size_t>(k)}, out, numpy);
-        look(points, collide::detail::find_k_nearest<S, exactness>{farthest, k, to});
-      }
-    });
-    return nb::make_tuple(found, points.size());
+    return nb::make_tuple(found, n);
   }
 
   nb::object csr(stream_of_call stream, nb::tuple const& asked) {
@@ -239,9 +234,10 @@ class mesh {
     if (radii.is_valid()) runtime_.keep(radii);
     if (q.displacements.is_none()) {
       if constexpr (!needs_motion<Sink>) {
-        with_precision(q.precision, [&](auto const number) {
-          run<decltype(number)::value>(std::get<decltype(number)::value>(at_rest_), spheres, sink);
-        });
+        if (q.precision == "exact") return run<0>(std::get<0>(at_rest_), spheres, sink);
+        if (q.precision == "single") return run<1>(std::get<1>(at_rest_), spheres, sink);
+        if (q.precision == "double") return run<2>(std::get<2>(at_rest_), spheres, sink);
+        refuse("precision", "is '" + q.precision + "', expected 'exact', 'double' or 'single'");
       } else {
         refuse("displacements", "impacts are of spheres that move");
       }
@@ -256,15 +252,6 @@ class mesh {
       if (q.precision != "exact") refuse("precision", "spheres that move are decided exactly: 'exact'");
       run<3>(swept_, collide::with_displacements(spheres, paths), sink);
     }
-  }
-
-  /// Calls f with the number of a precision, as a type.
-  template <class F>
-  static void with_precision(std::string const& precision, F const& f) {
-    if (precision == "exact") return f(std::integral_constant<std::size_t, 0>());
-    if (precision == "single") return f(std::integral_constant<std::size_t, 1>());
-    if (precision == "double") return f(std::integral_constant<std::size_t, 2>());
-    refuse("precision", "is '" + precision + "', expected 'exact', 'double' or 'single'");
   }
 
   /// A sink that puts a search of the library's on the stream.
@@ -335,7 +322,6 @@ class mesh {
   runtime<Space> runtime_;
   array vertices_, triangles_;
   collide::mesh_view<S> view_;
-  using precisions = std::tuple<collide::exact, collide::single_precision, collide::double_precision>;
   std::tuple<at_rest<collide::exact>, at_rest<collide::single_precision>, at_rest<collide::double_precision>> at_rest_{
       at_rest<collide::exact>(runtime_.space()), at_rest<collide::single_precision>(runtime_.space()),
       at_rest<collide::double_precision>(runtime_.space())};

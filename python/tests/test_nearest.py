@@ -84,10 +84,9 @@ def test_outputs_agree(data):
     triangles = random.integers(0, len(vertices), (m, 3)).astype(data.draw(st.sampled_from([numpy.int32, numpy.uint32])))
     points = random.normal(size=(n, 3)).astype(dtype)
     reach = data.draw(st.sampled_from([numpy.inf, 0.5, 0]))
-    precision = data.draw(st.sampled_from(["exact", "double", "single"]))
     mesh = collide.Mesh(vertices, triangles)
     laid = laid_out(points, data.draw(st.sampled_from(LAYOUTS)))
-    options = dict(max_distance=reach, precision=precision)
+    options = dict(max_distance=reach)
     near, many, side = mesh.nearest(laid, **options), mesh.k_nearest(laid, k, **options), mesh.signed_distance(laid, **options)
     assert len(near) == len(many) == len(side) == n and many.triangle.shape == many.distance.shape == (n, k)
     assert near.triangle.dtype == near.feature.dtype == numpy.int32 and near.point.dtype == near.distance.dtype == dtype
@@ -150,7 +149,6 @@ BAD = [
     (lambda m, p: m.signed_distance(p[::-1]), ValueError, "points: has rows in reverse order"),
     (lambda m, p: m.nearest(p, max_distance=-1), ValueError, "max_distance: is negative or NaN"),
     (lambda m, p: m.nearest(p, max_distance=numpy.nan), ValueError, "max_distance: is negative or NaN"),
-    (lambda m, p: m.nearest(p, precision="good"), ValueError, "precision: is 'good'"),
     (lambda m, p: m.k_nearest(p, 33), ValueError, "k: is 33, expected 1 to 32"),
     (lambda m, p: m.k_nearest(p, 0), ValueError, "k: is 0, expected 1 to 32"),
     (lambda m, p: m.nearest(p, out=numpy.zeros((5, 9), numpy.int32)), ValueError, r"out: has shape \(5, 9\), expected \(5, 10\)"),

@@ -265,26 +265,23 @@ class Mesh:
         return kind(library, records, self._is_wide, size, total)
 
     def nearest(
-        self, points: Array, *, max_distance: float = math.inf, precision: Precision = "exact", out: Optional[Array] = None
+        self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None
     ) -> Nearest:
         """The nearest triangle of each point, and the nearest point of it.
 
         points        (n, 3), of the dtype of the vertices and on the same device. One that is not finite has no triangle.
         max_distance  triangles farther away do not count; not negative
-        precision     'exact': which triangle is nearest is as with real arithmetic on the numbers as given, and of
-                      equally near ones it is the one of the smallest number. 'double', 'single': rounded. Distances and
-                      points are rounded in any case.
         out           (n, 10) int32, of float64 (n, 18), packed: where ``records`` go, in place of memory of their own
 
-        Returns `Nearest`. Raises TypeError or ValueError for arguments that do not fit, `Error` if the library or CUDA
-        fails. It does not wait on a GPU. The first call prepares a tree, O(m log m) for m triangles; O(log m) for a
+        Returns `Nearest`. Which triangle is nearest is as with real arithmetic on the numbers as given, and of equally near
+        ones it is the one of the smallest number; distances and points are rounded. Raises TypeError or ValueError for
+        arguments that do not fit, `Error` if the library or CUDA fails. It does not wait on a GPU. The first call prepares a tree, O(m log m) for m triangles; O(log m) for a
         point near the mesh.
         """
-        return self._search("nearest", Nearest, points, 1, max_distance, precision, out)
+        return self._search("nearest", Nearest, points, 1, max_distance, out)
 
     def k_nearest(
-        self, points: Array, k: int, *, max_distance: float = math.inf, precision: Precision = "exact",
-        out: Optional[Array] = None
+        self, points: Array, k: int, *, max_distance: float = math.inf, out: Optional[Array] = None
     ) -> Nearest:
         """The k nearest triangles of each point, by rising distance: ``distance`` has the shape (n, k), ``point`` (n, k,
         3). Where fewer are in reach, the last ones of a row are none.
@@ -294,10 +291,10 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        return self._search("k_nearest", Nearest, points, k, max_distance, precision, out)
+        return self._search("k_nearest", Nearest, points, k, max_distance, out)
 
     def signed_distance(
-        self, points: Array, *, max_distance: float = math.inf, precision: Precision = "exact", out: Optional[Array] = None
+        self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None
     ) -> SignedDistance:
         """How far each point is from the surface of a closed mesh: ``distance`` is negative inside, 0 on the surface. It
         is what `nearest` finds, with the side that `contains` finds; each says what it needs. Farther away than
@@ -307,7 +304,7 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        return self._search("signed_distance", SignedDistance, points, 1, max_distance, precision, out)
+        return self._search("signed_distance", SignedDistance, points, 1, max_distance, out)
 
     def contains(self, points: Array, *, out: Optional[Array] = None) -> Array:
         """(n,) bool: whether each point is inside of a closed mesh or on its surface. Exact, however triangles are
@@ -319,12 +316,12 @@ class Mesh:
 
         Errors as for `nearest`.
         """
-        return self._search("contains", None, points, 1, math.inf, "exact", out)
+        return self._search("contains", None, points, 1, math.inf, out)
 
-    def _search(self, what, kind, points, k, max_distance, precision, out):
+    def _search(self, what, kind, points, k, max_distance, out):
         library = library_of(points, self._device)
         stream = self._stream(library)
-        found, size = self._mesh.search(stream, what, precision, points, k, max_distance, out, library.is_numpy)
+        found, size = self._mesh.search(stream, what, points, k, max_distance, out, library.is_numpy)
         if out is None:
             found = library.array(found, stream)
         if kind is None:
