@@ -276,14 +276,6 @@ class simulation {
     return effects_.template of<E>();
   }
 
-  /// A step that is good for springs between particles: a twentieth of the shortest time in which two collide; infinite
-  /// if no effect limits steps. See `sphere_contact::longest_step`.
-  friend double largest_time_step(simulation const& of) {
-    double most = std::numeric_limits<double>::infinity();
-    ((most = detail::min(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
-    return most;
-  }
-
   /// Counts of a source since `set`; see `birth_counts`. Waits.
   birth_counts births() const {
     static_assert(effects_type::makes, "collide: simulation: births: no effect of the scene makes particles");
@@ -302,6 +294,8 @@ class simulation {
  private:
   friend class detail::checkpoint<Detector, Effect...>;
   friend class detail::part_of_simulation<simulation>;
+  template <class D, class... E>
+  friend double largest_time_step(simulation<D, E...> const&);
 
   static constexpr bool sweeps = effects_type::any_mesh_contact && !detail::is_discrete<narrow_phase, S>;
   static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S>::value || ...);
@@ -509,5 +503,14 @@ class simulation {
   buffer<std::uint32_t> pressing_count_;
   bodies_memory bodies_;
 };
+
+/// A step that is good for springs between particles: a twentieth of the shortest time in which two collide; infinite
+/// if no effect limits steps. O(effects); it does not wait. See `sphere_contact::longest_step`.
+template <class Detector, class... Effect>
+double largest_time_step(simulation<Detector, Effect...> const& of) {
+  double most = std::numeric_limits<double>::infinity();
+  ((most = detail::min(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
+  return most;
+}
 
 }  // namespace collide
