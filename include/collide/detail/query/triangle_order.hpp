@@ -46,7 +46,7 @@ struct sampled_groups {
 
   explicit sampled_groups(mesh_view<S> const& mesh) {
     std::size_t const count = triangle_group<S>::count(mesh.size());
-    std::size_t const samples = min(most, count / 16 + 1);
+    std::size_t const samples = min(most, (count + 15) / 16);
     for (; groups < samples; ++groups) {
       triangle_group<S> group;
       multiversioned([&] { group.load(mesh, count * groups / samples * triangle_group<S>::size); });
