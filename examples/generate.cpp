@@ -1,6 +1,7 @@
 /// \file
 /// Writes a scene as an OBJ and a CSV file.
 
+#include <map>
 #include <optional>
 
 #include "io/number.hpp"
@@ -8,6 +9,7 @@
 #include "io/program.hpp"
 #include "io/progress.hpp"
 #include "io/scenes.hpp"
+#include "io/scenes/order.hpp"
 
 namespace {
 
@@ -20,7 +22,13 @@ struct options {
   std::string offset = "0";
   std::optional<double> radius;
   std::string scalar = "float";
+  std::string triangle_order = "made", vertex_order = "made", sphere_order = "made";
 };
+
+std::map<std::string, io::order> const orders{{"made", io::order::made},
+                                              {"shuffled", io::order::shuffled},
+                                              {"along_x", io::order::along_x},
+                                              {"halves", io::order::halves}};
 
 /// `x` as it is written: a number of the file's scalar type.
 struct rounded {
@@ -94,6 +102,9 @@ void generate(options const& wish) {
   auto const offset = offset_of(wish);
   auto const& kind = *io::find_scene(wish.scene);
   auto scene = kind.make(wish.spheres.value_or(kind.spheres), wish.triangles.value_or(kind.triangles), wish.seed);
+  io::order_vertices(scene, orders.at(wish.vertex_order), wish.seed);
+  io::order_triangles(scene, orders.at(wish.triangle_order), wish.seed);
+  io::order_spheres(scene, orders.at(wish.sphere_order), wish.seed);
   io::shift(scene, offset);
   if (wish.radius) {
     scene.radii.clear();
@@ -157,6 +168,14 @@ int main(int argc, char** argv) {
   app.add_option("--scalar", wish.scalar, "numbers are rounded to float, or to double")
       ->check(CLI::IsMember({"float", "double"}))
       ->type_name("float|double");
+  auto const add_order = [&](char const* option, std::string& order, std::string const& of) {
+    app.add_option(option, order, "the order of the " + of)
+        ->check(CLI::IsMember({"made", "shuffled", "along_x", "halves"}))
+        ->type_name("made|shuffled|along_x|halves");
+  };
+  add_order("--triangle-order", wish.triangle_order, "triangles; halves: first those of even numbers");
+  add_order("--vertex-order", wish.vertex_order, "vertices: triangles stay where they are, with other numbers");
+  add_order("--sphere-order", wish.sphere_order, "spheres");
   app.footer(footer);
   return io::run_program(app, join_offset(argc, argv), [&] {
     constexpr std::size_t most = 4'000'000'000;

@@ -16,14 +16,14 @@ from regroup import regroup
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 
-# The navigation: parts, and their pages in this order. `*` is all pages of a folder. The last part has the rest too.
+# The navigation: parts, and their pages in this order. `*` is all pages of a folder. Pages that are in no part are for
+# developers: they are below "contributing".
 NAV = {
     "Use": ["install", "guide", "python", "choosing", "programs", "gallery"],
     "Tutorials": ["tutorials/*"],
-    "Simulations": ["simulation", "granular", "effects", "ranks"],
-    "Reference": ["api/index", "accuracy", "performance", "glossary"],
-    "Inside": ["design", "extending", "contributing", "changelog"],
-    "Development": ["development/*"],
+    "Simulations": ["simulation", "bodies", "granular", "checkpoints", "effects", "ranks"],
+    "Reference": ["api/index", "accuracy", "verification", "performance", "glossary"],
+    "Project": ["changelog", "contributing"],
 }
 # Pages that stand elsewhere in the repository.
 ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHANGELOG.md", "index": ROOT / "README.md",
@@ -65,6 +65,10 @@ def notebook(path, folder, name):
     return text
 
 
+def toctree(names, options=""):
+    return "\n```{toctree}\n:hidden:\n" + options + "\n" + "".join(f"{n}\n" for n in names) + "```\n"
+
+
 class Site:
     def __init__(self, out):
         self.out, self.pages, self.shown, self.broken = out, pages(), set(), []
@@ -104,7 +108,7 @@ class Site:
         if path in self.shown:
             return name
         self.shown.add(path)
-        head = f"---\norphan: true\n---\n\n# {relative}\n\n"
+        head = f"---\norphan: true\nnosearch: true\n---\n\n# {relative}\n\n"
         if path.is_dir():
             inside = [p for p in sorted(path.iterdir()) if not p.name.startswith((".", "__"))]
             lines = (f"- [{p.name}]({self.link(p.name, path / 'x', name)})\n" for p in inside)
@@ -125,20 +129,21 @@ class Site:
         text = "".join(part if i % 2 else outside_code(part) for i, part in enumerate(parts))
         if name == "index":
             text += self.navigation()
+        elif name == "contributing":
+            text += self.for_developers()
         self.write(name, text)
 
+    def part(self, entries):
+        return [n for e in entries for n in (sorted(self.pages) if e.endswith("*") else [e])
+                if n in self.pages and (n == e or (e.endswith("*") and n.startswith(e[:-1])))]
+
     def navigation(self):
-        text, left = "", set(self.pages) - {"index"} - {n for n in self.pages if n.startswith("api/") and n != "api/index"}
-        for caption, entries in NAV.items():
-            names = [n for e in entries for n in (sorted(self.pages) if e.endswith("*") else [e])
-                     if n in self.pages and (n == e or (e.endswith("*") and n.startswith(e[:-1])))]
-            left -= set(names)
-            if caption == list(NAV)[-1]:
-                names += sorted(left)
-            lines = "".join(f"{n}\n" for n in names)
-            if names:
-                text += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n{lines}```\n"
-        return text
+        parts = {caption: self.part(entries) for caption, entries in NAV.items()}
+        return "".join(toctree(names, f":caption: {caption}\n") for caption, names in parts.items() if names)
+
+    def for_developers(self):
+        users = {"index", *(n for entries in NAV.values() for n in self.part(entries))}
+        return toctree(["design", *sorted(n for n in set(self.pages) - users - {"design"} if not n.startswith("api/"))])
 
     def reference(self):
         """Each public header is in one page of docs/api/."""

@@ -44,11 +44,13 @@ def inherited(member, base, own, name):
 
 
 def regroup_class(path):
-    """What a public class inherits of a public one is shown there. Nothing is shown of bases in detail/ but their members."""
+    """Friends are left out: operators that compare, and what the library itself calls. What a public class inherits of a public one is shown there. Nothing is shown of bases in detail/ but their members."""
     tree = ET.parse(path)
     own = tree.getroot().find("compounddef")
     own_id, own_name = own.get("id"), own.find("compoundname").text.rpartition("::")[2]
     for section in own.findall("sectiondef"):
+        for friend in [m for m in section if m.get("kind") == "friend" or section.get("kind") == "friend"]:
+            section.remove(friend)
         for member in list(section):
             base = member.get("id").rpartition("_1")[0]
             if base != own_id and "detail" in base:

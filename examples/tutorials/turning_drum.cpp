@@ -1,5 +1,5 @@
 /// \file
-/// Tutorial 6: a drum turns and takes grains along; we ask it for the torque that it needs. Lengths in metres, times in
+/// Tutorial 7: a drum turns and takes grains along; we ask it for the torque that it needs. Lengths in metres, times in
 /// seconds, masses in kilograms.
 
 #include <cmath>

@@ -1,18 +1,25 @@
 /// \file
-/// Broad phase: `all_pairs` or `bucket`, whichever the sizes of the scene make the faster one.
+/// Broad phase: `all_pairs`, `bucket` or `bvh`, whichever the scene makes the fastest.
 #pragma once
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
+#include <collide/detail/tree/box_waste.hpp>
 
 namespace collide {
 
 /// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
-/// long as no grid has been made; `bucket` wins for all else. Which it is follows from the numbers of triangles and
-/// spheres alone, by the measured costs of the space (bench/results/README.md): the same calls always go the
-/// same way, and the pairs are the same either way. The grid is made by `build` with a radius, and else by the first
-/// query for which it pays, counting what the queries before it would have saved. Complexity and memory are those of
-/// the chosen one. A simulation names `bucket` or `all_pairs` itself.
+/// long as no index has been made; that follows from the numbers of triangles and spheres alone, by the measured costs
+/// of the space (bench/results/README.md). `bucket` wins for all else, but on the host for some meshes of long thin
+/// triangles, where `bvh` does: if most of the boxes of 128 triangles is empty, of up to 128 spheres it is counted
+/// how many of these triangles they touch, and how many boxes. `build` with a radius assumes
+/// a sphere at each triangle. On a device it is never `bvh`.
+///
+/// The same calls always go the same way, and the pairs are the same either way. The index is made by `build` with a
+/// radius, and else by the first query for which it pays, counting what the queries before it would have saved.
+/// Complexity and memory are those of the chosen one; with a memory budget `bvh` is not chosen. A simulation names its
+/// broad phase itself.
 struct automatic {
   bucket grid;  ///< options of `bucket`, for where that is chosen
 
@@ -22,28 +29,23 @@ struct automatic {
     template <class Space>
     void build(Space&, automatic const&, mesh_view<S> mesh) {
       mesh_ = mesh;
-      has_grid_ = has_bounds_ = false;
-      spent_ = 0;
+      has_grid_ = has_bounds_ = has_tree_ = is_given_ = is_sampled_ = false;
+      spent_ = spent_on_boxes_ = 0;
     }
 
-    /// Makes the grid.
+    /// Makes the grid, or the tree, which serves until the next build.
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
-      make_grid(space, options);
-      grid_.prepare(space, options.grid, radius);
+      detail::middles_as_spheres<S> const spheres{mesh_, radius};
+      way_ = prefers_tree<Space>(options, spheres) ? way::tree : way::grid;
+      is_given_ = true;
+      make_index(space, options, radius);
     }
 
     template <class Space, class Spheres>
     void prepare(Space& space, automatic const& options, Spheres const& spheres) {
-      uses_grid_ = has_grid_ ||
-                   (detail::fits_grid(mesh_.size(), options.grid.most_triangles) && wants_grid<Space>(spheres.size()));
-      if (uses_grid_) {
-        make_grid(space, options);
-        grid_.prepare(space, options.grid, spheres);
-      } else if (!has_bounds_) {
-        bounds_.build(space, all_pairs(), mesh_);
-        has_bounds_ = true;
-      }
+      if (!is_given_) way_ = choose<Space>(options, spheres);
+      make_index(space, options, spheres);
     }
 
     /// Makes room for queries of up to so many spheres.
@@ -55,12 +57,15 @@ struct automatic {
     /// About how many hits the query has, if the grid can tell; else 0.
     template <class NarrowPhase, class Space>
     std::uint64_t expected_hits(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres) {
-      return uses_grid_ ? grid_.template expected_hits<NarrowPhase>(space, spheres) : 0;
+      return way_ == way::grid ? grid_.template expected_hits<NarrowPhase>(space, spheres) : 0;
     }
 
     template <class NarrowPhase, class Space, class Output>
     void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
-      if (uses_grid_) {
+      if constexpr (bvh_tuning<Space>::divides_by_area) {
+        if (way_ == way::tree) return tree_.template query<NarrowPhase>(space, spheres, output);
+      }
+      if (way_ == way::grid) {
         grid_.template query<NarrowPhase>(space, spheres, output);
       } else {
         bounds_.template query<NarrowPhase>(space, spheres, output);
@@ -74,30 +79,85 @@ struct automatic {
     }
 
    private:
+    enum class way { all_pairs, grid, tree };
+
+    template <class Space, class Spheres>
+    way choose(automatic const& options, Spheres const& spheres) {
+      bool const wants_index =
+          has_grid_ || has_tree_ ||
+          (detail::fits_grid(mesh_.size(), options.grid.most_triangles) && wants_grid<Space>(spheres.size()));
+      if (!wants_index) return way::all_pairs;
+      return prefers_tree<Space>(options, spheres) ? way::tree : way::grid;
+    }
+
     template <class Space>
     bool wants_grid(std::size_t spheres) {
       constexpr broad_phase_cost_model c = broad_phase_costs<Space>::value;
       auto const n = static_cast<double>(spheres), triangles = static_cast<double>(mesh_.size());
       double const saved = n * (c.per_near_sphere_ns + c.per_pair_ns * triangles - c.per_sphere_ns);
       // as long as a query does not pay for the grid alone, nobody knows whether there will be another
-      if (c.build_ns + c.per_triangle_ns * triangles < saved + spent_) return true;
-      spent_ += saved > 0 ? saved : 0;
+      return pays(c.build_ns + c.per_triangle_ns * triangles, saved, spent_);
+    }
+
+    /// True if long thin triangles keep a grid so busy that a tree is faster, the build included.
+    template <class Space, class Spheres>
+    bool prefers_tree([[maybe_unused]] automatic const& options, [[maybe_unused]] Spheres const& spheres) {
+      if constexpr (bvh_tuning<Space>::divides_by_area) {
+        if (options.grid.memory_budget != 0 || (is_sampled_ && !is_slender_)) return false;
+        detail::sampled_triangles<S> const sample(mesh_);
+        is_sampled_ = true;
+        is_slender_ = sample.are_slender();
+        if (!is_slender_) return false;
+        slender_cost_model const c = slender_costs;
+        auto const saved_by = [&](std::size_t most) {
+          detail::reached_by_sphere const mean = sample.reached(spheres, most);
+          return static_cast<double>(spheres.size()) *
+                 (c.per_box_ns * mean.boxes - c.per_sphere_ns - c.per_touched_ns * mean.triangles);
+        };
+        double const build = has_tree_ ? 0 : c.per_triangle_ns * static_cast<double>(mesh_.size());
+        double saved = saved_by(8);  // mostly these tell
+        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by(128);
+        return pays(build, saved, spent_on_boxes_);
+      } else {
+        return false;
+      }
+    }
+
+    /// True if what is saved pays for a build, with what queries have lost so far; else this one adds to that.
+    static bool pays(double build, double saved, double& lost) {
+      if (build < saved + lost) return true;
+      lost += saved > 0 ? saved : 0;
       return false;
     }
 
-    template <class Space>
-    void make_grid(Space& space, automatic const& options) {
-      if (has_grid_) return;
-      grid_.build(space, options.grid, mesh_);
-      has_grid_ = true;
+    /// Makes what the way of this query needs, for a radius or for spheres.
+    template <class Space, class RadiusOrSpheres>
+    void make_index(Space& space, automatic const& options, RadiusOrSpheres const& what) {
+      if (way_ == way::tree) {
+        if constexpr (bvh_tuning<Space>::divides_by_area) {
+          if (!has_tree_) tree_.build(space, bvh(), mesh_);
+          has_tree_ = true;
+        }
+      } else if (way_ == way::grid) {
+        if (!has_grid_) grid_.build(space, options.grid, mesh_);
+        has_grid_ = true;
+        grid_.prepare(space, options.grid, what);
+      } else {
+        if (!has_bounds_) bounds_.build(space, all_pairs(), mesh_);
+        has_bounds_ = true;
+      }
     }
 
     mesh_view<S> mesh_;
     bucket::index<S> grid_;
     all_pairs::index<S> bounds_;
-    bool has_grid_ = false, has_bounds_ = false;
-    bool uses_grid_ = false;  ///< for this query
-    double spent_ = 0;        ///< nanoseconds that a grid would have saved so far
+    bvh::index<S> tree_;
+    bool has_grid_ = false, has_bounds_ = false, has_tree_ = false;
+    bool is_given_ = false;                         ///< made for a radius, until the next build
+    bool is_sampled_ = false, is_slender_ = false;  ///< the mesh
+    way way_ = way::all_pairs;                      ///< of this query
+    double spent_ = 0;                              ///< nanoseconds that a grid would have saved so far
+    double spent_on_boxes_ = 0;                     ///< nanoseconds that a tree would have saved so far
   };
 };
 

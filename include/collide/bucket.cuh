@@ -33,8 +33,9 @@ namespace collide {
 /// entries of 8 bytes, at most 16 for each triangle (48 where there are fewer spheres) and one for each two spheres,
 /// and cells of 8 bytes, at most 32 for each triangle; several grids only where radii differ by more than a factor
 /// of 4. The host sorts the spheres instead where there are many (detail/query/sorted_spheres.hpp): that takes
-/// O(triangles + spheres) for a query, 1 scalar per triangle, 4 bytes per cell, and about 12 scalars for each sphere in
-/// a cell with triangles, 19 if it moves; no entries.
+/// O(triangles + spheres) for a query, 1 scalar per triangle, 36 bytes more where triangles that follow each other are
+/// far apart, 4 bytes per cell, and about 12 scalars for each sphere in a cell with triangles, 19 if it moves; no
+/// entries.
 struct bucket {
   /// Width of the cells, in the units of the coordinates; 0 lets the library choose, which is nearly always right. The
   /// study's was 4 R. They are wider where triangles would meet too many of them.
@@ -92,6 +93,7 @@ struct grid_set {
   buffer<grid<S>> memory;
   int count = 0;                 ///< as many as were asked for, or as the budget allows
   grid_request_radii<S> asked;   ///< what they were made for
+  std::size_t spheres = 0;       ///< how many they were made for
   bool is_given = false;         ///< for a radius that was given: they serve until the next build
   bool are_filled = false;       ///< the triangles are entered into their cells
   std::size_t cells = 0;         ///< of all grids
@@ -164,14 +166,15 @@ class bucket::index {
   }
 
   /// Makes a grid for spheres up to `radius`, which serves until the next build, or until many spheres that move want
-  /// another.
+  /// another. Where spheres are sorted into the cells it does nothing: the first query knows better what it wants.
   template <class Space>
   void prepare(Space& space, bucket const& options, S radius) {
+    if (bins_spheres<Space>(options)) return;
     grids_.is_given = true;
     if (measures_.statistics.data() == nullptr || !detail::is_valid_radius(radius) || !detail::is_finite(radius))
       return;
     make_grids(space, options, {{radius}, 1, grids_.asked.whole_boxes}, detail::vertices_as_spheres<S>{mesh_, radius});
-    if (!bins_spheres<Space>(options)) fill_grids(space, options);
+    fill_grids(space, options);
   }
 
   /// Makes the grids that the spheres need, unless they are there, and what else the next query needs of the mesh.
@@ -200,7 +203,7 @@ class bucket::index {
                               [[maybe_unused]] detail::sphere_view_for<NarrowPhase, S> const& spheres) {
     if constexpr (bucket_tuning<Space>::bins_spheres) {
       if (sort_if_planned(space, spheres)) {
-        return bins_.template expected_hits<NarrowPhase>(space, mesh_, spheres.size());
+        return bins_.template expected_hits<NarrowPhase>(space, spheres.size());
       }
     }
     return 0;
@@ -253,7 +256,10 @@ class bucket::index {
     // entering the triangles pays where few spheres come again and again (docs/development/experiments.md)
     bool const pays = queries_ == 0 || spheres.size() >= mesh_.size() / 8;
     bool const has_grids = plan.makes_grids || grids_.count != 0;
-    if (pays && has_grids && can_bin<Space>(options, spheres.size())) plan.order = detail::query_order::triangle_major;
+    if (pays && has_grids && can_bin<Space>(options, spheres.size())) {
+      plan.order = detail::query_order::triangle_major;
+      plan.makes_grids = plan.makes_grids || spheres.size() / 8 > grids_.spheres;
+    }
     return plan;
   }
 
@@ -287,7 +293,13 @@ class bucket::index {
     if (!grids_.is_given && measures_.statistics.data() != nullptr) {
       detail::grid_request_radii<S> wanted;
       if (!spheres.one_radius()) {
-        wanted.count = detail::reaches_of(detail::histogram_of_radii<S>(space, spheres, radii_), wanted.reaches);
+        // of a sorted sphere its own reach decides what is near: grids pay where they reach farther than triangles do
+        S enough = 0;
+        if constexpr (bucket_tuning<Space>::bins_spheres) {
+          enough = 2 * static_cast<S>(measures_.statistics.data()->extents.median());
+        }
+        wanted.count =
+            detail::reaches_of(detail::histogram_of_radii<S>(space, spheres, radii_), enough, wanted.reaches);
       } else if (S const radius = spheres.common_radius();
                  detail::is_valid_radius(radius) && detail::is_finite(radius)) {
         wanted.reaches[0] = grids_.reach_for(radius, 4, radius);
@@ -354,16 +366,20 @@ class bucket::index {
                                       plan.table_bits,
                                       bucket_tuning<Space>::costs};
       std::copy(asked.reaches, asked.reaches + detail::max_grids, request.reaches);
-      space.launch(count,
-                   detail::plan_grid<S, Spheres>{mesh_, boxes, spheres, measures_.statistics.data(), grids, request});
+      detail::plan_grid<S, Spheres> kernel{mesh_, boxes, spheres, measures_.statistics.data(), grids, request};
       if constexpr (bucket_tuning<Space>::bins_spheres) {
-        if (bins_spheres<Space>(options)) bins_.mark(space, mesh_, grids, plan.grids, plan.table_bits);
+        if (bins_spheres<Space>(options)) kernel.mesh = bins_.mesh().mesh, kernel.boxes = nullptr;
+      }
+      space.launch(count, kernel);
+      if constexpr (bucket_tuning<Space>::bins_spheres) {
+        if (bins_spheres<Space>(options)) bins_.mark(space, grids, plan.grids, plan.table_bits);
       }
       grids_.count = plan.grids;
       ref_.grids = grids;  // without lists, until the triangles are entered
       ref_.grid_count = plan.grids;
     }
     grids_.asked = asked;
+    grids_.spheres = spheres.size();
     grids_.is_given = is_given;
   }
 

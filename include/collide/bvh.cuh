@@ -36,6 +36,18 @@ struct tree_policy {
       }
     }
 
+    /// See `detector::refit`.
+    template <class Space>
+    void refit(Space& space, tree_policy const&, mesh_view<S> mesh) {
+      mesh_ = mesh;
+      if constexpr (bvh_tuning<Space>::divides_by_area) {
+        has_tree_ = divided_.refit(space, mesh, nodes_);
+        before_ = divided_.before();
+      } else {
+        packed_.refit(space, mesh, nodes_);
+      }
+    }
+
     tree_ref<S> ref() const { return {mesh_, has_tree_ ? nodes_.data() : nullptr, before_}; }
 
    private:
@@ -54,9 +66,10 @@ struct tree_policy {
 /// grid does not suit: long thin triangles, a few that are very large beside many small ones, spheres of very different
 /// sizes; and to find the nearest triangle. The host divides the triangles by the surface area heuristic, O(n log n),
 /// long thin ones in up to 64 pieces; devices sort them along Hilbert's curve, O(n). Query O(spheres * (log(triangles)
-/// + candidates)). Memory: at most 72 bytes for each triangle on a device, 110 on the host; where triangles are cut 200
-/// for each piece, of which there are at most 4 for each triangle, or 2^18 more than triangles in small meshes. A mesh
-/// has fewer than 2^31 triangles, on the host fewer than 2^29.
+/// + candidates)). `detector::refit` lets the tree of a mesh that deforms stay as it is. Memory: at most 72 bytes for
+/// each triangle on a device, 110 on the host; where triangles are cut 210 for each piece, of which there are at most 4
+/// for each triangle, or 2^18 more than triangles in small meshes; there is no budget for that, as `bucket` has one. A
+/// mesh has fewer than 2^31 triangles, on the host fewer than 2^29.
 struct bvh : per_sphere<detail::tree_policy> {};
 
 }  // namespace collide

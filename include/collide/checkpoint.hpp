@@ -91,11 +91,17 @@ class checkpoint {
     for_each_column(
         [&](auto column) { write_column<decltype(column)>(to, from.template to_host<decltype(column)>()); });
     end(to, from);
-    if constexpr (remembers_pairs)
-      write_contacts(to, "contacts between particles", from.neighbours_.save_contacts(from.space_, from.state_.size));
-    if constexpr (remembers_surfaces)
-      write_contacts(to, "contacts with the mesh", from.surfaces_.save_contacts(from.space_, from.state_.size));
+    saved_contacts<S> pairs, surfaces;
+    if constexpr (remembers_pairs) pairs = contacts_between_particles(from);
+    if constexpr (remembers_surfaces) surfaces = from.surfaces_.save_contacts(from.space_, from.state_.size);
+    write_contacts(to, pairs, surfaces);
     to.finish();
+  }
+
+  /// The memory of contacts between particles. Waits.
+  static saved_contacts<S> contacts_between_particles(simulated const& from) {
+    from.check_contacts();
+    return from.neighbours_.save_contacts(from.space_, from.state_.size);
   }
 
   /// Writes what is before the columns; then each column follows, and `end`.
@@ -122,6 +128,12 @@ class checkpoint {
         to.block(name, copy.data(), copy.size());
       });
     }
+  }
+
+  /// Writes what contacts remember, behind all else.
+  static void write_contacts(checkpoint_writer& to, saved_contacts<S> const& pairs, saved_contacts<S> const& surfaces) {
+    if constexpr (remembers_pairs) write_contacts(to, "contacts between particles", pairs);
+    if constexpr (remembers_surfaces) write_contacts(to, "contacts with the mesh", surfaces);
   }
 
   checkpoint(simulated const& into, std::istream& stream) : checkpoint(into.mesh_.size(), into, stream) {}
@@ -151,6 +163,8 @@ class checkpoint {
   }
 
   numbers_type const& numbers() const { return numbers_; }
+  saved_contacts<S> const& pair_contacts() const { return pair_contacts_; }
+  saved_contacts<S> const& surface_contacts() const { return surface_contacts_; }
   template <class C>
   std::vector<column_element<C, S>> const& column() const {
     return std::get<column_of<C>>(columns_).values;

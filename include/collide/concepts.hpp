@@ -1,5 +1,5 @@
 /// \file
-/// The members of the parts of a detector; docs/extending.md shows each with an example.
+/// The members of the parts of a detector; docs/development/extending.md shows each with an example.
 ///
 /// A sink is a class with a member `template <class Space, class Query> void run(Space& space, Query const& query)`. It
 /// calls `query(output)` as often as it needs to; each call puts one pass over the scene on the space's stream. The
@@ -169,6 +169,11 @@ constexpr bool check_broad_phase() {
 template <class Index, class Space>
 using index_reserve = decltype(std::declval<Index&>().reserve(std::declval<Space&>(), std::size_t{}));
 
+/// Another: moves to a mesh whose triangles have moved.
+template <class Index, class Space, class Options, class S>
+using index_refit = decltype(std::declval<Index&>().refit(std::declval<Space&>(), std::declval<Options const&>(),
+                                                          std::declval<mesh_view<S>>()));
+
 template <class D, class = void>
 struct is_detector : std::false_type {};
 template <class D>
@@ -200,5 +205,11 @@ template <class Sink, class = void>
 struct sink_keeps_ids_alone : std::false_type {};
 template <class Sink>
 struct sink_keeps_ids_alone<Sink, std::enable_if_t<Sink::keeps_ids_alone>> : std::true_type {};
+
+/// True if a sink searches the parts of a mesh one after the other, and joins what it finds.
+template <class Sink, class = void>
+struct sink_joins_parts : std::false_type {};
+template <class Sink>
+struct sink_joins_parts<Sink, std::enable_if_t<Sink::joins_parts>> : std::true_type {};
 
 }  // namespace collide::detail

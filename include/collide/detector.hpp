@@ -98,8 +98,8 @@ class detector {
     is_built_ = true;
   }
 
-  /// Prepares what depends on the mesh, and what spheres at rest of a radius need, so that a query has nothing left to
-  /// prepare. Many spheres that move may still want a grid of their own on the host.
+  /// Prepares what depends on the mesh, and on a device what spheres at rest of a radius need, so that a query has
+  /// nothing left to prepare. The radius is a hint: results are the same, and on the host the first query chooses.
   ///
   /// \param mesh    triangles in memory of the space, not copied: valid and unchanged until the last query is done
   /// \param radius  the largest usual radius, in the units of the coordinates, not negative. Larger spheres are found
@@ -112,6 +112,29 @@ class detector {
     if (!(radius >= 0)) throw error("collide: detector: the radius passed to build is negative or NaN");
     build(mesh);
     if (mesh.size() != 0) detail::prepare_index(index_, space_, options_, radius);
+  }
+
+  /// As `build`, for a mesh that has deformed since: what the broad phase knows of it stays and is moved along, on the
+  /// host in a sixth to an eighth of the time. Queries give the same; the farther triangles have moved from each other
+  /// the longer they take, until the next `build`. For `bvh`.
+  ///
+  /// \param mesh  triangles in memory of the space, not copied, as for `build`: as many as that of the last build, in
+  /// the
+  ///              same order, at the same or another place
+  /// \throws error  if there was no `build`, the last one failed, or it was of another number of triangles
+  /// \throws cuda_error  if a CUDA call fails
+  /// \complexity O(triangles). Allocates nothing, but where the last build was of triangles that were not finite.
+  /// \sync None.
+  void refit(mesh_view<Scalar> mesh) {
+    using index = typename BroadPhase::template index<Scalar>;
+    static_assert(detail::is_valid<detail::index_refit, index, ExecutionSpace, BroadPhase, Scalar>,
+                  "collide: refit is for a broad phase that moves its tree along, bvh: with others build again");
+    if (!is_built_ || mesh.size() != mesh_.size())
+      throw error("collide: detector: refit needs a mesh with as many triangles as the last build had: call build");
+    is_built_ = false;
+    if (mesh.size() != 0) index_.refit(space_, options_, mesh);
+    mesh_ = mesh;
+    is_built_ = true;
   }
 
   /// Makes room for queries ahead: what depends on the numbers of spheres and pairs alone is then not allocated by a

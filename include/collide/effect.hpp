@@ -50,8 +50,10 @@
 /// `mesh_contact::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
 ///
 /// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
-/// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. Members are
-/// called in the order of the scene's list. What a scene does not name costs nothing: neither memory nor instructions.
+/// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. An effect
+/// that asks for the radius where nothing is touched, in `accelerate` or `end_step`, says
+/// `optional_reads = columns<radius>`. Members are called in the order of the scene's list. What a scene does not name
+/// costs nothing: neither memory nor instructions.
 #pragma once
 
 #include <string>
@@ -113,6 +115,12 @@ template <class E, class = void>
 inline constexpr bool asks_forces = false;
 template <class E>
 inline constexpr bool asks_forces<E, std::void_t<decltype(E::asks_forces)>> = E::asks_forces;
+
+/// True for an effect by which space repeats, from its `lower` to its `upper`.
+template <class E, class = void>
+inline constexpr bool repeats_space = false;
+template <class E>
+inline constexpr bool repeats_space<E, std::void_t<decltype(E::repeats_space)>> = E::repeats_space;
 
 /// True for a source of particles.
 template <class E, class = void>

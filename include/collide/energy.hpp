@@ -3,10 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <limits>
 #include <vector>
 
+#include <collide/checkpoint.hpp>
+#include <collide/detail/particles/overlaps_on_host.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/sphere_contact.hpp>
@@ -20,8 +21,9 @@ struct energy_sums {
   double rotational = 0;  ///< of solid spheres that turn; 0 in scenes in which none turns
   double elastic = 0;     ///< of the normal springs of `sphere_contact` and `granular_contact` between spheres
   double potential = 0;   ///< in `gravity`, 0 at the origin
+  double tangential = 0;  ///< of the springs of `mindlin` between spheres, as these last met
 
-  double total() const { return kinetic + rotational + elastic + potential; }  ///< the sum of all
+  double total() const { return kinetic + rotational + elastic + potential + tangential; }  ///< the sum of all
 };
 
 /// The result of `contact_report` on the contacts between spheres.
@@ -62,6 +64,7 @@ struct particles_on_host {
 
   std::vector<S> x, v, w, r;
   std::vector<std::uint8_t> is_there, solid;
+  typename simulation<Detector, Effect...>::effects_type::space_type space;
 
   explicit particles_on_host(simulation<Detector, Effect...> const& of)
       : x{of.template to_host<position>()},
@@ -69,7 +72,8 @@ struct particles_on_host {
         w(x.size()),
         r(of.size(), of.state().common_radius),
         is_there(of.size(), 1),
-        solid(of.size(), 0) {
+        solid(of.size(), 0),
+        space(typename simulation<Detector, Effect...>::effects_type(of.template effect<Effect>()...).space()) {
     if constexpr (contains<list, radius>) r = of.template to_host<radius>();
     if constexpr (contains<list, angular_velocity>) w = of.template to_host<angular_velocity>();
     if constexpr (contains<list, alive>) is_there = of.template to_host<alive>();
@@ -88,39 +92,85 @@ struct particles_on_host {
   };
   made_of solid_of(std::size_t i) const { return {solid[i]}; }
 
-  /// f(i, k, overlap) for each two that overlap: a sweep along x. O(n log n) and the pairs that are near along x.
+  /// The overlap of two spheres; below 0 if they are apart.
+  double overlap_of(std::size_t i, std::size_t k) const {
+    auto const in_space = [&](std::size_t n) { return vec3<S>(x[3 * n], x[3 * n + 1], x[3 * n + 2]); };
+    return radius_of(i) + radius_of(k) - apart(space, in_space(i), in_space(k)).template cast<double>().norm();
+  }
+  /// Two spheres, as springs see them.
+  granular_pair<double> pair_of(std::size_t i, std::size_t k, double overlap) const {
+    granular_pair<double> p{};
+    double const a = radius_of(i), b = radius_of(k);
+    p.overlap = overlap;
+    p.radius = a * b / (a + b);
+    return p;
+  }
+
+  /// f(a, b, overlap) for each two that overlap, `swept_point`s: a sweep along x. O(n log n) and the pairs that are
+  /// near along x.
+  template <class F>
+  void for_each_overlap(F const& f) const {
+    std::vector<S> there = x;
+    for (std::size_t i = 0; i < r.size(); ++i)
+      if (is_there[i] == 0) there[3 * i] = std::numeric_limits<S>::quiet_NaN();
+    detail::for_each_overlap(there, r, space, f);
+  }
+  /// f(i, k, overlap) for each two that overlap.
   template <class F>
   void for_each_contact(F const& f) const {
-    std::vector<std::size_t> order;
-    double largest = 0;
-    for (std::size_t i = 0; i < r.size(); ++i) {
-      largest = std::max(largest, radius_of(i));
-      if (is_there[i] != 0 && std::isfinite(static_cast<double>(x[3 * i]))) order.push_back(i);
-    }
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[3 * a] < x[3 * b]; });
-    for (std::size_t a = 0; a < order.size(); ++a) {
-      std::size_t const i = order[a];
-      vec3<double> const xi = at(x, i);
-      for (std::size_t b = a + 1; b < order.size(); ++b) {
-        std::size_t const k = order[b];
-        vec3<double> const between = at(x, k) - xi;
-        if (between.x() > radius_of(i) + largest) break;
-        double const overlap = radius_of(i) + radius_of(k) - between.norm();
-        if (overlap > 0) f(i, k, overlap);
-      }
-    }
+    for_each_overlap(
+        [&](swept_point const& a, swept_point const& b, double overlap) { f(a.number, b.number, overlap); });
   }
 };
+
+/// The force of the normal spring of two spheres, without damping and cohesion.
+template <class Law, class Particles>
+double elastic_force(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
+  return law.normal.force(all.pair_of(i, k, overlap), law.made_of.between(all.solid_of(i), all.solid_of(k))).elastic;
+}
 
 /// The energy of the normal spring of two spheres: 2/5 force overlap of `hertz`, 1/2 of `linear`.
 template <class Law, class Particles>
 double elastic_energy(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
-  granular_pair<double> p{};
-  double const a = all.radius_of(i), b = all.radius_of(k);
-  p.overlap = overlap;
-  p.radius = a * b / (a + b);
-  auto const& of = law.made_of.between(all.solid_of(i), all.solid_of(k));
-  return (decltype(law.normal)::is_hertzian ? 0.4 : 0.5) * law.normal.force(p, of).elastic * overlap;
+  return (decltype(law.normal)::is_hertzian ? 0.4 : 0.5) * elastic_force(law, all, i, k, overlap) * overlap;
+}
+
+template <class Law, class P, class N, class Memory>
+using spring_energy_call =
+    decltype(std::declval<Law const&>().energy(std::declval<P const&>(), std::declval<contact_material const&>(),
+                                               std::declval<N const&>(), std::declval<Memory const&>()));
+
+/// The energy of the tangential springs between spheres, of which both of a pair know. 0 if the law has none.
+template <class Law, class Detector, class... Effect>
+double tangential_energy(Law const& law, simulation<Detector, Effect...> const& of,
+                         particles_on_host<Detector, Effect...> const& all) {
+  using remembered = typename simulation<Detector, Effect...>::effects_type::remembered;
+  using record_type = contact_record<double, remembered>;
+  using values_type = contact_values<double, remembered>;
+  using memory_type = contact_access<remembered, values_type, double>;
+  double sum = 0;
+  if constexpr (is_valid<spring_energy_call, decltype(law.tangential), granular_pair<double>, normal_force<double>,
+                         memory_type>) {
+    auto const saved = checkpoint<Detector, Effect...>::contacts_between_particles(of);
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < saved.counts.size(); ++i) {
+      for (std::uint32_t n = 0; n < saved.counts[i]; ++n, ++at) {
+        std::size_t const k = saved.others[at];
+        if (k < i) continue;
+        record_type record;
+        for (std::size_t w = 0; w < std::size_t(values_type::width); ++w)
+          record.numbers[w] = static_cast<double>(saved.values[at * std::size_t(values_type::width) + w]);
+        values_type values = record.values();
+        granular_pair<double> const p = all.pair_of(i, k, all.overlap_of(i, k));
+        auto const& m = law.made_of.between(all.solid_of(i), all.solid_of(k));
+        memory_type const memory(values, 0);
+        normal_force<double> force = law.normal.force(p, m);
+        law.cohesion.pull(force, p, m, memory);
+        sum += law.tangential.energy(p, m, force, memory);
+      }
+    }
+  }
+  return sum;
 }
 
 }  // namespace detail
@@ -128,8 +178,8 @@ double elastic_energy(Law const& law, Particles const& all, std::size_t i, std::
 /// The energy of all particles that are alive, those that sleep included; NaN if one is nowhere. With
 /// `semi_implicit_euler` velocities are those of half a step before the positions, and the sum goes up and down with
 /// them. `density` is the mass per volume, 0 that of `granular_contact`'s materials or of `sphere_contact`; `error` if
-/// there is none, or it is not above 0 and finite. What tangential springs, cohesion and contacts with the mesh hold is
-/// not in it. Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
+/// there is none, or it is not above 0 and finite. What springs against rolling, cohesion and contacts with the mesh
+/// hold is not in it. Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
 template <class Detector, class... Effect>
 energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0) {
   using law_type = typename detail::granular_of<Effect...>::type;
@@ -160,6 +210,7 @@ energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0
     sum.elastic += 0.5 * springs.stiffness * overlap * overlap;
     if constexpr (is_granular) sum.elastic += elastic_energy(of.template effect<law_type>(), all, i, k, overlap);
   });
+  if constexpr (is_granular) sum.tangential = tangential_energy(of.template effect<law_type>(), of, all);
   return sum;
 }
 

@@ -1,10 +1,11 @@
 /// \file
-/// For those who write a broad phase or an execution space: names that stay. See docs/extending.md.
+/// For those who write a broad phase or an execution space: names that stay. See docs/development/extending.md.
 #pragma once
 
 #include <cstddef>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include <collide/atomic_add.hpp>
 #include <collide/detail/execution/atomic.hpp>
@@ -167,6 +168,7 @@ class mesh_bounds {
 ///     for_each_candidate(sphere<S>, F f)` that calls f(triangle) for all that the sphere could touch, each once. It
 ///     runs where the space is, so it is `COLLIDE_HD`. For a sphere that moves it is called with a sphere around all of
 ///     its motion, unless it takes a `moving_sphere<S>` too;
+///   - `refit(space, options, mesh)`, if it has one: see `detector::refit`;
 ///   - `static constexpr bool host_only`, if there is one: true if `build` reads the mesh on the host. A detector in a
 ///     space whose memory the host cannot read then does not compile.
 ///
@@ -207,6 +209,14 @@ struct per_sphere {
                     "for_each_candidate(sphere<S>, f)");
       mesh_ = mesh;
       index_.build(space, options.policy, mesh);
+    }
+
+    /// Moves to a mesh that has deformed, if the policy's index can.
+    template <class Space, class Index = policy_index>
+    auto refit(Space& space, per_sphere const& options, mesh_view<S> mesh)
+        -> decltype(std::declval<Index&>().refit(space, options.policy, mesh)) {
+      mesh_ = mesh;
+      index_.refit(space, options.policy, mesh);
     }
 
     template <class Space, class RadiusOrSpheres>

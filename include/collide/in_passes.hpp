@@ -12,9 +12,11 @@
 #include <collide/detail/execution/check_memory.hpp>
 #include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/grid/memory_plan.hpp>
+#include <collide/detail/sinks/search_mesh.hpp>
 #include <collide/detail/streaming/found_query.hpp>
 #include <collide/detail/streaming/pair_list.hpp>
 #include <collide/detector.hpp>
+#include <collide/nearest_triangle.hpp>
 
 namespace collide {
 
@@ -29,6 +31,7 @@ namespace collide {
 /// unless the sink keeps ids alone
 /// (`keeps_ids_alone`, see concepts.hpp), 40 or 80 for each triangle that is hit, up to three times that of the host,
 /// and 8 of the host for each pair of a pass. It is kept between queries. On the host the mesh is read where it lies.
+/// `nearest` has no pairs: it takes, besides its result, as much again and a triangle for each point.
 ///
 /// If one pass is enough the mesh is built once, and a query is one of the detector. Otherwise each query builds
 /// every part again: give it all spheres at once. One object is for one thread at a time.
@@ -87,11 +90,19 @@ class in_passes {
     if (passes_ == 0) throw error("collide: in_passes: query needs a mesh: call build before it");
     if (passes_ == 1) {
       detector_.query(spheres, sink);
+    } else if constexpr (detail::sink_joins_parts<std::remove_reference_t<Sink>>::value) {
+      run(sink, search_query{*this, spheres});
     } else {
       find(spheres, !detail::sink_keeps_ids_alone<std::remove_reference_t<Sink>>::value);
       hand_over(spheres, sink);
     }
     return std::forward<Sink>(sink);
+  }
+
+  /// Queries points, as `detector::query` does.
+  template <class Points, class Sink, class = std::enable_if_t<std::is_same<Points, point_view<scalar>>::value>>
+  Sink query(Points const& points, Sink&& sink) {
+    return query(spheres_type(points, nullptr, 0, scalar(0)), std::forward<Sink>(sink));
   }
 
   /// How many passes a query makes; 0 if there is no mesh.
@@ -138,6 +149,39 @@ class in_passes {
         space().copy_from_host(to + 9 * i, packed_.data(), 9 * some);
       }
       return triangle_soup(static_cast<scalar const*>(to), n);
+    }
+  }
+
+  /// The query of a sink that searches the mesh.
+  struct search_query {
+    using narrow_phase = typename Detector::narrow_phase;
+    using scalar = typename Detector::scalar;
+    in_passes& passes;
+    spheres_type const& spheres;
+
+    template <class F>
+    void search(F const& f) const {
+      passes.search(spheres, f);
+    }
+  };
+
+  /// Searches all parts, and joins what is found.
+  template <class F>
+  void search(spheres_type const& spheres, F const& f) {
+    std::size_t const n = spheres.size();
+    if (n == 0) return;
+    detail::search_part<F> each{f};
+    each.f.to = near_.reserve(space().resource(), n);
+    triangle<scalar>* const corners = near_corners_.reserve(space().resource(), n);
+    for (std::size_t pass = 0; pass < passes_; ++pass) {
+      std::size_t const first = begin_of(pass);
+      mesh_view<scalar> const triangles = part(first, begin_of(pass + 1) - first);
+      detector_.build(triangles);
+      detector_.query(spheres, each);
+      space().for_each(n, typename F::join{{f.max_distance, spheres, f.to, corners},
+                                           {triangles, static_cast<id>(first), nullptr},
+                                           each.f.to,
+                                           pass == 0});
     }
   }
 
@@ -195,6 +239,8 @@ class in_passes {
   std::size_t passes_ = 0;
   pairs hits_;  ///< of a pass
   detail::pair_list found_;
+  buffer<nearest_triangle<scalar>> near_;  ///< in a part
+  buffer<triangle<scalar>> near_corners_;  ///< of the nearest so far
   // where the space is a device:
   buffer<scalar> corners_;             ///< of a pass
   detail::host_array<scalar> packed_;  ///< on their way

@@ -39,8 +39,8 @@ namespace collide {
 ///
 /// `step` allocates nothing and never waits: it puts one kernel on the stream of a CUDA space (more with
 /// `on_pair_contact` or `begin_step`), and can be captured in a CUDA graph, which is good until the next `set` or
-/// `set_mesh`. The same steps give the same bits on every run in the same space. O(particles + candidates) per step. A
-/// simulation is for one thread at a time.
+/// `set_mesh`. On the host it may make room for what contacts remember: see `to_host`. The same steps give the same
+/// bits on every run in the same space. O(particles + candidates) per step. A simulation is for one thread at a time.
 template <class Detector, class... Effect>
 class simulation {
   static_assert(detail::is_detector<Detector>::value,
@@ -220,10 +220,13 @@ class simulation {
     return state_.at(Column{});
   }
 
-  /// A copy of a column. Waits.
+  /// A copy of a column. Waits. Throws `error` on a GPU if contacts have found no room for what they remember: lists of
+  /// more than sixteen neighbours have room for as many as there are particles, or were in the largest `reserve`. The
+  /// host makes more room.
   template <class Column>
   std::vector<detail::column_element<Column, S>> to_host() const {
     check<Column>();
+    check_contacts();
     std::vector<detail::column_element<Column, S>> copy(numbers<Column>());
     space_.copy_to_host(copy.data(), state_.at(Column{}), copy.size());
     return copy;
@@ -273,14 +276,6 @@ class simulation {
     return effects_.template of<E>();
   }
 
-  /// A step that is good for springs between particles: a twentieth of the shortest time in which two collide; infinite
-  /// if no effect limits steps. See `sphere_contact::longest_step`.
-  friend double largest_time_step(simulation const& of) {
-    double most = std::numeric_limits<double>::infinity();
-    ((most = detail::min(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
-    return most;
-  }
-
   /// Counts of a source since `set`; see `birth_counts`. Waits.
   birth_counts births() const {
     static_assert(effects_type::makes, "collide: simulation: births: no effect of the scene makes particles");
@@ -299,6 +294,8 @@ class simulation {
  private:
   friend class detail::checkpoint<Detector, Effect...>;
   friend class detail::part_of_simulation<simulation>;
+  template <class D, class... E>
+  friend double largest_time_step(simulation<D, E...> const&);
 
   static constexpr bool sweeps = effects_type::any_mesh_contact && !detail::is_discrete<narrow_phase, S>;
   static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S>::value || ...);
@@ -351,7 +348,7 @@ class simulation {
     if (state_.size == 0) return;
     if constexpr (effects_type::any_pair_contact) {
       if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
-      neighbours_.renew(space_, with_copies);
+      neighbours_.renew(space_, with_copies, effects_.space());
       settle_births(with_copies, dt);
       neighbours_.interact(space_, with_copies, effects_, dt, is_first);
     } else if constexpr (effects_type::keeps_pair_forces) {
@@ -455,9 +452,34 @@ class simulation {
     if (!(dt > 0) || !detail::is_finite(dt))
       throw error("collide: simulation: the time dt of a step is finite and above 0");
     ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
+    if constexpr (effects_type::repeats) check_sides();
     ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
     if (!effects_type::any_pair_contact && effects_.makes_only_where_free())
       throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
+  }
+
+  /// Nothing goes on in silence without what contacts should remember.
+  void check_contacts() const {
+    if constexpr (effects_type::any_pair_contact && effects_type::remembered::size != 0 &&
+                  !execution_space::host_accessible) {
+      if (is_set_ && neighbours_.has_forgotten(space_))
+        throw error(
+            "collide: simulation: contacts have found no room for what they remember, as many particles have "
+            "more than 16 neighbours: call reserve with several times as many particles before set, and begin "
+            "anew");
+    }
+  }
+
+  /// Two particles must not meet on both sides at once.
+  COLLIDE_COLD void check_sides() const {
+    auto const least = 2 * static_cast<double>(neighbour_lists::width_of(radii_.largest, radii_.smallest));
+    auto const space = effects_.space();
+    for (int k = 0; k < 3; ++k) {
+      if (space.length(k) >= least) continue;
+      throw error("collide: periodic_box: particles meet across its sides, and so each must be at least " +
+                  std::to_string(least) + " long, two diameters of the largest with the skin of its neighbours: make " +
+                  "the box larger, or the particles smaller");
+    }
   }
 
   execution_space space_;
@@ -481,5 +503,14 @@ class simulation {
   buffer<std::uint32_t> pressing_count_;
   bodies_memory bodies_;
 };
+
+/// A step that is good for springs between particles: a twentieth of the shortest time in which two collide; infinite
+/// if no effect limits steps. O(effects); it does not wait. See `sphere_contact::longest_step`.
+template <class Detector, class... Effect>
+double largest_time_step(simulation<Detector, Effect...> const& of) {
+  double most = std::numeric_limits<double>::infinity();
+  ((most = detail::min(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
+  return most;
+}
 
 }  // namespace collide

@@ -1,5 +1,4 @@
-// expect: collide: nearest, k_nearest, contains, signed_distance and winding_number are of a whole mesh: not of one in
-// passes
+// expect: collide: k_nearest, contains, signed_distance and winding_number are of a whole mesh: not of one in passes
 #include <collide/bvh.cuh>
 #include <collide/in_passes.hpp>
 #include <collide/sinks/contains.hpp>

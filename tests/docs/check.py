@@ -4,14 +4,18 @@ code      The first block of C++ in the README is examples/minimal.cpp, and ever
           the file that the comment before it names (`<!-- from: FILE -->`). Pages that teach have no other C++.
 links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
-glossary  Each name in docs/glossary.md is in the code of the file, or folder, that it is said to be in; words are in order.
-members   The tables of members in docs/guide.md have all that the headers have, and nothing else.
-english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; no docstring of include/ begins with
+glossary  Each name in docs/glossary.md and docs/development/words.md is in the code of the file, or folder, that it is said to be in;
+          words are in order. So is each name of the table of headers in docs/install.md; each effect of docs/simulation.md has a header
+          of its own name, or the page says which one it is in.
+members   The tables of members in docs/guide.md have all that the headers have, and nothing else; those of docs/api/results.md
+          are what scripts/members writes.
+english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; the README is short; no docstring of include/ begins with
           a word of FOREIGN_BEGINNINGS, which name nothing.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
 import re
+import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -19,10 +23,12 @@ PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"
 
 
 # Pages in which every piece of C++ is from a program that tests run.
-TAUGHT = [ROOT / "README.md", ROOT / "docs" / "guide.md", ROOT / "docs" / "simulation.md", *(ROOT / "docs" / "tutorials").glob("*.md")]
+TAUGHT = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("guide", "simulation", "bodies", "checkpoints")),
+          *(ROOT / "docs" / "tutorials").glob("*.md")]
 
 # Pages in which no one writes measured numbers by hand.
-MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "simulation", "guide", "ranks", "gallery"))]
+MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "verification", "simulation", "bodies",
+            "checkpoints", "granular", "guide", "ranks", "gallery", "install", "effects", "python", "design"))]
 
 # Words that readers of English do not use for what is meant, and what to write instead. Patterns, in any case.
 FOREIGN = {
@@ -56,6 +62,7 @@ FOREIGN = {
     r"made anew": "rebuilt",
 }
 LONGEST = 120
+README_WORDS = 850
 
 # Docstrings name what follows: "The result of ...", and not "What ... gives".
 FOREIGN_BEGINNINGS = r"(What|Where|Of)\b"
@@ -115,10 +122,44 @@ def examples():
 
 
 def glossary():
-    page = ROOT / "docs" / "glossary.md"
+    for page, least in (("glossary.md", 30), ("development/words.md", 15)):
+        yield from words_of(ROOT / "docs" / page, least)
+    yield from headers_of(ROOT / "docs" / "install.md", 15)
+    yield from effects_of(ROOT / "docs" / "simulation.md", 20)
+
+
+def declares(header, name):
+    return header.is_file() and re.search(rf"\b{name}\b", re.sub(r"//.*", "", header.read_text()))
+
+
+def headers_of(page, least):
+    rows = re.findall(r"^\| (`.+`) \| `([\w/]+\.\w+)` \|$", page.read_text(), flags=re.M)
+    if len(rows) < least:
+        yield f"{page}: only {len(rows)} rows of headers"
+    for names, header in rows:
+        for name in re.findall(r"`(\w+)`", names):
+            if not declares(ROOT / "include" / "collide" / header, name):
+                yield f"{page}: there is no {name} in {header}"
+
+
+def effects_of(page, least):
+    text = page.read_text()
+    table = re.search(r"^\| effect \|.*?\n\n", text, flags=re.M | re.S)[0]
+    effects = [name for cell in re.findall(r"^\| (`.+?) \|", table, flags=re.M) for name in re.findall(r"`(\w+)", cell)]
+    elsewhere = {name: header for names, header in re.findall(r"((?:`\w+`(?:\s+and\s+|,?\s+))+)\((?:in )?`([\w/]+\.hpp)`\)", text)
+                 for name in re.findall(r"`(\w+)`", names)}
+    if len(effects) < least:
+        yield f"{page}: only {len(effects)} effects"
+    for name in effects:
+        header = elsewhere.get(name, name + ".hpp").replace("collide/", "../")
+        if not declares(ROOT / "include" / "collide" / "effects" / header, name):
+            yield f"{page}: the page does not say which header has {name}"
+
+
+def words_of(page, least):
     rows = re.findall(r"^\| (.+?) \| .+ \| `(\w+)` in \[.+\]\((.+)\) \|$", page.read_text(), flags=re.M)
     words = [word.lower() for word, _, _ in rows]
-    if len(rows) < 40:
+    if len(rows) < least:
         yield f"{page}: only {len(rows)} words"
     yield from (f"{page}: {word} is not in alphabetic order" for word, sorted_word in zip(words, sorted(words)) if word != sorted_word)
     for word, name, target in rows:
@@ -145,6 +186,9 @@ def members_of(name):
 
 
 def members():
+    made = subprocess.run([sys.executable, "-B", ROOT / "scripts" / "members", "--check"], stderr=subprocess.PIPE, text=True)
+    if made.returncode != 0:
+        yield made.stderr.strip()
     page = ROOT / "docs" / "guide.md"
     section = page.read_text().split("The members of a sink", 1)[1].split("\n**", 1)[0]
     rows = [[re.findall(r"`([^`]+)`", cell) for cell in line.strip("|").split("|")] for line in section.splitlines() if line.startswith("| `")]
@@ -159,6 +203,9 @@ def members():
 
 def english():
     """Of all pages but the reference, and not of what scripts have written."""
+    length = len((ROOT / "README.md").read_text().split())
+    if length > README_WORDS:
+        yield f"README.md has {length} words: at most {README_WORDS}, so that it is read"
     for page in PAGES:
         if page.parent.name == "api":
             continue

@@ -28,11 +28,11 @@ LAYERS = {
     "effect interface": "bodies.hpp columns.hpp effect.hpp integrators.hpp",
     "particles": "detail/particles/",
     "bodies": "detail/bodies/",
-    "neighbours": "detail/neighbours/",
+    "neighbours": "detail/neighbours/ sphere_pairs.cuh",
     "step": "detail/step/",
     "simulation": "checkpoint.hpp simulation.cuh",
     "effects": "effects/ energy.hpp",
-    "streaming": "detail/streaming/ in_passes.hpp streamed.cuh",
+    "streaming": "detail/streaming/ in_passes.hpp posed.hpp streamed.cuh",
     "ranks": "detail/ranks/ ranks/",
     "files": "io/",
 }

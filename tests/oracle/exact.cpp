@@ -354,4 +354,25 @@ bool inside(std::vector<triangle> const& mesh, point const& p) {
   }
 }
 
+bool touch(sphere const& a, sphere const& b) {
+  for (double const x : {a.centre.x, a.centre.y, a.centre.z, b.centre.x, b.centre.y, b.centre.z})
+    if (!std::isfinite(x)) return false;
+  if (!(a.radius >= 0) || !(b.radius >= 0)) return false;
+  if (std::isinf(a.radius) || std::isinf(b.radius)) return true;
+  double const numbers[] = {a.centre.x, a.centre.y, a.centre.z, a.radius, b.centre.x, b.centre.y, b.centre.z, b.radius};
+  int lowest = 10000;
+  for (double const x : numbers) lowest = std::min(lowest, decoded(x).exponent);
+  auto const integer = [&](int i) -> mp::cpp_int {
+    decoded const d(numbers[i]);
+    return mp::cpp_int(d.mantissa) << (d.mantissa == 0 ? 0 : d.exponent - lowest);
+  };
+  mp::cpp_int squared = 0;
+  for (int k = 0; k < 3; ++k) {
+    mp::cpp_int const between = integer(k) - integer(k + 4);
+    squared += between * between;
+  }
+  mp::cpp_int const reach = integer(3) + integer(7);
+  return squared <= reach * reach;
+}
+
 }  // namespace oracle

@@ -67,6 +67,10 @@ double distance(triangle const& t, point const& p, point const& move);
 /// -1, 0 or 1: is p nearer to s than to t, as near, or farther? Exact.
 int compare_distances(triangle const& s, triangle const& t, point const& p);
 
+/// Do two spheres with their surfaces have a point in common? |a - b|^2 <= (r + s)^2 in integers; what is not finite
+/// as for `hit`.
+bool touch(sphere const& a, sphere const& b);
+
 /// Is p in the closed mesh, or on its surface? Exact: triangles that a ray crosses, in a direction that meets no edge.
 bool inside(std::vector<triangle> const& mesh, point const& p);
 

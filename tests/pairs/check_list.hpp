@@ -155,9 +155,6 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
 
   /// The same on ranks.
   void check_ranks() const {
-    if constexpr (!remembers) check_several_ranks();
-  }
-  void check_several_ranks() const {
     for (int const n : {1, 3}) {
       std::vector<complaints> wrong(static_cast<std::size_t>(n));
       collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
@@ -171,7 +168,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   void check_momentum() const {
     if constexpr (momentum_closes) {
       host const space(1);
-      collide::reaction_sums const sums(space, 1, unit);
+      list_sums const sums(space, unit);
       simulation<host> made(space, parameters<Effect>(trial_, sums, has_sizes)...);
       scene_in<host> scene(space, trial_, falling_grains<S>(trial_, has_sizes));
       scene.begin(made, {0, scene.size()}, 0);
@@ -193,7 +190,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   void check_energy() const {
     if (energy_falls && trial_.how == surface::at_rest) {
       host const space(1);
-      collide::reaction_sums const sums(space, 1, unit);
+      list_sums const sums(space, unit);
       simulation<host> made(space, parameters<Effect>(trial_, sums, has_sizes)...);
       scene_in<host> scene(space, trial_, falling_grains<S>(trial_, has_sizes));
       if constexpr (energy_stays) {
@@ -220,7 +217,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   void check_rest() const {
     if constexpr (comes_to_rest) {
       host const space(1);
-      collide::reaction_sums sums(space, 1, unit);
+      list_sums sums(space, unit);
       simulation<host> made(space, parameters<Effect>(trial_, sums, has_sizes)...);
       scene_in<host> scene(space, trial_, lying_grains<S>(has_sizes));
       scene.stand_still();
@@ -250,7 +247,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   /// The same when it is saved in the middle, and another simulation goes on.
   void check_checkpoint() const {
     host const space(1);
-    collide::reaction_sums const sums(space, 1, unit), others(space, 1, unit);
+    list_sums const sums(space, unit), others(space, unit);
     simulation<host> first(space, parameters<Effect>(trial_, sums, has_sizes)...),
         second(space, parameters<Effect>(trial_, others, has_sizes)...);
     scene_in<host> scene(space, trial_, falling_grains<S>(trial_, has_sizes));
@@ -269,24 +266,23 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   }
 
  private:
-  static constexpr bool remembers = (collide::detail::remembers_of<Effect>::type::size + ... + 0) != 0;
   static constexpr double unit = 1e-14;  ///< of impulse
 
   using vec = Eigen::Vector3d;
   template <class... E>
   static constexpr bool has = (is_among<E, Effect...> || ...);
   static constexpr bool momentum_closes =
-      has<collide::reaction> &&
-      !has<collide::drag, collide::wind<>, collide::box_walls, collide::emit, collide::absorb, collide::absorbing_box>;
+      has<collide::reaction> && !has<collide::drag, collide::wind<>, stirs, collide::box_walls, collide::emit,
+                                     collide::absorb, collide::absorbing_box>;
   static constexpr bool energy_falls =
-      !has<collide::wind<>, collide::emit> && !(has<collide::gravity> && has<collide::periodic_box>);
+      !has<collide::wind<>, stirs, collide::emit> && !(has<collide::gravity> && has<collide::periodic_box>);
   static constexpr bool energy_stays = energy_falls && has<collide::velocity_verlet> && has<collide::gravity> &&
                                        has<collide::sphere_contact> && has<collide::bounce> &&
                                        !has<collide::friction, collide::adhesion, collide::drag, collide::sleep,
                                             collide::absorb, collide::absorbing_box, collide::box_walls>;
 
   static constexpr bool comes_to_rest =
-      has<collide::gravity> && has<collide::bounce> && !has<collide::wind<>, collide::emit, collide::absorb>;
+      has<collide::gravity> && has<collide::bounce> && !has<collide::wind<>, stirs, collide::emit, collide::absorb>;
 
   /// That of all grains, with the second half kick of those that the mesh held, which is part of the next step.
   static vec momentum_of(simulation<host> const& made, double dt) {
@@ -326,7 +322,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   /// Returns what bodies have got, in scenes with `reaction`.
   template <class Space>
   std::vector<collide::body_impulse> play_on(Space space, values& middle, values& end) const {
-    collide::reaction_sums const sums(space, 1, unit);
+    list_sums const sums(space, unit);
     simulation<Space> made(space, parameters<Effect>(trial_, sums, has_sizes)...);
     scene_in<Space> scene(space, trial_, falling_grains<S>(trial_, has_sizes));
     scene.begin(made, {0, scene.size()}, capacity(scene.size()));
@@ -340,7 +336,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   void check_rank(collide::thread_ranks const& ranks, complaints& wrong) const {
     wrong.in(std::to_string(ranks.size()) + " ranks");
     host const space(1);
-    collide::reaction_sums const sums(space, 1, unit);
+    list_sums const sums(space, unit);
     collide::distributed<simulation<host>, collide::thread_ranks> parts(ranks, space,
                                                                         parameters<Effect>(trial_, sums, has_sizes)...);
     scene_in<host> scene(space, trial_, falling_grains<S>(trial_, has_sizes));

@@ -79,6 +79,22 @@ using list_35 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, double
     collide::sphere_contact, collide::sleep, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::mesh_forces, collide::lost, collide::absorbing_box, collide::lost_motion, collide::emit, collide::reaction, collide::moving_bodies<collide::driven>>;
 using list_36 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
     collide::wind<>, collide::polydisperse, collide::gravity, collide::drag, collide::box_walls, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::pair_forces, collide::velocity_verlet, collide::periodic_box, collide::moving_bodies<>>;
+using list_37 = scene_list<mesh_kind::driven, collide::karabassi<>, float,
+    collide::mass_flow<>, collide::drag, tests::pairs::warms, collide::absorb, tests::pairs::stirs, collide::emit, collide::bounce, collide::velocity_verlet, collide::adhesion, collide::moving_bodies<collide::driven>>;
+using list_38 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
+    collide::polydisperse, collide::spin, collide::lost, collide::gravity, tests::pairs::stirs, collide::mass_flow<>, collide::sphere_contact, collide::absorbing_box, collide::sleep, collide::moving_bodies<>>;
+using list_39 = scene_list<mesh_kind::moving, collide::karabassi_swept<>, float,
+    collide::box_walls, collide::granular_contact<collide::linear, collide::dashpot>, collide::periodic_box, collide::mass_flow<>, collide::lost_motion, collide::mesh_forces, collide::wind<>, collide::reaction, tests::pairs::stirs, collide::moving_bodies<>>;
+using list_40 = scene_list<mesh_kind::moving, collide::karabassi_swept<>, double,
+    collide::mass_flow<>, collide::emit, collide::absorb, collide::velocity_verlet, tests::pairs::stirs, collide::pair_forces, collide::bounce, collide::adhesion, collide::friction, collide::moving_bodies<>>;
+using list_41 = scene_list<mesh_kind::driven, collide::karabassi<>, double,
+    collide::wind<>, collide::lost_motion, collide::periodic_box, collide::box_walls, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::mesh_forces, collide::mass_flow<>, collide::reaction, tests::pairs::stirs, collide::moving_bodies<collide::driven>>;
+using list_42 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, float,
+    collide::polydisperse, collide::sphere_contact, collide::spin, collide::absorbing_box, collide::sleep, collide::lost, tests::pairs::stirs, collide::gravity, collide::mass_flow<>, collide::moving_bodies<collide::driven>>;
+using list_43 = scene_list<mesh_kind::moving, collide::karabassi_swept<>, double,
+    collide::bounce, collide::drag, tests::pairs::stirs, tests::pairs::warms, collide::mass_flow<>, collide::friction, collide::moving_bodies<>>;
+using list_44 = scene_list<mesh_kind::driven, collide::karabassi<>, float,
+    collide::mass_flow<>, tests::pairs::stirs, collide::pair_forces, collide::bounce, collide::friction, collide::moving_bodies<collide::driven>>;
 // clang-format on
 
 }  // namespace tests::pairs

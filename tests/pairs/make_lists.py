@@ -25,8 +25,10 @@ EFFECTS = """velocity_verlet gravity drag wind bounce friction spin adhesion sph
     absorbing_box box_walls periodic_box polydisperse lost_motion lost mesh_forces pair_forces reaction warms""".split()
 # Makes the mesh solid by forces. It joins lists of its own, so that those without it stay as they are.
 BY_FORCES = "granular_contact"
+# These join lists after all others, for the same reason.
+LATER = ["external_forces", "mass_flow"]
 ACTS_BY_IMPULSES = ["bounce", "friction", "spin", "adhesion", "absorb", "warms"]  # these do not compile beside it
-TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms"}
+TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms", "external_forces": "tests::pairs::stirs", "mass_flow": "mass_flow<>"}
 LAWS = {  # of contact by forces: one that remembers nothing, and one that does
     "float": "granular_contact<collide::linear, collide::dashpot>",
     "double": "granular_contact<collide::hertz, collide::mindlin, collide::epsd>",
@@ -71,7 +73,6 @@ REFUSED = {
     "reaction_before_bounce": "reaction before bounce, friction, spin or adhesion",
     "granular_contact_with_bounce": "granular_contact beside bounce, friction, spin, adhesion or absorb, which act where "
     "particles hit the mesh",
-    "contact_memory_on_ranks": "granular_contact whose laws remember something, on ranks",
     "two_integrators": "two integrators",
     "two_sources": "two sources",
     "two_kinds_of_bodies": "two kinds of bodies",
@@ -97,6 +98,15 @@ def all_meetings():
 
 def meetings_by_forces():
     return {meeting(BY_FORCES, e, c) for e in EFFECTS if e not in ACTS_BY_IMPULSES for c in CIRCUMSTANCES}
+
+
+def meetings_of_later():
+    everything = [*EFFECTS, BY_FORCES, *LATER]
+    return {meeting(a, b, c) for a in LATER for b in everything if a != b for c in CIRCUMSTANCES}
+
+
+def every_meeting():
+    return all_meetings() | meetings_by_forces() | meetings_of_later()
 
 
 def covered(one):
@@ -129,7 +139,9 @@ def try_list(left, in_order, file, rng):
     add(first)
     add(second)
     while len(chosen) < LONGEST:
-        others = [e for e in EFFECTS if BY_FORCES not in chosen or e not in ACTS_BY_IMPULSES]
+        later = LATER if set(LATER) & set(chosen) else []
+        by_forces = [BY_FORCES] if later and not set(ACTS_BY_IMPULSES) & set(chosen) else []
+        others = [e for e in [*EFFECTS, *by_forces, *later] if BY_FORCES not in chosen or e not in ACTS_BY_IMPULSES]
         rest = [e for e in others if e not in chosen and len(chosen) + 1 + len(needed(e, chosen, rng)) <= LONGEST]
         gains = {e: gain(e) for e in rest}
         most = max(gains.values(), default=0)
@@ -158,12 +170,13 @@ def make_lists():
 
     for names, (kind, narrow, scalar) in FIRST:
         add(List(names.split(), kind, narrow, scalar))
-    while left or not any(BY_FORCES in one.effects for one in lists):
-        left = left or meetings_by_forces()
-        ordered = sorted(left)
-        files = sorted(TESTS, key=lambda t: sum((one.narrow, one.scalar) == t for one in lists))[:2]
-        tries = [try_list(left, ordered, rng.choice(files), rng) for _ in range(TRIES)]
-        add(max(tries, key=lambda t: t[0])[1])
+    for stage in ({}, meetings_by_forces(), meetings_of_later()):
+        left.update(stage)
+        while left:
+            ordered = sorted(left)
+            files = sorted(TESTS, key=lambda t: sum((one.narrow, one.scalar) == t for one in lists))[:2]
+            tries = [try_list(left, ordered, rng.choice(files), rng) for _ in range(TRIES)]
+            add(max(tries, key=lambda t: t[0])[1])
     return lists
 
 
@@ -209,7 +222,7 @@ def problems(lists):
     for path, text in files(lists).items():
         if not path.exists() or path.read_text() != text:
             yield f"{path.name} is not what make_lists.py makes: run it"
-    left = all_meetings() | meetings_by_forces()
+    left = every_meeting()
     for number, one in enumerate(lists, 1):
         effects = one.effects
         left -= covered(one)
@@ -226,7 +239,7 @@ def problems(lists):
 
 
 def print_pairs(lists, name):
-    for a, b in itertools.combinations(sorted([*EFFECTS, BY_FORCES]), 2):
+    for a, b in itertools.combinations(sorted([*EFFECTS, BY_FORCES, *LATER]), 2):
         if name is None or name in (a, b):
             of = {n: one for n, one in enumerate(lists, 1) if {a, b} <= set(one.effects)}
             where = [f"{c} {'/'.join(str(n) for n in of if c in circumstances(of[n]))}" for c in CIRCUMSTANCES]
@@ -243,7 +256,7 @@ def main(arguments):
         print_pairs(lists, arguments[1] if len(arguments) > 1 else None)
     elif arguments == ["--check"]:
         found = list(problems(lists))
-        print("\n".join(found) or f"{len(lists)} lists cover {len(all_meetings() | meetings_by_forces())} meetings of two effects")
+        print("\n".join(found) or f"{len(lists)} lists cover {len(every_meeting())} meetings of two effects")
         return bool(found)
     elif arguments:
         print(__doc__)

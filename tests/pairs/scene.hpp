@@ -10,8 +10,10 @@
 #include <type_traits>
 #include <vector>
 
+#include <collide/effects/external_forces.hpp>
 #include <collide/effects/lost.hpp>
 #include <collide/effects/lost_motion.hpp>
+#include <collide/effects/mass_flow.hpp>
 #include <collide/energy.hpp>
 
 #include "ranks/simulations.hpp"
@@ -75,12 +77,34 @@ struct warms {
   }
 };
 
+/// Forces that change from step to step, as those of a fluid that turns about the middle of the tray.
+struct stirs : collide::external_forces<> {
+  using reads = collide::columns<position>;
+  using writes = collide::columns<collide::velocity, collide::external_force>;
+
+  double size = 0.2;  ///< of a force, at a distance of 1 for a difference of speed of 1
+
+  template <class Particle, class S>
+  COLLIDE_HD void end_step(Particle& p, S) const {
+    auto const& x = p[position{}];
+    p[collide::external_force{}] = (collide::vec3<S>(-x[1], x[0], S(0.2)) - p[collide::velocity{}]) * S(size);
+  }
+};
+
 constexpr double density = 1000, grain_radius = 0.05, small_grain_radius = 0.04, half_width = 0.25;
 constexpr std::size_t steps = 400, newborns = 12;
 
+/// What effects of a list sum up: what bodies get, of which there is one, and what flows down between the layers.
+struct list_sums : collide::reaction_sums {
+  collide::flow_sums flow;
+
+  template <class Space>
+  list_sums(Space const& space, double unit) : reaction_sums(space, 1, unit), flow(space, unit) {}
+};
+
 /// The parameters of an effect.
 template <class E>
-E parameters(trial const& t, collide::reaction_sums const& sums, bool several_sizes) {
+E parameters(trial const& t, list_sums const& sums, bool several_sizes) {
   if constexpr (std::is_same<E, collide::bounce>::value) {
     return {t.restitution()};
   } else if constexpr (std::is_same<E, collide::drag>::value) {
@@ -117,6 +141,10 @@ E parameters(trial const& t, collide::reaction_sums const& sums, bool several_si
     return {{-0.3, -0.3, -0.5}, {0.3, 0.3, 1}};
   } else if constexpr (std::is_same<E, collide::mesh_forces>::value || std::is_same<E, collide::pair_forces>::value) {
     return {density};
+  } else if constexpr (std::is_same<E, stirs>::value) {
+    return {{{density}}, t.draw(0.2, 0.01, 2, 29)};
+  } else if constexpr (std::is_same<E, collide::mass_flow<>>::value) {
+    return sums.flow.through({0, 0, 0.1}, {0, 0, -1}, collide::one_density{density});
   } else if constexpr (std::is_same<E, collide::reaction>::value) {
     return sums.effect(density);
   } else {

@@ -22,3 +22,7 @@ TEST_CASE("pairs: list 31") { check_list<list_31>(); }
 static bool const list_31_is_hunted = hunt<list_31>("31");
 TEST_CASE("pairs: list 36") { check_list<list_36>(); }
 static bool const list_36_is_hunted = hunt<list_36>("36");
+TEST_CASE("pairs: list 38") { check_list<list_38>(); }
+static bool const list_38_is_hunted = hunt<list_38>("38");
+TEST_CASE("pairs: list 41") { check_list<list_41>(); }
+static bool const list_41_is_hunted = hunt<list_41>("41");

@@ -22,3 +22,7 @@ TEST_CASE("pairs: list 28") { check_list<list_28>(); }
 static bool const list_28_is_hunted = hunt<list_28>("28");
 TEST_CASE("pairs: list 33") { check_list<list_33>(); }
 static bool const list_33_is_hunted = hunt<list_33>("33");
+TEST_CASE("pairs: list 37") { check_list<list_37>(); }
+static bool const list_37_is_hunted = hunt<list_37>("37");
+TEST_CASE("pairs: list 44") { check_list<list_44>(); }
+static bool const list_44_is_hunted = hunt<list_44>("44");

@@ -22,3 +22,7 @@ TEST_CASE("pairs: list 32") { check_list<list_32>(); }
 static bool const list_32_is_hunted = hunt<list_32>("32");
 TEST_CASE("pairs: list 35") { check_list<list_35>(); }
 static bool const list_35_is_hunted = hunt<list_35>("35");
+TEST_CASE("pairs: list 40") { check_list<list_40>(); }
+static bool const list_40_is_hunted = hunt<list_40>("40");
+TEST_CASE("pairs: list 43") { check_list<list_43>(); }
+static bool const list_43_is_hunted = hunt<list_43>("43");

@@ -22,3 +22,7 @@ TEST_CASE("pairs: list 30") { check_list<list_30>(); }
 static bool const list_30_is_hunted = hunt<list_30>("30");
 TEST_CASE("pairs: list 34") { check_list<list_34>(); }
 static bool const list_34_is_hunted = hunt<list_34>("34");
+TEST_CASE("pairs: list 39") { check_list<list_39>(); }
+static bool const list_39_is_hunted = hunt<list_39>("39");
+TEST_CASE("pairs: list 42") { check_list<list_42>(); }
+static bool const list_42_is_hunted = hunt<list_42>("42");

@@ -74,6 +74,30 @@ class Study(GenerateTest):
         self.assertEqual(len(self.spheres("moved.csv")), 3)
         self.assertIn("--radius 7", self.succeed("generate", "--spheres", 1, "--radius", 7))
 
+    def test_orders(self):
+        def generated(*options):
+            self.generate("--scene", "radii", "--spheres", 300, "--triangles", 600, *options)
+            vertices, triangles = self.mesh()
+            return vertices, [tuple(vertices[i] for i in t) for t in triangles], self.spheres(header="x,y,z,r")
+
+        vertices, triangles, spheres = generated()
+        for order in ("shuffled", "along_x", "halves"):
+            ordered = generated("--triangle-order", order)
+            self.assertEqual((ordered[0], sorted(ordered[1]), ordered[2]), (vertices, sorted(triangles), spheres))
+            self.assertNotEqual(ordered[1], triangles)
+            self.assertEqual(generated("--triangle-order", order), ordered)
+            if order == "along_x":
+                self.assertEqual([t[0][0] for t in ordered[1]], sorted(t[0][0] for t in triangles))
+            if order == "halves":
+                self.assertEqual(ordered[1], triangles[::2] + triangles[1::2])
+            ordered = generated("--vertex-order", order)
+            self.assertEqual((sorted(ordered[0]), ordered[1:]), (sorted(vertices), (triangles, spheres)))
+            self.assertNotEqual(ordered[0], vertices)
+            ordered = generated("--sphere-order", order)
+            self.assertEqual((ordered[:2], sorted(ordered[2])), ((vertices, triangles), sorted(spheres)))
+            self.assertNotEqual(ordered[2], spheres)
+        self.fail_with(2, ["--triangle-order", "shuffled"], "generate", "--triangle-order", "sorted")
+
     def test_scalar(self):
         self.generate("--spheres", 50, "--scalar", "double")
         doubles = self.spheres()

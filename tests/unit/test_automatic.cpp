@@ -11,3 +11,38 @@ TEST_CASE("automatic: the pairs are the same, the grid is there only where it pa
 TEST_CASE("automatic: many queries of few spheres make a grid in the end, on the host") {
   tests::check_many_queries(collide::host(1));
 }
+
+namespace {
+
+/// A detector of a scene of bars finds what all pairs do; returns the width of the cells that it uses.
+template <class Space>
+double cells_for_bars(Space space, io::bars_in layout, double slender, double reach, bool radius_is_known) {
+  io::scene const s = io::bars_scene(layout, slender, reach, 4000, 3000, 0);
+  std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()), centres(s.centres.begin(), s.centres.end());
+  auto const mesh = collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count());
+  auto const radius = static_cast<float>(s.radius);
+  auto const balls = collide::spheres_xyz(centres.data(), s.sphere_count(), radius);
+  collide::detector<collide::all_pairs> plain;
+  plain.build(mesh);
+  collide::detector<collide::automatic, collide::karabassi<>, Space> chooses(space);
+  radius_is_known ? chooses.build(mesh, radius) : chooses.build(mesh);
+  collide::pairs found(collide::order::canonical), expected(collide::order::canonical);
+  chooses.query(balls, found);
+  plain.query(balls, expected);
+  CHECK(expected.size() > 1000);
+  CHECK(found.to_host() == expected.to_host());
+  return chooses.cell_width();
+}
+
+}  // namespace
+
+TEST_CASE("automatic: a tree for long thin triangles that few spheres touch, a grid where many do, on the host") {
+  for (bool const known : {false, true}) {
+    CHECK(cells_for_bars(collide::host(1), io::bars_in::cage, 100, 1, known) > 0);
+    // thousands of spheres want an index: if it is no grid it is the tree
+    CHECK(cells_for_bars(collide::host(1), io::bars_in::shaft, 100, 0.1, known) == 0);
+  }
+  CHECK(cells_for_bars(collide::host(1), io::bars_in::tube, 1000, 0.5, false) == 0);
+  // where trees are those of devices there is none
+  CHECK(cells_for_bars(tests::lockstep<64, true>(1), io::bars_in::tube, 1000, 0.5, false) > 0);
+}

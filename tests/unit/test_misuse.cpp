@@ -159,12 +159,12 @@ TEST_CASE("misuse: steps that are too long for springs, radii of 0, and values t
   springs.set(spheres());  // pi sqrt(m / (2 k)) / 5, of a sphere of mass m
   double const r = double(spheres().radius(0)),
                fifth = 0.2 * std::sqrt(r * r * r * 2 / 3 * std::pow(3.14159265358979, 3) / 1000);
-  CHECK(largest_time_step(springs) == doctest::Approx(fifth / 4));
+  CHECK(collide::largest_time_step(springs) == doctest::Approx(fifth / 4));
   CHECK(said_by([&] { springs.step(float(0.99 * fifth)); }) == "");
   CHECK(said_by([&] { springs.step(float(1.01 * fifth)); }).find("is longer than an effect allows") !=
         std::string::npos);
   simulation<detector<bucket>, gravity> free;
-  CHECK(largest_time_step(free) == infinity);
+  CHECK(collide::largest_time_step(free) == infinity);
 
   float const centre[] = {0, 0, 0};
   simulation<detector<bucket>, bounce> touches;

@@ -2,10 +2,10 @@
 /// Effects: a box that particles do not leave.
 #pragma once
 
-#include <cmath>
 #include <limits>
 
 #include <collide/detail/numeric/float_bits.hpp>
+#include <collide/detail/numeric/repeating_box.hpp>
 #include <collide/effect.hpp>
 
 namespace collide {
@@ -15,6 +15,7 @@ namespace collide {
 /// on the way back. So an elastic bounce loses or gains no energy, with either integrator. One that would be over
 /// within six steps is none: the particle rests at the wall. An infinite bound is no wall.
 struct box_walls {
+  using optional_reads = columns<radius>;
   using writes = columns<position, velocity>;
   static constexpr bool asks_forces = true;
 
@@ -65,9 +66,14 @@ struct box_walls {
 };
 
 /// A box that repeats: a particle that leaves on one side comes in on the other, however far it is outside. At the end
-/// of a step each coordinate is in [lower, upper). Neither the mesh nor contacts between spheres repeat.
+/// of a step each coordinate is in [lower, upper). Particles meet across its sides as they do inside, with forces,
+/// memory and sleep; each side must be 4.42 of the largest radii long then, or 4 and a little where others are much
+/// smaller: `step` throws `error` if it is not. The mesh does not repeat.
+///
+/// If two meet across a side, effects see the one at the upper side where it is a length farther down: both the same.
 struct periodic_box {
   using writes = columns<position>;
+  static constexpr bool repeats_space = true;  ///< particles meet across its sides
 
   double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; finite, each below that of `upper`
   double upper[3] = {1, 1, 1};  ///< the corner of the largest coordinates, finite
@@ -84,21 +90,8 @@ struct periodic_box {
     for (int k = 0; k < 3; ++k) {
       S& x = p[position{}][k];
       S const low = S(lower[k]), high = S(upper[k]);
-      if (x < low || x >= high) x = wrapped(x, low, high);
+      if (x < low || x >= high) x = detail::wrapped(x, low, high);
     }
-  }
-
- private:
-  template <class S>
-  COLLIDE_HD static S wrapped(S x, S low, S high) {
-    double const from = static_cast<double>(low), length = static_cast<double>(high) - from;
-    double at = static_cast<double>(x), lengths;
-    do {  // more than once if the number of lengths is not exact
-      lengths = std::floor(detail::div_rn(at - from, length));
-      at = detail::fma_rn(-lengths, length, at);
-    } while (lengths > 0x1p51 || lengths < -0x1p51);
-    S const inside = detail::max(static_cast<S>(at), low);
-    return inside >= high ? detail::next_below(high) : inside;
   }
 };
 

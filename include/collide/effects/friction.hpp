@@ -6,9 +6,9 @@
 
 namespace collide {
 
-/// Coulomb friction at the mesh: what slides is slowed down by at most `kinetic_coefficient` times what `bounce` repels
-/// it with; what could be stopped by at most `static_coefficient` times that, is stopped. With `spin` in the scene it
-/// acts where the particle touches, and makes it roll: a solid sphere, of moment of inertia 2/5 m R^2.
+/// Coulomb friction at the mesh: the impulse that stops sliding, if that is at most `static_coefficient` times the
+/// normal impulse of `bounce`; otherwise `kinetic_coefficient` times it. With `spin` in the scene it acts where the
+/// particle touches, and makes it roll: a solid sphere, of moment of inertia 2/5 m R^2.
 struct friction {
   using writes = columns<position, velocity>;
   using optional_writes = columns<angular_velocity>;

@@ -49,9 +49,8 @@ struct sphere_contact {
   /// part when they no longer push each other: T. Schwager and T. Poeschel, "Coefficient of restitution and
   /// linear-dashpot model revisited", Granular Matter 9, 2007, of whose formula sin(a) is the damping ratio.
   ///
-  /// \param restitution  speed after over speed before, 0 to 1; below 0.14 the model has not enough damping, and 0.14
-  /// is
-  ///                     what comes out
+  /// \param restitution  speed after over speed before, 0 to 1; below 0.14 the model has not enough
+  ///                     damping, and 0.14 is what comes out
   /// \param duration     of a collision, above 0; a step should be a twentieth of it at most
   /// \param radius       of the spheres, above 0
   /// \param density      mass per volume, above 0

@@ -2,8 +2,6 @@
 /// The particles of a simulation, and where they touch each other, as VTK's XML files (.vtp) for ParaView.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -13,6 +11,7 @@
 
 #include <collide/columns.hpp>
 #include <collide/effects/sphere_contact.hpp>
+#include <collide/energy.hpp>
 #include <collide/io/vtk.hpp>
 #include <collide/simulation.cuh>
 
@@ -63,24 +62,16 @@ struct vtk_particles {
   }
 };
 
-/// Calls f(i, k, distance) for each pair of overlapping spheres, i < k in the order of x. O(n log n), and the pairs
-/// that are near each other along x.
-template <class S, class F>
-void for_each_overlap(std::vector<S> const& xyz, std::vector<S> const& radii, F const& f) {
-  std::vector<std::uint32_t> order(radii.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return xyz[3 * std::size_t{a}] < xyz[3 * std::size_t{b}]; });
-  S const most = radii.empty() ? S(0) : *std::max_element(radii.begin(), radii.end());
-  for (std::size_t a = 0; a < order.size(); ++a) {
-    std::size_t const i = order[a];
-    for (std::size_t b = a + 1; b < order.size(); ++b) {
-      std::size_t const k = order[b];
-      if (!(xyz[3 * k] - xyz[3 * i] < radii[i] + most)) break;
-      S const x = xyz[3 * k] - xyz[3 * i], y = xyz[3 * k + 1] - xyz[3 * i + 1], z = xyz[3 * k + 2] - xyz[3 * i + 2];
-      S const distance = std::sqrt(x * x + y * y + z * z);
-      if (distance < radii[i] + radii[k]) f(i, k, distance);
-    }
+/// The force of the normal spring of two spheres that overlap, if the scene has such: of `granular_contact`, else of
+/// `sphere_contact`.
+template <class Detector, class... Effect>
+double spring_force(simulation<Detector, Effect...> const& of, particles_on_host<Detector, Effect...> const& all,
+                    std::size_t i, std::size_t k, double overlap) {
+  using law_type = typename granular_of<Effect...>::type;
+  if constexpr (is_granular<law_type>) {
+    return elastic_force(of.template effect<law_type>(), all, i, k, overlap);
+  } else {
+    return of.template effect<sphere_contact>().stiffness * overlap;
   }
 }
 
@@ -99,27 +90,27 @@ void write_vtk_particles(std::string const& path, simulation<Detector, Effect...
 }
 
 /// Writes a line between the centres of each two particles that overlap, as the file `path` (.vtp), with their
-/// `overlap`, and `force`, that of the spring of `sphere_contact`, where the scene has it: the force chains. ParaView's
-/// filter Tube, its radius by force, shows them. Waits; O(n log n), and pairs near each other along x. Throws `error`
-/// if the file cannot be written.
+/// `overlap`, and `force`, that of the normal spring of `granular_contact` or `sphere_contact`, where the scene has it:
+/// the force chains. Across a side of `periodic_box` it goes out of the box. ParaView's filter Tube, its radius by
+/// force, shows them. Waits; O(n log n), and pairs near each other along x. Throws `error` if the file cannot be
+/// written.
 template <class Detector, class... Effect>
 void write_vtk_contacts(std::string const& path, simulation<Detector, Effect...> const& of) {
   using S = typename Detector::scalar;
-  using list = typename simulation<Detector, Effect...>::columns;
-  detail::vtk_particles<S> const shown(of, of.state().common_radius, list{});
-  std::vector<S> points, overlaps;
-  detail::for_each_overlap(shown.points, shown.radii, [&](std::size_t i, std::size_t k, S distance) {
-    for (std::size_t const p : {i, k}) {
-      points.insert(points.end(), &shown.points[3 * p], &shown.points[3 * p] + 3);
-      overlaps.push_back(shown.radii[i] + shown.radii[k] - distance);
+  constexpr bool has_springs = ((std::is_same<Effect, sphere_contact>::value || detail::is_granular<Effect>) || ...);
+  detail::particles_on_host<Detector, Effect...> const all(of);
+  std::vector<S> points, overlaps, forces;
+  all.for_each_overlap([&](auto const& a, auto const& b, double overlap) {
+    S force = 0;
+    if constexpr (has_springs) force = static_cast<S>(detail::spring_force(of, all, a.number, b.number, overlap));
+    for (auto const* p : {&a, &b}) {
+      for (int k = 0; k < 3; ++k) points.push_back(static_cast<S>(p->centre[k]));
+      overlaps.push_back(static_cast<S>(overlap));
+      forces.push_back(force);
     }
   });
   std::vector<vtk_array> known{{"overlap", overlaps}};
-  if constexpr ((std::is_same<Effect, sphere_contact>::value || ...)) {
-    std::vector<S> forces = overlaps;
-    for (S& f : forces) f *= static_cast<S>(of.template effect<sphere_contact>().stiffness);
-    known.emplace_back("force", forces);
-  }
+  if (has_springs) known.emplace_back("force", forces);
   detail::write_file(path, [&](std::ofstream& out) {
     write_vtp(out, points, known, vtk_cells::lines, detail::first_numbers(overlaps.size()));
   });

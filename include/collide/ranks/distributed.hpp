@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <type_traits>
 #include <utility>
 
+#include <collide/detail/ranks/remote_nearest.hpp>
 #include <collide/detail/ranks/remote_pairs.hpp>
 #include <collide/detail/streaming/found_query.hpp>
 #include <collide/detector.hpp>
@@ -93,7 +95,8 @@ class distributed {
   /// other ranks that may have triangles for them, by way of memory of the host (pinned, if the space is a device), and
   /// pairs come back; with them the triangles, unless the sink says that it keeps ids alone (`keeps_ids_alone`, see
   /// concepts.hpp). Takes 8 bytes of the space for each such sphere and rank, as much again to sort them, and 8 for
-  /// each pair. Throws `error` if there was no `build`, or the last one failed.
+  /// each pair. `nearest` takes an entry and a triangle for each sphere instead of pairs. Throws `error` if there was
+  /// no `build`, or the last one failed.
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {
     if constexpr (!alone) {
@@ -101,12 +104,22 @@ class distributed {
         throw error("collide: distributed: the last build has failed on some rank: build before you query");
       }
       if (is_divided_ && ranks_.size() > 1) {
-        query_divided(spheres, sink);
+        if constexpr (detail::sink_joins_parts<std::remove_reference_t<Sink>>::value) {
+          search_divided(spheres, sink);
+        } else {
+          query_divided(spheres, sink);
+        }
         return std::forward<Sink>(sink);
       }
     }
     together(ranks_, [&] { detector_.query(spheres, sink); });
     return std::forward<Sink>(sink);
+  }
+
+  /// Queries points, as `detector::query` does.
+  template <class Points, class Sink, class = std::enable_if_t<std::is_same<Points, point_view<scalar>>::value>>
+  Sink query(Points const& points, Sink&& sink) {
+    return query(spheres_type(points, nullptr, 0, scalar(0)), std::forward<Sink>(sink));
   }
 
   /// The sum of `sink.total()` over all ranks: how many pairs collide.
@@ -126,6 +139,29 @@ class distributed {
   execution_space& space() { return detector_.space(); }
 
  private:
+  /// The query of a sink that searches the mesh: the search is for all ranks together, once the sink has its memory.
+  struct search_query {
+    using narrow_phase = typename Detector::narrow_phase;
+    using scalar = typename Detector::scalar;
+    distributed& self;
+    spheres_type const& spheres;
+    std::function<void()>& next;
+
+    template <class F>
+    void search(F const& f) const {
+      next = [this_ = &self, &on = spheres, f] {
+        this_->nearest_.search(this_->ranks_, this_->detector_, this_->mesh_, on, this_->chunk_, f);
+      };
+    }
+  };
+
+  template <class Sink>
+  void search_divided(spheres_type const& spheres, Sink& sink) {
+    std::function<void()> search;
+    together(ranks_, [&] { sink.run(detector_.space(), search_query{*this, spheres, search}); });
+    search();
+  }
+
   template <class Sink>
   void query_divided(spheres_type const& spheres, Sink& sink) {
     using narrow_phase = typename Detector::narrow_phase;
@@ -148,6 +184,7 @@ class distributed {
   bool is_built_ = false;  ///< where the mesh is divided: on all ranks
   detail::divided_mesh<scalar> mesh_;
   detail::remote_pairs<Detector> remote_;
+  detail::remote_nearest<Detector> nearest_;
   detail::found_pairs<scalar> found_;
 };
 

@@ -58,10 +58,20 @@ class distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>
       deliver(ranks, mine, all);
       on_first([&] { format::template write_column<type>(*to, all.items); });
     });
-    on_first([&] {
-      format::end(*to, from.local());
-      to->finish();
-    });
+    on_first([&] { format::end(*to, from.local()); });
+    using part_type = typename simulated::part_type;
+    if constexpr (part_type::remembers_pairs || part_type::remembers_surfaces) {
+      typename part_type::contact_rows rows;
+      together(ranks, [&] { rows = from.part_.contacts(); });
+      auto const to_first = [](id) { return 0; };
+      deliver_rows(ranks, rows.pairs, to_first);
+      deliver_rows(ranks, rows.surfaces, to_first);
+      on_first([&] {
+        std::vector<id> const every = first_ids(from.size());
+        format::write_contacts(*to, contacts_of(rows.pairs, every), contacts_of(rows.surfaces, every));
+      });
+    }
+    on_first([&] { to->finish(); });
   }
 
   /// All ranks read the same.

@@ -26,9 +26,60 @@ struct nearest_precision<karabassi<Precision>> {
   using type = std::conditional_t<std::is_same<Precision, baseline>::value, single_precision, Precision>;
 };
 
+/// Some triangles of a mesh, and their numbers in the whole: a plain value.
+template <class S>
+struct numbered_part {
+  mesh_view<S> triangles;
+  id first;           ///< the number of the first; they follow each other,
+  id const* numbers;  ///< unless they are here
+
+  COLLIDE_HD id number_of(id t) const { return numbers != nullptr ? numbers[t] : first + t; }
+};
+
+/// The nearest triangles of spheres in the parts of a mesh that have been searched so far: a plain value. What is kept
+/// is alike in any order of the parts.
+template <class S, class Precision>
+struct nearest_so_far {
+  S max_distance;
+  sphere_view<S> spheres;
+  nearest_triangle<S>* to;
+  triangle<S>* corners;  ///< of those
+
+  /// Looks at the nearest triangle of sphere `i` in a part.
+  COLLIDE_HD void consider(std::size_t i, triangle<S> const& shape, id number) const {
+    sphere<S> const s = spheres[i];
+    nearest_search<S, Precision> best(s.centre, max_distance + s.radius);
+    if (to[i].triangle != no_id) best.consider(corners[i], to[i].triangle);
+    best.consider(shape, number);
+    nearest_triangle<S> const result = best.result();
+    if (result.triangle != number) return;
+    to[i] = result;
+    if (s.radius != 0) to[i].distance -= s.radius;
+    corners[i] = shape;
+  }
+};
+
+/// Kernel functor of `for_each` over spheres: takes what was found in a part.
+template <class S, class Precision>
+struct join_nearest {
+  nearest_so_far<S, Precision> so_far;
+  numbered_part<S> part;
+  nearest_triangle<S> const* found;  ///< in the part
+  bool is_first;                     ///< nothing was found before
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    id const t = found[i].triangle;
+    if (is_first) so_far.to[i] = no_nearest_triangle<S>();
+    if (t != no_id) so_far.consider(i, part.triangles[t], part.number_of(t));
+  }
+};
+
 /// Search functor of `nearest` for each sphere.
 template <class S, class Precision>
 struct find_nearest {
+  using join = join_nearest<S, Precision>;      ///< joins what it finds in the parts of a mesh,
+  using so_far = nearest_so_far<S, Precision>;  ///< to this
+
   S max_distance;
   nearest_triangle<S>* to;
 
@@ -62,6 +113,9 @@ class nearest : public detail::array_in_space<nearest_triangle<S>> {
   using base::data_, base::size_, base::download_;
 
  public:
+  /// A mesh may be in parts: see `in_passes` and `distributed`.
+  static constexpr bool joins_parts = true;
+
   /// Triangles count up to `max_distance` from a point, or the surface of a sphere, inclusive. Throws `error` if it is
   /// negative or NaN.
   explicit nearest(std::common_type_t<S> max_distance = std::numeric_limits<S>::infinity())

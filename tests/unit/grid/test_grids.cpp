@@ -119,6 +119,8 @@ TEST_CASE_TEMPLATE("grids: the width that is asked for is the width in use", S, 
       auto const detector = c.make({width, 0, 2});
       CHECK(detector->cell_width() == 0);  // nothing was built
       detector->build(made.mesh, mesh_form::indexed, S(1));
+      detector->place(made.spheres, sphere_form::xyz_one);
+      detector->count();
       if (c.broad != "bucket")
         CHECK(detector->cell_width() == 0);
       else if (width != 0)

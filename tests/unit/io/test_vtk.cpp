@@ -1,5 +1,6 @@
 /// Files for ParaView, read back by a reader that knows VTK's format and nothing of the library's.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -121,27 +122,57 @@ TEST_CASE("vtk: particles that are there, and a line between each two that overl
   CHECK(attribute(file.text(), "NumberOfLines") == "1");
 }
 
-/// All pairs, one by one.
-TEST_CASE("vtk: the overlaps of many spheres are those of all pairs") {
+TEST_CASE("vtk: lines of granular contact have the force of Hertz' spring") {
+  using law = collide::granular_contact<collide::hertz>;
+  using simulation = collide::simulation<collide::detector<collide::bucket, collide::karabassi<>, host, double>, law>;
+  double const xyz[] = {0, 0, 0, 1.99, 0, 0}, young = 1e6, poisson = 0.25;
+  simulation of(host(1), law{collide::one_material({young, poisson, 1000})});
+  of.set(collide::spheres_xyz(xyz, 2, 1.0));
+  temporary file;
+  collide::write_vtk_contacts(file.path, of);
+  double const effective = young / (2 * (1 - poisson * poisson));
+  auto const forces = numbers(file.text(), "force");
+  REQUIRE(forces.size() == 2);
+  for (double const f : forces)
+    CHECK(f == doctest::Approx(4.0 / 3 * effective * std::sqrt(0.5) * std::pow(0.01, 1.5)).epsilon(1e-12));
+}
+
+/// All pairs, one by one, with all images of one.
+template <class Space>
+void check_overlaps(Space const& space, int images, double largest) {
   std::vector<float> xyz, radii;
   std::uint32_t seed = 1;
   auto const next = [&] { return static_cast<float>((seed = seed * 1664525u + 1013904223u) >> 8) / 16777216; };
   for (int i = 0; i < 300; ++i) {
     for (int k = 0; k < 3; ++k) xyz.push_back(next());
-    radii.push_back(i % 50 == 0 ? 0.3f : 0.05f * next());
+    radii.push_back(i % 50 == 0 ? static_cast<float>(largest) : 0.05f * next());
   }
   std::vector<std::pair<std::size_t, std::size_t>> found, all;
-  collide::detail::for_each_overlap(
-      xyz, radii, [&](std::size_t i, std::size_t k, float) { found.emplace_back(std::min(i, k), std::max(i, k)); });
+  collide::detail::for_each_overlap(xyz, radii, space, [&](auto const& a, auto const& b, double overlap) {
+    found.emplace_back(std::min(a.number, b.number), std::max(a.number, b.number));
+    CHECK(overlap == doctest::Approx(double(radii[a.number]) + double(radii[b.number]) - (a.centre - b.centre).norm()));
+  });
   for (std::size_t i = 0; i < radii.size(); ++i) {
     for (std::size_t k = i + 1; k < radii.size(); ++k) {
-      float const x = xyz[3 * k] - xyz[3 * i], y = xyz[3 * k + 1] - xyz[3 * i + 1], z = xyz[3 * k + 2] - xyz[3 * i + 2];
-      if (std::sqrt(x * x + y * y + z * z) < radii[i] + radii[k]) all.emplace_back(i, k);
+      for (int image = 0; image < images; ++image) {
+        double square = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          int const lengths = (c == 0 ? image % 3 : c == 1 ? image / 3 % 3 : image / 9) - (images > 1 ? 1 : 0);
+          double const d = double(xyz[3 * k + c]) - double(xyz[3 * i + c]) + lengths;
+          square += d * d;
+        }
+        if (std::sqrt(square) < double(radii[i]) + double(radii[k])) all.emplace_back(i, k);
+      }
     }
   }
   std::sort(found.begin(), found.end());
   CHECK(all.size() > 100);
   CHECK(found == all);
+}
+
+TEST_CASE("vtk: the overlaps of many spheres are those of all pairs") {
+  check_overlaps(collide::detail::open_space(), 1, 0.3);
+  check_overlaps(collide::detail::repeating_box<float>{{0, 0, 0}, {1, 1, 1}}, 27, 0.24);
 }
 
 TEST_CASE("vtk: a file that cannot be written is named") {

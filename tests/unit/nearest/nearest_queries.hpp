@@ -13,6 +13,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bvh.cuh>
+#include <collide/in_passes.hpp>
 #include <collide/sinks/k_nearest.hpp>
 #include <collide/sinks/nearest.hpp>
 #include <collide/upload.hpp>
@@ -110,6 +111,34 @@ void check_nearest(Space const& space) {
       CHECK(n.distance == std::numeric_limits<S>::infinity());
       CHECK(std::isnan(n.point[2]));
     }
+  }
+}
+
+/// A mesh in passes has the nearest triangles that it has in one.
+template <class Broad, class Precision, class Space, class S>
+void check_nearest_in_passes(Space const& space) {
+  for (auto const& made : hard_meshes<S>(50)) {
+    CAPTURE(made.name);
+    CAPTURE(Space::name());
+    auto const points = points_around(made, 50);
+    auto const there =
+        collide::upload(space, collide::spheres_xyz(points.data(), points.size() / 3, made.extent() / 64));
+    auto const mesh = collide::upload(space, made.view());
+    using detector_type = collide::detector<Broad, collide::karabassi<Precision>, Space, S>;
+    detector_type whole(space);
+    whole.build(mesh.view());
+    collide::in_passes<detector_type> passes(space);
+    for (S const most : {std::numeric_limits<S>::infinity(), made.extent() / 16}) {
+      for (std::size_t const part : {std::size_t{1} + made.size() / 5, std::size_t{1} + made.size() / 2, made.size()}) {
+        passes.build(made.view(), part);
+        collide::nearest<S> found(most);
+        CHECK(same_bytes(passes.query(there.view(), found).to_host(),
+                         whole.query(there.view(), collide::nearest<S>(most)).to_host()));
+        passes.query(there.view().centres(), found);  // into the same memory
+        CHECK(same_bytes(found.to_host(), whole.query(there.view().centres(), collide::nearest<S>(most)).to_host()));
+      }
+    }
+    CHECK(passes.query(collide::sphere_view<S>(), collide::nearest<S>()).to_host().empty());
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <collide/detail/nearest/ray_parity.hpp>
 
+#include "compared.hpp"
 #include "nearest/point_cases.hpp"
 
 namespace {
@@ -64,6 +65,8 @@ TEST_CASE_TEMPLATE("parity: points at the surface of closed meshes, at the origi
     tally all;
     for (int i = 0; i < 1000; ++i) all.add<S>(mesh, exact, tests::point_at_surface(mesh, roll, i % 3));
     CHECK(all.wrong == 0);
+    tests::compared<S>("wrong sides of closed meshes", "crossings of a ray, in rational numbers", all.wrong, 0,
+                       std::size_t(all.cases));
     CHECK(all.on_surface > all.cases / 20);
     CHECK(all.inside > all.cases / 4);
     CHECK(all.inside < all.cases);

@@ -76,7 +76,7 @@ TEST_CASE_TEMPLATE("fixed triangle: near contact, ties, all exponents and the ha
              mixed = tests::mixed_exponents<S>(73, n);
   CHECK(check_held<S>(near) > (single ? 98 : 60) * 9 * n / 100);
   CHECK(check_held<S>(ties) > (single ? 99 : 85) * 3 * n / 100);
-  CHECK(check_held<S>(mixed) < 3 * n / 4);
+  CHECK(check_held<S>(mixed) < 4 * n / 5);  // of 3 n: most go on to what holds everything
   auto const hard = hard_cases(single ? "/static_f32.csv" : "/static_f64.csv", single);
   CHECK(check_held<S>(hard) > hard.size() / 2);
 }

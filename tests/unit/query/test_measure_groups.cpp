@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <io/scenes/order.hpp>
+#include <io/scenes/torus.hpp>
 
 #include <collide/bucket.cuh>
 
@@ -55,7 +57,7 @@ TEST_CASE_TEMPLATE("groups of triangles: the host finds the statistics of a mesh
     compute_mesh_statistics<S> const reference{mesh, &expected, nullptr};
     device.launch(grid_size<tests::lockstep<8, false>>(n, reference), reference);
     std::vector<triangle_aabb<S>> groups(triangle_group<S>::count(n));
-    measure_groups<S> const kernel{mesh, &seen, groups.data()};
+    measure_groups<S> const kernel{{mesh, nullptr}, &seen, groups.data()};
     collide::host(2).launch(kernel.blocks(), kernel);
     for (int k = 0; k < 3; ++k) {
       CHECK(seen.lower_of(k) == expected.lower_of(k));
@@ -129,17 +131,22 @@ TEST_CASE("groups of triangles: none is left out that has spheres in its cells, 
 }
 
 TEST_CASE("groups of triangles: the host keeps no box of each triangle, unless few spheres come again") {
-  constexpr std::size_t n = 50000;
-  auto const numbers = triangles<float>(n);
-  std::vector<float> const centres(3 * 100, 1.0f);
-  counted_memory memory;
-  collide::detector<collide::bucket> detector(collide::host(1, &memory));
-  detector.build(collide::triangle_soup(numbers.data(), n));
-  CHECK(memory.taken < 6 * n);
-  auto const spheres = collide::spheres_xyz(centres.data(), centres.size() / 3, 1.0f);
-  auto const first = detector.query(spheres, collide::pairs(collide::order::canonical)).to_host();
-  CHECK(memory.taken < 12 * n);
-  for (int again = 0; again < 2; ++again) {
-    CHECK((detector.query(spheres, collide::pairs(collide::order::canonical)).to_host() == first));
+  std::size_t bytes_of_order = 0;
+  for (io::order const wanted : {io::order::made, io::order::shuffled}) {
+    auto scene = io::study_scene(0, 50000);
+    io::order_triangles(scene, wanted, 1);
+    std::size_t const n = scene.triangle_count();
+    std::vector<float> const vertices(scene.vertices.begin(), scene.vertices.end()), centres(3 * 100, 1.0f);
+    counted_memory memory;
+    collide::detector<collide::bucket> detector(collide::host(1, &memory));
+    detector.build(collide::indexed_mesh(vertices.data(), vertices.size() / 3, scene.corners.data(), n));
+    CHECK(memory.taken < bytes_of_order + 6 * n);
+    auto const spheres = collide::spheres_xyz(centres.data(), centres.size() / 3, 1.0f);
+    auto const first = detector.query(spheres, collide::pairs(collide::order::canonical)).to_host();
+    CHECK(memory.taken < bytes_of_order + 12 * n);
+    for (int again = 0; again < 2; ++again) {
+      CHECK((detector.query(spheres, collide::pairs(collide::order::canonical)).to_host() == first));
+    }
+    bytes_of_order = 36 * n;  // of the next one, for groups along a curve
   }
 }

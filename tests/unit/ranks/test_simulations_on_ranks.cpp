@@ -1,48 +1,26 @@
 /// Simulations on ranks that are threads, on the host.
-#include <collide/ranks/thread_ranks.hpp>
-
 #include "counted_ranks.hpp"
-#include "ranks/simulations.hpp"
-
-namespace {
-
-/// So many ranks make of the scene what one simulation does, however its particles are divided.
-template <class Scene>
-void check_on_threads(Scene const& scene) {
-  tests::expected_values<Scene> const expected(scene);
-  for (int const n : {1, 2, 3, 4, 7}) {
-    for (tests::split const how : {tests::split::evenly, tests::split::last, tests::split::odd}) {
-      if (n == 1 && how != tests::split::evenly) continue;
-      std::vector<tests::complaints> wrong(static_cast<std::size_t>(n));
-      collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
-        tests::check_scene(ranks, scene, expected, how, wrong[static_cast<std::size_t>(ranks.rank())]);
-      });
-      for (auto const& w : wrong) CHECK(w.text() == "");
-    }
-  }
-}
-
-}  // namespace
+#include "ranks/on_threads.hpp"
 
 TEST_CASE("simulations on ranks: grains, floats and doubles") {
-  check_on_threads(tests::grains_in_a_box<float>());
-  check_on_threads(tests::grains_in_a_box<double>());
+  tests::check_on_threads(tests::grains_in_a_box<float>());
+  tests::check_on_threads(tests::grains_in_a_box<double>());
 }
 
 TEST_CASE("simulations on ranks: grains that are swept") {
-  check_on_threads(tests::grains_in_a_box<float, collide::karabassi_swept<>>());
+  tests::check_on_threads(tests::grains_in_a_box<float, collide::karabassi_swept<>>());
 }
 
 TEST_CASE("simulations on ranks: many sizes, and ways across several bricks") {
-  check_on_threads(tests::sizes_that_repeat());
-  check_on_threads(tests::leaps());
+  tests::check_on_threads(tests::sizes_that_repeat());
+  tests::check_on_threads(tests::leaps());
 }
 
 TEST_CASE("simulations on ranks: sources and sinks, what sticks and what sleeps") {
-  check_on_threads(tests::snow());
-  check_on_threads(tests::snow(true));
-  check_on_threads(tests::crowded_source());
-  check_on_threads(tests::dust());
+  tests::check_on_threads(tests::snow());
+  tests::check_on_threads(tests::snow(true));
+  tests::check_on_threads(tests::crowded_source());
+  tests::check_on_threads(tests::dust());
 }
 
 TEST_CASE("simulations on ranks: sources where nobody is, and with fewer places than ranks") {
@@ -54,7 +32,7 @@ TEST_CASE("simulations on ranks: sources where nobody is, and with fewer places 
     scene.w.velocities.clear();
     scene.capacity = 5;
     scene.steps = 60;
-    check_on_threads(scene);
+    tests::check_on_threads(scene);
   };
   empty(snow);
   empty(careful);
@@ -62,16 +40,16 @@ TEST_CASE("simulations on ranks: sources where nobody is, and with fewer places 
 }
 
 TEST_CASE("simulations on ranks: bodies that move") {
-  check_on_threads(tests::piston_and_belt<collide::karabassi<>>());
-  check_on_threads(tests::piston_and_belt<collide::karabassi_swept<>>());
+  tests::check_on_threads(tests::piston_and_belt<collide::karabassi<>>());
+  tests::check_on_threads(tests::piston_and_belt<collide::karabassi_swept<>>());
 }
 
 TEST_CASE("simulations on ranks: particles that are nowhere, at one point, endless, or none") {
-  check_on_threads(tests::awkward_places());
-  check_on_threads(tests::one_point(80));
-  check_on_threads(tests::one_point(1));
-  check_on_threads(tests::one_point(0));
-  check_on_threads(tests::endless_radius());
+  tests::check_on_threads(tests::awkward_places());
+  tests::check_on_threads(tests::one_point(80));
+  tests::check_on_threads(tests::one_point(1));
+  tests::check_on_threads(tests::one_point(0));
+  tests::check_on_threads(tests::endless_radius());
 }
 
 TEST_CASE("simulations on ranks: short memory, what makes no sense, and what bodies get") {

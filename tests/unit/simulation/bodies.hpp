@@ -100,6 +100,7 @@ void check_belt(Space const& space) {
   auto const steps = static_cast<std::size_t>(v / (mu * 9.81) / dt);
   made.simulation.steps(steps - 1, S(dt));
   CHECK(double(made.velocities()[0]) < v - 0.5 * mu * 9.81 * dt);
+  compared<S>("dropped on a belt", "v = mu g t", double(made.velocities()[0]), mu * 9.81 * double(steps - 1) * dt);
   made.simulation.steps(2, S(dt));
   CHECK(double(made.velocities()[0]) == doctest::Approx(v).epsilon(1e-6));
   S const x = made.positions()[0];
@@ -125,6 +126,7 @@ void check_piston(Space const& space) {
     running_bodies<simulation> made(space, w, one_body(w, moving), bounce{e}, moving_bodies<>{});
     made.simulation.steps(1000, S(1e-3));
     CHECK(double(made.velocities()[0]) == doctest::Approx((1 + e) * u).epsilon(1e-5));
+    compared<S>("hit by a piston", "v = (1 + e) u", double(made.velocities()[0]), (1 + e) * u);
     CHECK(double(made.velocities()[3]) == doctest::Approx((1 + e) * u + e * 1).epsilon(1e-5));
     CHECK(made.report().fast_steps == 0);
     CHECK(made.bodies()[0].at.position[0] == doctest::Approx(u).epsilon(1e-6));
@@ -236,6 +238,8 @@ void check_turntable(Space const& space) {
       CHECK(r == doctest::Approx(r0).epsilon(1e-5));
       double const angle = std::atan2(-x[3 * i], x[3 * i + 1]);
       CHECK(angle == doctest::Approx(rate * 1000 * dt).epsilon(1e-3));
+      compared<double>("rides on a turntable", "angle = w t", angle, rate * 1000 * dt);
+      compared<double>("stays at its place on a turntable", "r = r0 if w² r <= mu g", r, r0);
     } else {
       CHECK(r > r0 * 1.01);
     }
@@ -264,6 +268,7 @@ void check_drum(Space const& space) {
                                  moving_bodies<>{});
   slides.simulation.steps(10000, dt);
   CHECK(angle_of(slides) == doctest::Approx(std::atan(mu) * 180 / pi).epsilon(0.5 / 21.8));
+  compared<double>("carried up in a drum", "angle = arctan mu", angle_of(slides) * pi / 180, std::atan(mu));
   using rolling = collide::simulation<detector, gravity, bounce, friction, spin, moving_bodies<>>;
   turning.rate = 0.5;
   w.centres = {0, 0, -0.949};

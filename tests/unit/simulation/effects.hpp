@@ -46,11 +46,15 @@ void check_drag_of(Space const& space, collide::effects<Effect...>) {
     for (std::size_t const steps : {1, 5}) {
       double const time = 0.0625 * double(steps), rate = k / 0.0625;
       double const left = std::exp(-rate * time);
-      CHECK(velocity_after({rate, 0}, 3, steps, 0.0625) ==
-            doctest::Approx(3 * left - g / rate * (1 - left)).epsilon(rounding).scale(0));
+      double const linear = velocity_after({rate, 0}, 3, steps, 0.0625);
+      CHECK(linear == doctest::Approx(3 * left - g / rate * (1 - left)).epsilon(rounding).scale(0));
+      compared<S>("fall with linear drag", "v = v0 exp(-k t) - g / k (1 - exp(-k t))", linear,
+                  3 * left - g / rate * (1 - left));
       double const quadratic = rate * rate / g, slow = g / rate;  // tanh(rate t)
-      CHECK(velocity_after({0, quadratic}, 0, steps, 0.0625) ==
-            doctest::Approx(-slow * std::tanh(rate * time)).epsilon(rounding).scale(0));
+      double const falling = velocity_after({0, quadratic}, 0, steps, 0.0625);
+      CHECK(falling == doctest::Approx(-slow * std::tanh(rate * time)).epsilon(rounding).scale(0));
+      compared<S>("fall with quadratic drag", "v = -sqrt(g / k) tanh(sqrt(g k) t)", falling,
+                  -slow * std::tanh(rate * time));
       double const stops = std::atan(3 / slow) / rate;  // what is thrown up
       CHECK(velocity_after({0, quadratic}, 3, steps, 0.0625) ==
             doctest::Approx(time < stops ? slow * std::tan(rate * (stops - time))
@@ -59,7 +63,9 @@ void check_drag_of(Space const& space, collide::effects<Effect...>) {
                 .scale(0));
     }
   }
-  CHECK(velocity_after({0, 0.5}, 0, 20000, 0.015625) == doctest::Approx(-std::sqrt(g / 0.5)).epsilon(rounding));
+  double const terminal = velocity_after({0, 0.5}, 0, 20000, 0.015625);
+  CHECK(terminal == doctest::Approx(-std::sqrt(g / 0.5)).epsilon(rounding));
+  compared<S>("terminal velocity", "v = -sqrt(g / k)", terminal, -std::sqrt(g / 0.5));
   CHECK(std::isfinite(velocity_after({1e6, 1e6}, 1e3, 100, 1)));  // however strong
   CHECK(velocity_after({0, 0}, 3, 1, 0.125) == doctest::Approx(3 - g / 8).epsilon(1e-6));
 }
@@ -177,6 +183,13 @@ void check_incline(Space const& space) {
   auto const check = [&](double slope, friction const& f, double speed, double expected) {
     for (double far : slid<NarrowPhase>(space, slope, f, speed)) {
       if (expected == 0) {
+        compared<float>("friction holds on an incline", "s = 0 if tan a <= mu", far, 0);
+      } else if (slope > f.kinetic_coefficient) {
+        compared<float>("sliding down an incline", "s = v t + g (sin a - mu cos a) t² / 2", far, expected);
+      } else {
+        compared<float>("sliding to a stop on an incline", "s = v² / (2 g (mu cos a - sin a))", far, expected);
+      }
+      if (expected == 0) {
         CHECK(std::abs(far) < 1e-4);
       } else {
         CHECK(far == doctest::Approx(expected).epsilon(0.01));
@@ -208,6 +221,7 @@ void check_rolling(Space const& space) {
   auto v = made.velocities(), turn = made.simulation.template to_host<angular_velocity>();
   for (std::size_t i = 0; i < w.size(); ++i) {
     CHECK(v[3 * i] == doctest::Approx(2 * 5 / 7.0).epsilon(1e-3));
+    compared<float>("sliding becomes rolling", "v = 5/7 v0", double(v[3 * i]), 2 * 5 / 7.0);
     CHECK(v[3 * i + 1] == doctest::Approx(0.25 * double(i) * 5 / 7.0).epsilon(1e-3));
     CHECK(turn[3 * i + 1] * 0.2f == doctest::Approx(v[3 * i]).epsilon(1e-3));
     CHECK(turn[3 * i] * 0.2f == doctest::Approx(-v[3 * i + 1]).epsilon(1e-3));
@@ -217,7 +231,19 @@ void check_rolling(Space const& space) {
   running<simulation> down(space, still, gravity{2, 0, -9}, bounce{0.3}, friction{0.4, 0.4}, collide::spin{});
   down.simulation.steps(2000, 1e-3f);
   v = down.velocities();
-  for (std::size_t i = 0; i < w.size(); ++i) CHECK(v[3 * i] == doctest::Approx(2 * 2 * 5 / 7.0).epsilon(2e-3));
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    CHECK(v[3 * i] == doctest::Approx(2 * 2 * 5 / 7.0).epsilon(2e-3));
+    compared<float>("rolling down an incline", "v = 5/7 g sin a t", double(v[3 * i]), 2 * 2 * 5 / 7.0);
+  }
+
+  running<simulation> slowed(space, still, gravity{2, 0, -9}, bounce{0.3}, friction{0.4, 0.4}, collide::spin{0.05});
+  slowed.simulation.steps(2000, 1e-3f);
+  v = slowed.velocities();
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    CHECK(v[3 * i] == doctest::Approx(5 / 7.0 * (2 - 0.05 * 9) * 2).epsilon(2e-3));
+    compared<float>("rolling down an incline with rolling resistance", "v = 5/7 g (sin a - mu_r cos a) t",
+                    double(v[3 * i]), 5 / 7.0 * (2 - 0.05 * 9) * 2);
+  }
 
   running<simulation> resisted(space, w, gravity{}, bounce{0.3}, friction{0.4, 0.4}, collide::spin{0.05});
   resisted.simulation.steps(8000, 1e-3f);
@@ -252,6 +278,7 @@ void check_collisions(Space const& space) {
     pair.simulation.steps(10000, S(2e-5));
     auto const v = pair.velocities();
     CHECK(double(v[3] - v[0]) == doctest::Approx(2 * e).epsilon(0.01));
+    compared<S>("two spheres part, `sphere_contact`", "v = e v0", double(v[3] - v[0]), 2 * e);
     CHECK(std::abs(double(v[0] + v[3])) < 1e-6);
     CHECK(v[1] == S(0.5));
   }

@@ -22,6 +22,8 @@
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
 
+#include "compared.hpp"
+
 namespace tests {
 
 using collide::position;
@@ -181,6 +183,10 @@ void check_free_flight(Space const& space) {
       right = right && std::abs(double(x[i]) - expected) <= rounding;
     }
     CHECK(right);
+    if (acceleration != 0)
+      compared<S>("free flight",
+                  lag == 0 ? "z = z0 + v t - g t² / 2 (velocity Verlet)" : "z = z0 + v t - g t (t + dt) / 2 (Euler)",
+                  double(x[2]), double(w.centres[2]) + double(w.velocities[2]) * t + acceleration * t * (t + lag) / 2);
   };
   using detector = meets_mesh<Space, collide::karabassi<>, S>;
   running<collide::simulation<detector>> straight(space, w);
@@ -228,8 +234,11 @@ void check_bounces(typename Simulation::execution_space const& space) {
     if (peaks.size() == 5) break;
   }
   REQUIRE(peaks.size() == 5);
-  for (int n = 1; n <= 5; ++n)
-    CHECK(peaks[static_cast<std::size_t>(n - 1)] == doctest::Approx(height * std::pow(e, 2 * n)).epsilon(0.005));
+  for (int n = 1; n <= 5; ++n) {
+    double const peak = peaks[static_cast<std::size_t>(n - 1)], expected = height * std::pow(e, 2 * n);
+    CHECK(peak == doctest::Approx(expected).epsilon(0.005));
+    compared<S>("heights of five bounces on a floor", "h_n = h e^(2n)", peak, expected);
+  }
   made.simulation.steps(40000, dt);
   auto const x = made.positions(), v = made.velocities();
   double const slow = 9.81 * double(dt) * 0.51;  // velocity Verlet: half a step's acceleration

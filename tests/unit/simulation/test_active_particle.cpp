@@ -4,6 +4,8 @@
 #include <doctest/doctest.h>
 
 #include <collide/detail/step/active_particle.hpp>
+#include <collide/detail/step/surface_at_rest.hpp>
+#include <collide/detail/step/wedge.hpp>
 
 namespace {
 
@@ -51,20 +53,22 @@ TEST_CASE_TEMPLATE("active particle: the earlier contact comes first, then the d
 TEST_CASE_TEMPLATE("active particle: what lies on a recorded contact's surface is no contact of its own", S, float,
                    double) {
   active_particle<S, false> a;
+  motion_in_world<S> motion{};
   a.place({0, 0, S(0.5)}, {});
   a.radius = 1;
   a.contact_count = a.contacts_here = 0;
-  CHECK(!a.is_internal_contact({0, 0, 0}));
+  CHECK(!a.is_internal_contact({0, 0, 0}, motion));
   collide::mesh_contact<S> floor{};
   floor.normal = vec3<S>(0, 0, 1);
   floor.point = vec3<S>(0, 0, 0);
   a.record_contact(floor);
-  CHECK(a.is_internal_contact({S(0.3), 0, 0}));
-  CHECK(!a.is_internal_contact({S(0.3), 0, S(0.1)}));
+  CHECK(a.is_internal_contact({S(0.3), 0, 0}, motion));
+  CHECK(!a.is_internal_contact({S(0.3), 0, S(0.1)}, motion));
 
   collide::mesh_contact<S> wall{};
   wall.normal = vec3<S>(1, 0, S(-0.5)) / std::sqrt(S(1.25));  // leads into the floor
-  a.project_onto_contacts(wall, {0, 0, -1});
+  motion.velocity = {0, 0, -1};
+  project_onto_contacts(a, wall, motion.velocity, motion);
   CHECK(std::abs(wall.wedge_direction.z()) <= S(1e-6));
   CHECK(dot(wall.wedge_direction, wall.normal) == doctest::Approx(1));
 }

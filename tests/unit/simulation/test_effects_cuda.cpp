@@ -1,5 +1,7 @@
 /// Effects on the GPU.
 #include "simulation/effects.hpp"
+#include "simulation/external_forces.hpp"
+#include "simulation/mass_flow.hpp"
 #include "simulation/neighbours.hpp"
 
 using collide::cuda_shared;
@@ -43,4 +45,18 @@ TEST_CASE("effects: on the GPU, bounds, sinks and sources") {
   tests::check_emit(cuda_shared());
   tests::check_rates<float>(cuda_shared());
   tests::check_source_radius(cuda_shared());
+}
+
+TEST_CASE("effects: on the GPU, forces that another program writes") {
+  tests::check_external_forces<collide::velocity_verlet, float>(cuda_shared());
+  tests::check_external_forces<collide::semi_implicit_euler, double>(cuda_shared());
+  tests::check_external_forces_of_materials(cuda_shared());
+  tests::check_external_forces_at_rest(cuda_shared());
+  tests::check_walls_of_sizes(cuda_shared());
+}
+
+TEST_CASE("effects: on the GPU, mass that flows through a surface") {
+  tests::check_crossings(cuda_shared(), 0.5);
+  tests::check_rounds(cuda_shared());
+  tests::check_steady_flow(cuda_shared());
 }

@@ -27,3 +27,20 @@ TEST_CASE("granular contact: walls that move take grains along, and feel them") 
 }
 
 TEST_CASE("granular contact: grains sleep and press on") { tests::check_sleeping_grains<double>(host(1)); }
+
+namespace {
+
+/// Memory as a GPU's: the host must not look into it.
+struct afar : host {
+  using host::host;
+  static constexpr bool host_accessible = false;
+  std::size_t saturating_blocks() const { return 4; }
+};
+
+}  // namespace
+
+TEST_CASE("granular contact: contacts find room for what they remember, or an error says that there is none") {
+  tests::check_many_neighbours<double>(host(1));
+  tests::check_many_neighbours<float>(blocks());
+  tests::check_many_neighbours<double>(afar(1));
+}

@@ -2,7 +2,7 @@
 #include <collide/cuda.cuh>
 
 #include "compositions.hpp"
-#include "simulation/granular.hpp"
+#include "simulation/periodic_contacts.hpp"
 
 using collide::cuda_shared;
 
@@ -29,4 +29,15 @@ TEST_CASE("granular contact: walls that move take grains along, and feel them, o
 
 TEST_CASE("granular contact: grains sleep and press on, on a GPU") {
   tests::check_sleeping_grains<double>(cuda_shared());
+}
+
+TEST_CASE("granular contact: contacts find room for what they remember, or an error, on a GPU") {
+  tests::check_many_neighbours<double>(cuda_shared());
+}
+
+TEST_CASE("periodic contacts: the same on a GPU") {
+  tests::check_contacts_across<double>(cuda_shared());
+  tests::check_neighbours_across<float>(cuda_shared());
+  tests::check_gas_across<double>(cuda_shared());
+  tests::check_sleep_across<double>(cuda_shared());
 }

@@ -1,12 +1,14 @@
 /// Trees of boxes: each triangle is in it once, in boxes that contain it; what goes through it leaves out nothing.
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include <collide/bvh.cuh>
 
+#include "counted_new.hpp"
 #include "execution/lockstep.hpp"
 #include "hard_meshes.hpp"
 
@@ -26,6 +28,12 @@ struct tree {
 
   explicit tree(collide::mesh_view<S> const& mesh) {
     index.build(space, tree_policy(), mesh);
+    ref = index.ref();
+  }
+  /// That of a mesh that has deformed.
+  tree(collide::mesh_view<S> const& before, collide::mesh_view<S> const& mesh) {
+    index.build(space, tree_policy(), before);
+    index.refit(space, tree_policy(), mesh);
     ref = index.ref();
   }
 };
@@ -87,11 +95,25 @@ struct walk {
   }
 };
 
+/// The same triangles, each somewhere else, but some.
+template <class S>
+tests::hard_mesh<S> moved(tests::hard_mesh<S> mesh) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+  S const extent = mesh.extent();
+  for (std::size_t i = 0; i < mesh.corners.size(); i += 9) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      S const by = i % 4 == 0 ? 0 : extent * static_cast<S>(uniform(engine));
+      for (std::size_t c = 0; c < 9; c += 3) mesh.corners[i + c + k] += by;
+    }
+  }
+  return mesh;
+}
+
 template <class S, class Space>
-void check_tree(tests::hard_mesh<S> const& made) {
+void check_tree(tests::hard_mesh<S> const& made, tree<S, Space> const& t) {
   CAPTURE(made.name);
   CAPTURE(Space::name());
-  tree<S, Space> const t(made.view());
   std::vector<id> finite;
   for (id i = 0; i < made.size(); ++i) {
     if (is_finite(made.view()[i])) finite.push_back(i);
@@ -147,8 +169,41 @@ void check_tree(tests::hard_mesh<S> const& made) {
 TEST_CASE_TEMPLATE("tree: each finite triangle is in it once, in boxes that contain it, and no hit is left out", S,
                    float, double) {
   for (auto const& made : tests::hard_meshes<S>(700)) {
-    check_tree<S, host>(made);
-    check_tree<S, in_lockstep>(made);
+    check_tree(made, tree<S, host>(made.view()));
+    check_tree(made, tree<S, in_lockstep>(made.view()));
+  }
+}
+
+TEST_CASE_TEMPLATE("tree: of a mesh that deforms it has all triangles where they are now", S, float, double) {
+  for (auto const& made : tests::hard_meshes<S>(300)) {
+    auto const before = moved(made);
+    check_tree(made, tree<S, host>(before.view(), made.view()));
+    check_tree(made, tree<S, in_lockstep>(before.view(), made.view()));
+  }
+}
+
+TEST_CASE("tree: refit of a detector allocates nothing, finds what a new build does, and needs a mesh of that size") {
+  for (auto const& made : tests::hard_meshes<float>(300)) {
+    CAPTURE(made.name);
+    auto const before = moved(made);
+    collide::sphere_view<float> const spheres(collide::points(made.corners.data(), made.size(), 9), nullptr, 0,
+                                              made.extent() / 50);
+    collide::detector<collide::bvh> built, refitted;
+    CHECK_THROWS_AS(refitted.refit(made.view()), collide::error);
+    built.build(made.view());
+    refitted.build(before.view());
+    bool const stays = made.name != "of the largest numbers" &&  // their boxes are infinite
+                       std::all_of(made.corners.begin(), made.corners.end(), [](float x) { return std::isfinite(x); });
+    std::size_t const news = tests::counted_news();
+    refitted.refit(made.view());
+    if (stays) CHECK(tests::counted_news() == news);
+    collide::pairs expected(collide::order::canonical), found(collide::order::canonical);
+    built.query(spheres, expected);
+    refitted.query(spheres, found);
+    CHECK(found.to_host() == expected.to_host());
+    CHECK_THROWS_AS(refitted.refit(made.view().subview(0, made.size() - 1)), collide::error);
+    refitted.query(spheres, found);  // what was refused has done no harm
+    CHECK(found.to_host() == expected.to_host());
   }
 }
 

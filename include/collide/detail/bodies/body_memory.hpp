@@ -8,7 +8,7 @@
 #include <collide/detail/bodies/bodies_ref.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/geometry/aabb.hpp>
-#include <collide/detail/particles/effect_traits.hpp>
+#include <collide/detail/particles/host_members.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
@@ -53,6 +53,21 @@ struct bound_bodies {
     }
   }
 };
+
+/// Makes the rotation's length 1. False if it is not nearly that, or something is not finite.
+COLLIDE_HD_INLINE bool make_unit(body_state& s) {
+  double(&q)[4] = s.at.rotation;
+  double const squared = mul_rn(q[0], q[0]) + mul_rn(q[1], q[1]) + mul_rn(q[2], q[2]) + mul_rn(q[3], q[3]);
+  bool sound = is_finite(squared) && squared > 1 - 1e-4 && squared < 1 + 1e-4;
+  for (int k = 0; k < 3; ++k) {
+    sound = sound && is_finite(s.at.position[k]) && is_finite(s.moving.linear[k]) && is_finite(s.moving.angular[k]) &&
+            is_finite(s.belt[k]);
+  }
+  if (!sound) return false;
+  double const length = sqrt_rn(squared);
+  for (double& c : q) c = div_rn(c, length);
+  return true;
+}
 
 /// Kernel functor of `for_each` over bodies: where each is at the end of the step, or, if it `starts`, now.
 template <class S, class Motion>
@@ -108,21 +123,6 @@ struct advance_bodies {
     return s;
   }
 
-  /// Makes the rotation's length 1. False if it is not nearly that, or something is not finite.
-  static COLLIDE_HD_INLINE bool make_unit(body_state& s) {
-    double(&q)[4] = s.at.rotation;
-    double const squared = mul_rn(q[0], q[0]) + mul_rn(q[1], q[1]) + mul_rn(q[2], q[2]) + mul_rn(q[3], q[3]);
-    bool sound = is_finite(squared) && squared > 1 - 1e-4 && squared < 1 + 1e-4;
-    for (int k = 0; k < 3; ++k) {
-      sound = sound && is_finite(s.at.position[k]) && is_finite(s.moving.linear[k]) && is_finite(s.moving.angular[k]) &&
-              is_finite(s.belt[k]);
-    }
-    if (!sound) return false;
-    double const length = sqrt_rn(squared);
-    for (double& c : q) c = div_rn(c, length);
-    return true;
-  }
-
   /// The bounding sphere of a body, and how far it moves.
   COLLIDE_HD_INLINE void bound(body_frame<S>& f, body_record const& r) const {
     constexpr double eps = std::numeric_limits<S>::epsilon();
@@ -158,6 +158,7 @@ class body_memory {
   /// States of the bodies in memory of the space: poses at the end of the last step. With `moving_bodies<driven>`
   /// kernels of yours write there, before a step, what is to be at its end. Valid until the next `set_mesh`.
   body_state* states() const { return states_.data(); }
+  /// How many bodies there are.
   std::size_t size() const { return count_; }
 
   /// A copy of the states. Waits.
@@ -189,14 +190,14 @@ class body_memory {
            report_.bytes();
   }
 
-  /// Throws `error` unless these can be bodies of a mesh of so many triangles.
-  static void check(std::vector<body> const& bodies, std::size_t triangles, S const*) {
+  /// Throws `error` unless these can be bodies of a mesh of so many triangles. `call`: what gets them, for messages.
+  static void check(std::vector<body> const& bodies, std::size_t triangles, S const*, char const* call = "set_mesh") {
     constexpr std::size_t most = moving_bodies<Motion>::max_bodies;
-    if (bodies.size() > most) throw error("collide: set_mesh: there are more than 64 bodies");
+    if (bodies.size() > most) throw error("collide: " + std::string(call) + ": there are more than 64 bodies");
     std::vector<bool> taken(triangles);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       body const& b = bodies[k];
-      std::string const name = "collide: set_mesh: body " + std::to_string(k);
+      std::string const name = "collide: " + std::string(call) + ": body " + std::to_string(k);
       if (b.first > triangles || b.size > triangles - b.first)
         throw error(name + " has triangles that the mesh does not have");
       for (std::size_t i = b.first; i < b.first + b.size; ++i) {
@@ -260,9 +261,12 @@ class body_memory {
 
   template <class Triangles>
   bodies_ref<S, Triangles> ref(Triangles const& whole, mesh_view<S> const& mesh, S dt) const {
-    return {whole,
-            {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt},
-            {quick_.data(), room_}};
+    return {whole, moving(mesh, dt), {quick_.data(), room_}};
+  }
+
+  /// The mesh, for kernels, with the frames of its bodies.
+  moving_mesh<S> moving(mesh_view<S> const& mesh, S dt) const {
+    return {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt};
   }
 
   /// Whether they have begun where the caller drives them.
@@ -313,28 +317,6 @@ class body_memory {
   S room_ = 0;
   bool is_placed_ = false;  ///< of bodies that the caller drives: they have begun where the caller wants them
   buffer<body_report> report_;
-};
-
-/// In a scene without `moving_bodies`: nothing.
-struct no_bodies {
-  static constexpr bool exist = false;
-
-  static std::size_t bytes() { return 0; }
-  static std::size_t size() { return 0; }
-  static int room() { return 0; }
-  static constexpr bool are_driven() { return false; }
-  static constexpr bool are_placed() { return false; }
-  static void place(bool) {}
-  static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
-    if (!bodies.empty() || velocities != nullptr)
-      throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
-  }
-  template <class Space, class Mesh>
-  void build(Space&, Mesh const&, std::vector<body> const&, void const*) {}
-  template <class Triangles, class Mesh, class S>
-  Triangles const& ref(Triangles const& whole, Mesh const&, S) const {
-    return whole;
-  }
 };
 
 /// The bodies of a scene with these effects.

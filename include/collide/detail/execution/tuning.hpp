@@ -65,6 +65,18 @@ struct broad_phase_cost_model {
   double build_ns;            ///< `bucket`: the build, however small the mesh
 };
 
+/// Costs of queries of long thin triangles, in nanoseconds, on one core of an AMD EPYC; only the ratios count.
+struct slender_cost_model {
+  double per_box_ns;       ///< a sphere and a triangle whose box it reaches: what `bucket` takes more than `bvh`
+  double per_sphere_ns;    ///< `bvh`: a sphere
+  double per_touched_ns;   ///< `bvh`: a sphere and a triangle that it touches
+  double per_triangle_ns;  ///< `bvh`: a triangle of the build
+};
+
+/// By what `automatic` chooses between `bucket` and `bvh` where triangles are long and thin. It does so in spaces where
+/// `bvh` divides by area.
+inline constexpr slender_cost_model slender_costs{19, 250, 200, 5000};
+
 /// By what `automatic` chooses in a space. The default is one thread of an AMD EPYC, or `cuda_shared` on an H100.
 template <class Space>
 struct broad_phase_costs {

@@ -151,9 +151,9 @@ struct radius_histogram_kernel {
 };
 
 /// How far the grids of spheres of many radii reach: reaches a factor of 4 or more apart, falling, only where there are
-/// spheres. Returns how many there are.
+/// spheres, and down to one that is at most `enough`. Returns how many there are.
 template <class S>
-int reaches_of(size_histogram const& radii, S (&reaches)[max_grids]) {
+int reaches_of(size_histogram const& radii, S enough, S (&reaches)[max_grids]) {
   if (radii.empty()) return 0;
   constexpr int bins_per_factor_4 = 8;
   int n = 0;
@@ -161,6 +161,7 @@ int reaches_of(size_histogram const& radii, S (&reaches)[max_grids]) {
     while (radii.counts[b] == 0) --b;
     float const end = bin_end(static_cast<std::uint32_t>(b));
     reaches[n++] = static_cast<S>(min(end, std::numeric_limits<float>::max()));
+    if (reaches[n - 1] <= enough) break;
   }
   return n;
 }

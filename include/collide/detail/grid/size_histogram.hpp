@@ -47,6 +47,17 @@ struct size_histogram {
   COLLIDE_HD int first() const { return static_cast<int>(~lowest); }
   COLLIDE_HD int last() const { return static_cast<int>(highest) - 1; }
   COLLIDE_HD bool empty() const { return highest == 0; }
+
+  /// The end of the bin of the size in the middle; 0 of no sizes.
+  float median() const {
+    std::uint64_t all = 0, below = 0;
+    for (auto const n : counts) all += n;
+    for (std::uint32_t b = 0; b < size_bins; ++b) {
+      below += counts[b];
+      if (2 * below > all) return bin_end(b);
+    }
+    return 0;
+  }
 };
 
 /// Counts in scratch memory first, so that a bin in memory is touched once per block. A block of one thread has so few

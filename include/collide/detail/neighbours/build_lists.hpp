@@ -38,7 +38,7 @@ struct update_and_check_skin {
     if (!is_finite(p[position{}])) return order.deactivate(i);
     packed_sphere<S> const now = order.store(i, p);
     auto const before = order.references[i];
-    vec3<S> const moved(now.x - before.x, now.y - before.y, now.z - before.z);
+    vec3<S> const moved = order.between(before, now);
     S const left = most - before.growth(now);
     bool const stayed = dot(moved, moved) < mul_rn(left, left) && left > 0;
     if (!stayed) order.ask_to_rebuild();
@@ -80,30 +80,9 @@ struct count_or_scatter {
         return;
       }
     }
-    vec3<S> const& c = p[position{}];
+    vec3<S> const c = order.inside(p[position{}]);
     std::uint32_t const slot = fetch_add(order.ends + order.cells.number(order.cells.of(c.x(), c.y(), c.z())) + 1, 1u);
     if constexpr (Fill) order.numbers[slot] = static_cast<id>(i);
-  }
-};
-
-/// Kernel functor of `for_each_if_nonzero` over blocks: counts become where cells begin.
-template <class S, class Effects>
-struct scan_cells {
-  sorted_particles<S, Effects> order;
-
-  COLLIDE_HD void operator()(std::size_t b) const {
-    constexpr std::uint32_t n = spatial_hash<S>::cells_per_brick;
-    std::uint32_t* const ends = order.ends + b * order.cells.stride;
-    std::uint32_t counts[n], sum = 0;  // all are on their way at once
-    for (std::uint32_t c = 0; c < n; ++c) counts[c] = ends[c + 1];
-    for (std::uint32_t c = 0; c < n; ++c) sum += counts[c];
-    if (sum == 0) return;
-    std::uint32_t next = fetch_add(&order.header->count, sum);
-    ends[0] = next;
-    for (std::uint32_t c = 0; c < n; ++c) {
-      ends[c + 1] = next;
-      next += counts[c];
-    }
   }
 };
 
@@ -151,7 +130,7 @@ struct build_lists {
     if (i < order.header->count) list(static_cast<std::uint32_t>(i));
   }
 
- private:
+ protected:
   using ordered = sorted_particles<S, Effects>;
   static constexpr std::uint32_t room = ordered::listed;
 
@@ -194,10 +173,15 @@ struct build_lists {
     order.list(0, i) = order.overflow_mark;
     store_relaxed(&order.header->overflowed, 1u);
     std::uint32_t const first = fetch_add(&order.header->in_runs, found);
+    order.list(2, i) = first;
     if (first + std::size_t{found} > order.run_capacity) {
       order.list(1, i) = order.overflow_mark;
       return;
     }
+    fill_run(i, first);
+  }
+  /// Lists at item `first` of the runs what is near.
+  COLLIDE_HD void fill_run(std::uint32_t i, std::uint32_t first) const {
     std::uint32_t* const run = order.runs + first;
     std::uint32_t size = 0;
     order.for_each_overlapping(i, skin, [&](std::uint32_t k, int row) {
@@ -258,6 +242,17 @@ struct build_lists {
       if (size == 0 || run[size - 1] != run[k]) run[size++] = run[k];
     }
     return size;
+  }
+};
+
+/// Kernel functor of `for_each` over places in the order: makes the runs for which there was no room, now that there
+/// is.
+template <class S, class Effects>
+struct build_missing_runs : build_lists<S, Effects> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& places = this->order;
+    if (i >= places.header->count || places.list(0, i) != places.overflow_mark) return;
+    if (places.list(1, i) == places.overflow_mark) this->fill_run(static_cast<std::uint32_t>(i), places.list(2, i));
   }
 };
 

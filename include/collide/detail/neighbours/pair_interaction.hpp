@@ -41,8 +41,10 @@ struct pair_interaction {
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_other = !is_inactive(other);
-    if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
-    if (is_other && !p.woken) effects.try_wake(p.changed, other);
+    side_by_side(p, other, [&] {
+      if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
+      if (is_other && !p.woken) effects.try_wake(p.changed, other);
+    });
     p.met = p.met || is_active || is_other;
   }
   /// True once if a particle has been woken that took no part: then it meets those that were awake again, which have
@@ -60,15 +62,17 @@ struct pair_interaction {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_awake = !is_inactive(other), is_other = overlap && is_awake;
     bool goes_on = was;
-    if (p.woken ? is_other : is_active) {
-      contact_values<S, typename Effects::remembered> values;
-      if (was) values = record.values();
-      bool const stays =
-          only_kicks || (!is_awake && is_inactive(p.self));  // of two that sleep the contact is as it was
-      goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, stays ? S(0) : dt, dt);
-      if (goes_on) record.set(values);
-    }
-    if (is_other && !p.woken) effects.try_wake(p.changed, other);
+    side_by_side(p, other, [&] {
+      if (p.woken ? is_other : is_active) {
+        contact_values<S, typename Effects::remembered> values;
+        if (was) values = record.values();
+        bool const stays =
+            only_kicks || (!is_awake && is_inactive(p.self));  // of two that sleep the contact is as it was
+        goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, stays ? S(0) : dt, dt);
+        if (goes_on) record.set(values);
+      }
+      if (is_other && !p.woken) effects.try_wake(p.changed, other);
+    });
     p.met = p.met || is_active || is_other;
     return goes_on;
   }
@@ -89,6 +93,23 @@ struct pair_interaction {
   }
 
  private:
+  /// Calls f() while two particles are where they meet: across a side of the box, if space repeats. By how far it moves
+  /// the one that changes is added to where that is.
+  template <class F>
+  COLLIDE_HD_INLINE void side_by_side(pair_state& p, [[maybe_unused]] interaction& other, F const& f) const {
+    if constexpr (Effects::repeats) {
+      vec3<S>&self = p.self[position{}], &changed = p.changed[position{}];
+      vec3<S> const here = self, there = changed;
+      order.space.bring_together(self, other[position{}]);
+      changed = self;
+      f();
+      changed = there + (changed - self);
+      self = here;
+    } else {
+      f();
+    }
+  }
+
   /// Particles that sleep are pressed by others too, where that is passed on to what they lie on.
   COLLIDE_HD_INLINE bool takes_part(interaction& p) const {
     if constexpr (Effects::keeps_support) {
@@ -117,6 +138,7 @@ struct interact_listed : pair_interaction<S, Effects> {
     if (places.list(0, i) == places.overflow_mark) return;
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
     packed_sphere<S> const own = places.spheres[i];
+    if constexpr (sorted_particles<S, Effects>::has_memory) fetch_records(i);
     do {
       if constexpr (sorted_particles<S, Effects>::has_memory) {
         std::uint32_t const before = places.memory.touching[i];
@@ -138,6 +160,16 @@ struct interact_listed : pair_interaction<S, Effects> {
   }
 
  private:
+  /// On a CPU: what the contacts of a particle remember comes into the cache all at a time.
+  COLLIDE_HD_INLINE void fetch_records([[maybe_unused]] std::size_t i) const {
+#if !defined(__CUDA_ARCH__)
+    auto const& places = this->order;
+    for (std::uint32_t left = places.memory.touching[i]; left != 0; left &= left - 1) {
+      __builtin_prefetch(places.memory.records + std::size_t(__builtin_ctz(left)) * places.capacity + i, 1);
+    }
+#endif
+  }
+
   /// f(place, sphere, item) for each on the list of a particle. While one is looked at, the next and the list's item
   /// behind it are on their way (docs/development/experiments.md).
   template <class F>

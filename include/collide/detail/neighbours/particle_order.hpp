@@ -8,6 +8,7 @@
 
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/neighbours/spatial_hash.hpp>
+#include <collide/detail/numeric/repeating_box.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/detail/particles/contact_memory.hpp>
 #include <collide/detail/particles/particle.hpp>
@@ -52,7 +53,9 @@ struct sorted_particles {
   using interaction = particle<S, typename Effects::interaction>;
   using cell = typename spatial_hash<S>::cell;
   static constexpr bool has_absent = contains<all, alive>;
+  static constexpr bool repeats = Effects::repeats;
 
+  typename Effects::space_type space;
   spatial_hash<S> cells;
   std::uint32_t* ends;  ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
   list_state* header;
@@ -78,9 +81,23 @@ struct sorted_particles {
   COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
 
   COLLIDE_HD_INLINE packed_sphere<S> store(std::size_t i, interaction const& p) const {
-    vec3<S> const& c = p[position{}];
+    vec3<S> const c = inside(p[position{}]);
     copies.store(p, i, copied{});
     return spheres[i] = {c.x(), c.y(), c.z(), p.the_radius};
+  }
+
+  /// A point, moved into the box if space repeats.
+  COLLIDE_HD_INLINE vec3<S> inside(vec3<S> const& x) const {
+    if constexpr (repeats) return space.inside(x);
+    return x;
+  }
+
+  /// From one point to another: the shortest way, if space repeats.
+  template <class A, class B>
+  COLLIDE_HD_INLINE vec3<S> between(A const& from, B const& to) const {
+    vec3<S> a(from.x, from.y, from.z), b(to.x, to.y, to.z);
+    if constexpr (repeats) space.bring_together(a, b);
+    return b - a;
   }
 
   COLLIDE_HD_INLINE interaction load(std::size_t i) const {
@@ -104,10 +121,10 @@ struct sorted_particles {
   }
 
   /// True if the surfaces of two particles are less than `skin` apart.
-  static COLLIDE_HD_INLINE bool within_skin(packed_sphere<S> const& a, packed_sphere<S> const& b, S skin) {
-    vec3<S> const between(a.x - b.x, a.y - b.y, a.z - b.z);
+  COLLIDE_HD_INLINE bool within_skin(packed_sphere<S> const& a, packed_sphere<S> const& b, S skin) const {
+    vec3<S> const apart = between(b, a);
     S const reach = a.radius + b.radius + skin;
-    return dot(between, between) < mul_rn(reach, reach);
+    return dot(apart, apart) < mul_rn(reach, reach);
   }
 
   /// Puts a particle that is not there, or nowhere, so far away, and makes it so small, that it is near nothing, not
@@ -120,35 +137,29 @@ struct sorted_particles {
   COLLIDE_HD_INLINE void ask_to_rebuild() const { store_relaxed(&header->rebuild, 1u); }
 
   /// f(place, row) for those less than `skin` away from particle i, of which `is_in_row` must still be asked. That
-  /// takes a while, in which threads that run together would wait for the one that has found something.
+  /// takes a while, in which threads that run together would wait for the one that has found something. If space
+  /// repeats, some may be found several times.
   template <class F>
   COLLIDE_HD_INLINE void for_each_overlapping(std::uint32_t i, S skin, F const& f) const {
-    packed_sphere<S> const self = spheres[i];
-    cell const here = cell_of(i);
-    COLLIDE_NO_UNROLL
-    for (int row = 0; row < 9; ++row) {
-      cell const from = first_of(here, row);
-      std::int32_t const together = min(3, 16 - (from.x & 15));  // those in the same block follow each other
-      std::uint32_t const first = cells.number(from);
-      std::uint32_t const begin = ends[first], size = ends[first + static_cast<std::uint32_t>(together)] - begin;
-      std::uint32_t jump = 0, both = size;
-      if (together < 3) {
-        std::uint32_t const rest = cells.number({from.x + together, from.y, from.z});
-        jump = ends[rest];
-        both += ends[rest + static_cast<std::uint32_t>(3 - together)] - jump;
-        jump -= size;
-      }
+    if constexpr (repeats) {
+      auto const& at = references[i];
+      vec3<S> const x(at.x, at.y, at.z);
+      for_each_in_rows(i, 0, skin, f);
       COLLIDE_NO_UNROLL
-      for (std::uint32_t n = 0; n < both; ++n) {
-        std::uint32_t const k = n + (n < size ? begin : jump);
-        if (within_skin(self, spheres[k], skin) && k != i) f(k, row);
+      for (int image = 1; image < repeating_box<S>::images; ++image) {
+        if (!space.is_near_in(x, image, 1 / cells.inverse_width)) continue;
+        for_each_in_rows(i, 9 * image, skin, [&](std::uint32_t k, int row) {
+          if (is_in_row(k, i, row)) f(k, row);  // else many would be found in vain
+        });
       }
+    } else {
+      for_each_in_rows(i, 0, skin, f);
     }
   }
 
   /// True if particle k is in a row of cells around particle i, and not in others at the same place of the table.
   COLLIDE_HD_INLINE bool is_in_row(std::uint32_t k, std::uint32_t i, int row) const {
-    cell const from = first_of(cell_of(i), row), there = cell_of(k);
+    cell const from = first_of(cell_of(i, row), row), there = cell_of(k, 0);
     return there.y == from.y && there.z == from.z && there.x >= from.x && there.x <= from.x + 2;
   }
 
@@ -176,14 +187,47 @@ struct sorted_particles {
   }
 
  private:
+  /// The rows of nine that begin with `first_row`.
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_in_rows(std::uint32_t i, int first_row, S skin, F const& f) const {
+    packed_sphere<S> const self = spheres[i];
+    cell const here = cell_of(i, first_row);
+    COLLIDE_NO_UNROLL
+    for (int row = first_row; row < first_row + 9; ++row) {
+      cell const from = first_of(here, row);
+      std::int32_t const together = min(3, 16 - (from.x & 15));  // those in the same block follow each other
+      std::uint32_t const first = cells.number(from);
+      std::uint32_t const begin = ends[first], size = ends[first + static_cast<std::uint32_t>(together)] - begin;
+      std::uint32_t jump = 0, both = size;
+      if (together < 3) {
+        std::uint32_t const rest = cells.number({from.x + together, from.y, from.z});
+        jump = ends[rest];
+        both += ends[rest + static_cast<std::uint32_t>(3 - together)] - jump;
+        jump -= size;
+      }
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t n = 0; n < both; ++n) {
+        std::uint32_t const k = n + (n < size ? begin : jump);
+        if (within_skin(self, spheres[k], skin) && k != i) f(k, row);
+      }
+    }
+  }
+
   /// The first of three cells along x next to a cell.
   static COLLIDE_HD_INLINE cell first_of(cell here, int row) {
+    if constexpr (repeats) row %= 9;
     return {here.x - 1, here.y + row % 3 - 1, here.z + row / 3 - 1};
   }
 
-  COLLIDE_HD_INLINE cell cell_of(std::uint32_t i) const {
+  /// The cell of a particle, where it is in the image of the box that a row belongs to.
+  COLLIDE_HD_INLINE cell cell_of(std::uint32_t i, [[maybe_unused]] int row) const {
     auto const& from = references[i];
-    return cells.of(from.x, from.y, from.z);
+    if constexpr (repeats) {
+      vec3<S> const x = space.in_image(vec3<S>(from.x, from.y, from.z), row / 9);
+      return cells.of(x.x(), x.y(), x.z());
+    } else {
+      return cells.of(from.x, from.y, from.z);
+    }
   }
 };
 

@@ -2,8 +2,10 @@
 /// The cells of a grid in a table of fixed size, whatever the size of the scene.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
+#include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 
 namespace collide::detail {
@@ -16,6 +18,13 @@ struct spatial_hash {
 
   static constexpr std::uint32_t cells_per_brick = 64;
   static constexpr std::uint32_t stride = cells_per_brick + 1;  ///< of blocks in the table: see `sorted_particles`
+
+  /// How many blocks of cells there are for `n` particles or spheres.
+  static std::size_t blocks_for(std::size_t n) {
+    std::uint32_t bits = 0;
+    while (bits < 22 && (std::size_t{cells_per_brick} << bits) < 2 * n) ++bits;
+    return std::size_t{1} << bits;
+  }
 
   struct cell {
     std::int32_t x, y, z;
@@ -38,6 +47,28 @@ struct spatial_hash {
     S const c = min(end, max(-end, mul_rn(x, inverse_width)));
     auto const i = static_cast<std::int32_t>(c);
     return static_cast<S>(i) > c ? i - 1 : i;
+  }
+};
+
+/// Kernel functor over the blocks of a table: counts become where cells begin. The count of the cell at place c is at
+/// ends[c + 1].
+struct scan_cells {
+  std::uint32_t* ends;
+  std::uint32_t* count;  ///< of all; 0 before
+
+  COLLIDE_HD void operator()(std::size_t b) const {
+    constexpr std::uint32_t n = spatial_hash<float>::cells_per_brick;
+    std::uint32_t* const block = ends + b * spatial_hash<float>::stride;
+    std::uint32_t counts[n], sum = 0;  // all are on their way at once
+    for (std::uint32_t c = 0; c < n; ++c) counts[c] = block[c + 1];
+    for (std::uint32_t c = 0; c < n; ++c) sum += counts[c];
+    if (sum == 0) return;
+    std::uint32_t next = fetch_add(count, sum);
+    block[0] = next;
+    for (std::uint32_t c = 0; c < n; ++c) {
+      block[c + 1] = next;
+      next += counts[c];
+    }
   }
 };
 

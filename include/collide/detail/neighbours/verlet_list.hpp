@@ -10,8 +10,8 @@
 /// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. They lie in a
 /// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
 /// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
-/// particles, and each particle looks into the 27 cells around it. What has too many neighbours for its list does so in
-/// each step.
+/// particles, and each particle looks into the 27 cells around it, in a box that repeats also around its images. What
+/// has too many neighbours for its list does so in each step.
 ///
 /// Distances must be such that their squares neither overflow nor vanish: with floats, radii from 1e-17 to 1e18.
 ///
@@ -44,7 +44,7 @@ class verlet_list {
   /// Takes all memory that steps of up to `n` particles need.
   void reserve(std::pmr::memory_resource* resource, std::size_t n) {
     header_.reserve(resource, 1);
-    ends_.reserve(resource, blocks_for(n) * cells::stride);
+    ends_.reserve(resource, cells::blocks_for(n) * cells::stride);
     numbers_.reserve(resource, n);
     memory_.reserve(resource, n);
     spheres_.reserve(resource, n);
@@ -52,19 +52,16 @@ class verlet_list {
     if constexpr (order::has_absent) known_.reserve(resource, n);
     lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
-    contacts_.reserve(resource, n, order::listed, n);
+    contacts_.reserve(resource, n, order::listed, runs_.capacity());
   }
 
   /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet. `smallest` keeps the
   /// skin so thin that small particles beside large ones have few neighbours: too many have no list.
   template <class Space>
   void clear(Space& space, std::size_t n, S radius, S smallest) {
-    blocks_ = blocks_for(n);
-    skin_ = skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
-    // a bit wider than what is listed: so rounding separates no pair by more than a cell, in floats up to 2^15 cells
-    // away from the origin
-    S const width = max((2 * radius + skin_) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
-    cells_ = {1 / width, static_cast<std::uint32_t>(blocks_ - 1)};
+    blocks_ = cells::blocks_for(n);
+    skin_ = skin_of(radius, smallest);
+    cells_ = {1 / width_of(radius, smallest), static_cast<std::uint32_t>(blocks_ - 1)};
     list_state* const header = header_.data();
     space.fill(header, 0, sizeof *header);
     space.fill(&header->rebuild, 1, sizeof header->rebuild);
@@ -72,7 +69,13 @@ class verlet_list {
     contacts_.clear(space, n);
   }
 
-  /// The memory of contacts, for a checkpoint. Waits.
+  /// How wide cells are: a bit wider than what is listed, so that rounding separates no pair by more than a cell, in
+  /// floats up to 2^15 cells away from the origin.
+  static S width_of(S radius, S smallest) {
+    return max((2 * radius + skin_of(radius, smallest)) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
+  }
+
+  /// The memory of contacts of `n` particles, by the numbers by which neighbours meet, for a checkpoint. Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
     saved_contacts<S> saved;
@@ -80,6 +83,9 @@ class verlet_list {
     list_state const header = copied(space, header_.data(), 1)[0];
     if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
     auto const numbers = copied(space, numbers_.data(), header.count);
+    auto others = numbers;
+    if constexpr (contains<typename Effects::interaction_copies, global_number>)
+      others = copied(space, memory_.state(n, n, S(0)).at(global_number{}), header.count);
     auto const lists = copied(space, lists_.data(), order::listed * n),
                runs = copied(space, runs_.data(), runs_.capacity());
     auto const memory = contacts_.template copied<order::listed>(space, n, header.count, runs.size());
@@ -89,7 +95,7 @@ class verlet_list {
       std::uint32_t const i = place_of[number];
       if (i == order::overflow_mark) continue;
       auto const add = [&](std::uint32_t place, std::size_t item) {
-        saved.others.push_back(numbers[place]);
+        saved.others.push_back(others[place]);
         memory.append(saved.values, item);
         ++saved.counts[number];
       };
@@ -116,9 +122,12 @@ class verlet_list {
            references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + contacts_.bytes();
   }
 
-  /// Makes the lists complete for particles where they now are. They hold until something moves.
+  /// Makes the lists complete for particles where they now are, in a space that may have changed. They hold until
+  /// something moves.
   template <class Space>
-  void renew(Space& space, state_type const& state) {
+  void renew(Space& space, state_type const& state, typename Effects::space_type const& around) {
+    if (!(around == around_)) space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
+    around_ = around;
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
@@ -127,10 +136,19 @@ class verlet_list {
     if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
-    for_each_if_nonzero(space, rebuild, blocks_, scan_cells<S, Effects>{o});
+    for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
+    if constexpr (order::has_memory && Space::host_accessible) {
+      if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
+    }
+  }
+
+  /// True if there was no room for what some contact remembers. Waits.
+  template <class Space>
+  bool has_forgotten(Space const& space) const {
+    return order::has_memory && header_.capacity() != 0 && copied(space, header_.data(), 1)[0].forgotten != 0;
   }
 
   /// After `renew`: counts what a source has made in this step where something is; if `refuse`, it is not born.
@@ -158,6 +176,20 @@ class verlet_list {
   using cells = spatial_hash<S>;
 
   static constexpr S skin_fraction = S(0.1);
+  static S skin_of(S radius, S smallest) {
+    return skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
+  }
+
+  /// Makes room for all runs, and then those for which there was none. Allocates, but only where a step waits anyhow.
+  template <class Space>
+  COLLIDE_COLD void grow_runs(Space& space, state_type const& state) {
+    std::size_t const before = runs_.capacity(), in_runs = header_.data()->in_runs,
+                      more = in_runs + in_runs / 4 - before;
+    runs_ = grown(space, runs_, before, more);
+    contacts_.grow(space, order::listed * state.size, before, more);
+    space.for_each(state.size, build_missing_runs<S, Effects>{{order_of(state), skin_}});
+    contacts_.grow_kept(space, more);
+  }
 
   template <class Space, class T>
   static std::vector<T> copied(Space const& space, T const* from, std::size_t n) {
@@ -167,22 +199,23 @@ class verlet_list {
   }
 
   order order_of(state_type const& state) const {
-    return {cells_,          ends_.data(),
-            header_.data(),  numbers_.data(),
-            spheres_.data(), references_.data(),
-            known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
-            lists_.data(),   state.size,
-            runs_.data(),    runs_.capacity(),
+    return {around_,
+            cells_,
+            ends_.data(),
+            header_.data(),
+            numbers_.data(),
+            spheres_.data(),
+            references_.data(),
+            known_.data(),
+            memory_.state(state.size, state.placed, state.common_radius),
+            lists_.data(),
+            state.size,
+            runs_.data(),
+            runs_.capacity(),
             contacts_.ref()};
   }
 
-  /// How many blocks of cells there are for so many particles.
-  static std::size_t blocks_for(std::size_t n) {
-    std::uint32_t bits = 0;
-    while (bits < 22 && (std::size_t{cells::cells_per_brick} << bits) < 2 * n) ++bits;
-    return std::size_t{1} << bits;
-  }
-
+  typename Effects::space_type around_{};
   cells cells_{};
   S skin_{};
   std::size_t blocks_ = 0;

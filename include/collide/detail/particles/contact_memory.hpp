@@ -6,6 +6,7 @@
 /// numbers of the two particles, and put into the new lists. See `contact_columns` in columns.hpp.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -110,6 +111,14 @@ struct saved_contacts {
   std::vector<S> values;
 };
 
+/// An array with room for more than another, and the first `n` values of that, on the host.
+template <class Space, class T>
+buffer<T> grown(Space const& space, buffer<T> const& from, std::size_t n, std::size_t more) {
+  buffer<T> longer;
+  std::copy_n(from.data(), n, longer.reserve(space.resource(), from.capacity() + more));
+  return longer;
+}
+
 /// The memory of contacts.
 template <class S, class List>
 class contact_memory {
@@ -170,6 +179,7 @@ class contact_memory {
         kept[k].record.numbers[w] = saved.values[k * std::size_t(width) + w];
     }
     if (!ranges.empty()) space.copy_from_host(kept_of_.data(), ranges.data(), ranges.size());
+    kept_.reserve(space.resource(), kept.size());
     if (!kept.empty()) space.copy_from_host(kept_.data(), kept.data(), kept.size());
   }
 
@@ -180,6 +190,17 @@ class contact_memory {
     touching_.reserve(resource, particles);
     kept_of_.reserve(resource, particles);
     run_touching_.reserve(resource, in_runs);
+  }
+  /// Makes room for more items of runs than were there `before`, behind so many of lists, on the host: those stay.
+  template <class Space>
+  void grow(Space const& space, std::size_t in_lists, std::size_t before, std::size_t more) {
+    records_ = grown(space, records_, in_lists + before, more);
+    run_touching_ = grown(space, run_touching_, before, more);
+  }
+  /// Makes room to keep more, once nothing is kept.
+  template <class Space>
+  void grow_kept(Space const& space, std::size_t more) {
+    kept_.reserve(space.resource(), kept_.capacity() + more);
   }
   template <class Space>
   void clear(Space& space, std::size_t n) {

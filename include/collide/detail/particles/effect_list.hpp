@@ -2,6 +2,7 @@
 /// The effects of a simulation, the columns that they need, and how they are called.
 #pragma once
 
+#include <collide/detail/numeric/repeating_box.hpp>
 #include <collide/detail/particles/effect_traits.hpp>
 #include <collide/detail/particles/resistance.hpp>
 
@@ -32,6 +33,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
 
   static constexpr bool any_inactive = (has_is_inactive<E, S>::value || ...);
   static constexpr bool any_pair_contact = (pairs_in<E, S> || ...);
+  static constexpr bool repeats = any_pair_contact && (repeats_space<E> || ...);  ///< particles meet across a box
+  using space_type = std::conditional_t<repeats, repeating_box<S>, open_space>;
   using remembered = union_of<columns<>, typename remembers_of<E>::type...>;  ///< by contacts between particles
   static constexpr bool any_end_step = (has_end_step<E, S>::value || ...);
   static constexpr bool any_mesh_impulse = (has_on_mesh_impulse<E, S>::value || ...);
@@ -144,6 +147,13 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   bool makes_only_where_free() const { return (is_careful<E>() || ...); }
   S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
 
+  /// The space in which particles meet.
+  space_type space() const {
+    space_type found{};
+    (find_box_of<E>(found), ...);
+    return found;
+  }
+
   /// True of a particle that is left out, if that is because it sleeps.
   template <class P>
   COLLIDE_HD_INLINE bool only_sleeps(P p) const {
@@ -252,6 +262,15 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   }
 
  private:
+  template <class F>
+  void find_box_of([[maybe_unused]] space_type& found) const {
+    if constexpr (repeats && repeats_space<F>) {
+      for (int k = 0; k < 3; ++k) {
+        found.lower[k] = static_cast<S>(of<F>().lower[k]);
+        found.upper[k] = static_cast<S>(of<F>().upper[k]);
+      }
+    }
+  }
   template <class F>
   double due_of([[maybe_unused]] double dt) const {
     if constexpr (is_source<F>) return of<F>().rate * dt;

@@ -7,7 +7,9 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <vector>
 
+#include <collide/bodies.hpp>
 #include <collide/detail/particles/effect_list.hpp>
 #include <collide/spheres.hpp>
 
@@ -95,6 +97,28 @@ void check_time_step_of(Effects const& effects, S dt, S smallest) {
               ", is longer than an effect allows with the smallest particles, " + text_of(most) +
               ": take largest_time_step(simulation)");
 }
+
+/// In a scene without `moving_bodies`: nothing.
+struct no_bodies {
+  static constexpr bool exist = false;
+
+  static std::size_t bytes() { return 0; }
+  static std::size_t size() { return 0; }
+  static int room() { return 0; }
+  static constexpr bool are_driven() { return false; }
+  static constexpr bool are_placed() { return false; }
+  static void place(bool) {}
+  static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
+    if (!bodies.empty() || velocities != nullptr)
+      throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
+  }
+  template <class Space, class Mesh>
+  void build(Space&, Mesh const&, std::vector<body> const&, void const*) {}
+  template <class Triangles, class Mesh, class S>
+  Triangles const& ref(Triangles const& whole, Mesh const&, S) const {
+    return whole;
+  }
+};
 
 /// The address of a container's elements.
 template <class T>

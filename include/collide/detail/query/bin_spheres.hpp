@@ -13,6 +13,7 @@
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/geometry/sphere_pack.hpp>
 #include <collide/detail/grid/grid.hpp>
+#include <collide/detail/query/triangle_order.hpp>
 
 // the numbers of elements of small arrays are int
 #pragma GCC diagnostic push
@@ -214,6 +215,7 @@ struct sphere_soa {
 /// Spheres that are sorted into the cells of grids, and the boxes around groups of the triangles that look for them.
 template <class S>
 struct spheres_in_cells {
+  grouped_mesh<S> mesh;
   triangle_aabb<S> const* groups;
   grid<S> const* grids;
   int grid_count;

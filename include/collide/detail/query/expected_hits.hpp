@@ -15,7 +15,6 @@
 #include <collide/detail/narrow_phase/traits.hpp>
 #include <collide/detail/query/bin_spheres.hpp>
 #include <collide/detail/query/triangle_group.hpp>
-#include <collide/mesh.hpp>
 
 namespace collide::detail {
 
@@ -26,7 +25,6 @@ struct sample_hits {
   static constexpr int items = 4;
   static constexpr std::uint32_t stride = 256;
 
-  mesh_view<S> mesh;
   spheres_in_cells<S> in;
   std::uint64_t* hits;  ///< of those that were decided
 
@@ -37,14 +35,14 @@ struct sample_hits {
   template <class Block>
   void operator()(Block& block, nothing&) const {
     constexpr std::uint32_t n = triangle_group<S>::size;
-    std::size_t const begin = block.index() * Block::items, end = min(begin + Block::items, mesh.size());
+    std::size_t const begin = block.index() * Block::items, end = min(begin + Block::items, in.mesh.mesh.size());
     // where the first one is differs from block to block, whatever these have in common
     std::uint32_t skip = static_cast<std::uint32_t>(block.index()) * 2654435769u >> 24;
     std::uint64_t found = 0;
     for (std::size_t first = begin; first < end; first += n) {
       if (in.groups[first / n].is_empty()) continue;
       triangle_group<S> group;
-      multiversioned([&] { group.load(mesh, first); });
+      multiversioned([&] { in.mesh.load(group, first / n); });
       for (std::uint32_t k = 0; k < n; ++k) found += sample(group, k, skip);
     }
     if (found != 0) fetch_add(hits, found);
@@ -60,8 +58,8 @@ struct sample_hits {
  private:
   /// How many of the sampled pairs of triangle `k` of a group are hits; `skip` is how many pairs come before the next.
   std::uint64_t sample(triangle_group<S> const& group, std::uint32_t k, std::uint32_t& skip) const {
+    if (!group.has(k)) return 0;
     triangle_aabb<S> const around = group.box(k);
-    if (around.is_empty()) return 0;  // not finite, or not there
     std::uint64_t found = 0;
     auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
       std::uint32_t const first = in.ends[cell], size = in.ends[cell + n] - first;

@@ -7,7 +7,7 @@
 
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/execution/multiversion.hpp>
-#include <collide/detail/query/triangle_group.hpp>
+#include <collide/detail/query/triangle_order.hpp>
 
 namespace collide::detail {
 
@@ -15,7 +15,7 @@ namespace collide::detail {
 /// perhaps for some more.
 template <class S>
 struct mark_occupied_cells {
-  mesh_view<S> mesh;
+  grouped_mesh<S> mesh;
   triangle_aabb<S> const* groups;
   grid<S> const* grids;
   int grid_count;
@@ -37,10 +37,11 @@ struct mark_occupied_cells {
  private:
   void mark_each(std::size_t i, std::uint32_t some) const {
     triangle_group<S> group;
-    multiversioned([&] { group.load(mesh, i * triangle_group<S>::size); });
+    multiversioned([&] { mesh.load(group, i); });
     for (int g = 0; g < grid_count; ++g) {
       if ((some >> g & 1) == 0) continue;
       for (std::uint32_t k = 0; k < triangle_group<S>::size; ++k) {
+        if (!group.has(k)) continue;
         each_range(
             grids[g], group.box(k), [&] { return group[k]; },
             [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });

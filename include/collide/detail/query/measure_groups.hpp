@@ -13,7 +13,7 @@
 #include <collide/detail/execution/multiversion.hpp>
 #include <collide/detail/execution/tuning.hpp>
 #include <collide/detail/grid/mesh_statistics.hpp>
-#include <collide/detail/query/triangle_group.hpp>
+#include <collide/detail/query/triangle_order.hpp>
 #include <collide/memory.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
@@ -53,7 +53,7 @@ struct measure_groups {
   static constexpr int items = 4;
   static constexpr std::size_t share = 128;  ///< groups of a block
 
-  mesh_view<S> mesh;
+  grouped_mesh<S> mesh;
   mesh_statistics<S>* summary;
   triangle_aabb<S>* groups;
 
@@ -65,7 +65,7 @@ struct measure_groups {
   };
 
   /// How many blocks there are.
-  std::size_t blocks() const { return (triangle_group<S>::count(mesh.size()) + share - 1) / share; }
+  std::size_t blocks() const { return (mesh.size() + share - 1) / share; }
 
   template <class Block>
   void operator()(Block& block, scratch<Block>& s) const {
@@ -83,22 +83,22 @@ struct measure_groups {
   template <class Scratch>
   void measure(Scratch& s, std::size_t begin) const {
     constexpr std::uint32_t n = triangle_group<S>::size;
-    std::size_t const end = min(begin + share, triangle_group<S>::count(mesh.size()));
+    std::size_t const end = min(begin + share, mesh.size());
     aabb<S> all = aabb<S>::empty();
     for (std::size_t i = begin; i < end; ++i) {
-      s.group.load(mesh, i * n);
+      mesh.load(s.group, i);
       groups[i] = s.group.all;
       all = typename aabb<S>::merge{}(all, s.group.all);
       std::uint32_t bins[n], areas[n];
       measure(s.group, bins, areas);
       std::uint32_t differ = 0, sum = 0;
-      for (std::uint32_t k = 0; k < n; ++k) differ |= bins[k] ^ bins[0], sum += areas[k];
-      if (differ == 0 && s.group.is_whole()) {  // mostly: a counter that is asked again at once makes it wait
-        s.extents.add(bins[0], n, sum);
+      for (std::uint32_t k = 0; k < n; ++k) differ |= bins[k] ^ bins[0], sum += s.group.has(k) ? areas[k] : 0;
+      if (differ == 0) {  // mostly: a counter that is asked again at once makes it wait
+        s.extents.add(bins[0], static_cast<std::uint32_t>(__builtin_popcount(s.group.there)), sum);
         continue;
       }
       for (std::uint32_t k = 0; k < n; ++k) {
-        if ((s.group.there >> k & 1) != 0) s.extents.add(bins[k], 1, areas[k]);
+        if (s.group.has(k)) s.extents.add(bins[k], 1, areas[k]);
       }
     }
     s.all = all;

@@ -30,6 +30,7 @@
 #include <collide/detail/query/measure_groups.hpp>
 #include <collide/detail/query/triangle_group.hpp>
 #include <collide/detail/query/triangle_major.hpp>
+#include <collide/detail/query/triangle_order.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
@@ -96,22 +97,24 @@ class sorted_spheres {
   /// Measures a mesh, whose summary is empty yet, and the boxes around groups of its triangles.
   template <class Space>
   void measure(Space& space, mesh_view<S> const& mesh, mesh_statistics<S>* summary) {
-    auto* const groups = groups_.reserve(space.resource(), triangle_group<S>::count(mesh.size()));
-    measure_groups<S> const kernel{mesh, summary, groups};
+    mesh_ = group_triangles_(space, mesh);
+    measure_groups<S> const kernel{mesh_, summary, groups_.reserve(space.resource(), mesh_.size())};
     space.launch(kernel.blocks(), kernel);
   }
+
+  /// The groups of the triangles.
+  grouped_mesh<S> const& mesh() const { return mesh_; }
 
   /// Marks the cells that triangles of the mesh measured last touch. To be called for new grids, the cells of each of
   /// which begin at a multiple of 2^table_bits.
   template <class Space>
-  void mark(Space& space, mesh_view<S> const& mesh, grid<S> const* grids, int grid_count, std::uint32_t table_bits) {
+  void mark(Space& space, grid<S> const* grids, int grid_count, std::uint32_t table_bits) {
     grid_count_ = grid_count;
     grids_ = number_cells(space, grids, table_bits);
     std::size_t const words = cells_ / 32 + 1;
     std::uint32_t* const occupied = occupied_.reserve(space.resource(), words);
     space.fill(occupied, 0, words * sizeof *occupied);
-    space.for_each(triangle_group<S>::count(mesh.size()),
-                   mark_occupied_cells<S>{mesh, groups_.data(), grids_, grid_count, occupied});
+    space.for_each(mesh_.size(), mark_occupied_cells<S>{mesh_, groups_.data(), grids_, grid_count, occupied});
   }
 
   /// How far the grid must reach for spheres of one radius that move: the radius of the bounding sphere of each path.
@@ -194,11 +197,11 @@ class sorted_spheres {
   /// About how many hits a pass over the spheres has, of which there are `all`; 0 if few of them are in cells with
   /// triangles, and so have no more hits than there are spheres, mostly. O(triangles).
   template <class NarrowPhase, class Space>
-  std::uint64_t expected_hits(Space& space, mesh_view<S> const& mesh, std::size_t all) const {
+  std::uint64_t expected_hits(Space& space, std::size_t all) const {
     if (*total_.data() < all / 4) return 0;
     std::uint64_t hits = 0;
-    sample_hits<S, NarrowPhase> const kernel{mesh, in_cells(), &hits};
-    space.launch(grid_size<Space>(mesh.size(), kernel), kernel);
+    sample_hits<S, NarrowPhase> const kernel{in_cells(), &hits};
+    space.launch(grid_size<Space>(mesh_.mesh.size(), kernel), kernel);
     return kernel.all_of(hits);
   }
 
@@ -206,7 +209,7 @@ class sorted_spheres {
   template <class NarrowPhase, class Space, class Output>
   void query(Space& space, candidate_pipeline<S, NarrowPhase, Output> const& pipeline) const {
     query_triangle_major<S, NarrowPhase, Output> const kernel{pipeline, in_cells()};
-    space.launch(grid_size<Space>(pipeline.mesh.size(), kernel), kernel);
+    space.launch(grid_size<Space>(mesh_.mesh.size(), kernel), kernel);
   }
 
  private:
@@ -235,13 +238,15 @@ class sorted_spheres {
   }
 
   spheres_in_cells<S> in_cells() const {
-    return {groups_.data(), grids_, grid_count_, columns_, ends_.data(), everywhere()};
+    return {mesh_, groups_.data(), grids_, grid_count_, columns_, ends_.data(), everywhere()};
   }
   std::uint32_t everywhere() const { return static_cast<std::uint32_t>(cells_); }
 
   grid<S> const* grids_ = nullptr;
   int grid_count_ = 0;
   std::size_t cells_ = 0;
+  group_triangles<S> group_triangles_;
+  grouped_mesh<S> mesh_{};
   buffer<triangle_aabb<S>> groups_;
   buffer<grid<S>> own_grids_;
   buffer<std::uint32_t> occupied_, ends_, order_;

@@ -26,7 +26,7 @@ struct triangle_group {
   S corners[3][3][size];  ///< x, y and z of the first corner, of the second, of the third
   S lower[3][size], upper[3][size], padding[size];
   triangle_aabb<S> all;
-  std::uint32_t there;  ///< bit i: there is a triangle i, and it is finite
+  std::uint32_t there;  ///< bit i: there is a triangle i, and it is finite, and none that another one repeats
 
   /// How many groups the triangles of a mesh are.
   static std::size_t count(std::size_t triangles) { return (triangles + size - 1) / size; }
@@ -65,8 +65,8 @@ struct triangle_group {
     all.padding = least(padding, [](S a, S b) { return max(a, b); });
   }
 
-  /// True if there are as many triangles, and all are finite.
-  bool is_whole() const { return there == (1u << size) - 1; }
+  /// True if there is a triangle `i`, and it is finite.
+  bool has(std::uint32_t i) const { return (there >> i & 1) != 0; }
 
   /// The box of triangle `i`.
   triangle_aabb<S> box(std::uint32_t i) const {
@@ -116,6 +116,7 @@ struct triangle_group {
     }
     S each = 0;
     for (std::uint32_t i = 0; i < size; ++i) {
+      if (!has(i)) continue;
       S one = 1;
       for (int k = 0; k < 3; ++k) one *= upper[k][i] - lower[k][i] + 2 * g.dilation + g.width;
       each += one;

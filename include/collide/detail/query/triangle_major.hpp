@@ -47,7 +47,7 @@ struct query_triangle_major {
     pipeline.reset(s.pipeline, 0);
     s.count = 0;
     s.batch.size = 0;
-    std::size_t const begin = block.index() * Block::items, end = min(begin + Block::items, pipeline.mesh.size());
+    std::size_t const begin = block.index() * Block::items, end = min(begin + Block::items, in.mesh.mesh.size());
     bool const some_everywhere = in.ends[in.everywhere] != in.ends[in.everywhere + 1];
     for (std::size_t first = begin; first < end; first += n) {
       triangle_aabb<S> const& around = in.groups[first / n];
@@ -61,7 +61,7 @@ struct query_triangle_major {
       }
       if (near != together || some_everywhere) {
         load(s, first);
-        for (int g = 0; g < in.grid_count && s.group.is_whole(); ++g) {
+        for (int g = 0; g < in.grid_count; ++g) {
           if ((near & ~together) >> g & 1) together |= s.group.pays(in.grids[g]) ? 1u << g : 0;
         }
       }
@@ -80,7 +80,7 @@ struct query_triangle_major {
  private:
   template <class Scratch>
   void load(Scratch& s, std::size_t first) const {
-    if (!s.is_loaded) multiversioned([&] { s.group.load(pipeline.mesh, first); });
+    if (!s.is_loaded) multiversioned([&] { in.mesh.load(s.group, first / triangle_group<S>::size); });
     s.is_loaded = true;
   }
 
@@ -88,8 +88,8 @@ struct query_triangle_major {
   template <class Block>
   void look(Block& block, scratch<Block>& s, std::size_t first, std::uint32_t some) const {
     for (std::uint32_t k = 0; k < triangle_group<S>::size; ++k) {
+      if (!s.group.has(k)) continue;
       triangle_aabb<S> const around = s.group.box(k);
-      if (around.is_empty()) continue;  // not finite, or not there
       auto const look_into = [&](std::uint32_t cell, std::uint32_t n) {
         std::uint32_t const last = in.ends[cell + n];
         for (std::uint32_t i = in.ends[cell]; i < last; i += in.spheres.simd_width) {
@@ -150,14 +150,14 @@ struct query_triangle_major {
   template <class Block>
   [[gnu::noinline]] void test_group(Block& block, scratch<Block>& s) const {
     if (s.count == 0) return;
-    constexpr std::uint32_t n = triangle_group<S>::size, all = (1u << n) - 1;
     id const first = s.found[0].triangle;
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
       if constexpr (is_discrete<NarrowPhase, S> && filtered_predicate<NarrowPhase>::value) {
-        if (r.mask == all && s.group.is_inside(in.spheres[r.sphere])) {
-          for (std::uint32_t k = 0; k < n; ++k) {
-            pipeline.push_hit(block, s.pipeline, {in.spheres.number[r.sphere], first + k});
+        if (r.mask == s.group.there && s.group.is_inside(in.spheres[r.sphere])) {
+          for (std::uint32_t rest = r.mask; rest != 0; rest &= rest - 1) {
+            auto const k = static_cast<std::uint32_t>(__builtin_ctz(rest));
+            pipeline.push_hit(block, s.pipeline, {in.spheres.number[r.sphere], in.mesh.number_of(first + k)});
             pipeline.drain_if_full(block, s.pipeline);
           }
           continue;
@@ -174,7 +174,7 @@ struct query_triangle_major {
   template <class Block>
   void test_pair(Block& block, scratch<Block>& s, std::uint32_t place, id number,
                  [[maybe_unused]] triangle<S> const& t) const {
-    pair const p{in.spheres.number[place], number};
+    pair const p{in.spheres.number[place], in.mesh.number_of(number)};
     if constexpr (in_batches<NarrowPhase, S>) {
       if (s.batch.size == s.batch.room) s.batch.decide(pipeline, block, s.pipeline);
       s.batch.add(p, t, sphere_of(place));

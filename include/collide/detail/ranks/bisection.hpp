@@ -11,6 +11,7 @@
 #include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/numeric/float_bits.hpp>
+#include <collide/detail/numeric/repeating_box.hpp>
 #include <collide/ranks/ranks.hpp>
 
 namespace collide::detail {
@@ -57,6 +58,43 @@ struct brick_lookup {
     }
   }
 };
+
+/// Calls f(rank) for all ranks whose bricks a cube around the point meets, in rising order; once each, if space
+/// repeats.
+template <class S, class F>
+COLLIDE_HD void for_each_rank_near(brick_lookup const& to, open_space, S const* x, double reach, F const& f) {
+  to.for_each_rank(x, reach, f);
+}
+template <class S, class F>
+COLLIDE_HD void for_each_rank_near(brick_lookup const& to, repeating_box<S> const& space, S const* x, double reach,
+                                   F const& f) {
+  vec3<S> const at = space.inside(vec3<S>(x[0], x[1], x[2]));
+  // for each axis, three bits say for which lengths, 0, 1 or -1, a cube so far away meets what the cuts have left
+  struct node {
+    std::uint32_t number, lengths[3];
+  } waiting[32] = {{0, {7, 7, 7}}};
+  for (int n = 1; n > 0;) {
+    node const of = waiting[--n];
+    brick const& b = to.bricks[of.number];
+    if (b.ranks == 1) {
+      f(b.first);
+      continue;
+    }
+    std::uint32_t above = 0, below = 0;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      double const there = static_cast<double>(at[b.axis]) + (k == 2 ? -1.0 : double(k)) * space.length(b.axis);
+      if ((of.lengths[b.axis] >> k & 1) == 0) continue;
+      if (there + reach >= b.cut) above |= 1u << k;
+      if (there - reach <= b.cut) below |= 1u << k;
+    }
+    for (int side = 0; side < 2; ++side) {
+      if ((side == 0 ? above : below) == 0) continue;
+      node& next = waiting[n++] = of;
+      next.number = b.child + (side == 0 ? 1 : 0);
+      next.lengths[b.axis] = side == 0 ? above : below;
+    }
+  }
+}
 
 /// Bricks that cover all of space. A brick of several ranks is cut across its longest side, as often as there are ranks
 /// in it (M. J. Berger and S. H. Bokhari, "A partitioning strategy for nonuniform problems on multiprocessors", IEEE

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <collide/detail/ranks/contact_rows.hpp>
 #include <collide/detail/ranks/device_exchange_buffer.hpp>
 #include <collide/detail/ranks/divided_mesh.hpp>
 #include <collide/detail/ranks/particle_places.hpp>
@@ -36,6 +37,7 @@ class part_of_simulation {
   using state_type = typename Simulation::state_type;
   using effects_type = typename Simulation::effects_type;
   using all_columns = typename Simulation::columns;
+  using around_type = typename effects_type::space_type;
   /// Columns of copies: all that is read of a particle that another one meets.
   using seen_columns =
       union_of<typename effects_type::interaction, intersection_of<columns<radius, alive>, all_columns>>;
@@ -44,6 +46,17 @@ class part_of_simulation {
 
   static constexpr bool any_pair_contact = effects_type::any_pair_contact;
   static constexpr bool has_absent = contains<all_columns, alive>;
+
+  using remembered = typename effects_type::remembered;
+  static constexpr std::size_t contact_width =
+      remembered::size != 0 ? std::size_t(contact_values<S, remembered>::width) : 1;
+  static constexpr bool remembers_pairs = remembered::size != 0 && any_pair_contact;
+  static constexpr bool remembers_surfaces = remembered::size != 0 && effects_type::overlaps;
+  /// The memory of contacts, by numbers among all.
+  struct contact_rows {
+    std::vector<contact_row<S, contact_width>> pairs;
+    std::vector<contact_row<S, contact_width + 3>> surfaces;
+  };
 
   template <class... Argument>
   explicit part_of_simulation(Argument&&... arguments) : simulation_(std::forward<Argument>(arguments)...) {}
@@ -114,6 +127,15 @@ class part_of_simulation {
     simulation_.prepare();
     saved.restore_bodies(simulation_);
     simulation_.bodies_.place(numbers.bodies_are_placed != 0);
+    if constexpr (remembers_pairs || remembers_surfaces) {
+      contact_rows contacts;
+      std::vector<id> const every = first_ids(static_cast<std::size_t>(all.size));
+      if constexpr (remembers_pairs)
+        contacts.pairs = rows_of<contact_row<S, contact_width>>(saved.pair_contacts(), every);
+      if constexpr (remembers_surfaces)
+        contacts.surfaces = rows_of<contact_row<S, contact_width + 3>>(saved.surface_contacts(), every);
+      set_contacts(contacts);
+    }
     space().synchronize();
   }
 
@@ -129,6 +151,7 @@ class part_of_simulation {
   void begin_step(S dt) {
     simulation_.time_ += static_cast<double>(dt);
     simulation_.begin_step(dt);
+    knows_others_ = knows_others_ && effects().space() == around_;
     if (any_pair_contact && knows_others_ && own() != 0) look_for_moved();
   }
   /// Whether there are copies of all that this rank's own particles meet, as long as nothing has moved far.
@@ -155,12 +178,39 @@ class part_of_simulation {
   void settle_births(S dt) {
     if constexpr (any_pair_contact) {
       if (own() == 0) return;
-      simulation_.neighbours_.renew(space(), with_copies());
+      simulation_.neighbours_.renew(space(), with_copies(), effects().space());
       simulation_.settle_births(with_copies(), dt);
     }
   }
   /// Whether the next step knows what particles do to each other where it begins.
   bool knows_pair_forces() const { return simulation_.knows_pair_forces_; }
+
+  /// The memory of contacts of the rank's own particles. Waits.
+  contact_rows contacts() const {
+    contact_rows found;
+    if constexpr (remembers_pairs || remembers_surfaces) {
+      std::vector<id> const numbers = on_host<global_number>();
+      auto const& s = simulation_;
+      if constexpr (remembers_pairs)
+        found.pairs =
+            rows_of<contact_row<S, contact_width>>(s.neighbours_.save_contacts(s.space_, own() + copies_), numbers);
+      if constexpr (remembers_surfaces)
+        found.surfaces =
+            rows_of<contact_row<S, contact_width + 3>>(s.surfaces_.save_contacts(s.space_, own()), numbers);
+    }
+    return found;
+  }
+  /// Takes over what contacts remember, if lists of neighbours are to be made, and each place has its particle.
+  void set_contacts([[maybe_unused]] contact_rows const& from) {
+    if constexpr (remembers_pairs || remembers_surfaces) {
+      std::vector<id> const numbers = on_host<global_number>();
+      if constexpr (remembers_pairs)
+        simulation_.neighbours_.restore_contacts(space(), contacts_of(from.pairs, numbers));
+      if constexpr (remembers_surfaces)
+        simulation_.surfaces_.restore_contacts(space(), contacts_of(from.surfaces, numbers));
+      space().synchronize();
+    }
+  }
 
   /// A column of the rank's own particles on the host.
   template <class Column>
@@ -201,11 +251,24 @@ class part_of_simulation {
 
   /// Finds the particles that are to be on other ranks than `self`. Waits.
   void find_leaving(brick_lookup const& bricks, int self, int ranks, send_plan& found) {
-    found.find(space(), detail::find_leaving<S, state_type>{state(), bricks, self, ranks, {}}, own(), own(), ranks);
+    detail::find_leaving<S, state_type, around_type> const leaving{state(), effects().space(), bricks, self, ranks, {}};
+    found.find(space(), leaving, own(), own(), ranks);
   }
   /// Finds the particles of which other ranks than `self` must have copies. Waits.
   void find_copied(brick_lookup const& bricks, int self, int ranks, send_plan& found) {
-    found.find(space(), detail::find_copied<S, state_type>{state(), bricks, reach_, self, {}}, own(), own(), ranks);
+    detail::find_copied<S, state_type, around_type> const copied{state(), effects().space(), bricks, reach_, self, {}};
+    found.find(space(), copied, own(), own(), ranks);
+  }
+
+  /// Numbers of particles that leave, which rise, and where they go. Waits.
+  std::vector<std::pair<id, int>> new_ranks(send_plan const& leaving) const {
+    std::vector<pair> listed(leaving.size());
+    if (!listed.empty()) simulation_.space_.copy_to_host(listed.data(), leaving.data(), listed.size());
+    std::vector<id> const numbers = on_host<global_number>();
+    std::vector<std::pair<id, int>> found;
+    for (pair const& one : listed) found.emplace_back(numbers[one.triangle], static_cast<int>(one.sphere));
+    std::sort(found.begin(), found.end());
+    return found;
   }
 
   /// Takes the rows of particles that leave.
@@ -239,6 +302,7 @@ class part_of_simulation {
     last_centres_.reserve(resource, 3 * capacity_);
     if constexpr (has_absent) last_there_.reserve(resource, capacity_);
     space().for_each(own(), keep_places<S, state_type>{simulation_.state_, last()});
+    around_ = effects().space();
     knows_others_ = true;
   }
 
@@ -295,6 +359,9 @@ class part_of_simulation {
     reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
     copies_ = 0;
     knows_others_ = false;
+    if constexpr (remembers_pairs)
+      simulation_.neighbours_.clear(space(), room, radii.range.largest, radii.range.smallest);
+    if constexpr (remembers_surfaces) simulation_.surfaces_.clear(space(), room);
   }
 
   /// Moves the last particles to the places of those that have left, from the `filled`-th on.
@@ -354,13 +421,15 @@ class part_of_simulation {
     std::uint32_t* const flag = flag_.reserve(space().resource(), 1);
     space().fill(flag, 0, sizeof *flag);
     // half of the skin, but for rounding
-    space().for_each(own(), find_moved<S, state_type>{simulation_.state_, last(), S(0.495) * skin_, flag});
+    find_moved<S, state_type, around_type> const moved{state(), effects().space(), last(), S(0.495) * skin_, flag};
+    space().for_each(own(), moved);
   }
 
   last_places<S> last() const { return {last_centres_.data(), last_there_.data()}; }
 
   Simulation simulation_;
   std::size_t capacity_ = 0, copies_ = 0;
+  around_type around_{};       ///< the space when ranks last exchanged some
   bool knows_others_ = false;  ///< there are copies of all that its own may meet, as long as nothing moves far
   S skin_ = 0;
   double reach_ = 0;

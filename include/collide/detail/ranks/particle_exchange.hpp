@@ -2,8 +2,10 @@
 /// How particles go from rank to rank, and what ranks tell each other of them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <collide/detail/ranks/bisection.hpp>
@@ -31,7 +33,8 @@ class particle_exchange {
   template <class Ranks>
   void exchange(Ranks const& ranks, Part& part) {
     divide(ranks, part);
-    move(ranks, part);
+    typename Part::contact_rows contacts;
+    move(ranks, part, contacts);
     together(ranks, [&] {
       part.find_copied(lookup_, ranks.rank(), ranks.size(), copied_);
       sent_.counts = copied_.counts();
@@ -42,6 +45,7 @@ class particle_exchange {
     together(ranks, [&] {
       device_exchange_of<Ranks>(ranks, part.space()).expect(received_);
       part.expect_copies(received_.size());
+      part.set_contacts(contacts);
       pack(ranks, part);
     });
   }
@@ -83,16 +87,28 @@ class particle_exchange {
     is_divided_ = true;
   }
 
-  /// Brings particles to where they are to be. What this takes is not kept.
+  /// Brings particles to where they are to be, and finds what contacts of those that are then here remember. What this
+  /// takes is not kept.
   template <class Ranks>
-  void move(Ranks const& ranks, Part& part) {
+  void move(Ranks const& ranks, Part& part, [[maybe_unused]] typename Part::contact_rows& contacts) {
     send_plan leaving;
     device_exchange_buffer<all_row> going, coming;
+    [[maybe_unused]] std::vector<std::pair<id, int>> ranks_of;
     together(ranks, [&] {
       part.find_leaving(lookup_, ranks.rank(), ranks.size(), leaving);
       part.pack_all(leaving, going);
+      if constexpr (Part::remembers_pairs || Part::remembers_surfaces) {
+        contacts = part.contacts();
+        ranks_of = part.new_ranks(leaving);
+      }
     });
     deliver(ranks, part.space(), going, coming);
+    auto const rank_of = [&](id number) {
+      auto const found = std::lower_bound(ranks_of.begin(), ranks_of.end(), std::pair<id, int>(number, 0));
+      return found != ranks_of.end() && found->first == number ? found->second : ranks.rank();
+    };
+    if constexpr (Part::remembers_pairs) deliver_rows(ranks, contacts.pairs, rank_of);
+    if constexpr (Part::remembers_surfaces) deliver_rows(ranks, contacts.surfaces, rank_of);
     together(ranks, [&] { part.replace(leaving, coming); });
   }
 

@@ -32,9 +32,6 @@ constexpr bool check_on_ranks() {
   static_assert(!has_begin_step<E, Space, State, S>::value || begins_on_ranks<E>,
                 "collide: an effect's begin_step sees the places of one rank alone: if it does the same to particles "
                 "wherever they are, the effect says static constexpr bool begins_on_ranks = true");
-  static_assert(remembers_of<E>::type::size == 0,
-                "collide: what contacts remember does not go from rank to rank: on ranks, name granular_contact with "
-                "laws that remember nothing, such as dashpot");
   return true;
 }
 
@@ -70,6 +67,22 @@ struct number_places {
   }
 };
 
+/// The position of a particle, in the box if space repeats.
+template <class S>
+COLLIDE_HD_INLINE vec3<S> inside(open_space, S const* x) {
+  return {x[0], x[1], x[2]};
+}
+template <class S>
+COLLIDE_HD_INLINE vec3<S> inside(repeating_box<S> const& space, S const* x) {
+  return space.inside(vec3<S>(x[0], x[1], x[2]));
+}
+template <class S>
+COLLIDE_HD_INLINE void bring_together(open_space, vec3<S>&, vec3<S>&) {}
+template <class S>
+COLLIDE_HD_INLINE void bring_together(repeating_box<S> const& space, vec3<S>& a, vec3<S>& b) {
+  space.bring_together(a, b);
+}
+
 /// Positions of particles, and whether they were there, when ranks last exchanged some.
 template <class S>
 struct last_places {
@@ -90,9 +103,10 @@ struct keep_places {
 };
 
 /// Kernel functor of `for_each` over particles: sets a flag if one has come, or moved too far.
-template <class S, class State>
+template <class S, class State, class Space>
 struct find_moved {
   State state;
+  Space space;
   last_places<S> last;
   S most;
   std::uint32_t* flag;
@@ -103,9 +117,10 @@ struct find_moved {
       if (last.there[i] == 0) return store_relaxed(flag, 1u);
     }
     S const *const x = state.at(position{}) + 3 * i, *const before = last.centres + 3 * i;
-    vec3<S> const now(x[0], x[1], x[2]);
+    vec3<S> now = inside(space, x), then = inside(space, before);
     if (!is_finite(now)) return;
-    vec3<S> const moved(now.x() - before[0], now.y() - before[1], now.z() - before[2]);
+    bring_together(space, now, then);
+    vec3<S> const moved = now - then;
     bool const stayed = is_finite(moved) && dot(moved, moved) <= mul_rn(most, most);
     if (!stayed) store_relaxed(flag, 1u);
   }
@@ -148,9 +163,10 @@ struct count_somewhere {
 
 /// Kernel functor of `for_each` over particles: lists those that are to be on other ranks. Free places are on all ranks
 /// alike; what is nowhere stays.
-template <class S, class State>
+template <class S, class State, class Space>
 struct find_leaving {
   State state;
+  Space space;
   brick_lookup bricks;
   int self, ranks;
   output to;
@@ -158,7 +174,7 @@ struct find_leaving {
   COLLIDE_HD void operator()(std::size_t i) const {
     int rank = self;
     if (is_somewhere(state, i)) {
-      rank = bricks.rank_at(state.at(position{}) + 3 * i);
+      rank = bricks.rank_at(inside(space, state.at(position{}) + 3 * i).data());
     } else if (!is_there(state, i)) {
       std::uint64_t const number = state.at(global_number{})[i];
       rank = static_cast<int>(number * static_cast<std::uint64_t>(ranks) / state.all_size);
@@ -168,9 +184,10 @@ struct find_leaving {
 };
 
 /// Kernel functor of `for_each` over particles: lists those that are near the bricks of other ranks.
-template <class S, class State>
+template <class S, class State, class Space>
 struct find_copied {
   State state;
+  Space space;
   brick_lookup bricks;
   double reach;
   int self;
@@ -178,7 +195,7 @@ struct find_copied {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     if (!is_somewhere(state, i)) return;
-    bricks.for_each_rank(state.at(position{}) + 3 * i, reach, [&](int rank) {
+    for_each_rank_near(bricks, space, state.at(position{}) + 3 * i, reach, [&](int rank) {
       if (rank != self) add_send(to, rank, i);
     });
   }

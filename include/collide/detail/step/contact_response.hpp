@@ -10,7 +10,8 @@
 #include <cstdint>
 
 #include <collide/detail/step/contact_search.hpp>
-#include <collide/detail/step/mesh_ledger.hpp>
+#include <collide/detail/step/integrate.hpp>
+#include <collide/detail/step/wedge.hpp>
 
 namespace collide::detail {
 
@@ -36,7 +37,6 @@ struct contact_response {
   using scratch = typename search_type::template scratch<Block>;
 
   static constexpr bool is_swept = Context::is_swept;
-  static constexpr bool has_bodies = search_type::has_bodies;
   static constexpr bool spins = contains<typename effects_type::all, angular_velocity>;
   static constexpr int max_contacts_per_step = is_swept ? 8 : 4;  ///< of a particle
 
@@ -119,28 +119,10 @@ struct contact_response {
 
   /// Lets the effects respond to a contact, and says in `a` whether to look for another one.
   COLLIDE_HD_INLINE void apply_contact(colliding& p, active& a) const {
+    constexpr bool turns = spins || contains<typename effects_type::all, adhered>;
+    auto const& mesh = context.triangles.mesh;
     S const time = time_of_key<S>(a.best_key);
-    if constexpr (has_bodies) {
-      auto const& mesh = context.triangles.mesh;
-      contact<S> const c = a.best_contact();
-      int const frame = mesh.frame_of(c.triangle);
-      double const part = part_done(mesh, a, time);
-      auto const whole = mesh.seen_from(frame, a.shape(), part_done(mesh, a));
-      sphere<S> here = sphere_at(whole, time);
-      vec3<S> const own = here.centre;
-      here.centre = !is_swept ? a.shape().centre : mesh.in_world(frame, own, part);
-      auto seen = seen_in_world(mesh, a, frame, whole, part);
-      if constexpr (is_swept) seen.drift = mesh.in_world(frame, whole.centre, part) - a.shape().centre;
-      constexpr bool turns = spins || contains<typename effects_type::all, adhered>;
-      apply_contact_at(p, a, time, here, surface_of<turns, active>(mesh, c, own, here.centre, part), seen);
-    } else {
-      apply_contact_at(p, a, time, sphere_at(a.shape(), time), surface_at_rest{}, seen_at_rest{});
-    }
-  }
-
-  template <class Surface, class Seen>
-  COLLIDE_HD_INLINE void apply_contact_at(colliding& p, active& a, S time, sphere<S> const& here,
-                                          Surface const& surface, Seen seen) const {
+    auto [here, surface, seen] = touch_at<turns>(mesh, a, a.best_contact(), time);
     vec3<S> const velocity_before = p[velocity{}];
     [[maybe_unused]] vec3<S> spin_before;
     if constexpr (spins) spin_before = p[angular_velocity{}];
@@ -154,12 +136,12 @@ struct contact_response {
     surface.to_surface_frame(p);
     // how deep when the step began: what is pushed out farther than it came in may then touch what it did not before
     S const depth_at_start = c.depth + dot(c.normal, vec3<S>(here.centre - c.start)), depth = c.depth;
-    if constexpr (has_bodies) seen.velocity = c.velocity_before;
-    a.project_onto_contacts(c, velocity_before, seen);
+    seen.velocity = c.velocity_before;
+    project_onto_contacts(a, c, velocity_before, seen);
     context.effects.on_mesh_contact(p, c, context.dt);
     a.offset_start(c, min(depth_at_start, S(depth - c.depth)));
     surface.record_contact(a, c);
-    if constexpr (has_bodies) a.is_held = p[velocity{}] == vec3<S>(S(0), S(0), S(0));
+    a.is_held = p[velocity{}] == vec3<S>(S(0), S(0), S(0));
     surface.to_world_frame(p);
     if constexpr (effects_type::any_mesh_impulse) {
       vec3<S> const& v = p[velocity{}];
@@ -168,18 +150,18 @@ struct contact_response {
       if constexpr (spins) given.spin_change = p[angular_velocity{}] - spin_before;
       book(context, p, given);
     }
-    if constexpr (has_bodies && contains<typename effects_type::all, slow_steps>) {
-      if (context.triangles.mesh.frames[surface.frame].moves) p[slow_steps{}] = carried_by_moving;
+    if constexpr (contains<typename effects_type::all, slow_steps>) {
+      if (surface.is_of_moving_body(mesh)) p[slow_steps{}] = carried_by_moving;
     }
     a.is_active = a.contact_count < max_contacts_per_step;
     if constexpr (is_swept) {
       a.place(p[position{}], p[velocity{}] * a.remaining_time);
       bool const is_repelled = dot(c.normal, vec3<S>(p[velocity{}] - velocity_before)) > 0;
-      if (!is_repelled && a.is_approaching(c.normal, seen_now(a, surface.frame))) {  // it goes through
+      if (!is_repelled && is_approaching_still(a, c)) {  // it goes through
         p[position{}] += p[velocity{}] * a.remaining_time;
         a.is_active = false;
-      } else if constexpr (has_bodies) {
-        if (!a.is_active) attach_to_body(p, a, surface.frame);
+      } else if (!a.is_active) {
+        surface.carry(mesh, p, a);
       }
     } else {
       a.place(p[position{}], p[velocity{}]);
@@ -188,34 +170,22 @@ struct contact_response {
     if constexpr (effects_type::any_inactive) a.is_active = a.is_active && !context.effects.is_inactive(p);
   }
 
-  /// How a swept particle moves for the rest of the step, as the surface of a body sees it.
-  COLLIDE_HD_INLINE auto seen_now([[maybe_unused]] active const& a, [[maybe_unused]] int frame) const {
-    if constexpr (has_bodies) {
-      auto const& mesh = context.triangles.mesh;
-      double const part = part_done(mesh, a);
-      return seen_in_world(mesh, a, frame, mesh.seen_from(frame, a.shape(), part), part);
-    } else {
-      return seen_at_rest{};
-    }
-  }
-
-  /// Leaves a particle, for the rest of the step, where it is on a body.
-  COLLIDE_HD_INLINE void attach_to_body(colliding& p, active const& a, int frame) const {
+  /// True if a swept particle approaches a surface in the rest of the step.
+  COLLIDE_HD_INLINE bool is_approaching_still(active const& a, mesh_contact<S> const& c) const {
     auto const& mesh = context.triangles.mesh;
-    sphere<S> const there = mesh.seen_from(frame, a.shape(), part_done(mesh, a));
-    p[position{}] = mesh.in_world(frame, there.centre, 1);
+    auto const frame = frame_of(mesh, c.triangle);
+    return a.is_approaching(c.normal, motion_seen(mesh, a, frame, shape_seen(mesh, a, frame)));
   }
 
   /// A particle's next contact as effects see it.
   template <class Surface>
   COLLIDE_HD_INLINE mesh_contact<S> contact_for_effects(colliding const& p, active const& a,
                                                         Surface const& surface) const {
-    vec3<S> const arrival =
-        surface.velocity_seen(vec3<S>(a.arrival_velocity[0], a.arrival_velocity[1], a.arrival_velocity[2]));
+    vec3<S> const arrival = surface.velocity_seen(a.arrival_velocity.get());
     mesh_contact<S> c{};
     static_cast<contact<S>&>(c) = a.best_contact();
     c.sphere = number_of(p);
-    c.start = surface.start_seen(vec3<S>(a.start[0], a.start[1], a.start[2]));
+    c.start = surface.start_seen(a.start.get());
     if constexpr (!is_swept) {
       c.elapsed = context.dt;
       face_against(c, arrival);
@@ -231,9 +201,7 @@ struct contact_response {
   }
 
   COLLIDE_HD_INLINE void end_step(colliding& p, active const& a) const {
-    bool is_held = a.contact_count > 0 && p[velocity{}] == vec3<S>(S(0), S(0), S(0));
-    if constexpr (has_bodies) is_held = a.contact_count > 0 && a.is_held;
-    end_motion(context, p, is_held);
+    end_motion(context, p, a.contact_count > 0 && a.is_held);
     if constexpr (!effects_type::ends_after_meeting) end_particle(context, p);
   }
 };

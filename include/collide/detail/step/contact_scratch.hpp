@@ -8,6 +8,7 @@
 #include <collide/detail/execution/block.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/step/active_particle.hpp>
+#include <collide/detail/step/surface_at_rest.hpp>
 
 namespace collide::detail {
 
@@ -52,9 +53,6 @@ struct contact_queues {
 struct span_counts {
   std::uint32_t spans, unfinished;
 };
-
-/// The frame of what rests, where there is no other.
-struct only_frame {};
 
 /// In which frames the candidates of spans are.
 template <bool HasBodies>

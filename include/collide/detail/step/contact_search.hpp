@@ -15,7 +15,7 @@
 #include <collide/detail/narrow_phase/traits.hpp>
 #include <collide/detail/step/contact_scratch.hpp>
 #include <collide/detail/step/mesh_contact.hpp>
-#include <collide/detail/step/surface_motion.hpp>
+#include <collide/detail/step/moving_surface.hpp>
 
 namespace collide::detail {
 
@@ -124,29 +124,15 @@ struct contact_search {
     }
   }
 
-  /// The sphere of a particle in the frame of a triangle's body, or in a frame.
-  static COLLIDE_HD_INLINE shape shape_seen([[maybe_unused]] mesh_type const& mesh, active const& a,
-                                            [[maybe_unused]] id number) {
-    if constexpr (has_bodies) {
-      return shape_in(mesh, a, mesh.frame_of(number));
-    } else {
-      return a.shape();
-    }
-  }
-  static COLLIDE_HD_INLINE shape shape_in(mesh_type const&, active const& a, only_frame) { return a.shape(); }
-  static COLLIDE_HD_INLINE shape shape_in([[maybe_unused]] mesh_type const& mesh, active const& a,
-                                          [[maybe_unused]] int frame) {
-    if constexpr (has_bodies) {
-      return mesh.seen_from(frame, a.shape(), part_done(mesh, a));
-    } else {
-      return a.shape();
-    }
+  /// The sphere of a particle in the frame of a triangle's body.
+  static COLLIDE_HD_INLINE shape shape_at(mesh_type const& mesh, active const& a, id number) {
+    return shape_seen(mesh, a, frame_of(mesh, number));
   }
 
   template <class Block>
   COLLIDE_HD_INLINE span span_of(scratch<Block>& s, std::uint32_t i) const {
     active& a = s.particles[s.particle_of_span[i]];
-    shape const whole = shape_in(triangles.mesh, a, s.frame(i));
+    shape const whole = shape_seen(triangles.mesh, a, s.frame(i));
     shape part = whole;
     if constexpr (is_swept && Block::num_threads == 1) clip_to_best(a, part);
     return {s.particle_of_span[i],
@@ -185,7 +171,7 @@ struct contact_search {
         if (i >= n) return;
         id const number = q.candidates.triangles[i];
         active const& a = s.particles[q.candidates.particles[i]];
-        shape const whole = shape_seen(triangles.mesh, a, number);
+        shape const whole = shape_at(triangles.mesh, a, number);
         if (!may_touch(whole, number) || is_leaving(a, number, whole)) return;
         verdict const quick = filter<NarrowPhase>(triangles.mesh[number], whole);
         if (quick == verdict::miss) return;
@@ -207,7 +193,7 @@ struct contact_search {
       consider_all(block, s, n, [&](active& a, id number, std::uint32_t i, contact<S>& found) {
         bool const is_sure = q.verdicts[i] == packed(verdict::hit);
         verdict const quick =
-            try_contact_double(triangles.mesh[number], shape_seen(triangles.mesh, a, number), is_sure, found);
+            try_contact_double(triangles.mesh[number], shape_at(triangles.mesh, a, number), is_sure, found);
         if (quick == verdict::uncertain) {
           block.add(q.unsure_count, 1);
           return no_contact;
@@ -269,7 +255,7 @@ struct contact_search {
   template <class Block>
   static COLLIDE_HD_NOINLINE std::uint64_t compute_contact(active& a, mesh_type mesh, id number, bool is_sure,
                                                            contact<S>& found) {
-    return contact_key_of<Block>(a, mesh, mesh[number], shape_seen(mesh, a, number), is_sure, number, found);
+    return contact_key_of<Block>(a, mesh, mesh[number], shape_at(mesh, a, number), is_sure, number, found);
   }
   template <class Block>
   static COLLIDE_HD_INLINE std::uint64_t contact_key_of(active& a, mesh_type const& mesh, triangle<S> const& t,
@@ -283,14 +269,10 @@ struct contact_search {
     return consider<Block>(a, mesh, s, time, found);
   }
 
-  /// Whether a particle, of which this is what is seen, leaves a triangle that it has touched.
-  COLLIDE_HD_INLINE bool is_leaving(active const& a, id number, [[maybe_unused]] shape const& whole) const {
-    if constexpr (has_bodies && is_swept) {
-      auto const& mesh = triangles.mesh;
-      return a.is_leaving(number, seen_in_world(mesh, a, mesh.frame_of(number), whole, part_done(mesh, a)));
-    } else {
-      return a.is_leaving(number);
-    }
+  /// Whether a particle, which is `whole` in the frame of a triangle, leaves that after it has touched it.
+  COLLIDE_HD_INLINE bool is_leaving(active const& a, id number, shape const& whole) const {
+    auto const& mesh = triangles.mesh;
+    return is_swept && a.is_leaving(number, motion_seen(mesh, a, frame_of(mesh, number), whole));
   }
 
   /// Considers a contact, in the frame of its triangle, as the next one of a particle. Returns its key, or `no_contact`
@@ -299,19 +281,7 @@ struct contact_search {
   template <class Block>
   static COLLIDE_HD_INLINE std::uint64_t consider(active& a, mesh_type const& mesh, shape const& whole, S time,
                                                   contact<S>& c) {
-    if constexpr (has_bodies) {
-      int const frame = mesh.frame_of(c.triangle);
-      double const part = part_done(mesh, a, time);
-      auto seen = seen_in_world(mesh, a, frame, whole, part);
-      seen.own_point = c.point;
-      mesh.to_world(c, frame, part);
-      return consider_seen<Block>(a, time, c, seen);
-    } else {
-      return consider_seen<Block>(a, time, c, seen_at_rest{});
-    }
-  }
-  template <class Block, class Seen>
-  static COLLIDE_HD_INLINE std::uint64_t consider_seen(active& a, S time, contact<S> const& c, Seen const& seen) {
+    auto const seen = contact_in_world(mesh, a, whole, time, c);
     if (a.is_internal_contact(c.point, seen)) return no_contact;
     if constexpr (is_swept) {
       if (!a.is_approaching(c.normal, seen) && !(time == 0 && a.overlaps(c.depth))) return no_contact;

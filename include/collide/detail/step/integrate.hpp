@@ -1,5 +1,6 @@
 /// \file
-/// Time integration: moves particles, some at a time, and asks which of them may touch the mesh.
+/// Time integration: the half kicks of a step, and the motion of particles, some at a time, up to where they may touch
+/// the mesh.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +16,91 @@
 #pragma GCC diagnostic ignored "-Wsign-conversion"
 
 namespace collide::detail {
+
+/// The part of a step's acceleration with which it begins: what the mesh held at the end of the last step still has to
+/// get the second half of that.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE auto first_kick([[maybe_unused]] Particle const& p) {
+  if constexpr (contains<typename Particle::list, held>) {
+    return p[held{}] == 1 ? Context::kick_before + Context::kick_after : Context::kick_before;
+  } else {
+    return Context::kick_before;
+  }
+}
+
+/// The beginning of a particle's step. Returns for how long all accelerate it in the first kick: 0 if the mesh holds
+/// it.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
+  using S = typename Context::scalar;
+  if constexpr (Context::effects_type::keeps_support) {
+    auto const n = S(steps_in_mean(p[slow_steps{}]));
+    for_each_support(p, [&](vec3<S>& of, std::uint8_t& by) {
+      of = of * ((n - 1) / n);
+      if (n == 1) by = 0;
+    });
+  }
+  S const kick = first_kick<Context>(p);
+  if constexpr (Context::effects_type::adheres) {
+    if (p[adhered{}] != 0 && hold_adhered(context, p, kick)) return S(0);
+  }
+  if constexpr (contains<typename Particle::list, held>) p[held{}] = 0;
+  return kick;
+}
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void begin_particle(Context const& context, Particle& p) {
+  auto const kick = begin_with_kick(context, p);
+  if (kick != 0) context.effects.accelerate(p, kick * context.dt);
+}
+
+/// Says that a particle has come to the end of its step, and whether the mesh `holds` it there.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[maybe_unused]] Particle& p,
+                                  [[maybe_unused]] bool holds) {
+  if constexpr (Context::effects_type::adheres && Context::has_bodies && Context::is_swept) {
+    if (int const frame = frame_ridden(p)) {
+      auto const& f = context.triangles.mesh.frames[frame];
+      using S = typename Context::scalar;
+      vec3<S> const before = p[velocity{}];
+      p[velocity{}] = rounded_to<S>(velocity_at(f.moving, f.now, p[position{}].template cast<double>()));
+      if (p.number < context.state.size) book_held(context, p, p[velocity{}] - before);
+    }
+  }
+  if constexpr (contains<typename Particle::list, held>) {
+    if constexpr (Context::effects_type::adheres) {
+      if (p[held{}] == 2 && p[adhered{}] != 0) return;  // it stuck all the time
+    }
+    p[held{}] = holds;
+  }
+}
+
+/// The part of a step's acceleration with which it ends, of a particle that the mesh does not hold.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE auto last_kick([[maybe_unused]] Particle const& p) {
+  if constexpr (contains<typename Particle::list, held>) {
+    return p[held{}] == 1 ? typename Context::scalar(0) : Context::kick_after;
+  } else {
+    return Context::kick_after;
+  }
+}
+
+/// The end of a particle's step: the second kick, and what effects do last.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void end_particle(Context const& context, Particle& p) {
+  if constexpr (Context::kick_after != 0) {
+    int by = 0;
+    if constexpr (contains<typename Particle::list, held>) by = p[held{}];
+    if (by == 0) context.effects.accelerate(p, Context::kick_after * context.dt);
+    if constexpr (Context::effects_type::adheres) {
+      if (by == 2) {
+        Particle next = p;
+        context.effects.accelerate(next, Context::kick_after * context.dt);
+        book_held(context, p, p[velocity{}] - next[velocity{}]);
+      }
+    }
+  }
+  context.effects.end_step(p, context.dt);
+}
 
 /// Bit k is set if shape k may touch a triangle. `triangles` is a look-up that is opened.
 template <class Triangles, class Shape, int N>

@@ -1,6 +1,6 @@
 /// \file
 /// The ledger of what the mesh gives to particles, whether they touch it, stick to it, or sleep on it: the one place
-/// where effects are told of it. And the half kicks of a step.
+/// where effects are told of it.
 #pragma once
 
 #include <collide/detail/bodies/moving_mesh.hpp>
@@ -122,17 +122,6 @@ COLLIDE_HD_INLINE ridden_surface surface_ridden([[maybe_unused]] Context const& 
   return s;
 }
 
-/// The part of a step's acceleration with which it begins: what the mesh held at the end of the last step still has to
-/// get the second half of that.
-template <class Context, class Particle>
-COLLIDE_HD_INLINE auto first_kick([[maybe_unused]] Particle const& p) {
-  if constexpr (contains<typename Particle::list, held>) {
-    return p[held{}] == 1 ? Context::kick_before + Context::kick_after : Context::kick_before;
-  } else {
-    return Context::kick_before;
-  }
-}
-
 /// Tells the effects what the mesh gives to a particle that sticks to it.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void book_held(Context const& context, Particle& p, vec3<typename Context::scalar> const& change) {
@@ -141,10 +130,10 @@ COLLIDE_HD_INLINE void book_held(Context const& context, Particle& p, vec3<typen
   book(context, p, {change, none, p[position{}], none, p[velocity{}], no_id, body_of_frame(frame_ridden(p))});
 }
 
-/// Lets the mesh hold a particle that sticks to it, against what would change its velocity in the step. False if that
-/// pulls it off: then it is free.
+/// Lets the mesh hold a particle that sticks to it, against what would change its velocity in the step, of which it
+/// gets a part at first. False if that pulls it off: then it is free.
 template <class Context, class Particle>
-COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p) {
+COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p, typename Context::scalar first_part) {
   using S = typename Context::scalar;
   auto& v = p[velocity{}];
   ridden_surface const surface = surface_ridden(context, p[position{}], frame_ridden(p));
@@ -156,85 +145,11 @@ COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p) {
     p[adhered{}] = 0;
     return false;
   }
-  vec3<double> const given = surface.drift - own - scaled(by, static_cast<double>(first_kick<Context>(p)));
+  vec3<double> const given = surface.drift - own - scaled(by, static_cast<double>(first_part));
   v = rounded_to<S>(surface.drift);
   if (p.number < context.state.size) book_held(context, p, rounded_to<S>(given));  // behind are places of none
   if constexpr (contains<typename Particle::list, held>) p[held{}] = 2;
   return true;
-}
-
-/// The beginning of a particle's step. Returns for how long all accelerate it in the first kick: 0 if the mesh holds
-/// it.
-template <class Context, class Particle>
-COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
-  using S = typename Context::scalar;
-  if constexpr (Context::effects_type::keeps_support) {
-    auto const n = S(steps_in_mean(p[slow_steps{}]));
-    for_each_support(p, [&](vec3<S>& of, std::uint8_t& by) {
-      of = of * ((n - 1) / n);
-      if (n == 1) by = 0;
-    });
-  }
-  if constexpr (Context::effects_type::adheres) {
-    if (p[adhered{}] != 0 && hold_adhered(context, p)) return S(0);
-  }
-  S const kick = first_kick<Context>(p);
-  if constexpr (contains<typename Particle::list, held>) p[held{}] = 0;
-  return kick;
-}
-template <class Context, class Particle>
-COLLIDE_HD_INLINE void begin_particle(Context const& context, Particle& p) {
-  auto const kick = begin_with_kick(context, p);
-  if (kick != 0) context.effects.accelerate(p, kick * context.dt);
-}
-
-/// Says that a particle has come to the end of its step, and whether the mesh `holds` it there.
-template <class Context, class Particle>
-COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[maybe_unused]] Particle& p,
-                                  [[maybe_unused]] bool holds) {
-  if constexpr (Context::effects_type::adheres && Context::has_bodies && Context::is_swept) {
-    if (int const frame = frame_ridden(p)) {
-      auto const& f = context.triangles.mesh.frames[frame];
-      using S = typename Context::scalar;
-      vec3<S> const before = p[velocity{}];
-      p[velocity{}] = rounded_to<S>(velocity_at(f.moving, f.now, p[position{}].template cast<double>()));
-      if (p.number < context.state.size) book_held(context, p, p[velocity{}] - before);
-    }
-  }
-  if constexpr (contains<typename Particle::list, held>) {
-    if constexpr (Context::effects_type::adheres) {
-      if (p[held{}] == 2 && p[adhered{}] != 0) return;  // it stuck all the time
-    }
-    p[held{}] = holds;
-  }
-}
-
-/// The part of a step's acceleration with which it ends, of a particle that the mesh does not hold.
-template <class Context, class Particle>
-COLLIDE_HD_INLINE auto last_kick([[maybe_unused]] Particle const& p) {
-  if constexpr (contains<typename Particle::list, held>) {
-    return p[held{}] == 1 ? typename Context::scalar(0) : Context::kick_after;
-  } else {
-    return Context::kick_after;
-  }
-}
-
-/// The end of a particle's step: the second kick, and what effects do last.
-template <class Context, class Particle>
-COLLIDE_HD_INLINE void end_particle(Context const& context, Particle& p) {
-  if constexpr (Context::kick_after != 0) {
-    int by = 0;
-    if constexpr (contains<typename Particle::list, held>) by = p[held{}];
-    if (by == 0) context.effects.accelerate(p, Context::kick_after * context.dt);
-    if constexpr (Context::effects_type::adheres) {
-      if (by == 2) {
-        Particle next = p;
-        context.effects.accelerate(next, Context::kick_after * context.dt);
-        book_held(context, p, p[velocity{}] - next[velocity{}]);
-      }
-    }
-  }
-  context.effects.end_step(p, context.dt);
 }
 
 }  // namespace collide::detail

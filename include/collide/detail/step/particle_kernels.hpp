@@ -5,8 +5,8 @@
 #include <cstddef>
 
 #include <collide/detail/particles/particle.hpp>
+#include <collide/detail/step/integrate.hpp>
 #include <collide/detail/step/mesh_contact.hpp>
-#include <collide/detail/step/mesh_ledger.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {

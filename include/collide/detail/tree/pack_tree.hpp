@@ -156,10 +156,19 @@ class packed_tree {
     std::uint64_t* const places = places_.reserve(space.resource(), 2 * n);
     id* const ids = ids_.reserve(space.resource(), 2 * n);
     space.for_each(n, find_places<S>{mesh, summary, places, ids});
-    id const* const sorted = sort(space, places, ids, n);
+    sorted_ = sort(space, places, ids, n);
     tree_levels const l(n);
-    tree_node* const nodes = memory.reserve(space.resource(), l.nodes);
-    space.for_each(l.count[0], pack_triangles_in_nodes<S>{mesh, sorted, nodes + l.first[0], l.above(0)});
+    memory.reserve(space.resource(), l.nodes);
+    refit(space, mesh, memory);
+  }
+
+  /// Makes the boxes of a mesh with as many triangles as that of the last build, in the order that they had.
+  /// O(triangles); allocates nothing.
+  template <class Space>
+  void refit(Space& space, mesh_view<S> const& mesh, buffer<tree_node>& memory) {
+    tree_levels const l(mesh.size());
+    tree_node* const nodes = memory.data();
+    space.for_each(l.count[0], pack_triangles_in_nodes<S>{mesh, sorted_, nodes + l.first[0], l.above(0)});
     for (int k = 1; k < l.levels; ++k)
       space.for_each(l.count[k], pack_nodes{nodes, l.first[k], l.first[k - 1], l.count[k - 1], l.above(k)});
   }
@@ -182,6 +191,7 @@ class packed_tree {
     }
   }
 
+  id const* sorted_ = nullptr;  ///< triangles in order
   buffer<mesh_statistics<S>> summary_;
   buffer<std::uint64_t> places_;
   buffer<id> ids_;

@@ -204,16 +204,37 @@ class sah_tree {
     auto const* const end =
         std::partition(all_, all_ + n, [](boxed_triangle const& t) { return !t.box.box().is_empty(); });
     auto const finite = static_cast<std::uint32_t>(end - all_);
+    leaves_out_ = finite != n;
     if (finite == 0) return false;
     nodes_ = memory.reserve(space.resource(), most_nodes(finite));
-    if (is_cut_) before_.reserve(space.resource(), most_nodes(finite));
+    if (is_cut_) {
+      before_.reserve(space.resource(), most_nodes(finite));
+      piece_of_.reserve(space.resource(), width * most_nodes(finite));
+    }
     used_ = 1;
     tasks_ = 0;
     nodes_[0].parent = nodes_[0].slot = 0;
     most_at_once_ = max(finite / 64, 4096u);
+    waiting_.reserve(space.resource(), most_tasks);
     task const root{range_divider(all_).range_of(0, finite), 0, 0};
     build_node(root, true);
-    for_each_block(space, tasks_, [&](std::size_t i) { build_node(waiting_[i], false); });
+    for_each_block(space, tasks_, [&](std::size_t i) { build_node(waiting_.data()[i], false); });
+    return true;
+  }
+
+  /// As `build`, of a mesh with as many triangles as the last one, which have moved: the tree stays, and its boxes
+  /// follow. O(triangles); allocates nothing, but where some triangle was not finite: then it builds.
+  template <class Space>
+  bool refit(Space& space, mesh_view<S> const& mesh, buffer<tree_node>& memory) {
+    if (leaves_out_) return build(space, mesh, memory);
+    if (is_cut_) pieces_.refit(space, mesh);
+    vec3<S> const origin = tree_origin(mesh);
+    space.for_each(used_, [&](std::size_t i) { move_leaves(mesh, origin, static_cast<std::uint32_t>(i)); });
+    for (std::uint32_t i = used_; i-- > 0;) {  // what is below a node has a higher number
+      for_each_box(nodes_[i], [&](int k, std::uint32_t child) {
+        if ((child & tree_node::leaf) == 0) nodes_[i].set(k, nodes_[child].box(), child);
+      });
+    }
     return true;
   }
 
@@ -237,7 +258,7 @@ class sah_tree {
   /// Makes a node and all below. `postpones`: what has few triangles waits until threads do it.
   void build_node(task const& t, bool postpones) {
     if (postpones && t.range.size() <= most_at_once_ && tasks_ < most_tasks) {
-      waiting_[tasks_++] = t;
+      waiting_.data()[tasks_++] = t;
       return;
     }
     tree_node& node = nodes_[t.node];
@@ -271,9 +292,30 @@ class sah_tree {
     tree_node& node = nodes_[number];
     triangle_piece const* const piece = is_cut_ ? pieces_.data() + t.triangle : nullptr;
     node.set(k, t.box.box(), (is_cut_ ? piece->triangle : t.triangle) | tree_node::leaf);
+    if (is_cut_) piece_of_.data()[width * number + static_cast<std::uint32_t>(k)] = t.triangle;
     if (!is_cut_ || piece->before == 0) return;
     node.continues |= 1u << k;
     before_.data()[number].of[k] = (piece - 1)->box;
+  }
+
+  template <class F>
+  static void for_each_box(tree_node const& node, F const& f) {
+    for (int k = 0; k < width; ++k) {
+      if ((node.there >> k & 1) != 0) f(k, node.child[k]);
+    }
+  }
+
+  /// Sets the boxes of a node that are of triangles, or of pieces, to where these are now.
+  void move_leaves(mesh_view<S> const& mesh, vec3<S> const& origin, std::uint32_t number) {
+    tree_node& node = nodes_[number];
+    for_each_box(node, [&](int k, std::uint32_t child) {
+      if ((child & tree_node::leaf) == 0) return;
+      if (!is_cut_) return node.set(k, tree_box_of(mesh[child & ~tree_node::leaf], origin), child);
+      triangle_piece const* const piece =
+          pieces_.data() + piece_of_.data()[width * number + static_cast<std::uint32_t>(k)];
+      node.set(k, piece->box, child);
+      if (piece->before != 0) before_.data()[number].of[k] = (piece - 1)->box;
+    });
   }
 
   /// Divides a range into as many as a node has room for, always the one with the largest surface.
@@ -298,13 +340,15 @@ class sah_tree {
 
   triangle_pieces<S> pieces_;
   buffer<boxes_before> before_;
+  buffer<std::uint32_t> piece_of_;  ///< of each box of each node, where triangles are in pieces
   bool is_cut_ = false;
+  bool leaves_out_ = false;  ///< triangles that are not finite
   buffer<boxed_triangle> triangles_;
   boxed_triangle* all_ = nullptr;
   tree_node* nodes_ = nullptr;
   std::uint32_t used_ = 0;
   std::uint32_t most_at_once_ = 0;
-  task waiting_[most_tasks];
+  buffer<task> waiting_;
   std::size_t tasks_ = 0;
 };
 

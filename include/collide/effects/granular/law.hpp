@@ -9,7 +9,8 @@
 ///     remembers something and pulls where the two are apart, `static constexpr double farther`, in radii of the
 ///     sphere, says how far it is from a wall then at most;
 ///   - tangential: `vec3<S> force(granular_pair<S> const&, contact_material const&, normal_force<S> const&,
-///     Memory const&)`, on the particle, at right angles to the normal;
+///     Memory const&)`, on the particle, at right angles to the normal; and, if it has a spring, `S energy(...)` with
+///     the same arguments, for `energy` of a simulation;
 ///   - rolling: `vec3<S> torque(...)` with the same arguments, on the particle.
 /// `memory[column{}]` is what the contact remembers, `memory.elapsed()` for how long the contact has moved since it was
 /// looked at before.

@@ -68,6 +68,22 @@ inline void check(surface_pair const& p) {
 
 }  // namespace detail
 
+/// The mass per volume of particles that all have the same: in place of `materials` where an effect asks for masses
+/// only.
+struct one_density {
+  using reads = columns<>;
+
+  double density = 1;  ///< mass per volume, above 0
+
+  void check_parameters() const {
+    detail::check_parameter(detail::is_positive(density), "one_density: density is above 0, and finite");
+  }
+  template <class S, class Particle>
+  COLLIDE_HD_INLINE S density_of(Particle const&) const {
+    return S(density);
+  }
+};
+
 /// Particles and walls of one material. There is no column for it.
 class one_material {
  public:

@@ -72,6 +72,14 @@ struct mindlin {
     return -sliding;
   }
 
+  /// The energy of the spring: stiffness times the square of its length, over 2.
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE S energy(granular_pair<S> const&, detail::contact_material const& m, normal_force<S> const& n,
+                             Memory const& memory) const {
+    vec3<S> const& spring = memory[tangential_displacement{}];
+    return S(4 * stiffness_factor * m.shear) * n.contact_radius * detail::dot(spring, spring);
+  }
+
  private:
   /// Turns the spring into the plane of contact.
   template <class S>

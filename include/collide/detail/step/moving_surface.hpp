@@ -1,14 +1,50 @@
 /// \file
-/// How a particle moves as the surface that it touches sees it, where the mesh has parts that move.
+/// A surface that moves, and how a particle moves as it sees that, where the mesh has parts that move.
 ///
 /// Effects get velocities relative to the surface, and so need not know that it moves: the frame shifts with the
-/// surface at the point, and, where particles have an angular velocity or stick, turns with the body.
+/// surface at the point, and, where particles have an angular velocity or stick, turns with the body. Of what rests
+/// surface_at_rest.hpp says the same.
 #pragma once
 
+#include <collide/detail/bodies/moving_mesh.hpp>
 #include <collide/detail/particles/attributes.hpp>
-#include <collide/detail/step/active_particle.hpp>
+#include <collide/detail/step/surface_at_rest.hpp>
 
 namespace collide::detail {
+
+/// The motion of a particle relative to the surface of a body.
+template <class S, bool IsSwept>
+struct motion_on_body {
+  vec3<S> own_displacement;  ///< in the rest of the step, in the frame of the body
+  vec3<S> displacement;      ///< rotated to the world, as the body lies at a part of the step
+  vec3<S> velocity;          ///< in the world
+  vec3<S> own_point;         ///< where the two may touch, in the frame of the body
+  vec3<S> drift;             ///< in the world, of what moves with the body, since the particle's last contact
+  int frame;
+
+  template <class History>
+  COLLIDE_HD_INLINE S rounding(vec3<S> const& normal, History const& h) const {
+    vec3<S> const here = h.centre.get();
+    return 4 * (std::numeric_limits<S>::epsilon() * dot(vec3<S>(here.cwiseAbs()), vec3<S>(normal.cwiseAbs())));
+  }
+  /// The body of a contact may have turned since.
+  template <class History>
+  COLLIDE_HD_INLINE relative_displacement<S> relative_to(recorded_contact<S, true> const& c, History const& h) const {
+    vec3<S> const normal = (c.frame == frame ? c.own_normal : c.normal).get();
+    vec3<S> const by =
+        c.frame == frame ? own_displacement : vec3<S>(h.motion() - c.surface_velocity.get() * h.remaining_time);
+    return {by, normal, rounding(normal, h)};
+  }
+  COLLIDE_HD_INLINE vec3<S> velocity_relative_to(recorded_contact<S, true> const& c, vec3<S> const& in_world) const {
+    return c.frame == frame ? velocity : vec3<S>(in_world - c.surface_velocity.get());
+  }
+  COLLIDE_HD_INLINE bool is_other_surface(recorded_contact<S, true> const& c) const { return c.frame != frame; }
+  COLLIDE_HD_INLINE S height_above(recorded_contact<S, true> const& c, vec3<S> const& point) const {
+    if (IsSwept && c.frame == frame) return detail::height_above(c.own_point, c.own_normal, own_point);
+    return detail::height_above(c.point, c.normal, point);
+  }
+  COLLIDE_HD_INLINE void advect(stored_vec3<S>& place) const { place.set(place.get() + drift); }
+};
 
 /// The part of the step that is over for a particle, and that which is over at a time of the rest.
 template <class S, class Active>
@@ -21,52 +57,42 @@ COLLIDE_HD_INLINE double part_done(moving_mesh<S> const& mesh, Active const& a, 
   }
 }
 
-/// How a particle moves for the rest of the step as a body sees it, `whole` in its frame; turned to the world as the
-/// body lies at a part of the step.
-template <class S, class Active, class Shape>
-COLLIDE_HD_INLINE seen_from_body<S> seen_in_world([[maybe_unused]] moving_mesh<S> const& mesh, Active const&, int frame,
-                                                  [[maybe_unused]] Shape const& whole, [[maybe_unused]] double part) {
-  vec3<S> const none(S(0), S(0), S(0));
-  seen_from_body<S> seen{none, none, none, none, none, frame};
-  if constexpr (Active::is_swept) {
-    seen.own_displacement = seen.displacement = whole.displacement;
-    if (frame == 0) return seen;
-    vec3<double> const d = whole.displacement.template cast<double>();
-    seen.displacement = rounded_to<S>(mesh.pose_at(frame, part).rotated(d));
-  }
-  return seen;
+template <class S>
+COLLIDE_HD_INLINE int frame_of(moving_mesh<S> const& mesh, id triangle) {
+  return mesh.frame_of(triangle);
 }
-
-/// A surface at rest: its frame is the world.
-struct surface_at_rest {
-  static constexpr int frame = 0;
-
-  template <class S>
-  COLLIDE_HD_INLINE vec3<S> const& velocity_seen(vec3<S> const& v) const {
-    return v;
+template <class S, class Active>
+COLLIDE_HD_INLINE auto shape_seen(moving_mesh<S> const& mesh, Active const& a, int frame) {
+  return mesh.seen_from(frame, a.shape(), part_done(mesh, a));
+}
+/// As the body lies at a part of the step.
+template <class S, class Active, class Shape>
+COLLIDE_HD_INLINE auto motion_seen([[maybe_unused]] moving_mesh<S> const& mesh, Active const&, int frame,
+                                   [[maybe_unused]] Shape const& whole, [[maybe_unused]] double part) {
+  vec3<S> const none(S(0), S(0), S(0));
+  motion_on_body<S, Active::is_swept> m{none, none, none, none, none, frame};
+  if constexpr (Active::is_swept) {
+    m.own_displacement = m.displacement = whole.displacement;
+    if (frame == 0) return m;
+    vec3<double> const d = whole.displacement.template cast<double>();
+    m.displacement = rounded_to<S>(mesh.pose_at(frame, part).rotated(d));
   }
-  template <class S>
-  COLLIDE_HD_INLINE vec3<S> const& start_seen(vec3<S> const& x) const {
-    return x;
-  }
-  template <class S>
-  COLLIDE_HD_INLINE vec3<S> const& acceleration_seen(vec3<S> const& dv) const {
-    return dv;
-  }
-  template <class S>
-  COLLIDE_HD_INLINE void set_surface(mesh_contact<S>& c) const {
-    c.surface_velocity = vec3<S>(S(0), S(0), S(0));
-    c.body = no_id;
-  }
-  template <class Active, class S>
-  COLLIDE_HD_INLINE void record_contact(Active& a, mesh_contact<S> const& c) const {
-    a.record_contact(c);
-  }
-  template <class Particle>
-  COLLIDE_HD_INLINE void to_surface_frame(Particle&) const {}
-  template <class Particle>
-  COLLIDE_HD_INLINE void to_world_frame(Particle&) const {}
-};
+  return m;
+}
+template <class S, class Active, class Shape>
+COLLIDE_HD_INLINE auto motion_seen(moving_mesh<S> const& mesh, Active const& a, int frame, Shape const& whole) {
+  return motion_seen(mesh, a, frame, whole, part_done(mesh, a));
+}
+template <class S, class Active, class Shape>
+COLLIDE_HD_INLINE auto contact_in_world(moving_mesh<S> const& mesh, Active const& a, Shape const& whole, S time,
+                                        contact<S>& c) {
+  int const frame = mesh.frame_of(c.triangle);
+  double const part = part_done(mesh, a, time);
+  auto m = motion_seen(mesh, a, frame, whole, part);
+  m.own_point = c.point;
+  mesh.to_world(c, frame, part);
+  return m;
+}
 
 /// The surface of a body that moves, or of what deforms, where a particle touches it.
 template <class S, bool IsSwept>
@@ -103,12 +129,16 @@ struct surface_of_body {
 
   template <class Active>
   COLLIDE_HD_INLINE void record_contact(Active& a, mesh_contact<S> const& c) const {
-    contact<S> own = c;
+    vec3<S> point = c.point, normal = c.normal;
     if (frame != 0) {
-      own.point = rounded_to<S>(at.to_local(c.point.template cast<double>()));
-      own.normal = rounded_to<S>(at.rotated_back(c.normal.template cast<double>()));
+      point = rounded_to<S>(at.to_local(c.point.template cast<double>()));
+      normal = rounded_to<S>(at.rotated_back(c.normal.template cast<double>()));
     }
-    a.record_contact(c, own, frame);
+    recorded_contact<S, true>& recorded = a.record_contact(c);
+    recorded.surface_velocity.set(c.surface_velocity);
+    recorded.own_point.set(point);
+    recorded.own_normal.set(normal);
+    recorded.frame = frame;
   }
 
   /// Gives a particle the velocities that the surface sees, and back those of the world.
@@ -124,6 +154,12 @@ struct surface_of_body {
     vec3<S>& v = p[collide::velocity{}];
     v = rounded_to<S>(entrainment_velocity + turned(v.template cast<double>()));
     if constexpr (contains<typename Particle::list, angular_velocity>) p[angular_velocity{}] += angular;
+  }
+
+  COLLIDE_HD_INLINE bool is_of_moving_body(moving_mesh<S> const& mesh) const { return mesh.frames[frame].moves; }
+  template <class Particle, class Active>
+  COLLIDE_HD_INLINE void carry(moving_mesh<S> const& mesh, Particle& p, Active const& a) const {
+    p[position{}] = mesh.in_world(frame, shape_seen(mesh, a, frame).centre, 1);
   }
 
   /// A vector of the pose at the end of the step, rotated to the pose at the contact; and the inverse.
@@ -184,6 +220,21 @@ COLLIDE_HD_INLINE surface_of_body<S, Active::is_swept> surface_of(moving_mesh<S>
   }
   s.entrainment_velocity += s.turned(s.along);
   return s;
+}
+
+template <bool Turns, class S, class Active>
+COLLIDE_HD_INLINE touch<S, surface_of_body<S, Active::is_swept>, motion_on_body<S, Active::is_swept>> touch_at(
+    moving_mesh<S> const& mesh, Active const& a, contact<S> const& c, S time) {
+  constexpr bool is_swept = Active::is_swept;
+  int const frame = mesh.frame_of(c.triangle);
+  double const part = part_done(mesh, a, time);
+  auto const whole = shape_seen(mesh, a, frame);
+  sphere<S> here = sphere_at(whole, time);
+  vec3<S> const own = here.centre, centre = a.shape().centre;
+  here.centre = is_swept ? mesh.in_world(frame, own, part) : centre;
+  auto motion = motion_seen(mesh, a, frame, whole, part);
+  if constexpr (is_swept) motion.drift = mesh.in_world(frame, whole.centre, part) - centre;
+  return {here, surface_of<Turns, Active>(mesh, c, own, here.centre, part), motion};
 }
 
 }  // namespace collide::detail

@@ -1,0 +1,119 @@
+/// \file
+/// Effect: the mass that flows through a surface.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <collide/atomic_add.hpp>
+#include <collide/detail/particles/attributes.hpp>
+#include <collide/effect.hpp>
+#include <collide/effects/granular/materials.hpp>
+#include <collide/memory.hpp>
+
+namespace collide {
+
+/// On which side of the surface of `mass_flow` the particle was at the end of the last step: 0 not known, 1 behind, 2
+/// in front.
+struct side_of_surface {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+/// The result of `flow_sums::read`: what went through the surface, forwards minus backwards.
+struct flow_counts {
+  std::int64_t particles = 0;  ///< how many
+  double mass = 0;             ///< their mass
+};
+
+/// Counts what goes through a plane, or a disc of it: each particle once whose centre comes from one side to the other,
+/// as it is at the ends of steps, and -1 times if it comes back. On a disc what counts is where the centre then is. A
+/// particle that comes to be in front has not come through; nor has one that leaps, as `periodic_box` makes it: farther
+/// than its velocity takes it in a step, and its radius. It is made by `flow_sums`, which has its memory. A byte a
+/// particle.
+///
+/// \tparam Materials  whose masses: `one_density`, or that of `granular_contact`
+template <class Materials = one_density>
+struct mass_flow {
+  using reads = detail::union_of<columns<position, velocity>, typename Materials::reads>;
+  using optional_reads = columns<radius>;
+  using writes = columns<side_of_surface>;
+  static constexpr bool saves_parameters = false;  ///< they have a pointer
+
+  Materials made_of{};                                    ///< densities
+  double point[3] = {0, 0, 0};                            ///< of the plane: the centre of the disc
+  double normal[3] = {0, 0, 1};                           ///< forwards; of any length above 0
+  double disc = std::numeric_limits<double>::infinity();  ///< radius of the disc, above 0; infinite for all the plane
+  double unit = 0;                                        ///< of mass: each particle is rounded to a multiple
+  std::int64_t* sums = nullptr;                           ///< memory of the space, of `flow_sums`
+
+  void check_parameters() const {
+    made_of.check_parameters();
+    detail::check_parameter(detail::is_finite(point) && detail::is_finite(normal) && square(normal) > 0,
+                            "mass_flow: point and normal are finite, and the normal has a length");
+    detail::check_parameter(disc > 0, "mass_flow: the radius of the disc is above 0");
+    detail::check_parameter(detail::is_positive(unit) && sums != nullptr, "mass_flow: flow_sums makes the effect");
+  }
+
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void end_step(Particle& p, S dt) const {
+    vec3<double> const from(point[0], point[1], point[2]), n(normal[0], normal[1], normal[2]);
+    vec3<double> const x = p[position{}].template cast<double>() - from, v = p[velocity{}].template cast<double>();
+    double const height = detail::dot(x, n);
+    std::uint8_t const before = p[side_of_surface{}], now = height >= 0 ? 2 : 1;
+    p[side_of_surface{}] = now;
+    if (before == now || before == 0) return;
+    double const r = static_cast<double>(p.radius()), nn = detail::dot(n, n);
+    double const way = detail::dot(v, n) * static_cast<double>(dt),
+                 most = (way < 0 ? -way : way) + r * detail::sqrt_rn(nn);
+    double const aside = detail::dot(x, x) - detail::div_rn(height * height, nn);
+    if (!(height <= most && height >= -most && aside <= disc * disc)) return;
+    double const mass = detail::sphere_mass(1, r) * made_of.template density_of<double>(p);
+    std::int64_t const sign = now == 2 ? 1 : -1;
+    atomic_add(sums, sign);
+    atomic_add(sums + 1, sign * static_cast<std::int64_t>(std::floor(detail::div_rn(mass, unit) + 0.5)));
+  }
+
+ private:
+  static double square(double const (&x)[3]) { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2]; }
+};
+
+/// The memory in which `mass_flow` sums up, as integers: the same in any order. It must outlive the steps of the
+/// simulation that has its effect. Over the time since `clear` the mass is the mean flow, mass per time.
+class flow_sums {
+ public:
+  /// `unit`: the mass to which each particle is rounded; sums hold 9e18 of it. Allocates 16 bytes in the space.
+  template <class Space>
+  flow_sums(Space const& space, double unit) : unit_{unit} {
+    sums_.reserve(space.resource(), 2);
+    clear(space);
+  }
+
+  /// The effect, for the plane through `point` across `normal`, for particles of a density, or of materials.
+  template <class Materials = one_density>
+  mass_flow<Materials> through(double const (&point)[3], double const (&normal)[3], Materials const& made_of,
+                               double disc = std::numeric_limits<double>::infinity()) const {
+    return {made_of, {point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, disc, unit_, sums_.data()};
+  }
+
+  /// Begins anew, after the work that is on the stream of a space. Does not wait.
+  template <class Space>
+  void clear(Space const& space) {
+    space.fill(sums_.data(), 0, 2 * sizeof(std::int64_t));
+  }
+
+  /// Counts since `clear`. On ranks each has its own, to be added. Waits.
+  template <class Space>
+  flow_counts read(Space const& space) const {
+    std::int64_t found[2];
+    space.copy_to_host(found, sums_.data(), 2);
+    return {found[0], static_cast<double>(found[1]) * unit_};
+  }
+
+ private:
+  double unit_;
+  buffer<std::int64_t> sums_;
+};
+
+}  // namespace collide

@@ -1,0 +1,7 @@
+// expect: collide: sphere_pairs: query gives each pair once, and any_hit would mark one of the two: use neighbours
+#include <collide/sphere_pairs.cuh>
+
+int main() {
+  collide::sphere_pairs<> finder;
+  finder.query(collide::sphere_view<float>(), collide::any_hit());
+}

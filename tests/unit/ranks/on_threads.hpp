@@ -1,0 +1,83 @@
+/// Simulations on ranks that are threads, on the host.
+#pragma once
+
+#include <sstream>
+
+#include <collide/ranks/distributed_checkpoint.hpp>
+#include <collide/ranks/thread_ranks.hpp>
+
+#include "ranks/simulations.hpp"
+
+namespace tests {
+
+/// So many ranks make of the scene what one simulation does, however its particles are divided.
+template <class Scene>
+void check_on_threads(Scene const& scene, std::vector<int> const& sizes = {1, 2, 3, 4, 7},
+                      std::vector<split> const& splits = {split::evenly, split::last, split::odd}) {
+  expected_values<Scene> const expected(scene);
+  for (int const n : sizes) {
+    for (split const how : splits) {
+      if (n == 1 && how != splits.front()) continue;
+      std::vector<complaints> wrong(static_cast<std::size_t>(n));
+      collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
+        check_scene(ranks, scene, expected, how, wrong[static_cast<std::size_t>(ranks.rank())]);
+      });
+      for (auto const& w : wrong) CHECK(w.text() == "");
+    }
+  }
+}
+
+/// What ranks save is what one saves; one, and any number of ranks, go on from it.
+template <class Scene>
+void check_checkpoints(Scene const& scene) {
+  using simulation = typename Scene::simulation;
+  std::apply(
+      [&](auto const&... effects) {
+        world_in<collide::host, typename Scene::S> const there(collide::host(1), scene.w);
+        auto const half = static_cast<std::size_t>(scene.steps / 2);
+        std::ostringstream saved, end;
+        simulation one(collide::host(1), effects...);
+        there.set_mesh(one, scene.bodies);
+        there.set(one, {0, scene.w.size()}, scene.capacity);
+        one.steps(half, scene.dt);
+        collide::save(one, saved);
+        one.steps(half, scene.dt);
+        collide::save(one, end);
+        for (int const n : {1, 2, 5}) {
+          CAPTURE(n);
+          std::ostringstream from_start, at_end;
+          collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
+            auto const own = part_of(scene.w.size(), split::odd, ranks.rank(), n);
+            collide::distributed<simulation, collide::thread_ranks> parts(ranks, collide::host(1), effects...);
+            there.set_mesh(parts, scene.bodies);
+            there.set(parts, own, scene.capacity);
+            parts.steps(half, scene.dt);
+            collide::save(parts, from_start);
+            collide::distributed<simulation, collide::thread_ranks> later(ranks, collide::host(1));
+            there.set_mesh(later, scene.bodies);
+            std::istringstream before(saved.str());
+            collide::load(later, before);
+            later.steps(half, scene.dt);
+            collide::save(later, at_end);
+          });
+          CHECK((from_start.str() == saved.str()));
+          CHECK((at_end.str() == end.str()));
+          simulation alone(collide::host(1));
+          there.set_mesh(alone, scene.bodies);
+          std::istringstream before(from_start.str());
+          collide::load(alone, before);
+          alone.steps(half, scene.dt);
+          values_of<simulation> expected, found, on_ranks;
+          expected.read(one);
+          found.read(alone);
+          CHECK(equal(found, expected));
+          std::istringstream last(at_end.str());
+          collide::load(alone, last);
+          on_ranks.read(alone);
+          CHECK(equal(on_ranks, expected));
+        }
+      },
+      scene.effects);
+}
+
+}  // namespace tests

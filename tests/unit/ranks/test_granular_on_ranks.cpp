@@ -1,0 +1,52 @@
+/// Contacts that remember, on ranks: as on one, bit for bit.
+#include <collide/effects/granular_contact.hpp>
+
+#include "ranks/on_threads.hpp"
+
+namespace {
+
+using namespace collide;
+
+constexpr solid soft{1e6, 0.2, 1000};
+constexpr surface_pair rough{0.5, 0.5, 0.1, 1};
+
+/// Grains of three sizes that go round in a box, many at a time, and stick: small ones have lists, large ones runs.
+auto sizes() {
+  using law = granular_contact<hertz, mindlin_rescale, none, jkr>;
+  auto w = tests::packed_cube<double>(300, 0.05, 3);
+  for (std::size_t i = 0; i < 300; ++i) w.radii.push_back(i % 50 == 0 ? 0.3 : i % 5 == 0 ? 0.1 : 0.05);
+  return tests::scene_of<simulation<tests::discrete<host, double>, velocity_verlet, polydisperse, law, periodic_box>>(
+      "sizes that remember", w, 150, 2e-4, velocity_verlet{}, polydisperse{}, law{one_material(soft, rough)},
+      periodic_box{{-1, -1, -1}, {1, 1, 1}});
+}
+
+/// Grains of a source that fall onto a belt, sleep, wake, and vanish at its end.
+auto belt() {
+  using law = granular_contact<hertz, mindlin, epsd>;
+  tests::world<float> w;
+  tests::add_floor(w, 1.5, 6, -1);
+  std::size_t const size = w.corners.size() / 9;
+  auto const some = tests::packed_cube<float>(150, 0.1, 0.3);
+  w.centres = some.centres;
+  w.velocities = some.velocities;
+  w.radius = 0.1f;
+  auto scene = tests::scene_of<simulation<tests::discrete<host>, emit, collide::sleep, gravity, law, velocity_verlet,
+                                          box_walls, absorbing_box, moving_bodies<>>>(
+      "belt", w, 500, 5e-4, emit{150, {{-0.5, 0, 0.8}, 0.3, {0, 0, -1}, 0.4}, 0, false}, collide::sleep{0.1, 20},
+      gravity{}, law{one_material(soft, rough)}, velocity_verlet{}, box_walls{{-1.4, -1.4, -3}, {1.4, 1.4, 3}, 0.1},
+      absorbing_box{{1, -2, -2}, {2, 2, 2}}, moving_bodies<>{});
+  body moving{0, size / 2, {}};
+  moving.motion.belt[0] = 0.7;
+  scene.bodies = {moving};
+  scene.capacity = 200;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("granular contact on ranks: contacts remember as on one") {
+  tests::check_on_threads(sizes(), {1, 2, 3, 7}, {tests::split::odd});
+  tests::check_on_threads(belt(), {1, 2, 3, 7}, {tests::split::last});
+}
+
+TEST_CASE("granular contact on ranks: checkpoints have what contacts remember") { tests::check_checkpoints(belt()); }
