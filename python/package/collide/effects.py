@@ -96,6 +96,12 @@ def drag(linear: float = 0, quadratic: float = 0) -> Effect:
     """A medium at rest slows particles: ``linear`` per time, ``quadratic`` per length; not negative."""
 
 
+@_describes(Effect, type="external_forces<>", density="made_of.density")
+def external_forces(density: float = 1) -> Effect:
+    """Forces (mass times length per time squared) that you write between steps: the column external_force. ``density`` is
+    mass per volume."""
+
+
 @_describes(Effect, type="wind<>", x="field.x", y="field.y", z="field.z")
 def wind(x: float = 0, y: float = 0, z: float = 0, linear: float = 0, quadratic: float = 0) -> Effect:
     """Drag in a medium that moves with the velocity x, y, z (length per time)."""
