@@ -145,7 +145,7 @@ struct list_levels {
 /// Kernel functor of `for_each` over spheres: counts them into cells, or, once blocks have their share of the order,
 /// puts them there.
 template <class S, bool Fill>
-struct place_spheres {
+struct order_spheres {
   sphere_view<S> from;
   sphere_cells<S> cells;
 
@@ -191,9 +191,9 @@ class sphere_cell_lists {
     space.fill(cells.ends, 0, blocks * table::stride * sizeof *cells.ends);
     space.for_each(n, measure_levels<S>{from, cells.largest});
     space.for_each(sphere_size::levels, list_levels<S>{cells});
-    space.for_each(n, place_spheres<S, false>{from, cells});
+    space.for_each(n, order_spheres<S, false>{from, cells});
     space.for_each(blocks, scan_cells{cells.ends, cells.counts + 1});
-    space.for_each(n, place_spheres<S, true>{from, cells});
+    space.for_each(n, order_spheres<S, true>{from, cells});
     return cells;
   }
 
