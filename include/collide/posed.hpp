@@ -33,9 +33,10 @@ namespace collide {
 /// `nearest` decides within a body as the narrow phase says; of bodies it takes the one with the smaller `distance` as
 /// that is rounded, and of equal ones the smaller number. The point is in the world.
 ///
-/// Triangles of no body rest where they are. Memory: an index of each body, 20 bytes of float or 32 of double for each
-/// sphere, 24 if radii differ or 40, and up to 20 for each pair, also where the sink only counts; with `nearest`
-/// an entry more for each sphere. It is kept. One object is for one thread at a time.
+/// Triangles of no body rest where they are; to `nearest` those that follow each other in the mesh are one body.
+/// Memory: an index of each body, 20 bytes of float or 32 of double for each sphere, 24 if radii differ or 40, and up
+/// to 20 for each pair, also where the sink only counts; with `nearest` an entry more for each sphere. It is kept. One
+/// object is for one thread at a time.
 ///
 /// \tparam Detector  a `detector` for spheres at rest
 template <class Detector>

@@ -125,6 +125,39 @@ bool same_contacts(std::vector<collide::contact<S>> const& a, std::vector<collid
   return same;
 }
 
+/// Spheres that just touch the end of a triangle, which is where the sphere around its body ends, from a size on whose
+/// square is not a number of S any more.
+template <class Detector>
+void check_posed_tiny(typename Detector::execution_space const& space) {
+  using S = typename Detector::scalar;
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  collide::posed<Detector> robot(space);
+  S const least = std::sqrt(std::numeric_limits<S>::min());
+  for (int power = -12; power < 8; ++power) {
+    CAPTURE(power);
+    S const scale = std::ldexp(least, power);
+    S corners[9] = {};
+    for (int k = 0; k < 3; ++k) corners[3 + k] = scale * static_cast<S>(uniform(engine));
+    collide::vec3<S> const end(corners[3] / scale, corners[4] / scale, corners[5] / scale);
+    std::vector<S> xyz, radii;
+    for (int i = 0; i < 100; ++i) {
+      double const away = 2 * uniform(engine);
+      for (int k = 0; k < 3; ++k) xyz.push_back(static_cast<S>(1 + away) * corners[3 + k]);
+      radii.push_back(static_cast<S>(1.0001 * away) * end.norm() * scale);
+    }
+    auto const mesh = collide::triangle_soup(static_cast<S const*>(corners), 1);
+    auto const spheres = collide::spheres_xyz(xyz.data(), radii.size(), radii.data());
+    std::size_t expected = 0;
+    for (std::size_t i = 0; i < spheres.size(); ++i) expected += collide::karabassi<>::intersects(mesh[0], spheres[i]);
+    CHECK(expected > 90);
+    auto const mesh_there = collide::upload(space, mesh);
+    auto const there = collide::upload(space, spheres);
+    robot.build(mesh_there.view(), {{0, 1, {}}});
+    CHECK(robot.query(there.view(), {{}}, collide::count()).total() == expected);
+  }
+}
+
 /// Every sink, pose after pose, with one radius and with many.
 template <class Detector>
 void check_posed(typename Detector::execution_space const& space) {

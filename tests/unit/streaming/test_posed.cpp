@@ -20,6 +20,11 @@ TEST_CASE("posed: what a loop finds in the frames of bodies") {
   tests::check_posed<cooperating>(in_lockstep(1));
 }
 
+TEST_CASE("posed: bodies so small that squares vanish") {
+  tests::check_posed_tiny<on_host>(host(1));
+  tests::check_posed_tiny<tree_of_double>(host(1));
+}
+
 TEST_CASE("posed: with half turns what a detector finds in the world") {
   tests::check_half_turns<on_host>(host(2));
   tests::check_half_turns<tree_of_double>(host(1));

@@ -136,7 +136,9 @@ struct advance_bodies {
     f.moves = !(f.before == f.now) || dot(f.conveyor_velocity, f.conveyor_velocity) > 0 ? 1 : 0;
     f.centre = rounded_to<S>(swept ? from : to);
     double const reach = swept ? r.radius + 2 * moved : r.radius;
-    f.reach = static_cast<S>(mul_rn(reach, 1 + 1e-5) + mul_rn(16 * eps, norm(from) + norm(to)));
+    // squares of what is smaller lose digits, or vanish
+    double const tiny = 16 * sqrt_rn(static_cast<double>(std::numeric_limits<S>::min()));
+    f.reach = static_cast<S>(mul_rn(reach, 1 + 1e-5) + mul_rn(16 * eps, norm(from) + norm(to)) + tiny);
     f.shrink = static_cast<S>(swept ? 1 - 1e-5 - turned : 1 - 1e-5);
     if (starts) return;
     double const radius = static_cast<double>(most);
