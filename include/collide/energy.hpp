@@ -156,7 +156,7 @@ double tangential_energy(Law const& law, simulation<Detector, Effect...> const& 
     for (std::size_t i = 0; i < saved.counts.size(); ++i) {
       for (std::uint32_t n = 0; n < saved.counts[i]; ++n, ++at) {
         std::size_t const k = saved.others[at];
-        if (k < i) continue;
+        if (k < i || all.is_there[i] == 0 || all.is_there[k] == 0) continue;
         record_type record;
         for (std::size_t w = 0; w < std::size_t(values_type::width); ++w)
           record.numbers[w] = static_cast<double>(saved.values[at * std::size_t(values_type::width) + w]);

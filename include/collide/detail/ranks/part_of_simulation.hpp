@@ -51,7 +51,7 @@ class part_of_simulation {
   static constexpr std::size_t contact_width =
       remembered::size != 0 ? std::size_t(contact_values<S, remembered>::width) : 1;
   static constexpr bool remembers_pairs = remembered::size != 0 && any_pair_contact;
-  static constexpr bool remembers_surfaces = remembered::size != 0 && effects_type::overlaps;
+  static constexpr bool remembers_surfaces = effects_type::remembers_surfaces;
   /// The memory of contacts, by numbers among all.
   struct contact_rows {
     std::vector<contact_row<S, contact_width>> pairs;
