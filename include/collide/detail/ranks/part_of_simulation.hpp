@@ -192,8 +192,7 @@ class part_of_simulation {
       std::vector<id> const numbers = on_host<global_number>();
       auto const& s = simulation_;
       if constexpr (remembers_pairs)
-        found.pairs =
-            rows_of<contact_row<S, contact_width>>(s.neighbours_.save_contacts(s.space_, own() + copies_), numbers);
+        found.pairs = rows_of<contact_row<S, contact_width>>(s.neighbours_.save_contacts(s.space_, own()), numbers);
       if constexpr (remembers_surfaces)
         found.surfaces =
             rows_of<contact_row<S, contact_width + 3>>(s.surfaces_.save_contacts(s.space_, own()), numbers);
