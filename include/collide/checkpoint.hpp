@@ -303,7 +303,7 @@ class checkpoint {
 
   using remembered = typename simulated::effects_type::remembered;
   static constexpr bool remembers_pairs = remembered::size != 0 && simulated::effects_type::any_pair_contact;
-  static constexpr bool remembers_surfaces = remembered::size != 0 && simulated::effects_type::overlaps;
+  static constexpr bool remembers_surfaces = simulated::effects_type::remembers_surfaces;
   static constexpr std::uint64_t contact_width = std::uint64_t(contact_values<S, remembered>::width);
 
   static void write_contacts(checkpoint_writer& to, std::string const& name, saved_contacts<S> const& saved) {

@@ -64,6 +64,7 @@ struct particles_on_host {
 
   std::vector<S> x, v, w, r;
   std::vector<std::uint8_t> is_there, solid;
+  std::vector<std::pair<id, std::size_t>> places;  ///< by numbers among the particles of all ranks
   typename simulation<Detector, Effect...>::effects_type::space_type space;
 
   explicit particles_on_host(simulation<Detector, Effect...> const& of)
@@ -78,6 +79,17 @@ struct particles_on_host {
     if constexpr (contains<list, angular_velocity>) w = of.template to_host<angular_velocity>();
     if constexpr (contains<list, alive>) is_there = of.template to_host<alive>();
     if constexpr (contains<list, material>) solid = of.template to_host<material>();
+    if constexpr (contains<list, global_number>) {
+      for (id const number : of.template to_host<global_number>()) places.emplace_back(number, places.size());
+      std::sort(places.begin(), places.end());
+    }
+  }
+
+  /// Where the particle is of a number by which neighbours meet; behind all if it is on another rank.
+  std::size_t place_of(id number) const {
+    if constexpr (!contains<list, global_number>) return number;
+    auto const found = std::lower_bound(places.begin(), places.end(), std::pair(number, std::size_t{0}));
+    return found != places.end() && found->first == number ? found->second : r.size();
   }
 
   static vec3<double> at(std::vector<S> const& all, std::size_t i) {
@@ -155,8 +167,8 @@ double tangential_energy(Law const& law, simulation<Detector, Effect...> const& 
     std::size_t at = 0;
     for (std::size_t i = 0; i < saved.counts.size(); ++i) {
       for (std::uint32_t n = 0; n < saved.counts[i]; ++n, ++at) {
-        std::size_t const k = saved.others[at];
-        if (k < i) continue;
+        std::size_t const k = all.place_of(saved.others[at]);
+        if (k == all.r.size() || k < i || all.is_there[i] == 0 || all.is_there[k] == 0) continue;
         record_type record;
         for (std::size_t w = 0; w < std::size_t(values_type::width); ++w)
           record.numbers[w] = static_cast<double>(saved.values[at * std::size_t(values_type::width) + w]);
@@ -179,7 +191,8 @@ double tangential_energy(Law const& law, simulation<Detector, Effect...> const& 
 /// `semi_implicit_euler` velocities are those of half a step before the positions, and the sum goes up and down with
 /// them. `density` is the mass per volume, 0 that of `granular_contact`'s materials or of `sphere_contact`; `error` if
 /// there is none, or it is not above 0 and finite. What springs against rolling, cohesion and contacts with the mesh
-/// hold is not in it. Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
+/// hold is not in it. Of `local()` of ranks it is that of the rank's own particles, without springs to those of others.
+/// Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
 template <class Detector, class... Effect>
 energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0) {
   using law_type = typename detail::granular_of<Effect...>::type;

@@ -334,6 +334,11 @@ class simulation {
   /// The part of a step before particles meet.
   void begin_step(S dt) {
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
+    if constexpr (effects_type::makes && effects_type::remembers_surfaces) {
+      if (effects_.due(static_cast<double>(dt)) > 0)
+        space_.for_each(state_.size,
+                        detail::forget_surfaces<effects_type, state_type>{state_, surfaces_.ref(state_.size).counts});
+    }
     effects_.prepare(dt);
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step)

@@ -15,7 +15,7 @@
 namespace collide {
 
 /// On which side of the surface of `mass_flow` the particle was at the end of the last step: 0 not known, 1 behind, 2
-/// in front.
+/// in front, farther than it comes in a step; 3, 4 the same, and nearer.
 struct side_of_surface {
   template <class S>
   using value = std::uint8_t;
@@ -29,9 +29,9 @@ struct flow_counts {
 
 /// Counts what goes through a plane, or a disc of it: each particle once whose centre comes from one side to the other,
 /// as it is at the ends of steps, and -1 times if it comes back. On a disc what counts is where the centre then is. A
-/// particle that comes to be in front has not come through; nor has one that leaps, as `periodic_box` makes it: farther
-/// than its velocity takes it in a step, and its radius. It is made by `flow_sums`, which has its memory. A byte a
-/// particle.
+/// particle that comes to be in front has not come through; nor has one that leaps, as `periodic_box` makes it: one
+/// that is before or after the step farther from the plane than its speed and the forces then take it in a step, and
+/// its radius. It is made by `flow_sums`, which has its memory. A byte a particle.
 ///
 /// \tparam Materials  whose masses: `one_density`, or that of `granular_contact`
 template <class Materials = one_density>
@@ -39,43 +39,49 @@ struct mass_flow {
   using reads = detail::union_of<columns<position, velocity>, typename Materials::reads>;
   using optional_reads = columns<radius>;
   using writes = columns<side_of_surface>;
+  static constexpr bool asks_forces = true;
   static constexpr bool saves_parameters = false;  ///< they have a pointer
 
   Materials made_of{};                                    ///< densities
   double point[3] = {0, 0, 0};                            ///< of the plane: the centre of the disc
-  double normal[3] = {0, 0, 1};                           ///< forwards; of any length above 0
+  double normal[3] = {0, 0, 1};                           ///< forwards; of any length from 1e-150 to 1e150
   double disc = std::numeric_limits<double>::infinity();  ///< radius of the disc, above 0; infinite for all the plane
   double unit = 0;                                        ///< of mass: each particle is rounded to a multiple
   std::int64_t* sums = nullptr;                           ///< memory of the space, of `flow_sums`
 
   void check_parameters() const {
     made_of.check_parameters();
-    detail::check_parameter(detail::is_finite(point) && detail::is_finite(normal) && square(normal) > 0,
+    detail::check_parameter(detail::is_finite(point) && square(normal) >= 1e-300 && square(normal) <= 1e300,
                             "mass_flow: point and normal are finite, and the normal has a length");
     detail::check_parameter(disc > 0, "mass_flow: the radius of the disc is above 0");
     detail::check_parameter(detail::is_positive(unit) && sums != nullptr, "mass_flow: flow_sums makes the effect");
   }
 
-  template <class Particle, class S>
-  COLLIDE_HD_INLINE void end_step(Particle& p, S dt) const {
+  template <class Particle, class Forces, class S>
+  COLLIDE_HD_INLINE void end_step(Particle& p, Forces const& forces, S dt) const {
     vec3<double> const from(point[0], point[1], point[2]), n(normal[0], normal[1], normal[2]);
-    vec3<double> const x = p[position{}].template cast<double>() - from, v = p[velocity{}].template cast<double>();
-    double const height = detail::dot(x, n);
-    std::uint8_t const before = p[side_of_surface{}], now = height >= 0 ? 2 : 1;
-    p[side_of_surface{}] = now;
-    if (before == now || before == 0) return;
-    double const r = static_cast<double>(p.radius()), nn = detail::dot(n, n);
-    double const way = detail::dot(v, n) * static_cast<double>(dt),
-                 most = (way < 0 ? -way : way) + r * detail::sqrt_rn(nn);
+    vec3<double> const x = p[position{}].template cast<double>() - from;
+    double const r = static_cast<double>(p.radius()), nn = detail::dot(n, n), height = detail::dot(x, n);
+    double const way = (speed(p[velocity{}]) + speed(forces.change(dt))) * static_cast<double>(dt) + r;
+    bool const is_near = height * height <= way * way * nn, is_in_front = height >= 0;
+    int const before = p[side_of_surface{}];
+    p[side_of_surface{}] = static_cast<std::uint8_t>((is_in_front ? 2 : 1) + (is_near ? 2 : 0));
+    bool const was_near = before > 2, was_in_front = before == 2 || before == 4;
+    if (!(was_near && is_near) || was_in_front == is_in_front) return;
     double const aside = detail::dot(x, x) - detail::div_rn(height * height, nn);
-    if (!(height <= most && height >= -most && aside <= disc * disc)) return;
+    if (!(aside <= disc * disc)) return;
     double const mass = detail::sphere_mass(1, r) * made_of.template density_of<double>(p);
-    std::int64_t const sign = now == 2 ? 1 : -1;
+    std::int64_t const sign = is_in_front ? 1 : -1;
     atomic_add(sums, sign);
     atomic_add(sums + 1, sign * static_cast<std::int64_t>(std::floor(detail::div_rn(mass, unit) + 0.5)));
   }
 
  private:
+  template <class V>
+  static COLLIDE_HD_INLINE double speed(V const& v) {
+    vec3<double> const exact = v.template cast<double>();
+    return detail::sqrt_rn(detail::dot(exact, exact));
+  }
   static double square(double const (&x)[3]) { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2]; }
 };
 

@@ -1,5 +1,8 @@
 /// Contacts that remember, on ranks: as on one, bit for bit.
+#include <atomic>
+
 #include <collide/effects/granular_contact.hpp>
+#include <collide/energy.hpp>
 
 #include "ranks/on_threads.hpp"
 
@@ -50,3 +53,32 @@ TEST_CASE("granular contact on ranks: contacts remember as on one") {
 }
 
 TEST_CASE("granular contact on ranks: checkpoints have what contacts remember") { tests::check_checkpoints(belt()); }
+
+TEST_CASE("granular contact on ranks: of what a rank has, energy is that of its own pairs") {
+  using law = granular_contact<hertz, mindlin>;
+  using alone = simulation<tests::discrete<host, double>, law>;
+  tests::world<double> w;
+  for (int i = 0; i < 42; ++i) w.particle(i / 2 + 0.019 * (i % 2), 0, 0, 0, i % 2 != 0 ? 0.1 : -0.1, 0);
+  alone one(host(1), law{one_material(soft, rough)});
+  one.set_mesh(mesh_view<double>{});
+  one.set(spheres_xyz(w.centres.data(), 42, 0.01), w.velocities.data());
+  one.steps(3, 1e-5);
+  double const of_pair = energy(one).tangential / 21;
+  REQUIRE(of_pair > 0);
+  std::atomic<int> pairs{0};
+  thread_ranks::run(4, [&](thread_ranks const& ranks) {
+    distributed<alone, thread_ranks> some(ranks, host(1), law{one_material(soft, rough)});
+    some.set_mesh(mesh_view<double>{});
+    std::size_t const first = ranks.rank() == 2 ? 0 : 42, n = 42 - first;
+    some.set(spheres_xyz(w.centres.data() + 3 * first, n, 0.01), w.velocities.data() + 3 * first);
+    some.steps(3, 1e-5);
+    auto const here = some.local().to_host<global_number>();
+    int both = 0;
+    for (id const number : here)
+      both += number % 2 == 0 && std::find(here.begin(), here.end(), number + 1) != here.end();
+    CHECK(energy(some.local()).tangential == doctest::Approx(both * of_pair).scale(of_pair));
+    pairs += both;
+  });
+  CHECK(pairs < 21);  // others are cut in two
+  CHECK(pairs > 10);
+}

@@ -8,7 +8,9 @@
 #include <random>
 #include <vector>
 
+#include <collide/effects/absorb.hpp>
 #include <collide/effects/emit.hpp>
+#include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/polydisperse.hpp>
 #include <collide/effects/sphere_contact.hpp>
@@ -188,6 +190,50 @@ void check_births_of_what_does_not_meet(Space const& space) {
   CHECK_THROWS_WITH_AS(made.step(1e-3f),
                        "collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact",
                        collide::error);
+}
+
+/// A source that makes a grain in one place, where it slides over the floor along `n` small ones. Each that takes the
+/// place of another in memory moves as the first did: contacts do not remember that one. `dies`: the other is gone
+/// then.
+template <class S, class Space>
+void check_births_touch_nothing(Space const& space, int n, bool dies) {
+  using law = collide::granular_contact<collide::hertz, collide::mindlin>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::emit,
+                                         collide::absorbing_box, collide::polydisperse, law>;
+  law by{collide::one_material({1e7, 0.3, 1000}, {0.5, 0.5})};
+  collide::emit source{0, {{0, 0, 0.0999}, 0, {0.5, 0, 0}, 0}, 0.1};
+  collide::absorbing_box const here{{-0.01, -0.01, 0}, {0.01, 0.01, 1}}, away{{9, 9, 9}, {9, 9, 9}};
+  world<S> w;
+  add_floor(w, 5, 1);
+  for (int k = 0; k < n; ++k) {
+    double const angle = 2 * 3.141592653589793 * k / n;
+    w.particle(0.1095 * std::cos(angle), 0.1095 * std::sin(angle), 0.1);
+    w.radii.push_back(S(0.01));
+  }
+  running<simulation> made(space, w, source, away, collide::polydisperse{}, by);
+  std::size_t const places = w.size() + 1;
+  made.place(w, places);
+  w.particle(0, 0, 0);
+  placed<S> const centres(space, w.centres), none(space, w.velocities);
+  std::vector<S> first;
+  for (int life = 0; life < 3; ++life) {
+    made.simulation.template assign<position>(centres.data());
+    made.simulation.template assign<velocity>(none.data());
+    made.simulation.template assign<collide::angular_velocity>(none.data());
+    S const dt = S(1e-5);
+    for (int k = 0; k < 20; ++k) {
+      made.simulation.template effect<collide::emit>().rate = k == 0 ? 1 / static_cast<double>(dt) : 0;
+      made.simulation.template effect<collide::absorbing_box>() = dies && k == 19 ? here : away;
+      made.simulation.step(dt);
+    }
+    CHECK(made.simulation.template to_host<collide::alive>().back() == !dies);
+    auto now = made.velocities();
+    auto const turning = made.simulation.template to_host<collide::angular_velocity>();
+    now.insert(now.end(), turning.begin(), turning.end());
+    if (life == 0) first = now;
+    CHECK(first == now);
+    CHECK(now[3 * places - 3] < S(0.4999));  // friction brakes it
+  }
 }
 
 }  // namespace tests

@@ -60,18 +60,18 @@ void check_crossings(Space const& space, double disc) {
   CHECK(flow.read(made.simulation.space()).particles == 0);
 }
 
-/// What goes round in a box that repeats comes through once each time around.
+/// What goes round in a box that repeats comes through once each time around, also where the plane is next to a side.
 template <class Space>
-void check_rounds(Space const& space) {
+void check_rounds(Space const& space, double plane) {
   using simulation =
       collide::simulation<meets_mesh<Space, collide::karabassi<>, double>, collide::periodic_box, collide::mass_flow<>>;
   world<double> w;
   w.triangle({90, 90, 90, 91, 90, 90, 90, 91, 90});
   w.radius = 0.01;
-  for (int i = 0; i < 10; ++i) w.particle(0.1 * i, 0.5, 0.5, i < 7 ? 1 : -1);
+  for (int i = 0; i < 10; ++i) w.particle(0.1 * i + 0.003, 0.5, 0.5, i < 7 ? 1 : -1);
   collide::flow_sums flow(space, 1e-12);
   running<simulation> made(space, w, collide::periodic_box{},
-                           flow.through({0.55, 0, 0}, {1, 0, 0}, collide::one_density{1}));
+                           flow.through({plane, 0, 0}, {1, 0, 0}, collide::one_density{1}));
   made.simulation.steps(3000, 1e-2);  // 30 times around
   CHECK(flow.read(made.simulation.space()).particles == 30 * 4);
 }

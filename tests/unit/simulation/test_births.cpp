@@ -24,3 +24,10 @@ TEST_CASE("births: a hundred in one point") {
 TEST_CASE("births: nothing is counted where particles do not meet") {
   tests::check_births_of_what_does_not_meet(host(1));
 }
+
+TEST_CASE("births: contacts of what is new remember nothing") {
+  for (bool const dies : {false, true}) {
+    for (int const n : {1, 24}) tests::check_births_touch_nothing<float>(host(1), n, dies);
+    tests::check_births_touch_nothing<double>(blocks(), 3, dies);
+  }
+}

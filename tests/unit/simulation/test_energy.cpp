@@ -88,6 +88,21 @@ TEST_CASE("energy: a tangential spring, by its formula") {
   CHECK(energy(made.simulation).tangential == doctest::Approx(0.5 * 8 * shear * a * spring * spring).epsilon(1e-4));
 }
 
+TEST_CASE("energy: a grain that is gone holds no spring") {
+  using law_type = collide::granular_contact<collide::hertz, collide::mindlin>;
+  using simulation =
+      collide::simulation<tests::meets_mesh<host, collide::karabassi<>, double>, law_type, collide::absorbing_box>;
+  tests::world<double> w;
+  w.radius = 0.01;
+  w.particle(0, 0, 0);
+  w.particle(0, 0, 0.0199, 0.02, 0, 0);
+  tests::running<simulation> made(host(1), w, law_type{collide::one_material({1e6, 0.25, 1000}, {1, 1e3})},
+                                  collide::absorbing_box{{-1, -1, 0.01}, {1, 1, 1}});
+  made.simulation.step(1e-5);
+  CHECK(made.simulation.to_host<collide::alive>() == std::vector<std::uint8_t>{1, 0});
+  CHECK(energy(made.simulation).tangential == 0);
+}
+
 TEST_CASE("energy: springs, motion and spin of a chain that goes round a box add up to the same") {
   using law_type = collide::granular_contact<collide::hertz, collide::mindlin>;
   using simulation = collide::simulation<tests::meets_mesh<host, collide::karabassi<>, double>, law_type,

@@ -15,7 +15,8 @@
 namespace collide::detail {
 
 /// Kernel functor of `for_each` over particles, and places in the order: copies what particles must know of each other,
-/// and asks for new lists if these may lack something: where a particle has come, or has moved too far.
+/// and asks for new lists if these may lack something: where a particle has come, or has moved too far; or have too
+/// much: where a source has made a particle in place of another.
 template <class S, class Effects>
 struct update_and_check_skin {
   particle_state<S, typename Effects::all> state;
@@ -26,7 +27,8 @@ struct update_and_check_skin {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     if constexpr (ordered::has_absent) {
-      if (is_there(i) && order.known[i] == 0) order.ask_to_rebuild();
+      std::uint8_t const mark = state.at(alive{})[i];
+      if (mark >= newborn || (mark != 0 && order.known[i] == 0)) order.ask_to_rebuild();
     }
     if (i >= order.header->count) return;
     id const number = order.numbers[i];
@@ -158,12 +160,10 @@ struct build_lists {
     if (near.size < room) order.list(near.size, i) = i;
     if constexpr (ordered::has_memory) {
       std::uint32_t touching = 0;
-      restore(
-          i, near.size, [&](std::uint32_t n) { return near.numbers[n]; },
-          [&](std::uint32_t n, auto const& record) {
-            order.memory.records[n * order.capacity + i] = record;
-            touching |= 1u << n;
-          });
+      restore(i, near.places, near.size, [&](std::uint32_t n, auto const& record) {
+        order.memory.records[n * order.capacity + i] = record;
+        touching |= 1u << n;
+      });
       order.memory.touching[i] = touching;
     }
   }
@@ -193,26 +193,26 @@ struct build_lists {
     if constexpr (ordered::has_memory) {
       auto const& m = order.memory;
       for (std::uint32_t n = 0; n < size; ++n) m.run_touching[first + n] = 0;
-      restore(
-          i, size, [&](std::uint32_t n) { return order.number_at(run[n]); },
-          [&](std::uint32_t n, auto const& record) {
-            m.records[order.run_item(first + n)] = record;
-            m.run_touching[first + n] = 1;
-          });
+      restore(i, run, size, [&](std::uint32_t n, auto const& record) {
+        m.records[order.run_item(first + n)] = record;
+        m.run_touching[first + n] = 1;
+      });
     }
   }
 
-  /// write(n, record) for each kept contact of a particle with neighbour n of its list, of which number_of(n) is the
-  /// number. Both are in the order of numbers.
-  template <class Number, class Write>
-  COLLIDE_HD_INLINE void restore(std::uint32_t i, std::uint32_t size, Number const& number_of,
+  /// write(n, record) for each kept contact of a particle with neighbour n of its list, which is at places[n]. Both are
+  /// in the order of numbers. What has just been born has not touched anything.
+  template <class Write>
+  COLLIDE_HD_INLINE void restore(std::uint32_t i, std::uint32_t const* places, std::uint32_t size,
                                  Write const& write) const {
     auto const& m = order.memory;
     kept_range& kept = m.kept_of[order.numbers[i]];
     std::uint32_t n = 0;
     for (std::uint32_t k = kept.first; k < kept.first + kept.count; ++k) {
-      while (n < size && number_of(n) < m.kept[k].other) ++n;
-      if (n < size && number_of(n) == m.kept[k].other) write(n, m.kept[k].record);
+      id const other = m.kept[k].other;
+      while (n < size && order.number_at(places[n]) < other) ++n;
+      if (n == size || order.number_at(places[n]) != other) continue;
+      if (!order.is_new(i) && !order.is_new(places[n])) write(n, m.kept[k].record);
     }
     kept.count = 0;
   }

@@ -62,7 +62,7 @@ struct sorted_particles {
   id* numbers;
   packed_sphere<S>* spheres;                        ///< as they are in this step
   reference<S, contains<all, radius>>* references;  ///< as they were when the lists were made
-  column_element<alive, S>* known;                  ///< whether particles are in the order, by numbers
+  column_element<alive, S>* known;                  ///< `alive` when the lists were made, by numbers
   particle_state<S, copied> copies;
 
   static constexpr std::uint32_t listed = 16;  ///< the most neighbours that a list has
@@ -117,6 +117,15 @@ struct sorted_particles {
       return copies.at(global_number{})[place];
     } else {
       return numbers[place];
+    }
+  }
+
+  /// True of a particle that a source had just made when the lists were made.
+  COLLIDE_HD_INLINE bool is_new([[maybe_unused]] std::uint32_t place) const {
+    if constexpr (has_absent) {
+      return known[numbers[place]] >= newborn;
+    } else {
+      return false;
     }
   }
 

@@ -75,21 +75,24 @@ class verlet_list {
     return max((2 * radius + skin_of(radius, smallest)) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
   }
 
-  /// The memory of contacts of `n` particles, by the numbers by which neighbours meet, for a checkpoint. Waits.
+  /// The memory of contacts of the first `n` particles, by the numbers by which neighbours meet, for a checkpoint.
+  /// Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
     saved_contacts<S> saved;
     saved.counts.assign(n, 0);
     list_state const header = copied(space, header_.data(), 1)[0];
     if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
+
+    std::size_t const all = listed_;  // copies of other ranks' particles are behind
     auto const numbers = copied(space, numbers_.data(), header.count);
     auto others = numbers;
     if constexpr (contains<typename Effects::interaction_copies, global_number>)
-      others = copied(space, memory_.state(n, n, S(0)).at(global_number{}), header.count);
-    auto const lists = copied(space, lists_.data(), order::listed * n),
+      others = copied(space, memory_.state(all, all, S(0)).at(global_number{}), header.count);
+    auto const lists = copied(space, lists_.data(), order::listed * all),
                runs = copied(space, runs_.data(), runs_.capacity());
-    auto const memory = contacts_.template copied<order::listed>(space, n, header.count, runs.size());
-    std::vector<std::uint32_t> place_of(n, order::overflow_mark);
+    auto const memory = contacts_.template copied<order::listed>(space, all, header.count, runs.size());
+    std::vector<std::uint32_t> place_of(all, order::overflow_mark);
     for (std::uint32_t i = 0; i < header.count; ++i) place_of[numbers[i]] = i;
     for (std::size_t number = 0; number < n; ++number) {
       std::uint32_t const i = place_of[number];
@@ -101,11 +104,11 @@ class verlet_list {
       };
       if (lists[i] != order::overflow_mark) {
         for (std::uint32_t k = 0; k < order::listed; ++k)
-          if ((memory.touching[i] >> k & 1) != 0) add(lists[k * n + i], k * n + i);
-      } else if (lists[n + i] != order::overflow_mark) {
-        std::size_t const first = lists[n + i], size = lists[2 * n + i];
+          if ((memory.touching[i] >> k & 1) != 0) add(lists[k * all + i], k * all + i);
+      } else if (lists[all + i] != order::overflow_mark) {
+        std::size_t const first = lists[all + i], size = lists[2 * all + i];
         for (std::size_t k = first; k < first + size; ++k)
-          if (memory.run_touching[k] != 0) add(runs[k], order::listed * n + k);
+          if (memory.run_touching[k] != 0) add(runs[k], order::listed * all + k);
       }
     }
     return saved;
@@ -128,6 +131,7 @@ class verlet_list {
   void renew(Space& space, state_type const& state, typename Effects::space_type const& around) {
     if (!(around == around_)) space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
     around_ = around;
+    listed_ = state.size;
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
@@ -218,7 +222,7 @@ class verlet_list {
   typename Effects::space_type around_{};
   cells cells_{};
   S skin_{};
-  std::size_t blocks_ = 0;
+  std::size_t blocks_ = 0, listed_ = 0;  ///< how many particles have lists
   buffer<list_state> header_;
   buffer<std::uint32_t> ends_, lists_, runs_;
   buffer<id> numbers_;

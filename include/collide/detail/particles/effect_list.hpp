@@ -39,6 +39,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   static constexpr bool any_end_step = (has_end_step<E, S>::value || ...);
   static constexpr bool any_mesh_impulse = (has_on_mesh_impulse<E, S>::value || ...);
   static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
+  static constexpr bool remembers_surfaces = overlaps && remembered::size != 0;
   static constexpr double farther = farthest_of<E...>();
   static constexpr bool any_mesh_contact =  ///< or by impulses
       (has_on_mesh_contact<E, S>::value || ...) || (has_after_mesh_contact<E, S>::value || ...) ||

@@ -130,11 +130,13 @@ auto raw_pointer(Pointer const& p) -> decltype(p.get()) {
   return p.get();
 }
 
-/// Calls an effect's `begin_step`, if it has one. What a source makes is marked where particles meet.
+/// Calls an effect's `begin_step`, if it has one. What a source makes is marked where particles meet, or contacts with
+/// the mesh remember something.
 template <class E, class Effects, class Space, class State, class S>
 void begin_step_of(Effects& effects, Space& space, State const& state, S dt) {
   if constexpr (is_source<E>) {
-    effects.template of<E>().begin_step(space, state, dt, Effects::any_pair_contact ? newborn : std::uint8_t{1});
+    constexpr bool marks = Effects::any_pair_contact || Effects::remembers_surfaces;
+    effects.template of<E>().begin_step(space, state, dt, marks ? newborn : std::uint8_t{1});
   } else if constexpr (has_begin_step<E, Space, State, S>::value) {
     effects.template of<E>().begin_step(space, state, dt);
   }

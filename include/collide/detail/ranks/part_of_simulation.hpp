@@ -51,7 +51,7 @@ class part_of_simulation {
   static constexpr std::size_t contact_width =
       remembered::size != 0 ? std::size_t(contact_values<S, remembered>::width) : 1;
   static constexpr bool remembers_pairs = remembered::size != 0 && any_pair_contact;
-  static constexpr bool remembers_surfaces = remembered::size != 0 && effects_type::overlaps;
+  static constexpr bool remembers_surfaces = effects_type::remembers_surfaces;
   /// The memory of contacts, by numbers among all.
   struct contact_rows {
     std::vector<contact_row<S, contact_width>> pairs;
@@ -192,8 +192,7 @@ class part_of_simulation {
       std::vector<id> const numbers = on_host<global_number>();
       auto const& s = simulation_;
       if constexpr (remembers_pairs)
-        found.pairs =
-            rows_of<contact_row<S, contact_width>>(s.neighbours_.save_contacts(s.space_, own() + copies_), numbers);
+        found.pairs = rows_of<contact_row<S, contact_width>>(s.neighbours_.save_contacts(s.space_, own()), numbers);
       if constexpr (remembers_surfaces)
         found.surfaces =
             rows_of<contact_row<S, contact_width + 3>>(s.surfaces_.save_contacts(s.space_, own()), numbers);

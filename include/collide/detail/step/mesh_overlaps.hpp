@@ -107,6 +107,21 @@ class surface_memory<S, columns<>> {
   null_ref ref(std::size_t) const { return {}; }
 };
 
+/// Kernel functor of `for_each` over particles: what a source has just made has not touched the mesh, though the one
+/// whose place it takes may have. Takes the mark off where nothing else needs it.
+template <class Effects, class State>
+struct forget_surfaces {
+  State state;
+  std::uint8_t* counts;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::uint8_t& mark = state.at(alive{})[i];
+    if (mark < newborn) return;
+    counts[i] = 0;
+    if constexpr (!Effects::any_pair_contact) mark = 1;
+  }
+};
+
 /// Which particles may press on the mesh, in any order.
 struct pressing_list {
   std::uint32_t* count;
