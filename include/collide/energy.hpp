@@ -85,7 +85,7 @@ struct particles_on_host {
     }
   }
 
-  /// Where the particle is of a number by which neighbours meet; behind all if it is on another rank.
+  /// The place of the particle of a number by which neighbours meet; behind all if it is on another rank.
   std::size_t place_of(id number) const {
     if constexpr (!contains<list, global_number>) return number;
     auto const found = std::lower_bound(places.begin(), places.end(), std::pair(number, std::size_t{0}));
