@@ -457,6 +457,7 @@ class simulation {
     if (!(dt > 0) || !detail::is_finite(dt))
       throw error("collide: simulation: the time dt of a step is finite and above 0");
     ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
+    (check_box_of<Effect>(), ...);
     if constexpr (effects_type::repeats) check_sides();
     ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
     if (!effects_type::any_pair_contact && effects_.makes_only_where_free())
@@ -472,6 +473,19 @@ class simulation {
             "collide: simulation: contacts have found no room for what they remember, as many particles have "
             "more than 16 neighbours: call reserve with several times as many particles before set, and begin "
             "anew");
+    }
+  }
+
+  /// Rounded to numbers of this type, the bounds of a box that repeats are bounds, too.
+  template <class E>
+  COLLIDE_COLD void check_box_of() const {
+    if constexpr (detail::repeats_space<E>) {
+      auto const& box = effects_.template of<E>();
+      for (int k = 0; k < 3; ++k) {
+        S const low = static_cast<S>(box.lower[k]), high = static_cast<S>(box.upper[k]);
+        detail::check_parameter(detail::is_finite(low) && detail::is_finite(high) && low < high,
+                                "periodic_box: the bounds are finite and differ in the simulation's type of numbers");
+      }
     }
   }
 

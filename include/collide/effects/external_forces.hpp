@@ -18,7 +18,8 @@ struct external_force {
 /// Accelerates each particle by its `external_force` over its mass. The force is the same all through a step; between
 /// steps a solver writes it: `assign<external_force>(values)`, or a kernel on the space's stream to
 /// `data<external_force>()`. Like `gravity` it is in `mesh_forces` and `reaction` where the mesh holds against it. It
-/// wakes nothing that sleeps: `effect<external_forces<>>()`, not const, does. 3 scalars a particle.
+/// wakes nothing that sleeps: `effect<external_forces<>>()`, not const, does. What has a radius of 0 has no mass, and
+/// no force moves it. 3 scalars a particle.
 ///
 /// \tparam Materials  whose masses: `one_density`, or that of `granular_contact`
 template <class Materials = one_density>
@@ -35,7 +36,7 @@ struct external_forces {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void accelerate(Particle& p, S dt) const {
     S const mass = detail::sphere_mass(S(1), p.radius()) * made_of.template density_of<S>(p);
-    p[velocity{}] += p[external_force{}] * (dt / mass);
+    if (mass > 0) p[velocity{}] += p[external_force{}] * (dt / mass);
   }
 };
 

@@ -28,6 +28,15 @@ TEST_CASE("external_forces: a density that is none is refused") {
   CHECK_NOTHROW(collide::external_forces<>{{7800}}.check_parameters());
 }
 
+TEST_CASE("external_forces: what has no mass flies on") {
+  collide::simulation<collide::detector<collide::bucket>, collide::external_forces<>> made(host(1));
+  float const centre[3] = {}, fast[3] = {1, 2, 3};
+  made.set(collide::spheres_xyz(centre, 1, 0.0f), fast);
+  made.assign<collide::external_force>(std::vector<float>{5, 0, 0});
+  made.step(1e-3f);
+  CHECK(made.to_host<collide::velocity>() == std::vector<float>{1, 2, 3});
+}
+
 TEST_CASE("box_walls: spheres of many sizes lie on them at their radius") { tests::check_walls_of_sizes(host(1)); }
 
 TEST_CASE("mass_flow: each crossing of a plane or a disc counts once") {

@@ -67,3 +67,16 @@ TEST_CASE("periodic contacts: sides that are too short are an error") {
   made.simulation.step(1e-3f);
   CHECK(made.velocities()[2] > 0);
 }
+
+TEST_CASE("periodic box: bounds that floats do not tell apart, or that are too large for them, are an error") {
+  using namespace collide;
+  using simulation = collide::simulation<tests::meets_mesh<host>, periodic_box>;
+  tests::world<float> w;
+  w.particle(1e8, 0, 0);
+  for (auto const& box : {periodic_box{{1e8, 0, 0}, {1e8 + 1, 1, 1}}, periodic_box{{0, 0, 0}, {1, 1, 1e300}}}) {
+    tests::running<simulation> made(host(1), w, box);
+    CHECK_THROWS_WITH_AS(made.simulation.step(1e-3f),
+                         "collide: periodic_box: the bounds are finite and differ in the simulation's type of numbers",
+                         collide::error);
+  }
+}
