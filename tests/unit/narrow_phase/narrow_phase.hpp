@@ -63,8 +63,8 @@ void check_verdicts(Space const& space, std::vector<near_case> const& cases) {
   }
   REQUIRE(lost == 0);  // the cases are of numbers of S
   CHECK(wrong == 0);
-  compared<S>("wrong results of `exact`", "hit if and only if the distance is at most R, in integers of any width", double(wrong), 0,
-              cases.size());
+  compared<S>("wrong results of `exact`", "hit if and only if the distance is at most R, in integers of any width",
+              double(wrong), 0, cases.size());
   CHECK(touching > cases.size() / 4);
   CHECK(touching < cases.size() * 3 / 4);
 }
