@@ -33,11 +33,12 @@ struct automatic {
       spent_ = spent_on_boxes_ = 0;
     }
 
-    /// Makes the grid, or the tree, which serves until the next build.
+    /// Makes the grid, or the tree, which serves until the next build; no grid that cannot be.
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
       detail::middles_as_spheres<S> const spheres{mesh_, radius};
-      way_ = prefers_tree<Space>(options, spheres) ? way::tree : way::grid;
+      way const other = detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? way::grid : way::all_pairs;
+      way_ = prefers_tree<Space>(options, spheres) ? way::tree : other;
       is_given_ = true;
       make_index(space, options, radius);
     }

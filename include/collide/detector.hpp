@@ -138,7 +138,8 @@ class detector {
   }
 
   /// Makes room for queries ahead: what depends on the numbers of spheres and pairs alone is then not allocated by a
-  /// query. What depends on the mesh, or on the radii, is allocated by `build` and the first two queries.
+  /// query. What depends on the mesh, or on the radii, is allocated by `build` and the first two queries; `automatic`
+  /// may make its index in a later one.
   ///
   /// \param spheres  the largest number of spheres of a query
   /// \param pairs    the largest number of pairs that a sink keeps

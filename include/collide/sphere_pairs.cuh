@@ -83,8 +83,8 @@ struct sphere_pass {
 /// \tparam ExecutionSpace  where it runs: `host`, `cuda` or `cuda_shared`, of which the last two do the same here
 /// \tparam Scalar          type of the coordinates: float or double
 ///
-/// Memory is taken from the space's resource and kept: at most 37 bytes a sphere, 53 with double. It can be moved, but
-/// not copied. What detectors say of streams, threads, and of what is thrown, holds here too.
+/// Memory is taken from the space's resource and kept: at most 37 bytes a sphere, 53 with double, and 27 KiB. It can be
+/// moved, but not copied. What detectors say of streams, threads, and of what is thrown, holds here too.
 template <class ExecutionSpace = host, class Scalar = float>
 class sphere_pairs {
   static_assert(std::is_same<Scalar, float>::value || std::is_same<Scalar, double>::value,

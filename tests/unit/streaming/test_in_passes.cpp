@@ -150,6 +150,8 @@ TEST_CASE("in passes: automatic makes no grid that cannot be, and passes are as 
   limited.build(made.mesh());
   auto const all = whole.query(made.spheres(), collide::count()).total();
   for (int i = 0; i < 100; ++i) CHECK(limited.query(made.spheres(), collide::count()).total() == all);
+  limited.build(made.mesh(), 0.1f);
+  CHECK(limited.query(made.spheres(), collide::count()).total() == all);
   collide::in_passes<detector> passes(collide::host(1), options);
   passes.build(made.mesh());
   CHECK(passes.passes() == 20);
