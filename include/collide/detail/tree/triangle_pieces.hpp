@@ -136,7 +136,10 @@ class triangle_pieces {
     auto const box_of = [](triangle<S> const& t) {
       aabb<S> const b = triangle_aabb_of(t);
       box wide;
-      for (int k = 0; k < 3; ++k) wide.lower[k] = b.lower[k], wide.upper[k] = b.upper[k];
+      for (int k = 0; k < 3; ++k) {
+        wide.lower[k] = static_cast<double>(b.lower[k]);
+        wide.upper[k] = static_cast<double>(b.upper[k]);
+      }
       return b.is_empty() ? box::empty() : wide;
     };
     auto const join = [](box& to, box const& b) { to = typename box::merge{}(to, b); };
