@@ -55,7 +55,7 @@ __device__ __forceinline__ void accelerated(quadruple& v, float3 g, float dt) {
   v.c.y += g.x * dt, v.c.z += g.y * dt, v.c.w += g.z * dt;
 }
 __device__ __noinline__ void fallen(float& x, float& y, float& z, float3 g,
-                                       collide::detail::resistance_in_step const& medium, float dt) {
+                                    collide::detail::resistance_in_step const& medium, float dt) {
   collide::vec3<float> const before(x, y, z), pushed(x + g.x * dt, y + g.y * dt, z + g.z * dt);
   collide::vec3<float> const after = collide::detail::velocity_in(medium, {0, 0, 0}, before, pushed);
   x = after.x(), y = after.y(), z = after.z();

@@ -176,8 +176,8 @@ TEST_CASE_TEMPLATE("swept queries: many spheres with short ways are sorted, thos
     auto const pairs = detector.detect(made.mesh(), made.moving(), collide::pairs()).to_host();
     CHECK(pairs.size() > 20);
     // one thread finds pairs in the order of whoever looks for the others
-    bool const spheres_look = std::is_sorted(pairs.begin(), pairs.end(),
-                                             [](auto const& a, auto const& b) { return a.sphere < b.sphere; });
+    bool const spheres_look =
+        std::is_sorted(pairs.begin(), pairs.end(), [](auto const& a, auto const& b) { return a.sphere < b.sphere; });
     CHECK(spheres_look == (longest > 1));
   }
 }
