@@ -112,7 +112,7 @@ class remote_nearest {
     std::uint64_t rounds = 0;
     ranks.reduce(&mine, &rounds, 1, reduction::max);
     for (std::uint64_t round = 0; round < rounds; ++round) {
-      together(ranks, [&] { pack(ranks.size(), space, wanted, round, rounds); });
+      together(ranks, [&] { pack_round(ranks.size(), space, wanted, sends_, round, rounds, sent_); });
       deliver(ranks, space, sent_, received_);
       together(ranks, [&] { answer(detector, mesh, f); });
       deliver(ranks, space, answers_, answered_);
@@ -121,17 +121,6 @@ class remote_nearest {
   }
 
  private:
-  void pack(int ranks, space_type const& space, view const& spheres, std::uint64_t round, std::uint64_t rounds) {
-    sent_.clear(ranks);
-    for (std::size_t r = 0; r < sent_.counts.size(); ++r) sent_.counts[r] = sends_.of(r, round, rounds).size;
-    sent* to = sent_.resize(space);
-    for (std::size_t r = 0; r < sent_.counts.size(); ++r) {
-      auto const part = sends_.of(r, round, rounds);
-      space.for_each(part.size, pack_spheres<view, sent>{spheres, part.first, to});
-      to += part.size;
-    }
-  }
-
   /// Searches for what was received: what is sent as a radius is a distance from the centre.
   template <class F>
   void answer(Detector& detector, divided_mesh<S> const& mesh, F const& f) {

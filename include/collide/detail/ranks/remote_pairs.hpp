@@ -41,6 +41,20 @@ struct pack_spheres {
   }
 };
 
+/// Packs the spheres of one of some rounds, those to each rank one after the other.
+template <class Space, class Spheres, class Sent>
+void pack_round(int ranks, Space const& space, Spheres const& spheres, sphere_send_plan const& sends,
+                std::uint64_t round, std::uint64_t rounds, device_exchange_buffer<Sent>& packed) {
+  packed.clear(ranks);
+  for (std::size_t r = 0; r < packed.counts.size(); ++r) packed.counts[r] = sends.of(r, round, rounds).size;
+  Sent* to = packed.resize(space);
+  for (std::size_t r = 0; r < packed.counts.size(); ++r) {
+    auto const part = sends.of(r, round, rounds);
+    space.for_each(part.size, pack_spheres<Spheres, Sent>{spheres, part.first, to});
+    to += part.size;
+  }
+}
+
 /// Kernel functor of `for_each` over pairs of spheres that were received from a rank, and triangles of this one: as
 /// they are sent back, with the sphere's place in the message and the triangle's number among those of all ranks.
 struct pack_answers {
@@ -86,7 +100,7 @@ class remote_pairs {
     std::uint64_t rounds = 0;
     ranks.reduce(&mine, &rounds, 1, reduction::max);
     for (std::uint64_t round = 0; round < rounds; ++round) {
-      together(ranks, [&] { pack(ranks.size(), space, spheres, round, rounds); });
+      together(ranks, [&] { pack_round(ranks.size(), space, spheres, sends_, round, rounds, sent_); });
       deliver(ranks, space, sent_, received_);
       together(ranks, [&] {
         query_received(detector);
@@ -114,17 +128,6 @@ class remote_pairs {
     found_.clear();
     pair* const to = found_.append(space, hits_.size());
     space.for_each(hits_.size(), pack_answers{hits_.data(), 0, mesh.numbers(), to});
-  }
-
-  void pack(int ranks, space_type const& space, view const& spheres, std::uint64_t round, std::uint64_t rounds) {
-    sent_.clear(ranks);
-    for (std::size_t r = 0; r < sent_.counts.size(); ++r) sent_.counts[r] = sends_.of(r, round, rounds).size;
-    sent* to = sent_.resize(space);
-    for (std::size_t r = 0; r < sent_.counts.size(); ++r) {
-      auto const part = sends_.of(r, round, rounds);
-      space.for_each(part.size, pack_spheres<view, sent>{spheres, part.first, to});
-      to += part.size;
-    }
   }
 
   /// Finds the pairs of what was received, and which of them are of which rank.
