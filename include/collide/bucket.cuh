@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include <collide/detail/execution/launch.hpp>
@@ -94,7 +95,6 @@ struct grid_set {
   int count = 0;                 ///< as many as were asked for, or as the budget allows
   grid_request_radii<S> asked;   ///< what they were made for
   std::size_t spheres = 0;       ///< how many they were made for
-  bool is_given = false;         ///< for a radius that was given: they serve until the next build
   bool are_filled = false;       ///< the triangles are entered into their cells
   std::size_t cells = 0;         ///< of all grids
   std::size_t entry_limit = 0;   ///< of all cells
@@ -103,7 +103,7 @@ struct grid_set {
   /// Forgets the grids.
   void clear() {
     count = asked.count = 0;
-    is_given = are_filled = false;
+    are_filled = false;
   }
 
   /// The radius of a grid for spheres of one radius: that of the one that is there if it is at most `most` times as
@@ -144,6 +144,7 @@ class bucket::index {
     }
     mesh_ = mesh;
     queries_ = 0;
+    given_.reset();
     measures_.has_boxes = false;
     forget_grids();
     if constexpr (bucket_tuning<Space>::bins_spheres) {
@@ -165,20 +166,18 @@ class bucket::index {
     space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
-  /// Makes a grid for spheres up to `radius`, which serves until the next build, or until many spheres that move want
-  /// another. Where spheres are sorted into the cells it does nothing: the first query knows better what it wants.
+  /// Says that one grid for spheres up to `radius` serves until the next build; the next query makes it, as it knows
+  /// better what it costs. Where spheres are sorted into the cells it does nothing.
   template <class Space>
-  void prepare(Space& space, bucket const& options, S radius) {
+  void prepare(Space&, bucket const& options, S radius) {
     if (bins_spheres<Space>(options)) return;
-    grids_.is_given = true;
-    if (measures_.statistics.data() == nullptr || !detail::is_valid_radius(radius) || !detail::is_finite(radius))
-      return;
-    make_grids(space, options, {{radius}, 1, grids_.asked.whole_boxes}, detail::vertices_as_spheres<S>{mesh_, radius});
-    fill_grids(space, options);
+    bool const serves =
+        measures_.statistics.data() != nullptr && detail::is_valid_radius(radius) && detail::is_finite(radius);
+    given_ = serves ? detail::grid_request_radii<S>{{radius}, 1} : detail::grid_request_radii<S>{};
   }
 
   /// Makes the grids that the spheres need, unless they are there, and what else the next query needs of the mesh.
-  /// Waits for the host to see the radii where they differ.
+  /// Waits for the host to see the radii where they differ, unless one was given.
   template <class Space>
   void prepare(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     carry_out(space, options, spheres, plan_query(space, options, spheres));
@@ -284,22 +283,24 @@ class bucket::index {
     return plan_grids(space, spheres, true);
   }
 
-  /// The grids for the radii of the spheres; those that are there if they serve, or were made for a radius that was
-  /// given.
+  /// The grids for the radius that was given, or for the radii of the spheres: those that are there if they serve.
   template <class Space, class Spheres>
   detail::query_plan<S> plan_grids(Space& space, Spheres const& spheres, bool whole_boxes) {
     detail::query_plan<S> plan;
-    plan.grids = grids_.asked;
-    if (!grids_.is_given && measures_.statistics.data() != nullptr) {
+    plan.grids = given_.value_or(grids_.asked);
+    if (!given_ && measures_.statistics.data() != nullptr) {
       detail::grid_request_radii<S> wanted;
       if (!spheres.one_radius()) {
-        // of a sorted sphere its own reach decides what is near: grids pay where they reach farther than triangles do
+        // of a sorted sphere its own reach decides what is near: grids pay where they reach farther than triangles do;
+        // a grid of its own saves two spheres for each triangle less time than it takes to fill
         S enough = 0;
+        std::size_t fewest = 2 * mesh_.size();
         if constexpr (bucket_tuning<Space>::bins_spheres) {
           enough = 2 * static_cast<S>(measures_.statistics.data()->extents.median());
+          fewest = 0;
         }
         wanted.count =
-            detail::reaches_of(detail::histogram_of_radii<S>(space, spheres, radii_), enough, wanted.reaches);
+            detail::reaches_of(detail::histogram_of_radii<S>(space, spheres, radii_), enough, fewest, wanted.reaches);
       } else if (S const radius = spheres.common_radius();
                  detail::is_valid_radius(radius) && detail::is_finite(radius)) {
         wanted.reaches[0] = grids_.reach_for(radius, 4, radius);
@@ -315,11 +316,7 @@ class bucket::index {
   /// Makes what a plan needs of the mesh.
   template <class Space, class Spheres>
   void carry_out(Space& space, bucket const& options, Spheres const& spheres, detail::query_plan<S> const& plan) {
-    if (plan.makes_grids) {
-      bool const is_given = grids_.is_given && plan.order == detail::query_order::sphere_major;
-      make_grids(space, options, plan.grids, spheres);
-      grids_.is_given = is_given;
-    }
+    if (plan.makes_grids) make_grids(space, options, plan.grids, spheres);
     grids_.asked.whole_boxes = plan.grids.whole_boxes;
     ++queries_;
     order_ = plan.order;
@@ -344,7 +341,6 @@ class bucket::index {
   template <class Space, class Spheres>
   void make_grids(Space& space, bucket const& options, detail::grid_request_radii<S> const& asked,
                   Spheres const& spheres) {
-    bool const is_given = grids_.is_given;
     forget_grids();  // until all is done: an exception leaves no half-made grid behind
     auto const* const boxes = measures_.boxes();
     std::size_t const taken = fixed_bytes + (boxes != nullptr ? mesh_.size() * sizeof *boxes : 0);
@@ -380,7 +376,6 @@ class bucket::index {
     }
     grids_.asked = asked;
     grids_.spheres = spheres.size();
-    grids_.is_given = is_given;
   }
 
   /// Enters the triangles into the cells, unless they are there, or there are no grids.
@@ -413,6 +408,7 @@ class bucket::index {
   detail::query_order order_ = detail::query_order::sphere_major;  ///< of the next query
   detail::mesh_measures<S> measures_;
   detail::grid_set<S> grids_;
+  std::optional<detail::grid_request_radii<S>> given_;  ///< by the caller, until the next build
   detail::cell_lists<S> lists_;
   detail::sorted_spheres<S> bins_;
   detail::bucket_ref<S> ref_ = {};

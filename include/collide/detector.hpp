@@ -98,8 +98,9 @@ class detector {
     is_built_ = true;
   }
 
-  /// Prepares what depends on the mesh, and on a device what spheres at rest of a radius need, so that a query has
-  /// nothing left to prepare. The radius is a hint: results are the same, and on the host the first query chooses.
+  /// Prepares what depends on the mesh, for spheres at rest of up to a radius. The radius is a hint: results are the
+  /// same. On a device the first query then does not wait to see radii that differ, and makes one grid for all; on the
+  /// host it changes nothing.
   ///
   /// \param mesh    triangles in memory of the space, not copied: valid and unchanged until the last query is done
   /// \param radius  the largest usual radius, in the units of the coordinates, not negative. Larger spheres are found
@@ -107,7 +108,7 @@ class detector {
   /// \throws error  if `radius` is negative or NaN, or the options make no sense
   /// \throws cuda_error  if a CUDA call fails
   /// \complexity O(triangles). Allocates if something has grown.
-  /// \sync May wait for the device, to read a size back.
+  /// \sync None but what allocating takes: the work is put on the space's stream.
   void build(mesh_view<Scalar> mesh, Scalar radius) {
     if (!(radius >= 0)) throw error("collide: detector: the radius passed to build is negative or NaN");
     build(mesh);

@@ -64,10 +64,4 @@ TEST_CASE_TEMPLATE("pair distances: paths of spheres", S, float, double) {
   CHECK(collide::detail::sphere_on_path(s, S(0.5)).centre == collide::vec3<S>(2, -2, 5));
   CHECK(collide::detail::sphere_on_path(static_cast<collide::sphere<S> const&>(s), S(0.5)).centre ==
         collide::vec3<S>(1, 2, 3));
-
-  S const vertices[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 6, 7, 1, 0, 0, 0, 1, 0};
-  collide::detail::vertices_as_spheres<S> const in_place{collide::triangle_soup(vertices, 2), S(0.25)};
-  CHECK(in_place.size() == 2);
-  CHECK(in_place[1].centre == collide::vec3<S>(5, 6, 7));
-  CHECK(in_place[1].radius == S(0.25));
 }

@@ -150,18 +150,22 @@ struct radius_histogram_kernel {
   }
 };
 
-/// How far the grids of spheres of many radii reach: reaches a factor of 4 or more apart, falling, only where there are
-/// spheres, and down to one that is at most `enough`. Returns how many there are.
+/// How far the grids of spheres of many radii reach: reaches a factor of 4 or more apart, falling, down to one that is
+/// at most `enough`, and the first for all, each of the others for more than `fewest` spheres. Returns how many there
+/// are.
 template <class S>
-int reaches_of(size_histogram const& radii, S enough, S (&reaches)[max_grids]) {
+int reaches_of(size_histogram const& radii, S enough, std::size_t fewest, S (&reaches)[max_grids]) {
   if (radii.empty()) return 0;
   constexpr int bins_per_factor_4 = 8;
-  int n = 0;
-  for (int b = radii.last(); b >= radii.first() && n < max_grids; b -= bins_per_factor_4) {
-    while (radii.counts[b] == 0) --b;
+  std::size_t left = 0;  // spheres of this bin and of smaller ones
+  for (int b = radii.first(); b <= radii.last(); ++b) left += radii.counts[b];
+  int n = 0, next = radii.last();
+  for (int b = radii.last(); b >= radii.first() && n < max_grids; left -= radii.counts[b--]) {
+    if (b > next || radii.counts[b] == 0 || (n != 0 && left <= fewest)) continue;
     float const end = bin_end(static_cast<std::uint32_t>(b));
     reaches[n++] = static_cast<S>(min(end, std::numeric_limits<float>::max()));
     if (reaches[n - 1] <= enough) break;
+    next = b - bins_per_factor_4;
   }
   return n;
 }

@@ -8,21 +8,10 @@
 
 #include <collide/detail/geometry/aabb.hpp>
 #include <collide/detail/numeric/float_bits.hpp>
-#include <collide/mesh.hpp>
 #include <collide/moving_spheres.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {
-
-/// In place of spheres, if none are known yet: one for each triangle, at its first vertex.
-template <class S>
-struct vertices_as_spheres {
-  mesh_view<S> mesh;
-  S common;
-
-  COLLIDE_HD std::size_t size() const { return mesh.size(); }
-  COLLIDE_HD sphere<S> operator[](std::size_t i) const { return {mesh[i].a, common}; }
-};
 
 /// The sphere at a part of its path, from 0 to 1, if it moves.
 template <class S>

@@ -18,6 +18,9 @@ namespace collide::detail {
 template <class S, class NarrowPhase, class Output>
 struct bucket_query {
   static constexpr int items = 4;
+  /// Threads that take spheres next to each other read whole lines of memory. Many more of them would get all of what
+  /// is crowded in one place.
+  static constexpr std::size_t longest_run = 8;
   template <class Block>
   static constexpr int min_blocks_per_sm = is_discrete<NarrowPhase, S>&& filtered_predicate<NarrowPhase>::value ? 4 : 3;
 
@@ -36,7 +39,8 @@ struct bucket_query {
     constexpr auto warp = static_cast<std::size_t>(block::warp_size),
                    per_thread = static_cast<std::size_t>(block::items);
     std::size_t const wave = space.template max_resident_blocks<bucket_query>();
-    for (run_length = warp; run_length > 4 && n < 2 * wave * run_length * per_thread;) run_length /= 2;
+    for (run_length = min(warp, longest_run); run_length > 4 && n < 2 * wave * run_length * per_thread;)
+      run_length /= 2;
     blocks = min(wave, (n + run_length * per_thread - 1) / (run_length * per_thread));
   }
 
