@@ -171,7 +171,7 @@ struct interact_listed : pair_interaction<S, Effects> {
   }
 
   /// f(place, sphere, item) for each on the list of a particle. While one is looked at, the next and the list's item
-  /// behind it are on their way (docs/development/experiments.md).
+  /// behind it are loaded.
   template <class F>
   COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, F const& f) const {
     auto const& places = this->order;
