@@ -60,8 +60,8 @@ struct fill_entries {
 template <class S, class Pass>
 struct enter_triangles {
   static constexpr int items = 1;
-  /// A block takes fewer triangles where there would be fewer blocks than this. Several threads enter a triangle then.
-  static constexpr std::size_t many_blocks = 960;
+  /// A block takes fewer triangles where there would be fewer blocks than this: the slabs of large ones keep it busy.
+  static constexpr std::size_t many_blocks = 240;
   static constexpr int together = 4;  ///< cells that a thread asks at a time
 
   mesh_view<S> mesh;
@@ -69,7 +69,7 @@ struct enter_triangles {
   grid<S> const* grids;
   int grid_count;
   Pass pass;
-  std::size_t per_block;  ///< triangles, of which `Block::num_threads` is a multiple
+  std::size_t per_block;  ///< triangles: at most `Block::num_threads`
 
   template <class Block>
   struct scratch {
@@ -79,10 +79,10 @@ struct enter_triangles {
     typename Block::balance_storage balance;
   };
 
-  /// How many triangles a block takes; `threads` is a multiple of it.
+  /// How many triangles a block takes, of which no more than `threads`.
   static std::size_t triangles_of_block(std::size_t triangles, std::size_t threads) {
     std::size_t n = threads;
-    while (n > 32 && n % 2 == 0 && triangles < n * many_blocks) n /= 2;
+    while (n > 32 && triangles < n * many_blocks) n /= 2;
     return n;
   }
 
@@ -95,9 +95,8 @@ struct enter_triangles {
       });
       block.for_each_thread([&](int thread_rank) {
         auto const k = static_cast<std::size_t>(thread_rank);
-        auto const part = static_cast<std::uint32_t>(k / per_block);
-        std::size_t const i = block.index() * per_block + k % per_block;
-        if (i < mesh.size()) enter_if_small(block, s, grids[g], static_cast<id>(i), part);
+        std::size_t const i = block.index() * per_block + k;
+        if (k < per_block && i < mesh.size()) enter_if_small(block, s, grids[g], static_cast<id>(i));
       });
       std::uint32_t const large = block.broadcast(s.count);
       if (large != 0) enter_slabs(block, s, grids[g], large);
@@ -106,29 +105,25 @@ struct enter_triangles {
 
  private:
   template <class Block>
-  COLLIDE_HD_INLINE void enter_if_small(Block& block, scratch<Block>& s, grid<S> const& g, id triangle,
-                                        std::uint32_t part) const {
+  COLLIDE_HD_INLINE void enter_if_small(Block& block, scratch<Block>& s, grid<S> const& g, id triangle) const {
     aabb<S> const b = box_at(triangle);
     if (b.is_empty()) return;
     triangle_cells<S> const cells(g, g.level_of(b), b);
-    if (cells.is_small()) return enter_box<Block>(cells, triangle, part);
-    if (part != 0) return;
+    if (cells.is_small()) return enter_box(cells, triangle);
     std::uint32_t const slot = block.add(s.count, 1);
     s.large[slot] = triangle;
     s.slabs[slot] = cells.slabs();
   }
 
-  /// Enters a triangle into those of all cells that its box meets that are a thread's part.
-  template <class Block>
-  COLLIDE_HD_INLINE void enter_box(triangle_cells<S> const& cells, id triangle, std::uint32_t part) const {
+  /// Enters a triangle into all cells that its box meets.
+  COLLIDE_HD_INLINE void enter_box(triangle_cells<S> const& cells, id triangle) const {
     cell_box const& r = cells.range();
     std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
                         n = nx * ny * (r.upper[2] - r.lower[2] + 1);
     // a quotient by 1, 2 or 3 of a number below 16
     auto const factor = [](std::uint32_t divisor) { return divisor == 1 ? 256u : (divisor == 2 ? 128u : 86u); };
     std::uint32_t const of_x = factor(nx), of_y = factor(ny);
-    std::uint32_t const stride = Block::num_threads / static_cast<std::uint32_t>(per_block) * together;
-    for (std::uint32_t i = part * together; i < n; i += stride) {
+    for (std::uint32_t i = 0; i < n; i += together) {
       cell_ref some[together];
       for (std::uint32_t k = 0; k < together; ++k) {
         std::uint32_t const row = ((i + k) * of_x) >> 8, z = (row * of_y) >> 8;
