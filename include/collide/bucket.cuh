@@ -215,8 +215,7 @@ class bucket::index {
     if constexpr (bucket_tuning<Space>::bins_spheres) {
       if (sort_if_planned(space, spheres)) return bins_.query(space, pipeline{mesh_, spheres, output});
     }
-    detail::bucket_query<S, NarrowPhase, Output> kernel{pipeline{mesh_, spheres, output, measures_.boxes()}, ref_, 0,
-                                                        0};
+    detail::bucket_query<S, NarrowPhase, Output> kernel{pipeline{mesh_, spheres, output, measures_.boxes()}, ref_, 0};
     kernel.choose_grid_size(space, spheres.size());
     space.launch(kernel.blocks, kernel);
   }

@@ -18,9 +18,10 @@ namespace collide::detail {
 template <class S, class NarrowPhase, class Output>
 struct bucket_query {
   static constexpr int items = 4;
-  /// Threads that take spheres next to each other read whole lines of memory. Many more of them would get all of what
-  /// is crowded in one place.
-  static constexpr std::size_t longest_run = 8;
+  /// So many threads of a block take spheres next to each other, where it has them: many more would get all of what is
+  /// crowded in one place, and fewer would not read whole lines of memory.
+  template <class Block>
+  static constexpr std::size_t run_length = Block::num_threads % 4 == 0 ? 4 : 1;
   template <class Block>
   static constexpr int min_blocks_per_sm = is_discrete<NarrowPhase, S>&& filtered_predicate<NarrowPhase>::value ? 4 : 3;
 
@@ -29,19 +30,14 @@ struct bucket_query {
 
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
   bucket_ref<S> triangles;
-  std::size_t blocks;      ///< that share the spheres
-  std::size_t run_length;  ///< so many threads of a block take spheres next to each other
+  std::size_t blocks;  ///< that share the spheres
 
   /// Shares `n` spheres among as many blocks as are at work at a time, if there are enough.
   template <class Space>
   void choose_grid_size(Space const& space, std::size_t n) {
     using block = typename Space::template block<bucket_query>;
-    constexpr auto warp = static_cast<std::size_t>(block::warp_size),
-                   per_thread = static_cast<std::size_t>(block::items);
-    std::size_t const wave = space.template max_resident_blocks<bucket_query>();
-    for (run_length = min(warp, longest_run); run_length > 4 && n < 2 * wave * run_length * per_thread;)
-      run_length /= 2;
-    blocks = min(wave, (n + run_length * per_thread - 1) / (run_length * per_thread));
+    constexpr std::size_t per_run = run_length<block> * static_cast<std::size_t>(block::items);
+    blocks = min(space.template max_resident_blocks<bucket_query>(), (n + per_run - 1) / per_run);
   }
 
   template <class Block>
@@ -56,7 +52,7 @@ struct bucket_query {
     bool const has_one_level =
         pipeline.spheres.one_radius() && triangles.has_single_cell_lookup(pipeline.spheres.common_radius());
     bucket_ref<S> const grids = triangles.without_overflown_grids();
-    compact_type const spheres{pipeline.spheres, grids, occupancy, has_one_level, blocks, run_length};
+    compact_type const spheres{pipeline.spheres, grids, occupancy, has_one_level, blocks, run_length<Block>};
     expand_type const cells{pipeline, grids};
     typename Block::template thread_private<std::size_t> next;
     block.for_each_thread([&](int thread_rank) {
