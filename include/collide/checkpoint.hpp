@@ -192,6 +192,7 @@ class checkpoint {
     if constexpr (simulated::effects_type::any_pair_contact)
       to.neighbours_.clear(space, places, to.radii_.largest, to.radii_.smallest);
     to.is_set_ = true;
+    to.know_smallest();
     to.prepare();
     restore_bodies(to);
     to.bodies_.place(numbers_.bodies_are_placed != 0);

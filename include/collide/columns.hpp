@@ -66,6 +66,13 @@ struct radius {
   using value = S;
 };
 
+/// The material of a particle, as a number: see `materials`. Scenes have it that name `granular_contact` with
+/// `materials`.
+struct material {
+  template <class S>
+  using value = std::uint8_t;
+};
+
 /// Radians per unit of time, around the axis that it points along; see `spin`.
 struct angular_velocity {
   template <class S>

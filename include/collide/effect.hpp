@@ -35,16 +35,16 @@
 /// - `end_step(particle&, dt)`, at the end of the step.
 ///
 /// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
-/// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense. An effect whose
-/// parameters have pointers says `static constexpr bool saves_parameters = false`; one with padding between them has
-/// `for_each_part(f)`, which calls f with each of them; see checkpoint.hpp. One whose
-/// `begin_step` does the same to particles wherever they are says `static constexpr bool begins_on_ranks = true`; see
-/// distributed_simulation.cuh. One with `static constexpr bool asks_forces = true` has `end_step(particle&, forces,
-/// dt)` instead: `forces.change(dt)` is by how much `accelerate` of all effects changes the velocity. One
-/// that makes the mesh solid says `static constexpr bool repels = true`.
-/// `on_pair_contact` is called before the other members but `begin_step`, with `velocity_verlet` when all particles
-/// have moved: `self` and `other` are as they were then. What changes is `particle`, so that both of a pair see the
-/// same.
+/// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense;
+/// `longest_step(smallest_radii const&) const`, or of a number, the smallest radius of all: `error` beyond it. One
+/// whose parameters have pointers says `static constexpr bool saves_parameters = false`; one with padding between them
+/// has `for_each_part(f)`, which calls f with each of them; see checkpoint.hpp. One whose `begin_step` does the same to
+/// particles wherever they are says `static constexpr bool begins_on_ranks = true`; see distributed_simulation.cuh. One
+/// with `static constexpr bool asks_forces = true` has `end_step(particle&, forces, dt)` instead: `forces.change(dt)`
+/// is by how much `accelerate` of all effects changes the velocity. One that makes the mesh solid says `static
+/// constexpr bool repels = true`. `on_pair_contact` is called before the other members but `begin_step`, with
+/// `velocity_verlet` when all particles have moved: `self` and `other` are as they were then. What changes is
+/// `particle`, so that both of a pair see the same.
 ///
 /// `accelerate` of every effect is called once more for each contact with the mesh, on a copy of the particle, to learn
 /// `mesh_contact::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
@@ -70,6 +70,20 @@ namespace collide {
 /// A list of effects.
 template <class... Effect>
 struct effects {};
+
+/// The smallest radii of a simulation's particles, by which effects know how long a step may be.
+struct smallest_radii {
+  static constexpr int numbers = 32;  ///< of materials
+
+  double of_all = 0;                 ///< of all particles
+  double of_material[numbers] = {};  ///< of those of each material, the last also of greater numbers; infinite if none
+
+  smallest_radii() = default;
+  /// Nothing is known about materials: there may be particles of each.
+  explicit smallest_radii(double radius) : of_all{radius} {
+    for (double& r : of_material) r = radius;
+  }
+};
 
 namespace detail {
 

@@ -19,9 +19,9 @@ namespace collide {
 struct energy_sums {
   double kinetic = 0;     ///< of the motion of centres
   double rotational = 0;  ///< of solid spheres that turn; 0 in scenes in which none turns
-  double elastic = 0;     ///< of the normal springs of `sphere_contact` and `granular_contact` between spheres
+  double elastic = 0;     ///< of the normal springs of `sphere_contact` and `granular_contact`, those at the mesh too
   double potential = 0;   ///< in `gravity`, 0 at the origin
-  double tangential = 0;  ///< of the springs of `mindlin` between spheres, as these last met
+  double tangential = 0;  ///< of the springs of `mindlin`, as spheres last met each other and the mesh
 
   double total() const { return kinetic + rotational + elastic + potential + tangential; }  ///< the sum of all
 };
@@ -135,16 +135,23 @@ struct particles_on_host {
   }
 };
 
+/// The energy of a law's normal spring, without cohesion: 2/5 force overlap of `hertz`, 1/2 of `linear`.
+template <class Law, class S>
+COLLIDE_HD_INLINE S elastic_energy(normal_force<S> const& force, granular_pair<S> const& p) {
+  return S(decltype(Law::normal)::is_hertzian ? 0.4 : 0.5) * force.elastic * p.overlap;
+}
+
 /// The force of the normal spring of two spheres, without damping and cohesion.
 template <class Law, class Particles>
 double elastic_force(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
   return law.normal.force(all.pair_of(i, k, overlap), law.made_of.between(all.solid_of(i), all.solid_of(k))).elastic;
 }
 
-/// The energy of the normal spring of two spheres: 2/5 force overlap of `hertz`, 1/2 of `linear`.
+/// The energy of the normal spring of two spheres.
 template <class Law, class Particles>
 double elastic_energy(Law const& law, Particles const& all, std::size_t i, std::size_t k, double overlap) {
-  return (decltype(law.normal)::is_hertzian ? 0.4 : 0.5) * elastic_force(law, all, i, k, overlap) * overlap;
+  granular_pair<double> const p = all.pair_of(i, k, overlap);
+  return elastic_energy<Law>(law.normal.force(p, law.made_of.between(all.solid_of(i), all.solid_of(k))), p);
 }
 
 template <class Law, class P, class N, class Memory>
@@ -185,14 +192,74 @@ double tangential_energy(Law const& law, simulation<Detector, Effect...> const& 
   return sum;
 }
 
+/// The energy of springs.
+struct spring_energies {
+  double elastic = 0, tangential = 0;
+
+  COLLIDE_HD_INLINE spring_energies& operator+=(spring_energies const& other) {
+    elastic += other.elastic;
+    tangential += other.tangential;
+    return *this;
+  }
+};
+
+/// The energy of a law's springs between a particle and the mesh: for `sum_over_mesh_contacts`.
+template <class Law>
+struct springs_at_mesh {
+  Law law;
+
+  template <class Seen, class S, class Values>
+  COLLIDE_HD_INLINE spring_energies operator()(Seen const& self, mesh_overlap<S> const& wall, Values& values) const {
+    granular_pair<S> p{};
+    p.overlap = wall.overlap;
+    p.radius = self.the_radius;
+    auto const& m = law.made_of.with_wall(self, wall.triangle, wall.body);
+    normal_force<S> force = law.normal.force(p, m);
+    spring_energies found;
+    found.elastic = static_cast<double>(elastic_energy<Law>(force, p));
+    using memory_type = contact_access<typename Law::remembers::list, Values, S>;
+    if constexpr (is_valid<spring_energy_call, decltype(law.tangential), granular_pair<S>, normal_force<S>,
+                           memory_type>) {
+      memory_type const memory(values, S(0));
+      law.cohesion.pull(force, p, m, memory);
+      found.tangential = static_cast<double>(law.tangential.energy(p, m, force, memory));
+    }
+    return found;
+  }
+};
+
+/// Sums over the contacts of a simulation's particles with the mesh.
+template <class Detector, class... Effect>
+struct mesh_contacts_of {
+  using simulated = simulation<Detector, Effect...>;
+  using S = typename Detector::scalar;
+
+  /// The sums of f(particle, overlap, what it remembers) for each particle. Waits.
+  template <class Sum, class F>
+  static std::vector<Sum> sums(simulated const& of, F const& f) {
+    auto const triangles = of.template mesh_ref<true>(S(0));
+    auto const memory = of.surfaces_.ref(of.size());
+    std::vector<Sum> found(of.size());
+    if (of.mesh_.size() == 0 || found.empty()) return found;
+    buffer<Sum> sums;
+    sums.reserve(of.space_.resource(), found.size());
+    using kernel = sum_over_mesh_contacts<S, typename simulated::effects_type, std::decay_t<decltype(triangles)>,
+                                          std::decay_t<decltype(memory)>, F, Sum>;
+    of.space_.for_each(found.size(),
+                       kernel{{of.state_, of.effects_, triangles, memory, {}, S(0), true}, f, sums.data()});
+    of.space_.copy_to_host(found.data(), sums.data(), found.size());
+    return found;
+  }
+};
+
 }  // namespace detail
 
 /// The energy of all particles that are alive, those that sleep included; NaN if one is nowhere. With
 /// `semi_implicit_euler` velocities are those of half a step before the positions, and the sum goes up and down with
 /// them. `density` is the mass per volume, 0 that of `granular_contact`'s materials or of `sphere_contact`; `error` if
-/// there is none, or it is not above 0 and finite. What springs against rolling, cohesion and contacts with the mesh
-/// hold is not in it. Of `local()` of ranks it is that of the rank's own particles, without springs to those of others.
-/// Waits, and copies columns to the host. O(n log n), and the pairs that are near along x.
+/// there is none, or it is not above 0 and finite. What springs against rolling and cohesion hold is not in it. Of
+/// `local()` of ranks it is that of the rank's own particles, without springs to those of others. Waits, and copies
+/// columns to the host. O(n log n), and the pairs that are near along x.
 template <class Detector, class... Effect>
 energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0) {
   using law_type = typename detail::granular_of<Effect...>::type;
@@ -223,7 +290,17 @@ energy_sums energy(simulation<Detector, Effect...> const& of, double density = 0
     sum.elastic += 0.5 * springs.stiffness * overlap * overlap;
     if constexpr (is_granular) sum.elastic += elastic_energy(of.template effect<law_type>(), all, i, k, overlap);
   });
-  if constexpr (is_granular) sum.tangential = tangential_energy(of.template effect<law_type>(), of, all);
+  if constexpr (is_granular) {
+    law_type const& law = of.template effect<law_type>();
+    sum.tangential = tangential_energy(law, of, all);
+    auto const at_mesh = detail::mesh_contacts_of<Detector, Effect...>::template sums<detail::spring_energies>(
+        of, detail::springs_at_mesh<law_type>{law});
+    for (std::size_t i = 0; i < at_mesh.size(); ++i) {
+      if (all.is_there[i] == 0) continue;
+      sum.elastic += at_mesh[i].elastic;
+      sum.tangential += at_mesh[i].tangential;
+    }
+  }
   return sum;
 }
 

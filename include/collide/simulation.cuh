@@ -115,6 +115,7 @@ class simulation {
     radii_ = radii_.with(own);
     if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, room, radii_.largest, radii_.smallest);
     if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
+    know_smallest();
     prepare();
   }
 
@@ -239,6 +240,7 @@ class simulation {
     space_.for_each(numbers<Column>(),
                     detail::copy_values<detail::column_element<Column, S>>{values, state_.at(Column{})});
     if constexpr (std::is_same<Column, radius>::value) radii_ = detail::radius_range_of(*this);
+    if constexpr (std::is_same<Column, radius>::value || std::is_same<Column, material>::value) know_smallest();
   }
 
   /// Gives all particles a column's values, from a container such as std::vector or thrust::device_vector, whose memory
@@ -295,6 +297,8 @@ class simulation {
   friend class detail::checkpoint<Detector, Effect...>;
   friend class detail::part_of_simulation<simulation>;
   template <class D, class... E>
+  friend struct detail::mesh_contacts_of;
+  template <class D, class... E>
   friend double largest_time_step(simulation<D, E...> const&);
 
   static constexpr bool sweeps = effects_type::any_mesh_contact && !detail::is_discrete<narrow_phase, S>;
@@ -315,6 +319,14 @@ class simulation {
     } else {
       return detail::null_ref{};
     }
+  }
+
+  /// Finds out by which radii effects limit steps. A source's particles are of material 0. May wait.
+  COLLIDE_COLD void know_smallest() {
+    constexpr bool changes_materials = (detail::contains<typename detail::writes_of<Effect>::type, material> || ...);
+    smallest_ = detail::smallest_radii_of(*this, radii_, !changes_materials);
+    if (double const own = static_cast<double>(effects_.source_radius()); own > 0)
+      smallest_.of_material[0] = detail::min(smallest_.of_material[0], own);
   }
 
   /// Puts particles into new columns, with places for more.
@@ -459,7 +471,7 @@ class simulation {
     ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
     (check_box_of<Effect>(), ...);
     if constexpr (effects_type::repeats) check_sides();
-    ((detail::check_time_step_of<Effect>(effects_, dt, radii_.smallest)), ...);
+    ((detail::check_time_step_of<Effect>(effects_, dt, smallest_)), ...);
     if (!effects_type::any_pair_contact && effects_.makes_only_where_free())
       throw error("collide: emit: only_where_free needs an effect by which particles meet, such as sphere_contact");
   }
@@ -513,6 +525,7 @@ class simulation {
   double time_ = 0;
   buffer<double> device_time_;  ///< for effects with a member begin_step
   detail::radius_range<S> radii_;
+  smallest_radii smallest_;
   S least_radius_ = 0;
   buffer<detail::mesh_statistics<S>> mesh_summary_;
   neighbour_lists neighbours_;
@@ -523,12 +536,15 @@ class simulation {
   bodies_memory bodies_;
 };
 
-/// A step that is good for springs between particles: a twentieth of the shortest time in which two collide; infinite
-/// if no effect limits steps. O(effects); it does not wait. See `sphere_contact::longest_step`.
+/// A step that is good for springs between particles: a twentieth of the shortest time in which two collide, with
+/// `hertz` a quarter of the time in which a wave crosses a particle; infinite if no effect limits steps. In a dense bed
+/// under load, where each is pressed by several, take a quarter of it again. Materials that only walls have do not
+/// count; those of particles are known from `set` and `assign`. O(effects); it does not wait. See
+/// `sphere_contact::longest_step`, `granular_contact::longest_step`.
 template <class Detector, class... Effect>
 double largest_time_step(simulation<Detector, Effect...> const& of) {
   double most = std::numeric_limits<double>::infinity();
-  ((most = detail::min(most, detail::longest_step_of<Effect>(of.effects_, of.radii_.smallest) / 4)), ...);
+  ((most = detail::min(most, detail::longest_step_of<Effect>(of.effects_, of.smallest_) / 4)), ...);
   return most;
 }
 

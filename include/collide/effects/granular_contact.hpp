@@ -94,16 +94,18 @@ struct granular_contact {
     f(arm_shortening);
   }
 
-  /// The longest step that `simulation::step` takes. With `hertz` the time in which a wave crosses the smallest sphere
-  /// (Lord Rayleigh): pi r sqrt(density / G) / (0.1631 nu + 0.8766); with `linear` a fifth of a collision of two such.
-  double longest_step(double smallest_radius) const {
-    solid const& s = made_of.stiffest();
-    if constexpr (Normal::is_hertzian) {
-      double const shear = s.young / (2 * (1 + s.poisson));
-      return 3.14159265358979323846 * smallest_radius * std::sqrt(s.density / shear) / (0.1631 * s.poisson + 0.8766);
-    } else {
-      return 0.628318530717959 * std::sqrt(detail::sphere_mass(s.density, smallest_radius) / (2 * normal.stiffness));
-    }
+  /// The longest step that `simulation::step` takes, the shortest of all solids that particles are of. With `hertz` the
+  /// time in which a wave crosses the smallest sphere (Lord Rayleigh): pi r sqrt(density / G) / (0.1631 nu + 0.8766);
+  /// with `linear` a fifth of a collision of two such.
+  double longest_step(smallest_radii const& radii) const {
+    return made_of.least(radii, [&](solid const& s, double r) {
+      if constexpr (Normal::is_hertzian) {
+        double const shear = s.young / (2 * (1 + s.poisson));
+        return 3.14159265358979323846 * r * std::sqrt(s.density / shear) / (0.1631 * s.poisson + 0.8766);
+      } else {
+        return 0.628318530717959 * std::sqrt(detail::sphere_mass(s.density, r) / (2 * normal.stiffness));
+      }
+    });
   }
 
   template <class Particle, class Seen, class S, std::enable_if_t<is_memoryless && sizeof(S) != 0, int> = 0>

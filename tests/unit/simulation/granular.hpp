@@ -8,6 +8,7 @@
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/effects/sleep.hpp>
+#include <collide/energy.hpp>
 #include <collide/integrators.hpp>
 
 #include "simulation/bodies.hpp"
@@ -301,6 +302,53 @@ void check_sleeping_grains(Space const& space) {
   made.simulation.steps(10000, S(dt));
   CHECK(std::memcmp(x.data(), made.positions().data(), x.size() * sizeof(S)) == 0);
   CHECK(sums.read(space)[0].linear[2] == doctest::Approx(-mass * 9.81 * 10000 * dt).epsilon(1e-2).scale(0));
+}
+
+/// The springs of walls hold what a ball has lost of its motion, to the bound of the integrator: velocity Verlet keeps
+/// energy + dt^2 (k v^2 / 12 - F^2 / (24 m)).
+template <class Space>
+void check_energy_at_walls(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, double>, gravity, law, velocity_verlet>;
+  mindlin spring;
+  spring.damping = collide::tangential_damping::none;
+  law const by{collide::one_material({1e6, 0.25, 1000}, {1, 1e3}), {}, spring};
+  world<double> w;
+  w.radius = 0.01;
+  add_divided_floor(w, 1, 4);
+  double const speed = 0.5, overlap = 1e-4, mass = 1000 * 4.0 / 3 * pi * 1e-6, young = 1e6 / (2 * (1 - 0.0625));
+  w.particle(0.05, 0.02, 0.0101, 0, 0, -speed);
+  running<simulation> made(space, w, gravity{0, 0, 0}, by, velocity_verlet{});
+  double const start = collide::energy(made.simulation).total();
+  CHECK(start == doctest::Approx(0.5 * mass * speed * speed).scale(0));
+  auto const largest_error = [&](int steps, double dt) {
+    double off = 0, most = 0, deepest = 0;
+    made.place(w);
+    for (int k = 0; k < steps; ++k) {
+      made.simulation.step(dt);
+      auto const now = collide::energy(made.simulation);
+      off = std::max(off, std::abs(now.total() - start));
+      most = std::max(most, now.elastic);
+      deepest = std::max(deepest, 0.01 - made.positions()[2]);
+    }
+    CHECK(most > 0.999 * start);
+    CHECK(made.velocities()[2] > 0.99 * speed);
+    double const a = std::sqrt(0.01 * deepest), force = 4.0 / 3 * young * a * deepest;
+    CHECK(off < 1.1 * dt * dt * std::max(2 * young * a * speed * speed / 12, force * force / (24 * mass)));
+    return off;
+  };
+  double const coarse = largest_error(500, 1e-5), fine = largest_error(1000, 5e-6);
+  CHECK(coarse > 3.5 * fine);
+
+  w.centres[2] = 0.01 - overlap;
+  w.velocities = {speed, 0, 0};
+  made.place(w);
+  made.simulation.step(1e-6);
+  auto const found = collide::energy(made.simulation);
+  double const shear = 1e6 / 2.5 / (2 * 1.75), a = std::sqrt(0.01 * overlap), slip = speed * 1e-6;
+  CHECK(found.elastic == doctest::Approx(8.0 / 15 * young * a * overlap * overlap).epsilon(1e-6).scale(0));
+  CHECK(found.tangential == doctest::Approx(0.5 * 8 * shear * a * slip * slip).epsilon(1e-3).scale(0));
 }
 
 /// Grains each of which overlaps many more than sixteen: room that steps find by themselves gives the bits of room that

@@ -21,6 +21,11 @@ TEST_CASE("granular contact: contacts remember the same everywhere, and after a 
   tests::check_same_grains<float>(blocks());
 }
 
+TEST_CASE("granular contact: springs of walls hold energy") {
+  tests::check_energy_at_walls(host(1));
+  tests::check_energy_at_walls(blocks());
+}
+
 TEST_CASE("granular contact: walls that move take grains along, and feel them") {
   tests::check_moving_walls<double>(host(1));
   tests::check_moving_walls<float>(blocks());

@@ -22,6 +22,8 @@ TEST_CASE("granular contact: contacts remember the same as on the host, and afte
   tests::check_same_grains<float>(cuda_shared());
 }
 
+TEST_CASE("granular contact: springs of walls hold energy, on a GPU") { tests::check_energy_at_walls(cuda_shared()); }
+
 TEST_CASE("granular contact: walls that move take grains along, and feel them, on a GPU") {
   tests::check_moving_walls<double>(cuda_shared());
   tests::check_moving_walls<float>(cuda_shared());

@@ -15,6 +15,10 @@ class checkpoint;
 template <class Simulation>
 class part_of_simulation;
 
+/// Sums over the contacts of a simulation's particles with the mesh; see energy.hpp.
+template <class Detector, class... Effect>
+struct mesh_contacts_of;
+
 /// True if `E` are the parameters of all effects, of which there are some.
 template <class Effects, class... E>
 inline constexpr bool are_all_of = sizeof...(E) > 0 && std::is_same<std::tuple<E...>, Effects>::value;

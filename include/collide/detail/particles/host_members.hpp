@@ -70,29 +70,33 @@ void check_bodies_of(Effects const& effects, std::size_t bodies) {
   if constexpr (keeps_bodies<E>::value) effects.template of<E>().check_bodies(bodies);
 }
 
-/// Throws `error` if a step is too long for an effect, which says `longest_step(smallest radius)`.
-template <class E, class = void>
+template <class E, class Radius, class = void>
 struct limits_step : std::false_type {};
-template <class E>
-struct limits_step<E, std::void_t<decltype(std::declval<E const&>().longest_step(0.0))>> : std::true_type {};
+template <class E, class Radius>
+struct limits_step<E, Radius, std::void_t<decltype(std::declval<E const&>().longest_step(std::declval<Radius>()))>>
+    : std::true_type {};
 template <class T>
 std::string text_of(T x) {
   std::ostringstream text;
   text << x;
   return text.str();
 }
-template <class E, class Effects, class S>
-double longest_step_of(Effects const& effects, S smallest) {
-  if constexpr (limits_step<E>::value) {
-    return effects.template of<E>().longest_step(static_cast<double>(smallest));
+/// The longest step that an effect allows, by the radii of each material, or by the smallest of all.
+template <class E, class Effects>
+double longest_step_of(Effects const& effects, smallest_radii const& radii) {
+  if constexpr (limits_step<E, smallest_radii const&>::value) {
+    return effects.template of<E>().longest_step(radii);
+  } else if constexpr (limits_step<E, double>::value) {
+    return effects.template of<E>().longest_step(radii.of_all);
   } else {
     return std::numeric_limits<double>::infinity();
   }
 }
+/// Throws `error` if a step is too long for an effect.
 template <class E, class Effects, class S>
-void check_time_step_of(Effects const& effects, S dt, S smallest) {
-  double const most = longest_step_of<E>(effects, smallest);
-  if (!(smallest > 0 && static_cast<double>(dt) > most)) return;
+void check_time_step_of(Effects const& effects, S dt, smallest_radii const& radii) {
+  double const most = longest_step_of<E>(effects, radii);
+  if (!(radii.of_all > 0 && static_cast<double>(dt) > most)) return;
   throw error("collide: simulation: the time dt of a step, " + text_of(dt) +
               ", is longer than an effect allows with the smallest particles, " + text_of(most) +
               ": take largest_time_step(simulation)");
@@ -162,6 +166,26 @@ auto radius_range_of(Simulation const& simulation) {
     if (!radii.empty()) found.largest = *std::max_element(radii.begin(), radii.end());
     for (S const r : radii) {
       if (r >= 0) found.smallest = min(found.smallest, r);
+    }
+  }
+  return found;
+}
+
+/// The smallest radii that particles have, of each material too if the scene has materials; of all places, as a source
+/// fills them. Waits then. `is_known`: no effect changes materials.
+template <class Simulation, class S>
+smallest_radii smallest_radii_of(Simulation const& simulation, radius_range<S> const& range, bool is_known) {
+  smallest_radii found(static_cast<double>(range.smallest));
+  if constexpr (contains<typename Simulation::columns, material>) {
+    if (!is_known) return found;
+    for (double& r : found.of_material) r = std::numeric_limits<double>::infinity();
+    std::vector<S> radii;
+    if constexpr (contains<typename Simulation::columns, radius>) radii = simulation.template to_host<radius>();
+    auto const numbers = simulation.template to_host<material>();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      auto const own = radii.empty() ? found.of_all : static_cast<double>(radii[i]);
+      double& least = found.of_material[std::min<int>(numbers[i], smallest_radii::numbers - 1)];
+      if (own >= 0) least = std::min(least, own);
     }
   }
   return found;

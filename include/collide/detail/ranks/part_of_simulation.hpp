@@ -354,6 +354,7 @@ class part_of_simulation {
                                                         simulation_.effects_.source_radius()});
     S const widest = radii.widest;
     simulation_.radii_ = radii.range;
+    simulation_.smallest_ = smallest_radii(static_cast<double>(radii.range.smallest));
     skin_ = skin_fraction * 2 * widest;
     reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
     copies_ = 0;

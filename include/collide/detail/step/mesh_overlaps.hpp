@@ -181,7 +181,7 @@ struct press_on_mesh {
     if (k < *pressing.count) press_with(pressing.numbers[k]);
   }
 
- private:
+ protected:
   using integrated = particle<S, typename Effects::overlap_reads>;
   using values_type = contact_values<S, remembered>;
   static constexpr int most = surface_memory_ref<S, remembered>::room;
@@ -242,6 +242,20 @@ struct press_on_mesh {
     id bodies[overlap_list::room] = {};
     values_type values[most] = {};
     bool kept[most] = {};
+    int const size = for_each_contact(open, i, self, near, before, normals, bodies,
+                                      [&](int n, mesh_overlap<S> const& o, values_type& own) {
+                                        bool const goes_on = meet(p, self, o, own);
+                                        if (n < most) values[n] = own, kept[n] = goes_on;
+                                      });
+    if constexpr (has_memory) keep(i, size, normals, bodies, values, kept);
+    store(i, p, self);
+  }
+
+  /// f(n, overlap, what it remembers) for each contact n. Returns how many there are.
+  template <class Seen, class F>
+  COLLIDE_HD_INLINE int for_each_contact(Triangles const& open, [[maybe_unused]] std::size_t i, Seen const& self,
+                                         overlap_list const& near, [[maybe_unused]] int before, vec3<S>* normals,
+                                         id* bodies, F const& f) const {
     int size = 0;
     [[maybe_unused]] unsigned used = 0;
     COLLIDE_NO_UNROLL
@@ -259,12 +273,9 @@ struct press_on_mesh {
       if (Effects::farther > 0 && !is_known && !(o.overlap > 0)) continue;
       normals[size] = o.normal;
       bodies[size] = o.body;
-      bool const goes_on = meet(p, self, o, own);
-      if (size < most) values[size] = own, kept[size] = goes_on;
-      ++size;
+      f(size++, o, own);
     }
-    if constexpr (has_memory) keep(i, size, normals, bodies, values, kept);
-    store(i, p, self);
+    return size;
   }
 
   static constexpr double same_normal = 5e-7;  ///< 1 - cosine of the angle up to which contacts of a body are one
@@ -285,7 +296,8 @@ struct press_on_mesh {
     return goes_on;
   }
 
-  COLLIDE_HD_INLINE mesh_overlap<S> overlap_of(Triangles const& open, integrated const& self,
+  template <class Seen>
+  COLLIDE_HD_INLINE mesh_overlap<S> overlap_of(Triangles const& open, Seen const& self,
                                                overlap_list::item const& item) const {
     sphere<S> const shape{self[position{}], self.the_radius};
     nearest_of_triangle const n = nearest_to(open.mesh[item.triangle], seen_from(open, item.frame, shape).centre);
@@ -368,6 +380,31 @@ struct press_on_mesh {
     } else {
       return open.next(s, cursor, all, range);
     }
+  }
+};
+
+/// Kernel functor of `for_each` over particles: found[i] = f(particle, overlap, what it remembers), summed over the
+/// contacts of particle i with the mesh where it is now. Nothing is changed.
+template <class S, class Effects, class Triangles, class Memory, class F, class Sum>
+struct sum_over_mesh_contacts : press_on_mesh<S, Effects, Triangles, Memory> {
+  F f;
+  Sum* found;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    Triangles const open = this->triangles.without_overflown_grids();
+    particle<S, typename Effects::overlap_reads> self;
+    this->state.load(self, i);
+    sphere<S> const shape{self[position{}], reach_of<Effects>(self.the_radius)};
+    overlap_list near;
+    if (is_finite(shape.centre) && !open.empty(shape)) this->find(open, shape, near);
+    int before = 0;
+    if constexpr (Effects::remembered::size != 0) before = this->memory.counts[i];
+    vec3<S> normals[overlap_list::room] = {};
+    id bodies[overlap_list::room] = {};
+    Sum sum{};
+    this->for_each_contact(open, i, self, near, before, normals, bodies,
+                           [&](int, mesh_overlap<S> const& o, auto& values) { sum += f(self, o, values); });
+    found[i] = sum;
   }
 };
 

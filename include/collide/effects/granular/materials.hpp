@@ -2,20 +2,15 @@
 /// Materials of granular particles and walls.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include <collide/effect.hpp>
 
 namespace collide {
-
-/// The material of a particle, as a number: see `materials`. Scenes have it that name `granular_contact` with
-/// `materials`.
-struct material {
-  template <class S>
-  using value = std::uint8_t;
-};
 
 /// An elastic solid.
 struct solid {
@@ -97,8 +92,11 @@ class one_material {
   }
 
   void check_parameters() const {}
-  /// The solid, and the largest stiffness, for time steps.
-  solid const& stiffest() const { return solid_; }
+  /// f(solid, smallest radius of it).
+  template <class F>
+  double least(smallest_radii const& radii, F const& f) const {
+    return f(solid_, radii.of_all);
+  }
 
   template <class S, class Particle>
   COLLIDE_HD_INLINE S density_of(Particle const&) const {
@@ -165,13 +163,15 @@ class materials {
       }
     }
   }
-  /// The solid in which waves are fastest.
-  solid const& stiffest() const {
-    int best = 0;
-    for (int i = 1; i < N; ++i) {
-      if (solids_[i].young / solids_[i].density > solids_[best].young / solids_[best].density) best = i;
+  /// The least of f(solid, smallest radius of it) of all solids that particles are of; infinite if there are none.
+  template <class F>
+  double least(smallest_radii const& radii, F const& f) const {
+    double found = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < smallest_radii::numbers; ++i) {
+      double const r = radii.of_material[i];
+      if (detail::is_finite(r)) found = std::min(found, f(solids_[std::min(i, N - 1)], r));
     }
-    return solids_[best];
+    return found;
   }
 
   template <class S, class Particle>
