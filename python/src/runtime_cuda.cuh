@@ -24,7 +24,13 @@ class on_device {
       throw collide::error(
           "collide: this process was forked from one that may have used CUDA, which does not work in a child: start it "
           "with multiprocessing's 'spawn' or 'forkserver', or use arrays of the host");
-    collide::cuda_check(cudaGetDevice(&before_), "cudaGetDevice");
+    cudaError_t const asked = cudaGetDevice(&before_);
+    if (asked != cudaSuccess && collide::cuda_device_count() == 0)
+      throw collide::error(
+          "collide: the array is on a GPU, but CUDA finds no GPU here, or no driver for CUDA 13 (see nvidia-smi): "
+          "arrays "
+          "of the host work");
+    collide::cuda_check(asked, "cudaGetDevice");
     device_ = device;
     if (before_ != device_) collide::cuda_check(cudaSetDevice(device_), "cudaSetDevice");
   }
