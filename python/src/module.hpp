@@ -11,9 +11,6 @@
 
 namespace collide_python {
 
-/// A stream of calls, and what DLPack's exporters are told.
-using stream_numbers = std::pair<std::uintptr_t, std::int64_t>;
-
 /// Errors of the library are collide.Error in Python.
 inline void register_errors() {
   nb::register_exception_translator([](std::exception_ptr const& thrown, void*) {
@@ -29,10 +26,10 @@ inline void register_errors() {
 /// comes before them.
 template <class Type, class Result, class Of, class... Argument>
 void bind_call(nb::class_<Type>& c, char const* name, Result (Of::*function)(Argument...)) {
-  auto const call = [function](Type& of, stream_numbers stream, Argument... arguments) {
-    typename Type::call const now(of, {stream.first, stream.second});
+  auto const call = [function](Type& of, stream_of_call stream, Argument... arguments) {
+    typename Type::call const now(of, stream);
     of.begin();
-    if constexpr (std::is_same<Of, simulation_base>::value) {  // of which none knows Python
+    if constexpr (std::is_same<Of, simulation_base>::value) {  // which knows nothing of Python
       without_gil const others_run;
       return (of.one().*function)(std::forward<Argument>(arguments)...);
     } else {
@@ -57,7 +54,7 @@ void bind_simulation(nb::module_& m, char const* name) {
   using type = simulation<Space, S>;
   nb::class_<type> c(m, name);
   c.def(nb::init<std::string, int, int>()).def("is_shown", &type::is_shown);
-  bind_call(c, "set_parameter", &type::set_parameter);
+  bind_call(c, "set_parameter", &simulation_base::set_parameter);
   bind_call(c, "set_mesh", &type::set_mesh);
   bind_call(c, "set", &type::set);
   bind_call(c, "columns", &type::columns);

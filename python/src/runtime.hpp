@@ -4,7 +4,9 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 
 #include <collide/host.hpp>
 
@@ -14,11 +16,8 @@
 
 namespace collide_python {
 
-/// On a GPU, the stream that a call puts its work on, and what DLPack's exporters are told.
-struct stream_of_call {
-  std::uintptr_t stream;
-  std::int64_t given;
-};
+/// On a GPU, the stream that a call puts its work on, and what DLPack's exporters are told. In Python two numbers.
+using stream_of_call = std::pair<std::uintptr_t, std::int64_t>;
 
 /// What differs from space to space.
 template <class Space>

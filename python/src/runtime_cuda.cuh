@@ -171,8 +171,8 @@ class runtime<collide::cuda_shared> {
   /// Work of later calls goes to `stream`, after what earlier calls have put on another one. `given` is what DLPack's
   /// exporters are told.
   void use_stream(stream_of_call const& s) {
-    auto* const next = reinterpret_cast<cudaStream_t>(s.stream);
-    at_.given = s.given;
+    auto* const next = reinterpret_cast<cudaStream_t>(s.first);
+    at_.given = s.second;
     if (next == space_->stream()) return;
     cudaStreamCaptureStatus capturing = cudaStreamCaptureStatusNone;
     collide::cuda_check(cudaStreamIsCapturing(next, &capturing), "cudaStreamIsCapturing");

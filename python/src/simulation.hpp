@@ -2,7 +2,6 @@
 /// collide.Simulation for one space and one type of coordinates: a list of effects that was compiled on its own.
 #pragma once
 
-#include <algorithm>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -38,11 +37,6 @@ class simulation : public called<Space> {
   /// Whether arrays of Python show its columns: after `set` they show the old ones, and so it must be another that is
   /// set.
   bool is_shown() const { return one_.use_count() > 1; }
-
-  void set_parameter(std::size_t effect, std::string const& name, std::vector<double> const& values) {
-    if (!one().set_parameter(effect, name.c_str(), values.data(), values.size()))
-      refuse(name.c_str(), "there is no such parameter of so many numbers");
-  }
 
   /// Each body is its first triangle, how many, and the numbers of its motion.
   void set_mesh(mesh<Space, S>& of, std::vector<std::vector<double>> const& bodies) {
@@ -81,8 +75,8 @@ class simulation : public called<Space> {
   }
 
   /// A column where it is: what is written to it the simulation has.
-  nb::object column_of(std::string const& name, bool numpy) {
-    column const c = one().columns()[number_of(name)];
+  nb::object column_of(std::size_t number, bool numpy) {
+    column const c = one().columns()[number];
     struct owned {
       std::shared_ptr<void> memory;  ///< gone last
       std::shared_ptr<simulation_base> one;
@@ -95,20 +89,20 @@ class simulation : public called<Space> {
                 runtime_.at(), numpy);
   }
 
-  void assign(std::string const& name, nb::object const& values) {
-    std::size_t const number = number_of(name), n = one().size();
+  void assign(std::size_t number, nb::object const& values) {
+    std::size_t const n = one().size();
     column const c = one().columns()[number];
-    array const a = runtime_.keep(import_array(values, name.c_str(), runtime_.at()));
+    array const a = runtime_.keep(import_array(values, c.name, runtime_.at()));
     auto const kind = static_cast<dlpack>(a.dtype().code);
     bool const is_integer = kind == dlpack::Int || kind == dlpack::UInt || kind == dlpack::Bool;
     if (a.dtype().bits != 8 * c.bytes || (c.is_float ? kind != dlpack::Float : !is_integer))
-      refuse<nb::type_error>(name.c_str(),
+      refuse<nb::type_error>(c.name,
                              "has dtype " + name_of(a.dtype()) + ", and the column another: nothing is converted");
     std::vector<std::size_t> shape{n};
     if (c.width != 1) shape.push_back(c.width);
     if (!has_shape(a, shape) || !is_packed(a))
-      refuse(name.c_str(), "has shape " + shape_of(a) + ", expected packed rows for " + std::to_string(n) +
-                               " particles of " + std::to_string(c.width) + " number(s)");
+      refuse(c.name, "has shape " + shape_of(a) + ", expected packed rows for " + std::to_string(n) + " particles of " +
+                         std::to_string(c.width) + " number(s)");
     if (a.size() == 0) return;
     without_gil const others_run;
     one().assign(number, a.data());
@@ -117,15 +111,6 @@ class simulation : public called<Space> {
  private:
   using called<Space>::runtime_;
   using dlpack = nb::dlpack::dtype_code;
-
-  std::size_t number_of(std::string const& name) {
-    std::vector<std::string> const names = columns();
-    auto const found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-    std::string all;
-    for (std::string const& one : names) all += (all.empty() ? "" : ", ") + one;
-    throw nb::key_error(("there is no column '" + name + "' in this simulation; there are " + all).c_str());
-  }
 
   make_simulation* make_ = nullptr;
   std::shared_ptr<simulation_base> one_;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory_resource>
+#include <string>
 #include <vector>
 
 namespace collide_python {
@@ -32,7 +33,7 @@ class simulation_base {
   /// On which stream, or with how many threads, from now on.
   virtual void use(whereabouts const& w) = 0;
   /// Sets a parameter of the effect of a number; false if it has none of that name and size.
-  virtual bool set_parameter(std::size_t effect, char const* name, double const* values, std::size_t n) = 0;
+  virtual bool set_parameter(std::size_t effect, std::string const& name, std::vector<double> const& values) = 0;
   /// `mesh` is a collide::mesh_view, `bodies` are collide::body.
   virtual void set_mesh(void const* mesh, void const* bodies, std::size_t body_count) = 0;
   /// `spheres` is a collide::sphere_view; velocities are packed, or null.
@@ -48,8 +49,8 @@ class simulation_base {
   virtual void clear(std::size_t effect) = 0;
   virtual std::vector<column> columns() = 0;
   virtual void assign(std::size_t column, void const* values) = 0;
-  virtual void save(char const* path) = 0;
-  virtual void load(char const* path) = 0;
+  virtual void save(std::string const& path) = 0;
+  virtual void load(std::string const& path) = 0;
 };
 
 /// The memory in which an effect sums up; most have none. See sums.hpp.

@@ -3,7 +3,6 @@
 /// `parameters(effect, f)` for each, which calls f(name, member).
 #pragma once
 
-#include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -32,23 +31,18 @@ std::string short_name() {
   return std::string(last == std::string_view::npos ? text : text.substr(last + 2));
 }
 
-template <class Space>
-Space make_space(whereabouts const& w) {
-  if constexpr (std::is_same<Space, collide::host>::value) {
-    return collide::host(w.threads);
-  }
+inline collide::host make_space(whereabouts const& w, collide::host const*) { return collide::host(w.threads); }
 #if defined(__CUDACC__)
-  else {
-    return Space(static_cast<cudaStream_t>(w.stream), w.memory);
-  }
-#endif
+template <class Space>
+Space make_space(whereabouts const& w, Space const*) {
+  return Space(static_cast<cudaStream_t>(w.stream), w.memory);
 }
+#endif
 
 /// Sets the member of a name.
 struct parameter_setter {
-  char const* wanted;
-  double const* values;
-  std::size_t n;
+  std::string const& wanted;
+  std::vector<double> const& values;
   bool* found;
 
   template <class Number>
@@ -61,8 +55,8 @@ struct parameter_setter {
   /// What takes `size` numbers at once.
   template <class Set>
   void operator()(char const* name, std::size_t size, Set const& set) const {
-    if (n != size || std::strcmp(name, wanted) != 0) return;
-    set(values);
+    if (values.size() != size || name != wanted) return;
+    set(values.data());
     *found = true;
   }
 };
@@ -72,13 +66,13 @@ class simulation_of final : public simulation_base {
   using type = collide::simulation<collide::detector<collide::bucket, NarrowPhase, Space, S>, Effect...>;
 
  public:
-  explicit simulation_of(whereabouts const& w) : one_(make_space<Space>(w)) {}
+  explicit simulation_of(whereabouts const& w) : one_(make_space(w, static_cast<Space*>(nullptr))) {}
 
-  void use(whereabouts const& w) override { one_.space() = make_space<Space>(w); }
+  void use(whereabouts const& w) override { one_.space() = make_space(w, &one_.space()); }
 
-  bool set_parameter(std::size_t effect, char const* name, double const* values, std::size_t n) override {
+  bool set_parameter(std::size_t effect, std::string const& name, std::vector<double> const& values) override {
     bool found = false;
-    parameter_setter const setter{name, values, n, &found};
+    parameter_setter const setter{name, values, &found};
     std::size_t number = 0;
     ((number++ == effect ? set<Effect>(setter) : void()), ...);
     return found;
@@ -121,9 +115,9 @@ class simulation_of final : public simulation_base {
   std::vector<column> columns() override { return describe(typename type::columns{}); }
   void assign(std::size_t i, void const* values) override { assign(i, values, typename type::columns{}); }
 
-  void save(char const* path) override { collide::save(one_, std::string(path)); }
-  void load(char const* path) override {
-    collide::load(one_, std::string(path));
+  void save(std::string const& path) override { collide::save(one_, path); }
+  void load(std::string const& path) override {
+    collide::load(one_, path);
     clear_all();
   }
 

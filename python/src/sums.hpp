@@ -13,19 +13,22 @@
 
 namespace collide_python {
 
-template <>
-struct sums_of<collide::reaction> {
-  std::optional<collide::reaction_sums> sums;
+template <class Sums>
+struct sums_in_memory {
+  std::optional<Sums> sums;
+  template <class Space>
+  void clear(Space const& space) {
+    sums->clear(space);
+  }
+};
 
+template <>
+struct sums_of<collide::reaction> : sums_in_memory<collide::reaction_sums> {
   /// For so many bodies and, where the effect wants them, triangles. Sums begin at 0.
   template <class Space>
   void make(Space const& space, collide::reaction& e, std::size_t bodies, std::size_t triangles) {
     sums = collide::reaction_sums(space, bodies, e.unit, e.triangles != 0 ? std::max<std::size_t>(triangles, 1) : 0);
     e = sums->effect(e.density);
-  }
-  template <class Space>
-  void clear(Space const& space) {
-    sums->clear(space);
   }
   /// Six numbers of each body, of what rests, and of each triangle; last how many contacts are in no sum.
   template <class Space>
@@ -43,17 +46,11 @@ struct sums_of<collide::reaction> {
 };
 
 template <>
-struct sums_of<collide::mass_flow<>> {
-  std::optional<collide::flow_sums> sums;
-
+struct sums_of<collide::mass_flow<>> : sums_in_memory<collide::flow_sums> {
   template <class Space>
   void make(Space const& space, collide::mass_flow<>& e, std::size_t, std::size_t) {
     sums = collide::flow_sums(space, e.unit);
     e = sums->through(e.point, e.normal, e.made_of, e.disc);
-  }
-  template <class Space>
-  void clear(Space const& space) {
-    sums->clear(space);
   }
   /// How many particles, and their mass.
   template <class Space>

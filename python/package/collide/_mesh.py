@@ -5,6 +5,7 @@ import re
 from typing import Any, Literal, NamedTuple, Optional, Union
 
 from ._arrays import CUDA, NO_STREAM, device_of, library_of, module_for
+from ._errors import refuse
 
 Array = Any  #: an array of numpy, torch, cupy, jax or warp, or anything with __dlpack__
 Precision = Literal["exact", "double", "single"]
@@ -223,9 +224,9 @@ class Mesh:
         fit, `Error` if the library or CUDA fails, MemoryError without memory. O(n + candidates).
         """
         if output == "csr":
-            _refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
-            _refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
-        _refuse(output not in ("pairs", "csr"), "output", f"is {output!r}, expected 'pairs' or 'csr'")
+            refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
+            refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
+        refuse(output not in ("pairs", "csr"), "output", f"is {output!r}, expected 'pairs' or 'csr'")
         asked = output, precision, centres, radius, displacements, _is_canonical(order), capacity
         return self._ask(self._mesh.query, Csr if output == "csr" else Pairs, centres, out, *asked)
 
@@ -243,8 +244,8 @@ class Mesh:
 
         Other arguments, errors and costs as for `query`.
         """
-        _refuse(closest and out is not None, "out", "of the closest contacts is not taken")
-        _refuse(closest and capacity is not None, "capacity", "there is a contact for each sphere")
+        refuse(closest and out is not None, "out", "of the closest contacts is not taken")
+        refuse(closest and capacity is not None, "capacity", "there is a contact for each sphere")
         what = "closest" if closest else "contacts"
         asked = what, precision, centres, radius, displacements, _is_canonical(order), capacity
         return self._ask(self._mesh.query, Contacts, centres, out, *asked)
@@ -262,9 +263,9 @@ class Mesh:
 
         Other arguments, errors and costs as for `query`.
         """
-        _refuse(displacements is None, "displacements", "expected an array of shape (n, 3)")
-        _refuse(first and out is not None, "out", "of the first impacts is not taken")
-        _refuse(first and capacity is not None, "capacity", "there is an impact for each sphere")
+        refuse(displacements is None, "displacements", "expected an array of shape (n, 3)")
+        refuse(first and out is not None, "out", "of the first impacts is not taken")
+        refuse(first and capacity is not None, "capacity", "there is an impact for each sphere")
         what = "earliest" if first else "impacts"
         asked = what, "exact", centres, radius, displacements, _is_canonical(order), capacity
         return self._ask(self._mesh.query, Impacts, centres, out, *asked)
@@ -354,10 +355,5 @@ def _is_wide(array):
 
 
 def _is_canonical(order):
-    _refuse(order not in ("unspecified", "canonical"), "order", f"is {order!r}, expected 'unspecified' or 'canonical'")
+    refuse(order not in ("unspecified", "canonical"), "order", f"is {order!r}, expected 'unspecified' or 'canonical'")
     return order == "canonical"
-
-
-def _refuse(wrong, name, why):
-    if wrong:
-        raise ValueError(f"{name}: {why}")

@@ -9,6 +9,7 @@ import numpy
 from . import _build
 from ._arrays import CUDA, NO_STREAM, library_of, module_for
 from ._mesh import Array, Mesh
+from ._errors import refuse
 from .effects import Effect, Vector
 
 
@@ -82,10 +83,10 @@ class Simulation:
         precision: str = "exact", threads: int = 0,
     ):
         for effect in effects:
-            if not isinstance(effect, Effect):
-                raise TypeError(f"effects: expected effects such as collide.gravity(), got {effect!r}")
-        if precision not in ("exact", "double", "single"):
-            raise ValueError(f"precision: is {precision!r}, expected 'exact', 'double' or 'single'")
+            wrong = not isinstance(effect, Effect)
+            refuse(wrong, "effects", f"expected effects such as collide.gravity(), got {effect!r}", TypeError)
+        wrong = precision not in ("exact", "double", "single")
+        refuse(wrong, "precision", f"is {precision!r}, expected 'exact', 'double' or 'single'")
         self.effects = tuple(effects)
         self._mesh, self._bodies = mesh, list(bodies)
         self._device, self._library, self._threads = mesh._device, mesh._library, threads
@@ -104,13 +105,17 @@ class Simulation:
     def _made(self):
         """The compiled simulation, with mesh and parameters."""
         module = module_for(self._device, "mesh")
-        made = (module.SimulationDouble if self._mesh._is_wide else module.SimulationFloat)
-        made = made(self._path, self._threads, self._device[1])
+        kind = module.SimulationDouble if self._mesh._is_wide else module.SimulationFloat
+        made = kind(self._path, self._threads, self._device[1])
         made.set_mesh(self._stream(), self._mesh._mesh, [body._numbers() for body in self._bodies])
         for number, effect in enumerate(self.effects):
             for name, values in effect.parameters.items():
-                made.set_parameter(self._stream(), number, name, values)
+                self._set_parameter(made, number, name, values)
         return made
+
+    def _set_parameter(self, simulation, number, name, values):
+        done = simulation.set_parameter(self._stream(), number, name, values)
+        refuse(not done, name, "there is no such parameter of so many numbers")
 
     def _unseen(self):
         """The compiled simulation, or another where arrays show its columns, which then stay as they are."""
@@ -119,8 +124,8 @@ class Simulation:
     def set_mesh(self, mesh: Optional[Mesh] = None, bodies: Optional[Sequence[Body]] = None) -> None:
         """Call it when the mesh has moved, after `Mesh.update`; or gives another mesh, or other bodies. O(triangles)."""
         if mesh is not None:
-            if mesh._device != self._device or mesh._is_wide != self._mesh._is_wide:
-                raise ValueError("mesh: has another device or dtype than the simulation's")
+            wrong = (mesh._device, mesh._is_wide) != (self._device, self._mesh._is_wide)
+            refuse(wrong, "mesh", "has another device or dtype than the simulation's")
             self._mesh = mesh
         if bodies is not None:
             self._bodies = list(bodies)
@@ -154,19 +159,19 @@ class Simulation:
         shows the simulation's own memory: it changes with steps, and may be written to between them. After `set` it shows
         the particles of before. Of jax, whose arrays never change, it is a copy."""
         stream = self._stream()
-        column = self._simulation.column(stream, name, self._library.is_numpy)
+        column = self._simulation.column(stream, self._column(name), self._library.is_numpy)
         return self._library.shown(self._library.array(column, stream))
 
     def __setitem__(self, name: str, values: Array) -> None:
         """Gives all particles a column's values, packed and of its dtype."""
-        self._simulation.assign(self._stream(), name, values)
+        self._simulation.assign(self._stream(), self._column(name), values)
 
     def change(self, effect: Union[int, str], **parameters: Union[float, Vector]) -> None:
         """Changes parameters of an effect, by its name or its place in the list: ``sim.change('gravity', z=-1.62)``."""
         number = self._number(effect)
         changed = self.effects[number]._changed(parameters)
         for name in parameters:
-            self._simulation.set_parameter(self._stream(), number, name, changed.parameters[name])
+            self._set_parameter(self._simulation, number, name, changed.parameters[name])
         self.effects = (*self.effects[:number], changed, *self.effects[number + 1 :])
 
     @property
@@ -198,8 +203,7 @@ class Simulation:
         a change of its parameters, or of the numbers of bodies and triangles. Waits."""
         number = self._number(effect)
         found = self._simulation.sums(self._stream(), number)
-        if not found:
-            raise ValueError(f"effect: {self.effects[number].name} has no sums; reaction and mass_flow have")
+        refuse(not found, "effect", f"{self.effects[number].name} has no sums; reaction and mass_flow have")
         if len(found) == 2:
             return Flow(int(found[0]), found[1])
         parts = numpy.reshape(found[:-1], (-1, 2, 3))
@@ -222,13 +226,17 @@ class Simulation:
     def __repr__(self):
         return f"<collide.Simulation: {len(self)} particles, {', '.join(e.name for e in self.effects)}>"
 
+    def _column(self, name):
+        names = self.columns
+        if name not in names:
+            raise KeyError(f"there is no column {name!r} in this simulation; there are {', '.join(names)}")
+        return names.index(name)
+
     def _number(self, effect):
         names = [e.name for e in self.effects]
-        if effect in names:
-            return names.index(effect)
-        if isinstance(effect, int) and 0 <= effect < len(names):
-            return effect
-        raise ValueError(f"effect: there is no {effect!r} in the list {', '.join(names)}")
+        number = names.index(effect) if effect in names else effect
+        refuse(number not in range(len(names)), "effect", f"there is no {effect!r} in the list {', '.join(names)}")
+        return number
 
     def _stream(self) -> Tuple[int, int]:
         return self._library.stream(self._device[1]) if self._device[0] == CUDA else NO_STREAM
