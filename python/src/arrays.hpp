@@ -3,7 +3,9 @@
 /// names the argument.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -47,11 +49,11 @@ std::string shape_of(Array const& a) {
   return text_of({a.shape_ptr(), a.shape_ptr() + a.ndim()});
 }
 
-template <class Array>
-bool has_shape(Array const& a, std::vector<std::size_t> const& shape) {
-  bool fits = a.ndim() == shape.size();
-  for (std::size_t k = 0; fits && k < shape.size(); ++k) fits = shape[k] == any_number || a.shape(k) == shape[k];
-  return fits;
+template <class Array, class Shape = std::initializer_list<std::size_t>>
+bool has_shape(Array const& a, Shape const& shape) {
+  std::size_t k = 0;
+  auto const fits = [&](std::size_t n) { return a.shape(k++) == n || n == any_number; };
+  return a.ndim() == shape.size() && std::all_of(shape.begin(), shape.end(), fits);
 }
 
 /// Whether an array has no gaps, in C's order.

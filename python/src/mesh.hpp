@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -26,7 +27,7 @@ namespace collide_python {
 
 /// What all queries with spheres have.
 struct question {
-  std::string precision;
+  std::string_view precision;
   nb::object radius, displacements;  ///< the last one is None for spheres at rest
   collide::order order;
   nb::object capacity;  ///< None, or for how many results there is room at most
@@ -70,11 +71,11 @@ class mesh : public called<Space> {
   /// What spheres touch. `what` is pairs, contacts, impacts, or closest or earliest, which are one for each sphere:
   /// records as rows of int32, how many there are, and how many in all; or count, a number; any, flags; csr, offsets
   /// and triangles.
-  nb::object query(std::string const& what, std::string const& precision, nb::object const& centres,
-                   nb::object const& radius, nb::object const& displacements, bool canonical,
-                   nb::object const& capacity, nb::object const& out, bool numpy) {
-    auto const order = canonical ? collide::order::canonical : collide::order::unspecified;
-    question const q{precision, radius, displacements, order, capacity, out, numpy};
+  /// `results` are whether they are sorted, the capacity, `out`, and whether they are numpy's.
+  nb::object query(std::string_view what, nb::object const& centres, nb::object const& radius,
+                   nb::object const& displacements, std::string_view precision, nb::tuple const& results) {
+    auto const order = nb::cast<bool>(results[0]) ? collide::order::canonical : collide::order::unspecified;
+    question const q{precision, radius, displacements, order, results[1], results[2], nb::cast<bool>(results[3])};
     array const x = runtime_.keep(import_array(centres, "centres", runtime_.at()));
     if (what == "pairs") return records<collide::pair, collide::pairs>(q, x);
     if (what == "contacts") return records<collide::contact<S>, collide::contacts<S>>(q, x);
@@ -88,15 +89,17 @@ class mesh : public called<Space> {
       return nb::cast(sink.total());
     }
     nb::object found;
-    collide::any_hit sink(each<std::uint8_t>(found, {points_of<S>(x, "centres").size()}, out, numpy));
+    collide::any_hit sink(each<std::uint8_t>(found, {points_of<S>(x, "centres").size()}, q.out, q.numpy));
     ask(q, sink, x);
     return found;
   }
 
   /// What is near each point, in `out` or in memory of its own: `what` is nearest, k_nearest or signed_distance, one
   /// record or k of them, and how many points there are; or contains, flags.
-  nb::object search(std::string const& what, nb::object const& from, int k, double max_distance, nb::object const& out,
-                    bool numpy) {
+  nb::object search(std::string_view what, nb::object const& from, int k, double max_distance,
+                    nb::tuple const& results) {
+    nb::object const out = results[2];
+    bool const numpy = nb::cast<bool>(results[3]);
     array const kept_points = runtime_.keep(import_array(from, "points", runtime_.at()));
     auto const points = points_of<S>(kept_points, "points");
     std::size_t const n = points.size();
@@ -199,7 +202,7 @@ class mesh : public called<Space> {
         if (q.precision == "exact") return run<0>(std::get<0>(at_rest_), spheres, sink);
         if (q.precision == "single") return run<1>(std::get<1>(at_rest_), spheres, sink);
         if (q.precision == "double") return run<2>(std::get<2>(at_rest_), spheres, sink);
-        refuse("precision", "is '" + q.precision + "', expected 'exact', 'double' or 'single'");
+        refuse("precision", "is '" + std::string(q.precision) + "', expected 'exact', 'double' or 'single'");
       } else {
         refuse("displacements", "impacts are of spheres that move");
       }

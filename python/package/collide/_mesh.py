@@ -187,8 +187,7 @@ class Mesh:
         precision: Precision = "exact"
     ) -> int:
         """How many pairs of a sphere and a triangle touch. Arguments as for `query`."""
-        asked = "count", precision, centres, radius, displacements, False, None
-        return self._ask(self._mesh.query, int, centres, None, *asked)
+        return self._ask(self._mesh.query, int, None, "count", centres, radius, displacements, precision)
 
     def any(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
@@ -199,8 +198,7 @@ class Mesh:
         out  (n,) uint8 or bool: where flags go. On a GPU such a call allocates nothing and does not wait, once a first
              one has been made: it can be captured in a CUDA graph.
         """
-        asked = "any", precision, centres, radius, displacements, False, None
-        return self._ask(self._mesh.query, bool, centres, out, *asked)
+        return self._ask(self._mesh.query, bool, out, "any", centres, radius, displacements, precision)
 
     def query(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
@@ -227,8 +225,8 @@ class Mesh:
             refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
             refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
         refuse(output not in ("pairs", "csr"), "output", f"is {output!r}, expected 'pairs' or 'csr'")
-        asked = output, precision, centres, radius, displacements, _is_canonical(order), capacity
-        return self._ask(self._mesh.query, Csr if output == "csr" else Pairs, centres, out, *asked)
+        kind, asked = Csr if output == "csr" else Pairs, (output, centres, radius, displacements, precision)
+        return self._ask(self._mesh.query, kind, out, *asked, order=order, capacity=capacity)
 
     def contacts(
         self, centres: Array, radius: Union[float, Array], *, closest: bool = False,
@@ -246,9 +244,8 @@ class Mesh:
         """
         refuse(closest and out is not None, "out", "of the closest contacts is not taken")
         refuse(closest and capacity is not None, "capacity", "there is a contact for each sphere")
-        what = "closest" if closest else "contacts"
-        asked = what, precision, centres, radius, displacements, _is_canonical(order), capacity
-        return self._ask(self._mesh.query, Contacts, centres, out, *asked)
+        asked = "closest" if closest else "contacts", centres, radius, displacements, precision
+        return self._ask(self._mesh.query, Contacts, out, *asked, order=order, capacity=capacity)
 
     def impacts(
         self, centres: Array, displacements: Array, radius: Union[float, Array], *, first: bool = False,
@@ -266,9 +263,8 @@ class Mesh:
         refuse(displacements is None, "displacements", "expected an array of shape (n, 3)")
         refuse(first and out is not None, "out", "of the first impacts is not taken")
         refuse(first and capacity is not None, "capacity", "there is an impact for each sphere")
-        what = "earliest" if first else "impacts"
-        asked = what, "exact", centres, radius, displacements, _is_canonical(order), capacity
-        return self._ask(self._mesh.query, Impacts, centres, out, *asked)
+        asked = "earliest" if first else "impacts", centres, radius, displacements, "exact"
+        return self._ask(self._mesh.query, Impacts, out, *asked, order=order, capacity=capacity)
 
     def nearest(self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None) -> Nearest:
         """The nearest triangle of each point, and the nearest point of it.
@@ -282,7 +278,7 @@ class Mesh:
         arguments that do not fit, `Error` if the library or CUDA fails. It does not wait on a GPU. The first call prepares a
         tree, O(m log m) for m triangles; O(log m) for a point near the mesh.
         """
-        return self._ask(self._mesh.search, Nearest, points, out, "nearest", points, 1, max_distance)
+        return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, max_distance)
 
     def k_nearest(
         self, points: Array, k: int, *, max_distance: float = math.inf, out: Optional[Array] = None
@@ -295,7 +291,7 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        return self._ask(self._mesh.search, Nearest, points, out, "k_nearest", points, k, max_distance)
+        return self._ask(self._mesh.search, Nearest, out, "k_nearest", points, k, max_distance)
 
     def signed_distance(
         self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None
@@ -308,7 +304,7 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        return self._ask(self._mesh.search, SignedDistance, points, out, "signed_distance", points, 1, max_distance)
+        return self._ask(self._mesh.search, SignedDistance, out, "signed_distance", points, 1, max_distance)
 
     def contains(self, points: Array, *, out: Optional[Array] = None) -> Array:
         """(n,) bool: whether each point is inside of a closed mesh or on its surface. Exact, however triangles are
@@ -320,14 +316,15 @@ class Mesh:
 
         Errors as for `nearest`.
         """
-        return self._ask(self._mesh.search, bool, points, out, "contains", points, 1, math.inf)
+        return self._ask(self._mesh.search, bool, out, "contains", points, 1, math.inf)
 
-    def _ask(self, function, kind, asker, out, *arguments):
+    def _ask(self, function, kind, out, what, centres, *asked, order="unspecified", capacity=None):
         """What a function of the compiled mesh finds, as a ``kind``; bool stands for flags. It works on the stream of the
-        library that the array ``asker`` is of."""
-        library = library_of(asker, self._device)
+        library that the centres, or points, are of."""
+        library = library_of(centres, self._device)
         stream = self._stream(library)
-        found = function(stream, *arguments, out, library.is_numpy)
+        results = _is_canonical(order), capacity, out, library.is_numpy
+        found = function(stream, what, centres, *asked, results)
         if kind is int:
             return found
         if kind is bool:
@@ -355,5 +352,6 @@ def _is_wide(array):
 
 
 def _is_canonical(order):
-    refuse(order not in ("unspecified", "canonical"), "order", f"is {order!r}, expected 'unspecified' or 'canonical'")
+    if order not in ("unspecified", "canonical"):
+        refuse(True, "order", f"is {order!r}, expected 'unspecified' or 'canonical'")
     return order == "canonical"
