@@ -1,4 +1,4 @@
-"""The tutorial: make_notebook.py makes tutorial.ipynb of it, docs/tutorials/8-python.md has its code."""
+"""The tutorial: make_notebook.py makes tutorial.ipynb of it."""
 
 # %% [markdown]
 # # A point cloud against a part, and a drum of grains

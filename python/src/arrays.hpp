@@ -3,7 +3,10 @@
 /// names the argument.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <initializer_list>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,39 +23,47 @@ namespace nb = nanobind;
 
 using array = nb::ndarray<nb::ro>;
 
-[[noreturn]] inline void refuse(char const* name, std::string const& why) {
-  throw nb::value_error((std::string(name) + ": " + why).c_str());
-}
-[[noreturn]] inline void refuse_type(char const* name, std::string const& why) {
-  throw nb::type_error((std::string(name) + ": " + why).c_str());
+template <nb::builtin_exception (*error)(char const*) = nb::value_error>
+[[noreturn]] void refuse(char const* name, std::string const& why) {
+  throw error((std::string(name) + ": " + why).c_str());
 }
 
+/// A dtype as numpy names it.
 inline std::string name_of(nb::dlpack::dtype const& type) {
-  using code = nb::dlpack::dtype_code;
-  std::string const bits = std::to_string(type.bits);
-  switch (static_cast<code>(type.code)) {
-    case code::Int:
-      return "int" + bits;
-    case code::UInt:
-      return "uint" + bits;
-    case code::Float:
-      return "float" + bits;
-    case code::Bool:
-      return "bool";
-    case code::Complex:
-      return "complex" + bits;
-    case code::Bfloat:
-      return "bfloat" + bits;
-    default:
-      return "another type";
-  }
+  static char const* const names[] = {"int", "uint", "float", "opaque", "bfloat", "complex", "bool"};  // of DLPack
+  if (type.code >= std::size(names)) return "another type";
+  return names[type.code] + (type == nb::dtype<bool>() ? "" : std::to_string(type.bits));
 }
 
+inline constexpr std::size_t any_number = static_cast<std::size_t>(-1);  ///< of rows
+
+/// A shape as Python shows it; a length that may be any has a name.
+inline std::string text_of(std::vector<std::size_t> const& shape, char const* any = "") {
+  std::string text = "(";
+  for (std::size_t k = 0; k < shape.size(); ++k)
+    text += (k != 0 ? ", " : "") + (shape[k] == any_number ? any : std::to_string(shape[k]));
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
 template <class Array>
 std::string shape_of(Array const& a) {
-  std::string text = "(";
-  for (std::size_t k = 0; k < a.ndim(); ++k) text += (k != 0 ? ", " : "") + std::to_string(a.shape(k));
-  return text + (a.ndim() == 1 ? ",)" : ")");
+  return text_of({a.shape_ptr(), a.shape_ptr() + a.ndim()});
+}
+
+template <class Array, class Shape = std::initializer_list<std::size_t>>
+bool has_shape(Array const& a, Shape const& shape) {
+  std::size_t k = 0;
+  auto const fits = [&](std::size_t n) { return a.shape(k++) == n || n == any_number; };
+  return a.ndim() == shape.size() && std::all_of(shape.begin(), shape.end(), fits);
+}
+
+/// Whether an array has no gaps, in C's order.
+template <class Array>
+bool is_packed(Array const& a) {
+  std::int64_t step = 1;
+  bool packed = true;
+  for (std::size_t k = a.ndim(); k-- > 0; step *= static_cast<std::int64_t>(a.shape(k)))
+    packed = packed && (a.shape(k) <= 1 || a.stride(k) == step);
+  return packed || a.size() == 0;
 }
 
 /// Where the arrays of a call are. `given` is the stream that DLPack is told of: -1 where the producer works on the
@@ -83,12 +94,12 @@ Array import_array(nb::handle from, char const* name, place const& at) {
       nb::object const method = from.attr("__dlpack__");
       capsule = is_on_host(at.device_type) ? method() : method(nb::arg("stream") = at.given);
     } catch (nb::python_error& e) {
-      refuse_type(name, std::string("cannot be shared without a copy: ") + nb::str(e.value()).c_str());
+      refuse<nb::type_error>(name, std::string("cannot be shared without a copy: ") + nb::str(e.value()).c_str());
     }
-    if (!nb::try_cast(capsule, a, false)) refuse_type(name, "is read-only, or no array that can be shared");
+    if (!nb::try_cast(capsule, a, false)) refuse<nb::type_error>(name, "is read-only, or no array that can be shared");
   } else {
-    refuse_type(name, "expected an array (numpy, torch, cupy, jax, warp: with __dlpack__), got " +
-                          std::string(nb::type_name(from.type()).c_str()));
+    refuse<nb::type_error>(name, "expected an array (numpy, torch, cupy, jax, warp: with __dlpack__), got " +
+                                     std::string(nb::type_name(from.type()).c_str()));
   }
   bool const same = is_on_host(at.device_type) ? is_on_host(a.device_type())
                                                : a.device_type() == at.device_type && a.device_id() == at.device;
@@ -98,11 +109,12 @@ Array import_array(nb::handle from, char const* name, place const& at) {
   return a;
 }
 
-template <class S>
-void check_type(array const& a, char const* name, char const* what) {
+template <class S, class Array>
+void check_type(Array const& a, char const* name, char const* what = "") {
   if (a.dtype() == nb::dtype<S>()) return;
-  refuse_type(name, "has dtype " + name_of(a.dtype()) + ", expected " + name_of(nb::dtype<S>()) + what);
+  refuse<nb::type_error>(name, "has dtype " + name_of(a.dtype()) + ", expected " + name_of(nb::dtype<S>()) + what);
 }
+inline constexpr char const* as_vertices = ", that of the vertices: nothing is converted";
 
 /// A stride in elements that the views can carry. Arrays of no or one row may have any.
 inline std::size_t row_stride(array const& a, char const* name, std::size_t if_any) {
@@ -114,10 +126,9 @@ inline std::size_t row_stride(array const& a, char const* name, std::size_t if_a
 
 /// Points of shape (n, 3), of any strides that are not negative along the rows.
 template <class S>
-collide::point_view<S> points_of(array const& a, char const* name,
-                                 char const* type_of = ", that of the vertices: nothing is converted") {
+collide::point_view<S> points_of(array const& a, char const* name, char const* type_of = as_vertices) {
   check_type<S>(a, name, type_of);
-  if (a.ndim() != 2 || a.shape(1) != 3) refuse(name, "has shape " + shape_of(a) + ", expected (n, 3)");
+  if (!has_shape(a, {any_number, 3})) refuse(name, "has shape " + shape_of(a) + ", expected (n, 3)");
   S const* const x = static_cast<S const*>(a.data());
   std::size_t const n = a.shape(0);
   if (n == 0) return {nullptr, nullptr, nullptr, 3, 0};
@@ -128,8 +139,9 @@ collide::point_view<S> points_of(array const& a, char const* name,
 template <class S>
 collide::mesh_view<S> mesh_of(collide::point_view<S> const& vertices, array const& a, char const* name) {
   if (a.dtype() != nb::dtype<std::int32_t>() && a.dtype() != nb::dtype<std::uint32_t>())
-    refuse_type(name, "has dtype " + name_of(a.dtype()) + ", expected int32 or uint32: nothing is converted");
-  if (a.ndim() != 2 || a.shape(1) != 3) refuse(name, "has shape " + shape_of(a) + ", expected (m, 3)");
+    refuse<nb::type_error>(name,
+                           "has dtype " + name_of(a.dtype()) + ", expected int32 or uint32: nothing is converted");
+  if (!has_shape(a, {any_number, 3})) refuse(name, "has shape " + shape_of(a) + ", expected (m, 3)");
   std::size_t const m = a.shape(0);
   if (m == 0) return {};
   if (a.stride(1) < 0) refuse(name, "has columns in reverse order (a negative stride), which is not read: make a copy");
@@ -157,32 +169,21 @@ collide::sphere_view<S> spheres_of(collide::point_view<S> const& centres, nb::ha
     return collide::spheres_at(centres, static_cast<S>(number));
   }
   keep = import_array(radius, "radius", at);
-  check_type<S>(keep, "radius", ", that of the vertices: nothing is converted");
-  if (keep.ndim() != 1 || keep.shape(0) != centres.size())
-    refuse("radius", "has shape " + shape_of(keep) + ", expected a number or (" + std::to_string(centres.size()) +
-                         ",), one for each centre");
+  check_type<S>(keep, "radius", as_vertices);
+  if (!has_shape(keep, {centres.size()}))
+    refuse("radius", "has shape " + shape_of(keep) + ", expected a number or " + text_of({centres.size()}) +
+                         ", one for each centre");
   return collide::spheres_at(centres, static_cast<S const*>(keep.data()), row_stride(keep, "radius", 1));
 }
 
-inline constexpr std::size_t any_number = static_cast<std::size_t>(-1);  ///< of rows
-
 /// An array of the caller to write `T`s to, which is packed and of a shape.
 template <class T>
-T* room_of(nb::ndarray<> const& a, char const* name, std::vector<std::size_t> const& shape) {
-  bool const is_flag = sizeof(T) == 1 && a.dtype() == nb::dtype<bool>();
-  if (a.dtype() != nb::dtype<T>() && !is_flag)
-    refuse_type(name, "has dtype " + name_of(a.dtype()) + ", expected " + name_of(nb::dtype<T>()));
-  bool fits = a.ndim() == shape.size(), is_packed = true;
-  std::string expected;
-  for (std::size_t k = 0; k < shape.size(); ++k) {
-    fits = fits && (shape[k] == any_number || a.shape(k) == shape[k]);
-    expected += (k != 0 ? ", " : "(") + (shape[k] == any_number ? "capacity" : std::to_string(shape[k]));
-  }
-  if (!fits) refuse(name, "has shape " + shape_of(a) + ", expected " + expected + (shape.size() == 1 ? ",)" : ")"));
-  std::int64_t step = 1;
-  for (std::size_t k = a.ndim(); k-- > 0; step *= static_cast<std::int64_t>(a.shape(k)))
-    is_packed = is_packed && (a.shape(k) <= 1 || a.stride(k) == step);
-  if (!is_packed && a.size() != 0) refuse(name, "is not packed (C order)");
+T* room_of(nb::handle from, place const& at, std::vector<std::size_t> const& shape, std::size_t* rows = nullptr) {
+  auto const a = import_array<nb::ndarray<>>(from, "out", at);
+  if (sizeof(T) != 1 || a.dtype() != nb::dtype<bool>()) check_type<T>(a, "out");
+  if (!has_shape(a, shape)) refuse("out", "has shape " + shape_of(a) + ", expected " + text_of(shape, "capacity"));
+  if (!is_packed(a)) refuse("out", "is not packed (C order)");
+  if (rows != nullptr) *rows = a.shape(0);
   return static_cast<T*>(a.data());
 }
 

@@ -49,17 +49,7 @@ class call_under_way {
   call_under_way& operator=(call_under_way const&) = delete;
 };
 
-/// Other threads run while this is there.
-class without_gil {
- public:
-  without_gil() : state_{PyEval_SaveThread()} {}
-  ~without_gil() { PyEval_RestoreThread(state_); }
-  without_gil(without_gil const&) = delete;
-  without_gil& operator=(without_gil const&) = delete;
-
- private:
-  PyThreadState* state_;
-};
+using without_gil = nb::gil_scoped_release;  ///< other threads run while it is there
 
 /// Holds a mutex. While another thread has it, other threads of Python run, so that this one can finish.
 class one_at_a_time {
@@ -78,7 +68,7 @@ class one_at_a_time {
 inline void wait_for_calls() {
   ending_thread() = std::this_thread::get_id();
   interpreter_ends = true;
-  nb::gil_scoped_release const release;
+  without_gil const others_run;
   while (!is_forked && calls_under_way > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 

@@ -11,12 +11,12 @@ NB_MODULE(_cuda, m) {
     order(reinterpret_cast<cudaStream_t>(first), reinterpret_cast<cudaStream_t>(second));
   });
   m.def("capability", [](int device) {
-    int major = 0, minor = 0;
-    collide::cuda_check(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device),
-                        "cudaDeviceGetAttribute");
-    collide::cuda_check(cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, device),
-                        "cudaDeviceGetAttribute");
-    return 10 * major + minor;
+    auto const number = [&](cudaDeviceAttr of) {
+      int found = 0;
+      collide::cuda_check(cudaDeviceGetAttribute(&found, of, device), "cudaDeviceGetAttribute");
+      return found;
+    };
+    return 10 * number(cudaDevAttrComputeCapabilityMajor) + number(cudaDevAttrComputeCapabilityMinor);
   });
   m.def("device_count", &collide::cuda_device_count);
 }

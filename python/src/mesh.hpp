@@ -4,8 +4,8 @@
 
 #include <array>
 #include <memory>
-#include <mutex>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -25,36 +25,25 @@
 
 namespace collide_python {
 
-/// What all queries have: their arguments as Python gives them, in this order.
+/// What all queries with spheres have.
 struct question {
-  std::string precision;
-  nb::object centres, radius, displacements;  ///< the last one is None for spheres at rest
-  bool canonical;
+  std::string_view precision;
+  nb::object radius, displacements;  ///< the last one is None for spheres at rest
+  collide::order order;
   nb::object capacity;  ///< None, or for how many results there is room at most
   nb::object out;       ///< None, or an array for them
   bool numpy;           ///< whether results are numpy arrays
-
-  explicit question(nb::tuple const& q)
-      : precision(nb::cast<std::string>(q[0])),
-        centres(q[1]),
-        radius(q[2]),
-        displacements(q[3]),
-        canonical(nb::cast<bool>(q[4])),
-        capacity(q[5]),
-        out(q[6]),
-        numpy(nb::cast<bool>(q[7])) {}
 };
 
 template <class Space, class S>
-class mesh {
+class mesh : public called<Space> {
  public:
-  using scalar = S;
+  mesh(int threads, int device) : called<Space>(threads, device) {}
 
-  mesh(int threads, int device) : runtime_(threads, device) {}
+  void begin() {}
 
   /// Reads other arrays from now on; without triangles those of before. After an error it is as it was.
-  void take(stream_of_call stream, nb::object const& vertices, nb::object const& triangles, bool validate) {
-    call const now(*this, stream);
+  void take(nb::object const& vertices, nb::object const& triangles, bool validate) {
     array const v = import_array(vertices, "vertices", runtime_.at());
     collide::point_view<S> const points = points_of<S>(v, "vertices", is_set_ ? " as before" : " or float64");
     if (points.size() > 0x7fffffff) refuse("vertices", "has more than 2,147,483,647 rows");
@@ -62,8 +51,8 @@ class mesh {
     if (!triangles.is_none()) {
       t = import_array(triangles, "triangles", runtime_.at());
     } else if (is_set_ && points.size() != view_.vertices().size()) {
-      refuse("vertices", "has shape " + shape_of(v) + ", expected (" + std::to_string(view_.vertices().size()) +
-                             ", 3) as before: the triangles are the same");
+      refuse("vertices", "has shape " + shape_of(v) + ", expected " + text_of({view_.vertices().size(), 3}) +
+                             " as before: the triangles are the same");
     } else if (!t.is_valid() && points.size() % 3 != 0) {
       refuse("vertices", "has shape " + shape_of(v) + ", but without triangles there are three rows for each");
     }
@@ -78,50 +67,39 @@ class mesh {
 
   std::size_t size() const { return view_.size(); }
   collide::mesh_view<S> const& view() const { return view_; }
-  runtime<Space>& where() { return runtime_; }
 
-  std::uint64_t count(stream_of_call stream, nb::tuple const& asked) {
-    call const now(*this, stream);
-    question const q(asked);
-    collide::count sink;
-    ask(q, sink);
-    return sink.total();
-  }
-
-  nb::object any(stream_of_call stream, nb::tuple const& asked) {
-    call const now(*this, stream);
-    question const q(asked);
-    array const centres = runtime_.keep(import_array(q.centres, "centres", runtime_.at()));
+  /// What spheres touch. `what` is pairs, contacts, impacts, or closest or earliest, which are one for each sphere:
+  /// records as rows of int32, how many there are, and how many in all; or count, a number; any, flags; csr, offsets
+  /// and triangles.
+  /// `results` are whether they are sorted, the capacity, `out`, and whether they are numpy's.
+  nb::object query(std::string_view what, nb::object const& centres, nb::object const& radius,
+                   nb::object const& displacements, std::string_view precision, nb::tuple const& results) {
+    auto const order = nb::cast<bool>(results[0]) ? collide::order::canonical : collide::order::unspecified;
+    question const q{precision, radius, displacements, order, results[1], results[2], nb::cast<bool>(results[3])};
+    array const x = runtime_.keep(import_array(centres, "centres", runtime_.at()));
+    if (what == "pairs") return records<collide::pair, collide::pairs>(q, x);
+    if (what == "contacts") return records<collide::contact<S>, collide::contacts<S>>(q, x);
+    if (what == "impacts") return records<collide::impact<S>, collide::impacts<S>>(q, x);
+    if (what == "closest") return records<collide::contact<S>, collide::closest_contact<S>>(q, x);
+    if (what == "earliest") return records<collide::impact<S>, collide::earliest_impact<S>>(q, x);
+    if (what == "csr") return rows(q, x);
+    if (what == "count") {
+      collide::count sink;
+      ask(q, sink, x);
+      return nb::cast(sink.total());
+    }
     nb::object found;
-    collide::any_hit sink(each<std::uint8_t>(found, {points_of<S>(centres, "centres").size()}, q.out, q.numpy));
-    ask(q, sink, centres);
+    collide::any_hit sink(each<std::uint8_t>(found, {points_of<S>(x, "centres").size()}, q.out, q.numpy));
+    ask(q, sink, x);
     return found;
   }
 
-  /// (records as rows of int32, how many there are, how many there are in all).
-  nb::object pairs(stream_of_call stream, nb::tuple const& q) {
-    return records<collide::pair, collide::pairs>(stream, q);
-  }
-  nb::object contacts(stream_of_call stream, nb::tuple const& q) {
-    return records<collide::contact<S>, collide::contacts<S>>(stream, q);
-  }
-  nb::object impacts(stream_of_call stream, nb::tuple const& q) {
-    return records<collide::impact<S>, collide::impacts<S>>(stream, q);
-  }
-
-  /// One record for each sphere.
-  nb::object closest(stream_of_call stream, nb::tuple const& q) {
-    return records<collide::contact<S>, collide::closest_contact<S>>(stream, q);
-  }
-  nb::object earliest(stream_of_call stream, nb::tuple const& q) {
-    return records<collide::impact<S>, collide::earliest_impact<S>>(stream, q);
-  }
-
-  /// What is near each point: `what` is nearest, k_nearest, signed_distance or contains. One record, or k of them, or a
-  /// flag for each point, in `out` or in memory of its own; and how many points there are.
-  nb::object search(stream_of_call stream, std::string const& what, nb::object const& from, int k, double max_distance,
-                    nb::object const& out, bool numpy) {
-    call const now(*this, stream);
+  /// What is near each point, in `out` or in memory of its own: `what` is nearest, k_nearest or signed_distance, one
+  /// record or k of them, and how many points there are; or contains, flags.
+  nb::object search(std::string_view what, nb::object const& from, int k, double max_distance,
+                    nb::tuple const& results) {
+    nb::object const out = results[2];
+    bool const numpy = nb::cast<bool>(results[3]);
     array const kept_points = runtime_.keep(import_array(from, "points", runtime_.at()));
     auto const points = points_of<S>(kept_points, "points");
     std::size_t const n = points.size();
@@ -132,7 +110,9 @@ class mesh {
     nb::object found;
     if (what == "contains") {
       look(points, collide::detail::find_inside{each<std::uint8_t>(found, {n}, out, numpy)});
-    } else if (what == "signed_distance") {
+      return found;
+    }
+    if (what == "signed_distance") {
       auto* const to = each<collide::signed_nearest_triangle<S>>(found, {n}, out, numpy);
       look(points, collide::detail::find_signed_distance<S, exact>{farthest, to});
     } else if (what == "nearest") {
@@ -145,32 +125,11 @@ class mesh {
     return nb::make_tuple(found, n);
   }
 
-  nb::object csr(stream_of_call stream, nb::tuple const& asked) {
-    call const now(*this, stream);
-    question const q(asked);
-    auto sink = std::make_unique<kept<collide::csr>>(runtime_.memory());
-    sink->sink = collide::csr(order_of(q));
-    ask(q, sink->sink);
-    auto const* const offsets = reinterpret_cast<std::int64_t const*>(sink->sink.offsets());
-    auto const* const triangles = reinterpret_cast<std::int32_t const*>(sink->sink.triangles());
-    std::size_t const rows = sink->sink.rows(), n = sink->sink.size();
-    nb::object const owner = owner_of(std::move(sink));
-    return nb::make_tuple(give(offsets, {rows + 1}, owner, runtime_.at(), q.numpy),
-                          give(triangles, {n}, owner, runtime_.at(), q.numpy));
-  }
-
  private:
+  using called<Space>::runtime_;
   template <class Precision>
   using at_rest = collide::detector<collide::bucket, collide::karabassi<Precision>, Space, S>;
   using swept = collide::detector<collide::bucket, collide::karabassi_swept<>, Space, S>;
-
-  /// A call of Python: one at a time, in its place.
-  struct call {
-    call_under_way under_way;
-    one_at_a_time alone;
-    typename runtime<Space>::scope here;
-    call(mesh& m, stream_of_call const& stream) : alone(m.mutex_), here(m.runtime_, stream) {}
-  };
 
   /// A sink with memory that lives as long as its results.
   template <class Sink>
@@ -179,11 +138,13 @@ class mesh {
     collide::buffer<unsigned char> room;
     Sink sink;
     explicit kept(std::shared_ptr<void> m) : memory(std::move(m)) {}
+    /// Room for so many records.
+    template <class Record>
+    Record* records(runtime<Space> const& of, std::size_t n) {
+      return reinterpret_cast<Record*>(room.reserve(of.space().resource(), n * sizeof(Record)));
+    }
   };
-
-  static collide::order order_of(question const& q) {
-    return q.canonical ? collide::order::canonical : collide::order::unspecified;
-  }
+  struct nothing {};
 
   void check(collide::mesh_view<S> const& view) {
     without_gil const others_run;
@@ -193,36 +154,40 @@ class mesh {
   }
 
   template <class Record, class Sink>
-  nb::object records(stream_of_call stream, nb::tuple const& asked) {
-    call const now(*this, stream);
-    question const q(asked);
+  nb::object records(question const& q, array const& centres) {
     constexpr std::size_t words = sizeof(Record) / 4;
     auto own = std::make_unique<kept<Sink>>(runtime_.memory());
     if constexpr (std::is_constructible<Sink, Record*, std::size_t, collide::order>::value) {  // many for a sphere
+      own->sink = Sink(q.order);
+      std::size_t n = 0;
       if (!q.out.is_none()) {
-        auto const room = import_array<nb::ndarray<>>(q.out, "out", runtime_.at());
-        auto* const to = room_of<std::int32_t>(room, "out", {any_number, words});
-        Sink sink(reinterpret_cast<Record*>(to), room.shape(0), order_of(q));
-        ask(q, sink);
-        return nb::make_tuple(q.out, sink.size(), sink.total());
-      }
-      own->sink = Sink(order_of(q));
-      if (!q.capacity.is_none()) {
-        auto const n = nb::cast<std::size_t>(q.capacity);
-        auto* const to = own->room.reserve(runtime_.space().resource(), n * sizeof(Record));
-        own->sink = Sink(reinterpret_cast<Record*>(to), n, order_of(q));
+        auto* const to = room_of<std::int32_t>(q.out, runtime_.at(), {any_number, words}, &n);
+        own->sink = Sink(reinterpret_cast<Record*>(to), n, q.order);
+      } else if (!q.capacity.is_none()) {
+        n = nb::cast<std::size_t>(q.capacity);
+        own->sink = Sink(own->template records<Record>(runtime_, n), n, q.order);
       }
     }
-    ask(q, own->sink);
-    auto const* const data = reinterpret_cast<std::int32_t const*>(own->sink.data());
+    ask(q, own->sink, centres);
     std::size_t const n = own->sink.size();
     std::uint64_t const total = own->sink.total();
-    return nb::make_tuple(give(data, {n, words}, owner_of(std::move(own)), runtime_.at(), q.numpy), n, total);
+    if (!q.out.is_none()) return nb::make_tuple(q.out, n, total);
+    auto const* const data = own->sink.data();
+    return nb::make_tuple(given<std::int32_t>(data, {n, words}, owner_of(std::move(own)), q.numpy), n, total);
   }
 
-  template <class Sink>
-  void ask(question const& q, Sink& sink) {
-    ask(q, sink, runtime_.keep(import_array(q.centres, "centres", runtime_.at())));
+  nb::object rows(question const& q, array const& centres) {
+    auto own = std::make_unique<kept<collide::csr>>(runtime_.memory());
+    collide::csr& sink = own->sink = collide::csr(q.order);
+    ask(q, sink, centres);
+    nb::object const owner = owner_of(std::move(own));
+    return nb::make_tuple(given<std::int64_t>(sink.offsets(), {sink.rows() + 1}, owner, q.numpy),
+                          given<std::int32_t>(sink.triangles(), {sink.size()}, owner, q.numpy));
+  }
+
+  template <class T>
+  nb::object given(void const* data, std::vector<std::size_t> const& shape, nb::object const& owner, bool numpy) {
+    return give(data, nb::dtype<T>(), shape, owner, runtime_.at(), numpy);
   }
 
   /// Has the detector of a precision answer, while other threads run.
@@ -237,7 +202,7 @@ class mesh {
         if (q.precision == "exact") return run<0>(std::get<0>(at_rest_), spheres, sink);
         if (q.precision == "single") return run<1>(std::get<1>(at_rest_), spheres, sink);
         if (q.precision == "double") return run<2>(std::get<2>(at_rest_), spheres, sink);
-        refuse("precision", "is '" + q.precision + "', expected 'exact', 'double' or 'single'");
+        refuse("precision", "is '" + std::string(q.precision) + "', expected 'exact', 'double' or 'single'");
       } else {
         refuse("displacements", "impacts are of spheres that move");
       }
@@ -273,21 +238,14 @@ class mesh {
   template <class Record>
   Record* each(nb::object& found, std::vector<std::size_t> shape, nb::object const& out, bool numpy) {
     using word = std::conditional_t<sizeof(Record) == 1, std::uint8_t, std::int32_t>;
-    struct room {
-      std::shared_ptr<void> memory;
-      collide::buffer<Record> records;
-    };
     std::size_t n = 1;
     for (std::size_t const m : shape) n *= m;
     if (sizeof(Record) != 1) shape.push_back(sizeof(Record) / sizeof(word));
-    if (!out.is_none()) {
-      found = out;
-      return reinterpret_cast<Record*>(
-          room_of<word>(import_array<nb::ndarray<>>(out, "out", runtime_.at()), "out", shape));
-    }
-    auto own = std::make_unique<room>(room{runtime_.memory(), {}});
-    Record* const to = own->records.reserve(runtime_.space().resource(), n);
-    found = give(reinterpret_cast<word const*>(to), shape, owner_of(std::move(own)), runtime_.at(), numpy);
+    found = out;
+    if (!out.is_none()) return reinterpret_cast<Record*>(room_of<word>(out, runtime_.at(), shape));
+    auto own = std::make_unique<kept<nothing>>(runtime_.memory());
+    Record* const to = own->template records<Record>(runtime_, n);
+    found = given<word>(to, shape, owner_of(std::move(own)), numpy);
     return to;
   }
 
@@ -319,7 +277,6 @@ class mesh {
   template <class Sink>
   static constexpr bool needs_rest = std::is_same<Sink, collide::closest_contact<S>>::value;
 
-  runtime<Space> runtime_;
   array vertices_, triangles_;
   collide::mesh_view<S> view_;
   std::tuple<at_rest<collide::exact>, at_rest<collide::single_precision>, at_rest<collide::double_precision>> at_rest_{
@@ -330,7 +287,6 @@ class mesh {
   bool is_set_ = false;
   double pairs_a_sphere_ = 0;  ///< of the last query
   std::array<bool, 5> is_built_{};
-  std::mutex mutex_;
 };
 
 }  // namespace collide_python

@@ -5,78 +5,71 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
 #include "simulation.hpp"
 
 namespace collide_python {
 
-/// A stream of calls, and what DLPack's exporters are told.
-using stream_numbers = std::pair<std::uintptr_t, std::int64_t>;
-
-inline void set_error(nb::handle error, std::exception const& e) { PyErr_SetString(error.ptr(), e.what()); }
-
 /// Errors of the library are collide.Error in Python.
 inline void register_errors() {
-  nb::register_exception_translator(
-      [](std::exception_ptr const& thrown, void*) {
-        try {
-          std::rethrow_exception(thrown);
-        } catch (collide::error const& e) {
-          set_error(nb::module_::import_("collide._errors").attr("Error"), e);
-        }
-      },
-      nullptr);
+  nb::register_exception_translator([](std::exception_ptr const& thrown, void*) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (collide::error const& e) {
+      PyErr_SetString(nb::module_::import_("collide._errors").attr("Error").ptr(), e.what());
+    }
+  });
 }
 
-/// Binds a member whose first argument is a stream: in Python two numbers.
-template <class Class, class Type, class Result, class... Argument>
-void bind_call(Class& c, char const* name, Result (Type::*function)(stream_of_call, Argument...)) {
-  c.def(
-      name,
-      [function](Type& of, stream_numbers stream, Argument... arguments) {
-        return (of.*function)({stream.first, stream.second}, std::forward<Argument>(arguments)...);
-      },
-      nb::arg(), (static_cast<void>(sizeof(Argument)), nb::arg().none())...);
+/// Binds a function that is given what is called, and arguments, which may be None. In Python a stream, two numbers,
+/// comes before them.
+template <class Type, class Result, class Of, class... Argument>
+void bind_call(nb::class_<Type>& c, char const* name, Result (Of::*function)(Argument...)) {
+  auto const call = [function](Type& of, stream_of_call stream, Argument... arguments) {
+    typename Type::call const now(of, stream);
+    of.begin();
+    if constexpr (std::is_same<Of, simulation_base>::value) {  // which knows nothing of Python
+      without_gil const others_run;
+      return (of.one().*function)(std::forward<Argument>(arguments)...);
+    } else {
+      return (of.*function)(std::forward<Argument>(arguments)...);
+    }
+  };
+  c.def(name, call, nb::arg(), (static_cast<void>(sizeof(Argument)), nb::arg().none())...);
 }
 
 template <class Space, class S>
 void bind_mesh(nb::module_& m, char const* name) {
   using type = mesh<Space, S>;
   nb::class_<type> c(m, name);
-  auto const def = [&](char const* call, auto const function) { bind_call(c, call, function); };
-  c.def(nb::init<int, int>(), nb::arg("threads"), nb::arg("device")).def("__len__", &type::size);
-  def("take", &type::take);
-  def("search", &type::search);
-  def("count", &type::count);
-  def("any", &type::any);
-  def("pairs", &type::pairs);
-  def("csr", &type::csr);
-  def("contacts", &type::contacts);
-  def("impacts", &type::impacts);
-  def("closest", &type::closest);
-  def("earliest", &type::earliest);
+  c.def(nb::init<int, int>()).def("__len__", &type::size);
+  bind_call(c, "take", &type::take);
+  bind_call(c, "query", &type::query);
+  bind_call(c, "search", &type::search);
 }
 
 template <class Space, class S>
 void bind_simulation(nb::module_& m, char const* name) {
   using type = simulation<Space, S>;
   nb::class_<type> c(m, name);
-  auto const def = [&](char const* call, auto const function) { bind_call(c, call, function); };
-  c.def(nb::init<std::string, int, int>())
-      .def("__len__", &type::size)
-      .def("time", &type::time)
-      .def("largest_time_step", &type::largest_time_step)
-      .def("columns", &type::columns);
-  def("set_parameter", &type::set_parameter);
-  def("set_mesh", &type::set_mesh);
-  def("set", &type::set);
-  def("steps", &type::steps);
-  def("energy", &type::energy);
-  def("column", &type::column_of);
-  def("assign", &type::assign);
-  def("save", &type::save);
-  def("load", &type::load);
+  c.def(nb::init<std::string, int, int>()).def("is_shown", &type::is_shown);
+  bind_call(c, "set_parameter", &simulation_base::set_parameter);
+  bind_call(c, "set_mesh", &type::set_mesh);
+  bind_call(c, "set", &type::set);
+  bind_call(c, "columns", &type::columns);
+  bind_call(c, "column", &type::column_of);
+  bind_call(c, "assign", &type::assign);
+  bind_call(c, "steps", &simulation_base::steps);
+  bind_call(c, "size", &simulation_base::size);
+  bind_call(c, "time", &simulation_base::time);
+  bind_call(c, "largest_time_step", &simulation_base::largest_time_step);
+  bind_call(c, "energy", &simulation_base::energy);
+  bind_call(c, "sums", &simulation_base::sums);
+  bind_call(c, "clear", &simulation_base::clear);
+  bind_call(c, "save", &simulation_base::save);
+  bind_call(c, "load", &simulation_base::load);
 }
 
 template <class Space>

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 
 #include <collide/host.hpp>
 
@@ -14,11 +16,8 @@
 
 namespace collide_python {
 
-/// On a GPU, the stream that a call puts its work on, and what DLPack's exporters are told.
-struct stream_of_call {
-  std::uintptr_t stream;
-  std::int64_t given;
-};
+/// On a GPU, the stream that a call puts its work on, and what DLPack's exporters are told. In Python two numbers.
+using stream_of_call = std::pair<std::uintptr_t, std::int64_t>;
 
 /// What differs from space to space.
 template <class Space>
@@ -42,7 +41,6 @@ class runtime<collide::host> {
   };
 
   whereabouts where() const { return {is_forked ? 1 : threads_, nullptr, nullptr}; }
-  stream_of_call current() const { return {0, -1}; }
 
   /// Keeps an array of the caller until the work of the call is done.
   array const& keep(array const& a) { return a; }
@@ -55,13 +53,13 @@ class runtime<collide::host> {
 };
 
 /// An array of a shape whose memory `owner` keeps. For numpy it is a numpy array, else an object with __dlpack__.
-template <class T>
-nb::object give(T const* data, std::vector<std::size_t> const& shape, nb::handle owner, place const& at, bool numpy) {
-  static T nothing{};
-  T* const to = data != nullptr ? const_cast<T*>(data) : &nothing;
-  if (numpy) return nb::cast(nb::ndarray<nb::numpy, T>(to, shape.size(), shape.data(), owner));
-  return nb::cast(nb::ndarray<nb::array_api, T>(to, shape.size(), shape.data(), owner, nullptr, nb::dtype<T>(),
-                                                at.device_type, at.device));
+inline nb::object give(void const* data, nb::dlpack::dtype type, std::vector<std::size_t> const& shape,
+                       nb::handle owner, place const& at, bool numpy) {
+  static double nothing = 0;
+  void* const to = data != nullptr ? const_cast<void*>(data) : &nothing;
+  if (numpy) return nb::cast(nb::ndarray<nb::numpy>(to, shape.size(), shape.data(), owner, nullptr, type));
+  return nb::cast(
+      nb::ndarray<nb::array_api>(to, shape.size(), shape.data(), owner, nullptr, type, at.device_type, at.device));
 }
 
 /// A Python object that owns `owned`.
@@ -71,5 +69,25 @@ nb::object owner_of(std::unique_ptr<T> owned) {
   owned.release();
   return o;
 }
+
+/// What is called from Python, in its own place, by one thread at a time.
+template <class Space>
+class called {
+ public:
+  called(int threads, int device) : runtime_(threads, device) {}
+
+  struct call {
+    call_under_way under_way;
+    one_at_a_time alone;
+    typename runtime<Space>::scope here;
+    call(called& of, stream_of_call const& stream) : alone(of.mutex_), here(of.runtime_, stream) {}
+  };
+
+ protected:
+  runtime<Space> runtime_;
+
+ private:
+  std::mutex mutex_;
+};
 
 }  // namespace collide_python

@@ -24,7 +24,13 @@ class on_device {
       throw collide::error(
           "collide: this process was forked from one that may have used CUDA, which does not work in a child: start it "
           "with multiprocessing's 'spawn' or 'forkserver', or use arrays of the host");
-    collide::cuda_check(cudaGetDevice(&before_), "cudaGetDevice");
+    cudaError_t const asked = cudaGetDevice(&before_);
+    if (asked != cudaSuccess && collide::cuda_device_count() == 0)
+      throw collide::error(
+          "collide: the array is on a GPU, but CUDA finds no GPU here, or no driver for CUDA 13 (see nvidia-smi): "
+          "arrays "
+          "of the host work");
+    collide::cuda_check(asked, "cudaGetDevice");
     device_ = device;
     if (before_ != device_) collide::cuda_check(cudaSetDevice(device_), "cudaSetDevice");
   }
@@ -48,23 +54,31 @@ inline void order(cudaStream_t first, cudaStream_t second) {
   collide::cuda_check(waits, "cudaStreamWaitEvent");
 }
 
+/// What there is once for each device, made by `make(device)` when it is first asked for.
+template <class Make>
+auto one_each(int device, Make const& make) {
+  static std::mutex mutex;
+  static std::map<int, decltype(make(device))> made;
+  std::lock_guard<std::mutex> const one_at_a_time(mutex);
+  auto const found = made.find(device);
+  return found != made.end() ? found->second : made[device] = make(device);
+}
+
 /// A stream of our own for each device, for libraries that have none that we could work on.
 inline cudaStream_t own_stream(int device) {
-  static std::mutex mutex;
-  static std::map<int, cudaStream_t> streams;
-  std::lock_guard<std::mutex> const one_at_a_time(mutex);
-  on_device const here(device);
-  cudaStream_t& stream = streams[device];
-  if (stream == nullptr)
+  return one_each(device, [](int of) {
+    on_device const here(of);
+    cudaStream_t stream = nullptr;
     collide::cuda_check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
-  return stream;
+    return stream;
+  });
 }
 
 /// Device memory in the order of streams, from a pool that keeps what is returned. It may be returned when another
 /// stream is current: then the stream that it was taken on waits for that one first.
 class pool_memory final : public std::pmr::memory_resource {
  public:
-  explicit pool_memory(int device) : device_{device}, pool_{pool_of(device)} {}
+  explicit pool_memory(int device) : device_{device}, pool_{one_each(device, new_pool)} {}
 
   void use(cudaStream_t stream) {
     std::lock_guard<std::mutex> const one_at_a_time(mutex_);
@@ -72,16 +86,12 @@ class pool_memory final : public std::pmr::memory_resource {
   }
 
  private:
-  static cudaMemPool_t pool_of(int device) {
-    static std::mutex mutex;
-    static std::map<int, cudaMemPool_t> pools;
-    std::lock_guard<std::mutex> const one_at_a_time(mutex);
-    cudaMemPool_t& pool = pools[device];
-    if (pool != nullptr) return pool;
+  static cudaMemPool_t new_pool(int device) {
     cudaMemPoolProps properties{};
     properties.allocType = cudaMemAllocationTypePinned;
     properties.location.type = cudaMemLocationTypeDevice;
     properties.location.id = device;
+    cudaMemPool_t pool = nullptr;
     collide::cuda_check(cudaMemPoolCreate(&pool, &properties), "cudaMemPoolCreate");
     std::uint64_t keep = std::uint64_t{1} << 30;  // what is idle beyond a gigabyte goes back to the device
     collide::cuda_check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &keep),
@@ -142,7 +152,6 @@ class runtime<collide::cuda_shared> {
   place at() const { return at_; }
   collide::cuda_shared const& space() const { return *space_; }
   whereabouts where() const { return {0, space_->stream(), memory_.get()}; }
-  stream_of_call current() const { return {reinterpret_cast<std::uintptr_t>(space_->stream()), at_.given}; }
   std::shared_ptr<void> memory() const { return memory_; }
 
   /// Keeps an array of the caller until the work of the call is done, where its library does not order that by the
@@ -162,8 +171,8 @@ class runtime<collide::cuda_shared> {
   /// Work of later calls goes to `stream`, after what earlier calls have put on another one. `given` is what DLPack's
   /// exporters are told.
   void use_stream(stream_of_call const& s) {
-    auto* const next = reinterpret_cast<cudaStream_t>(s.stream);
-    at_.given = s.given;
+    auto* const next = reinterpret_cast<cudaStream_t>(s.first);
+    at_.given = s.second;
     if (next == space_->stream()) return;
     cudaStreamCaptureStatus capturing = cudaStreamCaptureStatusNone;
     collide::cuda_check(cudaStreamIsCapturing(next, &capturing), "cudaStreamIsCapturing");

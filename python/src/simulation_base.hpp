@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <memory_resource>
+#include <string>
+#include <vector>
 
 namespace collide_python {
 
@@ -12,7 +14,7 @@ namespace collide_python {
 struct column {
   char const* name;
   std::size_t width;  ///< 3, or 1
-  char kind;          ///< 'f' float, 'u' unsigned, 'i' signed
+  bool is_float;      ///< or else an integer
   std::size_t bytes;  ///< of one number
   void* data;
 };
@@ -31,22 +33,37 @@ class simulation_base {
   /// On which stream, or with how many threads, from now on.
   virtual void use(whereabouts const& w) = 0;
   /// Sets a parameter of the effect of a number; false if it has none of that name and size.
-  virtual bool set_parameter(std::size_t effect, char const* name, double const* values, std::size_t n) = 0;
+  virtual bool set_parameter(std::size_t effect, std::string const& name, std::vector<double> const& values) = 0;
   /// `mesh` is a collide::mesh_view, `bodies` are collide::body.
   virtual void set_mesh(void const* mesh, void const* bodies, std::size_t body_count) = 0;
   /// `spheres` is a collide::sphere_view; velocities are packed, or null.
   virtual void set(void const* spheres, void const* velocities, std::size_t capacity) = 0;
   virtual void steps(std::size_t n, double dt) = 0;
-  virtual std::size_t size() const = 0;
-  virtual double time() const = 0;
-  virtual double largest_time_step() const = 0;
+  virtual std::size_t size() = 0;
+  virtual double time() = 0;
+  virtual double largest_time_step() = 0;
   /// Kinetic, rotational, elastic and potential.
-  virtual void energy(double density, double* four) = 0;
-  virtual std::size_t column_count() const = 0;
-  virtual column column_at(std::size_t i) const = 0;
+  virtual std::vector<double> energy(double density) = 0;
+  /// What the effect of a number has summed up since `clear`; nothing if it does not.
+  virtual std::vector<double> sums(std::size_t effect) = 0;
+  virtual void clear(std::size_t effect) = 0;
+  virtual std::vector<column> columns() = 0;
   virtual void assign(std::size_t column, void const* values) = 0;
-  virtual void save(char const* path) const = 0;
-  virtual void load(char const* path) = 0;
+  virtual void save(std::string const& path) = 0;
+  virtual void load(std::string const& path) = 0;
+};
+
+/// The memory in which an effect sums up; most have none. See sums.hpp.
+template <class Effect>
+struct sums_of {
+  template <class Space>
+  void make(Space const&, Effect&, std::size_t, std::size_t) {}
+  template <class Space>
+  void clear(Space const&) {}
+  template <class Space>
+  std::vector<double> read(Space const&) const {
+    return {};
+  }
 };
 
 /// What a compiled list of effects exports under the name `collide_simulation`.

@@ -3,10 +3,10 @@
 /// `parameters(effect, f)` for each, which calls f(name, member).
 #pragma once
 
-#include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -31,51 +31,33 @@ std::string short_name() {
   return std::string(last == std::string_view::npos ? text : text.substr(last + 2));
 }
 
-template <class Space>
-Space make_space(whereabouts const& w) {
-  if constexpr (std::is_same<Space, collide::host>::value) {
-    return collide::host(w.threads);
-  }
+inline collide::host make_space(whereabouts const& w, collide::host const*) { return collide::host(w.threads); }
 #if defined(__CUDACC__)
-  else {
-    return Space(static_cast<cudaStream_t>(w.stream), w.memory);
-  }
+template <class Space>
+Space make_space(whereabouts const& w, Space const*) {
+  return Space(static_cast<cudaStream_t>(w.stream), w.memory);
+}
 #endif
-}
-
-/// The library's function of that name, which is found by its argument.
-template <class Simulation>
-double longest_step(Simulation const& of) {
-  return largest_time_step(of);
-}
 
 /// Sets the member of a name.
 struct parameter_setter {
-  char const* wanted;
-  double const* values;
-  std::size_t n;
+  std::string const& wanted;
+  std::vector<double> const& values;
   bool* found;
 
   template <class Number>
   void operator()(char const* name, Number& member) const {
-    if (n == 1 && std::strcmp(name, wanted) == 0) {
-      member = static_cast<Number>(*values);
-      *found = true;
-    }
+    (*this)(name, 1, [&](double const* v) { member = static_cast<Number>(*v); });
   }
   void operator()(char const* name, double (&member)[3]) const {
-    if (n == 3 && std::strcmp(name, wanted) == 0) {
-      std::copy(values, values + 3, member);
-      *found = true;
-    }
+    (*this)(name, 3, [&](double const* v) { std::copy(v, v + 3, member); });
   }
   /// What takes `size` numbers at once.
   template <class Set>
   void operator()(char const* name, std::size_t size, Set const& set) const {
-    if (n == size && std::strcmp(name, wanted) == 0) {
-      set(values);
-      *found = true;
-    }
+    if (values.size() != size || name != wanted) return;
+    set(values.data());
+    *found = true;
   }
 };
 
@@ -84,69 +66,93 @@ class simulation_of final : public simulation_base {
   using type = collide::simulation<collide::detector<collide::bucket, NarrowPhase, Space, S>, Effect...>;
 
  public:
-  explicit simulation_of(whereabouts const& w) : one_(make_space<Space>(w)) {}
+  explicit simulation_of(whereabouts const& w) : one_(make_space(w, static_cast<Space*>(nullptr))) {}
 
-  void use(whereabouts const& w) override { one_.space() = make_space<Space>(w); }
+  void use(whereabouts const& w) override { one_.space() = make_space(w, &one_.space()); }
 
-  bool set_parameter(std::size_t effect, char const* name, double const* values, std::size_t n) override {
+  bool set_parameter(std::size_t effect, std::string const& name, std::vector<double> const& values) override {
     bool found = false;
+    parameter_setter const setter{name, values, &found};
     std::size_t number = 0;
-    parameter_setter const setter{name, values, n, &found};
-    ((number++ == effect ? parameters(one_.template effect<Effect>(), setter) : void()), ...);
+    ((number++ == effect ? set<Effect>(setter) : void()), ...);
     return found;
   }
 
   void set_mesh(void const* mesh, void const* bodies, std::size_t body_count) override {
+    auto const& view = *static_cast<collide::mesh_view<S> const*>(mesh);
     auto const* const first = static_cast<collide::body const*>(bodies);
-    one_.set_mesh(*static_cast<collide::mesh_view<S> const*>(mesh),
-                  std::vector<collide::body>(first, first + body_count));
+    one_.set_mesh(view, std::vector<collide::body>(first, first + body_count));
+    if (bodies_ == body_count && triangles_ == view.size()) return;
+    bodies_ = body_count;
+    triangles_ = view.size();
+    (std::get<sums_of<Effect>>(sums_).make(one_.space(), one_.template effect<Effect>(), bodies_, triangles_), ...);
   }
   void set(void const* spheres, void const* velocities, std::size_t capacity) override {
     one_.set(*static_cast<collide::sphere_view<S> const*>(spheres), static_cast<S const*>(velocities), capacity);
+    clear_all();
   }
   void steps(std::size_t n, double dt) override { one_.steps(n, static_cast<S>(dt)); }
 
-  std::size_t size() const override { return one_.size(); }
-  double time() const override { return one_.time(); }
-  double largest_time_step() const override { return longest_step(one_); }
-  void energy(double density, double* four) override {
+  std::size_t size() override { return one_.size(); }
+  double time() override { return one_.time(); }
+  double largest_time_step() override { return collide::largest_time_step(one_); }
+  std::vector<double> energy(double density) override {
     collide::energy_sums const e = collide::energy(one_, density);
-    for (double const part : {e.kinetic, e.rotational, e.elastic, e.potential}) *four++ = part;
+    return {e.kinetic, e.rotational, e.elastic, e.potential};
   }
 
-  std::size_t column_count() const override { return type::columns::size; }
-  column column_at(std::size_t i) const override { return column_at(i, typename type::columns{}); }
+  std::vector<double> sums(std::size_t effect) override {  // not by way of the effect, which would wake what sleeps
+    std::vector<double> found;
+    std::size_t number = 0;
+    ((number++ == effect ? void(found = std::get<sums_of<Effect>>(sums_).read(one_.space())) : void()), ...);
+    return found;
+  }
+  void clear(std::size_t effect) override {
+    std::size_t number = 0;
+    ((number++ == effect ? std::get<sums_of<Effect>>(sums_).clear(one_.space()) : void()), ...);
+  }
+
+  std::vector<column> columns() override { return describe(typename type::columns{}); }
   void assign(std::size_t i, void const* values) override { assign(i, values, typename type::columns{}); }
 
-  void save(char const* path) const override { collide::save(one_, std::string(path)); }
-  void load(char const* path) override { collide::load(one_, std::string(path)); }
+  void save(std::string const& path) override { collide::save(one_, path); }
+  void load(std::string const& path) override {
+    collide::load(one_, path);
+    clear_all();
+  }
 
  private:
+  template <class Column>
+  using element = collide::detail::column_element<Column, S>;
+
+  template <class E>
+  void set(parameter_setter const& setter) {
+    E& effect = one_.template effect<E>();
+    parameters(effect, setter);
+    std::get<sums_of<E>>(sums_).make(one_.space(), effect, bodies_, triangles_);
+  }
+  void clear_all() { (std::get<sums_of<Effect>>(sums_).clear(one_.space()), ...); }
+
   template <class... Column>
-  column column_at(std::size_t i, collide::columns<Column...>) const {
-    column result{};
-    std::size_t number = 0;
-    ((number++ == i ? void(result = describe<Column>()) : void()), ...);
-    return result;
+  std::vector<column> describe(collide::columns<Column...>) {
+    return {describe<Column>()...};
   }
   template <class Column>
-  column describe() const {
+  column describe() {
     static std::string const name = short_name<Column>();
-    using element = collide::detail::column_element<Column, S>;
-    constexpr char kind = std::is_floating_point<element>::value ? 'f' : std::is_unsigned<element>::value ? 'u' : 'i';
-    return {name.c_str(), std::size_t(collide::detail::column_layout<Column, S>::width), kind, sizeof(element),
-            one_.template data<Column>()};
+    bool const is_float = std::is_floating_point<element<Column>>::value;
+    std::size_t const width = collide::detail::column_layout<Column, S>::width;
+    return {name.c_str(), width, is_float, sizeof(element<Column>), one_.template data<Column>()};
   }
   template <class... Column>
   void assign(std::size_t i, void const* values, collide::columns<Column...>) {
     std::size_t number = 0;
-    ((number++ == i
-          ? one_.template assign<Column>(static_cast<collide::detail::column_element<Column, S> const*>(values))
-          : void()),
-     ...);
+    ((number++ == i ? one_.template assign<Column>(static_cast<element<Column> const*>(values)) : void()), ...);
   }
 
   type one_;
+  std::tuple<sums_of<Effect>...> sums_;
+  std::size_t bodies_ = 0, triangles_ = 0;  ///< of the mesh
 };
 
 }  // namespace collide_python

@@ -15,7 +15,7 @@ HERE = pathlib.Path(collide.__file__).parent
 INF = float("inf")
 REQUIRED = {  # arguments that have no defaults in Python, as C++ has them
     "emit": (0, (0, 0, 0)), "absorbing_box": ((0,) * 3, (0,) * 3), "box_walls": ((-INF,) * 3, (INF,) * 3),
-    "periodic_box": ((0,) * 3, (1,) * 3),
+    "periodic_box": ((0,) * 3, (1,) * 3), "reaction": (0,), "mass_flow": ((0, 0, 0), (0, 0, 1), 0),
 }
 THREE = granular.materials([granular.Solid()] * 3, granular.SurfacePair())
 GRANULAR = [
@@ -49,12 +49,117 @@ def test_parameters_and_defaults_are_those_of_cpp(tmp_path):
 
 
 def test_every_effect_of_the_library_is_there():
-    """But reaction and mass_flow, which need sums that a program reads."""
     every = [getattr(effects, name)(*REQUIRED.get(name, ())) for name in effects.__all__] + GRANULAR
     headers = {path.relative_to(HERE / "include").as_posix() for path in (HERE / "include/collide/effects").rglob("*.hpp")}
     named = {word for effect in every for word in effect.code.replace("<", " ").replace(">", " ").split() if "/" in word}
-    others = {"reaction", "mass_flow", "granular/materials"}
-    assert headers - named == {f"collide/effects/{name}.hpp" for name in others}
+    assert headers - named == {"collide/effects/granular/materials.hpp"}  # which are no effect
+
+
+def sphere_mass(radius, density):
+    return density * 4 / 3 * numpy.pi * radius**3
+
+
+@compiles
+def test_reaction_is_what_particles_lose():
+    """Impulse and moment of the mesh are those that particles lose beside their weight; bodies and triangles share them."""
+    square = numpy.vstack([SQUARE, SQUARE + [20, 0, 0]]).astype(float)
+    mesh = collide.Mesh(square, numpy.vstack([TRIANGLES, TRIANGLES + 4]))
+    listed = [collide.gravity(), collide.bounce(0.5), collide.friction(0.3), collide.moving_bodies()]
+    unit, density, radius = 1e-12, 2500, 0.05
+    listed.append(collide.reaction(unit, density, triangles=True))
+    sim = collide.Simulation(mesh, listed, bodies=[collide.Body(2, 2)])  # the second square; the first one is at rest
+    x = numpy.random.default_rng(3).uniform(-4, 4, (400, 3)) + [0, 0, 5]
+    x[::4, 0] += 20
+    v = numpy.random.default_rng(4).normal(size=(400, 3))
+    sim.set(x, radius, v)
+    mass, weight, steps, dt = sphere_mass(radius, density), numpy.array([0, 0, -9.81]), 1500, 1e-3
+    on_body = slice(0, None, 4), [i for i in range(400) if i % 4]
+    position, moment_of_weight = sim["position"], numpy.zeros((400, 3))
+    for _ in range(steps):
+        moment_of_weight += numpy.cross(position, weight) * dt  # half a step early, as velocity changes first
+        sim.step(dt)
+    found = sim.sums("reaction")
+    assert found.bodies == 1 and found.refused == 0 and found.linear.shape == found.angular.shape == (2 + 4, 3)
+    lost = mass * (v + weight * steps * dt - sim["velocity"])
+    turned = mass * (numpy.cross(x, v) + moment_of_weight - numpy.cross(position, sim["velocity"]))
+    for row, who in enumerate(on_body):
+        assert numpy.abs(lost[who].sum(0)).max() > 1
+        assert numpy.allclose(found.linear[row], lost[who].sum(0), rtol=1e-9, atol=1e-7)
+        assert numpy.allclose(found.angular[row], turned[who].sum(0), rtol=1e-6, atol=1e-6)
+    of_triangles = found.linear[2:]
+    assert numpy.allclose(of_triangles[:2].sum(0), found.linear[1], atol=1e-7)
+    assert numpy.allclose(of_triangles[2:].sum(0), found.linear[0], atol=1e-7)
+
+
+@compiles
+def test_reaction_is_the_weight_of_what_rests():
+    """Here in float32, and with arrays of Python that look at columns when others are set."""
+    mesh = collide.Mesh(SQUARE, TRIANGLES)
+    sim = collide.Simulation(mesh, [collide.gravity(), collide.bounce(0), collide.reaction(1e-9, density=1000)])
+    radius, n, weight = 0.25, 3, sphere_mass(0.25, 1000) * 9.81
+    for density in (1000, 3000):
+        sim.change("reaction", density=density)
+        kept = None
+        for _ in range(2):
+            sim.set(numpy.float32([[0, 0, 0.25], [1, 0, 0.25], [2, 0, 0.25]]), radius)
+            sim.steps(100, 1e-3)
+            assert numpy.allclose(sim.sums(2).linear, [[0, 0, -n * weight * density / 1000 * 0.1]], rtol=1e-4)
+            kept = sim["position"]  # and the next set makes other columns
+        sim.clear(2)
+        assert (sim.sums("reaction").linear == 0).all()
+        sim.steps(50, 1e-3)
+        assert numpy.allclose(sim.sums(2).linear[0, 2], -n * weight * density / 1000 * 0.05, rtol=1e-4)
+    assert kept is not None
+    with pytest.raises(collide.Error, match="reaction: density and unit are above 0"):
+        sim.change("reaction", unit=0)
+        sim.step(1e-3)
+
+
+@compiles
+def test_reaction_of_other_bodies():
+    """Other bodies: sums begin anew, for as many."""
+    mesh = collide.Mesh(SQUARE.astype(float), TRIANGLES)
+    listed = [collide.gravity(), collide.bounce(0), collide.friction(0), collide.moving_bodies(), collide.reaction(1e-12, 1000)]
+    sim = collide.Simulation(mesh, listed)
+    sim.set(numpy.array([[0, 0, 0.25]]), 0.25)
+    sim.steps(10, 1e-3)
+    assert sim.sums("reaction").linear.shape == (1, 3) and sim.sums("reaction").linear[0, 2] < 0
+    sim.set_mesh(bodies=[collide.Body(0, 1), collide.Body(1, 1)])
+    assert (sim.sums("reaction").linear == numpy.zeros((3, 3))).all()
+    sim.steps(10, 1e-3)
+    found = sim.sums("reaction").linear
+    assert found[2].tolist() == [0, 0, 0] and numpy.isclose(found[:, 2].sum(), -0.01 * 9.81 * sphere_mass(0.25, 1000), rtol=1e-9)
+
+
+@compiles
+def test_mass_flow_counts_what_passes():
+    """Particles that fall through a plane, and those that pass its disc; back again they count backwards."""
+    mesh = collide.Mesh(SQUARE.astype(float), TRIANGLES)
+    x = numpy.random.default_rng(1).uniform(-3, 3, (500, 3))
+    radius, density = 0.1, 700
+    for disc in (INF, 2.0):
+        through = collide.mass_flow((0, 0, 0.5), (0, 0, -2), 1e-9, density=density, disc=disc)
+        sim = collide.Simulation(mesh, [collide.gravity(0, 0, -1), through])
+        sim.set(x, radius)
+        sim.steps(2000, 1e-3)  # each falls by 2
+        fell = (x[:, 2] > 0.5) & (x[:, 2] < 2.5) & (numpy.hypot(x[:, 0], x[:, 1]) <= disc)
+        found = sim.sums("mass_flow")
+        assert found.particles == fell.sum() > 10
+        assert numpy.isclose(found.mass, fell.sum() * sphere_mass(radius, density), rtol=1e-9)
+    sim.clear("mass_flow")
+    assert sim.sums(1) == (0, 0)
+    velocity = sim["velocity"]
+    velocity[:, 2] *= -1
+    sim.steps(2000, 1e-3)  # and back, and a little more or less
+    assert abs(sim.sums("mass_flow").particles + fell.sum()) <= 1
+
+
+def test_only_sums_are_read():
+    sim = collide.Simulation(collide.Mesh(SQUARE, TRIANGLES), [collide.gravity(), collide.bounce()])
+    with pytest.raises(ValueError, match="effect: gravity has no sums; reaction and mass_flow have"):
+        sim.sums("gravity")
+    with pytest.raises(ValueError, match="effect: there is no 'reaction' in the list gravity, bounce"):
+        sim.sums("reaction")
 
 
 @compiles

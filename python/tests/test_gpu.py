@@ -235,7 +235,7 @@ def simulate(put, effects, **options):
     square = numpy.array([[-5, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0]], numpy.float32)
     mesh = collide.Mesh(put(square), put(TRIANGLES[:2] * 0 + numpy.array([[0, 1, 2], [0, 2, 3]], numpy.int32)))
     sim = collide.Simulation(mesh, effects, **options)
-    x = numpy.random.default_rng(0).uniform(-2, 2, (500, 3)).astype(numpy.float32) + numpy.float32([0, 0, 3])
+    x = numpy.random.default_rng(0).uniform(-2, 2, (500, 3)).astype(numpy.float32) + numpy.float32([0, 0, 2.15])  # some reach the floor
     sim.set(put(x), 0.1)
     sim.steps(300, 1e-3)
     return sim
@@ -246,7 +246,10 @@ def simulate(put, effects, **options):
     [
         [collide.gravity(), collide.bounce(0.5)],  # in the package
         [collide.gravity(), collide.sphere_contact(1000, density=100), collide.bounce(), collide.friction()],
-        [collide.gravity(), collide.drag(0.5), collide.bounce(0.3)],  # compiled by nvcc
+        [  # compiled by nvcc
+            collide.gravity(), collide.drag(0.5), collide.bounce(0.3), collide.mass_flow((0, 0, 2), (0, 0, -1), 1e-9),
+            collide.reaction(1e-9, triangles=True),
+        ],
     ],
 )
 def test_simulations_have_the_bits_of_the_host(library, effects):
@@ -255,6 +258,11 @@ def test_simulations_have_the_bits_of_the_host(library, effects):
         column = sim[name]
         assert type(column) is type(library.put(VERTICES))
         assert numpy.array_equal(library.get(column), host[name])
+    for name in [effect.name for effect in effects if effect.name in ("mass_flow", "reaction")]:
+        mine, other = sim.sums(name), host.sums(name)
+        assert numpy.any(mine[0]) and all(numpy.array_equal(a, b) for a, b in zip(mine, other))
+        sim.clear(name)
+        assert not numpy.any(sim.sums(name)[0])
     sim["velocity"] = library.put(numpy.ones((500, 3), numpy.float32))
     assert (library.get(sim["velocity"]) == 1).all()
     old = sim["position"]  # of jax a copy

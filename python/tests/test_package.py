@@ -7,9 +7,11 @@ import shutil
 import subprocess
 import sys
 
+import numpy
 import pytest
 
 import collide
+from collide import _arrays
 
 EXPECTED = {
     "minimal.py": "sphere 0 touches triangle 0",
@@ -41,6 +43,33 @@ def test_without_anything_else(tmp_path):
     code = "import collide, numpy; m = collide.Mesh(numpy.eye(3, dtype='float32')); print(m.count(numpy.zeros((1, 3), 'float32'), 1))"
     done = subprocess.run([sys.executable, "-c", code], env={"PATH": str(tmp_path)}, capture_output=True, text=True)
     assert (done.stdout, done.stderr) == ("1\n", "")
+
+
+class OnGpu:
+    """An array that says that it is on a GPU, where there may be none."""
+
+    dtype = "float32"
+
+    def __dlpack_device__(self):
+        return 2, 0
+
+    def __dlpack__(self, **options):
+        raise AssertionError("asked too early")
+
+
+@pytest.mark.skipif(_arrays._cuda is not None and _arrays._cuda.device_count() > 0, reason="there is a GPU")
+def test_without_a_gpu():
+    """Arrays of the host work with either package, and one on a GPU is an error that says what is missing."""
+    assert collide.Mesh(numpy.eye(3)).count(numpy.zeros((1, 3)), 1) == 1
+    if _arrays._cuda is None:
+        error, text = ValueError, "vertices: is on a GPU, which needs the package collide-cu13"
+    else:
+        error, text = collide.Error, "CUDA finds no GPU here, or no driver for CUDA"
+    with pytest.raises(error, match=text):
+        collide.Mesh(OnGpu())
+    host = collide.Mesh(numpy.eye(3, dtype="float32"))
+    with pytest.raises((ValueError, TypeError), match="centres: "):
+        host.count(OnGpu(), 1)
 
 
 def test_headers_and_types_are_there():

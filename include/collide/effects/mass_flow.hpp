@@ -54,7 +54,8 @@ struct mass_flow {
     detail::check_parameter(detail::is_finite(point) && square(normal) >= 1e-300 && square(normal) <= 1e300,
                             "mass_flow: point and normal are finite, and the normal has a length");
     detail::check_parameter(disc > 0, "mass_flow: the radius of the disc is above 0");
-    detail::check_parameter(detail::is_positive(unit) && sums != nullptr, "mass_flow: flow_sums makes the effect");
+    detail::check_parameter(detail::is_positive(unit) && sums != nullptr,
+                            "mass_flow: unit is above 0, and finite, and flow_sums makes the effect");
   }
 
   template <class Particle, class Forces, class S>

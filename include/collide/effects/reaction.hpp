@@ -60,7 +60,7 @@ struct reaction {
 
   void check_parameters() const {
     detail::check_parameter(detail::is_positive(density) && detail::is_positive(unit) && sums != nullptr,
-                            "reaction: density is above 0, and finite, and reaction_sums makes the effect");
+                            "reaction: density and unit are above 0, and finite, and reaction_sums makes the effect");
   }
   /// The sums of the bodies of a simulation's mesh.
   void check_bodies(std::size_t of_mesh) const {

@@ -3,7 +3,9 @@
 import importlib
 
 from . import _host
+from ._errors import refuse
 
+_why_no_cuda = ""
 try:
     from . import _cuda  # in the package collide-cu13 only
 except ImportError as reason:
@@ -32,20 +34,16 @@ def module_for(device, name):
     """The compiled module for a device."""
     if device[0] in CPU_TYPES:
         return _host
-    if device[0] != CUDA:
-        raise ValueError(f"{name}: is on a device of DLPack's type {device[0]}; there are the host and NVIDIA GPUs")
-    if _cuda is None:
-        raise ValueError(f"{name}: is on a GPU, which needs the package collide-cu13 ({_why_no_cuda})")
+    refuse(device[0] != CUDA, name, f"is on a device of DLPack's type {device[0]}; there are the host and NVIDIA GPUs")
+    refuse(_cuda is None, name, f"is on a GPU, which needs the package collide-cu13 ({_why_no_cuda})")
     return _cuda
 
 
 class _Numpy:
     """Arrays of numpy, and of whatever else is on the host and has no class of its own here."""
 
-    is_numpy = True
-
     def __init__(self, module=None):
-        self.module = module
+        self.module, self.is_numpy = module, type(self) is _Numpy
 
     def stream(self, device):
         """The stream that the library works on now, and what its arrays' __dlpack__ is given."""
@@ -76,8 +74,6 @@ class _Numpy:
 
 
 class _Torch(_Numpy):
-    is_numpy = False
-
     def stream(self, device):
         return self.module.cuda.current_stream(device).cuda_stream, -1
 
@@ -86,8 +82,6 @@ class _Torch(_Numpy):
 
 
 class _Cupy(_Numpy):
-    is_numpy = False
-
     def stream(self, device):
         return self.module.cuda.get_current_stream(device).ptr, -1
 
@@ -108,8 +102,6 @@ class _Ordered:
 
 
 class _Jax(_Numpy):
-    is_numpy = False
-
     def stream(self, device):  # it has no stream to work on: its arrays have ours wait for them, and its stream ours
         own = _cuda.own_stream(device)
         return own, own
@@ -134,8 +126,6 @@ class _Jax(_Numpy):
 
 
 class _Warp(_Numpy):
-    is_numpy = False
-
     def stream(self, device):
         return self.module.get_stream(f"cuda:{device}").cuda_stream, -1
 
@@ -158,8 +148,6 @@ class _Warp(_Numpy):
 
 class _Stranger(_Numpy):
     """Arrays on a GPU of a library that is not known here: results have __dlpack__."""
-
-    is_numpy = False
 
     def stream(self, device):
         return _cuda.own_stream(device), _cuda.own_stream(device)

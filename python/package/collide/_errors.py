@@ -4,3 +4,9 @@ class Error(RuntimeError):
     Arguments of the wrong type are a TypeError, those of a wrong shape, length or device a ValueError; both name the
     argument.
     """
+
+
+def refuse(wrong, name, why, error=ValueError):
+    """Raises an error that names an argument, if it is wrong."""
+    if wrong:
+        raise error(f"{name}: {why}")

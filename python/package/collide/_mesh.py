@@ -1,30 +1,38 @@
 """Meshes, and what their queries find."""
 
 import math
+import re
 from typing import Any, Literal, NamedTuple, Optional, Union
 
 from ._arrays import CUDA, NO_STREAM, device_of, library_of, module_for
+from ._errors import refuse
 
 Array = Any  #: an array of numpy, torch, cupy, jax or warp, or anything with __dlpack__
 Precision = Literal["exact", "double", "single"]
 Order = Literal["unspecified", "canonical"]
 
 
-def _field(doc, integers, numbers=0, kind="int32", count=None):
+class _field:  # noqa: N801: it is used like property
     """A property that shows a field of records, which has so many integers and numbers of the mesh's type before it: a
-    column, or ``count`` of them."""
+    column of numbers, or ``count`` of them, or of integers if that is 0. Its documentation is a line of its class'."""
 
-    def get(self):
-        word = 2 if self._is_wide else 1
-        begin = integers + numbers * word
-        if kind == "int32":
-            return self._library.field(self.records, begin, None, kind)
+    def __init__(self, integers, numbers=0, count=0):
+        self.integers, self.numbers, self.count = integers, numbers, count
+
+    def __set_name__(self, owner, name):
+        found = re.search(rf"^    {name} +(.*(?:\n {{15,}}.*)*)", owner.__doc__, re.MULTILINE)
+        self.__doc__ = re.sub(r"\s+", " ", found[1])
+
+    def __get__(self, of, owner=None):
+        if of is None:
+            return self
+        word = 2 if of._is_wide else 1
+        begin = self.integers + self.numbers * word
+        if self.count == 0:
+            return of._library.field(of.records, begin, None, "int32")
         begin += begin % word
-        return self._library.field(
-            self.records, begin, count and begin + count * word, "float64" if self._is_wide else "float32"
-        )
-
-    return property(get, doc=doc)
+        end = begin + self.count * word if self.count > 1 else None
+        return of._library.field(of.records, begin, end, "float64" if of._is_wide else "float32")
 
 
 class _Records:
@@ -40,19 +48,24 @@ class _Records:
 
 
 class Pairs(_Records):
-    """Colliding pairs of a sphere and a triangle, each exactly once. ``sphere, triangle = pairs`` works, too."""
+    """Colliding pairs of a sphere and a triangle, each exactly once. ``sphere, triangle = pairs`` works, too.
+
+    sphere         (n,) int32: numbers of the spheres
+    triangle       (n,) int32: numbers of the triangles; -1 where a sphere has none (``closest``, ``first``)
+    total          how many collide; more than len() where there was no room for all
+    """
 
     def __init__(self, library, records, wide, size, total):
         super().__init__(library, records, wide, size)
-        self.total = total  #: how many collide; more than len() where there was no room for all
+        self.total = total
 
     @property
     def complete(self) -> bool:
         """Whether there was room for all of them."""
         return len(self) == self.total
 
-    sphere: Array = _field("(n,) int32: numbers of the spheres.", 0)
-    triangle: Array = _field("(n,) int32: numbers of the triangles; -1 where a sphere has none (``closest``, ``first``).", 1)
+    sphere: Array = _field(0)
+    triangle: Array = _field(1)
 
     def __iter__(self):
         return iter((self.sphere, self.triangle))
@@ -62,53 +75,61 @@ class Pairs(_Records):
 
 
 class Contacts(Pairs):
-    """Colliding pairs with their contacts: where and how each sphere touches each triangle."""
+    """Colliding pairs with their contacts: where and how each sphere touches each triangle.
 
-    point: Array = _field("(n, 3): the point of the triangle that is closest to the centre.", 2, 0, "number", 3)
-    normal: Array = _field(
-        "(n, 3): unit vector from the triangle to the centre; a normal of the triangle if the centre is on it.",
-        2, 3, "number", 3,
-    )
-    distance: Array = _field(
-        "(n,): from the centre to the triangle; infinite where a sphere has none (``closest``).", 2, 6, "number"
-    )
-    depth: Array = _field("(n,): radius - distance, how deep the triangle is in the sphere.", 2, 7, "number")
-    feature: Array = _field("(n,) int32: where on the triangle the point is: 0 face, 1 edge, 2 vertex.", 2, 8)
-    feature_index: Array = _field("(n,) int32: edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0.", 3, 8)
+    point          (n, 3): the point of the triangle that is closest to the centre
+    normal         (n, 3): unit vector from the triangle to the centre; a normal of the triangle if the centre is on it
+    distance       (n,): from the centre to the triangle; infinite where a sphere has none (``closest``)
+    depth          (n,): radius - distance, how deep the triangle is in the sphere
+    feature        (n,) int32: where on the triangle the point is: 0 face, 1 edge, 2 vertex
+    feature_index  (n,) int32: edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
+    """
+
+    point: Array = _field(2, 0, 3)
+    normal: Array = _field(2, 3, 3)
+    distance: Array = _field(2, 6, 1)
+    depth: Array = _field(2, 7, 1)
+    feature: Array = _field(2, 8)
+    feature_index: Array = _field(3, 8)
 
 
 class Impacts(Contacts):
-    """Pairs that touch while the sphere moves, with the contact at the time of impact."""
+    """Pairs that touch while the sphere moves, with the contact at the time of impact.
 
-    time: Array = _field(
-        "(n,): when it first touches, 0 at the beginning of the displacement to 1 at its end; infinite where a sphere "
-        "touches nothing (``first``).",
-        4, 8, "number",
-    )
+    time           (n,): when it first touches, 0 at the beginning of the displacement to 1 at its end; infinite where a
+                   sphere touches nothing (``first``)
+    """
+
+    time: Array = _field(4, 8, 1)
 
 
 class Nearest(_Records):
-    """The nearest triangle of each point; of `Mesh.k_nearest` the k nearest, with the shape (n, k) in place of (n,)."""
+    """The nearest triangle of each point; of `Mesh.k_nearest` the k nearest, with the shape (n, k) in place of (n,).
 
-    triangle: Array = _field("(n,) int32: numbers of the triangles; -1 where none is in reach.", 0, 7)
-    distance: Array = _field("(n,): from the point to the triangle; infinite where none is in reach.", 0, 6, "number")
-    point: Array = _field("(n, 3): the nearest point of the triangle; NaN where none is in reach.", 0, 0, "number", 3)
-    barycentric: Array = _field(
-        "(n, 3): weights of the triangle's corners that give the nearest point; not negative, with the sum 1.",
-        0, 3, "number", 3,
-    )
-    feature: Array = _field("(n,) int32: where on the triangle the nearest point is: 0 face, 1 edge, 2 vertex.", 1, 7)
-    feature_index: Array = _field("(n,) int32: edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0.", 2, 7)
+    triangle       (n,) int32: numbers of the triangles; -1 where none is in reach
+    distance       (n,): from the point to the triangle; infinite where none is in reach
+    point          (n, 3): the nearest point of the triangle; NaN where none is in reach
+    barycentric    (n, 3): weights of the triangle's corners that give the nearest point; not negative, with the sum 1
+    feature        (n,) int32: where on the triangle the nearest point is: 0 face, 1 edge, 2 vertex
+    feature_index  (n,) int32: edge 0 = ab, 1 = bc, 2 = ca; vertex 0 = a, 1 = b, 2 = c; face 0
+    """
+
+    triangle: Array = _field(0, 7)
+    distance: Array = _field(0, 6, 1)
+    point: Array = _field(0, 0, 3)
+    barycentric: Array = _field(0, 3, 3)
+    feature: Array = _field(1, 7)
+    feature_index: Array = _field(2, 7)
 
 
 class SignedDistance(Nearest):
-    """The nearest triangle of each point, with a distance that is negative inside of a closed mesh and 0 on it."""
+    """The nearest triangle of each point, with a distance that is negative inside of a closed mesh and 0 on it.
 
-    gradient: Array = _field(
-        "(n, 3): the gradient of the distance, a unit vector: from the surface to a point outside, from a point inside to "
-        "the surface. On the surface the normal (b - a) x (c - a) of the triangle.",
-        3, 7, "number", 3,
-    )
+    gradient       (n, 3): the gradient of the distance, a unit vector: from the surface to a point outside, from a point
+                   inside to the surface. On the surface the normal (b - a) x (c - a) of the triangle
+    """
+
+    gradient: Array = _field(3, 7, 3)
 
 
 class Csr(NamedTuple):
@@ -166,8 +187,7 @@ class Mesh:
         precision: Precision = "exact"
     ) -> int:
         """How many pairs of a sphere and a triangle touch. Arguments as for `query`."""
-        stream = self._stream(library_of(centres, self._device))
-        return self._mesh.count(stream, (precision, centres, radius, displacements, False, None, None, True))
+        return self._ask(self._mesh.query, int, None, "count", centres, radius, displacements, precision)
 
     def any(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
@@ -178,11 +198,7 @@ class Mesh:
         out  (n,) uint8 or bool: where flags go. On a GPU such a call allocates nothing and does not wait, once a first
              one has been made: it can be captured in a CUDA graph.
         """
-        library = library_of(centres, self._device)
-        stream = self._stream(library)
-        asked = precision, centres, radius, displacements, False, None, out, library.is_numpy
-        flags = self._mesh.any(stream, asked)
-        return flags if out is not None else library.flags(library.array(flags, stream))
+        return self._ask(self._mesh.query, bool, out, "any", centres, radius, displacements, precision)
 
     def query(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
@@ -206,14 +222,11 @@ class Mesh:
         fit, `Error` if the library or CUDA fails, MemoryError without memory. O(n + candidates).
         """
         if output == "csr":
-            _refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
-            _refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
-            library = library_of(centres, self._device)
-            stream = self._stream(library)
-            asked = precision, centres, radius, displacements, _is_canonical(order), None, None, library.is_numpy
-            return Csr(*(library.array(a, stream) for a in self._mesh.csr(stream, asked)))
-        _refuse(output != "pairs", "output", f"is {output!r}, expected 'pairs' or 'csr'")
-        return self._ask("pairs", Pairs, centres, radius, displacements, precision, order, capacity, out)
+            refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
+            refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
+        refuse(output not in ("pairs", "csr"), "output", f"is {output!r}, expected 'pairs' or 'csr'")
+        kind, asked = Csr if output == "csr" else Pairs, (output, centres, radius, displacements, precision)
+        return self._ask(self._mesh.query, kind, out, *asked, order=order, capacity=capacity)
 
     def contacts(
         self, centres: Array, radius: Union[float, Array], *, closest: bool = False,
@@ -229,10 +242,10 @@ class Mesh:
 
         Other arguments, errors and costs as for `query`.
         """
-        _refuse(closest and out is not None, "out", "of the closest contacts is not taken")
-        _refuse(closest and capacity is not None, "capacity", "there is a contact for each sphere")
-        call = "closest" if closest else "contacts"
-        return self._ask(call, Contacts, centres, radius, displacements, precision, order, capacity, out)
+        refuse(closest and out is not None, "out", "of the closest contacts is not taken")
+        refuse(closest and capacity is not None, "capacity", "there is a contact for each sphere")
+        asked = "closest" if closest else "contacts", centres, radius, displacements, precision
+        return self._ask(self._mesh.query, Contacts, out, *asked, order=order, capacity=capacity)
 
     def impacts(
         self, centres: Array, displacements: Array, radius: Union[float, Array], *, first: bool = False,
@@ -247,26 +260,13 @@ class Mesh:
 
         Other arguments, errors and costs as for `query`.
         """
-        _refuse(displacements is None, "displacements", "expected an array of shape (n, 3)")
-        _refuse(first and out is not None, "out", "of the first impacts is not taken")
-        _refuse(first and capacity is not None, "capacity", "there is an impact for each sphere")
-        call = "earliest" if first else "impacts"
-        return self._ask(call, Impacts, centres, radius, displacements, "exact", order, capacity, out)
+        refuse(displacements is None, "displacements", "expected an array of shape (n, 3)")
+        refuse(first and out is not None, "out", "of the first impacts is not taken")
+        refuse(first and capacity is not None, "capacity", "there is an impact for each sphere")
+        asked = "earliest" if first else "impacts", centres, radius, displacements, "exact"
+        return self._ask(self._mesh.query, Impacts, out, *asked, order=order, capacity=capacity)
 
-    def _ask(self, call, kind, centres, radius, displacements, precision, order, capacity, out):
-        library = library_of(centres, self._device)
-        stream = self._stream(library)
-        asked = precision, centres, radius, displacements, _is_canonical(order), capacity, out, library.is_numpy
-        records, size, total = getattr(self._mesh, call)(stream, asked)
-        if out is None:
-            records = library.array(records, stream)
-        elif size < len(out):
-            records = out[:size]
-        return kind(library, records, self._is_wide, size, total)
-
-    def nearest(
-        self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None
-    ) -> Nearest:
+    def nearest(self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None) -> Nearest:
         """The nearest triangle of each point, and the nearest point of it.
 
         points        (n, 3), of the dtype of the vertices and on the same device. One that is not finite has no triangle.
@@ -275,10 +275,10 @@ class Mesh:
 
         Returns `Nearest`. Which triangle is nearest is as with real arithmetic on the numbers as given, and of equally near
         ones it is the one of the smallest number; distances and points are rounded. Raises TypeError or ValueError for
-        arguments that do not fit, `Error` if the library or CUDA fails. It does not wait on a GPU. The first call prepares a tree, O(m log m) for m triangles; O(log m) for a
-        point near the mesh.
+        arguments that do not fit, `Error` if the library or CUDA fails. It does not wait on a GPU. The first call prepares a
+        tree, O(m log m) for m triangles; O(log m) for a point near the mesh.
         """
-        return self._search("nearest", Nearest, points, 1, max_distance, out)
+        return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, max_distance)
 
     def k_nearest(
         self, points: Array, k: int, *, max_distance: float = math.inf, out: Optional[Array] = None
@@ -291,7 +291,7 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        return self._search("k_nearest", Nearest, points, k, max_distance, out)
+        return self._ask(self._mesh.search, Nearest, out, "k_nearest", points, k, max_distance)
 
     def signed_distance(
         self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None
@@ -304,7 +304,7 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        return self._search("signed_distance", SignedDistance, points, 1, max_distance, out)
+        return self._ask(self._mesh.search, SignedDistance, out, "signed_distance", points, 1, max_distance)
 
     def contains(self, points: Array, *, out: Optional[Array] = None) -> Array:
         """(n,) bool: whether each point is inside of a closed mesh or on its surface. Exact, however triangles are
@@ -316,17 +316,27 @@ class Mesh:
 
         Errors as for `nearest`.
         """
-        return self._search("contains", None, points, 1, math.inf, out)
+        return self._ask(self._mesh.search, bool, out, "contains", points, 1, math.inf)
 
-    def _search(self, what, kind, points, k, max_distance, out):
-        library = library_of(points, self._device)
+    def _ask(self, function, kind, out, what, centres, *asked, order="unspecified", capacity=None):
+        """What a function of the compiled mesh finds, as a ``kind``; bool stands for flags. It works on the stream of the
+        library that the centres, or points, are of."""
+        library = library_of(centres, self._device)
         stream = self._stream(library)
-        found, size = self._mesh.search(stream, what, points, k, max_distance, out, library.is_numpy)
+        results = _is_canonical(order), capacity, out, library.is_numpy
+        found = function(stream, what, centres, *asked, results)
+        if kind is int:
+            return found
+        if kind is bool:
+            return found if out is not None else library.flags(library.array(found, stream))
+        if kind is Csr:
+            return Csr(*(library.array(a, stream) for a in found))
+        records, size, *total = found
         if out is None:
-            found = library.array(found, stream)
-        if kind is None:
-            return found if out is not None else library.flags(found)
-        return kind(library, found, self._is_wide, size)
+            records = library.array(records, stream)
+        elif size < len(out):
+            records = out[:size]
+        return kind(library, records, self._is_wide, size, *total)
 
     def _stream(self, library):
         """What a call to the compiled module begins with: on a GPU the stream that the library works on now."""
@@ -342,10 +352,6 @@ def _is_wide(array):
 
 
 def _is_canonical(order):
-    _refuse(order not in ("unspecified", "canonical"), "order", f"is {order!r}, expected 'unspecified' or 'canonical'")
+    if order not in ("unspecified", "canonical"):
+        refuse(True, "order", f"is {order!r}, expected 'unspecified' or 'canonical'")
     return order == "canonical"
-
-
-def _refuse(wrong, name, why):
-    if wrong:
-        raise ValueError(f"{name}: {why}")

@@ -2,11 +2,14 @@
 
 import dataclasses
 import os
-from typing import Dict, List, Optional, Sequence, Tuple, Union
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy
 
 from . import _build
 from ._arrays import CUDA, NO_STREAM, library_of, module_for
 from ._mesh import Array, Mesh
+from ._errors import refuse
 from .effects import Effect, Vector
 
 
@@ -38,6 +41,23 @@ class Body:
         return [float(number) for number in numbers]
 
 
+class Impulses(NamedTuple):
+    """What particles have given, on the host: rows are those of each body, of all that rests, and, with ``triangles``, of
+    each triangle."""
+
+    linear: numpy.ndarray  #: (rows, 3) float64: force times time
+    angular: numpy.ndarray  #: (rows, 3): its moment about the origin; about a point x it is angular - cross(x, linear)
+    bodies: int  #: rows below are bodies', this one is that of what rests, those behind it are triangles'
+    refused: int  #: contacts that are in no sum: what they gave is not finite, or 2e18 units or more
+
+
+class Flow(NamedTuple):
+    """What went through the surface of `mass_flow`, forwards minus backwards."""
+
+    particles: int
+    mass: float
+
+
 class Simulation:
     """Particles that do what a list of effects says, in its order.
 
@@ -63,16 +83,16 @@ class Simulation:
         precision: str = "exact", threads: int = 0,
     ):
         for effect in effects:
-            if not isinstance(effect, Effect):
-                raise TypeError(f"effects: expected effects such as collide.gravity(), got {effect!r}")
-        if precision not in ("exact", "double", "single"):
-            raise ValueError(f"precision: is {precision!r}, expected 'exact', 'double' or 'single'")
+            wrong = not isinstance(effect, Effect)
+            refuse(wrong, "effects", f"expected effects such as collide.gravity(), got {effect!r}", TypeError)
+        wrong = precision not in ("exact", "double", "single")
+        refuse(wrong, "precision", f"is {precision!r}, expected 'exact', 'double' or 'single'")
         self.effects = tuple(effects)
         self._mesh, self._bodies = mesh, list(bodies)
-        self._device, self._library = mesh._device, mesh._library
+        self._device, self._library, self._threads = mesh._device, mesh._library, threads
         module = module_for(self._device, "mesh")
         on_gpu = self._device[0] == CUDA
-        path = _build.library(
+        self._path = _build.library(
             effects,
             "cuda_shared" if on_gpu else "host",
             module.capability(self._device[1]) if on_gpu else None,
@@ -80,18 +100,32 @@ class Simulation:
             precision=precision,
             swept=swept,
         )
-        make = module.SimulationDouble if mesh._is_wide else module.SimulationFloat
-        self._simulation = make(path, threads, self._device[1])
-        for number, effect in enumerate(effects):
+        self._simulation = self._made()
+
+    def _made(self):
+        """The compiled simulation, with mesh and parameters."""
+        module = module_for(self._device, "mesh")
+        kind = module.SimulationDouble if self._mesh._is_wide else module.SimulationFloat
+        made = kind(self._path, self._threads, self._device[1])
+        made.set_mesh(self._stream(), self._mesh._mesh, [body._numbers() for body in self._bodies])
+        for number, effect in enumerate(self.effects):
             for name, values in effect.parameters.items():
-                self._simulation.set_parameter(self._stream(), number, name, values)
-        self.set_mesh()
+                self._set_parameter(made, number, name, values)
+        return made
+
+    def _set_parameter(self, simulation, number, name, values):
+        done = simulation.set_parameter(self._stream(), number, name, values)
+        refuse(not done, name, "there is no such parameter of so many numbers")
+
+    def _unseen(self):
+        """The compiled simulation, or another where arrays show its columns, which then stay as they are."""
+        return self._made() if self._simulation.is_shown() else self._simulation
 
     def set_mesh(self, mesh: Optional[Mesh] = None, bodies: Optional[Sequence[Body]] = None) -> None:
         """Call it when the mesh has moved, after `Mesh.update`; or gives another mesh, or other bodies. O(triangles)."""
         if mesh is not None:
-            if mesh._device != self._device or mesh._is_wide != self._mesh._is_wide:
-                raise ValueError("mesh: has another device or dtype than the simulation's")
+            wrong = (mesh._device, mesh._is_wide) != (self._device, self._mesh._is_wide)
+            refuse(wrong, "mesh", "has another device or dtype than the simulation's")
             self._mesh = mesh
         if bodies is not None:
             self._bodies = list(bodies)
@@ -108,7 +142,9 @@ class Simulation:
         capacity    for how many there is room, if an effect makes some
         """
         self._library = library_of(centres, self._device)
-        self._simulation.set(self._stream(), centres, radius, velocities, capacity)
+        simulation = self._unseen()
+        simulation.set(self._stream(), centres, radius, velocities, capacity)
+        self._simulation = simulation
 
     def step(self, dt: float) -> None:
         """Advances by the time dt, above 0."""
@@ -123,41 +159,38 @@ class Simulation:
         shows the simulation's own memory: it changes with steps, and may be written to between them. After `set` it shows
         the particles of before. Of jax, whose arrays never change, it is a copy."""
         stream = self._stream()
-        column = self._simulation.column(stream, name, self._library.is_numpy)
+        column = self._simulation.column(stream, self._column(name), self._library.is_numpy)
         return self._library.shown(self._library.array(column, stream))
 
     def __setitem__(self, name: str, values: Array) -> None:
         """Gives all particles a column's values, packed and of its dtype."""
-        self._simulation.assign(self._stream(), name, values)
+        self._simulation.assign(self._stream(), self._column(name), values)
 
     def change(self, effect: Union[int, str], **parameters: Union[float, Vector]) -> None:
         """Changes parameters of an effect, by its name or its place in the list: ``sim.change('gravity', z=-1.62)``."""
-        names = [e.name for e in self.effects]
-        if effect not in names and not (isinstance(effect, int) and 0 <= effect < len(names)):
-            raise ValueError(f"effect: there is no {effect!r} in the list {', '.join(names)}")
-        number = effect if isinstance(effect, int) else names.index(effect)
+        number = self._number(effect)
         changed = self.effects[number]._changed(parameters)
         for name in parameters:
-            self._simulation.set_parameter(self._stream(), number, name, changed.parameters[name])
+            self._set_parameter(self._simulation, number, name, changed.parameters[name])
         self.effects = (*self.effects[:number], changed, *self.effects[number + 1 :])
 
     @property
     def columns(self) -> List[str]:
         """The names of the columns."""
-        return self._simulation.columns()
+        return self._simulation.columns(self._stream())
 
     @property
     def time(self) -> float:
         """The sum of the steps since `set`."""
-        return self._simulation.time()
+        return self._simulation.time(self._stream())
 
     def __len__(self) -> int:
         """How many particles there are, or places for them."""
-        return len(self._simulation)
+        return self._simulation.size(self._stream())
 
     def largest_time_step(self) -> float:
         """A step that is good for springs between particles; infinite without any."""
-        return self._simulation.largest_time_step()
+        return self._simulation.largest_time_step(self._stream())
 
     def energy(self, density: float = 0) -> Dict[str, float]:
         """Kinetic, rotational, elastic and potential energy. ``density`` is mass per volume, 0 that of `sphere_contact`.
@@ -165,16 +198,45 @@ class Simulation:
         four = self._simulation.energy(self._stream(), density)
         return dict(zip(("kinetic", "rotational", "elastic", "potential"), four))
 
+    def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow]:
+        """What `reaction` or `mass_flow`, by its name or its place in the list, has summed up since `set`, `load`, `clear`,
+        a change of its parameters, or of the numbers of bodies and triangles. Waits."""
+        number = self._number(effect)
+        found = self._simulation.sums(self._stream(), number)
+        refuse(not found, "effect", f"{self.effects[number].name} has no sums; reaction and mass_flow have")
+        if len(found) == 2:
+            return Flow(int(found[0]), found[1])
+        parts = numpy.reshape(found[:-1], (-1, 2, 3))
+        return Impulses(*numpy.swapaxes(parts, 0, 1), bodies=len(self._bodies), refused=int(found[-1]))
+
+    def clear(self, effect: Union[int, str]) -> None:
+        """Begins the sums of `reaction` or `mass_flow` anew. Does not wait."""
+        self._simulation.clear(self._stream(), self._number(effect))
+
     def save(self, path: Union[str, os.PathLike]) -> None:
         """Writes particles and parameters to a file; not the mesh."""
         self._simulation.save(self._stream(), os.fspath(path))
 
     def load(self, path: Union[str, os.PathLike]) -> None:
         """Goes on where `save` was called, by a simulation of the same list: the same bits as without a break."""
-        self._simulation.load(self._stream(), os.fspath(path))
+        simulation = self._unseen()
+        simulation.load(self._stream(), os.fspath(path))
+        self._simulation = simulation
 
     def __repr__(self):
         return f"<collide.Simulation: {len(self)} particles, {', '.join(e.name for e in self.effects)}>"
+
+    def _column(self, name):
+        names = self.columns
+        if name not in names:
+            raise KeyError(f"there is no column {name!r} in this simulation; there are {', '.join(names)}")
+        return names.index(name)
+
+    def _number(self, effect):
+        names = [e.name for e in self.effects]
+        number = names.index(effect) if effect in names else effect
+        refuse(number not in range(len(names)), "effect", f"there is no {effect!r} in the list {', '.join(names)}")
+        return number
 
     def _stream(self) -> Tuple[int, int]:
         return self._library.stream(self._device[1]) if self._device[0] == CUDA else NO_STREAM

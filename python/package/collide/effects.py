@@ -62,9 +62,10 @@ def _numbers(name, value, size=None) -> List[float]:
 Function = TypeVar("Function", bound=Callable)
 
 
-def _describes(kind, header="", type="", **members) -> Callable[[Function], Function]:
+def _describes(kind, header="", type="", memory="", **members) -> Callable[[Function], Function]:
     """Makes a function that describes an effect: the name and the parameters are the function's own, and what it returns,
-    if anything, are other values of some. ``type`` and ``members`` are names in C++, where they differ."""
+    if anything, are other values of some. ``type`` and ``members`` are names in C++, where they differ; ``memory`` is the
+    header of what the effect has beside its parameters."""
 
     def decorate(function):
         name, arguments = function.__name__, inspect.signature(function)
@@ -76,6 +77,7 @@ def _describes(kind, header="", type="", **members) -> Callable[[Function], Func
             given.apply_defaults()
             values = {**given.arguments, **(function(*positional, **named) or {})}
             made = kind(name, {}, f"#include <collide/{header or 'effects/' + name}.hpp>")
+            made.code += f'\n#include "{memory}"' if memory else ""
             made.parameters = {key: _numbers(key, value, sizes[key]) for key, value in values.items()}
             made._type = "collide::" + (type or name)
             made._members = {key: "e." + members.get(key, key) for key in values}
@@ -196,6 +198,20 @@ def mesh_forces(density: float = 1) -> Effect:
 @_describes(Effect, "effects/contact_forces")
 def pair_forces(density: float = 1) -> Effect:
     """Forces of other particles on each particle, last in the list: the column pair_force."""
+
+
+@_describes(Effect, "effects/mass_flow", type="mass_flow<>", density="made_of.density", memory="sums.hpp")
+def mass_flow(
+    point: Vector, normal: Vector, unit: float, density: float = 1, disc: float = float("inf")
+) -> Effect:
+    """Counts what goes through the plane through ``point`` across ``normal``, or a disc of it with that radius, forwards
+    minus backwards: `Simulation.sums`. ``unit``: mass that each particle's is rounded to; ``density``: mass per volume."""
+
+
+@_describes(Effect, memory="sums.hpp")
+def reaction(unit: float, density: float = 1, triangles: bool = False) -> Effect:
+    """Sums up what particles give to bodies and to what rests, and to each triangle if asked, last in the list:
+    `Simulation.sums`. ``unit``: impulse (force times time) that each contact is rounded to; ``density``: mass per volume."""
 
 
 @_describes(Effect, "bodies", type="moving_bodies<>")

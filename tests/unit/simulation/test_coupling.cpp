@@ -65,6 +65,7 @@ TEST_CASE("mass_flow: what is no surface is refused") {
   bad = good;
   bad.disc = 0;
   CHECK_THROWS_AS(bad.check_parameters(), collide::error);
-  CHECK_THROWS_WITH_AS(collide::mass_flow<>{}.check_parameters(), "collide: mass_flow: flow_sums makes the effect",
+  CHECK_THROWS_WITH_AS(collide::mass_flow<>{}.check_parameters(),
+                       "collide: mass_flow: unit is above 0, and finite, and flow_sums makes the effect",
                        collide::error);
 }

@@ -1,0 +1,63 @@
+/// \file
+/// The memory of `reaction` and `mass_flow`, which belongs to the simulation.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <collide/effects/mass_flow.hpp>
+#include <collide/effects/reaction.hpp>
+
+#include "simulation_base.hpp"
+
+namespace collide_python {
+
+template <class Sums>
+struct sums_in_memory {
+  std::optional<Sums> sums;
+  template <class Space>
+  void clear(Space const& space) {
+    sums->clear(space);
+  }
+};
+
+template <>
+struct sums_of<collide::reaction> : sums_in_memory<collide::reaction_sums> {
+  /// For so many bodies and, where the effect wants them, triangles. Sums begin at 0.
+  template <class Space>
+  void make(Space const& space, collide::reaction& e, std::size_t bodies, std::size_t triangles) {
+    sums = collide::reaction_sums(space, bodies, e.unit, e.triangles != 0 ? std::max<std::size_t>(triangles, 1) : 0);
+    e = sums->effect(e.density);
+  }
+  /// Six numbers of each body, of what rests, and of each triangle; last how many contacts are in no sum.
+  template <class Space>
+  std::vector<double> read(Space const& space) const {
+    std::vector<double> found;
+    for (auto const& part : {sums->read(space), sums->read_triangles(space)}) {
+      for (collide::body_impulse const& one : part) {
+        found.insert(found.end(), one.linear, one.linear + 3);
+        found.insert(found.end(), one.angular, one.angular + 3);
+      }
+    }
+    found.push_back(static_cast<double>(sums->refused(space)));
+    return found;
+  }
+};
+
+template <>
+struct sums_of<collide::mass_flow<>> : sums_in_memory<collide::flow_sums> {
+  template <class Space>
+  void make(Space const& space, collide::mass_flow<>& e, std::size_t, std::size_t) {
+    sums = collide::flow_sums(space, e.unit);
+    e = sums->through(e.point, e.normal, e.made_of, e.disc);
+  }
+  /// How many particles, and their mass.
+  template <class Space>
+  std::vector<double> read(Space const& space) const {
+    collide::flow_counts const found = sums->read(space);
+    return {static_cast<double>(found.particles), found.mass};
+  }
+};
+
+}  // namespace collide_python
