@@ -14,11 +14,11 @@
 
 namespace collide {
 
-/// On which side of the surface of `mass_flow` the particle was at the end of the last step: 0 not known, 1 behind, 2
-/// in front, farther than it comes in a step; 3, 4 the same, and nearer.
+/// On which side of the surface of `mass_flow` the particle was at the end of the last step: 0 not known; else how far
+/// it then came in a step, below 0 if it was behind; infinite if the surface was farther away.
 struct side_of_surface {
   template <class S>
-  using value = std::uint8_t;
+  using value = S;
 };
 
 /// The result of `flow_sums::read`: what went through the surface, forwards minus backwards.
@@ -30,8 +30,10 @@ struct flow_counts {
 /// Counts what goes through a plane, or a disc of it: each particle once whose centre comes from one side to the other,
 /// as it is at the ends of steps, and -1 times if it comes back. On a disc what counts is where the centre then is. A
 /// particle that comes to be in front has not come through; nor has one that leaps, as `periodic_box` makes it: one
-/// that is before or after the step farther from the plane than its speed and the forces then take it in a step, and
-/// its radius. It is made by `flow_sums`, which has its memory. A byte a particle.
+/// that is farther from the plane than its speed and the forces take it in a step, and its radius: before the step with
+/// the speed and the length of the step that ends there, after it with what takes it farther, these or those then. So
+/// what the mesh stops dead behind the plane has come through; of steps that grow the first one may miss something.
+/// It is made by `flow_sums`, which has its memory. A number a particle.
 ///
 /// \tparam Materials  whose masses: `one_density`, or that of `granular_contact`
 template <class Materials = one_density>
@@ -65,10 +67,16 @@ struct mass_flow {
     double const r = static_cast<double>(p.radius()), nn = detail::dot(n, n), height = detail::dot(x, n);
     double const way = (speed(p[velocity{}]) + speed(forces.change(dt))) * static_cast<double>(dt) + r;
     bool const is_near = height * height <= way * way * nn, is_in_front = height >= 0;
-    int const before = p[side_of_surface{}];
-    p[side_of_surface{}] = static_cast<std::uint8_t>((is_in_front ? 2 : 1) + (is_near ? 2 : 0));
-    bool const was_near = before > 2, was_in_front = before == 2 || before == 4;
-    if (!(was_near && is_near) || was_in_front == is_in_front) return;
+    S& side = p[side_of_surface{}];
+    double const before = detail::max(static_cast<double>(side), -static_cast<double>(side));
+    bool const was_in_front = side > 0;
+    bool const comes_so_far = is_near || height * height <= before * before * nn;
+    constexpr double least = std::numeric_limits<S>::min(), most = std::numeric_limits<S>::max();
+    bool const was_near = before > 0 && before <= most;
+    S const now =
+        is_near ? static_cast<S>(detail::min(detail::max(way, least), most)) : std::numeric_limits<S>::infinity();
+    side = is_in_front ? now : -now;
+    if (!(was_near && comes_so_far) || was_in_front == is_in_front) return;
     double const aside = detail::dot(x, x) - detail::div_rn(height * height, nn);
     if (!(aside <= disc * disc)) return;
     double const mass = detail::sphere_mass(1, r) * made_of.template density_of<double>(p);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <collide/effects/absorb.hpp>
+#include <collide/effects/bounce.hpp>
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/emit.hpp>
 #include <collide/effects/mass_flow.hpp>
@@ -74,6 +75,23 @@ void check_rounds(Space const& space, double plane) {
                            flow.through({plane, 0, 0}, {1, 0, 0}, collide::one_density{1}));
   made.simulation.steps(3000, 1e-2);  // 30 times around
   CHECK(flow.read(made.simulation.space()).particles == 30 * 4);
+}
+
+/// What the mesh stops dead far behind the plane, in the step in which it passes that, has come through.
+template <class NarrowPhase, class S, class Space>
+void check_stopped_behind(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, collide::bounce, collide::mass_flow<>>;
+  world<S> w;
+  w.triangle({-9, -9, 0, 9, -9, 0, 0, 18, 0});
+  w.radius = S(0.01);
+  for (int i = 0; i < 10; ++i) w.particle(0.1 * i, 0, 0.201 + 0.0008 * i, 0, 0, -10);
+  collide::flow_sums flow(space, 1e-12);
+  running<simulation> made(space, w, collide::bounce{0},
+                           flow.through({0, 0, 0.05}, {0, 0, -1}, collide::one_density{1}));
+  made.simulation.steps(4, S(0.01));
+  auto const all = made.positions();
+  for (std::size_t i = 2; i < all.size(); i += 3) CHECK(all[i] == doctest::Approx(0.01));
+  CHECK(flow.read(made.simulation.space()).particles == 10);
 }
 
 /// Where particles are made above and vanish below, the flow between is that of the source.

@@ -50,6 +50,12 @@ TEST_CASE("mass_flow: a leap of a box that repeats is no flow") {
   for (double const plane : {0.55, 0.018, 0.978}) tests::check_rounds(host(1), plane);
 }
 
+TEST_CASE_TEMPLATE("mass_flow: what stops dead far behind the plane has come through", S, float, double) {
+  tests::check_stopped_behind<collide::karabassi<>, S>(host(1));
+  tests::check_stopped_behind<collide::karabassi_swept<>, S>(host(1));
+  tests::check_stopped_behind<collide::karabassi_swept<>, S>(tests::lockstep<64, true>());
+}
+
 TEST_CASE("mass_flow: what a source makes flows through") { tests::check_steady_flow(host(1)); }
 
 TEST_CASE("mass_flow: what is no surface is refused") {
