@@ -48,7 +48,7 @@ def _command(space, capability):
         return [*compiler, *flags, "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-fopenmp"]
     compiler = _find("CUDACXX", ("nvcc", "/usr/local/cuda/bin/nvcc"))
     host = "-Xcompiler=-fPIC,-fvisibility=hidden,-ffp-contract=off,-fopenmp"
-    cuda = ["--expt-relaxed-constexpr", "--diag-suppress=20012", "-cudart=static", f"-arch=sm_{capability}"]
+    cuda = ["--expt-relaxed-constexpr", "--diag-suppress=20012", "-fmad=false", "-cudart=static", f"-arch=sm_{capability}"]
     return [*compiler, *flags, *cuda, host]
 
 
