@@ -2,8 +2,9 @@
 /// What the GPU itself takes for a build and a query, without the host: both as CUDA graphs of one launch, into an
 /// array of fixed size, beside a graph of one kernel that reads every centre once, in the same run.
 ///
-/// Names are BROAD/PRECISION/PHASE; `frames` is one of twenty builds and queries that follow each other in a graph, as
-/// the frames of a scene in which everything moves, without the launch of the graph.
+/// Names are BROAD/PRECISION/PHASE; `build` is what `build` itself does, `both` also fills the grid; `frames` is one of
+/// twenty builds and queries that follow each other in a graph, as the frames of a scene in which everything moves,
+/// without the launch of the graph.
 ///
 /// least/exact/PHASE is what is left of a query if nothing has to be looked for: `asking` is a query of as many
 /// spheres, none of which is near the mesh; `told` is that, and then a kernel that is told all pairs and where to write

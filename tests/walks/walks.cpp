@@ -93,9 +93,12 @@ int main(int argc, char** argv) {
     scene.step(1e-3f);
     is_recording = false;
   } else if (std::strcmp(argv[1], "mesh") == 0) {
-    detector d;
+    space there;  // the first query after a build makes what it needs of the mesh
+    collide::bucket const options;
+    collide::bucket::index<float> index;
     is_recording = true;
-    d.build(mesh, radius);
+    index.build(there, options, mesh);
+    index.prepare(there, options, spheres);
     is_recording = false;
   } else {
     return 2;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -110,4 +111,34 @@ TEST_CASE_TEMPLATE("mesh statistics: a histogram of the radii that are valid", S
   }
   CHECK(std::equal(counts.begin(), counts.end(), seen.counts));
   CHECK(counts[0] == 2);
+}
+
+TEST_CASE("reaches: grids a factor of 4 apart, each but the first for more spheres than stated") {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> octaves(-12, 3);
+  for (std::size_t n : {1u, 100u, 3000u}) {
+    size_histogram radii{};
+    std::vector<float> all(n);
+    for (float& r : all) {
+      r = std::exp2(octaves(engine));
+      radii.add(size_bin(r), 1, 0);
+    }
+    for (std::size_t fewest : {std::size_t{0}, std::size_t{50}, std::size_t{2000}, std::size_t{4000}}) {
+      CAPTURE(n);
+      CAPTURE(fewest);
+      float reaches[max_grids];
+      int const count = reaches_of(radii, 0.f, fewest, reaches);
+      REQUIRE(count >= 1);
+      auto const up_to = [&](float reach) {
+        return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](float r) { return r <= reach; }));
+      };
+      CHECK(up_to(reaches[0]) == n);
+      for (int i = 1; i < count; ++i) {
+        CHECK(4 * reaches[i] <= reaches[i - 1]);
+        CHECK(up_to(reaches[i]) > fewest);
+      }
+      // no grid is left out that would have had enough
+      if (count < max_grids) CHECK(up_to(reaches[count - 1] / 4 / 1.26f) <= fewest);
+    }
+  }
 }

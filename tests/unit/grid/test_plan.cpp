@@ -36,9 +36,7 @@ void check(Space space, std::vector<S> const& vertices, S radius, double width, 
   options.memory_budget = budget;
   collide::bucket::index<S> index;
   index.build(space, options, mesh);
-  index.prepare(space, options, radius);  // where spheres are sorted the first query makes the grid
-  if (index.triangle_ref().grid_count == 0)
-    index.prepare(space, options, collide::spheres_xyz(vertices.data(), vertices.size() / 3, radius));
+  index.prepare(space, options, collide::spheres_xyz(vertices.data(), vertices.size() / 3, radius));
   auto const made = index.triangle_ref();
   if (made.grid_count == 0) {
     CHECK(budget != 0);

@@ -79,7 +79,7 @@ TEST_CASE_TEMPLATE("triangle cells: a triangle is in the cells of all centres wi
       auto const mesh = collide::triangle_soup(corners.data(), n);
       index.build(space, options, mesh);
       S const radius = S(0.25);
-      index.prepare(space, options, radius);
+      index.prepare(space, options, collide::spheres_xyz(corners.data(), 3 * n, radius));
       auto const& grid = index.triangle_ref().grids[0];
       REQUIRE(grid.levels > 0);
       std::size_t within = 0, missing = 0, twice = 0, far = 0, listed = 0, covered_wrongly = 0;
