@@ -1,19 +1,20 @@
 /// \file
 /// What many ranks cost and gain: ranks_bench RANKS SPHERES PARTICLES [OPTION OF GOOGLE BENCHMARK...]
 ///
-/// Names are ranks/SPACE/WORK/KIND:RANKS, for threads from 1 to RANKS, a GPU each where there are as many; under mpirun
-/// (RANKS is then 0) for its processes. On the host ranks have one thread each; there KIND is also `cores`: one rank
-/// with so many threads. WORK is
+/// RANKS is how many threads there are at most; or under mpirun `mpi` or `nccl`, its processes. Names are
+/// ranks/SPACE/WORK/KIND:RANKS; threads are from 1 to RANKS, with a GPU each where there are as many. On the host ranks
+/// have one thread each; there KIND is also `cores`: one rank with so many threads. WORK is
 ///   copied   a query of SPHERES spheres of all ranks together, the study's mesh on every rank;
 ///   divided  the same with that mesh divided among the ranks;
 ///   packed   a step of PARTICLES spheres for each rank, that touch each other, with gravity and walls.
-/// Times are of the slowest rank, medians of `repeats`, from when all ranks are ready until all are done. The counter
+/// Times are of the slowest rank, medians of `repeats`, from when all ranks are ready until it is done. The counter
 /// cpu_ms is the time of all cores that this process has taken, which others that run beside it change less.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,12 +26,9 @@
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/sphere_contact.hpp>
 #include <collide/ranks/distributed_simulation.cuh>
-#include <collide/ranks/thread_ranks.hpp>
 #include <collide/upload.hpp>
-#if defined(COLLIDE_HAS_MPI)
-#include <collide/ranks/mpi.hpp>
-#endif
 
+#include "io/on_ranks.hpp"
 #include "io/scenes.hpp"
 #include "program.hpp"
 #include "stopwatch.hpp"
@@ -63,26 +61,23 @@ struct duration {
   double seconds = 0, of_cores = 0;
 };
 
-/// How long one of the `parts` of f() takes on all ranks: medians.
-template <class Ranks, class F>
-duration time_of(Ranks const& ranks, int parts, F const& f) {
+/// How long one of the `parts` of f() takes on the slowest rank, and of the cores of this process: medians.
+template <class F>
+duration time_of(io::any_ranks const& ranks, int parts, F const& f) {
   std::vector<double> seconds, of_cores;
   for (int i = 0; i < repeats; ++i) {
-    agree(ranks);
+    collide::agree(ranks);
     std::clock_t const begin = std::clock();
     bench::host_stopwatch watch(0);
-    seconds.push_back(watch([&] {
-                        f();
-                        agree(ranks);
-                      }) /
-                      parts);
+    double const mine = watch(f);
+    seconds.push_back(io::largest(ranks, mine) / parts);
     of_cores.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / parts);
   }
   return {bench::median(seconds), bench::median(of_cores)};
 }
 
-template <class Ranks, class Space>
-duration time_query(Ranks const& ranks, Space const& space, bool divides) {
+template <class Space>
+duration time_query(io::any_ranks const& ranks, Space const& space, bool divides) {
   io::scene const& scene = study();
   share const triangles(ranks, scene.triangle_count()), own(ranks, spheres_in_all);
   std::vector<float> const vertices(scene.vertices.begin(), scene.vertices.end());
@@ -93,7 +88,8 @@ duration time_query(Ranks const& ranks, Space const& space, bool divides) {
                                                                  scene.corners.data() + 3 * part.first, part.size()));
   auto const spheres =
       collide::upload(space, collide::spheres_xyz(centres.data(), own.size(), static_cast<float>(scene.radius)));
-  collide::distributed<collide::detector<collide::bucket, collide::karabassi<>, Space>, Ranks> detector(ranks, space);
+  collide::distributed<collide::detector<collide::bucket, collide::karabassi<>, Space>, io::any_ranks> detector(ranks,
+                                                                                                                space);
   if (divides) {
     detector.build(mesh.view(), collide::divided);
   } else {
@@ -107,8 +103,8 @@ duration time_query(Ranks const& ranks, Space const& space, bool divides) {
 }
 
 /// For so many times the particles of a rank.
-template <class Ranks, class Space>
-duration time_step(Ranks const& ranks, Space const& space, int times) {
+template <class Space>
+duration time_step(io::any_ranks const& ranks, Space const& space, int times) {
   using collide::box_walls, collide::gravity, collide::sphere_contact;
   std::size_t const n = particles_of_rank * static_cast<std::size_t>(times);
   auto const side = static_cast<std::size_t>(std::cbrt(static_cast<double>(n))) + 1;
@@ -121,8 +117,9 @@ duration time_step(Ranks const& ranks, Space const& space, int times) {
   double const far = 1.98 * radius * static_cast<double>(side);
   using simulation = collide::simulation<collide::detector<collide::bucket, collide::karabassi<>, Space>,
                                          sphere_contact, gravity, box_walls>;
-  collide::distributed<simulation, Ranks> made(ranks, space, sphere_contact::from_restitution(0.5, 2e-3, radius, 1000),
-                                               gravity{}, box_walls{{-radius, -radius, -radius}, {far, far, far}, 0.5});
+  collide::distributed<simulation, io::any_ranks> made(
+      ranks, space, sphere_contact::from_restitution(0.5, 2e-3, radius, 1000), gravity{},
+      box_walls{{-radius, -radius, -radius}, {far, far, far}, 0.5});
   {
     auto const spheres =
         collide::upload(space, collide::spheres_xyz(centres.data(), own.size(), static_cast<float>(radius)));
@@ -141,46 +138,40 @@ class silence final : public benchmark::BenchmarkReporter {
   void ReportRuns(std::vector<Run> const&) override {}
 };
 
-/// Calls f(ranks) on so many threads, or on the processes of MPI if that is 0.
-template <class F>
-void on_ranks(int threads, F const& f) {
-#if defined(COLLIDE_HAS_MPI)
-  if (threads == 0) return f(collide::mpi_ranks());
-#endif
-  collide::thread_ranks::run(threads, f);
-}
-
 /// The space of a rank.
-template <class Space, class Ranks>
-Space space_of([[maybe_unused]] Ranks const& ranks, [[maybe_unused]] int cores) {
+template <class Space>
+Space space_of([[maybe_unused]] int cores) {
   if constexpr (Space::host_accessible) {
     return Space(cores);
   } else {
-#if defined(__CUDACC__)
-    collide::cuda_check(cudaSetDevice(ranks.rank() % collide::cuda_device_count()), "cudaSetDevice");
-#endif
     return Space();
   }
 }
 
-/// `threads` ranks, or if that is 0 the `ranks` processes of MPI, with so many cores each.
+/// What is measured on: `size` ranks, with so many cores each.
+struct crew {
+  std::string ranks;  ///< as the option --ranks names them
+  int size, cores = 1;
+  bool are_processes() const { return io::are_processes(ranks); }
+};
+
 template <class Space, class Work>
-void add(std::string const& name, int threads, int ranks, int cores, Work const& work) {
-  int const times = ranks * cores;
-  std::string const kind = cores > 1 ? "cores:" : threads == 0 ? "mpi:" : "threads:";
+void add(std::string const& name, crew const& of, Work const& work) {
+  int const times = of.size * of.cores;
+  std::string const kind = of.cores > 1 ? "cores" : of.are_processes() ? of.ranks : "threads";
   benchmark::RegisterBenchmark(
-      (std::string("ranks/") + Space::name() + "/" + name + "/" + kind + std::to_string(times)).c_str(),
+      (std::string("ranks/") + Space::name() + "/" + name + "/" + kind + ":" + std::to_string(times)).c_str(),
       [=](benchmark::State& state) {
         for (auto _ : state) {
           duration took;
-          on_ranks(threads, [&](auto const& all) {
-            duration const mine = work(all, space_of<Space>(all, cores), times);
-            if (all.rank() == 0 || threads == 0) took = mine;
+          io::on_ranks(of.ranks, io::device_of<Space>::take, [&](io::any_ranks const& all) {
+            duration const mine = work(all, space_of<Space>(of.cores), times);
+            if (all.rank() == 0 || of.are_processes()) took = mine;
           });
           state.SetIterationTime(took.seconds);
           state.counters["cpu_ms"] = 1e3 * took.of_cores;
         }
-        state.counters["ranks"] = ranks;
+        state.counters["ranks"] = of.size;
         state.counters["spheres"] = static_cast<double>(spheres_in_all);
         state.counters["particles_of_rank"] = static_cast<double>(particles_of_rank);
       })
@@ -190,52 +181,65 @@ void add(std::string const& name, int threads, int ranks, int cores, Work const&
 }
 
 template <class Space>
-void add_all(int threads, int ranks, int cores = 1) {
-  add<Space>("copied", threads, ranks, cores,
-             [](auto const& r, Space const& space, int) { return time_query(r, space, false); });
-  add<Space>("divided", threads, ranks, cores,
-             [](auto const& r, Space const& space, int) { return time_query(r, space, true); });
-  add<Space>("packed", threads, ranks, cores,
-             [](auto const& r, Space const& space, int times) { return time_step(r, space, times); });
+void add_all(crew const& of) {
+  add<Space>("copied", of, [](auto const& r, Space const& space, int) { return time_query(r, space, false); });
+  add<Space>("divided", of, [](auto const& r, Space const& space, int) { return time_query(r, space, true); });
+  add<Space>("packed", of, [](auto const& r, Space const& space, int times) { return time_step(r, space, times); });
+}
+
+/// Of the host, or of GPUs where there are some.
+void add_all(crew const& of) {
+  if (!bench::has_gpu()) add_all<collide::host>(of);
+#if defined(__CUDACC__)
+  if (bench::has_gpu()) add_all<collide::cuda_shared>(of);
+#endif
+}
+
+/// The number of this process, and how many there are.
+std::pair<int, int> place_of([[maybe_unused]] std::string const& ranks) {
+#if defined(COLLIDE_HAS_MPI)
+  if (io::are_processes(ranks)) {
+    collide::mpi_ranks const all;
+    return {all.rank(), all.size()};
+  }
+#endif
+  return {0, 1};
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-#if defined(COLLIDE_HAS_MPI)
-  collide::mpi_session const session(argc, argv);
-#endif
-  int of_mpi = 1, rank = 0;
-#if defined(COLLIDE_HAS_MPI)
-  of_mpi = collide::mpi_ranks().size();
-  rank = collide::mpi_ranks().rank();
-#endif
+int main(int argc, char** argv) try {
+  std::string const kind = argc > 1 ? argv[1] : "";
+  bool const processes = io::are_processes(kind);
+  if (processes) io::check_ranks(kind, bench::has_gpu() ? "cuda_shared" : "host");
+  io::rank_session session;
+  session.begin(kind, argc, argv);
+  auto const [rank, size] = place_of(kind);
   if (rank != 0) {  // files are the first's
     argc = static_cast<int>(
         std::remove_if(argv, argv + argc, [](char const* a) { return std::strncmp(a, "--benchmark_out", 15) == 0; }) -
         argv);
   }
   benchmark::Initialize(&argc, argv);
-  std::size_t most = 0;
-  bool const counts = argc == 4 && io::parse_number<std::size_t>(argv[1], most) && most <= 64;
-  if (counts) {
+  int threads = 0;
+  if (argc == 4 && (processes || (io::parse_number<int>(kind, threads) && threads >= 1 && threads <= 64))) {
     spheres_in_all = bench::count_of(argv[2], 1);
     particles_of_rank = bench::count_of(argv[3], 1);
   }
   if (spheres_in_all == 0 || particles_of_rank == 0) {
-    std::fputs("usage: ranks_bench RANKS SPHERES PARTICLES [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
+    std::fputs("usage: ranks_bench N|mpi|nccl SPHERES PARTICLES [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;
   }
-  int const last = static_cast<int>(most);
-  for (int n = most == 0 ? 0 : 1; n <= last; ++n) {
-    if (!bench::has_gpu()) add_all<collide::host>(n, n == 0 ? of_mpi : n);
-    if (!bench::has_gpu() && n > 1) add_all<collide::host>(1, 1, n);
-#if defined(__CUDACC__)
-    if (bench::has_gpu()) add_all<collide::cuda_shared>(n, n == 0 ? of_mpi : n);
-#endif
+  if (processes) add_all({kind, size});
+  for (int n = 1; n <= threads; ++n) {
+    add_all({"threads:" + std::to_string(n), n});
+    if (!bench::has_gpu() && n > 1) add_all<collide::host>({"threads:1", 1, n});
   }
   if (rank == 0) return bench::run();
   silence silent;
   benchmark::RunSpecifiedBenchmarks(&silent);
   return 0;
+} catch (std::exception const& e) {
+  std::fprintf(stderr, "ranks_bench: %s\n", e.what());
+  return 1;
 }

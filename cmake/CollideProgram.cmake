@@ -44,3 +44,12 @@ function(collide_program name)
     set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
   endif()
 endfunction()
+
+# What programs link whose ranks can be processes: see examples/io/on_ranks.hpp.
+set(COLLIDE_PROCESSES)
+if(TARGET collide::mpi)
+  list(APPEND COLLIDE_PROCESSES collide::mpi)
+  if(TARGET collide::nccl AND COLLIDE_CUDA)
+    list(APPEND COLLIDE_PROCESSES collide::nccl)
+  endif()
+endif()

@@ -10,13 +10,11 @@
 
 #include <nlohmann/json.hpp>
 
-#if defined(COLLIDE_HAS_MPI)
-#include <collide/ranks/mpi.hpp>
-#endif
 #include <collide/validate_closed.hpp>
 
 #include "detect/detection.hpp"
 #include "io/mesh.hpp"
+#include "io/on_ranks.hpp"
 #include "io/output.hpp"
 #include "io/ply.hpp"
 #include "io/program.hpp"
@@ -205,22 +203,12 @@ void run(Ranks const& ranks, options wish) {
   std::visit([&](auto& from) { run(ranks, wish, from, read_ms, input.roundings); }, input.data);
 }
 
-/// Threads that are ranks share the cores and the devices.
-void run_on_threads(int n, options const& wish) {
-  collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
-    detection::take_device(wish.space, ranks.rank());
-    run(io::any_ranks(ranks), wish);
-  });
-}
-
+/// Ranks that are threads share the cores and the devices.
 void run(options const& wish) {
   if (wish.ranks.empty()) return run(collide::one_rank(), wish);
-  if (int const n = io::threads_of(wish.ranks)) return run_on_threads(n, wish);
-#if defined(COLLIDE_HAS_MPI)
-  io::any_ranks const ranks{collide::mpi_ranks()};
-  detection::take_device(wish.space, ranks.rank());
-  run(ranks, wish);
-#endif
+  io::on_ranks(
+      wish.ranks, [&](int rank) { detection::take_device(wish.space, rank); },
+      [&](io::any_ranks const& ranks) { run(ranks, wish); });
 }
 
 /// Checks what CLI11 does not, before any work is done.
@@ -238,12 +226,7 @@ void check(options& wish) {
   if (wish.triangles_per_pass != 0 && wish.space != "host") {
     throw io::usage_error("--triangles-per-pass: is for --space host");
   }
-  if (!wish.ranks.empty() && wish.ranks != "mpi" && io::threads_of(wish.ranks) == 0) {
-    throw io::usage_error("--ranks: " + io::quoted(wish.ranks) + " is neither mpi nor threads:N, N from 1 to 1024");
-  }
-#if !defined(COLLIDE_HAS_MPI)
-  if (wish.ranks == "mpi") throw io::usage_error("--ranks: this program was built without MPI");
-#endif
+  if (!wish.ranks.empty()) io::check_ranks(wish.ranks, wish.space);
   if (wish.asks_points()) {
     std::string const asked = wish.nearest ? "--nearest" : wish.signed_distance ? "--signed-distance" : "--inside";
     if (wish.nearest + wish.signed_distance + wish.inside > 1)
@@ -300,19 +283,17 @@ int main(int argc, char** argv) {
                  "how many triangles to build at a time, for large meshes, on the host; all if not given")
       ->check(CLI::Range(std::size_t{1}, std::size_t{4294967294}))
       ->type_name("N");
-  app.add_option("--ranks", wish.ranks,
-                 "parts that each take some spheres: threads:N of this process, or mpi, the processes of mpirun")
+  app.add_option(
+         "--ranks", wish.ranks,
+         "parts that each take some spheres: threads:N of this process, or the processes of mpirun: mpi, or nccl with "
+         "a GPU each")
       ->type_name("RANKS");
   app.add_option("--repeat", wish.repeat, "how often to measure")->check(CLI::Range(1, 1'000'000))->type_name("N");
   app.footer("`detect MESH SPHERES RADIUS OUTPUT` is the short form.");
-#if defined(COLLIDE_HAS_MPI)
-  std::optional<collide::mpi_session> session;  // until all has been said
-#endif
+  io::rank_session session;  // until all has been said
   return io::run_program(app, {argv + 1, argv + argc}, [&] {
     check(wish);
-#if defined(COLLIDE_HAS_MPI)
-    if (wish.ranks == "mpi") session.emplace(argc, argv);
-#endif
+    session.begin(wish.ranks, argc, argv);
     run(wish);
   });
 }

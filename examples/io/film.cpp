@@ -5,15 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <optional>
 
 #include <nlohmann/json.hpp>
 
-#include <collide/ranks/thread_ranks.hpp>
-#if defined(COLLIDE_HAS_MPI)
-#include <collide/ranks/mpi.hpp>
-#endif
-
+#include "on_ranks.hpp"
 #include "output.hpp"
 #include "program.hpp"
 
@@ -54,28 +49,9 @@ void check(film const& wish) {
       throw usage_error(file.name + ": " + file.path + " is in the folder of --output");
     }
   }
-}
-
-/// Calls f(film, ranks) on so many ranks as are wished for, with null if it is one.
-template <class F>
-void on_ranks(film const& wish, F const& f) {
-  if (wish.ranks.empty()) return f(wish, nullptr);
-  if (wish.space != "host") throw usage_error("--ranks: works with --space host alone");
-  if (int const n = threads_of(wish.ranks)) {
-    return collide::thread_ranks::run(n, [&](auto const& ranks) {
-      any_ranks const any(ranks);
-      f(wish, &any);
-    });
-  }
-  if (wish.ranks != "mpi") {
-    throw usage_error("--ranks: " + io::quoted(wish.ranks) + " is neither mpi nor threads:N, N from 1 to 1024");
-  }
-#if defined(COLLIDE_HAS_MPI)
-  any_ranks const any{collide::mpi_ranks()};
-  f(wish, &any);
-#else
-  throw usage_error("--ranks: this program was built without MPI");
-#endif
+  if (wish.ranks.empty()) return;
+  check_ranks(wish.ranks, wish.space);
+  if (wish.space == "cuda") throw usage_error("--ranks: works with --space host or cuda_shared");
 }
 
 /// Adds the options of a film.
@@ -99,7 +75,8 @@ void add_options(CLI::App& app, film& wish) {
   app.add_option("--threads", wish.threads, "threads of the host; 0 for all")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
-  app.add_option("--ranks", wish.ranks, "threads:N, or mpi under mpirun: so many simulate together, on the host")
+  app.add_option("--ranks", wish.ranks,
+                 "threads:N, or under mpirun mpi, or nccl with a GPU each: so many simulate together")
       ->type_name("RANKS");
 }
 
@@ -157,29 +134,27 @@ collide::vtk_frame next_frame(film const& of, std::size_t i, double time) {
   return {std::string("particles") + number, time, of.bodies.empty() ? "" : std::string("mesh") + number};
 }
 
-int run_film(int argc, char** argv, film wish, std::function<void(film const&)> const& require,
+int run_film(int argc, char** argv, film wish, std::function<void(film const&, int)> const& take,
              std::function<void(film const&, any_ranks const*)> const& shoot) {
   CLI::App app(wish.about, wish.name);
   add_options(app, wish);
-#if defined(COLLIDE_HAS_MPI)
-  std::optional<collide::mpi_session> session;
-  for (int i = 1; i < argc; ++i) {
-    if (std::string(argv[i]) == "mpi" || std::string(argv[i]) == "--ranks=mpi") session.emplace(argc, argv);
-  }
-#endif
+  rank_session session;
   return run_program(app, {argv + 1, argv + argc}, [&] {
     check(wish);
-    require(wish);
-    on_ranks(wish, [&](film const& of_rank, any_ranks const* ranks) {
-      if (ranks == nullptr) {
-        prepare_files(of_rank);
-      } else {
-        collide::together(*ranks, [&] {
-          if (ranks->rank() + 1 == ranks->size()) prepare_files(of_rank);
+    if (wish.ranks.empty()) {
+      take(wish, 0);
+      prepare_files(wish);
+      return shoot(wish, nullptr);
+    }
+    session.begin(wish.ranks, argc, argv);
+    on_ranks(
+        wish.ranks, [&](int rank) { take(wish, rank); },
+        [&](any_ranks const& ranks) {
+          collide::together(ranks, [&] {
+            if (ranks.rank() + 1 == ranks.size()) prepare_files(wish);
+          });
+          shoot(wish, &ranks);
         });
-      }
-      shoot(of_rank, ranks);
-    });
   });
 }
 

@@ -98,9 +98,10 @@ std::vector<float> moved_vertices(film const& of, std::vector<collide::body_stat
 /// The files of picture number `i`.
 collide::vtk_frame next_frame(film const& of, std::size_t i, double time);
 
-/// The program of a film: reads the command line into it. Calls require(film), which throws if there is no such space
-/// here, and then shoot(film, ranks) on so many ranks as are wished for, with null if it is one.
-int run_film(int argc, char** argv, film wish, std::function<void(film const&)> const& require,
+/// The program of a film: reads the command line into it. On each of the ranks that are wished for it calls
+/// take(film, rank), which makes the device of a rank current and throws if there is no such space here, and then
+/// shoot(film, ranks); with null if there is one.
+int run_film(int argc, char** argv, film wish, std::function<void(film const&, int)> const& take,
              std::function<void(film const&, any_ranks const*)> const& shoot);
 
 }  // namespace io

@@ -104,6 +104,14 @@ void stop_sources(collide::distributed<collide::simulation<Detector, Effect...>,
   (stop(simulation.template effect<Effect>()), ...);
 }
 
+/// Spaces in which there are ranks. With more of them programs would take longer to compile.
+template <class Space>
+constexpr bool has_ranks = std::is_same<Space, collide::host>::value;
+#if defined(__CUDACC__)
+template <>
+inline constexpr bool has_ranks<collide::cuda_shared> = true;
+#endif
+
 /// The simulation on ranks.
 template <class Detector, class... Effect>
 auto distributed_over(any_ranks const& ranks, collide::simulation<Detector, Effect...>&& one) {
@@ -174,15 +182,20 @@ template <class Make>
 int film_program(int argc, char** argv, film const& wish, Make const& make) {
   return run_film(
       argc, argv, wish,
-      [](film const& asked) {
-        choose_space(asked.space, [](auto space) { device_of<typename decltype(space)::type>::require(); });
+      [](film const& asked, int rank) {
+        choose_space(asked.space, [rank](auto space) {
+          using device = device_of<typename decltype(space)::type>;
+          device::require();
+          device::take(rank);
+        });
       },
       [&](film const& asked, any_ranks const* ranks) {
         choose_space(asked.space, [&](auto space) {
-          using device = device_of<typename decltype(space)::type>;
+          using space_type = typename decltype(space)::type;
+          using device = device_of<space_type>;
           auto one = make(device::make(asked.threads, device::memory()), asked);
           if (ranks == nullptr) return detail::shoot(asked, collide::one_rank(), std::move(one));
-          if constexpr (std::is_same<typename decltype(space)::type, collide::host>::value) {
+          if constexpr (detail::has_ranks<space_type>) {
             detail::shoot(asked, *ranks, detail::distributed_over(*ranks, std::move(one)));
           }
         });

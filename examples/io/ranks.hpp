@@ -8,16 +8,42 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include <collide/detail/ranks/device_exchange_buffer.hpp>
 #include <collide/ranks/ranks.hpp>
-#include <collide/ranks/thread_ranks.hpp>
 
 #include "error.hpp"
-#include "number.hpp"
 #include "rounding.hpp"
 
+struct CUstream_st;  // what CUDA's streams point to
+
 namespace io {
+
+/// The part of a space of a device that ranks use to send from its memory.
+class any_device {
+ public:
+  /// Refers to a space, which must outlive it.
+  template <class Space>
+  explicit any_device(Space const& space)
+      : space_{&space},
+        stream_{space.stream()},
+        synchronize_{[](void const* of) { static_cast<Space const*>(of)->synchronize(); }},
+        copy_{[](void const* of, void* to, void const* from, std::size_t bytes) {
+          static_cast<Space const*>(of)->copy_from_any_device(to, from, bytes);
+        }} {}
+
+  CUstream_st* stream() const { return stream_; }
+  void synchronize() const { synchronize_(space_); }
+  void copy_from_any_device(void* to, void const* from, std::size_t bytes) const { copy_(space_, to, from, bytes); }
+
+ private:
+  void const* space_;
+  CUstream_st* stream_;
+  void (*synchronize_)(void const*);
+  void (*copy_)(void const*, void*, void const*, std::size_t);
+};
 
 /// Ranks of any kind, so that a program is compiled once for all of them. It has a copy of what it is made from.
 class any_ranks {
@@ -38,6 +64,13 @@ class any_ranks {
                 std::size_t bytes) const {
     ranks_->exchange(from, to_each, to, of_each, bytes);
   }
+  bool takes_device_memory() const { return ranks_->takes_device_memory(); }
+  template <class Space>
+  auto exchange_in_space(Space const& space, void const* from, std::uint64_t const* to_each, void* to,
+                         std::uint64_t const* of_each, std::size_t bytes) const
+      -> std::enable_if_t<std::is_convertible<decltype(space.stream()), CUstream_st*>::value> {
+    ranks_->exchange_in_space(any_device(space), from, to_each, to, of_each, bytes);
+  }
 
  private:
   struct interface {
@@ -48,6 +81,9 @@ class any_ranks {
     virtual void reduce(std::uint64_t const*, std::uint64_t*, std::size_t, collide::reduction) const = 0;
     virtual void exchange_counts(std::uint64_t const*, std::uint64_t*) const = 0;
     virtual void exchange(void const*, std::uint64_t const*, void*, std::uint64_t const*, std::size_t) const = 0;
+    virtual bool takes_device_memory() const = 0;
+    virtual void exchange_in_space(any_device const&, void const*, std::uint64_t const*, void*, std::uint64_t const*,
+                                   std::size_t) const = 0;
   };
   template <class Ranks>
   struct model final : interface {
@@ -67,6 +103,19 @@ class any_ranks {
                   std::size_t bytes) const override {
       ranks.exchange(from, to_each, to, of_each, bytes);
     }
+    bool takes_device_memory() const override {
+      if constexpr (collide::detail::is_valid<collide::detail::ranks_takes_device_memory, Ranks>) {
+        return ranks.takes_device_memory();
+      } else {
+        return can_be_direct;
+      }
+    }
+    void exchange_in_space(any_device const& device, void const* from, std::uint64_t const* to_each, void* to,
+                           std::uint64_t const* of_each, std::size_t bytes) const override {
+      if constexpr (can_be_direct) ranks.exchange_in_space(device, from, to_each, to, of_each, bytes);
+    }
+    static constexpr bool can_be_direct =
+        collide::detail::is_valid<collide::detail::ranks_exchange_in_space, Ranks, any_device>;
     Ranks ranks;
   };
 
@@ -153,14 +202,6 @@ void gather_to_first(Ranks const& ranks, std::vector<T>& values) {
   });
   ranks.exchange(values.data(), to_each.data(), all.data(), of_each.data(), sizeof(T));
   values = std::move(all);
-}
-
-/// How many ranks `threads:N` asks for; 0 if the text says something else.
-inline int threads_of(std::string const& text) {
-  std::string const name = "threads:";
-  int n = 0;
-  if (text.rfind(name, 0) != 0 || !parse_number(text.substr(name.size()), n) || n < 1 || n > 1024) return 0;
-  return n;
 }
 
 }  // namespace io

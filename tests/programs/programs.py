@@ -43,8 +43,8 @@ class ProgramTest(unittest.TestCase):
         return subprocess.run([PROGRAMS / name, *map(str, args)], cwd=self.folder, capture_output=True,
                               stdin=subprocess.DEVNULL, timeout=300, **options)
 
-    def run_on_mpi(self, n, name, *args):
-        return subprocess.run(["mpirun", "-np", str(n), PROGRAMS / name, *map(str, args), "--ranks", "mpi"],
+    def run_on_mpi(self, n, name, *args, ranks="mpi"):
+        return subprocess.run(["mpirun", "-np", str(n), PROGRAMS / name, *map(str, args), "--ranks", ranks],
                               cwd=self.folder, capture_output=True, stdin=subprocess.DEVNULL, timeout=300, env=MPI)
 
     def succeed(self, name, *args, **options):

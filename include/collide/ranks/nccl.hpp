@@ -115,7 +115,7 @@ class nccl_communicator {
 class nccl_ranks {
  public:
   /// From other ranks, such as `mpi_ranks`, of which all make one: they hand out NCCL's id. `patience`, in seconds, is
-  /// for how long a rank waits for others. Throws `error` if NCCL fails.
+  /// for how long a rank waits for others. Throws `error` if NCCL fails, or two ranks have the same GPU.
   template <class Ranks, class = std::enable_if_t<!std::is_same<std::decay_t<Ranks>, nccl_ranks>::value>>
   explicit nccl_ranks(Ranks const& by, double patience = 300)
       : nccl_ranks(handed_out(by), by.rank(), by.size(), patience) {}
@@ -173,13 +173,35 @@ class nccl_ranks {
   }
 
  private:
+  /// NCCL's id, of the first rank, and the GPU of each.
+  struct greeting {
+    ncclUniqueId common;
+    cudaUUID_t device;
+  };
+
+  /// The id of the first rank. Throws on all if one has no device, or two have the same.
   template <class Ranks>
   static ncclUniqueId handed_out(Ranks const& by) {
-    ncclUniqueId mine{};
-    if (by.rank() == 0) mine = make_id();
-    std::vector<ncclUniqueId> all(static_cast<std::size_t>(by.size()));
+    greeting mine{};
+    std::vector<greeting> all;
+    together(by, [&] {
+      int device = 0;
+      cudaDeviceProp about{};
+      detail::nccl_cuda_check(cudaGetDevice(&device), "cudaGetDevice");
+      detail::nccl_cuda_check(cudaGetDeviceProperties(&about, device), "cudaGetDeviceProperties");
+      mine.device = about.uuid;
+      if (by.rank() == 0) mine.common = make_id();
+      all.resize(static_cast<std::size_t>(by.size()));
+    });
     by.all_gather(&mine, sizeof mine, all.data());
-    return all.front();
+    for (std::size_t r = 0; r < all.size(); ++r) {
+      for (std::size_t q = 0; q < r; ++q) {
+        if (std::memcmp(&all[q].device, &all[r].device, sizeof mine.device) != 0) continue;
+        throw error("collide: nccl_ranks: ranks " + std::to_string(q) + " and " + std::to_string(r) +
+                    " have the same GPU: call cudaSetDevice before, or start no more ranks than there are GPUs");
+      }
+    }
+    return all.front().common;
   }
 
   std::size_t count() const { return static_cast<std::size_t>(size_); }
