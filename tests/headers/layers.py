@@ -1,6 +1,8 @@
 """Includes go one way: a header includes headers of its own layer and of those below, and never, through others, itself.
 
-Usage: layers.py check | self-test
+Usage: layers.py check | self-test | including HEADER
+
+`including` prints the headers that include this one, also through others, and itself.
 """
 
 import pathlib
@@ -74,6 +76,13 @@ def rings_from(header, headers, finished, path=()):
     finished.add(header)
 
 
+def including(wanted, headers):
+    found, before = {wanted}, set()
+    while found != before:
+        before, found = found, found | {header for header, includes in headers.items() if found.intersection(includes)}
+    return sorted(found)
+
+
 def problems(headers):
     names = list(LAYERS)
     for header, includes in headers.items():
@@ -107,6 +116,8 @@ def self_test():
     for sentence, headers in plants.items():
         if not any(sentence in problem for problem in problems(headers)):
             yield f"a planted fault was not found: {sentence}"
+    if including("mesh.hpp", sound) != ["detail/grid/grid.hpp", "mesh.hpp"]:
+        yield "including: who includes mesh.hpp is not known"
 
 
 def check():
@@ -116,6 +127,9 @@ def check():
 
 
 if __name__ == "__main__":
+    if sys.argv[1] == "including":
+        print("\n".join(including(sys.argv[2], read_headers())))
+        sys.exit()
     found = list({"check": check, "self-test": self_test}[sys.argv[1]]())
     print("\n".join(found) or "fine")
     sys.exit(bool(found))
