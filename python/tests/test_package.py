@@ -41,7 +41,8 @@ def test_modules_need_nothing_but_what_every_debian_has():
 def test_without_anything_else(tmp_path):
     """With nothing on the PATH, and nothing but numpy."""
     code = "import collide, numpy; m = collide.Mesh(numpy.eye(3, dtype='float32')); print(m.count(numpy.zeros((1, 3), 'float32'), 1))"
-    done = subprocess.run([sys.executable, "-c", code], env={"PATH": str(tmp_path)}, capture_output=True, text=True)
+    env = {"PATH": str(tmp_path), "PYTHONPATH": os.environ.get("PYTHONPATH", "")}
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
     assert (done.stdout, done.stderr) == ("1\n", "")
 
 
