@@ -69,6 +69,16 @@ class nearest_writer {
   void add_all() {
     for (int i = 0; i < 800; ++i) add(lattice(), lattice_point(), false);
     for (int i = 0; i < 800; ++i) add(tetrahedron([&] { return lattice_point(); }), lattice_point(), true);
+    for (double const offset : {0.0, 100.0}) {
+      for (int i = 0; i < 800; ++i) {
+        auto const mesh = tetrahedron([&] {
+          return rounded(oracle::point{offset, offset, offset} + roll_.in_cube(1));
+        });
+        add(mesh, at_surface(mesh), true);
+      }
+    }
+    for (int i = 0; i < 800; ++i) add(mirrored(), {0, 0, 0}, false);
+    // last, since their integers are so long that they take most of the time
     for (int i = 0; i < 100; ++i) {
       int const kind = i % 3, exponent = kind == 0 ? std::numeric_limits<S>::min_exponent - 18
                                                    : std::numeric_limits<S>::max_exponent - 2;
@@ -79,15 +89,6 @@ class nearest_writer {
             {place(), place(), place()}}},
           place(), false);
     }
-    for (double const offset : {0.0, 100.0}) {
-      for (int i = 0; i < 800; ++i) {
-        auto const mesh = tetrahedron([&] {
-          return rounded(oracle::point{offset, offset, offset} + roll_.in_cube(1));
-        });
-        add(mesh, at_surface(mesh), true);
-      }
-    }
-    for (int i = 0; i < 800; ++i) add(mirrored(), {0, 0, 0}, false);
     if (!file_.flush()) throw std::runtime_error("cannot write the rows");
   }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdio>
 #include <fstream>
 #include <stdexcept>
 #include <string>
@@ -69,6 +71,17 @@ std::vector<row<S>> read_rows(std::string const& folder) {
 template <class S>
 std::vector<nearest_row<S>> read_nearest_rows(std::string const& folder) {
   return read_all<nearest_row<S>>(path_of_nearest<S>(folder));
+}
+
+/// Says which row is the first that is wrong, and tests none after it; true if all are right.
+template <class Row, class Right>
+bool all_right(std::vector<Row> const& rows, Right const& right) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (right(rows[i])) continue;
+    std::printf("row %zu of %zu is wrong\n", i + 1, rows.size());
+    return false;
+  }
+  return true;
 }
 
 }  // namespace tests

@@ -1,7 +1,5 @@
-/// scenes FOLDER: how many rows go wrong as scenes of one pair, and how many scenes with more open pairs than the list
-/// of the undecided has room for.
-#include <cstdio>
-
+/// scenes FOLDER: fails at a row that goes wrong as a scene of one pair, or in a scene with more open pairs than the
+/// list of the undecided has room for.
 #include <collide/bucket.cuh>
 #include <collide/detector.hpp>
 
@@ -41,22 +39,19 @@ struct scenes {
     return found.size() == expected;
   }
 
-  int count_wrong(std::vector<tests::row<S>> const& rows) {
+  bool all_right(std::vector<tests::row<S>> const& rows) {
     namespace detail = collide::detail;
-    int wrong = 0, open = 0;
+    int open = 0;
     tests::row<S> const certain{{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 1, 0, 1};
-    for (auto const& r : rows) {
-      wrong += right({r}, 1) ? 0 : 1;
+    return tests::all_right(rows, [&](tests::row<S> const& r) {
+      if (!right({r}, 1)) return false;
       bool const uncertain = detail::filter_exact(r.triangle(), r.sphere()).verdict == detail::verdict::uncertain;
-      if (uncertain && open++ < 20) wrong += right({r, certain}, 50) ? 0 : 1;
-    }
-    return wrong;
+      return !(uncertain && open++ < 20) || right({r, certain}, 50);
+    });
   }
 };
 
 int main(int, char** argv) {
-  int const wrong = scenes<float>().count_wrong(tests::read_rows<float>(argv[1])) +
-                    scenes<double>().count_wrong(tests::read_rows<double>(argv[1]));
-  std::printf("%d wrong\n", wrong);
-  return wrong != 0;
+  return !(scenes<float>().all_right(tests::read_rows<float>(argv[1])) &&
+           scenes<double>().all_right(tests::read_rows<double>(argv[1])));
 }

@@ -1,7 +1,5 @@
-/// stages FOLDER: how many rows some stage of a verdict gets wrong, or the ball of the broad phase drops; subnormal
-/// numbers as they are and flushed to zero.
-#include <cstdio>
-
+/// stages FOLDER: fails at a row that some stage of a verdict gets wrong, or the ball of the broad phase drops;
+/// subnormal numbers as they are and flushed to zero.
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #endif
@@ -43,31 +41,28 @@ bool passes(collide::triangle<S> const& t, collide::sphere<S> const& s) {
 }
 
 template <class S>
-int count_wrong(std::vector<tests::row<S>> const& rows) {
+bool is_right(tests::row<S> const& r) {
   namespace detail = collide::detail;
-  int wrong = 0;
-  for (auto const& r : rows) {
-    auto const t = r.triangle();
-    auto const s = r.sphere();
-    bool const hit = r.hit != 0;
-    bool const sound = detail::is_finite(t) && detail::is_finite(s.centre) && detail::is_valid_radius(s.radius);
-    if (detail::intersects_exact(t, s).hit != hit || detail::intersects_exact_slow(t, s).hit != hit ||
-        (sound && !detail::is_infinite(s.radius) && some_integers_are_wrong(t, s, hit)) ||
-        some_attempt_is_wrong(t, s, hit) ||
-        (hit && !(detail::bounding_sphere_of(t).overlaps(s.centre, s.radius) && passes(t, s))))
-      ++wrong;
-  }
-  return wrong;
+  auto const t = r.triangle();
+  auto const s = r.sphere();
+  bool const hit = r.hit != 0;
+  bool const sound = detail::is_finite(t) && detail::is_finite(s.centre) && detail::is_valid_radius(s.radius);
+  return detail::intersects_exact(t, s).hit == hit && detail::intersects_exact_slow(t, s).hit == hit &&
+         !(sound && !detail::is_infinite(s.radius) && some_integers_are_wrong(t, s, hit)) &&
+         !some_attempt_is_wrong(t, s, hit) &&
+         (!hit || (detail::bounding_sphere_of(t).overlaps(s.centre, s.radius) && passes(t, s)));
 }
 
 int main(int, char** argv) {
   auto const floats = tests::read_rows<float>(argv[1]);
   auto const doubles = tests::read_rows<double>(argv[1]);
-  int wrong = count_wrong(floats) + count_wrong(doubles);
+  auto const all_right = [&] {
+    return tests::all_right(floats, is_right<float>) && tests::all_right(doubles, is_right<double>);
+  };
+  bool right = all_right();
 #if defined(__SSE__)
   _mm_setcsr(_mm_getcsr() | 0x8040);
-  wrong += count_wrong(floats) + count_wrong(doubles);
+  right = right && all_right();
 #endif
-  std::printf("%d wrong\n", wrong);
-  return wrong != 0;
+  return !right;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <collide/bucket.cuh>
+#include <collide/all_pairs.cuh>
 #include <collide/sinks/count.hpp>
 #include <collide/upload.hpp>
 
@@ -17,6 +17,6 @@ inline std::uint64_t hits() {
   float const centres[] = {0.25F, 0.25F, 0.5F, 5, 5, 5};
   auto const mesh = collide::upload(here, collide::triangle_soup(corners, 1));
   auto const spheres = collide::upload(here, collide::spheres_xyz(centres, 2, 0.75F));
-  collide::detector<collide::bucket, collide::karabassi<>, space> detector(here);
+  collide::detector<collide::all_pairs, collide::karabassi<>, space> detector(here);
   return detector.detect(mesh.view(), spheres.view(), collide::count()).total();
 }

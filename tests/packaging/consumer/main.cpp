@@ -30,7 +30,7 @@ bool has_threads(bool several) {
 /// Whether a detector without its device is refused when it is made.
 bool refuses_without_device() {
   try {
-    collide::detector<collide::bucket, collide::karabassi<>, space> detector;
+    collide::detector<collide::all_pairs, collide::karabassi<>, space> detector;
     return false;
   } catch (collide::cuda_error const&) {
     return true;
