@@ -93,22 +93,23 @@ def test_reaction_is_what_particles_lose():
 
 @compiles
 def test_reaction_is_the_weight_of_what_rests():
-    """Here in float32, and with arrays of Python that look at columns when others are set."""
-    mesh = collide.Mesh(SQUARE, TRIANGLES)
-    sim = collide.Simulation(mesh, [collide.gravity(), collide.bounce(0), collide.reaction(1e-9, density=1000)])
+    """Also where arrays of Python look at columns when others are set."""
+    mesh = collide.Mesh(SQUARE.astype(float), TRIANGLES)
+    listed = [collide.gravity(), collide.bounce(0), collide.friction(0), collide.moving_bodies(), collide.reaction(1e-9, 1000)]
+    sim = collide.Simulation(mesh, listed)
     radius, n, weight = 0.25, 3, sphere_mass(0.25, 1000) * 9.81
     for density in (1000, 3000):
         sim.change("reaction", density=density)
         kept = None
         for _ in range(2):
-            sim.set(numpy.float32([[0, 0, 0.25], [1, 0, 0.25], [2, 0, 0.25]]), radius)
+            sim.set(numpy.array([[0, 0, 0.25], [1, 0, 0.25], [2, 0, 0.25]]), radius)
             sim.steps(100, 1e-3)
-            assert numpy.allclose(sim.sums(2).linear, [[0, 0, -n * weight * density / 1000 * 0.1]], rtol=1e-4)
+            assert numpy.allclose(sim.sums(4).linear, [[0, 0, -n * weight * density / 1000 * 0.1]], rtol=1e-9)
             kept = sim["position"]  # and the next set makes other columns
-        sim.clear(2)
+        sim.clear(4)
         assert (sim.sums("reaction").linear == 0).all()
         sim.steps(50, 1e-3)
-        assert numpy.allclose(sim.sums(2).linear[0, 2], -n * weight * density / 1000 * 0.05, rtol=1e-4)
+        assert numpy.allclose(sim.sums(4).linear[0, 2], -n * weight * density / 1000 * 0.05, rtol=1e-9)
     assert kept is not None
     with pytest.raises(collide.Error, match="reaction: density and unit are above 0"):
         sim.change("reaction", unit=0)
@@ -133,10 +134,10 @@ def test_reaction_of_other_bodies():
 
 @compiles
 def test_mass_flow_counts_what_passes():
-    """Particles that fall through a plane, and those that pass its disc; back again they count backwards."""
-    mesh = collide.Mesh(SQUARE.astype(float), TRIANGLES)
-    x = numpy.random.default_rng(1).uniform(-3, 3, (500, 3))
-    radius, density = 0.1, 700
+    """Particles that fall through a plane, and those that pass its disc; back again they count backwards. In float32."""
+    mesh = collide.Mesh(SQUARE, TRIANGLES)
+    x = numpy.random.default_rng(1).uniform(-3, 3, (500, 3)).astype(numpy.float32)
+    radius, density = 0.125, 700
     for disc in (INF, 2.0):
         through = collide.mass_flow((0, 0, 0.5), (0, 0, -2), 1e-9, density=density, disc=disc)
         sim = collide.Simulation(mesh, [collide.gravity(0, 0, -1), through])
