@@ -32,17 +32,23 @@ class any_device {
         synchronize_{[](void const* of) { static_cast<Space const*>(of)->synchronize(); }},
         copy_{[](void const* of, void* to, void const* from, std::size_t bytes) {
           static_cast<Space const*>(of)->copy_from_any_device(to, from, bytes);
-        }} {}
+        }},
+        mark_{[](void const* of) { return static_cast<Space const*>(of)->mark(); }},
+        after_{[](void const* of, std::shared_ptr<void> const& mark) { static_cast<Space const*>(of)->after(mark); }} {}
 
   CUstream_st* stream() const { return stream_; }
   void synchronize() const { synchronize_(space_); }
   void copy_from_any_device(void* to, void const* from, std::size_t bytes) const { copy_(space_, to, from, bytes); }
+  std::shared_ptr<void> mark() const { return mark_(space_); }
+  void after(std::shared_ptr<void> const& mark) const { after_(space_, mark); }
 
  private:
   void const* space_;
   CUstream_st* stream_;
   void (*synchronize_)(void const*);
   void (*copy_)(void const*, void*, void const*, std::size_t);
+  std::shared_ptr<void> (*mark_)(void const*);
+  void (*after_)(void const*, std::shared_ptr<void> const&);
 };
 
 /// Ranks of any kind, so that a program is compiled once for all of them. It has a copy of what it is made from.

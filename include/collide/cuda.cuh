@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -180,6 +181,19 @@ class cuda_space {
     if (bytes == 0) return;
     read_directly(from);
     cuda_check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream_), "cudaMemcpyAsync");
+  }
+
+  /// A mark behind the work that is on the stream, for `after`.
+  std::shared_ptr<void> mark() const {
+    cudaEvent_t made = nullptr;
+    cuda_check(cudaEventCreateWithFlags(&made, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+    std::shared_ptr<void> event(made, [](cudaEvent_t e) { cudaEventDestroy(e); });
+    cuda_check(cudaEventRecord(made, stream_), "cudaEventRecord");
+    return event;
+  }
+  /// Has work that is put on the stream later begin after that before a mark, of any space of the process.
+  void after(std::shared_ptr<void> const& mark) const {
+    if (mark) cuda_check(cudaStreamWaitEvent(stream_, static_cast<cudaEvent_t>(mark.get()), 0), "cudaStreamWaitEvent");
   }
 
  protected:

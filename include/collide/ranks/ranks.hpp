@@ -10,8 +10,8 @@
 ///   - `exchange_counts(to_each, of_each)`: one number of 64 bits from each rank to each;
 ///   - `exchange(from, to_each, to, of_each, bytes)`: items of so many `bytes`, `to_each[r]` of them to rank r, and
 ///     `of_each[r]` from it, each time in the order of the ranks and without gaps;
-///   - `exchange_in_space(space, from, to_each, to, of_each, bytes)`, if they can: the same of memory of devices. All
-///     ranks come out of it, also where one of them throws;
+///   - `exchange_in_space(space, from, to_each, to, of_each, bytes)`, if they can: the same of memory of devices, at
+///     once or in the order of the spaces' work. All ranks come out of it, also where one of them throws;
 ///   - `bool takes_device_memory()`, if that is known at run time alone: whether `exchange_in_space` can be called.
 #pragma once
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -33,6 +34,7 @@ class exchange_barrier {
     void const* data = nullptr;
     std::uint64_t const* counts = nullptr;
     std::uint64_t numbers[2][max_values] = {};  ///< in even and in odd rounds
+    std::shared_ptr<void> laid_out, taken;  ///< marks of its space: the data is there; that of others is no more needed
   };
 
   int size() const { return static_cast<int>(places_.size()); }
@@ -155,24 +157,34 @@ class thread_ranks {
 
   void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
                 std::size_t bytes) const {
-    exchange_by([](void* at, void const* theirs, std::size_t n) { std::memcpy(at, theirs, n); }, [] {}, from, to_each,
-                to, of_each, bytes);
+    exchange_by([](int, void* at, void const* theirs, std::size_t n) { std::memcpy(at, theirs, n); }, [] {}, from,
+                to_each, to, of_each, bytes);
   }
 
   /// As `exchange`, of memory of the ranks' spaces, which are of devices: from one to the other, not by way of the
-  /// host. If a copy fails on a rank, that one throws.
+  /// host. It happens in the order of each space's work: what is sent may be overwritten, and what comes be read, by
+  /// work that is put there afterwards. No rank waits for its device. If a copy cannot be begun on a rank, that one
+  /// throws.
   template <class Space>
   auto exchange_in_space(Space const& space, void const* from, std::uint64_t const* to_each, void* to,
                          std::uint64_t const* of_each, std::size_t bytes) const
       -> decltype(space.copy_from_any_device(to, from, bytes)) {
     detail::first_failure failure;
-    failure.attempt([&] { space.synchronize(); });
-    exchange_by(
-        [&](void* at, void const* theirs, std::size_t n) {
-          if (!failure.get()) failure.attempt([&] { space.copy_from_any_device(at, theirs, n); });
-        },
-        [&] { failure.attempt([&] { space.synchronize(); }); },  // also if a copy failed: others may be under way
-        from, to_each, to, of_each, bytes);
+    detail::exchange_barrier::place& mine = barrier_->slot(rank_);
+    failure.attempt([&] { mine.laid_out = space.mark(); });
+    auto const take = [&](int r, void* at, void const* theirs, std::size_t n) {
+      if (failure.get()) return;
+      failure.attempt([&] {
+        if (r != rank_) space.after(barrier_->slot(r).laid_out);
+        space.copy_from_any_device(at, theirs, n);
+      });
+    };
+    // also if a copy failed: others may be under way
+    auto const finish = [&] { failure.attempt([&] { mine.taken = space.mark(); }); };
+    exchange_by(take, finish, from, to_each, to, of_each, bytes);
+    for (int r = 0; r < size(); ++r) {
+      if (r != rank_ && to_each[r] != 0) failure.attempt([&] { space.after(barrier_->slot(r).taken); });
+    }
     failure.rethrow();
   }
 
@@ -193,20 +205,21 @@ class thread_ranks {
     barrier.leave(rank, failure);
   }
 
-  /// Calls copy(to, from, bytes) for what comes from each rank, and finish() before others may change what they sent.
+  /// Calls copy(rank, to, from, bytes) for what comes from each rank, and finish() before others may change what they
+  /// sent.
   template <class Copy, class Finish>
   void exchange_by(Copy const& copy_bytes, Finish const& finish, void const* from, std::uint64_t const* to_each,
                    void* to, std::uint64_t const* of_each, std::size_t bytes) const {
     show(from, to_each, [&] {
       std::size_t filled = 0;
       for (int r = 0; r < size(); ++r) {
-        detail::exchange_barrier::place const theirs = barrier_->slot(r);
+        detail::exchange_barrier::place const& theirs = barrier_->slot(r);
         std::size_t before = 0;
         for (int q = 0; q < rank_; ++q) before += static_cast<std::size_t>(theirs.counts[q]) * bytes;
         std::size_t const n = static_cast<std::size_t>(of_each[r]) * bytes;
         if (n != 0) {
-          copy_bytes(static_cast<unsigned char*>(to) + filled, static_cast<unsigned char const*>(theirs.data) + before,
-                     n);
+          copy_bytes(r, static_cast<unsigned char*>(to) + filled,
+                     static_cast<unsigned char const*>(theirs.data) + before, n);
         }
         filled += n;
       }
