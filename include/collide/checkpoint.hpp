@@ -188,9 +188,8 @@ class checkpoint {
     to.time_ = numbers_.time;
     to.reverse_order_ = numbers_.reverse_order != 0;
     to.knows_pair_forces_ = numbers_.knows_pair_forces != 0;
-    to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius};
-    if constexpr (simulated::effects_type::any_pair_contact)
-      to.neighbours_.clear(space, places, to.radii_.largest, to.radii_.smallest);
+    to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius, S(0)};
+    if constexpr (simulated::effects_type::any_pair_contact) to.neighbours_.clear(space, places, to.radii_);
     to.is_set_ = true;
     to.know_smallest();
     to.prepare();

@@ -108,12 +108,12 @@ class simulation {
     S const own = effects_.source_radius();
     detail::check_particles<columns>(particles.one_radius(), n, room, own, particles.common_radius());
     place(particles, velocities, room);
-    radii_ = {particles.common_radius(), particles.common_radius()};
+    radii_ = {particles.common_radius(), particles.common_radius(), S(0)};
     if (!particles.one_radius()) radii_ = detail::radius_range_of(*this);
     if (asks_mesh && n != 0 && radii_.smallest == 0)
       throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
     radii_ = radii_.with(own);
-    if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, room, radii_.largest, radii_.smallest);
+    if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, room, radii_);
     if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
     know_smallest();
     prepare();

@@ -305,7 +305,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     detail::check_particles<columns>(!several, 0, 0, S(0), S(0));
     S const least_of_all = -ask(-smallest, has_say).second;
     return {several ? S(0) : most,
-            {several ? least_of_all : most, ask(largest, has_say).second},
+            {several ? least_of_all : most, ask(largest, has_say).second, S(0)},
             ask(widest, has_say).second};
   }
 

@@ -135,20 +135,18 @@ void check_neighbours_across(Space const& space) {
   struct {
     std::size_t n;
     double radius, way;
-    bool sizes;
-  } const cases[] = {{300, 0.08, 0.004, false},
-                     {300, 0.08, 0.7, false},
-                     {40, 0.452, 0.01, false},
-                     {150, 0.25, 0.05, false},
-                     {300, 0.08, 0.02, true}};
+    double small;  ///< radius of most, beside others of 0.3 and 0.12; 0: all are the same
+  } const cases[] = {{300, 0.08, 0.004, 0}, {300, 0.08, 0.7, 0},     {40, 0.452, 0.01, 0},
+                     {150, 0.25, 0.05, 0},  {300, 0.08, 0.02, 0.05}, {700, 0.08, 0.02, 0.02}};
   for (auto const& one : cases) {
     CAPTURE(one.radius);
     CAPTURE(one.way);
     auto w = packed_cube<S>(one.n, one.radius, one.way);
     for (S& x : w.velocities) x += static_cast<S>(one.way);
     periodic_box const box{{-1, -1, -1}, {1, 1, 1}};
-    if (one.sizes) {
-      for (std::size_t i = 0; i < one.n; ++i) w.radii.push_back(S(i % 30 == 0 ? 0.3 : 0.05));
+    if (one.small != 0) {
+      for (std::size_t i = 0; i < one.n; ++i)
+        w.radii.push_back(S(i % 30 == 0 ? 0.3 : i % 7 == 1 && one.small < 0.05 ? 0.12 : one.small));
       running<collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, polydisperse, periodic_box>> made(
           space, w, greets{}, polydisperse{}, box);
       check_meetings_across<S>(made.simulation, S(0), 2, 40, S(1), 150);

@@ -72,7 +72,7 @@ struct count_or_scatter {
   sorted_particles<S, Effects> order;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    using placing = union_of<columns<position>, intersection_of<columns<alive>, typename Effects::all>>;
+    using placing = union_of<columns<position>, intersection_of<columns<alive, radius>, typename Effects::all>>;
     particle<S, placing> p;
     state.load(p, i);
     if constexpr (contains<placing, alive>) {
@@ -83,7 +83,9 @@ struct count_or_scatter {
       }
     }
     vec3<S> const c = order.inside(p[position{}]);
-    std::uint32_t const slot = fetch_add(order.ends + order.cells.number(order.cells.of(c.x(), c.y(), c.z())) + 1, 1u);
+    S own = 0;
+    if constexpr (contains<placing, radius>) own = p[radius{}];
+    std::uint32_t const slot = fetch_add(order.ends + order.place_in_table(c, own) + 1, 1u);
     if constexpr (Fill) order.numbers[slot] = static_cast<id>(i);
   }
 };

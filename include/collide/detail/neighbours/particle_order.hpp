@@ -35,6 +35,19 @@ struct reference<S, true> : packed_sphere<S> {
   COLLIDE_HD_INLINE S growth(packed_sphere<S> const& s) const { return max(s.radius - this->radius, S(0)); }
 };
 
+/// The cells of small particles beside much larger ones.
+template <class S>
+struct small_cells {
+  spatial_hash<S> cells;
+  S largest = -1;  ///< radius of those in them; below 0: there are none, all are in the other cells
+  S reach = 0;     ///< from the surface of a larger one to the centre of a small one that it lists
+
+  /// Place in the table: the small have other blocks.
+  COLLIDE_HD_INLINE std::uint32_t number(typename spatial_hash<S>::cell c) const {
+    return cells.number({c.x, c.y, c.z + 0x2d6b2e8});
+  }
+};
+
 /// State of the lists of all particles.
 struct list_state {
   std::uint32_t rebuild;     ///< not 0: the lists are to be made anew
@@ -54,15 +67,17 @@ struct sorted_particles {
   using cell = typename spatial_hash<S>::cell;
   static constexpr bool has_absent = contains<all, alive>;
   static constexpr bool repeats = Effects::repeats;
+  static constexpr bool sizes_differ = contains<all, radius>;
 
   typename Effects::space_type space;
   spatial_hash<S> cells;
+  small_cells<S> small;
   std::uint32_t* ends;  ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
   list_state* header;
   id* numbers;
-  packed_sphere<S>* spheres;                        ///< as they are in this step
-  reference<S, contains<all, radius>>* references;  ///< as they were when the lists were made
-  column_element<alive, S>* known;                  ///< `alive` when the lists were made, by numbers
+  packed_sphere<S>* spheres;               ///< as they are in this step
+  reference<S, sizes_differ>* references;  ///< as they were when the lists were made
+  column_element<alive, S>* known;         ///< `alive` when the lists were made, by numbers
   particle_state<S, copied> copies;
 
   static constexpr std::uint32_t listed = 16;  ///< the most neighbours that a list has
@@ -168,8 +183,20 @@ struct sorted_particles {
 
   /// True if particle k is in a row of cells around particle i, and not in others at the same place of the table.
   COLLIDE_HD_INLINE bool is_in_row(std::uint32_t k, std::uint32_t i, int row) const {
-    cell const from = first_of(cell_of(i, row), row), there = cell_of(k, 0);
-    return there.y == from.y && there.z == from.z && there.x >= from.x && there.x <= from.x + 2;
+    spatial_hash<S> grid = cells;
+    if (is_small(k)) {
+      if (!is_small(i)) return true;  // it was asked when it was found
+      grid = small.cells;
+    }
+    return is_in(grid, k, first_of(cell_of(grid, i, row), row), 3);
+  }
+
+  /// Place of a particle's cell in the table.
+  COLLIDE_HD_INLINE std::uint32_t place_in_table(vec3<S> const& x, [[maybe_unused]] S own_radius) const {
+    if constexpr (sizes_differ) {
+      if (own_radius <= small.largest) return small.number(small.cells.of(x.x(), x.y(), x.z()));
+    }
+    return cells.number(cells.of(x.x(), x.y(), x.z()));
   }
 
   /// The item of what is remembered of a neighbour in a run.
@@ -196,30 +223,96 @@ struct sorted_particles {
   }
 
  private:
+  COLLIDE_HD_INLINE bool is_small([[maybe_unused]] std::uint32_t i) const {
+    if constexpr (sizes_differ) return references[i].radius <= small.largest;
+    return false;
+  }
+
   /// The rows of nine that begin with `first_row`.
   template <class F>
   COLLIDE_HD_INLINE void for_each_in_rows(std::uint32_t i, int first_row, S skin, F const& f) const {
     packed_sphere<S> const self = spheres[i];
-    cell const here = cell_of(i, first_row);
+    bool finds_small = false;
+    if constexpr (sizes_differ) finds_small = small.largest >= 0;
+    // once, or once more in the cells of small ones
     COLLIDE_NO_UNROLL
-    for (int row = first_row; row < first_row + 9; ++row) {
-      cell const from = first_of(here, row);
-      std::int32_t const together = min(3, 16 - (from.x & 15));  // those in the same block follow each other
-      std::uint32_t const first = cells.number(from);
-      std::uint32_t const begin = ends[first], size = ends[first + static_cast<std::uint32_t>(together)] - begin;
-      std::uint32_t jump = 0, both = size;
-      if (together < 3) {
-        std::uint32_t const rest = cells.number({from.x + together, from.y, from.z});
-        jump = ends[rest];
-        both += ends[rest + static_cast<std::uint32_t>(3 - together)] - jump;
-        jump -= size;
+    for (int pass = 0; pass < 2; ++pass) {
+      bool const in_small = pass == 1;
+      if (in_small && !finds_small) break;
+      if (in_small && !is_small(i)) {
+        for_each_small(i, first_row, skin, f);
+        break;
       }
+      cell const here = cell_of(in_small ? small.cells : cells, i, first_row);
       COLLIDE_NO_UNROLL
-      for (std::uint32_t n = 0; n < both; ++n) {
-        std::uint32_t const k = n + (n < size ? begin : jump);
-        if (within_skin(self, spheres[k], skin) && k != i) f(k, row);
+      for (int row = first_row; row < first_row + 9; ++row) {
+        cell const from = first_of(here, row);
+        std::int32_t const together = min(3, 16 - (from.x & 15));  // those in the same block follow each other
+        std::uint32_t const first = number(from, in_small);
+        std::uint32_t const begin = ends[first], size = ends[first + static_cast<std::uint32_t>(together)] - begin;
+        std::uint32_t jump = 0, both = size;
+        if (together < 3) {
+          std::uint32_t const rest = number({from.x + together, from.y, from.z}, in_small);
+          jump = ends[rest];
+          both += ends[rest + static_cast<std::uint32_t>(3 - together)] - jump;
+          jump -= size;
+        }
+        COLLIDE_NO_UNROLL
+        for (std::uint32_t n = 0; n < both; ++n) {
+          std::uint32_t const k = n + (n < size ? begin : jump);
+          if (within_skin(self, spheres[k], skin) && k != i) f(k, row);
+        }
       }
     }
+  }
+
+  COLLIDE_HD_INLINE std::uint32_t number(cell c, bool in_small) const {
+    return in_small ? small.number(c) : cells.number(c);
+  }
+
+  /// The small ones near a particle that is not: in all of their cells that it reaches, or, if these are very many,
+  /// among all particles.
+  template <class F>
+  COLLIDE_HD void for_each_small(std::uint32_t i, int row, S skin, F const& f) const {
+    packed_sphere<S> const self = spheres[i];
+    vec3<S> const at = reference_in(i, row);
+    S const reach = (radius_at_reference(i) + small.reach) * (1 + S(0.00390625)),
+            across = 2 * reach * small.cells.inverse_width + 2;
+    if (!(across * across * across < static_cast<S>(header->count))) {
+      std::uint32_t const all_of = row == 0 ? header->count : 0;  // images of the box find no others
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t k = 0; k < all_of; ++k)
+        if (within_skin(self, spheres[k], skin) && k != i && is_small(k)) f(k, row);
+      return;
+    }
+    cell const low = small.cells.of(at.x() - reach, at.y() - reach, at.z() - reach),
+               high = small.cells.of(at.x() + reach, at.y() + reach, at.z() + reach);
+    COLLIDE_NO_UNROLL
+    for (std::int32_t z = low.z; z <= high.z; ++z) {
+      COLLIDE_NO_UNROLL
+      for (std::int32_t y = low.y; y <= high.y; ++y) {
+        COLLIDE_NO_UNROLL
+        for (std::int32_t x = low.x, next; x <= high.x; x = next) {
+          next = min((x & ~15) + 16, high.x + 1);  // those in the same block follow each other
+          std::uint32_t const first = small.number({x, y, z}), end = ends[first + static_cast<std::uint32_t>(next - x)];
+          COLLIDE_NO_UNROLL
+          for (std::uint32_t k = ends[first]; k < end; ++k)
+            if (within_skin(self, spheres[k], skin) && is_small(k) && is_in(small.cells, k, {x, y, z}, next - x))
+              f(k, row);
+        }
+      }
+    }
+  }
+
+  COLLIDE_HD_INLINE S radius_at_reference([[maybe_unused]] std::uint32_t i) const {
+    if constexpr (sizes_differ) return references[i].radius;
+    return spheres[i].radius;
+  }
+
+  /// True if particle k is in one of `n` cells of a grid that follow each other from `first` on.
+  COLLIDE_HD_INLINE bool is_in(spatial_hash<S> const& grid, std::uint32_t k, cell first, std::int32_t n) const {
+    cell const there = cell_of(grid, k, 0);
+    return there.y == first.y && there.z == first.z && there.x >= first.x && there.x < first.x + n;
   }
 
   /// The first of three cells along x next to a cell.
@@ -229,14 +322,15 @@ struct sorted_particles {
   }
 
   /// The cell of a particle, where it is in the image of the box that a row belongs to.
-  COLLIDE_HD_INLINE cell cell_of(std::uint32_t i, [[maybe_unused]] int row) const {
+  COLLIDE_HD_INLINE cell cell_of(spatial_hash<S> const& grid, std::uint32_t i, int row) const {
+    vec3<S> const x = reference_in(i, row);
+    return grid.of(x.x(), x.y(), x.z());
+  }
+  COLLIDE_HD_INLINE vec3<S> reference_in(std::uint32_t i, [[maybe_unused]] int row) const {
     auto const& from = references[i];
-    if constexpr (repeats) {
-      vec3<S> const x = space.in_image(vec3<S>(from.x, from.y, from.z), row / 9);
-      return cells.of(x.x(), x.y(), x.z());
-    } else {
-      return cells.of(from.x, from.y, from.z);
-    }
+    vec3<S> const x(from.x, from.y, from.z);
+    if constexpr (repeats) return space.in_image(x, row / 9);
+    return x;
   }
 };
 

@@ -7,7 +7,10 @@
 /// what is listed. It is found out on the device whether that is so: kernels that renew the lists end at once if not.
 /// If a particle has come, or moved far, all lists are rebuilt. Particles that are no longer there are left out.
 ///
-/// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. They lie in a
+/// Lists are made from a grid of the particles. Cells are as wide as the largest particle with the skin. Where the
+/// largest is more than twice as large as the small ones, which are up to twice as large as the smallest, these are in
+/// a second grid of narrower cells, so that they do not pay for it: each looks into both grids, and a larger one into
+/// all cells of the small ones that it reaches (C. Ericson, "Real-Time Collision Detection", 2005, 7.2). Cells lie in a
 /// table of fixed size: blocks of 16 x 2 x 2 cells are spread over it by a hash function, so that any scene fits, and
 /// near cells are near in memory. Particles are counted into the cells, each block takes as much of the order as it has
 /// particles, and each particle looks into the 27 cells around it, in a box that repeats also around its images. What
@@ -31,6 +34,7 @@
 #include <collide/detail/neighbours/particle_order.hpp>
 #include <collide/detail/numeric/rounding.hpp>
 #include <collide/detail/particles/attribute_buffers.hpp>
+#include <collide/detail/particles/host_members.hpp>
 #include <collide/memory.hpp>
 
 namespace collide::detail {
@@ -55,13 +59,20 @@ class verlet_list {
     contacts_.reserve(resource, n, order::listed, runs_.capacity());
   }
 
-  /// For `n` particles of radius up to `radius`, for which there is room: there are no lists yet. `smallest` keeps the
-  /// skin so thin that small particles beside large ones have few neighbours: too many have no list.
+  /// For `n` particles, for which there is room: there are no lists yet. The smallest keep the skin so thin that small
+  /// particles beside large ones have few neighbours: too many have no list.
   template <class Space>
-  void clear(Space& space, std::size_t n, S radius, S smallest) {
+  void clear(Space& space, std::size_t n, radius_range<S> const& radii) {
     blocks_ = cells::blocks_for(n);
-    skin_ = skin_of(radius, smallest);
-    cells_ = {1 / width_of(radius, smallest), static_cast<std::uint32_t>(blocks_ - 1)};
+    skin_ = skin_of(radii.largest, radii.smallest);
+    cells_ = {1 / width_of(radii.largest, radii.smallest), static_cast<std::uint32_t>(blocks_ - 1)};
+    S const small = radii.largest_small();
+    small_ = {cells_, S(-1), S(0)};
+    if (small > 0 && radii.largest > 2 * small) {
+      small_.cells.inverse_width = 1 / width_with(skin_, small);
+      small_.largest = small;
+      small_.reach = small + skin_;
+    }
     list_state* const header = header_.data();
     space.fill(header, 0, sizeof *header);
     space.fill(&header->rebuild, 1, sizeof header->rebuild);
@@ -71,9 +82,7 @@ class verlet_list {
 
   /// How wide cells are: a bit wider than what is listed, so that rounding separates no pair by more than a cell, in
   /// floats up to 2^15 cells away from the origin.
-  static S width_of(S radius, S smallest) {
-    return max((2 * radius + skin_of(radius, smallest)) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
-  }
+  static S width_of(S radius, S smallest) { return width_with(skin_of(radius, smallest), radius); }
 
   /// The memory of contacts of the first `n` particles, by the numbers by which neighbours meet, for a checkpoint.
   /// Waits.
@@ -184,6 +193,10 @@ class verlet_list {
     return skin_fraction * 2 * (smallest > 0 ? min(radius, 2 * smallest) : radius);
   }
 
+  static S width_with(S skin, S radius) {
+    return max((2 * radius + skin) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
+  }
+
   /// Makes room for all runs, and then those for which there was none. Allocates, but only where a step waits anyhow.
   template <class Space>
   COLLIDE_COLD void grow_runs(Space& space, state_type const& state) {
@@ -203,24 +216,19 @@ class verlet_list {
   }
 
   order order_of(state_type const& state) const {
-    return {around_,
-            cells_,
-            ends_.data(),
-            header_.data(),
-            numbers_.data(),
-            spheres_.data(),
-            references_.data(),
-            known_.data(),
-            memory_.state(state.size, state.placed, state.common_radius),
-            lists_.data(),
-            state.size,
-            runs_.data(),
-            runs_.capacity(),
+    return {around_,         cells_,
+            small_,          ends_.data(),
+            header_.data(),  numbers_.data(),
+            spheres_.data(), references_.data(),
+            known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
+            lists_.data(),   state.size,
+            runs_.data(),    runs_.capacity(),
             contacts_.ref()};
   }
 
   typename Effects::space_type around_{};
   cells cells_{};
+  small_cells<S> small_{};
   S skin_{};
   std::size_t blocks_ = 0, listed_ = 0;  ///< how many particles have lists
   buffer<list_state> header_;

@@ -151,9 +151,16 @@ template <class S>
 struct radius_range {
   S smallest = 0;  ///< of those that are not negative; infinite if there are none
   S largest = 0;
+  S small = 0;  ///< the largest of those up to twice the smallest; 0: not known
 
+  /// The largest of those up to twice the smallest, or a bound of it.
+  S largest_small() const { return small > 0 ? small : 2 * smallest; }
   /// With those of what a source makes, if they have one of their own.
-  radius_range with(S own) const { return own > 0 ? radius_range{min(smallest, own), max(largest, own)} : *this; }
+  radius_range with(S own) const {
+    if (!(own > 0)) return *this;
+    S const least = min(smallest, own), most_small = own < smallest ? S(0) : own > 2 * least ? small : max(small, own);
+    return {least, max(largest, own), small > 0 ? most_small : S(0)};
+  }
 };
 
 /// The radii that particles have of their own. Waits.
@@ -166,6 +173,9 @@ auto radius_range_of(Simulation const& simulation) {
     if (!radii.empty()) found.largest = *std::max_element(radii.begin(), radii.end());
     for (S const r : radii) {
       if (r >= 0) found.smallest = min(found.smallest, r);
+    }
+    for (S const r : radii) {
+      if (r <= 2 * found.smallest) found.small = max(found.small, r);
     }
   }
   return found;

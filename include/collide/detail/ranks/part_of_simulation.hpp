@@ -111,7 +111,7 @@ class part_of_simulation {
     auto const free = static_cast<std::size_t>(all.free_size);
     capacity_ = max(mine + free, std::size_t{1});
     simulation_.place({}, nullptr, capacity_);
-    start(mine, all, {numbers.common_radius, {numbers.smallest_radius, largest}, widest});
+    start(mine, all, {numbers.common_radius, {numbers.smallest_radius, largest, S(0)}, widest});
     auto const& state = simulation_.state_;
     saved.restore_columns(space(), state, 0, static_cast<std::size_t>(all.first), mine);
     saved.restore_columns(space(), state, mine, static_cast<std::size_t>(all.first_free), free);
@@ -295,8 +295,7 @@ class part_of_simulation {
   void expect_copies(std::size_t n) {
     make_room(own() + n);
     copies_ = n;
-    if constexpr (any_pair_contact)
-      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_.largest, simulation_.radii_.smallest);
+    if constexpr (any_pair_contact) simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_);
     auto* const resource = space().resource();
     last_centres_.reserve(resource, 3 * capacity_);
     if constexpr (has_absent) last_there_.reserve(resource, capacity_);
@@ -359,8 +358,7 @@ class part_of_simulation {
     reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
     copies_ = 0;
     knows_others_ = false;
-    if constexpr (remembers_pairs)
-      simulation_.neighbours_.clear(space(), room, radii.range.largest, radii.range.smallest);
+    if constexpr (remembers_pairs) simulation_.neighbours_.clear(space(), room, radii.range);
     if constexpr (remembers_surfaces) simulation_.surfaces_.clear(space(), room);
   }
 
