@@ -9,9 +9,9 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
-#include <collide/detail/ranks/device_exchange_buffer.hpp>
 #include <collide/ranks/ranks.hpp>
 
 #include "error.hpp"
@@ -50,6 +50,19 @@ class any_device {
   std::shared_ptr<void> (*mark_)(void const*);
   void (*after_)(void const*, std::shared_ptr<void> const&);
 };
+
+/// Whether ranks can send from memory of devices, and whether they know it at run time alone.
+template <class Ranks, class = void>
+inline constexpr bool sends_from_devices = false;
+template <class Ranks>
+inline constexpr bool sends_from_devices<
+    Ranks, std::void_t<decltype(std::declval<Ranks const&>().exchange_in_space(
+               std::declval<any_device const&>(), nullptr, nullptr, nullptr, nullptr, std::size_t{}))>> = true;
+template <class Ranks, class = void>
+inline constexpr bool knows_at_run_time = false;
+template <class Ranks>
+inline constexpr bool
+    knows_at_run_time<Ranks, std::void_t<decltype(std::declval<Ranks const&>().takes_device_memory())>> = true;
 
 /// Ranks of any kind, so that a program is compiled once for all of them. It has a copy of what it is made from.
 class any_ranks {
@@ -110,18 +123,16 @@ class any_ranks {
       ranks.exchange(from, to_each, to, of_each, bytes);
     }
     bool takes_device_memory() const override {
-      if constexpr (collide::detail::is_valid<collide::detail::ranks_takes_device_memory, Ranks>) {
+      if constexpr (knows_at_run_time<Ranks>) {
         return ranks.takes_device_memory();
       } else {
-        return can_be_direct;
+        return sends_from_devices<Ranks>;
       }
     }
     void exchange_in_space(any_device const& device, void const* from, std::uint64_t const* to_each, void* to,
                            std::uint64_t const* of_each, std::size_t bytes) const override {
-      if constexpr (can_be_direct) ranks.exchange_in_space(device, from, to_each, to, of_each, bytes);
+      if constexpr (sends_from_devices<Ranks>) ranks.exchange_in_space(device, from, to_each, to, of_each, bytes);
     }
-    static constexpr bool can_be_direct =
-        collide::detail::is_valid<collide::detail::ranks_exchange_in_space, Ranks, any_device>;
     Ranks ranks;
   };
 
