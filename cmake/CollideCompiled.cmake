@@ -35,6 +35,9 @@ add_library(collide::compiled ALIAS collide_compiled)
 set_target_properties(collide_compiled PROPERTIES EXPORT_NAME compiled)
 target_link_libraries(collide_compiled PUBLIC collide)
 target_compile_definitions(collide_compiled INTERFACE COLLIDE_COMPILED)
+if(COLLIDE_QUICK_BUILD)
+  target_compile_options(collide_compiled PRIVATE -O2)  # two thirds of the time that -O3 takes
+endif()
 
 if(COLLIDE_CUDA)
   set_source_files_properties(${cuda_sources} PROPERTIES LANGUAGE CUDA)
