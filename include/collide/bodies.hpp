@@ -108,7 +108,8 @@ struct body_report {
   /// particle that `set` has seen, and so may have passed through some.
   std::uint32_t fast_steps = 0;
   /// How often a body of a simulation that is swept turned by more than 0.05 rad in a step where the smallest radius is
-  /// less than 512 units in the last place of its coordinates: what it encloses may then get through it.
+  /// less than 512 units in the last place of its coordinates (2048 if by more than 1.7): what it encloses may then get
+  /// through it.
   std::uint32_t rough_steps = 0;
 };
 

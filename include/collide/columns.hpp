@@ -79,7 +79,9 @@ struct angular_velocity {
   using value = vec3<S>;
 };
 
-/// 1 if the particle is there, 0 if its place is free; see `emit` and `absorb`.
+/// 1 if the particle is there, 0 if its place is free; see `emit` and `absorb`. An effect of your own makes a particle
+/// in its `begin_step` by writing 1 at a free place. No contact remembers what was there, and columns that the effect
+/// does not write begin anew, but for position, velocity and radius.
 struct alive {
   template <class S>
   using value = std::uint8_t;

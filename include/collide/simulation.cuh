@@ -128,6 +128,7 @@ class simulation {
     auto* const resource = space_.resource();
     memory_.reserve(resource, detail::padded_size(particles));
     if constexpr (has_begin_step) device_time_.reserve(resource, detail::clock_size);
+    if constexpr (may_be_made) was_there_.reserve(resource, particles);
     if constexpr (effects_type::any_mesh_contact) {
       using kernel_type = detail::step_kernel<step_context<decltype(mesh_ref(S{}))>>;
       if constexpr (kernel_type::template has_many_tiles<typename execution_space::template block<kernel_type>>) {
@@ -207,7 +208,7 @@ class simulation {
     std::size_t lists = 0;
     if constexpr (effects_type::any_pair_contact) lists = neighbours_.bytes();
     if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes();
-    return memory_.bytes() + device_time_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
+    return memory_.bytes() + device_time_.bytes() + was_there_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
 
   /// Number of particles, or of places for them, if an effect makes or removes some; see `alive`.
@@ -303,6 +304,15 @@ class simulation {
 
   static constexpr bool sweeps = effects_type::any_mesh_contact && !detail::is_discrete<narrow_phase, S>;
   static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S>::value || ...);
+  /// Effects other than sources that may make particles in their `begin_step`, and the columns that they write.
+  template <class E>
+  static constexpr bool may_make =
+      !detail::is_source<E> && detail::has_begin_step<E, execution_space, state_type, S>::value &&
+      detail::contains<typename detail::writes_of<E>::type, alive>;
+  using made_with = detail::union_of<
+      collide::columns<>,
+      std::conditional_t<may_make<Effect>, typename detail::writes_of<Effect>::type, collide::columns<>>...>;
+  static constexpr bool may_be_made = made_with::size != 0;
   template <class Triangles>
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   using neighbour_lists =
@@ -345,7 +355,10 @@ class simulation {
 
   /// The part of a step before particles meet.
   void begin_step(S dt) {
+    if constexpr (may_be_made)
+      space_.for_each(state_.size, detail::copy_values<std::uint8_t>{state_.at(alive{}), was_there_.data()});
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
+    if constexpr (may_be_made) begin_anew();
     if constexpr (effects_type::makes && effects_type::remembers_surfaces) {
       if (effects_.due(static_cast<double>(dt)) > 0)
         space_.for_each(state_.size,
@@ -356,6 +369,15 @@ class simulation {
     if constexpr (has_begin_step)
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
     if constexpr (effects_type::ends_after_meeting) move(dt);
+  }
+
+  /// Begins anew with the particles that effects have made.
+  void begin_anew() {
+    using kept = detail::union_of<made_with, collide::columns<position, velocity, radius, global_number>>;
+    using initial = detail::difference_of<columns, kept>;
+    std::uint8_t* surfaces = nullptr;
+    if constexpr (effects_type::remembers_surfaces) surfaces = surfaces_.ref(state_.size).counts;
+    space_.for_each(state_.size, detail::begin_anew<S, effects_type, initial>{state_, was_there_.data(), surfaces});
   }
 
   /// Particles meet, among them copies of other ranks' in `with_copies`.
@@ -390,6 +412,8 @@ class simulation {
       if (effects_.due(static_cast<double>(dt)) > 0)
         neighbours_.settle_births(space_, with_copies, effects_.makes_only_where_free());
     }
+    if constexpr (may_be_made && effects_type::remembered::size != 0)
+      space_.for_each(state_.size, detail::take_marks_off{state_.at(alive{})});
   }
   template <class... Kick>
   void forget_pair_kicks(collide::columns<Kick...>) {
@@ -523,7 +547,8 @@ class simulation {
   bool is_set_ = false, has_mesh_ = false, reverse_order_ = false;  ///< the last one is of the next step
   bool knows_pair_forces_ = true;                                   ///< what the next step begins with
   double time_ = 0;
-  buffer<double> device_time_;  ///< for effects with a member begin_step
+  buffer<double> device_time_;      ///< for effects with a member begin_step
+  buffer<std::uint8_t> was_there_;  ///< `alive` when a step begins, for effects that make particles
   detail::radius_range<S> radii_;
   smallest_radii smallest_;
   S least_radius_ = 0;

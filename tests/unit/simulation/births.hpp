@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <collide/effects/absorb.hpp>
+#include <collide/effects/adhesion.hpp>
 #include <collide/effects/emit.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
@@ -234,6 +235,90 @@ void check_births_touch_nothing(Space const& space, int n, bool dies) {
     CHECK(first == now);
     CHECK(now[3 * places - 3] < S(0.4999));  // friction brakes it
   }
+}
+
+/// An effect of a user's own that makes a particle at each free place. `Writes`: columns besides `alive`.
+template <class... Writes>
+struct revives {
+  using writes = collide::columns<collide::alive, Writes...>;
+  static constexpr bool begins_on_ranks = true;
+  bool now = false;
+
+  template <class State>
+  struct revive {
+    State state;
+    COLLIDE_HD void operator()(std::size_t i) const { state.at(collide::alive{})[i] = 1; }
+  };
+  template <class Space, class State, class S>
+  void begin_step(Space& space, State const& state, S) const {
+    if (now) space.for_each(state.size, revive<State>{state});
+  }
+};
+
+/// What an effect of a user's own makes where a grain was that slid over the floor along `n` small ones moves as that
+/// did: contacts do not remember it.
+template <class S, class Space>
+void check_revived_touch_nothing(Space const& space, int n) {
+  using law = collide::granular_contact<collide::hertz, collide::mindlin>;
+  using maker = revives<position, velocity, collide::angular_velocity>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, maker, collide::absorbing_box,
+                                         collide::polydisperse, law>;
+  collide::absorbing_box const here{{-0.01, -0.01, 0}, {0.01, 0.01, 1}}, away{{9, 9, 9}, {9, 9, 9}};
+  world<S> w;
+  add_floor(w, 5, 1);
+  for (int k = 0; k < n; ++k) {
+    double const angle = 2 * 3.141592653589793 * k / n;
+    w.particle(0.1095 * std::cos(angle), 0.1095 * std::sin(angle), 0.1);
+    w.radii.push_back(S(0.01));
+  }
+  w.particle(0, 0, 0.0999, 0.5);
+  w.radii.push_back(S(0.1));
+  running<simulation> made(space, w, maker{}, away, collide::polydisperse{},
+                           law{collide::one_material({1e7, 0.3, 1000}, {0.5, 0.5})});
+  placed<S> const centres(space, w.centres), speeds(space, w.velocities),
+      none(space, std::vector<S>(w.centres.size(), S(0)));
+  std::vector<S> first;
+  for (int life = 0; life < 3; ++life) {
+    made.simulation.template assign<position>(centres.data());
+    made.simulation.template assign<velocity>(speeds.data());
+    made.simulation.template assign<collide::angular_velocity>(none.data());
+    for (int k = 0; k < 20; ++k) {
+      made.simulation.template effect<maker>().now = k == 0;
+      made.simulation.template effect<collide::absorbing_box>() = k == 19 ? here : away;
+      made.simulation.step(S(1e-5));
+    }
+    CHECK(made.simulation.template to_host<collide::alive>().back() == 0);
+    auto now = made.velocities();
+    auto const turning = made.simulation.template to_host<collide::angular_velocity>();
+    now.insert(now.end(), turning.begin(), turning.end());
+    if (life == 0) first = now;
+    CHECK(first == now);
+    CHECK(now[3 * w.size() - 3] < S(0.4999));  // friction brakes it
+  }
+}
+
+/// What an effect of a user's own makes where a particle stuck to the mesh falls: nothing holds it.
+template <class Integrator, class Space>
+void check_revived_falls(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space>, revives<>, collide::absorbing_box, Integrator, gravity,
+                                         collide::bounce, collide::adhesion>;
+  collide::absorbing_box const here{{-9, -9, -9}, {9, 9, 9}}, away{{90, 90, 90}, {90, 90, 90}};
+  world<float> w;
+  w.radius = 0.1f;
+  add_floor(w, 5, 1);
+  w.particle(0, 0, 0.1);
+  running<simulation> made(space, w, revives<>{}, away, Integrator{}, gravity{}, collide::bounce{0},
+                           collide::adhesion{100});
+  made.simulation.steps(10, 1e-3f);
+  made.simulation.template effect<collide::absorbing_box>() = here;
+  made.simulation.step(1e-3f);
+  CHECK(made.simulation.template to_host<collide::alive>()[0] == 0);
+  made.simulation.template effect<collide::absorbing_box>() = away;
+  placed<float> const above(space, {0, 0, 1});
+  made.simulation.template assign<position>(above.data());
+  made.simulation.template effect<revives<>>().now = true;
+  made.simulation.steps(100, 1e-3f);
+  CHECK(made.velocities()[2] == doctest::Approx(-0.981).epsilon(1e-4));
 }
 
 }  // namespace tests

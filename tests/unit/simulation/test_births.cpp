@@ -31,3 +31,10 @@ TEST_CASE("births: contacts of what is new remember nothing") {
     tests::check_births_touch_nothing<double>(blocks(), 3, dies);
   }
 }
+
+TEST_CASE("births: contacts of what an effect of one's own makes remember nothing, and nothing holds it") {
+  for (int const n : {1, 24}) tests::check_revived_touch_nothing<float>(host(1), n);
+  tests::check_revived_touch_nothing<double>(blocks(), 3);
+  tests::check_revived_falls<semi_implicit_euler>(host(1));
+  tests::check_revived_falls<velocity_verlet>(blocks());
+}

@@ -172,10 +172,11 @@ TEST_CASE("bodies: what makes no sense is an error that says so, or is counted")
 
   using swept = collide::simulation<collide::detector<collide::bucket, karabassi_swept<>, host, double>,
                                     collide::bounce, collide::moving_bodies<>>;
-  for (double const radius : {1e-13, 1e-10}) {  // 512 units in the last place are 1.3e-13 and more here
+  // 512 units in the last place are 1.3e-13 and more here, and must be 2048 where a body turns by half a turn
+  for (double const radius : {1e-13, 3e-13, 1e-10}) {
     w.radius = radius;
     wild.motion = {};
-    wild.motion.rate = 100;
+    wild.motion.rate = radius == 3e-13 ? 3100 : 100;
     tests::running_bodies<swept> turns(host(1), w, {wild}, collide::bounce{}, collide::moving_bodies<>{});
     turns.simulation.steps(3, 1e-3);
     CHECK(turns.report().rough_steps == (radius < 1e-12 ? 3 : 0));

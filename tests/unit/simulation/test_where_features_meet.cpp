@@ -82,7 +82,7 @@ TEST_CASE("where features meet: a driven body is nowhere before its first pose, 
   tests::check_first_pose<karabassi<>, float>(blocks());
   tests::check_first_pose<karabassi_swept<>, double>(host(1));
   tests::check_turntable(host(1));
-  tests::check_far_turntable(host(1));
+  tests::check_far_planes(host(1));
 }
 
 TEST_CASE("where features meet: what is nowhere is counted") {

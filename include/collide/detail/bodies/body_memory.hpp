@@ -143,7 +143,8 @@ struct advance_bodies {
     if (starts) return;
     double const radius = static_cast<double>(most);
     if (!swept && norm(by) + mul_rn(turned, r.radius) > radius) fetch_add(&report->fast_steps, 1u);
-    bool const is_rough = mul_rn(512 * eps, norm(from) + norm(to) + r.radius) > radius;
+    double const units = turned > 1.5 ? 2048 : 512;
+    bool const is_rough = mul_rn(units * eps, norm(from) + norm(to) + r.radius) > radius;
     if (swept && is_rough && turned > 0.05) fetch_add(&report->rough_steps, 1u);
   }
 

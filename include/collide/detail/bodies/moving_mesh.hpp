@@ -1,10 +1,11 @@
 /// \file
 /// A mesh with parts that move: frames in which these rest, and how particles and contacts look from there.
 ///
-/// Within a step a body moves from one pose to another; between the two, positions are interpolated linearly, rotations
-/// along the chord of their quaternions. A particle's path in a body's frame is the straight line from where it begins
-/// to where it ends there. So it is exact for bodies that shift, and off by at most the sagitta of the arc for bodies
-/// that turn; but in a body's frame what moves never jumps.
+/// Within a step a body moves along the screw that leads from one pose to another (M. Chasles), the angle as on the
+/// chord of the quaternions: so what turns around a point does not leave it, wherever the origin of the mesh is. A
+/// particle's path in a body's frame is the straight line from where it begins to where it ends there. So it is exact
+/// for bodies that shift, and off by at most the sagitta of the arc for bodies that turn; but in a body's frame what
+/// moves never jumps.
 #pragma once
 
 #include <cstdint>
@@ -47,9 +48,16 @@ COLLIDE_HD_INLINE frame_pose between(frame_pose const& a, frame_pose const& b, d
   double const same = mul_rn(a.w, b.w) + dot(a.axis, b.axis) < 0 ? -1.0 : 1.0, s = 1 - t;
   double const w = mul_rn(s, a.w) + mul_rn(mul_rn(t, same), b.w);
   vec3<double> const axis = scaled(a.axis, s) + scaled(b.axis, mul_rn(t, same));
-  double const length = sqrt_rn(mul_rn(w, w) + dot(axis, axis));
+  double const squared = mul_rn(w, w) + dot(axis, axis), length = sqrt_rn(squared);
   vec3<double> const unit(div_rn(axis.x(), length), div_rn(axis.y(), length), div_rn(axis.z(), length));
-  return {scaled(a.position, s) + scaled(b.position, t), div_rn(w, length), unit};
+  // the rotation from b back to a, half of which turns what the body moves across its axis
+  double const back = mul_rn(same, mul_rn(a.w, b.w) + dot(a.axis, b.axis));
+  vec3<double> const turn = scaled(scaled(a.axis, b.w) - scaled(b.axis, a.w) - cross(a.axis, b.axis), mul_rn(same, s));
+  double const turn_squared = dot(turn, turn);
+  vec3<double> const shift = b.position - a.position;
+  vec3<double> const along = scaled(turn, turn_squared > 0 ? div_rn(dot(shift, turn), turn_squared) : 0.0);
+  vec3<double> const across = shift - along, turned = scaled(across, mul_rn(s, back) + t) + cross(turn, across);
+  return {a.position + scaled(turned, div_rn(t, squared)) + scaled(along, t), div_rn(w, length), unit};
 }
 
 /// The velocity of what is at `x` in a body with this pose.
@@ -139,9 +147,9 @@ struct moving_mesh : mesh_view<S> {
   COLLIDE_HD_INLINE moving_sphere<S> seen_from(int frame, moving_sphere<S> const& s, double part) const {
     if (frame == 0) return s;
     vec3<double> const begin = s.centre.template cast<double>(), displacement = s.displacement.template cast<double>();
-    vec3<S> const from = rounded_to<S>(pose_at(frame, part).to_local(begin));
+    vec3<double> const from = pose_at(frame, part).to_local(begin);
     vec3<double> const to = frames[frame].now.to_local(begin + displacement);
-    return {{from, s.radius}, rounded_to<S>(to - from.template cast<double>())};
+    return {{rounded_to<S>(from), s.radius}, rounded_to<S>(to - from)};
   }
 
   /// A point of a body's frame, where it is in the world at a part of the step.

@@ -31,12 +31,12 @@ struct find_crowded_births {
     if (state.time[clock_made_now] == 0 || i >= order.header->count) return;
     std::uint8_t* const marks = state.at(alive{});
     id const number = order.numbers[i];
-    if (number >= own_places(state) || load_relaxed(marks + number) < newborn) return;
+    if (number >= own_places(state) || !is_newborn(load_relaxed(marks + number))) return;
     auto const place = static_cast<std::uint32_t>(i);
     bool is_crowded = false;
     order.for_each_overlapping(place, S(0), [&](std::uint32_t k, int) {
-      is_crowded =
-          is_crowded || load_relaxed(marks + order.numbers[k]) < newborn || order.number_at(k) < order.number_at(place);
+      is_crowded = is_crowded || !is_newborn(load_relaxed(marks + order.numbers[k])) ||
+                   order.number_at(k) < order.number_at(place);
     });
     if (is_crowded) store_relaxed(marks + number, crowded_newborn);
   }
@@ -54,7 +54,7 @@ struct settle_births {
     if (i == 0) header->rebuild = 0;  // lists are complete
     if (state.time[clock_made_now] == 0 || i >= own_places(state)) return;
     std::uint8_t& mark = state.at(alive{})[i];
-    if (mark < newborn) return;
+    if (!is_newborn(mark)) return;
     bool const is_crowded = mark == crowded_newborn;
     if (is_crowded) fetch_add(state.time + clock_overlapping, 1.0);
     if (is_crowded && refuse) fetch_add(state.time + clock_not_born, 1.0);

@@ -93,7 +93,9 @@ inline constexpr std::size_t clock_made = 1, clock_part = 2, clock_made_now = 3,
                              clock_not_born = 5, clock_size = 6;
 
 /// In `alive` from where a source makes a particle until particles meet: it is there, and new; and it overlaps others.
-inline constexpr std::uint8_t newborn = 2, crowded_newborn = 3;
+/// And of what another effect makes: it is new, too, but not counted.
+inline constexpr std::uint8_t newborn = 2, crowded_newborn = 3, made_by_effect = 4;
+COLLIDE_HD_INLINE bool is_newborn(std::uint8_t mark) { return mark == newborn || mark == crowded_newborn; }
 
 /// How many particles a source makes in a step in which `due` are due. A part of 1e-9 of one is put down to rounding.
 COLLIDE_HD_INLINE std::uint64_t begin_in_step(double const* time, double due) {

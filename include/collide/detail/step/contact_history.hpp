@@ -174,7 +174,7 @@ struct contact_history : remaining_motion<S, IsSwept> {
   }
   template <class Seen>
   COLLIDE_HD_INLINE bool is_approaching(vec3<S> const& normal, Seen const& seen) const {
-    return is_approaching({seen.displacement, normal, seen.rounding(normal, *this)});
+    return is_approaching({seen.displacement, normal, seen.rounding(*this)});
   }
 
   /// True if so deep an overlap with the mesh is more than rounding.

@@ -12,6 +12,13 @@
 
 namespace collide::detail {
 
+/// The sum of the sizes of coordinates.
+template <class S>
+COLLIDE_HD_INLINE S sum_of_sizes(vec3<S> const& x) {
+  vec3<S> const sizes = absolute(x);
+  return sizes.x() + sizes.y() + sizes.z();
+}
+
 /// The motion of a particle relative to the surface of a body.
 template <class S, bool IsSwept>
 struct motion_on_body {
@@ -21,11 +28,13 @@ struct motion_on_body {
   vec3<S> own_point;         ///< where the two may touch, in the frame of the body
   vec3<S> drift;             ///< in the world, of what moves with the body, since the particle's last contact
   int frame;
+  S turn;  ///< about the angle by which the body turns in the step
 
+  /// The rounding of a particle that goes with the body: of its velocity, and of its centre, times the rotation.
   template <class History>
-  COLLIDE_HD_INLINE S rounding(vec3<S> const& normal, History const& h) const {
-    vec3<S> const here = h.centre.get();
-    return 4 * (std::numeric_limits<S>::epsilon() * dot(vec3<S>(here.cwiseAbs()), vec3<S>(normal.cwiseAbs())));
+  COLLIDE_HD_INLINE S rounding(History const& h) const {
+    vec3<S> const here = h.centre.get(), way = h.motion();
+    return 4 * std::numeric_limits<S>::epsilon() * (sum_of_sizes(way) + turn * sum_of_sizes(here));
   }
   /// The body of a contact may have turned since.
   template <class History>
@@ -33,7 +42,7 @@ struct motion_on_body {
     vec3<S> const normal = (c.frame == frame ? c.own_normal : c.normal).get();
     vec3<S> const by =
         c.frame == frame ? own_displacement : vec3<S>(h.motion() - c.surface_velocity.get() * h.remaining_time);
-    return {by, normal, rounding(normal, h)};
+    return {by, normal, rounding(h)};
   }
   COLLIDE_HD_INLINE vec3<S> velocity_relative_to(recorded_contact<S, true> const& c, vec3<S> const& in_world) const {
     return c.frame == frame ? velocity : vec3<S>(in_world - c.surface_velocity.get());
@@ -70,11 +79,12 @@ template <class S, class Active, class Shape>
 COLLIDE_HD_INLINE auto motion_seen([[maybe_unused]] moving_mesh<S> const& mesh, Active const&, int frame,
                                    [[maybe_unused]] Shape const& whole, [[maybe_unused]] double part) {
   vec3<S> const none(S(0), S(0), S(0));
-  motion_on_body<S, Active::is_swept> m{none, none, none, none, none, frame};
+  motion_on_body<S, Active::is_swept> m{none, none, none, none, none, frame, S(0)};
   if constexpr (Active::is_swept) {
     m.own_displacement = m.displacement = whole.displacement;
     if (frame == 0) return m;
     vec3<double> const d = whole.displacement.template cast<double>();
+    m.turn = sum_of_sizes(rounded_to<S>(vector_of(mesh.frames[frame].moving.angular))) * mesh.dt;
     m.displacement = rounded_to<S>(mesh.pose_at(frame, part).rotated(d));
   }
   return m;

@@ -36,6 +36,33 @@ struct init_particles {
   }
 };
 
+/// Kernel functor of `for_each` over particles: what an effect has just made at a place that was free begins with the
+/// initial values of the columns `Initial`, which that effect does not write, and has touched nothing.
+template <class S, class Effects, class Initial>
+struct begin_anew {
+  particle_state<S, typename Effects::all> state;
+  std::uint8_t const* was_there;
+  std::uint8_t* surfaces;  ///< how many each remembers; null if none does
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::uint8_t& mark = state.at(alive{})[i];
+    if (was_there[i] != 0 || mark != 1) return;
+    particle<S, Initial> p;
+    set_initial_values(p);
+    state.store(p, i, Initial{});
+    if (surfaces != nullptr) surfaces[i] = 0;
+    if constexpr (Effects::any_pair_contact && Effects::remembered::size != 0) mark = made_by_effect;
+  }
+};
+
+/// Kernel functor of `for_each` over particles: takes off the marks of `begin_anew`.
+struct take_marks_off {
+  std::uint8_t* marks;
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (marks[i] == made_by_effect) marks[i] = 1;
+  }
+};
+
 /// Kernel functor of `for_each` over particles: ends their step, where particles have met in between.
 template <class S, class Effects>
 struct end_particles {

@@ -18,7 +18,7 @@ struct motion_in_world {
   vec3<S> velocity;
 
   template <class History>
-  COLLIDE_HD_INLINE S rounding(vec3<S> const&, History const&) const {
+  COLLIDE_HD_INLINE S rounding(History const&) const {
     return 0;
   }
   /// The displacement relative to the surface of a contact that the particle has had.
