@@ -23,8 +23,10 @@ std::vector<collide::winding<S>> winding_of(std::vector<collide::triangle<S>> co
                                             std::vector<collide::vec3<S>> const& points, double beta = 3,
                                             Space const& space = Space()) {
   std::vector<S> corners, coordinates;
-  for (auto const& t : mesh)
-    for (auto const& v : {t.a, t.b, t.c}) corners.insert(corners.end(), {v.x(), v.y(), v.z()});
+  for (auto const& t : mesh) {
+    collide::vec3<S> const all[] = {t.a, t.b, t.c};  // nvcc 13.0 takes a list in braces for another
+    for (auto const& v : all) corners.insert(corners.end(), {v.x(), v.y(), v.z()});
+  }
   for (auto const& p : points) coordinates.insert(coordinates.end(), {p.x(), p.y(), p.z()});
   auto const there = collide::upload(space, collide::triangle_soup(corners.data(), mesh.size()));
   auto const at = collide::upload(space, collide::spheres_xyz(coordinates.data(), points.size(), S(0)));

@@ -322,9 +322,11 @@ struct closed_links {
   collide::mesh_view<S> mesh() const { return collide::triangle_soup(corners.data(), triangles()); }
 
   void add_ball(int levels, double radius, oracle::point const& at, bool turned) {
-    for (auto const& t : triangles_of(icosphere<S>(levels, radius, at)))
-      for (auto const& v : {t.a, turned ? t.c : t.b, turned ? t.b : t.c})
-        corners.insert(corners.end(), {v.x(), v.y(), v.z()});
+    for (auto const& t : triangles_of(icosphere<S>(levels, radius, at))) {
+      // nvcc 13.0 takes a list in braces for another
+      collide::vec3<S> const all[] = {t.a, turned ? t.c : t.b, turned ? t.b : t.c};
+      for (auto const& v : all) corners.insert(corners.end(), {v.x(), v.y(), v.z()});
+    }
   }
 
   closed_links() {
