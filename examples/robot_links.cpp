@@ -1,5 +1,6 @@
 /// \file
-/// How close a robot comes to what a camera sees: its two links are indexed once, and take a pose in each frame.
+/// How close a robot comes to what a camera sees, or how deep that is in it: its two links are indexed once, and take a
+/// pose in each frame.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,6 +8,7 @@
 
 #include <collide/bvh.cuh>
 #include <collide/posed.hpp>
+#include <collide/sinks/signed_distance.hpp>
 
 namespace {
 
@@ -35,12 +37,12 @@ int main() {
 
   collide::posed<collide::detector<collide::bvh, collide::karabassi<>, collide::host, double>> robot;
   robot.build(collide::indexed_mesh(corners.data(), 16, faces.data(), 24), {{0, 12, {}}, {12, 12, {}}});
-  collide::nearest<double> nearest;  // its memory serves all frames
+  collide::signed_distance<double> distance;  // negative inside of a link; its memory serves all frames
   for (int degrees = 0; degrees <= 60; degrees += 20) {
     double const angle = degrees * 3.14159265358979323846 / 180;
     std::vector<collide::pose> const poses{turned(angle, 0, 0),
                                            turned(2 * angle, length * std::cos(angle), length * std::sin(angle))};
-    auto const found = robot.query(collide::points(seen.data(), seen.size() / 3), poses, nearest).to_host();
+    auto const found = robot.query(collide::points(seen.data(), seen.size() / 3), poses, distance).to_host();
     auto const closest = std::min_element(found.begin(), found.end(),
                                           [](auto const& a, auto const& b) { return a.distance < b.distance; });
     std::printf("%d degrees: link %u is %.3f m away\n", degrees, closest->triangle / 12, closest->distance);

@@ -8,6 +8,7 @@
 #include <collide/detail/tree/pack_tree.hpp>
 #include <collide/detail/tree/sah_tree.hpp>
 #include <collide/detail/tree/tree_ref.hpp>
+#include <collide/detail/tree/winding_tree.hpp>
 #include <collide/extend.hpp>
 
 namespace collide {
@@ -34,6 +35,7 @@ struct tree_policy {
         packed_.build(space, mesh, nodes_);
         has_tree_ = true;
       }
+      has_windings_ = false;
     }
 
     /// See `detector::refit`.
@@ -46,17 +48,27 @@ struct tree_policy {
       } else {
         packed_.refit(space, mesh, nodes_);
       }
+      has_windings_ = false;
+    }
+
+    /// For winding numbers; made when first asked for after a build.
+    template <class Space>
+    winding_tree_ref<S> const& windings(Space& space) {
+      if (!has_windings_) windings_.build(space, mesh_);
+      has_windings_ = true;
+      return windings_.ref();
     }
 
     tree_ref<S> ref() const { return {mesh_, has_tree_ ? nodes_.data() : nullptr, before_}; }
 
    private:
     mesh_view<S> mesh_;
-    bool has_tree_ = false;
+    bool has_tree_ = false, has_windings_ = false;
     boxes_before const* before_ = nullptr;
     buffer<tree_node> nodes_;
     sah_tree<S> divided_;
     packed_tree<S> packed_;
+    winding_tree<S> windings_;
   };
 };
 
@@ -68,8 +80,8 @@ struct tree_policy {
 /// long thin ones in up to 64 pieces; devices sort them along Hilbert's curve, O(n). Query O(spheres * (log(triangles)
 /// + candidates)). `detector::refit` lets the tree of a mesh that deforms stay as it is. Memory: at most 72 bytes for
 /// each triangle on a device, 110 on the host; where triangles are cut 210 for each piece, of which there are at most 4
-/// for each triangle, or 2^18 more than triangles in small meshes; there is no budget for that, as `bucket` has one. A
-/// mesh has fewer than 2^31 triangles, on the host fewer than 2^29.
+/// for each triangle, or 2^18 more than triangles in small meshes; there is no budget for that, as `bucket` has one;
+/// with `winding_number` 61 more. A mesh has fewer than 2^31 triangles, on the host fewer than 2^29.
 struct bvh : per_sphere<detail::tree_policy> {};
 
 }  // namespace collide

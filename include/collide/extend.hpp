@@ -237,6 +237,12 @@ struct per_sphere {
       return detail::per_sphere_ref<S, decltype(index_.ref())>{{mesh_, nullptr}, index_.ref()};
     }
 
+    /// A tree for winding numbers, if the policy has one.
+    template <class Space, class Index = policy_index>
+    auto windings(Space& space) -> decltype(std::declval<Index&>().windings(space)) {
+      return index_.windings(space);
+    }
+
     /// A reference for kernels to the triangles near a point, see `nearest`; valid until the next build.
     auto ref() const { return index_.ref(); }
 

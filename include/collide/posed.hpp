@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -17,7 +18,6 @@
 #include <collide/detail/streaming/pair_list.hpp>
 #include <collide/detail/streaming/posed_hit.hpp>
 #include <collide/detector.hpp>
-#include <collide/sinks/nearest.hpp>
 
 namespace collide {
 
@@ -33,10 +33,16 @@ namespace collide {
 /// `nearest` decides within a body as the narrow phase says; of bodies it takes the one with the smaller `distance` as
 /// that is rounded, and of equal ones the smaller number. The point is in the world.
 ///
-/// Triangles of no body rest where they are; to `nearest` those that follow each other in the mesh are one body.
+/// `contains` and `signed_distance` are for bodies that are closed, each by itself. A point is inside if it is inside
+/// of any body, or on its surface. The signed distance is the least of all bodies' in the same way. Outside of all it
+/// is that of their union. Inside it is how deep the point is in the body in which it is deepest: of bodies that
+/// overlap the surface of the union is at least as far away, and the triangle may be inside of another body. The
+/// gradient is in the world. They agree: `contains` is 1 where `signed_distance` is at most 0.
+///
+/// Triangles of no body rest where they are; to these three those that follow each other in the mesh are one body.
 /// Memory: an index of each body, 20 bytes of float or 32 of double for each sphere, 24 if radii differ or 40, and up
-/// to 20 for each pair, also where the sink only counts; with `nearest` an entry more for each sphere. It is kept. One
-/// object is for one thread at a time.
+/// to 20 for each pair, also where the sink only counts; with `nearest`, `contains` and `signed_distance` an entry more
+/// for each sphere. It is kept. One object is for one thread at a time.
 ///
 /// \tparam Detector  a `detector` for spheres at rest
 template <class Detector>
@@ -89,7 +95,8 @@ class posed {
   /// \param spheres  in memory of the space, as for `detector::query`
   /// \param poses    on the host, one for each body in their order; rotations are made unit quaternions
   /// \param sink     `count`, `any_hit`, `pairs`, `csr`, `contacts`, `closest`, `closest_contact`, or `visit` of a
-  ///                 function that takes any hit; `nearest`, with a broad phase that finds what is near
+  ///                 function that takes any hit; `nearest`, `contains` or `signed_distance`, with a broad phase that
+  ///                 finds what is near
   /// \return the sink, as `detector::query` does
   /// \throws error  if there was no `build`, there are not as many poses as bodies, or one is not finite or no rotation
   ///
@@ -99,8 +106,8 @@ class posed {
   Sink query(spheres_type const& spheres, std::vector<pose> const& poses, Sink&& sink) {
     if (!is_built_) throw error("collide: posed: query needs a mesh: call build before it");
     place(poses);
-    if constexpr (std::is_same<std::decay_t<Sink>, nearest<scalar>>::value) {
-      run_nearest(spheres, sink);
+    if constexpr (detail::searches_bodies<std::decay_t<Sink>>) {
+      run_search(spheres, sink);
     } else {
       run(spheres, sink);
     }
@@ -178,24 +185,26 @@ class posed {
     sink.run(space_, query_type{space_, mesh(), spheres, found_.data(), found_.size()});
   }
 
-  /// The nearest triangle of each part, one part after the other.
-  void run_nearest(spheres_type const& spheres, nearest<scalar>& sink) {
+  /// Searches the parts one after the other.
+  template <class Sink>
+  void run_search(spheres_type const& spheres, Sink& sink) {
+    using result = std::decay_t<decltype(*sink.data())>;
     auto const search = [this](spheres_type const& from, auto const& f) {
       std::size_t const n = from.size();
       auto* const resource = space_.resource();
       scalar* const centres = centres_.reserve(resource, 3 * n);
       scalar* const radii = from.one_radius() ? nullptr : radii_.reserve(resource, n);
       auto of_part = f;
-      of_part.to = nearest_.reserve(resource, n);
+      of_part.to = std::get<buffer<result>>(of_part_).reserve(resource, n);
       for (std::size_t k = 0; k < parts_.size(); ++k) {
         part const& p = parts_[k];
         space_.for_each(n, detail::see_from_body<scalar>{mesh(), p.frame, from, centres, radii});
         detectors_[k].query(view_of(from, centres, radii, n), detail::run_search<decltype(of_part)>{of_part});
         space_.for_each(
-            n, detail::take_nearer<scalar>{mesh(), p.frame, static_cast<id>(p.first), of_part.to, f.to, k == 0});
+            n, detail::take_first<scalar, result>{mesh(), p.frame, static_cast<id>(p.first), of_part.to, f.to, k == 0});
       }
     };
-    using query_type = detail::nearest_over_bodies<typename Detector::narrow_phase, scalar, decltype(search)>;
+    using query_type = detail::search_over_bodies<typename Detector::narrow_phase, scalar, decltype(search)>;
     sink.run(space_, query_type{spheres, search});
   }
 
@@ -253,10 +262,11 @@ class posed {
   detail::pair_list found_;
   buffer<double> time_;
   buffer<std::uint32_t> count_;
-  buffer<id> near_;                           ///< spheres near any part
-  buffer<id> numbers_;                        ///< of spheres near a part,
-  buffer<scalar> centres_, radii_;            ///< as it sees them
-  buffer<nearest_triangle<scalar>> nearest_;  ///< of a part
+  buffer<id> near_;                 ///< spheres near any part
+  buffer<id> numbers_;              ///< of spheres near a part,
+  buffer<scalar> centres_, radii_;  ///< as it sees them
+  /// Results of a search of a part.
+  std::tuple<buffer<nearest_triangle<scalar>>, buffer<signed_nearest_triangle<scalar>>, buffer<std::uint8_t>> of_part_;
 };
 
 }  // namespace collide

@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
-#include <collide/detail/nearest/solid_angle.hpp>
 #include <collide/detail/sinks/array_in_space.hpp>
 #include <collide/detail/sinks/search_mesh.hpp>
+#include <collide/detail/tree/winding_tree.hpp>
+#include <collide/error.hpp>
 #include <collide/mesh.hpp>
 #include <collide/spheres.hpp>
 
@@ -23,9 +25,11 @@ struct winding {
 
 namespace detail {
 
-/// Kernel functor of `for_each` over points: the winding number of each.
+/// Search functor of `winding_number` for each point.
 template <class S>
 struct find_winding {
+  winding_tree_ref<S> tree;
+  double beta;
   winding<S>* to;
 
   template <class Search>
@@ -36,34 +40,44 @@ struct find_winding {
       to[i] = {nan, nan};
       return;
     }
-    solid_angle_sum sum;
-    for (std::size_t t = 0; t < mesh.size(); ++t) {
-      triangle<S> const shape = mesh[t];
-      if (is_finite(shape)) sum.add(shape, s.centre);
-    }
+    solid_angle_sum const sum = tree.seen_from(mesh, s.centre, beta);
     double const value = div_rn(sum.angle, whole), size = value < 0 ? -value : value;
     double const rounding = mul_rn(size, 2 * static_cast<double>(ieee_traits<S>::unit_roundoff));
     to[i] = {static_cast<S>(value), static_cast<S>(mul_rn(div_rn(sum.error, whole) + rounding, 1.0000005))};
   }
 };
 
+template <class Query>
+using query_windings = decltype(std::declval<Query const&>().windings());
+
 }  // namespace detail
 
 /// The winding number of each point: the solid angle of all triangles as seen from there, divided by 4 pi (A. Jacobson
 /// et al., "Robust inside-outside segmentation using generalized winding numbers", ACM Transactions on Graphics 32(4),
 /// 2013). Above 1/2 is inside. For meshes with holes and for triangle soups, of which `contains` makes no sense; the
-/// triangles' normals must point outwards. Of a closed mesh it is whole, but for `error`; next to the surface that is
-/// large, and `contains` is exact.
+/// triangles' normals must point outwards. Of a closed mesh it is whole, but for `error`; next to the surface that may
+/// be 1/2, and `contains` is exact.
 ///
-/// Every triangle is seen from every point, whatever the broad phase, in double: O(points * triangles), the same bits
-/// in all spaces. With `bvh` or `all_pairs`. `query` does not wait. `S` is the scalar of the detector. Memory: an entry
-/// for each point.
+/// With `bvh` triangles far away are seen together, by moments of their normals up to the second (G. Barill et al.,
+/// "Fast winding numbers for soups and clouds", ACM Transactions on Graphics 37(4), 2018): those in a sphere whose
+/// centre is more than `beta` times its radius away. `error` bounds what that leaves out: with `beta` = 3 it was below
+/// 0.04 on and around a ball of 81,920 triangles, and the value off by less than 0.0005. Twice the `beta` makes `error`
+/// a tenth, and takes four times as long. O(points * log(triangles)); the first query after a `build` is
+/// O(triangles) longer. With `all_pairs` each triangle is seen from each point: O(points * triangles).
+///
+/// In double, the same bits in all spaces. `query` does not wait. `S` is the scalar of the detector. Memory: an entry
+/// for each point; `bvh` says what it keeps.
 template <class S = float>
 class winding_number : public detail::array_in_space<winding<S>> {
   using base = detail::array_in_space<winding<S>>;
   using base::data_, base::size_, base::download_;
 
  public:
+  /// `beta`: see above; from 2 to infinity, with which each triangle is seen. Throws `error` otherwise.
+  explicit winding_number(double beta = 3) : beta_{beta} {
+    if (!(beta >= 2)) throw error("collide: winding_number: beta is below 2 or NaN: pass 2 or more, such as 3");
+  }
+
   /// Makes room in memory of `space` for queries of up to so many points: they then allocate nothing.
   template <class Space>
   void reserve(Space const& space, std::size_t points, std::size_t /*pairs*/) {
@@ -77,10 +91,15 @@ class winding_number : public detail::array_in_space<winding<S>> {
     download_ = detail::host_copier<winding<S>>(space);
     size_ = query.spheres.size();
     data_ = own_.reserve(space.resource(), size_);
-    detail::search_mesh(query, detail::find_winding<S>{data_});
+    detail::winding_tree_ref<S> tree;
+    if constexpr (detail::is_valid<detail::query_windings, Query>) {
+      if (query.mesh.size() != 0) tree = query.windings();
+    }
+    detail::search_mesh(query, detail::find_winding<S>{tree, beta_, data_});
   }
 
  private:
+  double beta_;
   buffer<winding<S>> own_;
 };
 

@@ -12,10 +12,12 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/all_pairs.cuh>
 #include <collide/posed.hpp>
 #include <collide/sinks/csr.hpp>
 #include <collide/upload.hpp>
 
+#include "nearest/point_cases.hpp"
 #include "type_erased_detector.hpp"
 
 namespace tests {
@@ -307,6 +309,137 @@ void check_posed_nearest(typename Detector::execution_space const& space) {
   for (std::size_t i = 6; i < n; ++i) CHECK(to_surface[i].distance == to_centre[i].distance - scene.radii[i]);
   robot.build(collide::mesh_view<S>(), {});
   CHECK(robot.query(there.view(), {}, collide::nearest<S>()).to_host()[n - 1].triangle == collide::no_id);
+}
+
+/// Closed links, one turned inside out, that overlap each other; one is far from its own origin, one has no triangles,
+/// and a ball of none rests.
+template <class S>
+struct closed_links {
+  std::vector<S> corners;
+  std::vector<collide::body> bodies;
+
+  std::size_t triangles() const { return corners.size() / 9; }
+  collide::mesh_view<S> mesh() const { return collide::triangle_soup(corners.data(), triangles()); }
+
+  void add_ball(int levels, double radius, oracle::point const& at, bool turned) {
+    for (auto const& t : triangles_of(icosphere<S>(levels, radius, at))) {
+      // nvcc 13.0 takes a list in braces for another
+      collide::vec3<S> const all[] = {t.a, turned ? t.c : t.b, turned ? t.b : t.c};
+      for (auto const& v : all) corners.insert(corners.end(), {v.x(), v.y(), v.z()});
+    }
+  }
+
+  closed_links() {
+    for (int k = 0; k < 6; ++k) {
+      std::size_t const first = triangles();
+      if (k != 2) add_ball(k % 2, 0.5 + 0.25 * k, {k == 4 ? 100.0 : 0.25, 0, 0}, k == 3);
+      bodies.push_back({first, triangles() - first, {}});
+      if (k == 0) add_ball(1, 0.75, {-1, 0.5, 0}, false);
+    }
+  }
+
+  std::vector<collide::pose> any_poses(dice& roll) const {
+    std::vector<collide::pose> all(bodies.size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      double squared = 0;
+      for (double& q : all[k].rotation) {
+        q = roll.uniform(-1, 1);
+        squared += q * q;
+      }
+      for (double& q : all[k].rotation) q /= std::sqrt(squared);
+      auto const there = all[k](collide::vec3<double>(k == 4 ? 100 : 0, 0, 0));
+      for (int j = 0; j < 3; ++j) all[k].position[j] = roll.uniform(-1, 1) - there[j];
+    }
+    return all;
+  }
+
+  /// Body k, and the ball that rests after all.
+  collide::body part(std::size_t k) const {
+    if (k < bodies.size()) return bodies[k];
+    return {bodies[0].size, bodies[1].first - bodies[0].size, {}};
+  }
+};
+
+/// Inside, and how far: the least of what is found of each body alone, in its frame.
+template <class Detector>
+void check_posed_sides(typename Detector::execution_space const& space) {
+  using S = typename Detector::scalar;
+  using collide::detail::rounded_to;
+  using plain = collide::detector<collide::all_pairs, collide::karabassi<>, collide::host, S>;
+  closed_links<S> const links;
+  dice roll(31);
+  auto const mesh = collide::upload(space, links.mesh());
+  collide::posed<Detector> robot(space);
+  robot.build(mesh.view(), links.bodies);
+  for (S const most : {std::numeric_limits<S>::infinity(), S(0.25)}) {
+    auto const poses = links.any_poses(roll);
+    std::vector<S> xyz;
+    for (int i = 0; i < 600; ++i) {
+      auto const p = roll.in_cube(2.5);
+      xyz.insert(xyz.end(), {S(p.x), S(p.y), S(p.z)});
+    }
+    xyz[0] = std::numeric_limits<S>::quiet_NaN(), xyz[4] = std::numeric_limits<S>::infinity();
+    std::size_t const n = xyz.size() / 3;
+    auto const points = collide::points(xyz.data(), n);
+    std::vector<collide::signed_nearest_triangle<S>> expected(n);
+    std::vector<std::uint8_t> inside(n), bodies_around(n);
+    for (std::size_t k = 0; k <= poses.size(); ++k) {
+      collide::body const part = links.part(k);
+      collide::body_state state;
+      if (k < poses.size()) state.at = poses[k];
+      collide::detail::make_unit(state);
+      auto const at = collide::detail::frame_pose_of(state.at);
+      std::vector<S> seen = xyz;
+      for (std::size_t i = 0; i < n && k < poses.size(); ++i) {
+        auto const local = rounded_to<S>(at.to_local(points[i].template cast<double>()));
+        for (int j = 0; j < 3; ++j) seen[3 * i + std::size_t(j)] = local[j];
+      }
+      plain alone;
+      alone.build(links.mesh().subview(part.first, part.size));
+      auto const here = alone.query(collide::points(seen.data(), n), collide::signed_distance<S>(most)).to_host();
+      auto const flags = alone.query(collide::points(seen.data(), n), collide::contains()).to_host();
+      for (std::size_t i = 0; i < n; ++i) {
+        inside[i] |= flags[i];
+        bodies_around[i] += flags[i];
+        auto found = here[i];
+        if (found.triangle != collide::no_id) found.triangle += collide::id(part.first);
+        if (found.triangle != collide::no_id && k < poses.size()) {
+          found.point = rounded_to<S>(at.to_world(found.point.template cast<double>()));
+          found.gradient = rounded_to<S>(at.rotated(found.gradient.template cast<double>()));
+        }
+        bool const is_less = found.distance < expected[i].distance ||
+                             (found.distance == expected[i].distance && found.triangle < expected[i].triangle);
+        if (k == 0 || is_less) expected[i] = found;
+      }
+    }
+    auto const there = collide::upload(space, collide::spheres_xyz(xyz.data(), n, S(0)));
+    auto const found = robot.query(there.view().centres(), poses, collide::signed_distance<S>(most)).to_host();
+    CHECK(robot.query(there.view().centres(), poses, collide::contains()).to_host() == inside);
+    std::size_t wrong = 0, disagree = 0, within = 0, overlaps = 0, askew = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      wrong += found[i].triangle != expected[i].triangle || found[i].distance != expected[i].distance ||
+               (found[i].triangle != collide::no_id &&
+                !(found[i].point == expected[i].point && found[i].gradient == expected[i].gradient));
+      disagree += (found[i].distance <= 0) != (inside[i] != 0);
+      within += inside[i];
+      overlaps += bodies_around[i] > 1;
+      // down the gradient by the distance is the point on the surface, in the world
+      if (found[i].triangle == collide::no_id) continue;
+      collide::vec3<S> const back = points[i] - found[i].gradient * found[i].distance;
+      askew += !((back - found[i].point).norm() < 5000 * std::numeric_limits<S>::epsilon());
+    }
+    CHECK(wrong == 0);
+    CHECK(disagree == 0);
+    CHECK(askew == 0);
+    CHECK(within > 50);
+    CHECK(within < n - 50);
+    CHECK(overlaps > 10);
+  }
+  robot.build(collide::mesh_view<S>(), {});
+  auto const spheres = collide::spheres_xyz(links.corners.data(), 1, S(1));
+  auto const there = collide::upload(space, spheres);
+  CHECK(robot.query(there.view(), {}, collide::contains()).to_host()[0] == 0);
+  CHECK(robot.query(there.view(), {}, collide::signed_distance<S>()).to_host()[0].triangle == collide::no_id);
 }
 
 /// From the third query on nothing is allocated.

@@ -36,6 +36,11 @@ TEST_CASE("posed: the nearest triangle of all bodies, as a loop finds it") {
   tests::check_posed_nearest<detector<bvh>>(host(1));
 }
 
+TEST_CASE("posed: inside, and the signed distance of all bodies, as each says alone") {
+  tests::check_posed_sides<tree_of_double>(host(2));
+  tests::check_posed_sides<detector<bvh>>(host(1));
+}
+
 TEST_CASE("posed: nothing is allocated once there is room") {
   tests::counting_resource memory(std::pmr::new_delete_resource());
   tests::check_posed_keeps_memory<on_host>(host(1, &memory), memory);

@@ -14,6 +14,10 @@ TEST_CASE("posed: with half turns what a detector finds in the world, on CUDA") 
   tests::check_half_turns<detector<bucket, karabassi<>, cuda_shared>>(cuda_shared());
 }
 
+TEST_CASE("posed: inside, and the signed distance of all bodies, as each says alone, on CUDA") {
+  tests::check_posed_sides<detector<bvh, karabassi<>, cuda_shared>>(cuda_shared());
+}
+
 TEST_CASE("posed: the nearest triangle of all bodies, as a loop finds it, on CUDA") {
   tests::check_posed_nearest<detector<bvh, karabassi<>, cuda_shared>>(cuda_shared());
 }

@@ -16,8 +16,11 @@ COLLIDE_HD_INLINE double angle_of(double y, double x) {
   // atan(t) = pi/4 + atan((t - 1) / (t + 1)), where t is above tan(pi/8)
   bool const steep = least > mul_rn(most, 0.41421356237309503);
   double const t = steep ? div_rn(least - most, least + most) : div_rn(least, most), tt = mul_rn(t, t);
+  constexpr double parts[] = {1.0 / 43, 1.0 / 41, 1.0 / 39, 1.0 / 37, 1.0 / 35, 1.0 / 33, 1.0 / 31, 1.0 / 29,
+                              1.0 / 27, 1.0 / 25, 1.0 / 23, 1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13,
+                              1.0 / 11, 1.0 / 9,  1.0 / 7,  1.0 / 5,  1.0 / 3,  1.0};
   double series = 0;
-  for (int k = 43; k > 0; k -= 2) series = div_rn(1.0, k) - mul_rn(tt, series);
+  for (double const part : parts) series = part - mul_rn(tt, series);
   double angle = (steep ? pi / 4 : 0) + mul_rn(t, series);
   if (across > along) angle = pi / 2 - angle;
   if (x < 0) angle = pi - angle;

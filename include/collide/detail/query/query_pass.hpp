@@ -58,6 +58,12 @@ struct query_pass {
   /// along +z meets, as long as that returns true.
   template <class F>
   void search(F const& f) const;
+
+  /// A tree for winding numbers of a mesh that is not empty, if the index has one.
+  template <class I = Index>
+  auto windings() const -> std::decay_t<decltype(std::declval<I&>().windings(space))> {
+    return index.windings(space);
+  }
 };
 
 template <class Index, class S>

@@ -1,15 +1,17 @@
 /// \file
-/// Hits of a mesh of which parts have poses, what of the spheres is near a part, and which part is nearest.
+/// Hits of a mesh of which parts have poses, what of the spheres is near a part, and which part is nearest, or around a
+/// point.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <collide/detail/bodies/moving_mesh.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/sinks/search_mesh.hpp>
 #include <collide/hit.hpp>
-#include <collide/nearest_triangle.hpp>
+#include <collide/sinks/signed_distance.hpp>
 #include <collide/spheres.hpp>
 
 // the numbers of elements of small arrays are int
@@ -145,29 +147,49 @@ struct see_from_body {
   }
 };
 
-/// Kernel functor of `for_each` over spheres: the nearest triangle so far, or that of a body which begins with triangle
-/// `first`.
+/// True if what is found in a body counts more than what was found before.
 template <class S>
-struct take_nearer {
+COLLIDE_HD bool comes_before(nearest_triangle<S> const& a, nearest_triangle<S> const& b) {
+  return a.distance < b.distance || (a.distance == b.distance && b.triangle > a.triangle);
+}
+COLLIDE_HD_INLINE bool comes_before(std::uint8_t a, std::uint8_t b) { return a > b; }
+
+/// Kernel functor of `for_each` over spheres: what counts most so far, or of a body which begins with triangle `first`.
+template <class S, class Found>
+struct take_first {
   moving_mesh<S> mesh;
   int frame;
   id first;
-  nearest_triangle<S> const* of_body;
-  nearest_triangle<S>* to;
+  Found const* of_body;
+  Found* to;
   bool is_first_body;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    nearest_triangle<S> n = of_body[i];
-    if (n.triangle != no_id) {
-      n.triangle += first;
-      n.point = mesh.in_world(frame, n.point, 1);
-    }
-    nearest_triangle<S> const& best = to[i];
-    bool const is_nearer =
-        is_first_body || n.distance < best.distance || (n.distance == best.distance && best.triangle > n.triangle);
-    if (is_nearer) to[i] = n;
+    Found found = of_body[i];
+    if constexpr (!std::is_same<Found, std::uint8_t>::value) to_whole(found);
+    if (is_first_body || comes_before(found, to[i])) to[i] = found;
+  }
+
+ private:
+  COLLIDE_HD void to_whole(Found& n) const {
+    if (n.triangle == no_id) return;
+    n.triangle += first;
+    contact<S> c{};
+    c.point = n.point;
+    if constexpr (std::is_same<Found, signed_nearest_triangle<S>>::value) c.normal = n.gradient;
+    mesh.to_world(c, frame, 1);
+    n.point = c.point;
+    if constexpr (std::is_same<Found, signed_nearest_triangle<S>>::value) n.gradient = c.normal;
   }
 };
+
+/// True for sinks that search the bodies one after the other.
+template <class Sink>
+inline constexpr bool searches_bodies = std::is_same<Sink, collide::contains>::value;
+template <class S>
+inline constexpr bool searches_bodies<nearest<S>> = true;
+template <class S>
+inline constexpr bool searches_bodies<signed_distance<S>> = true;
 
 /// Sink: runs a search, and keeps nothing.
 template <class F>
@@ -180,9 +202,9 @@ struct run_search {
   }
 };
 
-/// The query of `nearest` over bodies, as the sink sees it. `Bodies` is a function bodies(spheres, f).
+/// The query of `nearest` and its like over bodies, as the sink sees it. `Bodies` is a function bodies(spheres, f).
 template <class NarrowPhase, class S, class Bodies>
-struct nearest_over_bodies {
+struct search_over_bodies {
   using narrow_phase = NarrowPhase;
   using scalar = S;
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/detail/tree/tree_node.hpp>
@@ -68,7 +67,7 @@ struct find_places {
     for (int k = 0; k < 3; ++k) extent = max(extent, summary->upper_of(k) / 2 - summary->lower_of(k) / 2);
     std::uint32_t x[3];
     for (int k = 0; k < 3; ++k) {
-      S const part = (box.lower[k] / 2 + box.upper[k] / 2 - summary->lower_of(k)) / 2 / extent;
+      S const part = div_rn((box.lower[k] / 2 + box.upper[k] / 2 - summary->lower_of(k)) / 2, extent);
       x[k] = static_cast<std::uint32_t>(static_cast<std::int32_t>(saturate(part) * S((1 << bits) - 1)));
     }
     places[i] = place_on_curve<bits>(x);
@@ -148,16 +147,8 @@ class packed_tree {
  public:
   template <class Space>
   void build(Space& space, mesh_view<S> const& mesh, buffer<tree_node>& memory) {
-    std::size_t const n = mesh.size();
-    auto* const summary = summary_.reserve(space.resource(), 1);
-    mesh_statistics<S>::clear(space, summary);
-    compute_mesh_statistics<S> const seen{mesh, summary, nullptr};
-    space.launch(grid_size<Space>(n, seen), seen);
-    std::uint64_t* const places = places_.reserve(space.resource(), 2 * n);
-    id* const ids = ids_.reserve(space.resource(), 2 * n);
-    space.for_each(n, find_places<S>{mesh, summary, places, ids});
-    sorted_ = sort(space, places, ids, n);
-    tree_levels const l(n);
+    sort(space, mesh);
+    tree_levels const l(mesh.size());
     memory.reserve(space.resource(), l.nodes);
     refit(space, mesh, memory);
   }
@@ -173,8 +164,26 @@ class packed_tree {
       space.for_each(l.count[k], pack_nodes{nodes, l.first[k], l.first[k - 1], l.count[k - 1], l.above(k)});
   }
 
+  /// Puts triangles in the order of the curve, of equal places the lowest number first, and makes `summary`.
+  template <class Space>
+  void sort(Space& space, mesh_view<S> const& mesh) {
+    std::size_t const n = mesh.size();
+    auto* const summary = summary_.reserve(space.resource(), 1);
+    mesh_statistics<S>::clear(space, summary);
+    compute_mesh_statistics<S> const seen{mesh, summary, nullptr};
+    space.launch(grid_size<Space>(n, seen), seen);
+    std::uint64_t* const places = places_.reserve(space.resource(), 2 * n);
+    id* const ids = ids_.reserve(space.resource(), 2 * n);
+    space.for_each(n, find_places<S>{mesh, summary, places, ids});
+    sorted_ = sort(space, places, ids, n);
+  }
+
+  /// The numbers of the triangles in order,
+  id const* sorted() const { return sorted_; }
+  /// and statistics of the mesh, in memory of the space.
+  mesh_statistics<S> const* summary() const { return summary_.data(); }
+
  private:
-  /// The numbers of the triangles in the order of the curve; of equal places the lowest first.
   template <class Space>
   id const* sort([[maybe_unused]] Space& space, std::uint64_t* places, id* ids, std::size_t n) {
     if constexpr (Space::host_accessible) {
@@ -191,7 +200,7 @@ class packed_tree {
     }
   }
 
-  id const* sorted_ = nullptr;  ///< triangles in order
+  id const* sorted_ = nullptr;
   buffer<mesh_statistics<S>> summary_;
   buffer<std::uint64_t> places_;
   buffer<id> ids_;
