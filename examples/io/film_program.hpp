@@ -27,6 +27,7 @@ inline char const* name_of(collide::angular_velocity) { return "angular_velocity
 inline char const* name_of(collide::adhered) { return "stuck"; }
 inline char const* name_of(collide::slow_steps) { return "slow_steps"; }
 inline char const* name_of(collide::pair_acceleration) { return "pair_acceleration"; }
+inline char const* name_of(collide::pair_angular_acceleration) { return "pair_angular_acceleration"; }
 
 /// A column's values of the particles that are there, and how many each has.
 template <class Column, class Simulation>

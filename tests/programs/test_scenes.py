@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import programs
 from programs import ProgramTest
 
-SCENES = ("snow", "marbles", "mud", "dust", "drum", "conveyor")
+SCENES = ("snow", "marbles", "mud", "dust", "drum", "conveyor", "silo")
 KINDS = {"Float32": "f", "UInt8": "B", "UInt32": "I"}
 
 
@@ -173,6 +173,21 @@ class Conveyor(SceneTest):
         self.assertGreater(len(there), 50)
         turning = sorted((x * v[1] - y * v[0]) / (x * x + y * y) for (x, y), v in there)
         self.assertAlmostEqual(turning[len(turning) // 2], 1, delta=0.1)  # with the table
+
+
+class Silo(SceneTest):
+    def test_grains_stay_until_the_gate_opens_and_then_flow_out(self):
+        self.shoot("silo", "--particles", 400, "--seconds", 2.4, "--frames", 8)
+        low = 0.014578 - 0.07
+        inside = []
+        for _, points, _ in self.frames():
+            for (x, y, z) in points:
+                if z > low:
+                    self.assertLess(math.hypot(x, y), min(0.1, 0.03 + z - low))
+            inside.append(sum(z > low for _, _, z in points))
+        self.assertEqual(inside[3], 400)  # after 1.2 s all have come, and the gate is shut until 1.4 s
+        self.assertEqual(sorted(inside[3:], reverse=True), inside[3:])
+        self.assertLess(inside[-1], 40)
 
 
 class All(SceneTest):
