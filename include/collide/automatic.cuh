@@ -16,7 +16,7 @@ namespace collide {
 /// how many of these triangles they touch, and how many boxes. `build` with a radius assumes
 /// a sphere at each triangle. On a device it is never `bvh`.
 ///
-/// The same calls always go the same way, and the pairs are the same either way. The index is made by `build` with a
+/// The same calls always go the same way, and the pairs are the same either way. It is chosen by `build` with a
 /// radius, and else by the first query for which it pays, counting what the queries before it would have saved.
 /// Complexity and memory are those of the chosen one; with a memory budget `bvh` is not chosen. A simulation names its
 /// broad phase itself.
@@ -33,7 +33,7 @@ struct automatic {
       spent_ = spent_on_boxes_ = 0;
     }
 
-    /// Makes the grid, or the tree, which serves until the next build; no grid that cannot be.
+    /// Chooses grid or tree, which serves until the next build; no grid that cannot be.
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
       detail::middles_as_spheres<S> const spheres{mesh_, radius};

@@ -100,11 +100,12 @@ class detector {
 
   /// Prepares what depends on the mesh, for spheres at rest of up to a radius. The radius is a hint: results are the
   /// same. On a device the first query then does not wait to see radii that differ, and makes one grid for all; on the
-  /// host it changes nothing.
+  /// host, without a memory budget, only `automatic` uses it. A CUDA graph that has a query has the build before it,
+  /// too, as the query makes what it needs of the mesh.
   ///
   /// \param mesh    triangles in memory of the space, not copied: valid and unchanged until the last query is done
   /// \param radius  the largest usual radius, in the units of the coordinates, not negative. Larger spheres are found
-  ///                too, but more slowly; an infinite radius prepares nothing.
+  ///                too, but more slowly; with an infinite one `bucket` tests every triangle on a device.
   /// \throws error  if `radius` is negative or NaN, or the options make no sense
   /// \throws cuda_error  if a CUDA call fails
   /// \complexity O(triangles). Allocates if something has grown.
@@ -171,7 +172,8 @@ class detector {
   ///
   /// After an exception the detector can be used again; what the sink holds is then unspecified.
   /// \complexity That of the broad phase: O(n + candidates) for `bucket`, O(n * triangles) for `all_pairs`.
-  /// \sync As the sink says. Where radii differ, `bucket` waits for their range.
+  /// \sync As the sink says. Where radii differ, `bucket` waits for their range, unless `build` was given a radius; and
+  /// for a size where it makes a grid for more than 2^18 triangles, several grids, or cells of a given width.
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {
     using pass = detail::query_pass<typename BroadPhase::template index<Scalar>, NarrowPhase, ExecutionSpace, Scalar>;

@@ -78,7 +78,7 @@ class posed {
     is_built_ = true;
   }
 
-  /// Indexes each body, and prepares what spheres of a radius need, so that a query has nothing left to prepare.
+  /// Indexes each body, for spheres of up to a radius; see `detector::build`.
   ///
   /// \param mesh    as for the other `build`
   /// \param bodies  as for the other `build`

@@ -40,7 +40,8 @@ namespace collide {
 /// `step` allocates nothing and never waits: it puts one kernel on the stream of a CUDA space (more with
 /// `on_pair_contact` or `begin_step`), and can be captured in a CUDA graph, which is good until the next `set` or
 /// `set_mesh`. On the host it may make room for what contacts remember: see `to_host`. The same steps give the same
-/// bits on every run in the same space. O(particles + candidates) per step. A simulation is for one thread at a time.
+/// bits on every run, in every space (nvcc needs -fmad=false). O(particles + candidates) per step. A simulation is for
+/// one thread at a time.
 template <class Detector, class... Effect>
 class simulation {
   static_assert(detail::is_detector<Detector>::value,
@@ -234,7 +235,8 @@ class simulation {
     return copy;
   }
 
-  /// Gives all particles a column's values, from memory of the space, in the order of the stream.
+  /// Gives all particles a column's values, from memory of the space, in the order of the stream. Waits if that is
+  /// `radius` or `material`.
   template <class Column>
   void assign(detail::column_element<Column, S> const* values) {
     check<Column>();

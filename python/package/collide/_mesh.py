@@ -155,7 +155,7 @@ class Mesh:
 
     Other Python threads run while a call works; two meshes may be used by two threads at once, calls to one mesh wait
     for each other. On a GPU work is put on the current stream of the library that the centres are of, and a call waits
-    only as far as it must read a number back: `any` does not.
+    only as far as it must read a number back: `any` with one radius does not, after a first call.
     """
 
     def __init__(self, vertices: Array, triangles: Optional[Array] = None, *, validate: bool = True, threads: int = 0):
@@ -195,8 +195,8 @@ class Mesh:
     ) -> Array:
         """(n,) bool: whether each sphere touches anything. Arguments as for `query`.
 
-        out  (n,) uint8 or bool: where flags go. On a GPU such a call allocates nothing and does not wait, once a first
-             one has been made: it can be captured in a CUDA graph.
+        out  (n,) uint8 or bool: where flags go. On a GPU such a call, with one radius, allocates nothing and does not
+             wait, once a first one has been made: it can be captured in a CUDA graph.
         """
         return self._ask(self._mesh.query, bool, out, "any", centres, radius, displacements, precision)
 

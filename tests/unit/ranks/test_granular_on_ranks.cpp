@@ -82,3 +82,27 @@ TEST_CASE("granular contact on ranks: of what a rank has, energy is that of its 
   CHECK(pairs < 21);  // others are cut in two
   CHECK(pairs > 10);
 }
+
+TEST_CASE("granular contact on ranks: solids that only walls have do not limit the step") {
+  using law = granular_contact<hertz, none, none, none, materials<2>>;
+  using alone = simulation<tests::discrete<host, double>, law, velocity_verlet>;
+  law by;
+  by.made_of.set(0, soft);
+  by.made_of.set(1, {2e11, 0.3, 7800});  // steel
+  for (int k = 0; k < 3; ++k) by.made_of.set_pair(k / 2, (k + 1) / 2, rough);
+  by.made_of.wall_material = 1;
+  tests::world<double> w;
+  w.radius = 0.1;
+  tests::add_floor(w, 1, 3);
+  for (int i = 0; i < 8; ++i) w.particle(0.1 * i - 0.4, 0, 0.1);
+  tests::running<alone> one(host(1), w, by, velocity_verlet{});
+  double const longest = 4 * largest_time_step(one.simulation);
+  CHECK(longest > 1e-5);
+  thread_ranks::run(2, [&](thread_ranks const& ranks) {
+    distributed<alone, thread_ranks> some(ranks, host(1), by, velocity_verlet{});
+    some.set_mesh(triangle_soup(w.corners.data(), w.corners.size() / 9));
+    some.set(spheres_xyz(w.centres.data() + 12 * ranks.rank(), 4, w.radius), w.velocities.data() + 12 * ranks.rank());
+    some.step(0.99 * longest);
+    CHECK_THROWS_AS(some.step(1.01 * longest), error);
+  });
+}

@@ -135,13 +135,13 @@ void check_neighbours(Space const& space) {
     running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{0.02, 0.4}, in_cube(0));
     check_meetings<S>(made.simulation, S(0), 60, S(1), no_change, 100000);
   }
-  SUBCASE("of sizes far apart: small ones, others of 6 times their radius, which look into their cells, and of 20") {
+  SUBCASE("of sizes far apart: small ones, others of 5 times their radius, which look into their cells, and of 20") {
     using simulation =
         collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, box_walls>;
     for (double const at : {0.0, -300.0}) {
       CAPTURE(at);
       auto w = packed_cube<S>(n, 0.05, 0.003, at);
-      for (std::size_t i = 0; i < n; ++i) w.radii.push_back(i % 70 == 0 ? S(0.4) : i % 7 == 1 ? S(0.12) : S(0.02));
+      for (std::size_t i = 0; i < n; ++i) w.radii.push_back(i % 70 == 0 ? S(0.4) : i % 14 == 1 ? S(0.1) : S(0.02));
       running<simulation> made(space, w, collide::polydisperse{}, greets{}, in_cube(at));
       check_meetings<S>(made.simulation, S(0), 40, S(1), no_change, 20000);
     }

@@ -81,6 +81,17 @@ TEST_CASE("effects: spheres that meet do so in the same bits on every run") {
   tests::check_meeting_determinism(host(1), reversed());
 }
 
+TEST_CASE("effects: small particles are listed apart where larger ones are few") {
+  using range = collide::detail::radius_range<double>;
+  CHECK(range{0.01, 0.2, 0.015, 20}.has_small_apart(20000, 0.002));
+  CHECK(range{0.01, 0.05, 0.02, 2000}.has_small_apart(20000, 0.002));
+  CHECK_FALSE(range{0.01, 1, 0.01, 99999}.has_small_apart(100000, 0.002));  // a grain of dust among others
+  CHECK_FALSE(range{0.01, 0.02, 0.02, 0}.has_small_apart(100, 0.002));
+  CHECK_FALSE(range{0.01, 1, 0, 0}.has_small_apart(100, 0.002));  // not known
+  CHECK(range{0.01, 0.2, 0.015, 20}.with(0.018).small == 0.018);
+  for (double const of_source : {0.005, 0.05}) CHECK(range{0.01, 0.2, 0.015, 20}.with(of_source).small == 0);
+}
+
 TEST_CASE_TEMPLATE("effects: particles meet those that they overlap, in the order of their numbers", S, float, double) {
   tests::check_neighbours<S>(host(1));
 }

@@ -66,12 +66,11 @@ class verlet_list {
     blocks_ = cells::blocks_for(n);
     skin_ = skin_of(radii.largest, radii.smallest);
     cells_ = {1 / width_of(radii.largest, radii.smallest), static_cast<std::uint32_t>(blocks_ - 1)};
-    S const small = radii.largest_small();
     small_ = {cells_, S(-1), S(0)};
-    if (small > 0 && radii.largest > 2 * small) {
-      small_.cells.inverse_width = 1 / width_with(skin_, small);
-      small_.largest = small;
-      small_.reach = small + skin_;
+    if (radii.has_small_apart(n, skin_)) {
+      small_.cells.inverse_width = 1 / width_with(skin_, radii.small);
+      small_.largest = radii.small;
+      small_.reach = radii.small + skin_;
     }
     list_state* const header = header_.data();
     space.fill(header, 0, sizeof *header);

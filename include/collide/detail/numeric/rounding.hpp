@@ -3,7 +3,7 @@
 ///
 /// On the device every product, quotient and root is an explicitly rounded intrinsic, so that neither -fmad nor
 /// --use_fast_math changes it; sums of such products cannot be contracted either. On the host the target
-/// collide::collide adds -ffp-contract=off.
+/// collide::collide adds -ffp-contract=off; collide::cuda adds -fmad=false, for what is plain arithmetic.
 #pragma once
 
 #include <cmath>

@@ -151,15 +151,21 @@ template <class S>
 struct radius_range {
   S smallest = 0;  ///< of those that are not negative; infinite if there are none
   S largest = 0;
-  S small = 0;  ///< the largest of those up to twice the smallest; 0: not known
+  S small = 0;             ///< the largest of those up to twice the smallest; 0: not known
+  std::size_t larger = 0;  ///< how many are larger than those, if these are known
 
-  /// The largest of those up to twice the smallest, or a bound of it.
-  S largest_small() const { return small > 0 ? small : 2 * smallest; }
-  /// With those of what a source makes, if they have one of their own.
+  /// True if of `n` particles the small ones should have cells of their own: larger ones, which look into all that they
+  /// reach, or at all particles, must be few.
+  bool has_small_apart(std::size_t n, S skin) const {
+    if (!(small > 0 && largest > 2 * small)) return false;
+    double const across = static_cast<double>((largest + small + skin) / small) + 2, all = static_cast<double>(n);
+    return static_cast<double>(larger) * min(all, across * across * across) <= 64 * all;
+  }
+  /// With those of what a source makes, if they have one of their own: of how many it makes nothing is known.
   radius_range with(S own) const {
     if (!(own > 0)) return *this;
-    S const least = min(smallest, own), most_small = own < smallest ? S(0) : own > 2 * least ? small : max(small, own);
-    return {least, max(largest, own), small > 0 ? most_small : S(0)};
+    bool const is_small = small > 0 && own >= smallest && own <= 2 * smallest;
+    return {min(smallest, own), max(largest, own), is_small ? max(small, own) : S(0), larger};
   }
 };
 
@@ -175,7 +181,9 @@ auto radius_range_of(Simulation const& simulation) {
       if (r >= 0) found.smallest = min(found.smallest, r);
     }
     for (S const r : radii) {
-      if (r <= 2 * found.smallest) found.small = max(found.small, r);
+      bool const is_small = r <= 2 * found.smallest;
+      if (is_small) found.small = max(found.small, r);
+      found.larger += !is_small;
     }
   }
   return found;

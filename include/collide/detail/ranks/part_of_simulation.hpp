@@ -72,6 +72,7 @@ class part_of_simulation {
     capacity_ = max(n + static_cast<std::size_t>(all.free_size), std::size_t{1});
     simulation_.place(particles, velocities, capacity_);
     start(n, all, radii);
+    simulation_.know_smallest();
     simulation_.prepare();
   }
 
@@ -124,6 +125,7 @@ class part_of_simulation {
     saved.restore_parameters(simulation_.effects_);
     simulation_.time_ = numbers.time;
     simulation_.knows_pair_forces_ = numbers.knows_pair_forces != 0;
+    simulation_.know_smallest();
     simulation_.prepare();
     saved.restore_bodies(simulation_);
     simulation_.bodies_.place(numbers.bodies_are_placed != 0);
@@ -353,7 +355,6 @@ class part_of_simulation {
                                                         simulation_.effects_.source_radius()});
     S const widest = radii.widest;
     simulation_.radii_ = radii.range;
-    simulation_.smallest_ = smallest_radii(static_cast<double>(radii.range.smallest));
     skin_ = skin_fraction * 2 * widest;
     reach_ = widest > 0 ? (2 * static_cast<double>(widest) + static_cast<double>(skin_)) * (1 + 0x1p-8) : 0;
     copies_ = 0;
