@@ -180,7 +180,11 @@ class thread_ranks {
       });
     };
     // also if a copy failed: others may be under way
-    auto const finish = [&] { failure.attempt([&] { mine.taken = space.mark(); }); };
+    auto const finish = [&] {
+      mine.taken.reset();
+      failure.attempt([&] { mine.taken = space.mark(); });
+      if (!mine.taken) failure.attempt([&] { space.synchronize(); });
+    };
     exchange_by(take, finish, from, to_each, to, of_each, bytes);
     for (int r = 0; r < size(); ++r) {
       if (r != rank_ && to_each[r] != 0) failure.attempt([&] { space.after(barrier_->slot(r).taken); });
