@@ -15,7 +15,7 @@
 namespace collide {
 
 /// On which side of the surface of `mass_flow` the particle was at the end of the last step: 0 not known; else how far
-/// it then came in a step, below 0 if it was behind; infinite if the surface was farther away.
+/// it then came in a step, below 0 if it was behind; the largest number if the surface was farther away.
 struct side_of_surface {
   template <class S>
   using value = S;
@@ -72,9 +72,8 @@ struct mass_flow {
     bool const was_in_front = side > 0;
     bool const comes_so_far = is_near || height * height <= before * before * nn;
     constexpr double least = std::numeric_limits<S>::min(), most = std::numeric_limits<S>::max();
-    bool const was_near = before > 0 && before <= most;
-    S const now =
-        is_near ? static_cast<S>(detail::min(detail::max(way, least), most)) : std::numeric_limits<S>::infinity();
+    bool const was_near = before > 0 && before < most;
+    S const now = static_cast<S>(is_near ? detail::min(detail::max(way, least), most / 2) : most);
     side = is_in_front ? now : -now;
     if (!(was_near && comes_so_far) || was_in_front == is_in_front) return;
     double const aside = detail::dot(x, x) - detail::div_rn(height * height, nn);
