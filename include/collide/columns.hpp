@@ -80,8 +80,8 @@ struct angular_velocity {
 };
 
 /// 1 if the particle is there, 0 if its place is free; see `emit` and `absorb`. An effect of your own makes a particle
-/// in its `begin_step` by writing 1 at a free place. No contact remembers what was there, and columns that no such effect
-/// writes have their first values again, but for position, velocity and radius.
+/// in its `begin_step` by writing 1 at a free place. No contact remembers what was there, and columns that no such
+/// effect writes have their first values again, but for position, velocity and radius.
 struct alive {
   template <class S>
   using value = std::uint8_t;
