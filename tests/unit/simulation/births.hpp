@@ -193,6 +193,17 @@ void check_births_of_what_does_not_meet(Space const& space) {
                        collide::error);
 }
 
+/// A floor, and `n` small grains in a ring above it, which one of radius 0.1 in the middle presses apart.
+template <class S>
+void add_floor_with_ring(world<S>& w, int n) {
+  add_floor(w, 5, 1);
+  for (int k = 0; k < n; ++k) {
+    double const angle = 2 * 3.141592653589793 * k / n;
+    w.particle(0.1095 * std::cos(angle), 0.1095 * std::sin(angle), 0.1);
+    w.radii.push_back(S(0.01));
+  }
+}
+
 /// A source that makes a grain in one place, where it slides over the floor along `n` small ones. Each that takes the
 /// place of another in memory moves as the first did: contacts do not remember that one. `dies`: the other is gone
 /// then.
@@ -205,12 +216,7 @@ void check_births_touch_nothing(Space const& space, int n, bool dies) {
   collide::emit source{0, {{0, 0, 0.0999}, 0, {0.5, 0, 0}, 0}, 0.1};
   collide::absorbing_box const here{{-0.01, -0.01, 0}, {0.01, 0.01, 1}}, away{{9, 9, 9}, {9, 9, 9}};
   world<S> w;
-  add_floor(w, 5, 1);
-  for (int k = 0; k < n; ++k) {
-    double const angle = 2 * 3.141592653589793 * k / n;
-    w.particle(0.1095 * std::cos(angle), 0.1095 * std::sin(angle), 0.1);
-    w.radii.push_back(S(0.01));
-  }
+  add_floor_with_ring(w, n);
   running<simulation> made(space, w, source, away, collide::polydisperse{}, by);
   std::size_t const places = w.size() + 1;
   made.place(w, places);
@@ -265,12 +271,7 @@ void check_revived_touch_nothing(Space const& space, int n) {
                                          collide::polydisperse, law>;
   collide::absorbing_box const here{{-0.01, -0.01, 0}, {0.01, 0.01, 1}}, away{{9, 9, 9}, {9, 9, 9}};
   world<S> w;
-  add_floor(w, 5, 1);
-  for (int k = 0; k < n; ++k) {
-    double const angle = 2 * 3.141592653589793 * k / n;
-    w.particle(0.1095 * std::cos(angle), 0.1095 * std::sin(angle), 0.1);
-    w.radii.push_back(S(0.01));
-  }
+  add_floor_with_ring(w, n);
   w.particle(0, 0, 0.0999, 0.5);
   w.radii.push_back(S(0.1));
   running<simulation> made(space, w, maker{}, away, collide::polydisperse{},

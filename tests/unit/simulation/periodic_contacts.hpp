@@ -146,7 +146,7 @@ void check_neighbours_across(Space const& space) {
     periodic_box const box{{-1, -1, -1}, {1, 1, 1}};
     if (one.small != 0) {
       for (std::size_t i = 0; i < one.n; ++i)
-        w.radii.push_back(S(i % 30 == 0 ? 0.3 : i % 7 == 1 && one.small < 0.05 ? 0.12 : one.small));
+        w.radii.push_back(S(i % 30 == 0 ? 0.3 : i % 20 == 1 && one.small < 0.05 ? 0.12 : one.small));
       running<collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, greets, polydisperse, periodic_box>> made(
           space, w, greets{}, polydisperse{}, box);
       check_meetings_across<S>(made.simulation, S(0), 2, 40, S(1), 150);
