@@ -387,6 +387,12 @@ class simulation {
     [[maybe_unused]] bool const is_first = !knows_pair_forces_;
     knows_pair_forces_ = true;
     if (state_.size == 0) return;
+    if constexpr (effects_type::overlaps && has_bodies && detail::contains<columns, slow_steps>) {
+      using mesh_type = decltype(mesh_ref<true>(dt));
+      if (!is_first)
+        space_.for_each(with_copies.size,
+                        detail::wake_by_bodies<S, effects_type, mesh_type>{with_copies, effects_, mesh_ref<true>(dt)});
+    }
     if constexpr (effects_type::any_pair_contact) {
       if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
       neighbours_.renew(space_, with_copies, effects_.space());
