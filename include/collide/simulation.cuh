@@ -111,8 +111,7 @@ class simulation {
     place(particles, velocities, room);
     radii_ = {particles.common_radius(), particles.common_radius(), S(0)};
     if (!particles.one_radius()) radii_ = detail::radius_range_of(*this);
-    if (asks_mesh && n != 0 && radii_.smallest == 0)
-      throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
+    check_radii("set");
     radii_ = radii_.with(own);
     if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, room, radii_);
     if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
@@ -164,11 +163,7 @@ class simulation {
     }
     wake_all();  // what slept may have lost its support
     prepare();
-    if constexpr (effects_type::adheres) {
-      if (is_set_)
-        space_.for_each(state_.size,
-                        detail::release_adhered{state_, mesh_ref(S(0)), bodies_.are_driven(), bodies_.size()});
-    }
+    if (is_set_) release_adhered();
   }
 
   // Other scalar types end here.
@@ -236,14 +231,28 @@ class simulation {
   }
 
   /// Gives all particles a column's values, from memory of the space, in the order of the stream. Waits if that is
-  /// `radius` or `material`.
+  /// `radius` or `material`. If it says where particles are, how they move, what they are, or which there are, all that
+  /// sleeps is woken; what adhered and does not touch the mesh any more is free. What is written by way of `data` wakes
+  /// nothing. Throws `error` if a radius is 0 where particles touch a mesh.
   template <class Column>
   void assign(detail::column_element<Column, S> const* values) {
     check<Column>();
     space_.for_each(numbers<Column>(),
                     detail::copy_values<detail::column_element<Column, S>>{values, state_.at(Column{})});
-    if constexpr (std::is_same<Column, radius>::value) radii_ = detail::radius_range_of(*this);
+    if constexpr (std::is_same<Column, radius>::value) {
+      radii_ = detail::radius_range_of(*this);
+      check_radii("assign");
+      if constexpr (effects_type::any_pair_contact) neighbours_.fit(space_, state_.size, radii_);
+      prepare_index();
+    }
     if constexpr (std::is_same<Column, radius>::value || std::is_same<Column, material>::value) know_smallest();
+    constexpr bool moves = detail::contains<collide::columns<velocity, angular_velocity>, Column>;
+    constexpr bool meets_others = detail::contains<collide::columns<position, radius, material, alive>, Column>;
+    if constexpr (moves || meets_others) wake_all();
+    if constexpr (meets_others) {
+      knows_pair_forces_ = knows_pair_forces_ && !effects_type::ends_after_meeting;
+      if (has_mesh_) release_adhered();
+    }
   }
 
   /// Gives all particles a column's values, from a container such as std::vector or thrust::device_vector, whose memory
@@ -359,6 +368,7 @@ class simulation {
   void begin_step(S dt) {
     if constexpr (may_be_made)
       space_.for_each(state_.size, detail::copy_values<std::uint8_t>{state_.at(alive{}), was_there_.data()});
+    wake_where_others_go(dt);
     (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
     if constexpr (may_be_made) begin_anew();
     if constexpr (effects_type::makes && effects_type::remembers_surfaces) {
@@ -455,6 +465,24 @@ class simulation {
     }
   }
 
+  /// A source whose places have all been filled takes some from others, on which something may sleep: all of that is
+  /// woken.
+  void wake_where_others_go(S dt) {
+    if constexpr (effects_type::makes && effects_type::any_pair_contact && detail::contains<columns, slow_steps>) {
+      double const due = effects_.due(static_cast<double>(dt));
+      if (due > 0 && !effects_.makes_only_where_free())
+        space_.for_each(state_.size, detail::wake_where_others_go<state_type>{state_, due});
+    }
+  }
+
+  /// What sticks to the mesh and does not touch it any more is free.
+  void release_adhered() {
+    if constexpr (effects_type::adheres) {
+      space_.for_each(state_.size,
+                      detail::release_adhered{state_, mesh_ref(S(0)), bodies_.are_driven(), bodies_.size()});
+    }
+  }
+
   /// Moves the bodies on by `dt`, or, if they start, to where they are at this time.
   void advance_bodies(double dt, bool start) {
     if constexpr (has_bodies) {
@@ -480,8 +508,16 @@ class simulation {
     return state_.size * std::size_t(detail::column_layout<Column, S>::width);
   }
 
+  COLLIDE_COLD void check_radii(char const* member) const {
+    if (asks_mesh && state_.placed != 0 && radii_.smallest == 0)
+      throw error(std::string("collide: simulation: ") + member + ": radii of particles that touch a mesh are above 0");
+  }
+
   COLLIDE_COLD void prepare() {
     advance_bodies(0, true);
+    prepare_index();
+  }
+  COLLIDE_COLD void prepare_index() {
     if constexpr (asks_mesh) {
       constexpr bool is_part = detail::contains<columns, global_number>;  // others come from other ranks
       std::size_t const n = detail::max(state_.size, std::size_t{is_part});

@@ -89,3 +89,14 @@ TEST_CASE("where features meet: what is nowhere is counted") {
   tests::check_lost(host(1));
   tests::check_lost(blocks());
 }
+
+TEST_CASE("where features meet: what is assigned counts as if the simulation began with it") {
+  tests::check_assigned<karabassi<>, semi_implicit_euler, double>(host(1));
+  tests::check_assigned<karabassi_swept<>, velocity_verlet, float>(host(1));
+  tests::check_assigned<karabassi<>, velocity_verlet, float>(blocks());
+}
+
+TEST_CASE("where features meet: what sleeps on one whose place a source takes falls") {
+  tests::check_place_of_another<double>(host(1));
+  tests::check_place_of_another<float>(blocks());
+}

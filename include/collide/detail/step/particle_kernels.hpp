@@ -63,6 +63,21 @@ struct take_marks_off {
   }
 };
 
+/// Kernel functor of `for_each` over particles: wakes them where a source is about to take places from others.
+template <class State>
+struct wake_where_others_go {
+  State state;
+  double due;  ///< particles in the step
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::uint64_t const made = begin_in_step(state.time, due);
+    double room = static_cast<double>(state.size - state.placed);
+    if constexpr (contains<typename State::list, global_number>)
+      room = static_cast<double>(state.all_size - state.all_placed);
+    if (made != 0 && state.time[clock_made] + static_cast<double>(made) > room) state.at(slow_steps{})[i] = 0;
+  }
+};
+
 /// Kernel functor of `for_each` over particles: ends their step, where particles have met in between.
 template <class S, class Effects>
 struct end_particles {
