@@ -176,8 +176,10 @@ class simulation {
     detail::reject_scalar<T>();
   }
 
-  /// Advances by the time `dt`. Throws `error` if `dt` is not finite or an effect's parameter makes no sense, before
-  /// `set`, and before `set_mesh` if an effect touches the mesh; `cuda_error` if a kernel cannot be launched.
+  /// Advances by the time `dt`. Throws `error` if `dt` is not above 0 and finite, or longer than an effect allows
+  /// (`largest_time_step` is shorter), if an effect's parameter makes no sense, before `set`, and before `set_mesh` if
+  /// an effect touches the mesh; `cuda_error` if a kernel cannot be launched. Does not wait; allocates nothing, but on
+  /// the host for neighbours beyond the room of `reserve`. O(n) for n particles, and their contacts.
   void step(S dt) {
     check_step(dt);
     if (!knows_pair_forces_) meet(state_, dt);
@@ -276,7 +278,8 @@ class simulation {
   }
 
   /// The parameters of an effect, to be changed between steps. All that sleeps is woken, as what holds it may be
-  /// another then; but not by a source, or by `moving_bodies`, which wake what they touch.
+  /// another then; but not by a source, or by `moving_bodies`, which wake what they touch. O(1), or with `sleep`
+  /// O(particles); does not wait.
   template <class E>
   E& effect() {
     check_effect<E>();

@@ -127,7 +127,7 @@ class _Jax(_Numpy):
 
 class _Warp(_Numpy):
     def stream(self, device):
-        return self.module.get_stream(f"cuda:{device}").cuda_stream, -1
+        return self.module.get_stream(f"cuda:{device}").cuda_stream or 0, -1  # None is the null stream
 
     def flags(self, result):
         return result.view(self.module.bool)

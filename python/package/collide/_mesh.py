@@ -142,8 +142,9 @@ class Csr(NamedTuple):
 class Mesh:
     """A triangle mesh, and the queries that spheres may ask of it. Where its vertices lie, it runs.
 
-    vertices   (n, 3) float32 or float64, in any unit of length. The arrays are read where they are, not copied: keep
-               them as they are while the mesh is used, or call `update` when they have changed.
+    vertices   (n, 3) float32 or float64, of warp also (n,) vec3 or vec3d, in any unit of length. The arrays are read
+               where they are, not copied: keep them as they are while the mesh is used, or call `update` when they have
+               changed.
     triangles  (m, 3) int32 or uint32: numbers of vertices, from 0. None: rows 3 i, 3 i + 1, 3 i + 2 of vertices are
                triangle i.
     validate   check that triangles name vertices that exist: reading others is undefined behaviour. O(m); on a GPU it
@@ -348,7 +349,8 @@ def _is_wide(array):
         import numpy
 
         array = numpy.from_dlpack(array)
-    return "float64" in str(getattr(array, "dtype", ""))
+    dtype = getattr(array, "dtype", "")
+    return "float64" in str(getattr(dtype, "_wp_scalar_type_", dtype))  # of warp's vectors, such as vec3
 
 
 def _is_canonical(order):
