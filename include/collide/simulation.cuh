@@ -250,7 +250,7 @@ class simulation {
     constexpr bool meets_others = detail::contains<collide::columns<position, radius, material, alive>, Column>;
     if constexpr (moves || meets_others) wake_all();
     if constexpr (meets_others) {
-      knows_pair_forces_ = knows_pair_forces_ && !effects_type::ends_after_meeting;
+      knows_pair_forces_ = !effects_type::ends_after_meeting;
       if (has_mesh_) release_adhered();
     }
   }
@@ -397,6 +397,8 @@ class simulation {
     [[maybe_unused]] bool const is_first = !knows_pair_forces_;
     knows_pair_forces_ = true;
     if (state_.size == 0) return;
+    if (is_first && !bodies_.are_placed())
+      advance_bodies(0, true);  // those that the caller drives, to where they begin
     if constexpr (effects_type::overlaps && has_bodies && detail::contains<columns, slow_steps>) {
       using mesh_type = decltype(mesh_ref<true>(dt));
       if (!is_first)
@@ -459,9 +461,11 @@ class simulation {
     space_.launch(kernel.blocks, kernel);
   }
 
+  /// Of what slept it is not known what others and walls do to it.
   void wake_all() {
     if constexpr (detail::contains<columns, slow_steps>) {
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
+      knows_pair_forces_ = !effects_type::ends_after_meeting;
     }
   }
 
