@@ -252,7 +252,7 @@ class simulation {
     constexpr bool meets_others = detail::contains<collide::columns<position, radius, material, alive>, Column>;
     if constexpr (moves || meets_others) wake_all();
     if constexpr (meets_others) {
-      knows_pair_forces_ = knows_pair_forces_ && !effects_type::ends_after_meeting;
+      knows_pair_forces_ = !effects_type::ends_after_meeting;
       if (has_mesh_) release_adhered();
     }
   }
@@ -318,15 +318,12 @@ class simulation {
 
   static constexpr bool sweeps = effects_type::any_mesh_contact && !detail::is_discrete<narrow_phase, S>;
   static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S>::value || ...);
-  /// Effects other than sources that may make particles in their `begin_step`, and the columns that they write.
+  /// Effects other than sources that may make particles in their `begin_step`.
   template <class E>
   static constexpr bool may_make =
       !detail::is_source<E> && detail::has_begin_step<E, execution_space, state_type, S>::value &&
       detail::contains<typename detail::writes_of<E>::type, alive>;
-  using made_with = detail::union_of<
-      collide::columns<>,
-      std::conditional_t<may_make<Effect>, typename detail::writes_of<Effect>::type, collide::columns<>>...>;
-  static constexpr bool may_be_made = made_with::size != 0;
+  static constexpr bool may_be_made = (may_make<Effect> || ...);
   template <class Triangles>
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   using neighbour_lists =
@@ -369,11 +366,8 @@ class simulation {
 
   /// The part of a step before particles meet.
   void begin_step(S dt) {
-    if constexpr (may_be_made)
-      space_.for_each(state_.size, detail::copy_values<std::uint8_t>{state_.at(alive{}), was_there_.data()});
     wake_where_others_go(dt);
-    (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
-    if constexpr (may_be_made) begin_anew();
+    (begin_step_of<Effect>(dt), ...);
     if constexpr (effects_type::makes && effects_type::remembers_surfaces) {
       if (effects_.due(static_cast<double>(dt)) > 0)
         space_.for_each(state_.size,
@@ -386,9 +380,17 @@ class simulation {
     if constexpr (effects_type::ends_after_meeting) move(dt);
   }
 
-  /// Begins anew with the particles that effects have made.
+  /// Lets an effect begin a step. What it makes begins anew in all that it does not write.
+  template <class E>
+  void begin_step_of(S dt) {
+    if constexpr (may_make<E>)
+      space_.for_each(state_.size, detail::copy_values<std::uint8_t>{state_.at(alive{}), was_there_.data()});
+    detail::begin_step_of<E>(effects_, space_, state_, dt);
+    if constexpr (may_make<E>) begin_anew<typename detail::writes_of<E>::type>();
+  }
+  template <class Written>
   void begin_anew() {
-    using kept = detail::union_of<made_with, collide::columns<position, velocity, radius, global_number>>;
+    using kept = detail::union_of<Written, collide::columns<position, velocity, radius, global_number>>;
     using initial = detail::difference_of<columns, kept>;
     std::uint8_t* surfaces = nullptr;
     if constexpr (effects_type::remembers_surfaces) surfaces = surfaces_.ref(state_.size).counts;
@@ -400,6 +402,8 @@ class simulation {
     [[maybe_unused]] bool const is_first = !knows_pair_forces_;
     knows_pair_forces_ = true;
     if (state_.size == 0) return;
+    if (is_first && !bodies_.are_placed())
+      advance_bodies(0, true);  // those that the caller drives, to where they begin
     if constexpr (effects_type::overlaps && has_bodies && detail::contains<columns, slow_steps>) {
       using mesh_type = decltype(mesh_ref<true>(dt));
       if (!is_first)
@@ -462,15 +466,17 @@ class simulation {
     space_.launch(kernel.blocks, kernel);
   }
 
+  /// Of what slept it is not known what others and walls do to it.
   void wake_all() {
     if constexpr (detail::contains<columns, slow_steps>) {
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
+      knows_pair_forces_ = !effects_type::ends_after_meeting;
     }
   }
 
   /// A source whose places have all been filled takes some from others, on which something may sleep: all of that is
   /// woken.
-  void wake_where_others_go(S dt) {
+  void wake_where_others_go([[maybe_unused]] S dt) {
     if constexpr (effects_type::makes && effects_type::any_pair_contact && detail::contains<columns, slow_steps>) {
       double const due = effects_.due(static_cast<double>(dt));
       if (due > 0 && !effects_.makes_only_where_free())

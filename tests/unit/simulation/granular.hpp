@@ -338,6 +338,51 @@ void check_sleep_on_bodies(Space const& space) {
   }
 }
 
+/// A grain that falls asleep and is woken again and again lies still, and presses with its weight all the time.
+template <class Integrator, class S, class Space>
+void check_weight_of_naps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, collide::sleep,
+                                         gravity, law, collide::reaction>;
+  law const by{collide::one_material({1e7, 0.2, 2500}, {0.2, 0.5})};
+  world<S> w;
+  w.radius = S(0.1);
+  add_divided_floor(w, 1, 4);
+  w.particle(0.01, 0.02, 0.1);
+  double const mass = 2500 * 4 / 3 * pi * 1e-3, dt = 1e-3;
+  collide::reaction_sums sums(space, 0, mass * 1e-12);
+  running<simulation> made(space, w, Integrator{}, collide::sleep{0.01, 127}, gravity{}, by, sums.effect(2500));
+  made.simulation.steps(400, S(dt));
+  sums.clear(space);
+  for (int i = 0; i < 20; ++i) {
+    CHECK(made.simulation.template to_host<collide::slow_steps>()[0] == 127);
+    made.simulation.template effect<gravity>();
+    made.simulation.step(S(dt));
+    CHECK(std::abs(double(made.velocities()[2])) < 0.05 * 9.81 * dt);
+    made.simulation.steps(199, S(dt));
+  }
+  CHECK(std::abs(sums.read(space)[0].linear[2] / (mass * 9.81 * dt) + 4000) < 1);
+}
+
+/// A body that the caller drives presses on nothing where it lies in memory.
+template <class S, class Space>
+void check_first_pose_of_walls(Space const& space) {
+  using law = granular_contact<hertz>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, law, velocity_verlet,
+                                         moving_bodies<collide::driven>>;
+  world<S> w;
+  w.radius = S(0.1);
+  add_divided_floor(w, 1, 4);
+  w.particle(0.01, 0.02, 0.09);
+  running_bodies<simulation> made(space, w, one_body(w, {}), law{collide::one_material({1e7, 0.2, 2500}, {0.2, 0.5})},
+                                  velocity_verlet{}, moving_bodies<collide::driven>{});
+  collide::body_state state;
+  state.at.position[2] = -5;
+  made.simulation.space().copy_from_host(made.simulation.bodies().states(), &state, 1);
+  made.simulation.steps(2, S(1e-4));
+  CHECK(made.velocities()[2] == 0);
+}
+
 /// The springs of walls hold what a ball has lost of its motion, to the bound of the integrator: velocity Verlet keeps
 /// energy + dt^2 (k v^2 / 12 - F^2 / (24 m)).
 template <class Space>
