@@ -466,7 +466,7 @@ class simulation {
     space_.launch(kernel.blocks, kernel);
   }
 
-  /// Of what slept it is not known what others and walls do to it.
+  /// Sleepers wake, of which it is not known what others and walls do to them.
   void wake_all() {
     if constexpr (detail::contains<columns, slow_steps>) {
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
@@ -484,7 +484,7 @@ class simulation {
     }
   }
 
-  /// What sticks to the mesh and does not touch it any more is free.
+  /// Frees particles that stick to the mesh and do not touch it any more.
   void release_adhered() {
     if constexpr (effects_type::adheres) {
       space_.for_each(state_.size,

@@ -75,6 +75,8 @@ TEST_CASE("where features meet: adhesion holds against other particles, and a su
   tests::check_adhesion_without_surface<karabassi<>, float>(blocks());
   tests::check_pairs_without_forces(host(1));
   tests::check_adhesion_without_surface<karabassi_swept<>, double>(host(1));
+  tests::check_adhesion_across<karabassi<>, float>(blocks());
+  tests::check_adhesion_across<karabassi_swept<>, double>(host(1));
 }
 
 TEST_CASE("where features meet: a driven body is nowhere before its first pose, and a turntable carries") {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include <collide/effects/adhesion.hpp>
+#include <collide/effects/bounds.hpp>
 #include <collide/effects/contact_forces.hpp>
 #include <collide/effects/emit.hpp>
 #include <collide/effects/lost.hpp>
@@ -465,6 +466,27 @@ void check_adhesion_without_surface(Space const& space) {
   CHECK(rests[3] == 1);
   CHECK(double(moved[0] - rests[0]) > 0.2);
   CHECK(moved[3] == 2);
+}
+
+/// What sticks to a plate that goes out of a box that repeats comes in on the other side, where no plate is, and falls.
+template <class NarrowPhase, class S, class Space>
+void check_adhesion_across(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, adhesion,
+                                         collide::periodic_box, moving_bodies<>>;
+  world<S> w;
+  w.radius = S(0.1);
+  add_floor(w, 0.5, 1);
+  w.particle(0.4, 0, 0.1);
+  body_motion moves;
+  moves.velocity[0] = 1;
+  running_bodies<simulation> made(space, w, one_body(w, moves), gravity{}, bounce{0.2}, adhesion{20},
+                                  collide::periodic_box{{-1, -1, -1}, {1, 1, 1}}, moving_bodies<>{});
+  made.simulation.steps(500, S(1e-3));
+  CHECK(int(made.simulation.template to_host<collide::adhered>()[0]) == 2);
+  CHECK(double(made.positions()[0]) == doctest::Approx(0.9).epsilon(2e-3));
+  made.simulation.steps(400, S(1e-3));
+  CHECK(int(made.simulation.template to_host<collide::adhered>()[0]) == 0);
+  CHECK(double(made.positions()[2]) < -0.2);
 }
 
 /// What stuck to a driven body is free where the next list of bodies does not have that.
