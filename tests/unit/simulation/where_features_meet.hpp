@@ -283,6 +283,31 @@ void check_angular_momentum(Space const& space) {
   }
 }
 
+/// What balls get of angular momentum on a table that turns far in a step the table loses.
+template <class NarrowPhase, class S, class Space>
+void check_angular_momentum_of_turntable(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, friction, spin,
+                                         collide::reaction, moving_bodies<>>;
+  auto w = ball_on_floor<S>();
+  for (int i = 1; i < 8; ++i) w.particle(0.2 * i, 0.1 * i, 0.1 + 0.05 * i);
+  body_motion turns;
+  turns.rate = 5;
+  double const mass = mass_of_grain(0.1);
+  collide::reaction_sums sums(space, 1, 1e-12);
+  running_bodies<simulation> made(space, w, one_body(w, turns), gravity{}, bounce{0.5}, friction{0.4, 0.4}, spin{0.02},
+                                  sums.effect(density_of_grains), moving_bodies<>{});
+  made.simulation.steps(60, S(0.01));
+  auto const x = made.positions(), v = made.velocities();
+  auto const turning = made.simulation.template to_host<collide::angular_velocity>();
+  double got = 0;
+  for (std::size_t i = 0; i < 3 * w.size(); i += 3) {
+    got += mass * (double(x[i]) * double(v[i + 1]) - double(x[i + 1]) * double(v[i])) +
+           0.4 * mass * 0.01 * double(turning[i + 2]);
+  }
+  CHECK(got > 10);
+  CHECK(sums.read(space)[0].angular[2] == doctest::Approx(-got).epsilon(sizeof(S) == 4 ? 2e-5 : 1e-10));
+}
+
 /// Where balls that spin touch both walls of a corner, friction at one wall takes speed from the way to the other: no
 /// elastic bounce gives it back.
 template <class NarrowPhase, class S, class Space>
