@@ -126,8 +126,8 @@ struct contact_response {
     vec3<S> const velocity_before = p[velocity{}];
     [[maybe_unused]] vec3<S> spin_before;
     if constexpr (spins) spin_before = p[angular_velocity{}];
-    [[maybe_unused]] vec3<S> from =
-        here.centre;  // of a swept particle on its straight way, where a body that turns sees it elsewhere
+    // a body that turns sees a swept particle a little beside its straight way
+    [[maybe_unused]] vec3<S> from = here.centre;
     if constexpr (is_swept && effects_type::any_mesh_impulse)
       from = p[position{}] + velocity_before * (a.remaining_time * time);
     a.begin_contact_place(time, velocity_before,
