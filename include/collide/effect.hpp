@@ -174,7 +174,7 @@ struct mesh_impulse {
   vec3<S> change;       ///< of the velocity
   vec3<S> spin_change;  ///< of the angular velocity; 0 without `spin` in the scene
   vec3<S> centre;       ///< of the particle, before
-  vec3<S> shift;        ///< of the centre, out of the surface
+  vec3<S> shift;        ///< of the centre, out of the surface, or with a body to which it sticks
   vec3<S> velocity;     ///< of the particle, after
   id triangle;          ///< number of the triangle; `no_id` of what is held or sleeps
   id body;              ///< number of the body whose surface it is; `no_id` of what rests

@@ -51,6 +51,10 @@ TEST_CASE("where features meet: what spins does not sleep, and angular momentum 
   tests::check_angular_momentum<karabassi<>, double>(host(1));
   tests::check_angular_momentum<karabassi<>, float>(blocks());
   tests::check_angular_momentum<karabassi_swept<>, float>(host(1));
+  tests::check_angular_momentum_of_turntable<karabassi<>, float>(blocks());
+  tests::check_angular_momentum_of_turntable<karabassi_swept<>, double>(host(1));
+  tests::check_angular_momentum_of_riders<karabassi<>, semi_implicit_euler, double>(host(1));
+  tests::check_angular_momentum_of_riders<karabassi_swept<>, velocity_verlet, double>(host(1));
 }
 
 TEST_CASE("where features meet: spin and friction give no energy in a corner, and keep angular momentum") {

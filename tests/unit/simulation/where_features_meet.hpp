@@ -3,6 +3,7 @@
 /// test_where_features_meet_cuda.cpp.
 #pragma once
 
+#include <algorithm>
 #include <random>
 
 #include <collide/effects/adhesion.hpp>
@@ -281,6 +282,59 @@ void check_angular_momentum(Space const& space) {
     CHECK(before[1] - after[1] == doctest::Approx(got.angular[2]).epsilon(rounding));
     CHECK(std::abs(rolls ? before[0] - after[0] : before[1] - after[1]) > 0.01);
   }
+}
+
+/// About the z axis, of balls of radius 0.1.
+template <class Running>
+double angular_momentum(Running const& made, double mass) {
+  auto const x = made.positions(), v = made.velocities();
+  auto const turning = made.simulation.template to_host<collide::angular_velocity>();
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); i += 3) {
+    sum += mass * (double(x[i]) * double(v[i + 1]) - double(x[i + 1]) * double(v[i])) +
+           0.4 * mass * 0.01 * double(turning[i + 2]);
+  }
+  return sum;
+}
+
+/// What balls get of angular momentum on a table that turns far in a step the table loses.
+template <class NarrowPhase, class S, class Space>
+void check_angular_momentum_of_turntable(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, friction, spin,
+                                         collide::reaction, moving_bodies<>>;
+  auto w = ball_on_floor<S>();
+  for (int i = 1; i < 8; ++i) w.particle(0.2 * i, 0.1 * i, 0.1 + 0.05 * i);
+  body_motion turns;
+  turns.rate = 5;
+  double const mass = mass_of_grain(0.1);
+  collide::reaction_sums sums(space, 1, 1e-12);
+  running_bodies<simulation> made(space, w, one_body(w, turns), gravity{}, bounce{0.5}, friction{0.4, 0.4}, spin{0.02},
+                                  sums.effect(density_of_grains), moving_bodies<>{});
+  made.simulation.steps(60, S(0.01));
+  double const got = angular_momentum(made, mass);
+  CHECK(got > 10);
+  CHECK(sums.read(space)[0].angular[2] == doctest::Approx(-got).epsilon(sizeof(S) == 4 ? 2e-5 : 1e-10));
+}
+
+/// The same of balls that stick to the table, and of others that push and turn them.
+template <class NarrowPhase, class Integrator, class S, class Space>
+void check_angular_momentum_of_riders(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, Integrator, gravity, sphere_contact, bounce,
+                                         friction, spin, adhesion, collide::reaction, moving_bodies<>>;
+  auto w = ball_on_floor<S>();
+  for (int i = 1; i < 27; ++i) w.particle(0.199 * (i % 3) + 0.3, 0.199 * (i / 3 % 3), 0.101 + 0.21 * (i / 9));
+  body_motion turns;
+  turns.rate = 2;
+  double const mass = mass_of_grain(0.1);
+  collide::reaction_sums sums(space, 1, 1e-11);
+  running_bodies<simulation> made(space, w, one_body(w, turns), Integrator{}, gravity{},
+                                  sphere_contact::from_restitution(0.5, 0.02, 0.1, density_of_grains, 0.3), bounce{0.3},
+                                  friction{0.5, 0.5}, spin{0.02}, adhesion{30, 0.3}, sums.effect(density_of_grains),
+                                  moving_bodies<>{});
+  made.simulation.steps(600, S(1e-3));
+  auto const stuck = made.simulation.template to_host<collide::adhered>();
+  CHECK(std::count(stuck.begin(), stuck.end(), 2) > 1);
+  CHECK(sums.read(space)[0].angular[2] == doctest::Approx(-angular_momentum(made, mass)).epsilon(1e-9));
 }
 
 /// Where balls that spin touch both walls of a corner, friction at one wall takes speed from the way to the other: no

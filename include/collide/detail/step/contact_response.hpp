@@ -126,6 +126,10 @@ struct contact_response {
     vec3<S> const velocity_before = p[velocity{}];
     [[maybe_unused]] vec3<S> spin_before;
     if constexpr (spins) spin_before = p[angular_velocity{}];
+    // a body that turns sees a swept particle a little beside its straight way
+    [[maybe_unused]] vec3<S> from = here.centre;
+    if constexpr (is_swept && effects_type::any_mesh_impulse)
+      from = p[position{}] + velocity_before * (a.remaining_time * time);
     a.begin_contact_place(time, velocity_before,
                           is_swept ? here.centre : vec3<S>(here.centre - velocity_before * context.dt), seen);
     if constexpr (is_swept) {
@@ -145,8 +149,8 @@ struct contact_response {
     surface.to_world_frame(p);
     if constexpr (effects_type::any_mesh_impulse) {
       vec3<S> const& v = p[velocity{}];
-      vec3<S> const none(S(0), S(0), S(0)), shift = p[position{}] - here.centre;
-      mesh_impulse<S> given{v - velocity_before, none, here.centre, shift, v, c.triangle, c.body};
+      vec3<S> const none(S(0), S(0), S(0)), shift = p[position{}] - from;
+      mesh_impulse<S> given{v - velocity_before, none, from, shift, v, c.triangle, c.body};
       if constexpr (spins) given.spin_change = p[angular_velocity{}] - spin_before;
       book(context, p, given);
     }

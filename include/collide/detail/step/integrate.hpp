@@ -96,6 +96,8 @@ COLLIDE_HD_INLINE void end_particle(Context const& context, Particle& p) {
         Particle next = p;
         context.effects.accelerate(next, Context::kick_after * context.dt);
         book_held(context, p, p[velocity{}] - next[velocity{}]);
+        if constexpr (contains<typename Particle::list, pair_angular_acceleration>)
+          p[angular_velocity{}] = next[angular_velocity{}];
       }
     }
   }

@@ -102,18 +102,19 @@ COLLIDE_HD_INLINE vec3<double> carried(body_frame<S> const& f, vec3<double> cons
 struct ridden_surface {
   vec3<double> before, after;  ///< its velocity when the step begins, and ends
   vec3<double> drift;          ///< velocity on the straight line on which it takes the particle in the step
+  vec3<double> to;             ///< where it takes the particle
 };
 template <class Context>
 COLLIDE_HD_INLINE ridden_surface surface_ridden([[maybe_unused]] Context const& context,
                                                 [[maybe_unused]] vec3<typename Context::scalar> const& position,
                                                 [[maybe_unused]] int frame) {
   vec3<double> const none(0, 0, 0);
-  ridden_surface s{none, none, none};
+  ridden_surface s{none, none, none, position.template cast<double>()};
   if constexpr (Context::has_bodies) {
     if (frame == 0) return s;
     auto const& f = context.triangles.mesh.frames[frame];
     vec3<double> const x = position.template cast<double>(), to = carried(f, x);
-    s = {velocity_at(f.moved, f.before, x), velocity_at(f.moving, f.now, to), none};
+    s = {velocity_at(f.moved, f.before, x), velocity_at(f.moving, f.now, to), none, to};
     double const dt = static_cast<double>(context.dt);
     s.drift = !Context::is_swept
                   ? s.after
@@ -122,12 +123,19 @@ COLLIDE_HD_INLINE ridden_surface surface_ridden([[maybe_unused]] Context const& 
   return s;
 }
 
-/// Tells the effects what the mesh gives to a particle that sticks to it.
+/// Tells the effects what the mesh gives to a particle that sticks to it; `way`: on which it is carried, where that is
+/// not along its velocity.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void book_held(Context const& context, Particle& p, vec3<typename Context::scalar> const& change,
+                                 vec3<typename Context::scalar> const& way) {
+  using S = typename Context::scalar;
+  vec3<S> const none(S(0), S(0), S(0));
+  book(context, p, {change, none, p[position{}], way, p[velocity{}], no_id, body_of_frame(frame_ridden(p))});
+}
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void book_held(Context const& context, Particle& p, vec3<typename Context::scalar> const& change) {
   using S = typename Context::scalar;
-  vec3<S> const none(S(0), S(0), S(0));
-  book(context, p, {change, none, p[position{}], none, p[velocity{}], no_id, body_of_frame(frame_ridden(p))});
+  book_held(context, p, change, vec3<S>(S(0), S(0), S(0)));
 }
 
 /// Lets the mesh hold a particle that sticks to it, against what would change its velocity in the step, of which it
@@ -147,7 +155,11 @@ COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p, typenam
   }
   vec3<double> const given = surface.drift - own - scaled(by, static_cast<double>(first_part));
   v = rounded_to<S>(surface.drift);
-  if (p.number < context.state.size) book_held(context, p, rounded_to<S>(given));  // behind are places of none
+  if constexpr (contains<typename Particle::list, pair_angular_acceleration>)
+    p[angular_velocity{}] += p[pair_angular_acceleration{}] * (first_part * context.dt);
+  vec3<S> way(S(0), S(0), S(0));
+  if constexpr (!Context::is_swept) way = rounded_to<S>(surface.to) - p[position{}];
+  if (p.number < context.state.size) book_held(context, p, rounded_to<S>(given), way);  // behind are places of none
   if constexpr (contains<typename Particle::list, held>) p[held{}] = 2;
   return true;
 }
