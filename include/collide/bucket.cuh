@@ -162,8 +162,7 @@ class bucket::index {
     }
     if (!affords(fixed_bytes)) return measures_.statistics.release();
     auto* const statistics = measures_.clear(space);
-    detail::compute_mesh_statistics<S> const kernel{mesh, statistics, measures_.box_memory.data()};
-    space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
+    detail::compute_mesh_statistics<S>::run(space, mesh, statistics, measures_.box_memory.data());
   }
 
   /// Says that one grid for spheres up to `radius` serves until the next build; the next query makes it, as it knows
@@ -361,11 +360,15 @@ class bucket::index {
                                       plan.table_bits,
                                       bucket_tuning<Space>::costs};
       std::copy(asked.reaches, asked.reaches + detail::max_grids, request.reaches);
-      detail::plan_grid<S, Spheres> kernel{mesh_, boxes, spheres, measures_.statistics.data(), grids, request};
+      detail::plan_grid<S, Spheres> kernel{mesh_, boxes,   spheres, measures_.statistics.data(),
+                                           grids, request, nullptr, 0};
       if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) kernel.mesh = bins_.mesh().mesh, kernel.boxes = nullptr;
+      } else {
+        kernel.cells = lists_.to_empty(space, grids_.cells);
+        kernel.listed = grids_.cells + 1;
       }
-      space.launch(count, kernel);
+      space.launch(kernel.template blocks<typename Space::template block<decltype(kernel)>>(), kernel);
       if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) bins_.mark(space, grids, plan.grids, plan.table_bits);
       }
