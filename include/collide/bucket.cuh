@@ -162,7 +162,8 @@ class bucket::index {
     }
     if (!affords(fixed_bytes)) return measures_.statistics.release();
     auto* const statistics = measures_.clear(space);
-    detail::compute_mesh_statistics<S>::run(space, mesh, statistics, measures_.box_memory.data());
+    detail::compute_mesh_statistics<S> const kernel{mesh, statistics, measures_.box_memory.data()};
+    space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
   /// Says that one grid for spheres up to `radius` serves until the next build; the next query makes it, as it knows

@@ -149,7 +149,8 @@ class mesh_bounds {
   void build(Space& space, mesh_view<S> mesh) {
     auto* const summary = summary_.reserve(space.resource(), 1);
     detail::mesh_statistics<S>::clear(space, summary);
-    detail::compute_mesh_statistics<S>::run(space, mesh, summary, nullptr);
+    detail::compute_mesh_statistics<S> const kernel{mesh, summary, nullptr};
+    space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
   /// The bounds for kernels; valid as long as this object, until the next build.

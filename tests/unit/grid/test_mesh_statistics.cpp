@@ -35,7 +35,8 @@ void check(Space space, std::size_t n) {
   mesh_statistics<S> seen;
   std::vector<triangle_aabb<S>> boxes(n);
   mesh_statistics<S>::clear(space, &seen);
-  compute_mesh_statistics<S>::run(space, mesh, &seen, boxes.data());
+  compute_mesh_statistics<S> const kernel{mesh, &seen, boxes.data()};
+  space.launch(grid_size<Space>(n, kernel), kernel);
 
   constexpr S infinity = std::numeric_limits<S>::infinity();
   S lower[3] = {infinity, infinity, infinity}, upper[3] = {-infinity, -infinity, -infinity}, largest = 0;

@@ -54,7 +54,8 @@ TEST_CASE_TEMPLATE("groups of triangles: the host finds the statistics of a mesh
     auto const mesh = collide::triangle_soup(all.data(), n);
     mesh_statistics<S> seen{}, expected{};
     tests::lockstep<8, false> const device;
-    compute_mesh_statistics<S>::run(device, mesh, &expected, nullptr);
+    compute_mesh_statistics<S> const reference{mesh, &expected, nullptr};
+    device.launch(grid_size<tests::lockstep<8, false>>(n, reference), reference);
     std::vector<triangle_aabb<S>> groups(triangle_group<S>::count(n));
     measure_groups<S> const kernel{{mesh, nullptr}, &seen, groups.data()};
     collide::host(2).launch(kernel.blocks(), kernel);

@@ -67,17 +67,6 @@ struct compute_mesh_statistics {
   mesh_view<S> mesh;
   mesh_statistics<S>* summary;
   triangle_aabb<S>* boxes;  ///< null if they are not wanted
-  std::size_t blocks;       ///< that share the triangles
-
-  /// Puts it on the space's stream, in no more blocks than keep that busy: each has a histogram to add to the summary,
-  /// where all meet. But in as many as 2^16 triangles each need.
-  template <class Space>
-  static void run(Space& space, mesh_view<S> const& mesh, mesh_statistics<S>* summary, triangle_aabb<S>* boxes) {
-    compute_mesh_statistics kernel{mesh, summary, boxes, 0};
-    kernel.blocks = min(grid_size<Space>(mesh.size(), kernel),
-                        max<std::size_t>(space.saturating_blocks(), mesh.size() / (std::size_t{1} << 16) + 1));
-    space.launch(kernel.blocks, kernel);
-  }
 
   template <class Block>
   struct scratch {
@@ -102,13 +91,11 @@ struct compute_mesh_statistics {
         std::uint32_t const bin = size_bin(b.max_extent());
         s.extents.add(block, &summary->extents, bin, relative_area(t, bin));
       };
-      for (std::size_t some = first; some < mesh.size(); some += blocks * Block::num_threads * n) {
-        for (std::size_t i = some; i < some + n && i < mesh.size(); i += 2) {
-          bool const two = i + 1 < mesh.size();
-          triangle<S> const a = mesh[i], b = mesh[two ? i + 1 : i];  // both before anything is written
-          add(i, a);
-          if (two) add(i + 1, b);
-        }
+      for (std::size_t i = first; i < first + n && i < mesh.size(); i += 2) {
+        bool const two = i + 1 < mesh.size();
+        triangle<S> const a = mesh[i], b = mesh[two ? i + 1 : i];  // both before anything is written
+        add(i, a);
+        if (two) add(i + 1, b);
       }
     });
     s.extents.flush(block, &summary->extents);
@@ -128,7 +115,8 @@ template <class Space, class S>
 S largest_coordinate(Space& space, mesh_view<S> const& mesh, buffer<mesh_statistics<S>>& memory) {
   auto* const seen = memory.reserve(space.resource(), 1);
   mesh_statistics<S>::clear(space, seen);
-  compute_mesh_statistics<S>::run(space, mesh, seen, nullptr);
+  compute_mesh_statistics<S> const kernel{mesh, seen, nullptr};
+  space.launch(grid_size<Space>(mesh.size(), kernel), kernel);
   return space.read(seen).largest_coordinate();
 }
 

@@ -170,7 +170,8 @@ class packed_tree {
     std::size_t const n = mesh.size();
     auto* const summary = summary_.reserve(space.resource(), 1);
     mesh_statistics<S>::clear(space, summary);
-    compute_mesh_statistics<S>::run(space, mesh, summary, nullptr);
+    compute_mesh_statistics<S> const seen{mesh, summary, nullptr};
+    space.launch(grid_size<Space>(n, seen), seen);
     std::uint64_t* const places = places_.reserve(space.resource(), 2 * n);
     id* const ids = ids_.reserve(space.resource(), 2 * n);
     space.for_each(n, find_places<S>{mesh, summary, places, ids});
