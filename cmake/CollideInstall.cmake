@@ -17,7 +17,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/collide-config.cmake ${CMAKE_CURRENT_B
         DESTINATION ${package_dir}
         COMPONENT headers)
 
-if(COLLIDE_INSTALL_COMPILED)
+if(COLLIDE_INSTALL_COMPILED AND NOT COLLIDE_COMPILED_LIBRARY)
   set(compiled_parts compiled)
   if(COLLIDE_CUDA)
     list(APPEND compiled_parts compiled_cuda)

@@ -17,6 +17,11 @@
 
 namespace io {
 
+/// A sphere that is there when a film begins.
+struct first_sphere {
+  double centre[3], velocity[3], radius;
+};
+
 /// A film: what it shows, and what the command line says of it.
 struct film {
   char const* name;
@@ -31,6 +36,7 @@ struct film {
   int threads = 0;
   std::vector<collide::body> bodies =
       {};  ///< parts of the mesh that move; no triangle of one shares a vertex with others
+  std::vector<first_sphere> (*first)(film const&) = nullptr;  ///< besides the particles; for scenes with `polydisperse`
 
   /// How many steps there are, and after how many of them nothing more comes.
   std::size_t steps() const { return static_cast<std::size_t>(std::ceil(seconds / dt)); }

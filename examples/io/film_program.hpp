@@ -23,6 +23,8 @@ namespace io {
 namespace detail {
 
 inline char const* name_of(collide::velocity) { return "velocity"; }
+inline char const* name_of(collide::radius) { return "radius"; }
+inline char const* name_of(collide::material) { return "material"; }
 inline char const* name_of(collide::angular_velocity) { return "angular_velocity"; }
 inline char const* name_of(collide::adhered) { return "stuck"; }
 inline char const* name_of(collide::slow_steps) { return "slow_steps"; }
@@ -50,7 +52,9 @@ void write_particles(std::string const& path, Simulation& simulation, float radi
                      collide::columns<Column...>) {
   auto const points = of_present<collide::position>(simulation).first;
   std::size_t const n = points.size() / 3;
-  std::vector<collide::vtk_array> known{{"radius", std::vector<float>(n, radius)}};
+  std::vector<collide::vtk_array> known;
+  if (!collide::detail::contains<typename Simulation::columns, collide::radius>)
+    known.emplace_back("radius", std::vector<float>(n, radius));
   auto const add = [&](auto column) {
     using type = decltype(column);
     if constexpr (!std::is_same<type, collide::position>::value && !std::is_same<type, collide::alive>::value) {
@@ -120,6 +124,28 @@ auto distributed_over(any_ranks const& ranks, collide::simulation<Detector, Effe
   return collide::distributed<simulation, any_ranks>(ranks, one.space(), one.template effect<Effect>()...);
 }
 
+/// Puts the first particles into a simulation, those of the film into the rank that `shows`; the others come later.
+template <class Simulation>
+void set_first(film const& wish, Simulation& simulation, bool shows) {
+  auto const radius = static_cast<float>(wish.stage.radius);
+  if constexpr (collide::detail::contains<typename Simulation::columns, collide::radius>) {
+    auto const first = wish.first != nullptr ? wish.first(wish) : std::vector<first_sphere>();
+    std::vector<float> x, v, r;
+    for (auto const& s : shows ? first : std::vector<first_sphere>()) {
+      x.insert(x.end(), s.centre, s.centre + 3);
+      v.insert(v.end(), s.velocity, s.velocity + 3);
+      r.push_back(static_cast<float>(s.radius));
+    }
+    auto const spheres = collide::upload(simulation.space(), collide::spheres_xyz(x.data(), r.size(), r.data()));
+    collide::buffer<float> moving;
+    float* const to = moving.reserve(simulation.space().resource(), v.size());
+    simulation.space().copy_from_host(to, v.data(), v.size());
+    simulation.set(spheres.view(), to, wish.particles + first.size());
+  } else {
+    simulation.set(collide::spheres_xyz<float>(nullptr, 0, radius), nullptr, wish.particles);
+  }
+}
+
 /// Runs the simulation and shows it. Of ranks, the last does: it has all that sources make.
 template <class Ranks, class Simulation>
 void shoot(film const& wish, Ranks const& ranks, Simulation simulation) {
@@ -132,7 +158,7 @@ void shoot(film const& wish, Ranks const& ranks, Simulation simulation) {
   auto const mesh = collide::upload(
       space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, stage.corners.data(), stage.triangle_count()));
   auto const radius = static_cast<float>(stage.radius);
-  simulation.set(collide::spheres_xyz<float>(nullptr, 0, radius), nullptr, wish.particles);
+  set_first(wish, simulation, shows);
   simulation.set_mesh(mesh.view(), wish.bodies);
   if (!wish.load.empty()) collide::load(simulation, wish.load);
 

@@ -12,9 +12,9 @@ namespace collide {
 /// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
 /// long as no index has been made; that follows from the numbers of triangles and spheres alone, by the measured costs
 /// of the space (bench/results/README.md). `bucket` wins for all else, but on the host for some meshes of long thin
-/// triangles, where `bvh` does: if most of the boxes of 128 triangles is empty, of up to 128 spheres it is counted
-/// how many of these triangles they touch, and how many boxes. `build` with a radius assumes
-/// a sphere at each triangle. On a device it is never `bvh`.
+/// triangles, where `bvh` does: if most of the boxes of 128 triangles is empty, it counts how many of these triangles,
+/// and how many boxes, up to 128 of the spheres touch. `build` with a radius assumes a sphere at each triangle. On a
+/// device it is never `bvh`.
 ///
 /// The same calls always go the same way, and the pairs are the same either way. It is chosen by `build` with a
 /// radius, and else by the first query for which it pays, counting what the queries before it would have saved.

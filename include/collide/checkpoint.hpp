@@ -392,7 +392,8 @@ void load(simulation<Detector, Effect...>& into, std::istream& from) {
   detail::checkpoint<Detector, Effect...>(into, from).restore(into);
 }
 
-/// Reads a checkpoint from a file, which has nothing else in it.
+/// Reads a checkpoint from a file, which has nothing else in it. Throws `error` if it cannot be read, and what `load`
+/// of a stream throws.
 template <class Detector, class... Effect>
 void load(simulation<Detector, Effect...>& into, std::string const& path) {
   detail::read_checkpoint_file(path, [&](std::istream& file) {

@@ -268,7 +268,7 @@ class cuda : public detail::cuda_space {
   /// How many blocks keep the device busy.
   std::size_t saturating_blocks() const { return static_cast<std::size_t>(sm_count_) * 2048; }
 
-  /// How many blocks of a kernel can be at work at a time; here that does not matter.
+  /// No limit: kernels of this space need not know how many of their blocks are at work at a time.
   template <class Kernel>
   std::size_t max_resident_blocks() const {
     return std::numeric_limits<std::size_t>::max();

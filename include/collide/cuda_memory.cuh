@@ -74,7 +74,8 @@ class cuda_memory final : public std::pmr::memory_resource {
 };
 
 /// Device memory by cudaMallocAsync and cudaFreeAsync, in the order of a stream; never waits. For spaces of that
-/// stream: work on another one must wait before it uses the memory.
+/// stream: work on another one must wait before it uses the memory. Allocation throws `cuda_error` if there is not
+/// enough.
 class cuda_async_memory final : public std::pmr::memory_resource {
  public:
   /// Memory in the order of `stream`, which must outlive this object and all that has memory of it.
@@ -95,7 +96,8 @@ class cuda_async_memory final : public std::pmr::memory_resource {
 };
 
 /// Pinned host memory by cudaMallocHost and cudaFreeHost: copies of `streamed` from it run at full bandwidth and do
-/// not block the host. Slow to allocate, and not available to other programs.
+/// not block the host. Slow to allocate, and not available to other programs. Allocation throws `cuda_error` if there
+/// is not enough.
 class cuda_pinned_memory final : public std::pmr::memory_resource {
  public:
   /// The one instance.

@@ -93,14 +93,14 @@ class point_view {
 };
 
 /// View of `n` points whose coordinates x, y, z lie side by side, one point `stride` coordinates after the other: 3 if
-/// they are packed, 4 for points of 16 bytes. O(1). Throws `error` if the stride is 2^32 or more.
+/// they are packed, 4 for points of 16 bytes. O(1). Throws `error` if the stride is negative, or 2^32 or more.
 template <class S, class = std::enable_if_t<std::is_arithmetic<S>::value>>
 point_view<S> points(S const* xyz, std::size_t n, std::size_t stride = 3) {
   return {xyz, xyz + 1, xyz + 2, stride, n};
 }
 
 /// View of `n` points with their coordinates in three arrays, of which each point takes every `stride`-th element.
-/// O(1). Throws `error` if the stride is 2^32 or more.
+/// O(1). Throws `error` if the stride is negative, or 2^32 or more.
 template <class S>
 point_view<S> points(S const* x, S const* y, S const* z, std::size_t n, std::size_t stride = 1) {
   return {x, y, z, stride, n};

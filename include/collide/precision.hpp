@@ -14,16 +14,16 @@ struct baseline {
   using scalar = float;  ///< of the arithmetic
 };
 
-/// Arithmetic in float, in coordinates local to the sphere. Results may be wrong for pairs within a few units in the
-/// last place (of float) of contact; distances of contacts are within 2^-13 of the triangle's size as seen from the
-/// sphere's centre.
+/// Arithmetic in float, in coordinates local to the sphere. Results may be wrong next to contact; tests find none wrong
+/// where distance and radius differ by more than 2^-16 of the larger of the radius and the farthest coordinate of the
+/// triangle as seen from the centre. Distances of contacts are within 2^-13 of the triangle's size as seen from there.
 struct single_precision {
   using scalar = float;  ///< of the arithmetic
 };
 
-/// Arithmetic in double, in coordinates local to the sphere. Results may be wrong for pairs within a few units in the
-/// last place (of double) of contact; distances of contacts are within 2^-42 of the triangle's size as seen from the
-/// sphere's centre.
+/// Arithmetic in double, in coordinates local to the sphere. Results may be wrong next to contact, far more seldom than
+/// those of `single_precision`. Distances of contacts are within 2^-42 of the triangle's size as seen from the sphere's
+/// centre.
 struct double_precision {
   using scalar = double;  ///< of the arithmetic
 };

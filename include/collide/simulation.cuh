@@ -111,8 +111,7 @@ class simulation {
     place(particles, velocities, room);
     radii_ = {particles.common_radius(), particles.common_radius(), S(0)};
     if (!particles.one_radius()) radii_ = detail::radius_range_of(*this);
-    if (asks_mesh && n != 0 && radii_.smallest == 0)
-      throw error("collide: simulation: set: radii of particles that touch a mesh are above 0");
+    check_radii("set");
     radii_ = radii_.with(own);
     if constexpr (effects_type::any_pair_contact) neighbours_.clear(space_, room, radii_);
     if constexpr (effects_type::overlaps) surfaces_.clear(space_, room);
@@ -164,11 +163,7 @@ class simulation {
     }
     wake_all();  // what slept may have lost its support
     prepare();
-    if constexpr (effects_type::adheres) {
-      if (is_set_)
-        space_.for_each(state_.size,
-                        detail::release_adhered{state_, mesh_ref(S(0)), bodies_.are_driven(), bodies_.size()});
-    }
+    if (is_set_) release_adhered();
   }
 
   // Other scalar types end here.
@@ -181,8 +176,10 @@ class simulation {
     detail::reject_scalar<T>();
   }
 
-  /// Advances by the time `dt`. Throws `error` if `dt` is not finite or an effect's parameter makes no sense, before
-  /// `set`, and before `set_mesh` if an effect touches the mesh; `cuda_error` if a kernel cannot be launched.
+  /// Advances by the time `dt`. Throws `error` if `dt` is not above 0 and finite, or longer than an effect allows
+  /// (`largest_time_step` is shorter), if an effect's parameter makes no sense, before `set`, and before `set_mesh` if
+  /// an effect touches the mesh; `cuda_error` if a kernel cannot be launched. Does not wait; allocates nothing, but on
+  /// the host for neighbours beyond the room of `reserve`. O(n) for n particles, and their contacts.
   void step(S dt) {
     check_step(dt);
     if (!knows_pair_forces_) meet(state_, dt);
@@ -236,14 +233,28 @@ class simulation {
   }
 
   /// Gives all particles a column's values, from memory of the space, in the order of the stream. Waits if that is
-  /// `radius` or `material`.
+  /// `radius` or `material`. If it says where particles are, how they move, what they are, or which there are, all that
+  /// sleeps is woken; what adhered and does not touch the mesh any more is free. What is written by way of `data` wakes
+  /// nothing. Throws `error` if a radius is 0 where particles touch a mesh.
   template <class Column>
   void assign(detail::column_element<Column, S> const* values) {
     check<Column>();
     space_.for_each(numbers<Column>(),
                     detail::copy_values<detail::column_element<Column, S>>{values, state_.at(Column{})});
-    if constexpr (std::is_same<Column, radius>::value) radii_ = detail::radius_range_of(*this);
+    if constexpr (std::is_same<Column, radius>::value) {
+      radii_ = detail::radius_range_of(*this);
+      check_radii("assign");
+      if constexpr (effects_type::any_pair_contact) neighbours_.fit(space_, state_.size, radii_);
+      prepare_index();
+    }
     if constexpr (std::is_same<Column, radius>::value || std::is_same<Column, material>::value) know_smallest();
+    constexpr bool moves = detail::contains<collide::columns<velocity, angular_velocity>, Column>;
+    constexpr bool meets_others = detail::contains<collide::columns<position, radius, material, alive>, Column>;
+    if constexpr (moves || meets_others) wake_all();
+    if constexpr (meets_others) {
+      knows_pair_forces_ = !effects_type::ends_after_meeting;
+      if (has_mesh_) release_adhered();
+    }
   }
 
   /// Gives all particles a column's values, from a container such as std::vector or thrust::device_vector, whose memory
@@ -267,7 +278,8 @@ class simulation {
   }
 
   /// The parameters of an effect, to be changed between steps. All that sleeps is woken, as what holds it may be
-  /// another then; but not by a source, or by `moving_bodies`, which wake what they touch.
+  /// another then; but not by a source, or by `moving_bodies`, which wake what they touch. O(1), or with `sleep`
+  /// O(particles); does not wait.
   template <class E>
   E& effect() {
     check_effect<E>();
@@ -306,15 +318,12 @@ class simulation {
 
   static constexpr bool sweeps = effects_type::any_mesh_contact && !detail::is_discrete<narrow_phase, S>;
   static constexpr bool has_begin_step = (detail::has_begin_step<Effect, execution_space, state_type, S>::value || ...);
-  /// Effects other than sources that may make particles in their `begin_step`, and the columns that they write.
+  /// Effects other than sources that may make particles in their `begin_step`.
   template <class E>
   static constexpr bool may_make =
       !detail::is_source<E> && detail::has_begin_step<E, execution_space, state_type, S>::value &&
       detail::contains<typename detail::writes_of<E>::type, alive>;
-  using made_with = detail::union_of<
-      collide::columns<>,
-      std::conditional_t<may_make<Effect>, typename detail::writes_of<Effect>::type, collide::columns<>>...>;
-  static constexpr bool may_be_made = made_with::size != 0;
+  static constexpr bool may_be_made = (may_make<Effect> || ...);
   template <class Triangles>
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   using neighbour_lists =
@@ -357,10 +366,8 @@ class simulation {
 
   /// The part of a step before particles meet.
   void begin_step(S dt) {
-    if constexpr (may_be_made)
-      space_.for_each(state_.size, detail::copy_values<std::uint8_t>{state_.at(alive{}), was_there_.data()});
-    (detail::begin_step_of<Effect>(effects_, space_, state_, dt), ...);
-    if constexpr (may_be_made) begin_anew();
+    wake_where_others_go(dt);
+    (begin_step_of<Effect>(dt), ...);
     if constexpr (effects_type::makes && effects_type::remembers_surfaces) {
       if (effects_.due(static_cast<double>(dt)) > 0)
         space_.for_each(state_.size,
@@ -373,9 +380,17 @@ class simulation {
     if constexpr (effects_type::ends_after_meeting) move(dt);
   }
 
-  /// Begins anew with the particles that effects have made.
+  /// Lets an effect begin a step. What it makes begins anew in all that it does not write.
+  template <class E>
+  void begin_step_of(S dt) {
+    if constexpr (may_make<E>)
+      space_.for_each(state_.size, detail::copy_values<std::uint8_t>{state_.at(alive{}), was_there_.data()});
+    detail::begin_step_of<E>(effects_, space_, state_, dt);
+    if constexpr (may_make<E>) begin_anew<typename detail::writes_of<E>::type>();
+  }
+  template <class Written>
   void begin_anew() {
-    using kept = detail::union_of<made_with, collide::columns<position, velocity, radius, global_number>>;
+    using kept = detail::union_of<Written, collide::columns<position, velocity, radius, global_number>>;
     using initial = detail::difference_of<columns, kept>;
     std::uint8_t* surfaces = nullptr;
     if constexpr (effects_type::remembers_surfaces) surfaces = surfaces_.ref(state_.size).counts;
@@ -387,6 +402,14 @@ class simulation {
     [[maybe_unused]] bool const is_first = !knows_pair_forces_;
     knows_pair_forces_ = true;
     if (state_.size == 0) return;
+    if (is_first && !bodies_.are_placed())
+      advance_bodies(0, true);  // those that the caller drives, to where they begin
+    if constexpr (effects_type::overlaps && has_bodies && detail::contains<columns, slow_steps>) {
+      using mesh_type = decltype(mesh_ref<true>(dt));
+      if (!is_first)
+        space_.for_each(with_copies.size,
+                        detail::wake_by_bodies<S, effects_type, mesh_type>{with_copies, effects_, mesh_ref<true>(dt)});
+    }
     if constexpr (effects_type::any_pair_contact) {
       if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
       neighbours_.renew(space_, with_copies, effects_.space());
@@ -443,9 +466,29 @@ class simulation {
     space_.launch(kernel.blocks, kernel);
   }
 
+  /// Sleepers wake, of which it is not known what others and walls do to them.
   void wake_all() {
     if constexpr (detail::contains<columns, slow_steps>) {
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
+      knows_pair_forces_ = !effects_type::ends_after_meeting;
+    }
+  }
+
+  /// A source whose places have all been filled takes some from others, on which something may sleep: all of that is
+  /// woken.
+  void wake_where_others_go([[maybe_unused]] S dt) {
+    if constexpr (effects_type::makes && effects_type::any_pair_contact && detail::contains<columns, slow_steps>) {
+      double const due = effects_.due(static_cast<double>(dt));
+      if (due > 0 && !effects_.makes_only_where_free())
+        space_.for_each(state_.size, detail::wake_where_others_go<state_type>{state_, due});
+    }
+  }
+
+  /// Frees particles that stick to the mesh and do not touch it any more.
+  void release_adhered() {
+    if constexpr (effects_type::adheres) {
+      space_.for_each(state_.size,
+                      detail::release_adhered{state_, mesh_ref(S(0)), bodies_.are_driven(), bodies_.size()});
     }
   }
 
@@ -474,8 +517,16 @@ class simulation {
     return state_.size * std::size_t(detail::column_layout<Column, S>::width);
   }
 
+  COLLIDE_COLD void check_radii(char const* member) const {
+    if (asks_mesh && state_.placed != 0 && radii_.smallest == 0)
+      throw error(std::string("collide: simulation: ") + member + ": radii of particles that touch a mesh are above 0");
+  }
+
   COLLIDE_COLD void prepare() {
     advance_bodies(0, true);
+    prepare_index();
+  }
+  COLLIDE_COLD void prepare_index() {
     if constexpr (asks_mesh) {
       constexpr bool is_part = detail::contains<columns, global_number>;  // others come from other ranks
       std::size_t const n = detail::max(state_.size, std::size_t{is_part});

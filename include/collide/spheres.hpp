@@ -86,15 +86,15 @@ constexpr bool check_scalars() {
 
 }  // namespace detail
 
-/// Spheres of one radius whose centres are as `points` gives them. O(1). Throws `error` if there are more than 2^32
-/// - 2.
+/// Spheres of one radius whose centres are as `points` gives them. O(1). Throws `error` if there are more than
+/// 2^32 - 2.
 template <class S>
 sphere_view<S> spheres_at(point_view<S> const& centres, std::common_type_t<S> radius) {
   return {centres, nullptr, 0, radius};
 }
 
 /// Spheres whose centres are as `points` gives them, with a radius each: every `radius_stride`-th of `radii`. O(1).
-/// Throws `error` if there are more than 2^32 - 2 spheres, or the stride is 2^32 or more.
+/// Throws `error` if there are more than 2^32 - 2 spheres, `radii` is null, or the stride is 2^32 or more.
 template <class S, class R>
 sphere_view<S> spheres_at(point_view<S> const& centres, R const* radii, std::size_t radius_stride = 1) {
   static_assert(detail::check_scalars<S, R>());
@@ -103,35 +103,37 @@ sphere_view<S> spheres_at(point_view<S> const& centres, R const* radii, std::siz
 }
 
 /// `n` spheres with packed centres and one radius: `xyz` holds 3 n coordinates x0, y0, z0, x1, ... A radius that is
-/// negative or NaN makes all of them empty. O(1). Throws `error` if there are more than 2^32 - 2 spheres.
+/// negative or NaN makes all of them empty. O(1). Throws `error` if there are more than 2^32 - 2 spheres, or the
+/// address is null.
 template <class S>
 sphere_view<S> spheres_xyz(S const* xyz, std::size_t n, std::common_type_t<S> radius) {
   return {points(xyz, n), nullptr, 0, radius};
 }
 
 /// `n` spheres with packed centres and a radius each: `xyz` holds 3 n coordinates x0, y0, z0, x1, ..., and `radii` n
-/// numbers in the same kind of memory. O(1). Throws `error` if there are more than 2^32 - 2 spheres.
+/// numbers in the same kind of memory. O(1). Throws `error` if there are more than 2^32 - 2 spheres, or an address is
+/// null.
 template <class S, class R>
 sphere_view<S> spheres_xyz(S const* xyz, std::size_t n, R const* radii) {
   return spheres_at(points(xyz, n), radii);
 }
 
 /// `n` spheres with the coordinates of their centres in three arrays of n, and one radius. O(1). Throws `error` if
-/// there are more than 2^32 - 2 spheres.
+/// there are more than 2^32 - 2 spheres, or an address is null.
 template <class S>
 sphere_view<S> spheres_soa(S const* x, S const* y, S const* z, std::size_t n, std::common_type_t<S> radius) {
   return {points(x, y, z, n), nullptr, 0, radius};
 }
 
 /// `n` spheres with the coordinates of their centres in three arrays of n, and `n` radii. O(1). Throws `error` if there
-/// are more than 2^32 - 2 spheres.
+/// are more than 2^32 - 2 spheres, or an address is null.
 template <class S, class R>
 sphere_view<S> spheres_soa(S const* x, S const* y, S const* z, std::size_t n, R const* radii) {
   return spheres_at(points(x, y, z, n), radii);
 }
 
 /// `n` spheres as quadruples: `xyzr` holds 4 n numbers x0, y0, z0, r0, x1, ..., such as an array of float4. O(1).
-/// Throws `error` if there are more than 2^32 - 2 spheres.
+/// Throws `error` if there are more than 2^32 - 2 spheres, or the address is null.
 template <class S>
 sphere_view<S> spheres_xyzr(S const* xyzr, std::size_t n) {
   return {points(xyzr, n, 4), xyzr + 3, 4, S(0)};

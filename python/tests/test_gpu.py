@@ -226,6 +226,20 @@ def test_devices_are_not_mixed(library):
         host.count(library.put(centres), 1)
 
 
+def test_vectors_of_warp():
+    """Points as warp's own programs have them; and work on the null stream."""
+    warp = Warp().warp
+    vertices, centres = (warp.array(a, dtype=warp.vec3, device="cuda:0") for a in (VERTICES, VERTICES + 0.25))
+    corners = warp.array(TRIANGLES.ravel(), dtype=warp.int32, device="cuda:0")
+    for stream in (warp.get_stream("cuda:0"), warp.get_device("cuda:0").null_stream):
+        with warp.ScopedStream(stream):
+            mesh = collide.Mesh(vertices, corners.reshape((-1, 3)))
+            found = mesh.contacts(centres, 0.5, order="canonical").point
+        host = collide.Mesh(VERTICES.astype(numpy.float32), TRIANGLES)
+        points = host.contacts((VERTICES + 0.25).astype(numpy.float32), 0.5, order="canonical").point
+        assert len(points) > 0 and numpy.array_equal(found.numpy(), points)
+
+
 def test_triangles_are_checked(library):
     with pytest.raises(ValueError, match="triangles: .* not a vertex"):
         collide.Mesh(library.put(VERTICES.astype(numpy.float32)), library.put(TRIANGLES + 1))

@@ -98,6 +98,23 @@ def test_torch_strides_and_out():
     assert pairs.records.data_ptr() == out.data_ptr() and pairs.complete
 
 
+@pytest.mark.parametrize("vector, dtype", [("vec3f", numpy.float32), ("vec3d", numpy.float64)])
+def test_vectors_of_warp(vector, dtype):
+    """Its usual arrays of points are of vectors: (n,) for warp, (n, 3) for all others. They are read where they are."""
+    warp = pytest.importorskip("warp")
+    warp.config.quiet = True
+    put = lambda array: warp.array(array, dtype=getattr(warp, vector), device="cpu")
+    corners = warp.array(TRIANGLES.ravel(), dtype=warp.int32, device="cpu")
+    vertices, centres = put(VERTICES), put(VERTICES + 0.25)
+    mesh, same = collide.Mesh(vertices, corners.reshape((-1, 3))), collide.Mesh(VERTICES.astype(dtype), TRIANGLES)
+    contacts = mesh.contacts(centres, 0.5, order="canonical")
+    expected = same.contacts((VERTICES + 0.25).astype(dtype), 0.5, order="canonical")
+    assert len(contacts) > 0 and numpy.array_equal(contacts.point.numpy(), expected.point)
+    vertices.numpy()[:] += 9  # a view
+    mesh.update(vertices)
+    assert mesh.count(centres, 0.5) == 0
+
+
 def test_any_object_with_dlpack():
     class Array:
         def __init__(self, of):

@@ -68,11 +68,12 @@ struct box_walls {
 /// A box that repeats: a particle that leaves on one side comes in on the other, however far it is outside. At the end
 /// of a step each coordinate is in [lower, upper). Particles meet across its sides as they do inside, with forces,
 /// memory and sleep; each side must be 4.42 of the largest radii long then, or 4 and a little where others are much
-/// smaller: `step` throws `error` if it is not. The mesh does not repeat.
+/// smaller: `step` throws `error` if it is not. The mesh does not repeat: what stuck to it where it left is free.
 ///
 /// If two meet across a side, effects see the one at the upper side where it is a length farther down: both the same.
 struct periodic_box {
   using writes = columns<position>;
+  using optional_writes = columns<adhered>;
   static constexpr bool repeats_space = true;  ///< particles meet across its sides
 
   double lower[3] = {0, 0, 0};  ///< the corner of the smallest coordinates; finite, each below that of `upper`
@@ -90,7 +91,9 @@ struct periodic_box {
     for (int k = 0; k < 3; ++k) {
       S& x = p[position{}][k];
       S const low = S(lower[k]), high = S(upper[k]);
-      if (x < low || x >= high) x = detail::wrapped(x, low, high);
+      if (!(x < low || x >= high)) continue;
+      x = detail::wrapped(x, low, high);
+      if constexpr (Particle::template has<adhered>) p[adhered{}] = 0;
     }
   }
 };

@@ -7,8 +7,8 @@
 namespace collide {
 
 /// Each particle has its own radius: a column more, read wherever a radius is needed. Without it there is one radius
-/// for all, which takes no memory. Where particles meet, an effect may change radii up to the largest that
-/// `simulation::set` has seen.
+/// for all, which takes no memory. Where particles meet, an effect may change radii up to the largest that `set` and
+/// `assign<radius>` of the simulation have seen.
 struct polydisperse {
   using reads = columns<radius>;
 };

@@ -108,9 +108,9 @@ struct reaction {
 class reaction_sums {
  public:
   /// For so many bodies; a step of a mesh with more is refused (`error`). `unit` is the impulse to which each contact
-  /// is rounded, and the moment: a sum may be off by half a unit for each contact of a step. `triangles`: for how many
-  /// of the mesh, from the first on, there are sums too. Allocates 12 KB a body, as much for what rests, and 48 bytes a
-  /// triangle in the space.
+  /// is rounded, and the moment: a sum may be off by half a unit for each contact of a step. It is above 0, else a step
+  /// throws `error`. `triangles`: for how many of the mesh, from the first on, there are sums too. Allocates 12 KB a
+  /// body, as much for what rests, and 48 bytes a triangle in the space.
   template <class Space>
   reaction_sums(Space const& space, std::size_t bodies, double unit, std::size_t triangles = 0)
       : bodies_{bodies}, triangles_{triangles}, unit_{unit} {
@@ -130,7 +130,7 @@ class reaction_sums {
   }
 
   /// The impulse of each body since `clear`, and last that of what rests. Over the time since then it is the mean
-  /// force. Waits.
+  /// force. Throws `error` if a sum is 9e18 units or more. Waits.
   template <class Space>
   std::vector<body_impulse> read(Space const& space) const {
     return impulses(counts(space));

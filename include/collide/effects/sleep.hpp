@@ -10,6 +10,8 @@ namespace collide {
 /// A particle that has been slower than `speed` for `steps` steps (at most 127) sleeps: it is left out until another
 /// particle that is awake and faster than that overlaps it, or the mesh changes, and costs the byte that says so.
 /// Choose `steps` such that a particle at the top of its flight is not slow for so long: more than 2 speed / (g dt).
+/// `speed` must be below that at which particles sink in a medium, or they stop there. Name it behind `box_walls`,
+/// which stop particles only at the end of a step. One that vanishes in a sink while it is slow wakes nothing.
 struct sleep {
   using reads = columns<velocity>;
   using optional_reads = columns<angular_velocity>;

@@ -131,7 +131,8 @@ void load(distributed<simulation<Detector, Effect...>, Ranks>& into, std::istrea
       into, [&](auto const& read) { return read(from); });
 }
 
-/// Reads a checkpoint from a file that all ranks see, which has nothing else in it.
+/// Reads a checkpoint from a file that all ranks see, which has nothing else in it. Throws `error` if it cannot be
+/// read, and what `load` of a stream throws; `rank_error` on the ranks that could.
 template <class Detector, class... Effect, class Ranks>
 void load(distributed<simulation<Detector, Effect...>, Ranks>& into, std::string const& path) {
   detail::distributed_checkpoint<distributed<simulation<Detector, Effect...>, Ranks>>::restore(

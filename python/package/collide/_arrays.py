@@ -1,6 +1,7 @@
 """Which library an array is of, on which stream it works, and how results become arrays of it."""
 
 import importlib
+import os
 
 from . import _host
 from ._errors import refuse
@@ -77,6 +78,9 @@ class _Torch(_Numpy):
     def stream(self, device):
         return self.module.cuda.current_stream(device).cuda_stream, -1
 
+    def array(self, result, stream):  # without asking for a stream: it is the one that the call was on
+        return self.module.from_dlpack(result.__dlpack__())
+
     def dtype(self, name):
         return getattr(self.module, name)
 
@@ -127,7 +131,7 @@ class _Jax(_Numpy):
 
 class _Warp(_Numpy):
     def stream(self, device):
-        return self.module.get_stream(f"cuda:{device}").cuda_stream, -1
+        return self.module.get_stream(f"cuda:{device}").cuda_stream or 0, -1  # None is the null stream
 
     def flags(self, result):
         return result.view(self.module.bool)
@@ -160,6 +164,19 @@ class _Stranger(_Numpy):
 
     def field(self, records, first, last, kind):
         raise TypeError("results are arrays of a library that is unknown here: take `records`, rows of 32-bit words")
+
+
+_forks = []  # as many as lead to this process
+os.register_at_fork(after_in_child=lambda: _forks.append(1))
+
+
+def stream_of(library, device):
+    """What a call to a compiled module begins with: on a GPU the stream that the library works on now."""
+    if device[0] != CUDA:
+        return NO_STREAM
+    if _forks:  # libraries have their own errors, and some have none
+        _cuda.order(device[1], 0, 0)  # refuses, and says why
+    return library.stream(device[1])
 
 
 _classes = {"numpy": _Numpy, "torch": _Torch, "cupy": _Cupy, "jax": _Jax, "jaxlib": _Jax, "warp": _Warp}

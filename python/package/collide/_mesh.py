@@ -4,7 +4,7 @@ import math
 import re
 from typing import Any, Literal, NamedTuple, Optional, Union
 
-from ._arrays import CUDA, NO_STREAM, device_of, library_of, module_for
+from ._arrays import CUDA, device_of, library_of, module_for, stream_of
 from ._errors import refuse
 
 Array = Any  #: an array of numpy, torch, cupy, jax or warp, or anything with __dlpack__
@@ -142,8 +142,9 @@ class Csr(NamedTuple):
 class Mesh:
     """A triangle mesh, and the queries that spheres may ask of it. Where its vertices lie, it runs.
 
-    vertices   (n, 3) float32 or float64, in any unit of length. The arrays are read where they are, not copied: keep
-               them as they are while the mesh is used, or call `update` when they have changed.
+    vertices   (n, 3) float32 or float64, of warp also (n,) vec3 or vec3d, in any unit of length. The arrays are read
+               where they are, not copied: keep them as they are while the mesh is used, or call `update` when they have
+               changed.
     triangles  (m, 3) int32 or uint32: numbers of vertices, from 0. None: rows 3 i, 3 i + 1, 3 i + 2 of vertices are
                triangle i.
     validate   check that triangles name vertices that exist: reading others is undefined behaviour. O(m); on a GPU it
@@ -165,7 +166,7 @@ class Mesh:
         self._is_wide = _is_wide(vertices)
         make = module.MeshDouble if self._is_wide else module.MeshFloat
         self._mesh = make(threads, self._device[1])
-        self._mesh.take(self._stream(self._library), vertices, triangles, validate)
+        self._mesh.take(stream_of(self._library, self._device), vertices, triangles, validate)
 
     def __len__(self) -> int:
         """How many triangles there are."""
@@ -179,7 +180,7 @@ class Mesh:
         """The mesh has moved: takes other vertices, or the same array with other contents, and triangles if they have
         changed, too. What depends on them is prepared again by the next query; nothing is allocated if the mesh has not
         grown. Raises as the constructor does; the mesh is then as it was. Triangles are not checked."""
-        stream = self._stream(library_of(vertices, self._device))
+        stream = stream_of(library_of(vertices, self._device), self._device)
         self._mesh.take(stream, vertices, triangles, False)
 
     def count(
@@ -322,7 +323,7 @@ class Mesh:
         """What a function of the compiled mesh finds, as a ``kind``; bool stands for flags. It works on the stream of the
         library that the centres, or points, are of."""
         library = library_of(centres, self._device)
-        stream = self._stream(library)
+        stream = stream_of(library, self._device)
         results = _is_canonical(order), capacity, out, library.is_numpy
         found = function(stream, what, centres, *asked, results)
         if kind is int:
@@ -338,17 +339,14 @@ class Mesh:
             records = out[:size]
         return kind(library, records, self._is_wide, size, *total)
 
-    def _stream(self, library):
-        """What a call to the compiled module begins with: on a GPU the stream that the library works on now."""
-        return library.stream(self._device[1]) if self._device[0] == CUDA else NO_STREAM
-
 
 def _is_wide(array):
     if not hasattr(array, "dtype") and device_of(array, "vertices")[0] != CUDA:
         import numpy
 
         array = numpy.from_dlpack(array)
-    return "float64" in str(getattr(array, "dtype", ""))
+    dtype = getattr(array, "dtype", "")
+    return "float64" in str(getattr(dtype, "_wp_scalar_type_", dtype))  # of warp's vectors, such as vec3
 
 
 def _is_canonical(order):

@@ -7,7 +7,7 @@ from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy
 
 from . import _build
-from ._arrays import CUDA, NO_STREAM, library_of, module_for
+from ._arrays import CUDA, library_of, module_for, stream_of
 from ._mesh import Array, Mesh
 from ._errors import refuse
 from .effects import Effect, Vector
@@ -239,4 +239,4 @@ class Simulation:
         return number
 
     def _stream(self) -> Tuple[int, int]:
-        return self._library.stream(self._device[1]) if self._device[0] == CUDA else NO_STREAM
+        return stream_of(self._library, self._device)

@@ -10,8 +10,10 @@ using space = collide::cuda_shared;
 using space = collide::host;
 #endif
 
+namespace {
+
 /// One triangle, one sphere that touches it and one that does not.
-inline std::uint64_t hits() {
+std::uint64_t hits() {
   space here;
   float const corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   float const centres[] = {0.25F, 0.25F, 0.5F, 5, 5, 5};
@@ -20,3 +22,5 @@ inline std::uint64_t hits() {
   collide::detector<collide::all_pairs, collide::karabassi<>, space> detector(here);
   return detector.detect(mesh.view(), spheres.view(), collide::count()).total();
 }
+
+}  // namespace

@@ -261,6 +261,27 @@ struct revives {
   }
 };
 
+/// What an effect makes begins anew in a column that only another one writes that makes particles.
+template <class Space>
+void check_two_makers(Space const& space) {
+  using other = revives<temperature>;
+  using maker = revives<>;
+  using simulation = collide::simulation<meets_mesh<Space>, other, maker, collide::absorbing_box>;
+  world<float> w;
+  w.radius = 0.1f;
+  w.particle(0, 0, 1);
+  running<simulation> made(space, w, other{}, maker{}, collide::absorbing_box{{-1, -1, 0}, {1, 1, 2}});
+  made.simulation.step(1e-3f);
+  CHECK(made.simulation.template to_host<collide::alive>()[0] == 0);
+  placed<float> const warm(space, {100});
+  made.simulation.template assign<temperature>(warm.data());
+  made.simulation.template effect<maker>().now = true;
+  made.simulation.template effect<collide::absorbing_box>() = {{9, 9, 9}, {9, 9, 9}};
+  made.simulation.step(1e-3f);
+  CHECK(made.simulation.template to_host<collide::alive>()[0] == 1);
+  CHECK(made.simulation.template to_host<temperature>()[0] == 20);
+}
+
 /// What an effect of a user's own makes where a grain was that slid over the floor along `n` small ones moves as that
 /// did: contacts do not remember it.
 template <class S, class Space>

@@ -304,6 +304,85 @@ void check_sleeping_grains(Space const& space) {
   CHECK(sums.read(space)[0].linear[2] == doctest::Approx(-mass * 9.81 * 10000 * dt).epsilon(1e-2).scale(0));
 }
 
+/// What sleeps on a body is woken where that begins to move, and goes with it, however slowly: the lowest of a stack
+/// and what lies on it.
+template <class Integrator, class S, class Space>
+void check_sleep_on_bodies(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, collide::sleep,
+                                         gravity, law, moving_bodies<collide::driven>>;
+  law const by{collide::one_material({1e7, 0.2, 2500}, {0.2, 0.5, 0.1})};
+  world<S> w;
+  w.radius = S(0.1);
+  add_divided_floor(w, 1, 4);
+  w.particle(0.01, 0.02, 0.0985);
+  w.particle(0.01, 0.02, 0.2975);
+  running_bodies<simulation> made(space, w, one_body(w, {}), Integrator{}, collide::sleep{0.01, 100}, gravity{}, by,
+                                  moving_bodies<collide::driven>{});
+  double const dt = 1e-3;
+  auto const height = [&](std::size_t k) { return double(made.positions()[3 * k + 2]); };
+  made.simulation.steps(600, S(dt));
+  for (auto const slow : made.simulation.template to_host<collide::slow_steps>()) CHECK((slow >= 100 && slow < 128));
+  double const low = height(0), high = height(1);
+  collide::body_state state;
+  for (double const speed : {-0.005, -0.1, 0.005}) {
+    state.moving.linear[2] = speed;
+    for (int i = 0; i < 300; ++i) {
+      state.at.position[2] += speed * dt;
+      made.simulation.space().copy_from_host(made.simulation.bodies().states(), &state, 1);
+      made.simulation.step(S(dt));
+      made.simulation.space().synchronize();
+    }
+    CHECK(std::abs(height(0) - low - state.at.position[2]) < 5e-4);
+    CHECK(std::abs(height(1) - high - state.at.position[2]) < 1e-3);
+  }
+}
+
+/// A grain that falls asleep and is woken again and again lies still, and presses with its weight all the time.
+template <class Integrator, class S, class Space>
+void check_weight_of_naps(Space const& space) {
+  using law = granular_contact<hertz, mindlin>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, collide::sleep,
+                                         gravity, law, collide::reaction>;
+  law const by{collide::one_material({1e7, 0.2, 2500}, {0.2, 0.5})};
+  world<S> w;
+  w.radius = S(0.1);
+  add_divided_floor(w, 1, 4);
+  w.particle(0.01, 0.02, 0.1);
+  double const mass = 2500 * 4 / 3 * pi * 1e-3, dt = 1e-3;
+  collide::reaction_sums sums(space, 0, mass * 1e-12);
+  running<simulation> made(space, w, Integrator{}, collide::sleep{0.01, 127}, gravity{}, by, sums.effect(2500));
+  made.simulation.steps(400, S(dt));
+  sums.clear(space);
+  for (int i = 0; i < 20; ++i) {
+    CHECK(made.simulation.template to_host<collide::slow_steps>()[0] == 127);
+    made.simulation.template effect<gravity>();
+    made.simulation.step(S(dt));
+    CHECK(std::abs(double(made.velocities()[2])) < 0.05 * 9.81 * dt);
+    made.simulation.steps(199, S(dt));
+  }
+  CHECK(std::abs(sums.read(space)[0].linear[2] / (mass * 9.81 * dt) + 4000) < 1);
+}
+
+/// A body that the caller drives presses on nothing where it lies in memory.
+template <class S, class Space>
+void check_first_pose_of_walls(Space const& space) {
+  using law = granular_contact<hertz>;
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, law, velocity_verlet,
+                                         moving_bodies<collide::driven>>;
+  world<S> w;
+  w.radius = S(0.1);
+  add_divided_floor(w, 1, 4);
+  w.particle(0.01, 0.02, 0.09);
+  running_bodies<simulation> made(space, w, one_body(w, {}), law{collide::one_material({1e7, 0.2, 2500}, {0.2, 0.5})},
+                                  velocity_verlet{}, moving_bodies<collide::driven>{});
+  collide::body_state state;
+  state.at.position[2] = -5;
+  made.simulation.space().copy_from_host(made.simulation.bodies().states(), &state, 1);
+  made.simulation.steps(2, S(1e-4));
+  CHECK(made.velocities()[2] == 0);
+}
+
 /// The springs of walls hold what a ball has lost of its motion, to the bound of the integrator: velocity Verlet keeps
 /// energy + dt^2 (k v^2 / 12 - F^2 / (24 m)).
 template <class Space>

@@ -38,3 +38,8 @@ TEST_CASE("births: contacts of what an effect of one's own makes remember nothin
   tests::check_revived_falls<semi_implicit_euler>(host(1));
   tests::check_revived_falls<velocity_verlet>(blocks());
 }
+
+TEST_CASE("births: what one of two effects makes begins anew in what the other writes") {
+  tests::check_two_makers(host(1));
+  tests::check_two_makers(blocks());
+}

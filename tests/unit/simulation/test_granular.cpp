@@ -33,6 +33,21 @@ TEST_CASE("granular contact: walls that move take grains along, and feel them") 
 
 TEST_CASE("granular contact: grains sleep and press on") { tests::check_sleeping_grains<double>(host(1)); }
 
+TEST_CASE("granular contact: what falls asleep, and is woken, presses with its weight") {
+  tests::check_weight_of_naps<collide::velocity_verlet, double>(host(1));
+  tests::check_weight_of_naps<collide::semi_implicit_euler, double>(blocks());
+}
+
+TEST_CASE("granular contact: a driven wall presses on nothing where it lies in memory") {
+  tests::check_first_pose_of_walls<double>(host(1));
+  tests::check_first_pose_of_walls<float>(blocks());
+}
+
+TEST_CASE("granular contact: what sleeps goes with the body on which it lies") {
+  tests::check_sleep_on_bodies<collide::velocity_verlet, double>(host(1));
+  tests::check_sleep_on_bodies<collide::semi_implicit_euler, float>(blocks());
+}
+
 namespace {
 
 /// Memory as a GPU's: the host must not look into it.

@@ -31,6 +31,9 @@ TEST_CASE("granular contact: walls that move take grains along, and feel them, o
 
 TEST_CASE("granular contact: grains sleep and press on, on a GPU") {
   tests::check_sleeping_grains<double>(cuda_shared());
+  tests::check_sleep_on_bodies<collide::velocity_verlet, double>(cuda_shared());
+  tests::check_weight_of_naps<collide::velocity_verlet, double>(cuda_shared());
+  tests::check_first_pose_of_walls<float>(cuda_shared());
 }
 
 TEST_CASE("granular contact: contacts find room for what they remember, or an error, on a GPU") {

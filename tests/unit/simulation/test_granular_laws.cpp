@@ -1,5 +1,6 @@
 /// Laws of granular contact on the host in double, against closed forms and an integrator of one contact that shares no
 /// code with the library.
+#include <collide/effects/lost_motion.hpp>
 #include <collide/energy.hpp>
 
 #include "simulation/granular.hpp"
@@ -549,4 +550,44 @@ TEST_CASE("granular laws: a heap is steeper with rolling resistance") {
   MESSAGE("slopes with and without: ", with, ", ", without);
   CHECK(with > 0.1);
   CHECK(with > 1.5 * without);
+}
+
+namespace {
+
+/// By how much a grain of glass, of numbers `S`, overlaps a floor of steel 9 cm from the origin at rest, over what
+/// Hertz says; and how many have lost a step's motion on their way there.
+template <class S>
+std::array<double, 2> weighed_far_away() {
+  using law =
+      collide::granular_contact<collide::hertz, collide::mindlin, collide::none, collide::none, collide::materials<3>>;
+  using scene = collide::simulation<tests::meets_mesh<host, collide::karabassi<>, S>, gravity, law,
+                                    collide::lost_motion, collide::velocity_verlet>;
+  law by;
+  by.made_of = tests::benchmark_materials();
+  by.made_of.set_pair(0, 2, {0.01, 0.2});  // so that it rests soon
+  by.made_of.wall_material = 2;
+  double const floor_at = -0.0902431, r = 0.001, mass = 2500 * 4.0 / 3 * pi * 1e-9;
+  double const expected = std::pow(mass * 9.81 / (4.0 / 3 * 1036729857.820 * std::sqrt(r)), 2.0 / 3);
+  world<S> w;
+  w.radius = S(r);
+  tests::add_floor(w, 0.01, 3);
+  for (std::size_t k = 2; k < w.corners.size(); k += 3) w.corners[k] = S(floor_at);
+  w.particle(0.001, 0.0005, floor_at + r - 2 * expected);
+  running<scene> made(host(1), w, gravity{}, by, collide::lost_motion{}, collide::velocity_verlet{});
+  made.simulation.steps(100, S(5e-7));
+  auto const lost = double(collide::lost_particles(made.simulation));
+  made.simulation.steps(20000, S(5e-7));
+  double const overlap = double(w.radius) - (double(made.positions()[2]) - double(S(floor_at)));
+  return {overlap / expected, lost};
+}
+
+}  // namespace
+
+TEST_CASE("granular laws: the overlap of a grain of glass 9 cm away is resolved in double, and not in float") {
+  auto const [found, lost] = weighed_far_away<double>();
+  CHECK(std::abs(found - 1) < 1e-4);
+  CHECK(lost == 0);
+  auto const [coarse, lost_of_float] = weighed_far_away<float>();
+  CHECK(std::abs(coarse - 1) > 1e-2);
+  CHECK(lost_of_float == 1);
 }

@@ -75,6 +75,8 @@ TEST_CASE("where features meet: adhesion holds against other particles, and a su
   tests::check_adhesion_without_surface<karabassi<>, float>(blocks());
   tests::check_pairs_without_forces(host(1));
   tests::check_adhesion_without_surface<karabassi_swept<>, double>(host(1));
+  tests::check_adhesion_across<karabassi<>, float>(blocks());
+  tests::check_adhesion_across<karabassi_swept<>, double>(host(1));
 }
 
 TEST_CASE("where features meet: a driven body is nowhere before its first pose, and a turntable carries") {
@@ -88,4 +90,15 @@ TEST_CASE("where features meet: a driven body is nowhere before its first pose, 
 TEST_CASE("where features meet: what is nowhere is counted") {
   tests::check_lost(host(1));
   tests::check_lost(blocks());
+}
+
+TEST_CASE("where features meet: what is assigned counts as if the simulation began with it") {
+  tests::check_assigned<karabassi<>, semi_implicit_euler, double>(host(1));
+  tests::check_assigned<karabassi_swept<>, velocity_verlet, float>(host(1));
+  tests::check_assigned<karabassi<>, velocity_verlet, float>(blocks());
+}
+
+TEST_CASE("where features meet: what sleeps on one whose place a source takes falls") {
+  tests::check_place_of_another<double>(host(1));
+  tests::check_place_of_another<float>(blocks());
 }

@@ -20,5 +20,7 @@ TEST_CASE("where features meet: on a GPU") {
   tests::check_adhesion_and_others<karabassi<>, velocity_verlet, float>(cuda_shared());
   tests::check_adhesion_without_surface<karabassi_swept<>, double>(cuda_shared());
   tests::check_first_pose<karabassi_swept<>, double>(cuda_shared());
+  tests::check_assigned<karabassi<>, velocity_verlet, float>(cuda_shared());
+  tests::check_place_of_another<double>(cuda_shared());
   tests::check_lost(cuda_shared());
 }

@@ -6,8 +6,11 @@
 #include <random>
 
 #include <collide/effects/adhesion.hpp>
+#include <collide/effects/bounds.hpp>
 #include <collide/effects/contact_forces.hpp>
+#include <collide/effects/emit.hpp>
 #include <collide/effects/lost.hpp>
+#include <collide/effects/polydisperse.hpp>
 #include <collide/effects/sleep.hpp>
 #include <collide/energy.hpp>
 #include <collide/integrators.hpp>
@@ -465,6 +468,27 @@ void check_adhesion_without_surface(Space const& space) {
   CHECK(moved[3] == 2);
 }
 
+/// What sticks to a plate that goes out of a box that repeats comes in on the other side, where no plate is, and falls.
+template <class NarrowPhase, class S, class Space>
+void check_adhesion_across(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, adhesion,
+                                         collide::periodic_box, moving_bodies<>>;
+  world<S> w;
+  w.radius = S(0.1);
+  add_floor(w, 0.5, 1);
+  w.particle(0.4, 0, 0.1);
+  body_motion moves;
+  moves.velocity[0] = 1;
+  running_bodies<simulation> made(space, w, one_body(w, moves), gravity{}, bounce{0.2}, adhesion{20},
+                                  collide::periodic_box{{-1, -1, -1}, {1, 1, 1}}, moving_bodies<>{});
+  made.simulation.steps(500, S(1e-3));
+  CHECK(int(made.simulation.template to_host<collide::adhered>()[0]) == 2);
+  CHECK(double(made.positions()[0]) == doctest::Approx(0.9).epsilon(2e-3));
+  made.simulation.steps(400, S(1e-3));
+  CHECK(int(made.simulation.template to_host<collide::adhered>()[0]) == 0);
+  CHECK(double(made.positions()[2]) < -0.2);
+}
+
 /// What stuck to a driven body is free where the next list of bodies does not have that.
 template <class Space>
 void check_driven_body_that_is_gone(Space const& space) {
@@ -576,6 +600,72 @@ void check_far_planes(Space const& space) {
     slope.steps(5000);
     CHECK(slope.made.positions() == before);
   }
+}
+
+/// What is written into columns counts as if the simulation began with it, whatever slept, stuck, or was smaller.
+template <class NarrowPhase, class Integrator, class S, class Space>
+void check_assigned(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, Integrator, collide::polydisperse,
+                                         collide::sleep, gravity, sphere_contact, bounce, adhesion>;
+  sphere_contact contact;
+  contact.density = density_of_grains;
+  auto resting = ball_on_floor<S>();
+  resting.particle(1, 0, 0.1);
+  resting.particle(0, 1, 0.1);
+  resting.radii = {S(0.1), S(0.1), S(0.1)};
+  auto other = ball_on_floor<S>();
+  other.centres[2] = S(2);
+  other.velocities[2] = S(1);
+  other.particle(0.7, 0, 2);
+  other.particle(0, 2, 0.504, 0, 0, -1);
+  other.radii = {S(0.5), S(0.5), S(0.5)};
+  auto const with = [&](world<S> const& w) {
+    return running<simulation>(space, w, Integrator{}, collide::polydisperse{}, collide::sleep{}, gravity{}, contact,
+                               bounce{0.2}, adhesion{20, 0.5});
+  };
+  auto made = with(resting), begun = with(other);
+  made.simulation.steps(100, S(1e-3));
+  CHECK(int(made.simulation.template to_host<slow_steps>()[0]) == 50);
+  CHECK(int(made.simulation.template to_host<collide::adhered>()[0]) == 1);
+  placed<S> const x(space, other.centres), v(space, other.velocities), r(space, other.radii);
+  made.simulation.template assign<position>(x.data());
+  made.simulation.template assign<velocity>(v.data());
+  made.simulation.template assign<collide::radius>(r.data());
+  for (auto* one : {&made, &begun}) one->simulation.steps(20, S(1e-3));
+  CHECK(made.positions() == begun.positions());
+  CHECK(made.velocities() == begun.velocities());
+  CHECK(made.velocities()[3] > 0);
+  placed<S> const none(space, std::vector<S>(3, S(0)));
+  CHECK_THROWS_WITH_AS(made.simulation.template assign<collide::radius>(none.data()),
+                       "collide: simulation: assign: radii of particles that touch a mesh are above 0", collide::error);
+}
+
+/// The first two that begin are a stack; the others are elsewhere.
+struct stack_first {
+  template <class S>
+  COLLIDE_HD void operator()(std::uint64_t number, collide::vec3<S>& x, collide::vec3<S>& v) const {
+    bool const is_low = number != 1;
+    x = collide::vec3<S>(number < 2 ? S(0) : S(2), S(0), is_low ? S(0.1) : S(0.3));
+    v = collide::vec3<S>(S(0), S(0), S(0));
+  }
+};
+
+/// What sleeps on one whose place a source takes falls.
+template <class S, class Space>
+void check_place_of_another(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::sleep, gravity,
+                                         sphere_contact, bounce, collide::emit_from<stack_first>>;
+  auto w = ball_on_floor<S>();
+  w.centres[0] = S(-1);
+  running<simulation> made(space, w, collide::sleep{}, gravity{}, sphere_contact{1e6, 2000, 0, 0, density_of_grains},
+                           bounce{0.2}, collide::emit_from<stack_first>{4, {}});
+  made.place(w, 3);
+  made.simulation.steps(740, S(1e-3));
+  CHECK(made.simulation.template to_host<slow_steps>()[2] >= 50);
+  CHECK(double(made.positions()[8]) == doctest::Approx(0.3).epsilon(1e-3));
+  made.simulation.steps(230, S(1e-3));
+  CHECK(made.positions()[3] == S(2));
+  CHECK(made.positions()[8] < S(0.15));
 }
 
 /// Particles that are nowhere are counted, and the others go on.

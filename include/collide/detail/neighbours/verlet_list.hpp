@@ -59,10 +59,19 @@ class verlet_list {
     contacts_.reserve(resource, n, order::listed, runs_.capacity());
   }
 
-  /// For `n` particles, for which there is room: there are no lists yet. The smallest keep the skin so thin that small
-  /// particles beside large ones have few neighbours: too many have no list.
+  /// For `n` particles, for which there is room: there are no lists yet.
   template <class Space>
   void clear(Space& space, std::size_t n, radius_range<S> const& radii) {
+    space.fill(header_.data(), 0, sizeof(list_state));
+    fit(space, n, radii);
+    if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
+    contacts_.clear(space, n);
+  }
+
+  /// For the same `n` particles with such radii: lists are made anew. The smallest keep the skin so thin that small
+  /// particles beside large ones have few neighbours: too many have no list.
+  template <class Space>
+  void fit(Space& space, std::size_t n, radius_range<S> const& radii) {
     blocks_ = cells::blocks_for(n);
     skin_ = skin_of(radii.largest, radii.smallest);
     cells_ = {1 / width_of(radii.largest, radii.smallest), static_cast<std::uint32_t>(blocks_ - 1)};
@@ -72,11 +81,7 @@ class verlet_list {
       small_.largest = radii.small;
       small_.reach = radii.small + skin_;
     }
-    list_state* const header = header_.data();
-    space.fill(header, 0, sizeof *header);
-    space.fill(&header->rebuild, 1, sizeof header->rebuild);
-    if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
-    contacts_.clear(space, n);
+    space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
   }
 
   /// How wide cells are: a bit wider than what is listed, so that rounding separates no pair by more than a cell, in

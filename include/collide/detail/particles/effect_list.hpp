@@ -64,6 +64,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       (any_pair_contact || overlaps) && has_half_kicks && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
   static constexpr bool ends_after_meeting = (any_pair_contact || overlaps) && has_half_kicks;
+  /// Forces on the mesh are given for a whole step when particles meet, in its middle; so is the pressure of sleepers.
+  static constexpr bool presses_when_meeting = overlaps && has_half_kicks;
 
  private:
   template <bool Needed, class... C>
@@ -104,6 +106,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       pairs_in<F, S> || has_try_wake<F, S>::value || has_is_inactive<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
   using own_number = intersection_of<columns<global_number>, all>;
+  using own_slow_steps = columns_if<(is_moving_bodies<E> || ...) && contains<all, slow_steps>, slow_steps>;
   template <bool Needed>
   using radius_if = std::conditional_t<Needed, own_radius, columns<>>;
 
@@ -131,11 +134,11 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
   /// Columns that are read and written for particles that press on the mesh.
   using overlap_reads = union_of<base, own_radius, own_number, pair_kicks,
-                                 columns_if<keeps_pair_torques, angular_velocity>, support_columns,
+                                 columns_if<keeps_pair_torques, angular_velocity>, support_columns, own_slow_steps,
                                  reads_if<E, overlaps_in<E, S> || has_is_inactive<E, S>::value ||
                                                  (overlaps && has_on_mesh_impulse<E, S>::value)>...>;
   using overlap_writes = difference_of<
-      union_of<pair_kicks, support_columns,
+      union_of<pair_kicks, support_columns, own_slow_steps,
                writes_if<E, overlaps_in<E, S> || (overlaps && has_on_mesh_impulse<E, S>::value)>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
 

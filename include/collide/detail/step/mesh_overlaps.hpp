@@ -122,18 +122,36 @@ struct forget_surfaces {
   }
 };
 
-/// Which particles may press on the mesh, in any order.
-struct pressing_list {
-  std::uint32_t* count;
-  id* numbers;
-};
-
 /// How far from its centre a particle sees the mesh.
 template <class Effects, class S>
 COLLIDE_HD_INLINE S reach_of(S radius) {
   if constexpr (Effects::farther > 0) return radius * S(1 + Effects::farther);
   return radius;
 }
+
+/// Kernel functor of `for_each` over particles, copies of other ranks' among them: wakes those that sleep where a body
+/// that moves may touch them.
+template <class S, class Effects, class Triangles>
+struct wake_by_bodies {
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+  Triangles triangles;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    particle<S, typename Effects::inactive_reads> p;
+    state.load(p, i);
+    if (!effects.is_inactive(p) || !effects.only_sleeps(p)) return;
+    S const* const x = state.at(position{}) + 3 * i;
+    sphere<S> const here{{x[0], x[1], x[2]}, reach_of<Effects>(state.radius_at(i))};
+    if (!triangles.without_overflown_grids().is_left_alone(here)) state.at(slow_steps{})[i] = 0;
+  }
+};
+
+/// Which particles may press on the mesh, in any order.
+struct pressing_list {
+  std::uint32_t* count;
+  id* numbers;
+};
 
 /// Kernel functor of `for_each` over particles: lists those that may press on the mesh. These are few, and much work.
 template <class S, class Effects, class Triangles, class Memory>
@@ -284,6 +302,9 @@ struct press_on_mesh {
   COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values) const {
     integrated const before = p;
     bool const goes_on = effects.on_mesh_overlap(p, self, o, values, only_kicks ? S(0) : dt, dt);
+    if constexpr (has_moving_mesh<Triangles> && contains<typename integrated::list, slow_steps>) {
+      if (o.body != no_id && triangles.mesh.frames[o.body + 1].moves) p[slow_steps{}] = carried_by_moving;
+    }
     if constexpr (Effects::any_mesh_impulse) {
       if (only_kicks) return goes_on;
       vec3<S> const none(S(0), S(0), S(0));

@@ -41,11 +41,12 @@ struct init_particles {
 template <class S, class Effects, class Initial>
 struct begin_anew {
   particle_state<S, typename Effects::all> state;
-  std::uint8_t const* was_there;
-  std::uint8_t* surfaces;  ///< how many each remembers; null if none does
+  std::uint8_t const* was_there;  ///< `alive` before
+  std::uint8_t* surfaces;         ///< how many each remembers; null if none does
 
   COLLIDE_HD void operator()(std::size_t i) const {
     std::uint8_t& mark = state.at(alive{})[i];
+    if (mark == 1 && was_there[i] == made_by_effect) mark = made_by_effect;  // by one before
     if (was_there[i] != 0 || mark != 1) return;
     particle<S, Initial> p;
     set_initial_values(p);
@@ -60,6 +61,21 @@ struct take_marks_off {
   std::uint8_t* marks;
   COLLIDE_HD void operator()(std::size_t i) const {
     if (marks[i] == made_by_effect) marks[i] = 1;
+  }
+};
+
+/// Kernel functor of `for_each` over particles: wakes them where a source is about to take places from others.
+template <class State>
+struct wake_where_others_go {
+  State state;
+  double due;  ///< particles in the step
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::uint64_t const made = begin_in_step(state.time, due);
+    double room = static_cast<double>(state.size - state.placed);
+    if constexpr (contains<typename State::list, global_number>)
+      room = static_cast<double>(state.all_size - state.all_placed);
+    if (made != 0 && state.time[clock_made] + static_cast<double>(made) > room) state.at(slow_steps{})[i] = 0;
   }
 };
 
@@ -91,7 +107,7 @@ struct end_particles {
   template <class Particle>
   COLLIDE_HD_INLINE void press(Particle& p) const {
     if (!effects.only_sleeps(p)) return;
-    book_sleeping(*this, p, last_kick<end_particles>(p));
+    book_sleeping(*this, p, Effects::presses_when_meeting ? S(1) : last_kick<end_particles>(p));
     state.store(p, p.number, typename Effects::integration_writes{});
   }
 };

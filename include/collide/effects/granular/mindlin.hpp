@@ -28,7 +28,7 @@ enum class slip_test {
 
 /// A spring of stiffness 8 G* a that grows with slip, turns with the contact, and slides at Coulomb's limit: R. D.
 /// Mindlin, Journal of Applied Mechanics 16, 1949; A. Di Renzo and F. P. Di Maio, Chemical Engineering Science 59,
-/// 2004. As it is by default, it is that of LIGGGHTS and MUSEN; the members are where codes differ.
+/// 2004. As it is by default, it is that of LIGGGHTS; the members are where other codes differ.
 struct mindlin {
   using remembers = contact_columns<tangential_displacement>;
   static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
