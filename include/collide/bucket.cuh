@@ -361,11 +361,15 @@ class bucket::index {
                                       plan.table_bits,
                                       bucket_tuning<Space>::costs};
       std::copy(asked.reaches, asked.reaches + detail::max_grids, request.reaches);
-      detail::plan_grid<S, Spheres> kernel{mesh_, boxes, spheres, measures_.statistics.data(), grids, request};
+      detail::plan_grid<S, Spheres> kernel{mesh_, boxes,   spheres, measures_.statistics.data(),
+                                           grids, request, nullptr, 0};
       if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) kernel.mesh = bins_.mesh().mesh, kernel.boxes = nullptr;
+      } else {
+        kernel.cells = lists_.to_empty(space, grids_.cells);
+        kernel.listed = grids_.cells + 1;
       }
-      space.launch(count, kernel);
+      space.launch(kernel.template blocks<typename Space::template block<decltype(kernel)>>(), kernel);
       if constexpr (bucket_tuning<Space>::bins_spheres) {
         if (bins_spheres<Space>(options)) bins_.mark(space, grids, plan.grids, plan.table_bits);
       }

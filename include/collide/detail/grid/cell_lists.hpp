@@ -120,7 +120,7 @@ struct enter_triangles {
     cell_box const& r = cells.range();
     std::uint32_t const nx = r.upper[0] - r.lower[0] + 1, ny = r.upper[1] - r.lower[1] + 1,
                         n = nx * ny * (r.upper[2] - r.lower[2] + 1);
-    // a quotient by 1, 2 or 3 of a number below 16
+    // a quotient by 1, 2 or 3 of a number below 24
     auto const factor = [](std::uint32_t divisor) { return divisor == 1 ? 256u : (divisor == 2 ? 128u : 86u); };
     std::uint32_t const of_x = factor(nx), of_y = factor(ny);
     for (std::uint32_t i = 0; i < n; i += together) {
@@ -254,6 +254,15 @@ struct planned_grids {
 template <class S>
 class cell_lists {
  public:
+  /// Memory of the lists of `cells` cells, of the number of all entries, and of bits: `table_size` words, which the
+  /// caller empties before `enter`, but for the bits.
+  template <class Space>
+  item_range* to_empty(Space& space, std::size_t cells) {
+    cells_ = cells;
+    are_empty_ = true;
+    return lists_.reserve(space.resource(), table_size(cells));
+  }
+
   /// Enters triangles into the cells of grids; `boxes` are those of the triangles, or null. Of more entries than
   /// `limit` some are missing, which `total` tells. If it `asks` for their number, and waits, there is memory for no
   /// more than that.
@@ -263,7 +272,8 @@ class cell_lists {
     cells_ = grids.cells;
     std::size_t const n = mesh.size();
     auto* const lists = lists_.reserve(space.resource(), table_size(cells_));
-    space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
+    if (!are_empty_) space.fill(lists, 0, (cells_ + 1) * sizeof *lists);
+    are_empty_ = false;
     auto const pass_over = [&](auto const& pass) {
       using kernel = enter_triangles<S, std::decay_t<decltype(pass)>>;
       std::size_t const share = kernel::triangles_of_block(n, Space::template block<kernel>::num_threads);
@@ -281,6 +291,7 @@ class cell_lists {
   void release() {
     lists_.release();
     entries_.release();
+    are_empty_ = false;
   }
 
   item_range const* data() const { return lists_.data(); }
@@ -291,6 +302,7 @@ class cell_lists {
 
  private:
   std::size_t cells_ = 0;
+  bool are_empty_ = false;  ///< as `to_empty` asked
   buffer<item_range> lists_;
   buffer<cell_item> entries_;
 };

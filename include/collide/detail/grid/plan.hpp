@@ -80,7 +80,8 @@ struct cell_choice {
 
 /// Kernel functor of a block per grid: chooses widths, levels and table sizes such that entering the triangles and
 /// testing the candidates cost least together, from the summary of the mesh and from the distances of some triangles
-/// and some spheres. Some microseconds' work, so that a build on the device need not wait for the host.
+/// and some spheres. Some microseconds' work, so that a build on the device need not wait for the host. Blocks behind
+/// those empty the cells meanwhile.
 template <class S, class Spheres>
 struct plan_grid {
   static constexpr int items = 1;
@@ -91,6 +92,17 @@ struct plan_grid {
   mesh_statistics<S> const* summary;
   grid<S>* grids;
   grid_request<S> request;
+  item_range* cells;   ///< to empty; may be null
+  std::size_t listed;  ///< how many of them there are
+
+  static constexpr std::size_t emptied = 8;  ///< by a thread
+
+  /// How many blocks there must be.
+  template <class Block>
+  std::size_t blocks() const {
+    constexpr std::size_t share = emptied * Block::num_threads;
+    return static_cast<std::size_t>(request.count) + (listed + share - 1) / share;
+  }
 
   static constexpr int size_classes = 32, widths = 64;
   static constexpr float width_step = 0.45f;  ///< of the logarithm of the width, to the base of 2
@@ -109,6 +121,7 @@ struct plan_grid {
 
   template <class Block>
   COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+    if (block.index() >= static_cast<std::size_t>(request.count)) return empty_cells(block);
     auto& g = grids[block.index()];
     block.for_each_thread([&](int thread_rank) {
       if (thread_rank == 0) s.planned = frame(block.index(), s.extent);
@@ -134,6 +147,18 @@ struct plan_grid {
 
  private:
   static constexpr float unlimited = std::numeric_limits<float>::max();
+
+  template <class Block>
+  COLLIDE_HD_INLINE void empty_cells(Block& block) const {
+    constexpr std::size_t share = emptied * Block::num_threads;
+    std::size_t const first = (block.index() - static_cast<std::size_t>(request.count)) * share;
+    block.for_each_thread([&](int thread_rank) {
+      for (std::size_t k = 0; k < emptied; ++k) {
+        std::size_t const c = first + k * Block::num_threads + static_cast<std::size_t>(thread_rank);
+        if (c < listed) cells[c] = {0, 0};
+      }
+    });
+  }
 
   /// A grid without levels; the first is read before it is known that there is none.
   static COLLIDE_HD void set_empty(grid<S>& g, grid_header<S> const& planned) {

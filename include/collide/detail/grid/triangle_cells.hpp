@@ -132,7 +132,7 @@ class triangle_cells {
   COLLIDE_HD_INLINE bool is_small() const {
     std::uint32_t const x = range_.upper[0] - range_.lower[0] + 1, y = range_.upper[1] - range_.lower[1] + 1,
                         z = range_.upper[2] - range_.lower[2] + 1;
-    return x <= 3 && y <= 3 && z <= 3 && x * y * z <= 12;
+    return x <= 3 && y <= 3 && z <= 3 && x * y * z <= 18;
   }
 
   /// How many slabs there are.
