@@ -245,7 +245,8 @@ void turn_drum(wishes const& w) {
   grains all;
   constexpr int sides = 314;  // of 2 mm
   all.ring(r, -half, r, half, sides);
-  for (double const end : {-half, half}) all.ring(r, end, 0, end, sides);
+  // squares beyond the drum's ends: of triangles that meet in the middle, grains there would ask all
+  for (double const end : {-half, half}) all.quad({-r, -r, end}, {r, -r, end}, {r, r, end}, {-r, r, end});
   for (std::size_t k = 0; k < all.corners.size(); k += 3) {  // from around z to around y
     double const old = all.corners[k + 1];
     all.corners[k + 1] = -all.corners[k + 2], all.corners[k + 2] = old;
