@@ -44,6 +44,16 @@ inline constexpr bool stores_ids = false;
 template <class Output>
 inline constexpr bool stores_ids<Output, std::void_t<decltype(Output::stores_ids)>> = Output::stores_ids;
 
+/// True if more hits of a sphere would change nothing, as the output says; most outputs want them all.
+template <class Output>
+auto has_enough_of(Output const& output, id sphere, int) -> decltype(output.has_enough_of(sphere)) {
+  return output.has_enough_of(sphere);
+}
+template <class Output>
+bool has_enough_of(Output const&, id, long) {
+  return false;
+}
+
 /// Pairs that the narrow phase's filter left open, for a kernel of their own; see deferred_pairs.hpp.
 struct deferred_pairs {
   struct counters {

@@ -208,7 +208,8 @@ class sorted_spheres {
   /// One pass: the triangles look for the spheres.
   template <class NarrowPhase, class Space, class Output>
   void query(Space& space, candidate_pipeline<S, NarrowPhase, Output> const& pipeline) const {
-    query_triangle_major<S, NarrowPhase, Output> const kernel{pipeline, in_cells()};
+    bool const are_few = *total_.data() < pipeline.spheres.size() / 4;
+    query_triangle_major<S, NarrowPhase, Output> const kernel{pipeline, in_cells(), !are_few};
     space.launch(grid_size<Space>(mesh_.mesh.size(), kernel), kernel);
   }
 

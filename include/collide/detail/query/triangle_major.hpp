@@ -21,6 +21,7 @@ struct query_triangle_major {
 
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
   spheres_in_cells<S> in;
+  bool leaves_out;  ///< spheres of which the output has enough: pays where most have many triangles near them
 
   /// Pairs that are near each other: bit k is of sphere `sphere` + k, or, in a group, of triangle `triangle` + k.
   struct reached {
@@ -153,6 +154,7 @@ struct query_triangle_major {
     id const first = s.found[0].triangle;
     for (std::uint32_t i = 0; i < s.count; ++i) {
       reached const r = s.found[i];
+      if (has_enough_of(r.sphere)) continue;
       if constexpr (is_discrete<NarrowPhase, S> && filtered_predicate<NarrowPhase>::value) {
         if (r.mask == s.group.there && s.group.is_inside(in.spheres[r.sphere])) {
           for (std::uint32_t rest = r.mask; rest != 0; rest &= rest - 1) {
@@ -182,6 +184,11 @@ struct query_triangle_major {
       pipeline.push(block, s.pipeline, p, sphere_of(place));
       pipeline.drain_if_full(block, s.pipeline);
     }
+  }
+
+  /// True if more hits of the sphere at a place would change nothing.
+  bool has_enough_of(std::uint32_t place) const {
+    return leaves_out && detail::has_enough_of(pipeline.output, in.spheres.number[place], 0);
   }
 
   /// The sphere as the narrow phase takes it.
