@@ -17,6 +17,7 @@ struct traffic {
   std::uint64_t exchanges = 0;        ///< how often all ranks have sent each other items, or how many there will be
   std::uint64_t messages = 0;         ///< in them, to other ranks
   std::uint64_t exchanged_bytes = 0;  ///< in them, to other ranks
+  std::uint64_t first_bytes = 0;      ///< in the first exchange, if that is of items
   std::uint64_t last_bytes = 0;       ///< in the last exchange of items
 };
 
@@ -57,6 +58,7 @@ class counted_ranks {
       sent_->last_bytes += to_each[r] * bytes;
     }
     sent_->exchanged_bytes += sent_->last_bytes;
+    if (sent_->exchanges == 1) sent_->first_bytes = sent_->last_bytes;
     ranks_.exchange(from, to_each, to, of_each, bytes);
   }
 

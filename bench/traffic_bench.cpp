@@ -105,9 +105,11 @@ counters of_steps(thread_ranks const& threads, std::size_t side, bool fly) {
     sent = {};
     made.step(dt);
     own += static_cast<double>(made.local().size());
-    found["copies_bytes"] += static_cast<double>(sent.last_bytes);
-    found["moved_bytes"] += static_cast<double>(sent.exchanged_bytes - sent.last_bytes);
-    found["rebuilds"] += sent.exchanges > 1;
+    bool const rebuilds = sent.exchanges > 1;  // copies are sent, others move, and copies are sent again
+    std::uint64_t const copies = sent.last_bytes + (rebuilds ? sent.first_bytes : 0);
+    found["copies_bytes"] += static_cast<double>(copies);
+    found["moved_bytes"] += static_cast<double>(sent.exchanged_bytes - copies);
+    found["rebuilds"] += rebuilds;
   }
   sent = {};
   made.steps(steps, dt);

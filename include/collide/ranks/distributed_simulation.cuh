@@ -223,29 +223,44 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     });
   }
 
-  /// A step, until this rank is done: what went wrong here then. All throw what goes wrong before, or has `failed` here
-  /// in the last step.
-  std::exception_ptr try_step(S dt, std::exception_ptr failed) {
-    std::uint64_t mine[2] = {0, 0}, all[2];  // 1: particles must change ranks, 2: something is wrong; has it begun?
-    try {
+  /// The part of a step before ranks agree, for which copies go to others also where something has gone wrong: `mine`
+  /// is what a rank tells the others. What has `failed` is from the last step, or this one.
+  void begin_step(S dt, std::exception_ptr& failed, std::uint64_t* mine) {
+    bool const sends = any_pair_contact && part_.knows_others();
+    detail::first_failure failure;
+    failure.attempt([&] {
       if (failed) std::rethrow_exception(failed);
       part_.check_step(dt);
       mine[1] = 1;
       part_.begin_step(dt);
-      if (any_pair_contact && part_.knows_others()) exchange_.pack(ranks_, part_);
-      mine[0] = part_.has_moved() ? 1 : 0;
-    } catch (...) {
-      failed = std::current_exception();
-      mine[0] = 2;
+      if (sends) exchange_.pack(ranks_, part_);
+    });
+    if (sends) failure.attempt([&] { exchange_.send(ranks_, part_); });
+    if (!failure.get()) {
+      failure.attempt([&] {
+        if (sends) exchange_.unpack(ranks_, part_);
+        mine[0] = part_.has_moved(ranks_) ? 1 : 0;
+      });
     }
+    failed = failure.get();
+    if (failed) mine[0] = 2;
+  }
+
+  /// A step, until this rank is done: what went wrong here then. All throw what goes wrong before, or has `failed` here
+  /// in the last step.
+  std::exception_ptr try_step(S dt, std::exception_ptr failed) {
+    std::uint64_t mine[2] = {0, 0}, all[2];  // 1: particles must change ranks, 2: something is wrong; has it begun?
+    begin_step(dt, failed, mine);
     ranks_.reduce(mine, all, 2, reduction::max);
     is_sound_ = is_sound_ && all[1] == 0;
     if (all[0] == 2) agree(ranks_, failed);
     if (any_pair_contact && all[0] == 1) exchange_.exchange(ranks_, part_);
     try {
       if constexpr (any_pair_contact) {
-        exchange_.send(ranks_, part_);
-        exchange_.unpack(ranks_, part_);
+        if (all[0] == 1) {
+          exchange_.send(ranks_, part_);
+          exchange_.unpack(ranks_, part_);
+        }
         if (part_.refuses_births(dt)) {
           part_.settle_births(dt);
           exchange_.pack(ranks_, part_);

@@ -1,4 +1,6 @@
 /// Simulations on ranks that are threads, on the host.
+#include <collide/effects/polydisperse.hpp>
+
 #include "counted_ranks.hpp"
 #include "ranks/on_threads.hpp"
 
@@ -122,4 +124,40 @@ TEST_CASE("simulations on ranks: a step takes one reduction, and steps one more"
       CHECK(mine.exchanges == 10);
     }
   }
+}
+
+namespace {
+
+/// In how many of 1000 steps particles change ranks where all fly by 0.0001 in each, a large and a small one on both of
+/// two ranks.
+template <class... Effect>
+std::vector<int> migrations(float small) {
+  using simulation = collide::simulation<tests::discrete<collide::host>, Effect...>;
+  using ranks_type = bench::counted_ranks<collide::thread_ranks>;
+  std::vector<int> found(2, 0);
+  collide::thread_ranks::run(2, [&](collide::thread_ranks const& threads) {
+    bench::traffic sent;
+    collide::distributed<simulation, ranks_type> parts(ranks_type(threads, sent), collide::host(1));
+    auto const x = static_cast<float>(threads.rank());
+    float const centres[] = {x, 0, 0, x, 0.5f, 0}, velocities[] = {0, 0, 10, 0, 0, 10}, radii[] = {0.1f, small};
+    parts.set(small < 0.1f ? collide::spheres_xyz(centres, 2, radii) : collide::spheres_xyz(centres, 2, 0.1f),
+              velocities);
+    parts.step(1e-5f);  // makes bricks
+    for (int k = 0; k < 1000; ++k) {
+      auto const before = sent.reductions;
+      parts.step(1e-5f);
+      found[static_cast<std::size_t>(threads.rank())] += sent.reductions - before > 2;
+    }
+  });
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("simulations on ranks: particles change ranks when one has moved by half the skin of the largest") {
+  std::vector<int> const expected(2, 10);  // the skin is 0.02, and 0.0099 are crossed in 99 steps or 100
+  CHECK(migrations<collide::sphere_contact>(0.1f) == expected);
+  CHECK(migrations<collide::polydisperse, collide::sphere_contact>(0.09f) == expected);
+  // lists of neighbours are made anew more often, as their skin is of the small ones
+  CHECK(migrations<collide::polydisperse, collide::sphere_contact>(0.02f) == expected);
 }

@@ -82,7 +82,11 @@ class verlet_list {
       small_.reach = radii.small + skin_;
     }
     space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
+    are_complete_ = false;
   }
+
+  /// The skin: two particles may each cross a half of it before lists are made anew.
+  S skin() const { return skin_; }
 
   /// How wide cells are: a bit wider than what is listed, so that rounding separates no pair by more than a cell, in
   /// floats up to 2^15 cells away from the origin.
@@ -138,18 +142,34 @@ class verlet_list {
            references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + contacts_.bytes();
   }
 
+  /// The first part of `renew`: finds out whether lists are to be made anew for particles where they now are.
+  template <class Space>
+  void check(Space& space, state_type const& state, typename Effects::space_type const& around) {
+    if (!(around == around_)) space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
+    around_ = around;
+    listed_ = state.size;
+    // half of the skin, but for rounding
+    space.for_each(state.size, update_and_check_skin<S, Effects>{state, order_of(state), S(0.495) * skin_});
+  }
+  /// After `check`: true if lists are to be made anew. If not, the next `renew` has nothing to do. Waits.
+  template <class Space>
+  bool must_rebuild(Space const& space) {
+    are_complete_ = space.read(&header_.data()->rebuild) == 0;
+    return !are_complete_;
+  }
+
   /// Makes the lists complete for particles where they now are, in a space that may have changed. They hold until
   /// something moves.
   template <class Space>
   void renew(Space& space, state_type const& state, typename Effects::space_type const& around) {
-    if (!(around == around_)) space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
-    around_ = around;
-    listed_ = state.size;
+    if (are_complete_) {
+      are_complete_ = false;
+      return;
+    }
+    check(space, state, around);
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
-    // half of the skin, but for rounding
-    space.for_each(n, update_and_check_skin<S, Effects>{state, o, S(0.495) * skin_});
     if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
@@ -235,6 +255,7 @@ class verlet_list {
   small_cells<S> small_{};
   S skin_{};
   std::size_t blocks_ = 0, listed_ = 0;  ///< how many particles have lists
+  bool are_complete_ = false;            ///< for particles where they are: `check` has just found that
   buffer<list_state> header_;
   buffer<std::uint32_t> ends_, lists_, runs_;
   buffer<id> numbers_;

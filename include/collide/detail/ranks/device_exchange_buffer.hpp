@@ -75,6 +75,16 @@ using ranks_exchange_in_space = decltype(std::declval<R const&>().exchange_in_sp
 template <class R>
 using ranks_takes_device_memory = decltype(std::declval<R const&>().takes_device_memory());
 
+/// The member of those whose messages are in the order of a space's work.
+template <class R, class Space>
+using ranks_wait_for = decltype(std::declval<R const&>().wait_for(std::declval<Space const&>()));
+
+/// Waits for the work of a space, if messages may be in it that never come: those ranks know when to give up.
+template <class Ranks, class Space>
+void wait_for_messages([[maybe_unused]] Ranks const& ranks, [[maybe_unused]] Space const& space) {
+  if constexpr (is_valid<ranks_wait_for, Ranks, Space>) ranks.wait_for(space);
+}
+
 /// How mail of a space goes from rank to rank: in three parts, as a rank can fail in the first and the last alone. All
 /// ranks call all of them.
 template <class Ranks, class Space>

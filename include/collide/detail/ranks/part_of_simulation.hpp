@@ -153,16 +153,24 @@ class part_of_simulation {
   void begin_step(S dt) {
     simulation_.time_ += static_cast<double>(dt);
     simulation_.begin_step(dt);
-    knows_others_ = knows_others_ && effects().space() == around_;
-    if (any_pair_contact && knows_others_ && own() != 0) look_for_moved();
+    if (any_pair_contact && knows_others() && !lists_tell_ && own() != 0) look_for_moved();
   }
-  /// Whether there are copies of all that this rank's own particles meet, as long as nothing has moved far.
-  bool knows_others() const { return knows_others_; }
-  /// After `begin_step`: true if copies of particles may be missing somewhere in the step. Waits.
-  bool has_moved() const {
-    if (!any_pair_contact) return false;
-    if (!knows_others_) return true;
-    return own() != 0 && simulation_.space_.read(flag_.data()) != 0;
+  /// Whether there are copies of all that this rank's own particles meet, as long as nothing has moved far. All ranks
+  /// know it alike.
+  bool knows_others() const { return knows_others_ && effects().space() == around_; }
+  /// After `begin_step`, with copies as they are in this step: true if some may be missing. Lists of neighbours that
+  /// are complete have all within the skin, so one kernel looks for both, where the skins are the same. Waits.
+  template <class Ranks>
+  bool has_moved([[maybe_unused]] Ranks const& ranks) {
+    if constexpr (any_pair_contact) {
+      if (!knows_others()) return true;
+      if (own() == 0) return false;
+      if (lists_tell_) simulation_.neighbours_.check(space(), with_copies(), around_);
+      wait_for_messages(ranks, space());
+      return lists_tell_ ? simulation_.neighbours_.must_rebuild(space()) : space().read(flag_.data()) != 0;
+    } else {
+      return false;
+    }
   }
 
   /// The rest of a step.
@@ -297,13 +305,17 @@ class part_of_simulation {
   void expect_copies(std::size_t n) {
     make_room(own() + n);
     copies_ = n;
-    if constexpr (any_pair_contact) simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_);
+    if constexpr (any_pair_contact) {
+      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_);
+      lists_tell_ = skin_ > 0 && simulation_.neighbours_.skin() >= skin_;
+    }
+    around_ = effects().space();
+    knows_others_ = true;
+    if (lists_tell_) return;
     auto* const resource = space().resource();
     last_centres_.reserve(resource, 3 * capacity_);
     if constexpr (has_absent) last_there_.reserve(resource, capacity_);
     space().for_each(own(), keep_places<S, state_type>{simulation_.state_, last()});
-    around_ = effects().space();
-    knows_others_ = true;
   }
 
   /// Writes what others know of particles.
@@ -430,6 +442,7 @@ class part_of_simulation {
   std::size_t capacity_ = 0, copies_ = 0;
   around_type around_{};       ///< the space when ranks last exchanged some
   bool knows_others_ = false;  ///< there are copies of all that its own may meet, as long as nothing moves far
+  bool lists_tell_ = false;    ///< lists of neighbours have as thick a skin, so they know when something has
   S skin_ = 0;
   double reach_ = 0;
   buffer<S> last_centres_;
