@@ -3,8 +3,13 @@
 #include <map>
 #include <string>
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#include <embree4/rtcore_config.h>
+#else
 #include <embree3/rtcore.h>
 #include <embree3/rtcore_config.h>
+#endif
 
 #include "peer.hpp"
 #include "peers.hpp"
@@ -86,4 +91,5 @@ void peers::add_embree(std::vector<int> const& threads) {
   for (int const t : threads) device_of(t);
   add<embree<RTC_BUILD_QUALITY_LOW>>("Embree, fast build", threads);
   add<embree<RTC_BUILD_QUALITY_MEDIUM>>("Embree, medium build", threads);
+  add<embree<RTC_BUILD_QUALITY_HIGH>>("Embree, high build", threads);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -75,7 +76,8 @@ pair_list in_parts(std::size_t n, int threads, Find const& find) {
 /// memory to all pairs in memory.
 ///
 /// A `Peer` is made from the scene and a number of threads, and has `query()`, of which `list_of` is a list. Counters:
-/// build_ms; query_ms; pairs; missed and invented, pairs that `exact` has and has not.
+/// build_ms; query_ms; processor_ms, of all threads, for a machine that is shared; pairs; missed and invented, pairs
+/// that `exact` has and has not.
 template <class Peer>
 void add(std::string const& name, std::vector<int> const& threads) {
   std::string const of = scene::kind->name == "study" ? "" : "/" + std::string(scene::kind->name);
@@ -84,14 +86,16 @@ void add(std::string const& name, std::vector<int> const& threads) {
                                  [t](benchmark::State& state) {
                                    using clock = std::chrono::steady_clock;
                                    auto const& from = scene::get();
-                                   double build = 0, query = 0;
+                                   double build = 0, query = 0, processor = 0;
                                    pair_list found;
                                    for (auto _ : state) {
+                                     std::clock_t const used = std::clock();
                                      auto const begin = clock::now();
                                      Peer peer(from, t);
                                      auto const built = clock::now();
                                      auto result = peer.query();
                                      auto const end = clock::now();
+                                     processor += static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
                                      found = list_of(std::move(result));
                                      build += std::chrono::duration<double>(built - begin).count();
                                      query += std::chrono::duration<double>(end - built).count();
@@ -106,6 +110,7 @@ void add(std::string const& name, std::vector<int> const& threads) {
                                    auto const runs = static_cast<double>(state.iterations());
                                    state.counters["build_ms"] = 1e3 * build / runs;
                                    state.counters["query_ms"] = 1e3 * query / runs;
+                                   state.counters["processor_ms"] = 1e3 * processor / runs;
                                    state.counters["pairs"] = static_cast<double>(found.size());
                                    state.counters["missed"] = static_cast<double>(missed.size());
                                    state.counters["invented"] = static_cast<double>(invented.size());
