@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include <collide/detail/neighbours/first_neighbours.hpp>
 #include <collide/detail/neighbours/particle_order.hpp>
@@ -79,6 +80,7 @@ struct pair_interaction {
 
   COLLIDE_HD_INLINE void store(pair_state& p) const {
     if (!p.met) return;
+    if (p.self[position{}].x() == std::numeric_limits<S>::max()) return;  // it is gone: what is known of it is old
     bool is_asleep = false;
     if constexpr (Effects::keeps_support) is_asleep = is_inactive(p.self) && is_inactive(p.changed);
     if (!only_kicks && !is_asleep) state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
