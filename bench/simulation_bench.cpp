@@ -40,6 +40,7 @@
 #include <collide/simulation.cuh>
 #include <collide/upload.hpp>
 
+#include "io/counting.hpp"
 #include "io/scenes.hpp"
 #include "program.hpp"
 #include "stopwatch.hpp"
@@ -332,26 +333,6 @@ struct fill_space {
   }
 };
 
-/// Memory of a resource, counted.
-class counting final : public std::pmr::memory_resource {
- public:
-  explicit counting(std::pmr::memory_resource* from) : from_{from} {}
-  std::size_t bytes = 0;
-
- private:
-  void* do_allocate(std::size_t n, std::size_t alignment) override {
-    bytes += n;
-    return from_->allocate(n, alignment);
-  }
-  void do_deallocate(void* p, std::size_t n, std::size_t alignment) override {
-    bytes -= n;
-    from_->deallocate(p, n, alignment);
-  }
-  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
-
-  std::pmr::memory_resource* from_;
-};
-
 /// Very many frictionless spheres that touch each other. Counters: spheres; bytes, all that the simulation takes, a
 /// sphere.
 template <class Space, class MakeSpace>
@@ -361,7 +342,7 @@ void add_many(MakeSpace const& make, std::size_t n) {
       [=](benchmark::State& state) {
         using namespace collide;
         Space const plain = make(nullptr);
-        counting counted(plain.resource());
+        io::counting_resource counted(plain.resource());
         Space const space = make(&counted);
         auto const contact = sphere_contact::from_restitution(0.5, 2e-3, 0.01, 1000);
         simulation<detector<bucket, karabassi<>, Space>, sphere_contact, gravity, box_walls> made(
@@ -377,7 +358,7 @@ void add_many(MakeSpace const& make, std::size_t n) {
         bench::stopwatch<Space> watch(space);
         for (auto _ : state) state.SetIterationTime(watch([&] { made.step(1e-4f); }));
         state.counters["spheres"] = static_cast<double>(n);
-        state.counters["bytes"] = static_cast<double>(counted.bytes) / static_cast<double>(n);
+        state.counters["bytes"] = static_cast<double>(counted.in_use) / static_cast<double>(n);
       })
       ->UseManualTime()
       ->Iterations(3)

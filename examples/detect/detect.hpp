@@ -204,7 +204,7 @@ findings<S> detect_with(options const& wish, scene<S> const& from, Broad const& 
     out.cell_width = cell_width(detector);
     out.threads = device::threads(detector.space());
   }
-  out.peak_bytes = memory.peak();
+  out.peak_bytes = memory.peak;
   out.device = device::name();
   return out;
 }

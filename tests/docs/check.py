@@ -180,7 +180,7 @@ def members_of(name):
         body = re.split(r"^ (?:private|protected):", found[3] or "", flags=re.M)[0]
         own = {f"{n}()" for n in re.findall(r"^  .*\b(\w+)\(\) const\b", body, flags=re.M)}
         own |= set(re.findall(r"^  [\w:<>]+ (\w+); +///<", body, flags=re.M))
-        bases = re.findall(r"(?:detail::)?\b(array_in_space|records|per_sphere_min)<", found[2] or found[4] or "")
+        bases = re.findall(r"(?:detail::)?\b(array_in_space|array_per_sphere|records|per_sphere_min)<", found[2] or found[4] or "")
         return own.union(*(members_of(base) for base in bases))
     return set()
 

@@ -1,6 +1,5 @@
 /// Ranks of MPI, checked as tests/unit/ranks says; the argument says what.
 #define DOCTEST_CONFIG_IMPLEMENT
-#include <csignal>
 #include <iostream>
 
 #include <collide/ranks/mpi.hpp>
@@ -81,16 +80,6 @@ std::string check_simulations() {
   return wrong.text();
 }
 
-/// One rank fails while the others wait for it.
-[[noreturn]] void fail(bool dies) {
-  collide::mpi_ranks const ranks;
-  if (ranks.rank() == 1) {
-    if (dies) std::raise(SIGKILL);
-    throw collide::error("on purpose");
-  }
-  for (;;) collide::agree(ranks);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -103,7 +92,7 @@ int main(int argc, char** argv) {
   try {
     collide::mpi_session const session(argc, argv);
     std::string const what = argc > 1 ? argv[1] : "queries";
-    if (what == "throws" || what == "dies") fail(what == "dies");
+    if (what == "throws" || what == "dies") tests::fail_on_one_rank(collide::mpi_ranks(), what == "dies");
     std::string const wrong = what == "simulations" ? check_simulations() : check(what);
     std::cerr << wrong;
     return wrong.empty() ? 0 : 1;

@@ -1,6 +1,5 @@
 /// Ranks that send by NCCL, a GPU each, checked as tests/unit/ranks says; the argument says what. Started by mpirun.
 #define DOCTEST_CONFIG_IMPLEMENT
-#include <csignal>
 #include <iostream>
 
 #include <collide/cuda.cuh>
@@ -25,16 +24,6 @@ std::string check(std::string const& what) {
   return wrong.text();
 }
 
-/// One rank fails while the others wait for it.
-[[noreturn]] void fail(bool dies) {
-  collide::nccl_ranks const ranks{collide::mpi_ranks(), 5};
-  if (ranks.rank() == 1) {
-    if (dies) std::raise(SIGKILL);
-    throw collide::error("on purpose");
-  }
-  for (;;) collide::agree(ranks);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -48,7 +37,8 @@ int main(int argc, char** argv) {
     }
     collide::cuda_check(cudaSetDevice(processes.rank()), "cudaSetDevice");
     std::string const what = argc > 1 ? argv[1] : "members";
-    if (what == "throws" || what == "dies") fail(what == "dies");
+    if (what == "throws" || what == "dies")
+      tests::fail_on_one_rank(collide::nccl_ranks{collide::mpi_ranks(), 5}, what == "dies");
     std::string const wrong = check(what);
     std::cerr << wrong;
     return wrong.empty() ? 0 : 1;

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <memory_resource>
 #include <string>
 #include <vector>
 
 #include <collide/contact.hpp>
 
+#include "io/counting.hpp"
 #include "scenes.hpp"
 
 namespace tests {
@@ -45,31 +45,7 @@ struct rows {
   bounded<collide::id> triangles;
 };
 
-/// Counts what goes through it to another resource.
-class counting_resource final : public std::pmr::memory_resource {
- public:
-  explicit counting_resource(std::pmr::memory_resource* upstream) : upstream_{upstream} {}
-
-  std::size_t allocations = 0;  ///< how many there were
-  std::size_t in_use = 0;       ///< bytes
-  std::size_t peak = 0;         ///< bytes, since it was last set to `in_use`
-
- private:
-  void* do_allocate(std::size_t bytes, std::size_t alignment) override {
-    void* const p = upstream_->allocate(bytes, alignment);
-    ++allocations;
-    in_use += bytes;
-    peak = in_use > peak ? in_use : peak;
-    return p;
-  }
-  void do_deallocate(void* p, std::size_t bytes, std::size_t alignment) override {
-    in_use -= bytes;
-    upstream_->deallocate(p, bytes, alignment);
-  }
-  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
-
-  std::pmr::memory_resource* upstream_;
-};
+using io::counting_resource;
 
 template <class S>
 class subject {

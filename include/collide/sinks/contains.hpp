@@ -45,31 +45,18 @@ struct find_inside {
 /// Needs a broad phase that finds what is above a point: `bvh`, or `all_pairs`. O(triangles above or below the point)
 /// with `bvh`, and more where these are near each other. `query` does not wait for the flags. Memory: one byte per
 /// point.
-class contains : public detail::array_in_space<std::uint8_t> {
+class contains : public detail::array_per_sphere<std::uint8_t> {
  public:
   /// The flags are kept in memory of the space.
   contains() = default;
   /// The flags are written to the caller's memory (of the space), one byte per point: 0 or 1, for all points of the
   /// query. It must have room for them, and stay valid as long as this object is used.
-  explicit contains(std::uint8_t* flags) : external_{flags} {}
-
-  /// Makes room in memory of `space` for queries of up to so many points: they then allocate nothing.
-  template <class Space>
-  void reserve(Space const& space, std::size_t points, std::size_t /*pairs*/ = 0) {
-    if (external_ == nullptr) own_.reserve(space.resource(), points);
-  }
+  explicit contains(std::uint8_t* flags) : array_per_sphere{flags} {}
 
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
-    size_ = query.spheres.size();
-    data_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), size_);
-    download_ = detail::host_copier<std::uint8_t>(space);
-    detail::search_mesh(query, detail::find_inside{data_});
+    detail::search_mesh(query, detail::find_inside{room_for(space, query.spheres.size())});
   }
-
- private:
-  std::uint8_t* external_ = nullptr;
-  buffer<std::uint8_t> own_;
 };
 
 }  // namespace collide

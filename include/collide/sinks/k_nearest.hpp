@@ -103,15 +103,14 @@ struct find_k_nearest {
 /// are in reach, those at the end of the row have `no_id` and a distance of +infinity. What `nearest` says of spheres,
 /// of precision and of broad phases holds here too. Memory: k entries for each point.
 template <class S = float>
-class k_nearest : public detail::array_in_space<nearest_triangle<S>> {
-  using base = detail::array_in_space<nearest_triangle<S>>;
-  using base::data_, base::size_, base::download_;
+class k_nearest : public detail::array_per_sphere<nearest_triangle<S>> {
+  using base = detail::array_per_sphere<nearest_triangle<S>>;
 
  public:
   /// So many triangles of each point, at most 32, up to `max_distance` from it, inclusive. Throws `error` if `k` is not
   /// 1 to 32, or the distance negative or NaN.
   explicit k_nearest(int k, std::common_type_t<S> max_distance = std::numeric_limits<S>::infinity())
-      : k_{k}, max_distance_{max_distance} {
+      : base{nullptr, static_cast<std::size_t>(k)}, k_{k}, max_distance_{max_distance} {
     if (k < 1 || k > detail::most_nearest) throw error("collide: k_nearest: k is not from 1 to 32");
     if (!(max_distance >= 0)) throw error("collide: k_nearest: the largest distance is negative or NaN");
   }
@@ -119,29 +118,20 @@ class k_nearest : public detail::array_in_space<nearest_triangle<S>> {
   /// How many entries a row has.
   int k() const { return k_; }
   /// How many rows there are: the points of the last query.
-  std::size_t rows() const { return size_ / static_cast<std::size_t>(k_); }
-
-  /// Makes room in memory of `space` for queries of up to so many points: they then allocate nothing.
-  template <class Space>
-  void reserve(Space const& space, std::size_t points, std::size_t /*pairs*/) {
-    own_.reserve(space.resource(), points * static_cast<std::size_t>(k_));
-  }
+  std::size_t rows() const { return this->size() / static_cast<std::size_t>(k_); }
 
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: k_nearest<S> must have the scalar type of the detector");
     using precision = typename detail::nearest_precision<typename Query::narrow_phase>::type;
-    download_ = detail::host_copier<nearest_triangle<S>>(space);
-    size_ = query.spheres.size() * static_cast<std::size_t>(k_);
-    data_ = own_.reserve(space.resource(), size_);
-    detail::search_mesh(query, detail::find_k_nearest<S, precision>{max_distance_, k_, data_});
+    auto* const to = this->room_for(space, query.spheres.size());
+    detail::search_mesh(query, detail::find_k_nearest<S, precision>{max_distance_, k_, to});
   }
 
  private:
   int k_;
   S max_distance_;
-  buffer<nearest_triangle<S>> own_;
 };
 
 }  // namespace collide

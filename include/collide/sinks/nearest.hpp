@@ -108,10 +108,7 @@ struct find_nearest {
 /// triangles) for a point near the mesh with `bvh`. `query` does not wait. `S` is the scalar of the detector. Memory:
 /// an entry for each point.
 template <class S = float>
-class nearest : public detail::array_in_space<nearest_triangle<S>> {
-  using base = detail::array_in_space<nearest_triangle<S>>;
-  using base::data_, base::size_, base::download_;
-
+class nearest : public detail::array_per_sphere<nearest_triangle<S>> {
  public:
   /// A mesh may be in parts: see `in_passes` and `distributed`.
   static constexpr bool joins_parts = true;
@@ -123,26 +120,17 @@ class nearest : public detail::array_in_space<nearest_triangle<S>> {
     if (!(max_distance >= 0)) throw error("collide: nearest: the largest distance is negative or NaN");
   }
 
-  /// Makes room in memory of `space` for queries of up to so many points: they then allocate nothing.
-  template <class Space>
-  void reserve(Space const& space, std::size_t points, std::size_t /*pairs*/) {
-    own_.reserve(space.resource(), points);
-  }
-
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: nearest<S> must have the scalar type of the detector");
     using precision = typename detail::nearest_precision<typename Query::narrow_phase>::type;
-    download_ = detail::host_copier<nearest_triangle<S>>(space);
-    size_ = query.spheres.size();
-    data_ = own_.reserve(space.resource(), size_);
-    detail::search_mesh(query, detail::find_nearest<S, precision>{max_distance_, data_});
+    auto* const to = this->room_for(space, query.spheres.size());
+    detail::search_mesh(query, detail::find_nearest<S, precision>{max_distance_, to});
   }
 
  private:
   S max_distance_;
-  buffer<nearest_triangle<S>> own_;
 };
 
 }  // namespace collide

@@ -61,10 +61,7 @@ struct find_signed_distance {
 ///
 /// `query` does not wait. `S` is the scalar of the detector. Memory: an entry for each point.
 template <class S = float>
-class signed_distance : public detail::array_in_space<signed_nearest_triangle<S>> {
-  using base = detail::array_in_space<signed_nearest_triangle<S>>;
-  using base::data_, base::size_, base::download_;
-
+class signed_distance : public detail::array_per_sphere<signed_nearest_triangle<S>> {
  public:
   /// Triangles count up to `max_distance` from a point, inclusive. Throws `error` if it is negative or NaN.
   explicit signed_distance(std::common_type_t<S> max_distance = std::numeric_limits<S>::infinity())
@@ -72,26 +69,17 @@ class signed_distance : public detail::array_in_space<signed_nearest_triangle<S>
     if (!(max_distance >= 0)) throw error("collide: signed_distance: the largest distance is negative or NaN");
   }
 
-  /// Makes room in memory of `space` for queries of up to so many points: they then allocate nothing.
-  template <class Space>
-  void reserve(Space const& space, std::size_t points, std::size_t /*pairs*/) {
-    own_.reserve(space.resource(), points);
-  }
-
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: signed_distance<S> must have the scalar type of the detector");
     using precision = typename detail::nearest_precision<typename Query::narrow_phase>::type;
-    download_ = detail::host_copier<signed_nearest_triangle<S>>(space);
-    size_ = query.spheres.size();
-    data_ = own_.reserve(space.resource(), size_);
-    detail::search_mesh(query, detail::find_signed_distance<S, precision>{max_distance_, data_});
+    auto* const to = this->room_for(space, query.spheres.size());
+    detail::search_mesh(query, detail::find_signed_distance<S, precision>{max_distance_, to});
   }
 
  private:
   S max_distance_;
-  buffer<signed_nearest_triangle<S>> own_;
 };
 
 }  // namespace collide

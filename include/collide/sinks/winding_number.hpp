@@ -68,39 +68,27 @@ using query_windings = decltype(std::declval<Query const&>().windings());
 /// In double, the same bits in all spaces. `query` does not wait. `S` is the scalar of the detector. Memory: an entry
 /// for each point; `bvh` says what it keeps.
 template <class S = float>
-class winding_number : public detail::array_in_space<winding<S>> {
-  using base = detail::array_in_space<winding<S>>;
-  using base::data_, base::size_, base::download_;
-
+class winding_number : public detail::array_per_sphere<winding<S>> {
  public:
   /// `beta`: see above; from 2 to infinity, with which each triangle is seen. Throws `error` otherwise.
   explicit winding_number(double beta = 3) : beta_{beta} {
     if (!(beta >= 2)) throw error("collide: winding_number: beta is below 2 or NaN: pass 2 or more, such as 3");
   }
 
-  /// Makes room in memory of `space` for queries of up to so many points: they then allocate nothing.
-  template <class Space>
-  void reserve(Space const& space, std::size_t points, std::size_t /*pairs*/) {
-    own_.reserve(space.resource(), points);
-  }
-
   template <class Space, class Query>
   void run(Space& space, Query const& query) {
     static_assert(std::is_same<S, typename Query::scalar>::value,
                   "collide: winding_number<S> must have the scalar type of the detector");
-    download_ = detail::host_copier<winding<S>>(space);
-    size_ = query.spheres.size();
-    data_ = own_.reserve(space.resource(), size_);
+    auto* const to = this->room_for(space, query.spheres.size());
     detail::winding_tree_ref<S> tree;
     if constexpr (detail::is_valid<detail::query_windings, Query>) {
       if (query.mesh.size() != 0) tree = query.windings();
     }
-    detail::search_mesh(query, detail::find_winding<S>{tree, beta_, data_});
+    detail::search_mesh(query, detail::find_winding<S>{tree, beta_, to});
   }
 
  private:
   double beta_;
-  buffer<winding<S>> own_;
 };
 
 }  // namespace collide

@@ -1,8 +1,5 @@
 /// Meshes from OBJ files, by tinyobjloader.
-#include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -12,17 +9,11 @@
 
 #include <collide/io/obj.hpp>
 
+#include "io/written.hpp"
+
 namespace {
 
-/// A file with this text that is gone after the test.
-struct written {
-  std::string path;
-  written(std::string const& text, std::string const& ending)
-      : path{"collide-test-mesh-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + ending} {
-    std::ofstream(path, std::ios::binary) << text;
-  }
-  ~written() { std::remove(path.c_str()); }
-};
+using tests::written;
 
 collide::mesh_data<float> read(std::string const& text) { return collide::read_obj<float>(written(text, ".obj").path); }
 

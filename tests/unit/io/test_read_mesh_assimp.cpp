@@ -1,7 +1,4 @@
 /// Meshes from files, by Assimp.
-#include <cstdint>
-#include <cstdio>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,19 +7,9 @@
 
 #include <collide/io/assimp.hpp>
 
-namespace {
+#include "io/written.hpp"
 
-/// A file with this text that is gone after the test.
-struct written {
-  std::string path;
-  written(std::string const& text, std::string const& ending)
-      : path{"collide-test-mesh-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + ending} {
-    std::ofstream(path, std::ios::binary) << text;
-  }
-  ~written() { std::remove(path.c_str()); }
-};
-
-}  // namespace
+using tests::written;
 
 TEST_CASE("read_mesh: a tetrahedron in each format is the same") {
   std::string const off = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <io/counting.hpp>
 #include <io/scenes/order.hpp>
 #include <io/scenes/torus.hpp>
 
@@ -27,23 +28,6 @@ std::vector<S> triangles(std::size_t n) {
   for (std::size_t i = 3; i < n; i += 170) all[9 * i + i % 9] = std::numeric_limits<S>::quiet_NaN();
   return all;
 }
-
-/// Memory of which it is known how much is taken.
-class counted_memory final : public std::pmr::memory_resource {
- public:
-  std::size_t taken = 0;
-
- private:
-  void* do_allocate(std::size_t n, std::size_t alignment) override {
-    taken += n;
-    return std::pmr::new_delete_resource()->allocate(n, alignment);
-  }
-  void do_deallocate(void* p, std::size_t n, std::size_t alignment) override {
-    taken -= n;
-    std::pmr::new_delete_resource()->deallocate(p, n, alignment);
-  }
-  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
-};
 
 }  // namespace
 
@@ -137,13 +121,13 @@ TEST_CASE("groups of triangles: the host keeps no box of each triangle, unless f
     io::order_triangles(scene, wanted, 1);
     std::size_t const n = scene.triangle_count();
     std::vector<float> const vertices(scene.vertices.begin(), scene.vertices.end()), centres(3 * 100, 1.0f);
-    counted_memory memory;
+    io::counting_resource memory(std::pmr::new_delete_resource());
     collide::detector<collide::bucket> detector(collide::host(1, &memory));
     detector.build(collide::indexed_mesh(vertices.data(), vertices.size() / 3, scene.corners.data(), n));
-    CHECK(memory.taken < bytes_of_order + 6 * n);
+    CHECK(memory.in_use < bytes_of_order + 6 * n);
     auto const spheres = collide::spheres_xyz(centres.data(), centres.size() / 3, 1.0f);
     auto const first = detector.query(spheres, collide::pairs(collide::order::canonical)).to_host();
-    CHECK(memory.taken < bytes_of_order + 12 * n);
+    CHECK(memory.in_use < bytes_of_order + 12 * n);
     for (int again = 0; again < 2; ++again) {
       CHECK((detector.query(spheres, collide::pairs(collide::order::canonical)).to_host() == first));
     }

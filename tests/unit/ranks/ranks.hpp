@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -75,6 +76,16 @@ void check_members(Ranks const& ranks, complaints& wrong) {
     wrong.expect(different == 0, "items arrive in the order of ranks");
   }
   wrong.expect(collide::count_before(ranks, 10) == 10 * me, "count_before counts those of lower ranks");
+}
+
+/// One rank throws, or its process is killed, while the others wait for it.
+template <class Ranks>
+[[noreturn]] void fail_on_one_rank(Ranks const& ranks, bool dies) {
+  if (ranks.rank() == 1) {
+    if (dies) std::raise(SIGKILL);
+    throw collide::error("on purpose");
+  }
+  for (;;) collide::agree(ranks);
 }
 
 /// One rank throws: all do, and say which.

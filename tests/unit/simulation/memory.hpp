@@ -16,30 +16,30 @@ namespace tests {
 /// space. Then particles are set that there is room for, and nothing is allocated.
 template <class Simulation, class MakeSpace>
 void check_room(MakeSpace make, std::pmr::memory_resource* upstream) {
-  counting_calls counting(upstream);
+  io::counting_resource counting(upstream);
   auto const space = make(&counting);
   world<float> w;
   w.radius = 0.5f;
   for (int i = 0; i < 5000; ++i) w.particle(i, 0, 0);
   placed<float> const centres(space, w.centres);
-  std::size_t const others = counting.bytes;
+  std::size_t const others = counting.in_use;
   Simulation simulation(space);
   simulation.set_mesh({});
   CHECK(simulation.bytes() == 0);
   auto const set = [&](std::size_t n) {
     simulation.set(collide::spheres_xyz(centres.data(), n, 0.5f));
-    CHECK(simulation.bytes() == counting.bytes - others);
+    CHECK(simulation.bytes() == counting.in_use - others);
     simulation.step(1e-3f);
   };
   set(100);
   simulation.reserve(5000);
   CHECK(simulation.size() == 0);
   CHECK_THROWS_AS(simulation.step(1e-3f), collide::error);  // before set
-  std::size_t const bytes = counting.bytes - others, calls = counting.calls;
+  std::size_t const bytes = counting.in_use - others, calls = counting.allocations;
   CHECK(simulation.bytes() == bytes);
   CHECK(bytes >= 5000 * Simulation::bytes_per_particle);
   for (auto const n : std::initializer_list<std::size_t>{10, 5000, 0, 3000, 5000}) set(n);
-  CHECK(counting.calls == calls);
+  CHECK(counting.allocations == calls);
   CHECK(simulation.bytes() == bytes);
   CHECK_THROWS_AS(simulation.reserve(0xffffffff), collide::error);
 }

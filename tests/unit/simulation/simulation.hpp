@@ -23,32 +23,12 @@
 #include <collide/simulation.cuh>
 
 #include "compared.hpp"
+#include "io/counting.hpp"
 
 namespace tests {
 
 using collide::position;
 using collide::velocity;
-
-/// Counts allocations.
-class counting_calls final : public std::pmr::memory_resource {
- public:
-  explicit counting_calls(std::pmr::memory_resource* from) : from_{from} {}
-  std::size_t calls = 0, bytes = 0;
-
- private:
-  void* do_allocate(std::size_t n, std::size_t alignment) override {
-    ++calls;
-    bytes += n;
-    return from_->allocate(n, alignment);
-  }
-  void do_deallocate(void* p, std::size_t n, std::size_t alignment) override {
-    bytes -= n;
-    from_->deallocate(p, n, alignment);
-  }
-  bool do_is_equal(std::pmr::memory_resource const& other) const noexcept override { return this == &other; }
-
-  std::pmr::memory_resource* from_;
-};
 
 /// Numbers in memory of a space.
 template <class T>
@@ -428,22 +408,22 @@ template <class Space, class MakeSpace>
 void check_memory_of_steps(MakeSpace make, std::pmr::memory_resource* upstream) {
   auto const bytes_of = [&](auto type, std::size_t n) {
     using simulation = typename decltype(type)::type;
-    counting_calls counting(upstream);
+    io::counting_resource counting(upstream);
     Space const plain = make(nullptr);
     auto const w = crowd<float>(n, 1, 0.01, 1, 5);
     placed<float> const centres(plain, w.centres), corners(plain, w.corners);
     simulation made(make(&counting));
     made.set(collide::spheres_xyz(centres.data(), n, w.radius));
-    std::size_t const bytes = counting.bytes;
+    std::size_t const bytes = counting.in_use;
     made.set_mesh(collide::triangle_soup(corners.data(), w.corners.size() / 9));
-    std::size_t const calls = counting.calls;
+    std::size_t const calls = counting.allocations;
     made.steps(5, 1e-5f);
     made.space().synchronize();
-    CHECK(counting.calls == calls);
+    CHECK(counting.allocations == calls);
     made.set_mesh(collide::triangle_soup(corners.data(), w.corners.size() / 9));
     made.step(1e-5f);
     made.space().synchronize();
-    CHECK(counting.calls == calls);
+    CHECK(counting.allocations == calls);
     return bytes;
   };
   using detector = meets_mesh<Space>;

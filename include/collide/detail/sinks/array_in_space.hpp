@@ -1,7 +1,8 @@
 /// \file
-/// The base of sinks that keep one array.
+/// The bases of sinks that keep one array.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <collide/detail/sinks/output.hpp>
@@ -24,6 +25,36 @@ class array_in_space : public kept_in_space<T> {
   T* data_ = nullptr;
   std::size_t size_ = 0;
   host_copier<T> download_;
+};
+
+/// An array with a row of entries for each sphere or point, in memory of its own or of the caller.
+template <class T>
+class array_per_sphere : public array_in_space<T> {
+ public:
+  /// Makes room in memory of `space` for queries of up to so many spheres or points, whatever they touch: they then
+  /// allocate nothing. Number of pairs: of no account.
+  template <class Space>
+  void reserve(Space const& space, std::size_t spheres, std::size_t /*pairs*/ = 0) {
+    if (external_ == nullptr) own_.reserve(space.resource(), spheres * row_);
+  }
+
+ protected:
+  /// Entries are kept at `external`, or in memory of the space if that is null.
+  explicit array_per_sphere(T* external = nullptr, std::size_t row = 1) : external_{external}, row_{row} {}
+
+  /// The entries of a query of so many spheres, not yet written.
+  template <class Space>
+  T* room_for(Space const& space, std::size_t spheres) {
+    this->size_ = spheres * row_;
+    this->data_ = external_ != nullptr ? external_ : own_.reserve(space.resource(), this->size_);
+    this->download_ = host_copier<T>(space);
+    return this->data_;
+  }
+
+ private:
+  T* external_;
+  std::size_t row_;
+  buffer<T> own_;
 };
 
 }  // namespace collide::detail
