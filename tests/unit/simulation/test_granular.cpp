@@ -14,6 +14,8 @@ TEST_CASE("granular contact: two bodies to the digits of other codes") {
 TEST_CASE("granular contact: a wall does not depend on its triangles") {
   tests::check_divided_walls<double>(host(1));
   tests::check_divided_walls<float>(host(1));
+  tests::check_tilted_walls<double>(host(1));
+  tests::check_tilted_walls<float>(host(1));
 }
 
 TEST_CASE("granular contact: contacts remember the same everywhere, and after a checkpoint") {

@@ -145,17 +145,14 @@ struct interact_listed : pair_interaction<S, Effects> {
       if constexpr (sorted_particles<S, Effects>::has_memory) {
         std::uint32_t const before = places.memory.touching[i];
         std::uint32_t touching = 0;
-        for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other, std::uint32_t k) {
-          bool const overlap = places.within_skin(own, other, S(0)), was = (before >> k & 1) != 0;
-          if (!overlap && !was) return;
+        for_each_near(self, own, before, [&](std::uint32_t place, bool overlap, std::uint32_t k) {
+          bool const was = (before >> k & 1) != 0;
           auto& record = places.memory.records[k * places.capacity + i];
           if (this->interact(p, place, overlap, was, record)) touching |= 1u << k;
         });
         if ((touching | before) != 0) places.memory.touching[i] = touching;
       } else {
-        for_each_listed(self, [&](std::uint32_t place, packed_sphere<S> const& other, std::uint32_t) {
-          if (places.within_skin(own, other, S(0))) this->interact(p, place);
-        });
+        for_each_near(self, own, 0, [&](std::uint32_t place, bool, std::uint32_t) { this->interact(p, place); });
       }
     } while (this->must_meet_again(p));
     this->store(p);
@@ -172,13 +169,16 @@ struct interact_listed : pair_interaction<S, Effects> {
 #endif
   }
 
-  /// f(place, sphere, item) for each on the list of a particle. While one is looked at, the next and the list's item
-  /// behind it are loaded.
+  /// f(place, overlap, item) for each on the list of a particle that overlaps it, or whose item is among the bits of
+  /// `before`.
   template <class F>
-  COLLIDE_HD_INLINE void for_each_listed(std::uint32_t self, F const& f) const {
+  COLLIDE_HD_INLINE void for_each_near(std::uint32_t self, packed_sphere<S> const& own, std::uint32_t before,
+                                       F const& f) const {
     auto const& places = this->order;
-    auto const item = [&](std::uint32_t before, std::uint32_t n) {
-      return before != self && n < sorted_particles<S, Effects>::listed ? places.list(n, self) : self;
+#if defined(__CUDA_ARCH__)
+    // while one is looked at, the next and the list's item behind it are loaded
+    auto const item = [&](std::uint32_t last, std::uint32_t n) {
+      return last != self && n < sorted_particles<S, Effects>::listed ? places.list(n, self) : self;
     };
     std::uint32_t next = places.list(0, self), behind = item(next, 1);
     packed_sphere<S> next_sphere = places.spheres[next];
@@ -189,8 +189,19 @@ struct interact_listed : pair_interaction<S, Effects> {
       next = behind;
       next_sphere = places.spheres[next];
       behind = item(next, n);
-      f(place, sphere, n - 2);
+      bool const overlap = places.within_skin(own, sphere, S(0));
+      if (overlap || (before >> (n - 2) & 1) != 0) f(place, overlap, n - 2);
     }
+#else
+    // first all are looked at, without a branch that a processor would have to guess
+    std::uint32_t found = 0;
+    for (std::uint32_t k = 0; k < sorted_particles<S, Effects>::listed && places.list(k, self) != self; ++k)
+      found |= std::uint32_t{places.within_skin(own, places.spheres[places.list(k, self)], S(0))} << k;
+    for (std::uint32_t left = found | before; left != 0; left &= left - 1) {
+      auto const k = static_cast<std::uint32_t>(__builtin_ctz(left));
+      f(places.list(k, self), (found >> k & 1) != 0, k);
+    }
+#endif
   }
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <collide/detail/bodies/bodies_ref.hpp>
+#include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/particles/contact_memory.hpp>
 #include <collide/detail/particles/effect_list.hpp>
 #include <collide/detail/step/mesh_ledger.hpp>
@@ -248,6 +249,8 @@ struct press_on_mesh {
     if constexpr (has_moving_mesh<Triangles>) {
       if (open.mesh.frame_of(triangle) != frame) return;
     }
+    // of triangles that are near in their boxes only, such as thin ones that meet in a point, there may be very many
+    if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) return;
     nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
     if (n.distance < static_cast<double>(seen.radius)) near.add({n.distance, triangle, frame, n.kind, n.index});
   }
