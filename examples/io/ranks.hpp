@@ -51,7 +51,12 @@ class any_device {
   void (*after_)(void const*, std::shared_ptr<void> const&);
 };
 
-/// Whether ranks can send from memory of devices, and whether they know it at run time alone.
+/// Whether ranks can wait for a device, and send from memory of devices, and whether they know that at run time alone.
+template <class Ranks, class = void>
+inline constexpr bool waits_for_devices = false;
+template <class Ranks>
+inline constexpr bool waits_for_devices<
+    Ranks, std::void_t<decltype(std::declval<Ranks const&>().wait_for(std::declval<any_device const&>()))>> = true;
 template <class Ranks, class = void>
 inline constexpr bool sends_from_devices = false;
 template <class Ranks>
@@ -90,6 +95,11 @@ class any_ranks {
       -> std::enable_if_t<std::is_convertible<decltype(space.stream()), CUstream_st*>::value> {
     ranks_->exchange_in_space(any_device(space), from, to_each, to, of_each, bytes);
   }
+  template <class Space>
+  auto wait_for(Space const& space) const
+      -> std::enable_if_t<std::is_convertible<decltype(space.stream()), CUstream_st*>::value> {
+    ranks_->wait_for(any_device(space));
+  }
 
  private:
   struct interface {
@@ -103,6 +113,7 @@ class any_ranks {
     virtual bool takes_device_memory() const = 0;
     virtual void exchange_in_space(any_device const&, void const*, std::uint64_t const*, void*, std::uint64_t const*,
                                    std::size_t) const = 0;
+    virtual void wait_for(any_device const&) const = 0;
   };
   template <class Ranks>
   struct model final : interface {
@@ -132,6 +143,9 @@ class any_ranks {
     void exchange_in_space(any_device const& device, void const* from, std::uint64_t const* to_each, void* to,
                            std::uint64_t const* of_each, std::size_t bytes) const override {
       if constexpr (sends_from_devices<Ranks>) ranks.exchange_in_space(device, from, to_each, to, of_each, bytes);
+    }
+    void wait_for(any_device const& device) const override {
+      if constexpr (waits_for_devices<Ranks>) ranks.wait_for(device);
     }
     Ranks ranks;
   };

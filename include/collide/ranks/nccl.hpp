@@ -32,12 +32,14 @@ inline void nccl_check(ncclResult_t status, char const* call) {
     throw error(std::string("collide: nccl_ranks: ") + call + ": " + ncclGetErrorString(status));
 }
 
-/// A communicator, with memory of the device for what comes from the host.
+/// A communicator, with memory of the device for what comes from the host, and memory of the host that the device reads
+/// for a little of it.
 class nccl_communicator {
  public:
   nccl_communicator(ncclUniqueId const& common, int rank, int size, double patience) : patience_{patience} {
     nccl_check(ncclCommInitRank(&comm_, size, common, rank), "ncclCommInitRank");
     nccl_cuda_check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+    nccl_cuda_check(cudaMallocHost(&little_, 2 * little), "cudaMallocHost");
   }
   nccl_communicator(nccl_communicator const&) = delete;
   nccl_communicator& operator=(nccl_communicator const&) = delete;
@@ -46,8 +48,14 @@ class nccl_communicator {
     if (comm_ != nullptr && std::uncaught_exceptions() > 0) abort();
     if (comm_ != nullptr) ncclCommDestroy(comm_);
     for (void* const at : {sent_.at, received_.at}) cudaFree(at);
+    cudaFreeHost(little_);
     if (stream_ != nullptr) cudaStreamDestroy(stream_);
   }
+
+  static constexpr std::size_t little = 4096;  ///< bytes
+  /// Pinned memory of the host for a little that is sent, and for a little that is received.
+  unsigned char* little_sent() const { return static_cast<unsigned char*>(little_); }
+  unsigned char* little_received() const { return little_sent() + little; }
 
   ncclComm_t get() const {
     if (comm_ == nullptr) throw rank_error("collide: nccl_ranks: ended before, as a rank did not answer");
@@ -74,7 +82,7 @@ class nccl_communicator {
                                 : "collide: nccl_ranks: a rank has not answered for " +
                                       std::to_string(static_cast<int>(patience_)) + " s");
       }
-      if (waited.count() > 1e-3) std::this_thread::sleep_for(std::chrono::microseconds(50));
+      if (waited.count() > 0.02) std::this_thread::sleep_for(std::chrono::microseconds(50));  // longer than a step
     }
   }
 
@@ -100,6 +108,7 @@ class nccl_communicator {
   ncclComm_t comm_ = nullptr;
   cudaStream_t stream_ = nullptr;
   memory sent_, received_;
+  void* little_ = nullptr;
   double patience_;
 };
 
@@ -172,6 +181,13 @@ class nccl_ranks {
     send(space.stream(), from, to_each, to, of_each, bytes);
   }
 
+  /// Waits for the work of a space, as long as all others answer.
+  template <class Space>
+  auto wait_for(Space const& space) const
+      -> std::enable_if_t<std::is_convertible<decltype(space.stream()), cudaStream_t>::value> {
+    comm_->wait(space.stream());
+  }
+
  private:
   /// NCCL's id, of the first rank, and the GPU of each.
   struct greeting {
@@ -229,18 +245,23 @@ class nccl_ranks {
   }
 
   /// Calls work(sent, received) with memory of the device, of which the first is `from` and the second becomes `to`.
+  /// Waits once for a little, and twice for more, of which no copy may begin that others could hold up.
   template <class Work>
   void by_way_of_device(void const* from, std::size_t out, void* to, std::size_t in, Work const& work) const {
     cudaStream_t const stream = comm_->stream();
     unsigned char *const sent = comm_->sent(out), *const received = comm_->received(in);
+    bool const is_little = out <= comm_->little && in <= comm_->little;
+    if (is_little && out != 0) from = std::memcpy(comm_->little_sent(), from, out);
     if (out != 0)
       detail::nccl_cuda_check(cudaMemcpyAsync(sent, from, out, cudaMemcpyHostToDevice, stream), "cudaMemcpyAsync");
     work(sent, received);
+    if (!is_little) comm_->wait(stream);
     if (in != 0) {
-      comm_->wait(stream);
-      detail::nccl_cuda_check(cudaMemcpyAsync(to, received, in, cudaMemcpyDeviceToHost, stream), "cudaMemcpyAsync");
+      void* const at = is_little ? comm_->little_received() : to;
+      detail::nccl_cuda_check(cudaMemcpyAsync(at, received, in, cudaMemcpyDeviceToHost, stream), "cudaMemcpyAsync");
     }
     comm_->wait(stream);
+    if (is_little && in != 0) std::memcpy(to, comm_->little_received(), in);
   }
 
   std::shared_ptr<detail::nccl_communicator> comm_;

@@ -78,9 +78,6 @@ class _Torch(_Numpy):
     def stream(self, device):
         return self.module.cuda.current_stream(device).cuda_stream, -1
 
-    def array(self, result, stream):  # without asking for a stream: it is the one that the call was on
-        return self.module.from_dlpack(result.__dlpack__())
-
     def dtype(self, name):
         return getattr(self.module, name)
 
