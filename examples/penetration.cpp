@@ -10,6 +10,17 @@
 #include "io/film_program.hpp"
 #include "io/scenes/solids.hpp"
 
+/// An effect of the program's own: what is large is of steel.
+struct steel_if_large {
+  using reads = collide::columns<collide::radius>;
+  using writes = collide::columns<collide::material>;
+
+  template <class Particle, class S>
+  COLLIDE_HD void accelerate(Particle& p, S) const {
+    p[collide::material{}] = p[collide::radius{}] > S(0.002) ? 1 : 0;
+  }
+};
+
 namespace {
 
 using namespace collide;
@@ -24,17 +35,6 @@ struct chute {
     io::spot const at(number);
     x = {S((half_x - 2 * size) * at.evenly[0]), S((half_y - 2 * size) * at.evenly[1]), S(0.04)};
     v = {S(0.05 * at.anyhow[0]), S(0.05 * at.anyhow[1]), S(-1)};
-  }
-};
-
-/// An effect of the program's own: what is large is of steel.
-struct steel_if_large {
-  using reads = columns<collide::radius>;
-  using writes = columns<material>;
-
-  template <class Particle, class S>
-  COLLIDE_HD void accelerate(Particle& p, S) const {
-    p[material{}] = p[collide::radius{}] > S(2 * size) ? 1 : 0;
   }
 };
 
