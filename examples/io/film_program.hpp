@@ -31,6 +31,12 @@ inline char const* name_of(collide::slow_steps) { return "slow_steps"; }
 inline char const* name_of(collide::pair_acceleration) { return "pair_acceleration"; }
 inline char const* name_of(collide::pair_angular_acceleration) { return "pair_angular_acceleration"; }
 
+/// Whether a list of columns has a column.
+template <class Column, class... Listed>
+constexpr bool has(collide::columns<Listed...>) {
+  return (std::is_same<Column, Listed>::value || ...);
+}
+
 /// A column's values of the particles that are there, and how many each has.
 template <class Column, class Simulation>
 auto of_present(Simulation& simulation) {
@@ -53,7 +59,7 @@ void write_particles(std::string const& path, Simulation& simulation, float radi
   auto const points = of_present<collide::position>(simulation).first;
   std::size_t const n = points.size() / 3;
   std::vector<collide::vtk_array> known;
-  if (!collide::detail::contains<typename Simulation::columns, collide::radius>)
+  if (!has<collide::radius>(typename Simulation::columns()))
     known.emplace_back("radius", std::vector<float>(n, radius));
   auto const add = [&](auto column) {
     using type = decltype(column);
@@ -128,7 +134,7 @@ auto distributed_over(any_ranks const& ranks, collide::simulation<Detector, Effe
 template <class Simulation>
 void set_first(film const& wish, Simulation& simulation, bool shows) {
   auto const radius = static_cast<float>(wish.stage.radius);
-  if constexpr (collide::detail::contains<typename Simulation::columns, collide::radius>) {
+  if constexpr (has<collide::radius>(typename Simulation::columns())) {
     auto const first = wish.first != nullptr ? wish.first(wish) : std::vector<first_sphere>();
     std::vector<float> x, v, r;
     for (auto const& s : shows ? first : std::vector<first_sphere>()) {
