@@ -38,10 +38,10 @@ namespace collide {
 /// moves particles in straight lines, and nothing else.
 ///
 /// `step` allocates nothing and never waits: it puts one kernel on the stream of a CUDA space (more with
-/// `on_pair_contact` or `begin_step`), and can be captured in a CUDA graph, which is good until the next `set` or
-/// `set_mesh`. On the host it may make room for what contacts remember: see `to_host`. The same steps give the same
-/// bits on every run, in every space (nvcc needs -fmad=false). O(particles + candidates) per step. A simulation is for
-/// one thread at a time.
+/// `on_pair_contact` or `begin_step`), and can be captured in a CUDA graph, which is good until the next `set`,
+/// `set_mesh` or `assign<radius>`. On the host it may make room for what contacts remember: see `to_host`. The same
+/// steps give the same bits on every run, in every space (nvcc needs -fmad=false). O(particles + candidates) per step.
+/// A simulation is for one thread at a time.
 template <class Detector, class... Effect>
 class simulation {
   static_assert(detail::is_detector<Detector>::value,
@@ -242,9 +242,12 @@ class simulation {
     space_.for_each(numbers<Column>(),
                     detail::copy_values<detail::column_element<Column, S>>{values, state_.at(Column{})});
     if constexpr (std::is_same<Column, radius>::value) {
+      S const largest = radii_.largest;  // effects may let particles grow up to it
       radii_ = detail::radius_range_of(*this);
-      check_radii("assign");
-      if constexpr (effects_type::any_pair_contact) neighbours_.fit(space_, state_.size, radii_);
+      radii_.largest = detail::max(radii_.largest, largest);
+      if constexpr (effects_type::any_pair_contact) {
+        if (is_set_) neighbours_.fit(space_, state_.size, radii_);
+      }
       prepare_index();
     }
     if constexpr (std::is_same<Column, radius>::value || std::is_same<Column, material>::value) know_smallest();
@@ -255,6 +258,7 @@ class simulation {
       knows_pair_forces_ = !effects_type::ends_after_meeting;
       if (has_mesh_) release_adhered();
     }
+    if constexpr (std::is_same<Column, radius>::value) check_radii("assign");
   }
 
   /// Gives all particles a column's values, from a container such as std::vector or thrust::device_vector, whose memory
@@ -279,7 +283,8 @@ class simulation {
 
   /// The parameters of an effect, to be changed between steps. All that sleeps is woken, as what holds it may be
   /// another then; but not by a source, or by `moving_bodies`, which wake what they touch. O(1), or with `sleep`
-  /// O(particles); does not wait.
+  /// O(particles); does not wait. With both `sleep` and `velocity_verlet` particles then meet once more in the next
+  /// step, and on ranks may migrate.
   template <class E>
   E& effect() {
     check_effect<E>();
@@ -378,6 +383,7 @@ class simulation {
     if constexpr (has_begin_step)
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
     if constexpr (effects_type::ends_after_meeting) move(dt);
+    wake_by_bodies(dt);
   }
 
   /// Lets an effect begin a step. What it makes begins anew in all that it does not write.
@@ -404,12 +410,6 @@ class simulation {
     if (state_.size == 0) return;
     if (is_first && !bodies_.are_placed())
       advance_bodies(0, true);  // those that the caller drives, to where they begin
-    if constexpr (effects_type::overlaps && has_bodies && detail::contains<columns, slow_steps>) {
-      using mesh_type = decltype(mesh_ref<true>(dt));
-      if (!is_first)
-        space_.for_each(with_copies.size,
-                        detail::wake_by_bodies<S, effects_type, mesh_type>{with_copies, effects_, mesh_ref<true>(dt)});
-    }
     if constexpr (effects_type::any_pair_contact) {
       if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
       neighbours_.renew(space_, with_copies, effects_.space());
@@ -471,6 +471,17 @@ class simulation {
     if constexpr (detail::contains<columns, slow_steps>) {
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
       knows_pair_forces_ = !effects_type::ends_after_meeting;
+    }
+  }
+
+  /// Wakes particles that sleep where a body that moves may touch them: before ranks tell each other what is awake, and
+  /// before lists of neighbours copy it.
+  void wake_by_bodies([[maybe_unused]] S dt) {
+    if constexpr (effects_type::overlaps && has_bodies &&
+                  detail::contains<typename effects_type::inactive_reads, slow_steps>) {
+      auto const triangles = mesh_ref<true>(dt);
+      using mesh_type = std::decay_t<decltype(triangles)>;
+      space_.for_each(state_.size, detail::wake_by_bodies<S, effects_type, mesh_type>{state_, effects_, triangles});
     }
   }
 

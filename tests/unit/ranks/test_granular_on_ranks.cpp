@@ -45,7 +45,34 @@ auto belt() {
   return scene;
 }
 
+/// A plate runs into a layer of grains that sleep, and touch each other.
+template <class Integrator>
+auto plate() {
+  using law = granular_contact<hertz, mindlin>;
+  tests::world<float> w;
+  w.radius = 0.1f;
+  tests::add_floor(w, 2, 6, 0);
+  body pushes{w.corners.size() / 9, 2, {}};
+  float const side = -0.85f;
+  float const corners[] = {side, -1, 0.02f, side, 1, 0.02f, side, 1, 1, side, -1, 0.02f, side, 1, 1, side, -1, 1};
+  w.corners.insert(w.corners.end(), std::begin(corners), std::end(corners));
+  pushes.motion.velocity[0] = 0.5;
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < 4; ++k) w.particle(0.1999 * i - 0.5, 0.1999 * k - 0.3, 0.0999);
+  auto scene =
+      tests::scene_of<simulation<tests::discrete<host>, Integrator, collide::sleep, gravity, law, moving_bodies<>>>(
+          "plate", w, 700, 1e-3, Integrator{}, collide::sleep{0.02, 20}, gravity{}, law{one_material(soft, rough)},
+          moving_bodies<>{});
+  scene.bodies = {pushes};
+  return scene;
+}
+
 }  // namespace
+
+TEST_CASE("granular contact on ranks: a body wakes what sleeps as on one") {
+  tests::check_on_threads(plate<semi_implicit_euler>(), {1, 2, 3}, {tests::split::odd});
+  tests::check_on_threads(plate<velocity_verlet>(), {1, 2, 3}, {tests::split::odd});
+}
 
 TEST_CASE("granular contact on ranks: contacts remember as on one") {
   tests::check_on_threads(sizes(), {1, 2, 3, 7}, {tests::split::odd});

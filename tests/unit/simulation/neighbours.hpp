@@ -156,6 +156,17 @@ void check_neighbours(Space const& space) {
     running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{0.03, 0.2});
     check_meetings<S>(made.simulation, S(0), 40, S(1), no_change, 5000);
   }
+  SUBCASE("that are assigned smaller radii, and grow to what they had") {
+    using simulation =
+        collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, grows>;
+    world<S> w;
+    for (int i = 0; i < 200; ++i) w.particle(0.3 * (i % 6), 0.3 * (i / 6 % 6), 0.3 * (i / 36));
+    w.radii.assign(w.size(), S(0.2));
+    running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{0.1, 0.2});
+    placed<S> const smaller(space, std::vector<S>(w.size(), S(0.02)));
+    made.simulation.template assign<radius>(smaller.data());
+    check_meetings<S>(made.simulation, S(0), 40, S(1), no_change, 5000);
+  }
   SUBCASE("that shrink and grow again, while others are put elsewhere") {
     using simulation =
         collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, box_walls>;

@@ -130,8 +130,7 @@ COLLIDE_HD_INLINE S reach_of(S radius) {
   return radius;
 }
 
-/// Kernel functor of `for_each` over particles, copies of other ranks' among them: wakes those that sleep where a body
-/// that moves may touch them.
+/// Kernel functor of `for_each` over particles: wakes those that sleep where a body that moves may touch them.
 template <class S, class Effects, class Triangles>
 struct wake_by_bodies {
   particle_state<S, typename Effects::all> state;

@@ -75,7 +75,8 @@ struct wake_where_others_go {
     double room = static_cast<double>(state.size - state.placed);
     if constexpr (contains<typename State::list, global_number>)
       room = static_cast<double>(state.all_size - state.all_placed);
-    if (made != 0 && state.time[clock_made] + static_cast<double>(made) > room) state.at(slow_steps{})[i] = 0;
+    if (made == 0 || room <= 0) return;
+    if (state.time[clock_made] + static_cast<double>(made) > room) state.at(slow_steps{})[i] = 0;
   }
 };
 
