@@ -271,12 +271,9 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   using vec = Eigen::Vector3d;
   template <class... E>
   static constexpr bool has = (is_among<E, Effect...> || ...);
-  static constexpr bool presses_when_meeting = simulation<host>::effects_type::presses_when_meeting;
   static constexpr bool momentum_closes =
-      has<collide::reaction> &&
-      !has<collide::drag, collide::wind<>, stirs, collide::box_walls, collide::emit, collide::absorb,
-           collide::absorbing_box> &&
-      !(presses_when_meeting && has<collide::sleep>);  // what falls asleep keeps what it lacks to be at rest
+      has<collide::reaction> && !has<collide::drag, collide::wind<>, stirs, collide::box_walls, collide::emit,
+                                     collide::absorb, collide::absorbing_box>;
   static constexpr bool energy_falls =
       !has<collide::wind<>, stirs, collide::emit> && !(has<collide::gravity> && has<collide::periodic_box>);
   static constexpr bool energy_stays = energy_falls && has<collide::velocity_verlet> && has<collide::gravity> &&
@@ -287,18 +284,13 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   static constexpr bool comes_to_rest =
       has<collide::gravity> && has<collide::bounce> && !has<collide::wind<>, stirs, collide::emit, collide::absorb>;
 
-  /// That of all grains, with the second half kick of those that the mesh held, which is part of the next step. Where
-  /// they press on the mesh by forces, these are given for a whole step in its middle: half of that is still to come.
+  /// That of all grains, with the second half kick of those that the mesh held, which is part of the next step.
   static vec momentum_of(simulation<host> const& made, double dt) {
     using columns = typename simulation<host>::columns;
     auto const v = made.template to_host<velocity>();
     vec const g(0, 0, has<collide::gravity> ? -9.81 : 0);
     vec sum = vec::Zero();
     for (std::size_t i = 0; i < made.size(); ++i) sum += mass(made, i) * at(v, i);
-    if constexpr (presses_when_meeting) {
-      auto const pulls = made.template to_host<collide::pair_acceleration>();
-      for (std::size_t i = 0; i < made.size(); ++i) sum += mass(made, i) * dt / 2 * (g + at(pulls, i));
-    }
     if constexpr (collide::detail::contains<columns, collide::held>) {
       auto const held = made.template to_host<collide::held>();
       std::vector<S> pulls(3 * made.size());
