@@ -146,26 +146,20 @@ void check_neighbours(Space const& space) {
       check_meetings<S>(made.simulation, S(0), 40, S(1), no_change, 20000);
     }
   }
-  SUBCASE("that grow where they are") {
+  SUBCASE("that grow where they are, up to the largest, or up to what they were before smaller radii were assigned") {
     using simulation =
         collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, grows>;
-    world<S> w;
-    for (int i = 0; i < 200; ++i) w.particle(0.3 * (i % 6), 0.3 * (i / 6 % 6), 0.3 * (i / 36));
-    w.radii.assign(w.size(), S(0.1));
-    w.radii[7] = S(0.2);
-    running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{0.03, 0.2});
-    check_meetings<S>(made.simulation, S(0), 40, S(1), no_change, 5000);
-  }
-  SUBCASE("that are assigned smaller radii, and grow to what they had") {
-    using simulation =
-        collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::polydisperse, greets, grows>;
-    world<S> w;
-    for (int i = 0; i < 200; ++i) w.particle(0.3 * (i % 6), 0.3 * (i / 6 % 6), 0.3 * (i / 36));
-    w.radii.assign(w.size(), S(0.2));
-    running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{0.1, 0.2});
-    placed<S> const smaller(space, std::vector<S>(w.size(), S(0.02)));
-    made.simulation.template assign<radius>(smaller.data());
-    check_meetings<S>(made.simulation, S(0), 40, S(1), no_change, 5000);
+    for (bool const is_assigned : {false, true}) {
+      CAPTURE(is_assigned);
+      world<S> w;
+      for (int i = 0; i < 200; ++i) w.particle(0.3 * (i % 6), 0.3 * (i / 6 % 6), 0.3 * (i / 36));
+      w.radii.assign(w.size(), is_assigned ? S(0.2) : S(0.1));
+      w.radii[7] = S(0.2);
+      running<simulation> made(space, w, collide::polydisperse{}, greets{}, grows{is_assigned ? 0.1 : 0.03, 0.2});
+      placed<S> const smaller(space, std::vector<S>(w.size(), S(0.02)));
+      if (is_assigned) made.simulation.template assign<radius>(smaller.data());
+      check_meetings<S>(made.simulation, S(0), 40, S(1), no_change, 5000);
+    }
   }
   SUBCASE("that shrink and grow again, while others are put elsewhere") {
     using simulation =
