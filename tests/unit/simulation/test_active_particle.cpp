@@ -1,4 +1,4 @@
-/// What is kept of a particle while its contacts are resolved.
+/// The state of a particle while its contacts are resolved.
 #include <cmath>
 
 #include <doctest/doctest.h>

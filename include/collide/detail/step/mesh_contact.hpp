@@ -21,7 +21,7 @@ COLLIDE_HD contact<S> contact_double(triangle<S> const& t, sphere<S> const& s) {
   return narrow_to<S>(contact_of_pair(widened(t), widened(s), digits::of_float, false));
 }
 
-/// Whether a sphere touches a finite triangle, and the contact that `contact_double` tells if so, where doubles
+/// Tells if a sphere touches a finite triangle, and the contact that `contact_double` tells if so, where doubles
 /// suffice for both; `sure` says that they touch. Calls nothing. The foot that it finds is a point of the triangle, so
 /// a depth that is clear means a hit. There may be a nearer one inside a sliver, of which the normal is inaccurate, but
 /// not by much: docs/development/numerics.md.
