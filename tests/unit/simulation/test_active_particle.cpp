@@ -3,7 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/step/active_particle.hpp>
+#include <collide/detail/step/contact_scratch.hpp>
+#include <collide/detail/step/mesh_contact.hpp>
 #include <collide/detail/step/surface_at_rest.hpp>
 #include <collide/detail/step/wedge.hpp>
 
