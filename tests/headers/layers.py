@@ -47,7 +47,7 @@ def pictured_layers():
 
 
 def read_headers():
-    """What each header includes, by its path below include/collide."""
+    """The includes of each header, by its path below include/collide."""
     headers = {}
     for path in sorted([*INCLUDE.rglob("*.hpp"), *INCLUDE.rglob("*.cuh")]):
         name = path.relative_to(INCLUDE).as_posix()

@@ -133,7 +133,7 @@ class Answers(ProgramTest):
 
 
 class Points(ProgramTest):
-    """What is nearest to points, and on which side of the surface they are."""
+    """The nearest triangles of points, and the side of the surface that they are on."""
 
     def ask(self, *options):
         """The rows of the table that it writes, as text."""
@@ -316,7 +316,7 @@ class ObjForms(ObjTest):
 
 
 class OtherFormats(ProgramTest):
-    """What Assimp reads, where the program is built with it: the same triangles in the same order as in OBJ."""
+    """Files that Assimp reads, where the program is built with it: the same triangles in the same order as in OBJ."""
 
     SPHERES = [(0, 0, 0), (3, 3, 3), (.5, .5, .5), (1.25, 0, .5), (2.25, 2, 2)]
 
@@ -372,7 +372,7 @@ class OtherFormats(ProgramTest):
 
 
 class RealExporters(ObjTest):
-    """What programs write that is not quite OBJ: it is read as it was meant, and a line says so."""
+    """Files of other programs that are not quite OBJ: each is read as it was meant, and a line says so."""
 
     def left_out(self, line, count):
         return f"{line}: a face of fewer than three corners is left out (the first of {count})"

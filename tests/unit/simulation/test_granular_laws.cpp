@@ -24,7 +24,7 @@ struct impact {
   double normal_speed, tangential_speed = 0, turn = 0, other_turn = 0;  ///< turns about y
 };
 
-/// What comes of it: relative velocity of centres, turns; the largest overlap and the time of contact.
+/// The outcome of a collision: relative velocity of centres, turns; the largest overlap and the time of contact.
 struct outcome {
   double normal, tangential, turn, other_turn, overlap = 0, duration = 0;
 };

@@ -212,7 +212,7 @@ struct candidate_pipeline {
     if (decide<Block>(p, s)) push_hit(block, b, p);
   }
 
-  /// Whether a candidate is a hit. Where threads work together, a narrow phase in stages asks whether the box is in
+  /// True if a candidate is a hit. Where threads work together, a narrow phase in stages asks whether the box is in
   /// reach itself.
   template <class Block, class Sphere>
   COLLIDE_HD_INLINE bool decide(pair p, Sphere const& s) const {
