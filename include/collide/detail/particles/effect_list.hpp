@@ -61,7 +61,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   static constexpr bool keeps_pair_forces =
       (any_pair_contact || overlaps) && (adheres || has_half_kicks || keeps_support);
   static constexpr bool keeps_pair_torques =
-      (any_pair_contact || overlaps) && has_half_kicks && contains<named, angular_velocity>;
+      (any_pair_contact || overlaps) && (has_half_kicks || keeps_support) && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
   static constexpr bool ends_after_meeting = (any_pair_contact || overlaps) && has_half_kicks;
   /// Forces on the mesh are given for a whole step when particles meet, in its middle; so is the pressure of sleepers.
