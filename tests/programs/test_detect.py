@@ -216,6 +216,16 @@ class Points(ProgramTest):
                              r"\Adetect: the mesh is not closed, so sides mean little: 3 open edge\(s\)[^\n]*\n\Z")
         self.succeed("detect", "mesh.obj", "spheres.csv", "--nearest")
 
+    def test_a_mesh_that_cuts_itself(self):
+        corners, faces = CUBE
+        moved = [[x + 0.5 for x in corner] for corner in corners]
+        second = [[i + len(corners) for i in face] for face in faces]
+        self.scene(corners + moved, faces + second, [[0.25, 0.25, 0.25], [0.75, 0.75, 0.75]])
+        done = self.run_program("detect", "mesh.obj", "spheres.csv", "inside.csv", "--inside")
+        self.assertRegex(done.stderr.decode(), r"\Adetect: the mesh cuts or touches itself, and what is inside twice "
+                                               r"counts as outside: \d+ pair\(s\) of triangles, [^\n]*\n\Z")
+        self.succeed("detect", "mesh.obj", "spheres.csv", "--nearest")
+
 
 class ObjTest(ProgramTest):
     """The plate 0 <= x <= 4, 0 <= y <= 4, and where the triangles of a mesh are."""
