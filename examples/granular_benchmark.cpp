@@ -263,10 +263,12 @@ double seconds() {
 /// Steps, with a line of the curve after every so many; then says what they cost, and of how many grains rounding has
 /// swallowed a motion.
 template <class Simulation, class Line>
-void play(Simulation& made, wishes const& w, std::size_t steps, std::size_t every, double dt, Line const& line) {
+void play(Simulation& made, wishes const& w, char const* columns, std::size_t steps, std::size_t every, double dt,
+          Line const& line) {
   if (w.steps != 0) steps = w.steps;
   if (w.every != 0) every = w.every;
   std::fprintf(stderr, "largest overlap to begin with: %.3g radii\n", contact_report(made).largest_overlap);
+  std::printf("%s\n", columns);
   double spent = 0;
   for (std::size_t k = 0;; k += every) {
     std::printf("%.6g,", w.start + static_cast<double>(std::min(k, steps)) * dt);
@@ -305,8 +307,7 @@ void penetrate(wishes const& w) {
   }
   all.add(0.01, 0, 0, 0.06 - 5 * w.start - 0.5 * g * w.start * w.start, steel, -5 - g * w.start);
   place(made, all);
-  std::printf("time,height,speed\n");
-  play(made, w, 200000, 100, dt, [&] {
+  play(made, w, "time,height,speed", 200000, 100, dt, [&] {
     std::size_t const at = 3 * (all.radii.size() - 1) + 2;
     std::printf("%.10g,%.10g\n", made.to_host<position>()[at], made.to_host<velocity>()[at]);
   });
@@ -346,16 +347,16 @@ void turn_drum(wishes const& w) {
   turning.rate = 2;
   place(made, all);
   set_mesh();
-  std::printf("time,small_lower_left,large_lower_left,small_upper_right,large_upper_right\n");
-  play(made, w, w.is_soft ? 50000 : 6250000, w.is_soft ? 100 : 12500, dt, [&] {
-    auto const x = made.to_host<position>();
-    std::array<int, 4> in{};
-    for (std::size_t i = 0; i < all.radii.size(); ++i) {
-      bool const left = x[3 * i] < 0, low = x[3 * i + 2] < 0;
-      if (left == low) ++in[std::size_t(all.made_of[i] == m2) + (low ? 0 : 2)];
-    }
-    std::printf("%d,%d,%d,%d\n", in[0], in[1], in[2], in[3]);
-  });
+  play(made, w, "time,small_lower_left,large_lower_left,small_upper_right,large_upper_right",
+       w.is_soft ? 50000 : 6250000, w.is_soft ? 100 : 12500, dt, [&] {
+         auto const x = made.to_host<position>();
+         std::array<int, 4> in{};
+         for (std::size_t i = 0; i < all.radii.size(); ++i) {
+           bool const left = x[3 * i] < 0, low = x[3 * i + 2] < 0;
+           if (left == low) ++in[std::size_t(all.made_of[i] == m2) + (low ? 0 : 2)];
+         }
+         std::printf("%d,%d,%d,%d\n", in[0], in[1], in[2], in[3]);
+       });
 }
 
 /// Grains of 2 mm flow out of a silo with a cone of 45 degrees and an orifice of 2 or 3 cm radius: how many are above
@@ -385,8 +386,7 @@ void empty_silo(wishes const& w) {
   }
   place(made, all);
   made.set_mesh(walls.view());
-  std::printf("time,above\n");
-  play(made, w, w.is_second ? 2500000 : 3333333, w.is_second ? 5000 : 6667, dt, [&] {
+  play(made, w, "time,above", w.is_second ? 2500000 : 3333333, w.is_second ? 5000 : 6667, dt, [&] {
     auto const x = made.to_host<position>();
     auto const is_there = made.to_host<alive>();
     int above = 0;
