@@ -444,6 +444,9 @@ TEST_CASE("granular laws: energy and contacts of a scene, by hand") {
   CHECK(report.longest_good_step == doctest::Approx(0.8 * largest_time_step(made.simulation)).scale(0));
   CHECK(report.is_good_step(report.longest_good_step));
   CHECK_FALSE(report.is_good_step(1.01 * report.longest_good_step));
+  CHECK_THROWS_WITH_AS(report.require_shallow(), doctest::Contains("1 contacts overlap by more than a fifth"),
+                       collide::error);
+  collide::contact_counts{}.require_shallow();
 }
 
 TEST_CASE("granular laws: only solids that particles are of limit the step") {
