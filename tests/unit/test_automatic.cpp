@@ -46,3 +46,14 @@ TEST_CASE("automatic: a tree for long thin triangles that few spheres touch, a g
   // where trees are those of devices there is none
   CHECK(cells_for_bars(tests::lockstep<64, true>(1), io::bars_in::tube, 1000, 0.5, false) > 0);
 }
+
+TEST_CASE("automatic: small scenes have the same pairs by whichever way, on the host") {
+  tests::check_automatic_scenes(collide::host(1));
+  tests::check_automatic_scenes(tests::lockstep<64, true>(1));
+}
+
+TEST_CASE("automatic: a simulation has the bits of one with buckets, on the host") {
+  tests::check_automatic_steps<collide::karabassi<>>(collide::host(1));
+  tests::check_automatic_steps<collide::karabassi_swept<>>(collide::host(2));
+  tests::check_automatic_steps<collide::karabassi<>>(tests::lockstep<64, true>(1));
+}

@@ -48,6 +48,14 @@ struct bvh_tuning {
   static constexpr bool divides_by_area = Space::host_accessible;
 };
 
+namespace detail {
+
+/// True for a space as a simulation shows it to a broad phase: what is made of a mesh serves many steps.
+template <class Space>
+inline constexpr bool serves_steps = false;
+
+}  // namespace detail
+
 /// How a query works in a space.
 template <class Space>
 struct query_tuning {
