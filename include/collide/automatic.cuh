@@ -38,15 +38,22 @@ struct automatic {
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
       detail::middles_as_spheres<S> const spheres{mesh_, radius};
-      way const other = detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? way::grid : way::all_pairs;
-      way_ = prefers_tree<Space>(options, spheres) ? way::tree : other;
+      way_ = prefers_tree(space, options, spheres) ? way::tree : best_without_tree(options);
       is_given_ = true;
       make_index(space, options, radius);
     }
 
+    /// Chooses for spheres; in a simulation once, for all until the next build, as if they were at the mesh.
     template <class Space, class Spheres>
     void prepare(Space& space, automatic const& options, Spheres const& spheres) {
-      if (!is_given_) way_ = choose<Space>(options, spheres);
+      if (!is_given_) {
+        if constexpr (detail::serves_steps<Space>) {
+          way_ = prefers_tree_in_steps(space, options, spheres) ? way::tree : best_without_tree(options);
+          is_given_ = true;
+        } else {
+          way_ = choose(space, options, spheres);
+        }
+      }
       make_index(space, options, spheres);
     }
 
@@ -91,13 +98,16 @@ struct automatic {
    private:
     enum class way { all_pairs, grid, tree };
 
+    way best_without_tree(automatic const& options) const {
+      return detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? way::grid : way::all_pairs;
+    }
+
     template <class Space, class Spheres>
-    way choose(automatic const& options, Spheres const& spheres) {
+    way choose(Space& space, automatic const& options, Spheres const& spheres) {
       bool const wants_index =
-          has_grid_ || has_tree_ ||
-          (detail::fits_grid(mesh_.size(), options.grid.most_triangles) && wants_grid<Space>(spheres.size()));
+          has_grid_ || has_tree_ || (best_without_tree(options) == way::grid && wants_grid<Space>(spheres.size()));
       if (!wants_index) return way::all_pairs;
-      return prefers_tree<Space>(options, spheres) ? way::tree : way::grid;
+      return prefers_tree(space, options, spheres) ? way::tree : way::grid;
     }
 
     template <class Space>
@@ -111,26 +121,46 @@ struct automatic {
 
     /// True if long thin triangles keep a grid so busy that a tree is faster, the build included.
     template <class Space, class Spheres>
-    bool prefers_tree([[maybe_unused]] automatic const& options, [[maybe_unused]] Spheres const& spheres) {
+    bool prefers_tree([[maybe_unused]] Space& space, [[maybe_unused]] automatic const& options,
+                      [[maybe_unused]] Spheres const& spheres) {
       if constexpr (bvh_tuning<Space>::divides_by_area) {
-        if (options.grid.memory_budget != 0 || (is_sampled_ && !is_slender_)) return false;
-        detail::sampled_triangles<S> const sample(mesh_);
-        is_sampled_ = true;
-        is_slender_ = sample.are_slender();
-        if (!is_slender_) return false;
-        slender_cost_model const c = slender_costs;
-        auto const saved_by = [&](std::size_t most) {
-          detail::reached_by_sphere const mean = sample.reached(spheres, most);
-          return static_cast<double>(spheres.size()) *
-                 (c.per_box_ns * mean.boxes - c.per_sphere_ns - c.per_touched_ns * mean.triangles);
-        };
-        double const build = has_tree_ ? 0 : c.per_triangle_ns * static_cast<double>(mesh_.size());
-        double saved = saved_by(8);  // mostly these tell
-        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by(128);
+        if (!may_prefer_tree(options)) return false;
+        double const build = has_tree_ ? 0 : slender_costs.per_triangle_ns * static_cast<double>(mesh_.size());
+        double saved = saved_by_tree(space, slender_costs, spheres, 8);  // mostly these tell
+        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by_tree(space, slender_costs, spheres, 128);
         return pays(build, saved, spent_on_boxes_);
       } else {
         return false;
       }
+    }
+
+    /// The same in a simulation, which makes many steps with a mesh, by how large its spheres are.
+    template <class Space>
+    bool prefers_tree_in_steps([[maybe_unused]] Space& space, [[maybe_unused]] automatic const& options,
+                               [[maybe_unused]] sphere_view<S> const& spheres) {
+      if constexpr (bvh_tuning<Space>::divides_by_area) {
+        if (!may_prefer_tree(options)) return false;
+        S const radius = spheres.one_radius() ? spheres.common_radius() : spheres[0].radius;
+        return saved_by_tree(space, slender_costs_of_steps, detail::middles_as_spheres<S>{mesh_, radius}, 128) > 0;
+      } else {
+        return false;
+      }
+    }
+
+    /// False if no sample of spheres has to be taken.
+    bool may_prefer_tree(automatic const& options) {
+      if (options.grid.memory_budget != 0) return false;
+      if (!is_sampled_) is_slender_ = detail::are_slender(mesh_);
+      is_sampled_ = true;
+      return is_slender_;
+    }
+
+    /// Nanoseconds by which a tree is faster than a grid, from at most so many spheres.
+    template <class Space, class Spheres>
+    double saved_by_tree(Space& space, slender_cost_model const& c, Spheres const& spheres, std::size_t most) {
+      detail::reached_by_sphere const mean = detail::mean_reached(space, mesh_, spheres, most, reached_);
+      return static_cast<double>(spheres.size()) *
+             (c.per_box_ns * mean.boxes - c.per_sphere_ns - c.per_touched_ns * mean.triangles);
     }
 
     /// True if what is saved pays for a build, with what queries have lost so far; else this one adds to that.
@@ -168,6 +198,7 @@ struct automatic {
     way way_ = way::all_pairs;                      ///< of this query
     double spent_ = 0;                              ///< nanoseconds that a grid would have saved so far
     double spent_on_boxes_ = 0;                     ///< nanoseconds that a tree would have saved so far
+    buffer<detail::reached_pairs> reached_;
   };
 };
 

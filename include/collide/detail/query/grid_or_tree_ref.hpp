@@ -13,7 +13,13 @@ template <class S, class Tree>
 struct grid_or_tree_ref : bucket_ref<S> {
   per_sphere_ref<S, Tree> tree;  ///< of a mesh without triangles if the cells are asked
 
-  COLLIDE_HD_INLINE bool asks_tree() const { return tree.mesh.size() != 0; }
+  COLLIDE_HD_INLINE bool asks_tree() const {
+#if defined(__CUDA_ARCH__)
+    return false;  // `automatic` makes none on a device
+#else
+    return tree.mesh.size() != 0;
+#endif
+  }
 
   COLLIDE_HD grid_or_tree_ref without_overflown_grids() const {
     return {bucket_ref<S>::without_overflown_grids(), tree};
