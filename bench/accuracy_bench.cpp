@@ -1,5 +1,5 @@
 /// \file
-/// What accuracy costs in time: accuracy_bench [SPHERES] [OPTION OF GOOGLE BENCHMARK...]
+/// The time that accuracy takes: accuracy_bench [SPHERES] [OPTION OF GOOGLE BENCHMARK...]
 ///
 /// Names are accuracy/SCENE/BROAD_x_SPACE/WHAT. WHAT is
 ///   detect  a whole detection, build and query, into the sink `pairs`. Counters: triangles, spheres;

@@ -124,7 +124,7 @@ struct every_candidate {
   }
 };
 
-/// What the narrow phase is asked: the candidates that `bucket` finds in a scene, and the truth about each.
+/// The questions to the narrow phase: the candidates that `bucket` finds in a scene, and the truth about each.
 template <class S>
 struct test_list {
   std::vector<S> centres, radii;  ///< of the spheres that have candidates

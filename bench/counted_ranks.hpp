@@ -10,7 +10,7 @@
 
 namespace bench {
 
-/// What a rank has sent to others.
+/// The messages that a rank has sent to others.
 struct traffic {
   std::uint64_t reductions = 0;       ///< how often all ranks have reduced numbers, or gathered some
   std::uint64_t reduced_bytes = 0;    ///< of this rank's numbers in them

@@ -153,7 +153,7 @@ void add_series(std::string const& method, std::size_t largest, Space space) {
   add<Broad, collide::double_precision, Space, float>(method, phase::both, full, "pairs", pairs, space);
 }
 
-/// What layouts of mesh and spheres cost: few spheres, for a test, and the whole scene.
+/// Costs of the layouts of mesh and spheres: few spheres, for a test, and the whole scene.
 template <class Broad, class Space>
 void add_layouts(std::string const& method, Space space) {
   for (std::size_t const n : {std::size_t{1} << 10, full}) {
@@ -164,7 +164,7 @@ void add_layouts(std::string const& method, Space space) {
   }
 }
 
-/// What each sink costs, on the whole scene.
+/// Costs of each sink, on the whole scene.
 template <class Broad, class Space>
 void add_sinks(std::string const& method, Space space) {
   auto const with = [&](char const* name, auto const& make) {
@@ -179,7 +179,7 @@ void add_sinks(std::string const& method, Space space) {
   with("canonical_csr", [] { return collide::csr(collide::order::canonical); });
 }
 
-/// What contacts cost of each type and precision: the sinks are contacts_TYPE, closest_TYPE and pairs_TYPE.
+/// Costs of contacts of each type and precision: the sinks are contacts_TYPE, closest_TYPE and pairs_TYPE.
 template <class Broad, class S, class Space>
 void add_contacts(std::string const& method, std::string const& type, Space space) {
   auto const with = [&](char const* name, auto const& make) {

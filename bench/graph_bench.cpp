@@ -1,5 +1,5 @@
 /// \file
-/// What the GPU itself takes for a build and a query, without the host: both as CUDA graphs of one launch, into an
+/// Time of the GPU itself for a build and a query, without the host: both as CUDA graphs of one launch, into an
 /// array of fixed size, beside a graph of one kernel that reads every centre once, in the same run.
 ///
 /// Names are BROAD/PRECISION/PHASE; `build` is what `build` itself does, `both` also fills the grid; `frames` is one of
@@ -42,7 +42,7 @@ struct into_array {
   }
 };
 
-/// What a function puts on a stream, as a graph.
+/// The work that a function puts on a stream, as a graph.
 class graph {
  public:
   template <class F>
@@ -207,7 +207,7 @@ void run(benchmark::State& state, bool builds, bool queries, int frames) {
   });
 }
 
-/// What is left of a query if nothing has to be looked for.
+/// The rest of a query if nothing has to be looked for.
 void run_least(benchmark::State& state, bool builds, bool told) {
   scene& s = scene::get();
   collide::detector<collide::bucket, collide::karabassi<collide::exact>, collide::cuda_shared> detector(s.space);

@@ -1,5 +1,5 @@
 /// \file
-/// What accuracy costs in time, for motion: motion_bench [PARTICLES [SPHERES]] [OPTION OF GOOGLE BENCHMARK...]
+/// The time that accuracy of motion takes: motion_bench [PARTICLES [SPHERES]] [OPTION OF GOOGLE BENCHMARK...]
 ///
 /// motion/SCENE/BROAD_x_SPACE/steps  elastic balls fall about inside a closed mesh (motion_scenes.hpp), by each
 ///     integrator, `euler` and `verlet`, with the discrete test in 1, 2, 4 and 8 steps a frame, and with the swept test

@@ -200,7 +200,7 @@ struct truth {
   }
 };
 
-/// What a simulation has made of the balls.
+/// Errors of the balls after a simulation.
 struct outcome {
   double error;      ///< median distance from where they truly are, in radii
   double drift;      ///< mean relative change of the energy of those inside

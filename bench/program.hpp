@@ -1,5 +1,5 @@
 /// \file
-/// What the benchmarks' programs have in common: their results say where they come from.
+/// Shared by the benchmarks' programs: their results say where they come from.
 #pragma once
 
 #include <cstddef>

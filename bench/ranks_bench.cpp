@@ -1,5 +1,5 @@
 /// \file
-/// What many ranks cost and gain: ranks_bench RANKS SPHERES PARTICLES [OPTION OF GOOGLE BENCHMARK...]
+/// Costs and gains of many ranks: ranks_bench RANKS SPHERES PARTICLES [OPTION OF GOOGLE BENCHMARK...]
 ///
 /// RANKS is how many threads there are at most; or under mpirun `mpi` or `nccl`, its processes. Names are
 /// ranks/SPACE/WORK/KIND:RANKS; threads are from 1 to RANKS, with a GPU each where there are as many. On the host ranks
@@ -40,7 +40,7 @@ constexpr double radius = 0.01;  // of packed spheres
 
 std::size_t spheres_in_all = 0, particles_of_rank = 0;
 
-/// What a rank does of `n` things: from `first` to `end`.
+/// The part of `n` things that a rank does: from `first` to `end`.
 struct share {
   std::size_t first, end;
   template <class Ranks>
@@ -132,7 +132,7 @@ duration time_step(io::any_ranks const& ranks, Space const& space, int times) {
   });
 }
 
-/// What the processes of MPI print but for the first: nothing.
+/// The reporter of all processes of MPI but the first: it prints nothing.
 class silence final : public benchmark::BenchmarkReporter {
   bool ReportContext(Context const&) override { return true; }
   void ReportRuns(std::vector<Run> const&) override {}
@@ -148,7 +148,7 @@ Space space_of([[maybe_unused]] int cores) {
   }
 }
 
-/// What is measured on: `size` ranks, with so many cores each.
+/// The ranks of a measurement: `size` of them, with so many cores each.
 struct crew {
   std::string ranks;  ///< as the option --ranks names them
   int size, cores = 1;

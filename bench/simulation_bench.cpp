@@ -1,5 +1,5 @@
 /// \file
-/// What a step of a simulation costs, for each effect, beside kernels written by hand.
+/// Costs of a step of a simulation, for each effect, beside kernels written by hand.
 ///
 ///     simulation_bench [SPHERES] [OPTION OF GOOGLE BENCHMARK...]
 ///     simulation_bench many SPHERES [OPTION OF GOOGLE BENCHMARK...]
@@ -279,7 +279,7 @@ class suite {
   double floor_;
 };
 
-/// What all spaces are measured with.
+/// The measurements of all spaces.
 template <class Space>
 void add_few(suite<Space> const& scene) {
   using namespace collide;

@@ -1,5 +1,5 @@
 /// \file
-/// What ranks send: traffic_bench RANKS SIDE SPHERES [OPTION OF GOOGLE BENCHMARK...]
+/// The bytes that ranks send: traffic_bench RANKS SIDE SPHERES [OPTION OF GOOGLE BENCHMARK...]
 ///
 /// Names are traffic/host/WORK/N/RANKS, for 1, 2, 4, ... to RANKS threads. WORK is
 ///   packed   steps of particles that touch each other, about N = SIDE^3 on each rank, and those of an eighth and of a
@@ -122,7 +122,7 @@ counters of_steps(thread_ranks const& threads, std::size_t side, bool fly) {
   return found;
 }
 
-/// What this rank sends in a query.
+/// The bytes that this rank sends in a query.
 counters of_query(thread_ranks const& threads, std::size_t n, bool divides) {
   auto const ranks = static_cast<std::size_t>(threads.size()), rank = static_cast<std::size_t>(threads.rank());
   io::scene const scene = io::study_scene(n * ranks);

@@ -8,7 +8,8 @@
 #include <collide/atomic_add.hpp>
 #include <collide/bucket.cuh>
 
-/// What goes into the query: it is copied to where the query runs, and called there from many threads at once.
+/// The part of the sink that goes into the query: it is copied to where the query runs, and called there from many
+/// threads at once.
 struct count_for_triangle {
   unsigned* counts;
 

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <collide/self_intersections.hpp>
 #include <collide/validate_closed.hpp>
 
 #include "detect/detection.hpp"
@@ -102,10 +103,16 @@ void summarise(options const& wish, scene<S> const& from, findings<S> const& fou
                nlohmann::ordered_json const& report, std::string const& roundings) {
   for (auto const& remark : from.mesh.remarks) std::cerr << "detect: " << remark << "\n";
   if (wish.asks_for_sides()) {
-    auto const seams = collide::validate_closed(collide::indexed_mesh<S>(
-        from.mesh.vertices.data(), from.mesh.vertices.size() / 3, from.mesh.corners.data(), from.mesh.size()));
+    auto const mesh = collide::indexed_mesh<S>(from.mesh.vertices.data(), from.mesh.vertices.size() / 3,
+                                               from.mesh.corners.data(), from.mesh.size());
+    auto const seams = collide::validate_closed(mesh);
     if (!seams.closed())
       std::cerr << "detect: the mesh is not closed, so sides mean little: " << seams.message() << "\n";
+    auto const pairs = collide::self_intersections(mesh);
+    if (!pairs.empty())
+      std::cerr << "detect: the mesh cuts or touches itself, and what is inside twice counts as outside: "
+                << pairs.size() << " pair(s) of triangles, the first are number " << pairs[0].first << " and "
+                << pairs[0].second << "\n";
   }
   for (auto const& path : {wish.output, wish.contacts, wish.ply, wish.report}) {
     if (path.empty() || !io::output_file::is_standard_output(path)) continue;

@@ -130,7 +130,7 @@ void generate(options const& wish) {
   }
 }
 
-/// What the help says of a kind of scene.
+/// The line of the help for a kind of scene.
 std::string line_of(io::scene_kind const& kind) {
   auto const name = std::string(kind.name), spheres = std::to_string(kind.spheres),
              triangles = std::to_string(kind.triangles);

@@ -9,7 +9,7 @@
 #include <collide/ranks/distributed.hpp>
 #include <collide/ranks/thread_ranks.hpp>
 
-/// What a rank does: it has some triangles of a floor, and one sphere above the floor of another rank.
+/// The program of a rank: it has some triangles of a floor, and one sphere above the floor of another rank.
 template <class Ranks>
 void work(Ranks const& ranks) {
   auto const place = static_cast<float>(ranks.rank());

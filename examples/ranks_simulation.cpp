@@ -15,7 +15,7 @@
 using grains = collide::simulation<collide::detector<collide::bucket>, collide::sphere_contact, collide::gravity,
                                    collide::bounce, collide::friction>;
 
-/// What a rank does. Returns the heights of its grains in the end.
+/// The program of a rank. Returns the heights of its grains in the end.
 template <class Ranks>
 std::vector<float> work(Ranks const& ranks, int count) {
   float const floor[] = {-9, -9, 0, 9, -9, 0, 0, 9, 0};

@@ -31,7 +31,7 @@ class robot_arm {
                          2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
 };
 
-/// What a camera of 64 x 48 pixels sees 2 m above the robot's base, looking down: the floor, a person's arm (10 cm
+/// The view of a camera of 64 x 48 pixels 2 m above the robot's base, looking down: the floor, a person's arm (10 cm
 /// wide, 0.5 m above the floor, from y = 0.6 m on), and at the left edge nothing.
 class depth_camera {
  public:

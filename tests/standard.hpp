@@ -1,6 +1,6 @@
 /// \file
-/// What the library includes of others, to be precompiled for tests that are many compilations of a few lines. It must
-/// have nothing of the library itself. Where it has not been precompiled, compilers read it as it is.
+/// Headers of others that the library includes, to be precompiled for tests that are many compilations of a few lines.
+/// It must have nothing of the library itself. Where it has not been precompiled, compilers read it as it is.
 #pragma once
 
 #include <algorithm>

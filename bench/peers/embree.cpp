@@ -18,7 +18,7 @@ namespace {
 
 using peers::pair_list;
 
-/// What a callback of the query for one sphere needs.
+/// The data of a callback of the query for one sphere.
 struct asked {
   collide::mesh_view<float> mesh;
   collide::sphere<float> sphere;

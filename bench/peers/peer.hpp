@@ -1,5 +1,5 @@
 /// \file
-/// What the peers have in common: a scene, a benchmark, and a check of what they find.
+/// Shared by the peers: a scene, a benchmark, and a check of what they find.
 #pragma once
 
 #include <algorithm>
@@ -47,7 +47,7 @@ inline bool touch(collide::triangle<float> const& t, collide::sphere<float> cons
 
 using pair_list = std::vector<collide::pair>;
 
-/// What a query found, as a list; this is not measured.
+/// The pairs of a query, as a list; this is not measured.
 inline pair_list list_of(pair_list found) { return found; }
 inline pair_list list_of(collide::pairs const& found) { return found.to_host(); }
 

@@ -1,5 +1,5 @@
 /// \file
-/// What the program `detect` detects: its input, its output, and the function from one to the other.
+/// The detection of the program `detect`: its input, its output, and the function from one to the other.
 #pragma once
 
 #include <chrono>
@@ -49,7 +49,7 @@ struct scene {
   std::size_t all_spheres = 0;   ///< of all ranks
 };
 
-/// What a detection gives: the pairs, the contacts or what is asked about points, if somebody wants them, and what it
+/// Results of a detection: the pairs, the contacts or the answers about points, if somebody wants them, and what it
 /// cost.
 template <class S>
 struct findings {

@@ -1,5 +1,5 @@
 /// \file
-/// What a program needs to know of the execution spaces: how to make one, what it runs on, whether it is there.
+/// The execution spaces of a program: how to make one, what it runs on, whether it is there.
 #pragma once
 
 #include <collide/host.hpp>

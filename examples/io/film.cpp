@@ -1,5 +1,5 @@
 /// \file
-/// What the programs that show scenes have in common and is compiled once.
+/// The part of the programs that show scenes which is compiled once.
 #include "film.hpp"
 
 #include <cstdio>

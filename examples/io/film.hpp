@@ -1,5 +1,5 @@
 /// \file
-/// What the programs that show scenes have in common and is compiled once: the film, the command line, the files.
+/// The part of the programs that show scenes which is compiled once: the film, the command line, the files.
 #pragma once
 
 #include <cmath>
@@ -83,7 +83,7 @@ struct spot {
   static COLLIDE_HD double fraction(double x) { return x - static_cast<double>(static_cast<std::uint64_t>(x)); }
 };
 
-/// What a film has cost.
+/// The cost of a film.
 struct film_cost {
   std::size_t steps;
   double milliseconds_per_step;

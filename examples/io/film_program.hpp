@@ -1,5 +1,5 @@
 /// \file
-/// What the programs that show scenes have in common and depends on their simulation: the steps and the frames.
+/// The part of the programs that show scenes which depends on their simulation: the steps and the frames.
 #pragma once
 
 #include <chrono>
@@ -31,7 +31,7 @@ inline char const* name_of(collide::slow_steps) { return "slow_steps"; }
 inline char const* name_of(collide::pair_acceleration) { return "pair_acceleration"; }
 inline char const* name_of(collide::pair_angular_acceleration) { return "pair_angular_acceleration"; }
 
-/// Whether a list of columns has a column.
+/// True if a list of columns has a column.
 template <class Column, class... Listed>
 constexpr bool has(collide::columns<Listed...>) {
   return (std::is_same<Column, Listed>::value || ...);

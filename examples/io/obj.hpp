@@ -57,7 +57,7 @@ class obj_reader final : private std::streambuf {
     std::size_t line;
   };
 
-  /// What may be a mistake, and what is made of it unless in strict mode; how often that was, and where first.
+  /// A possible mistake, and its reading unless in strict mode; how often that was, and where first.
   struct oddity {
     std::string problem, remark;
     std::size_t count = 0;
@@ -118,7 +118,7 @@ class obj_reader final : private std::streambuf {
     return traits_type::to_int_type(line_.front());
   }
 
-  /// What the next line of the file says, without a comment and blanks around it.
+  /// The next line of the file, without a comment and blanks around it.
   std::string_view next_part() const {
     auto const line = left_.substr(0, left_.find('\n'));
     return trimmed(line.substr(0, line.find('#')));

@@ -28,7 +28,7 @@ inline int threads_of(std::string const& text) {
   return n;
 }
 
-/// Whether ranks of that name are processes of mpirun.
+/// True if ranks of that name are processes of mpirun.
 inline bool are_processes(std::string const& ranks) { return ranks == "mpi" || ranks == "nccl"; }
 
 /// Throws unless `--ranks` has a value that this program takes, with that space.

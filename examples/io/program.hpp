@@ -1,5 +1,5 @@
 /// \file
-/// What the larger programs have in common: the version, options, and how they end.
+/// Shared by the larger programs: the version, options, and how they end.
 #pragma once
 
 #include <algorithm>

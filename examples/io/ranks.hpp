@@ -1,5 +1,5 @@
 /// \file
-/// What programs on several ranks do with files: each reads a part of a table, and the first writes.
+/// Files of programs on several ranks: each reads a part of a table, and the first writes.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +51,7 @@ class any_device {
   void (*after_)(void const*, std::shared_ptr<void> const&);
 };
 
-/// Whether ranks can wait for a device, and send from memory of devices, and whether they know that at run time alone.
+/// Says if ranks can wait for a device, and send from memory of devices, and if they know that at run time alone.
 template <class Ranks, class = void>
 inline constexpr bool waits_for_devices = false;
 template <class Ranks>
@@ -153,7 +153,7 @@ class any_ranks {
   std::shared_ptr<interface const> ranks_;
 };
 
-/// What is wrong with a file is in the part of another rank.
+/// Thrown where a file's fault is in the part of another rank.
 class error_elsewhere : public data_error {
  public:
   error_elsewhere() : data_error("a file", "another rank cannot read its part") {}

@@ -1,5 +1,5 @@
 /// \file
-/// What becomes of a file's numbers when they are read as float or double, and which of the two to take.
+/// Rounding of a file's numbers that are read as float or double, and which of the two to take.
 #pragma once
 
 #include <algorithm>
@@ -106,7 +106,7 @@ bool parse_number(std::string_view text, S& value, rounding& tally) {
   return !text.empty() && read_number(text.data(), last, value, tally) == last;
 }
 
-/// What a file holds, read as float or as double, and a sentence about how many of its numbers that rounded.
+/// The contents of a file, read as float or as double, and a sentence about how many of its numbers that rounded.
 template <class AsFloat, class AsDouble>
 struct reading {
   std::variant<AsFloat, AsDouble> data;

@@ -62,7 +62,7 @@ std::uint64_t mixed(std::uint64_t sphere, std::uint64_t triangle) {
   return (n ^ n >> 29) * 0xbf58476d1ce4e5b9u;
 }
 
-/// What each rank does.
+/// The program of each rank.
 template <class Space, class Ranks>
 void work(Ranks const& ranks, Space space) {
   int const rank = ranks.rank(), size = ranks.size();

@@ -116,8 +116,8 @@ struct pair_acceleration {
   using value = vec3<S>;
 };
 
-/// Angular acceleration by other particles, in radians per time squared. Scenes have it that
-/// name an effect with `on_pair_contact`, `velocity_verlet` and `spin`.
+/// Angular acceleration by other particles, in radians per time squared. Scenes have it that name an effect with
+/// `on_pair_contact`, `spin`, and `velocity_verlet` or `sleep` with an effect with `on_mesh_impulse`.
 struct pair_angular_acceleration {
   template <class S>
   using value = vec3<S>;

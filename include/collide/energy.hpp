@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <collide/checkpoint.hpp>
@@ -37,6 +38,14 @@ struct contact_counts {
           ///< `linear` and `sphere_contact` of a 1/5 collision; infinite without contacts' effects
 
   bool is_good_step(double dt) const { return dt <= longest_good_step; }  ///< not above it
+  /// Throws `error` if a contact is deep.
+  void require_shallow() const {
+    if (deep > 0)
+      throw error("collide: contact_report: " + std::to_string(deep) +
+                  " contacts overlap by more than a fifth of the smaller radius, the deepest by " +
+                  std::to_string(largest_overlap) +
+                  " of it: make the solids stiffer, or let fewer particles overlap to begin with");
+  }
 };
 
 namespace detail {

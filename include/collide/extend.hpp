@@ -115,7 +115,7 @@ COLLIDE_HD conservative_box<S> conservative(triangle<S> const& t) {
   return detail::inflated<S>(b, b.padding);
 }
 
-/// Whether a sphere can touch a mesh at all: a plain value for kernels, see `mesh_bounds`.
+/// Tells if a sphere can touch a mesh at all: a plain value for kernels, see `mesh_bounds`.
 template <class S>
 class mesh_bounds_ref {
  public:

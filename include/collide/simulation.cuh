@@ -458,10 +458,8 @@ class simulation {
   void move(S dt) {
     if (state_.size == 0) return;
     using kernel_type = detail::step_kernel<step_context<decltype(mesh_ref(dt))>>;
-    using block = typename execution_space::template block<kernel_type>;
-    kernel_type const kernel{
-        {state_, effects_, mesh_ref(dt), overflow_.data(), dt, reverse_order_, least_radius_},
-        kernel_type::template grid_size<block>(state_.size, detail::resident_blocks<kernel_type>(space_))};
+    kernel_type const kernel{{state_, effects_, mesh_ref(dt), overflow_.data(), dt, reverse_order_, least_radius_},
+                             kernel_type::grid_size(space_, state_.size)};
     reverse_order_ = !reverse_order_;
     space_.launch(kernel.blocks, kernel);
   }

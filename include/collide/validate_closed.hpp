@@ -110,6 +110,18 @@ std::vector<std::uint32_t> merged_vertices(point_view<S> const& vertices) {
   return merged;
 }
 
+/// Throws `error` of a function if a triangle names a vertex that does not exist.
+template <class S>
+void check_corners(mesh_view<S> const& mesh, char const* function) {
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for (unsigned k = 0; k < 3; ++k) {
+      if (mesh.corner(i, k) < mesh.vertices().size()) continue;
+      throw error("collide: " + std::string(function) + ": triangle number " + std::to_string(i) +
+                  " has a corner that is not a vertex of the mesh");
+    }
+  }
+}
+
 /// A triangle at an edge between two vertices, of which `low` has the smaller number.
 struct seam {
   std::uint32_t low, high;
@@ -138,7 +150,7 @@ struct face {
 
 /// Checks whether a mesh is the boundary of a solid. Vertices of equal coordinates are one, so triangle soups can be
 /// closed. Triangles that are not finite, or have two equal corners, are not there. Triangles that cut through each
-/// other are not found.
+/// other are found by `self_intersections`.
 ///
 /// \param mesh  in memory that the host can read
 /// \return what was found; `closed()` says whether `contains` has an inside to find
@@ -147,20 +159,14 @@ struct face {
 template <class S>
 seam_report validate_closed(mesh_view<S> const& mesh) {
   detail::check_memory<host>(mesh, "validate_closed: the mesh is", "copy it to the host");
+  detail::check_corners(mesh, "validate_closed");
   auto const merged = detail::merged_vertices(mesh.vertices());
   std::vector<detail::seam> seams;
   std::vector<detail::face> faces;
   seams.reserve(3 * mesh.size());
   faces.reserve(mesh.size());
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    std::array<std::uint32_t, 3> v;
-    for (unsigned k = 0; k < 3; ++k) {
-      std::size_t const corner = mesh.corner(i, k);
-      if (corner >= merged.size())
-        throw error("collide: validate_closed: triangle number " + std::to_string(i) +
-                    " has a corner that is not a vertex of the mesh");
-      v[k] = merged[corner];
-    }
+    std::array<std::uint32_t, 3> v{merged[mesh.corner(i, 0)], merged[mesh.corner(i, 1)], merged[mesh.corner(i, 2)]};
     if (!detail::is_finite(mesh[i]) || v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
     auto const triangle = static_cast<id>(i);
     for (unsigned k = 0; k < 3; ++k) {

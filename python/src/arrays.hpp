@@ -92,9 +92,13 @@ Array import_array(nb::handle from, char const* name, place const& at) {
     nb::object capsule;
     try {
       nb::object const method = from.attr("__dlpack__");
-      bool const has_stream =
-          !is_on_host(at.device_type) && !is_on_host(nb::cast<int>(nb::int_(from.attr("__dlpack_device__")()[0])));
-      capsule = has_stream ? method(nb::arg("stream") = at.given) : method();
+      auto const is_here = [&] { return is_on_host(nb::cast<int>(nb::int_(from.attr("__dlpack_device__")()[0]))); };
+      try {
+        capsule = is_on_host(at.device_type) ? method() : method(nb::arg("stream") = at.given);
+      } catch (nb::python_error&) {
+        if (is_on_host(at.device_type) || !is_here()) throw;
+        capsule = method();  // an array of the host knows no stream; that it is there is told below
+      }
     } catch (nb::python_error& e) {
       refuse<nb::type_error>(name, std::string("cannot be shared without a copy: ") + nb::str(e.value()).c_str());
     }

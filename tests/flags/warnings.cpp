@@ -25,6 +25,7 @@
 #include <collide/ranks/distributed.hpp>
 #include <collide/ranks/distributed_checkpoint.hpp>
 #include <collide/ranks/thread_ranks.hpp>
+#include <collide/self_intersections.hpp>
 #include <collide/simulation.cuh>
 #include <collide/sinks/earliest.hpp>
 #include <collide/sinks/impacts.hpp>
@@ -87,6 +88,7 @@ void use_all() {
   upload(space, spheres);
   validate(mesh);
   validate(spheres);
+  self_intersections(mesh);
   ask<bucket, karabassi<>, S>(indexed_mesh(matrix, faces), spheres_xyz(numbers, 3, numbers));
   ask<automatic, karabassi<single_precision>, S>(triangle_soup(numbers, 1),
                                                  spheres_soa(numbers, numbers, numbers, 3, S(1)));

@@ -1,4 +1,4 @@
-/// What the harnesses of the verdicts share. An input is the bytes of the numbers of one case: three corners, the
+/// Shared by the harnesses of the verdicts. An input is the bytes of the numbers of one case: three corners, the
 /// centre, the displacement of a ball that moves, and the radius; as many as `Count`. They are floats if that is what
 /// its length says, doubles if it is twice as long, and nothing else is looked at.
 #pragma once
@@ -62,7 +62,7 @@ struct numbers {
     return std::isfinite(x[3 * i]) && std::isfinite(x[3 * i + 1]) && std::isfinite(x[3 * i + 2]);
   }
 
-  /// What the README says of bad values, for a verdict.
+  /// Checks that bad values are treated as the README says, by a verdict.
   void check_bad_values(bool hit) const {
     bool places = true;
     for (std::size_t i = 0; i < Count / 3; ++i) places = places && finite_point(i);
@@ -225,7 +225,7 @@ class mutation {
   std::minstd_rand random_;
 };
 
-/// What libFuzzer calls for another input: changes the numbers, or now and then bits, and keeps the length.
+/// Makes another input for libFuzzer: changes the numbers, or now and then bits, and keeps the length.
 template <std::size_t Count>
 std::size_t mutated(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
   constexpr std::size_t floats = Count * sizeof(float), doubles = Count * sizeof(double);

@@ -1,4 +1,4 @@
-/// What all harnesses share: how a property fails.
+/// Shared by all harnesses: how a property fails.
 #pragma once
 
 #include <cstdio>

@@ -11,7 +11,7 @@ template <class S>
 using pair = fuzz::numbers<S, 13>;
 using collide::detail::verdict;
 
-/// What takes long is asked of one input in so many.
+/// Slow questions are asked of one input in so many.
 constexpr std::uint32_t asks_slowly = 64, asks_oracle = 8;
 
 template <class S>
@@ -19,7 +19,7 @@ bool exact_hit(pair<S> const& n) {
   return collide::karabassi<>::intersects(n.shape(), n.ball());
 }
 
-/// What the README says of bad values.
+/// Checks that bad values are treated as the README says.
 template <class Precision, class S>
 void check_bad_values(pair<S> const& n) {
   n.check_bad_values(collide::karabassi<Precision>::intersects(n.shape(), n.ball()));

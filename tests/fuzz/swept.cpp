@@ -13,10 +13,10 @@ using pair = fuzz::numbers<S, 16>;
 using collide::detail::verdict;
 using swept = collide::karabassi_swept<>;
 
-/// What takes long is asked of one input in so many.
+/// Slow questions are asked of one input in so many.
 constexpr std::uint32_t asks_slowly = 128, asks_oracle = 4;
 
-/// What the documentation allows a time of impact to be too early.
+/// How much too early a time of impact may be, as the documentation says.
 template <class S>
 constexpr double most_early = sizeof(S) == sizeof(float) ? 0x1p-23 : 0x1p-30;
 
@@ -25,7 +25,7 @@ bool exact_hit(pair<S> const& n) {
   return swept::intersects(n.shape(), n.moving());
 }
 
-/// What the README says of bad values.
+/// Checks that bad values are treated as the README says.
 template <class Precision, class S>
 void check_bad_values(pair<S> const& n) {
   n.check_bad_values(collide::karabassi_swept<Precision>::intersects(n.shape(), n.moving()));

@@ -1,4 +1,4 @@
-/// What the harnesses of the readers share.
+/// Shared by the harnesses of the readers.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ inline std::string_view text(std::uint8_t const* data, std::size_t size) {
   return {reinterpret_cast<char const*>(data), size};
 }
 
-/// What read() returns, or nothing where it refuses. Whatever else it throws ends the program.
+/// The result of read(), or nothing where it refuses. Anything else that it throws ends the program.
 template <class Read>
 auto read_or_refuse(Read const& read) -> std::optional<decltype(read())> {
   try {
@@ -39,7 +39,7 @@ bool all_finite(std::vector<S> const& numbers) {
   return true;
 }
 
-/// What the same numbers of a text became, as floats and as doubles: as many, and the tally of the floats tells how
+/// Checks the same numbers of a text as floats and as doubles: as many, and the tally of the floats tells how
 /// many differ, and by how much at most. (`tally` may count more numbers than are kept.)
 inline void check_rounding(std::vector<float> const& floats, std::vector<double> const& doubles,
                            io::rounding const& tally) {

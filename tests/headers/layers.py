@@ -25,7 +25,7 @@ LAYERS = {
     "grid": "detail/grid/ detail/tree/",
     "query": "detail/query/ concepts.hpp hit.hpp",
     "sinks": "detail/sinks/ sinks/",
-    "detector": "compiled.hpp detector.hpp validate.hpp validate_closed.hpp",
+    "detector": "compiled.hpp detector.hpp self_intersections.hpp validate.hpp validate_closed.hpp",
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh bvh.cuh extend.hpp",
     "effect interface": "bodies.hpp columns.hpp effect.hpp integrators.hpp",
     "particles": "detail/particles/",
@@ -47,7 +47,7 @@ def pictured_layers():
 
 
 def read_headers():
-    """What each header includes, by its path below include/collide."""
+    """The includes of each header, by its path below include/collide."""
     headers = {}
     for path in sorted([*INCLUDE.rglob("*.hpp"), *INCLUDE.rglob("*.cuh")]):
         name = path.relative_to(INCLUDE).as_posix()

@@ -15,7 +15,7 @@ struct reachable_space {
   void copy_from_any_device(void* to, void const* from, std::size_t bytes) const { std::memcpy(to, from, bytes); }
 };
 
-/// What goes from space to space is what goes from host to host, once the space is done with it.
+/// Checks that a space sends the same as the host, once it is done with it.
 void check_exchange_in_space(collide::mpi_ranks const& ranks, tests::complaints& wrong) {
   auto const size = static_cast<std::size_t>(ranks.size()), rank = static_cast<std::size_t>(ranks.rank());
   std::vector<std::uint64_t> to_each(size), of_each(size);

@@ -351,7 +351,7 @@ def precompile(folder, eigen):
 
 
 def judge(name, rows, eigen):
-    """What is wrong with the verdicts: None if nothing is."""
+    """The first fault of the verdicts: None if there is none."""
     _, program, compiler, edits = (SOUND | MUTATIONS)[name]
     command = COMPILERS[compiler].split()
     if not shutil.which(command[0]):

@@ -375,4 +375,53 @@ bool touch(sphere const& a, sphere const& b) {
   return squared <= reach * reach;
 }
 
+namespace {
+
+using place = vec<mp::cpp_rational>;
+
+place place_of(point const& p) { return {mp::cpp_rational(p.x), mp::cpp_rational(p.y), mp::cpp_rational(p.z)}; }
+
+bool equal(place const& p, place const& q) { return p.x == q.x && p.y == q.y && p.z == q.z; }
+
+/// The part of a convex polygon where (x - at).inward >= 0.
+std::vector<place> clipped(std::vector<place> const& polygon, place const& at, place const& inward) {
+  std::vector<place> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    place const &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+    mp::cpp_rational const h = dot<mp::cpp_rational>(p - at, inward), k = dot<mp::cpp_rational>(q - at, inward);
+    if (h >= 0) kept.push_back(p);
+    if ((h > 0 && k < 0) || (h < 0 && k > 0)) {
+      mp::cpp_rational const f = h / (h - k);
+      kept.push_back({p.x + f * (q.x - p.x), p.y + f * (q.y - p.y), p.z + f * (q.z - p.z)});
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
+bool meet(triangle const& s, triangle const& t) {
+  for (auto const* const p : {&s.a, &s.b, &s.c, &t.a, &t.b, &t.c})
+    if (!finite(*p)) return false;
+  place const u[3] = {place_of(s.a), place_of(s.b), place_of(s.c)},
+              v[3] = {place_of(t.a), place_of(t.b), place_of(t.c)};
+  place const of_s = cross<mp::cpp_rational>(u[1] - u[0], u[2] - u[0]),
+              of_t = cross<mp::cpp_rational>(v[1] - v[0], v[2] - v[0]);
+  if (dot(of_s, of_s) == 0 || dot(of_t, of_t) == 0) return false;
+  std::vector<place> common{u[0], u[1], u[2]}, shared;
+  common = clipped(clipped(common, v[0], of_t), v[0], {-of_t.x, -of_t.y, -of_t.z});
+  for (unsigned i = 0; i < 3; ++i) common = clipped(common, v[i], cross<mp::cpp_rational>(of_t, v[(i + 1) % 3] - v[i]));
+  for (auto const& p : u)
+    for (auto const& q : v)
+      if (equal(p, q)) shared.push_back(p);
+  if (shared.size() == 3) return true;
+  for (auto const& p : common) {
+    if (shared.empty()) return true;
+    place const along = shared.back() - shared.front(), to = p - shared.front(), aside = cross(along, to);
+    bool const beside = dot(aside, aside) != 0 || dot(to, along) < 0 || dot(to, along) > dot(along, along);
+    if (shared.size() == 1 ? !equal(p, shared[0]) : beside) return true;
+  }
+  return false;
+}
+
 }  // namespace oracle

@@ -74,4 +74,9 @@ bool touch(sphere const& a, sphere const& b);
 /// Is p in the closed mesh, or on its surface? Exact: triangles that a ray crosses, in a direction that meets no edge.
 bool inside(std::vector<triangle> const& mesh, point const& p);
 
+/// Have two triangles a point in common that is not of the hull of the corners that they share by equal coordinates? Or
+/// do they share three? In rational numbers: one is cut off at the sides of the other. False if one has no area, or is
+/// not finite.
+bool meet(triangle const& s, triangle const& t);
+
 }  // namespace oracle

@@ -18,8 +18,8 @@ struct id_pair {
   }
 };
 
-/// What an answer may contain, by sphere, then triangle. An exact one is `exact`; another has every pair of `certain`,
-/// and no pair that `possible` lacks.
+/// The pairs that an answer may have, by sphere, then triangle. An exact one is `exact`; another has every pair of
+/// `certain`, and no pair that `possible` lacks.
 struct expectation {
   std::vector<id_pair> exact;
   std::vector<id_pair> certain;   ///< the pairs with radius * (1 - band)

@@ -1,4 +1,4 @@
-"""What names a version must name that of include/collide/version.hpp."""
+"""All files that name a version name that of include/collide/version.hpp."""
 import json
 import pathlib
 import re

@@ -1,5 +1,5 @@
-/// What must hold of any list of effects: all numbers are finite, and the same on the host, as blocks of threads go, on
-/// one rank and on three, and through save and load in the middle; where nothing else takes momentum, what particles
+/// Checks that hold of any list of effects: all numbers are finite, and the same on the host, as blocks of threads go,
+/// on one rank and on three, and through save and load in the middle; where nothing else takes momentum, what particles
 /// lose bodies get; where nothing brings energy, it does not grow; what rests keeps its bits, and presses with its
 /// weight.
 #pragma once
@@ -136,7 +136,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
     return {surface::at_rest, Kind == mesh_kind::moving ? surface::body : surface::driven_body, surface::deforming};
   }
 
-  /// What the list makes of its scene in a space, which others are compared with.
+  /// Runs the list in a space, as the reference of all others.
   template <class Space>
   checked_list(trial const& t, Space const& space) : trial_{t} {
     given_ = play_on(space, middle_, end_);
@@ -164,7 +164,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
     }
   }
 
-  /// What grains lose of their momentum bodies and what rests get, and gravity gives, what sleeps included.
+  /// Momentum that grains lose goes to bodies and to the mesh at rest, and gravity gives it, to sleeping grains too.
   void check_momentum() const {
     if constexpr (momentum_closes) {
       host const space(1);
@@ -213,7 +213,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
     }
   }
 
-  /// What lies on a mesh that stands still keeps its bits for 1e4 steps, and presses with its weight.
+  /// Grains on a mesh that stands still keep their bits for 1e4 steps, and press with their weight.
   void check_rest() const {
     if constexpr (comes_to_rest) {
       host const space(1);

@@ -64,7 +64,7 @@ FIRST = [
     ("velocity_verlet gravity sphere_contact bounce polydisperse reaction", ("fixed", "karabassi_swept", "double")),
     ("gravity bounce friction spin adhesion sleep mesh_forces reaction", ("fixed", "karabassi", "float")),
 ]
-# What is refused when it is compiled: a test of tests/compile_fail, and what it is.
+# Pairs that do not compile: the test of tests/compile_fail, and the reason.
 REFUSED = {
     "friction_without_bounce": "friction or adhesion without bounce, or an effect of a user's with `repels`",
     "friction_before_bounce": "friction, spin or adhesion before bounce",
@@ -114,7 +114,7 @@ def covered(one):
 
 
 def needed(effect, chosen, rng):
-    """What must be added with an effect."""
+    """The effects that must be added with an effect."""
     of = REQUIRED.get(effect, [])
     return [] if not of or set(of) & set(chosen) else [rng.choice(of)]
 

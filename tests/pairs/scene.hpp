@@ -20,7 +20,7 @@
 
 namespace tests::pairs {
 
-/// What parts of the mesh a list has that may move.
+/// The parts of a list's mesh that may move.
 enum class mesh_kind { fixed, moving, driven };
 
 /// How the mesh moves; the second and third are one body.
@@ -94,7 +94,7 @@ struct stirs : collide::external_forces<> {
 constexpr double density = 1000, grain_radius = 0.05, small_grain_radius = 0.04, half_width = 0.25;
 constexpr std::size_t steps = 400, newborns = 12;
 
-/// What effects of a list sum up: what bodies get, of which there is one, and what flows down between the layers.
+/// The sums of a list's effects: on bodies, of which there is one, and of mass that flows down between the layers.
 struct list_sums : collide::reaction_sums {
   collide::flow_sums flow;
 

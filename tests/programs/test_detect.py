@@ -133,7 +133,7 @@ class Answers(ProgramTest):
 
 
 class Points(ProgramTest):
-    """What is nearest to points, and on which side of the surface they are."""
+    """The nearest triangles of points, and the side of the surface that they are on."""
 
     def ask(self, *options):
         """The rows of the table that it writes, as text."""
@@ -214,6 +214,16 @@ class Points(ProgramTest):
             self.assertEqual(done.returncode, 0)
             self.assertRegex(done.stderr.decode(),
                              r"\Adetect: the mesh is not closed, so sides mean little: 3 open edge\(s\)[^\n]*\n\Z")
+        self.succeed("detect", "mesh.obj", "spheres.csv", "--nearest")
+
+    def test_a_mesh_that_cuts_itself(self):
+        corners, faces = CUBE
+        moved = [[x + 0.5 for x in corner] for corner in corners]
+        second = [[i + len(corners) for i in face] for face in faces]
+        self.scene(corners + moved, faces + second, [[0.25, 0.25, 0.25], [0.75, 0.75, 0.75]])
+        done = self.run_program("detect", "mesh.obj", "spheres.csv", "inside.csv", "--inside")
+        self.assertRegex(done.stderr.decode(), r"\Adetect: the mesh cuts or touches itself, and what is inside twice "
+                                               r"counts as outside: \d+ pair\(s\) of triangles, [^\n]*\n\Z")
         self.succeed("detect", "mesh.obj", "spheres.csv", "--nearest")
 
 
@@ -316,7 +326,7 @@ class ObjForms(ObjTest):
 
 
 class OtherFormats(ProgramTest):
-    """What Assimp reads, where the program is built with it: the same triangles in the same order as in OBJ."""
+    """Files that Assimp reads, where the program is built with it: the same triangles in the same order as in OBJ."""
 
     SPHERES = [(0, 0, 0), (3, 3, 3), (.5, .5, .5), (1.25, 0, .5), (2.25, 2, 2)]
 
@@ -372,7 +382,7 @@ class OtherFormats(ProgramTest):
 
 
 class RealExporters(ObjTest):
-    """What programs write that is not quite OBJ: it is read as it was meant, and a line says so."""
+    """Files of other programs that are not quite OBJ: each is read as it was meant, and a line says so."""
 
     def left_out(self, line, count):
         return f"{line}: a face of fewer than three corners is left out (the first of {count})"

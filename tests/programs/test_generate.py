@@ -107,7 +107,7 @@ class Study(GenerateTest):
                          [[programs.nearest(repr(x), "f") for x in s] for s in self.spheres()])
 
 
-# What libraries are compared on (issue 32 and docs/performance.md), and scenes that are hard or small.
+# Scenes that libraries are compared on (issue 32 and docs/performance.md), and some that are hard or small.
 MEASURED = ("study", "few", "hits", "many_hits", "radii_1000", "radii_100", "many_triangles", "drum", "camera", "grains", "soup", "crowd", "sparse")
 OTHERS = ("radii", "ball", "terrain", "slivers", "long_slivers", "giant", "clusters", "pile", "cube", "octahedron")
 

@@ -12,7 +12,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# What is taken away, or changed, in which header, and what Doxygen then speaks of.
+# Faults: the header, the text that is changed, its replacement, and the word in Doxygen's complaint.
 FAULTS = [
     ("effects/drag.hpp", "  ///< per time, not negative", "", "Member linear"),
     ("sinks/count.hpp", "  /// How many pairs collide; 0 before the first query.\n", "", "Member total"),

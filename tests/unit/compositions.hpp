@@ -236,7 +236,7 @@ class typed_subject final : public subject<S> {
     return copy;
   }
 
-  /// What the sink that `query(memory)` returns has written of `T`.
+  /// The elements of type `T` that the sink of `query(memory)` has written.
   template <class T, class Query>
   bounded<T> within(std::size_t capacity, Query const& query) {
     constexpr std::size_t guard = 64;

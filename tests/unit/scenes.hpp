@@ -75,7 +75,7 @@ inline oracle::point operator+(oracle::point const& p, oracle::point const& q) {
   return {p.x + q.x, p.y + q.y, p.z + q.z};
 }
 
-/// What a random scene is like.
+/// Options of a random scene.
 struct random_scene {
   unsigned seed = 1;
   int triangles = 200, spheres = 200;

@@ -35,7 +35,7 @@ float const corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, centres[] = {0.25f, 0.25f, 
 mesh_view<float> mesh() { return triangle_soup(corners, 1); }
 sphere_view<float> spheres() { return spheres_xyz(centres, 1, 0.5f); }
 
-/// What the error says; empty if there is none.
+/// The text of the error; empty if there is none.
 template <class F>
 std::string said_by(F const& f) {
   try {
@@ -46,7 +46,7 @@ std::string said_by(F const& f) {
   return {};
 }
 
-/// What a step with an effect of these parameters says.
+/// The error of a step with an effect of these parameters.
 template <class... Before, class Effect>
 std::string said_with(Effect effect) {
   simulation<detector<bucket>, Before..., Effect> scene(host(1), Before()..., effect);

@@ -34,7 +34,7 @@ struct crowd {
   }
 };
 
-/// What queries of few spheres near the mesh have left to allocate, once all sinks have room, when there are many.
+/// Queries of many spheres near the mesh allocate nothing that those of few, with room in all sinks, have not.
 template <class Detector, class View, class... Sink>
 void check_no_allocation(Detector& detector, tests::counting_resource& memory, crowd& scene, View const& view,
                          Sink&... sink) {

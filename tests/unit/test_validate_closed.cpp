@@ -1,4 +1,4 @@
-/// Whether meshes are closed and oriented, and where they are not.
+/// Meshes that are closed and oriented, and the places where others are not.
 #include <limits>
 #include <vector>
 

@@ -30,7 +30,7 @@ struct options {
   int threads = 2;
 };
 
-/// What a sink with room for `capacity` elements left behind.
+/// The result of a sink with room for `capacity` elements.
 template <class T>
 struct bounded {
   std::vector<T> stored;
@@ -39,7 +39,7 @@ struct bounded {
   bool guards_intact;  ///< nothing was written before or behind the buffer
 };
 
-/// What a `csr` sink left behind.
+/// The result of a `csr` sink.
 struct rows {
   std::vector<std::uint64_t> offsets;
   bounded<collide::id> triangles;
@@ -67,7 +67,7 @@ class subject {
   /// Of `closest_contact`; with the triangles and distances that `closest` gives.
   virtual std::vector<collide::contact<S>> closest() = 0;
   virtual rows csr(collide::order o) = 0;
-  /// What a visitor saw: the contact of each hit, with the ids of the hit itself.
+  /// The contacts that a visitor saw: the contact of each hit, with the ids of the hit itself.
   virtual std::vector<collide::contact<S>> visit() = 0;
 
   virtual bounded<collide::pair> pairs_within(std::size_t capacity, collide::order o) = 0;

@@ -110,7 +110,7 @@ class mpi_ranks {
                 bytes);
   }
 
-  /// Whether MPI takes pointers to memory of CUDA devices: what MPIX_Query_cuda_support() says. False where MPI does
+  /// True if MPI takes pointers to memory of CUDA devices: what MPIX_Query_cuda_support() says. False where MPI does
   /// not define MPIX_CUDA_AWARE_SUPPORT, as Open MPI does.
   bool takes_device_memory() const {
 #if defined(MPIX_CUDA_AWARE_SUPPORT)

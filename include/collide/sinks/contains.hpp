@@ -13,7 +13,7 @@ namespace collide {
 
 namespace detail {
 
-/// Whether a point is inside the mesh. `Search` is a `mesh_search`.
+/// The parity that tells if a point is inside the mesh. `Search` is a `mesh_search`.
 template <class S, class Search>
 COLLIDE_HD ray_parity<S> parity_of(vec3<S> const& point, mesh_view<S> const& mesh, Search const& search) {
   ray_parity<S> parity(point);

@@ -6,7 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/detail/narrow_phase/contact_without_point.hpp>
+#include <collide/detail/geometry/local_triangle.hpp>
 #include <collide/sinks/contains.hpp>
 #include <collide/sinks/nearest.hpp>
 

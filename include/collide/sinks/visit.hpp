@@ -12,7 +12,7 @@ namespace collide {
 
 namespace detail {
 
-/// Whether F is a lambda that is __device__, or __host__ __device__, of nvcc --extended-lambda. On the host its class
+/// True if F is a lambda that is __device__, or __host__ __device__, of nvcc --extended-lambda. On the host its class
 /// is another: that of the former cannot be called, that of the latter is no plain value.
 #if defined(__CUDACC_EXTENDED_LAMBDA__)
 template <class F>

@@ -76,7 +76,11 @@ class _Numpy:
 
 class _Torch(_Numpy):
     def stream(self, device):
-        return self.module.cuda.current_stream(device).cuda_stream, -1
+        raw = getattr(self.module._C, "_cuda_getCurrentRawStream", None)  # makes no object: as torch's own compiler asks
+        return raw(device) if raw else self.module.cuda.current_stream(device).cuda_stream, -1
+
+    def array(self, result, stream):  # a capsule is taken as it is, without asking for its device and stream
+        return self.module.from_dlpack(result.__dlpack__())
 
     def dtype(self, name):
         return getattr(self.module, name)

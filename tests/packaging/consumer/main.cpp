@@ -8,7 +8,7 @@ std::uint64_t hits_of_the_other_unit();
 #if defined(FOUND_VERSION)
 #define TEXT_OF(x) #x
 #define TEXT(x) TEXT_OF(x)
-/// What find_package said, and what the header says.
+/// The version by find_package, and by the header.
 constexpr char const found_version[] = TEXT(FOUND_VERSION);
 constexpr char const header_version[] =
     TEXT(COLLIDE_VERSION_MAJOR) "." TEXT(COLLIDE_VERSION_MINOR) "." TEXT(COLLIDE_VERSION_PATCH);
@@ -16,7 +16,7 @@ constexpr char const header_version[] =
 constexpr char const found_version[] = "", header_version[] = "";
 #endif
 
-/// Whether the host has as many threads as it must, and says what is missing where it has but one.
+/// True if the host has as many threads as it must; prints the reason where it has but one.
 bool has_threads(bool several) {
   try {
     return collide::host(2).threads() == 2 && several;
@@ -27,7 +27,7 @@ bool has_threads(bool several) {
 }
 
 #if defined(__CUDACC__)
-/// Whether a detector without its device is refused when it is made.
+/// True if a detector without its device is refused when it is made.
 bool refuses_without_device() {
   try {
     collide::detector<collide::all_pairs, collide::karabassi<>, space> detector;

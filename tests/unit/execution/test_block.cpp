@@ -1,4 +1,4 @@
-/// What kernels are written against: the block of one thread, and the tests' own of several, against plain loops.
+/// The blocks that kernels are written against: that of one thread, and the tests' own of several, against plain loops.
 #include <algorithm>
 #include <cstdint>
 #include <memory>

@@ -17,7 +17,7 @@ struct picky {
   static bool reads(void const* p) { return p != unreadable; }
 };
 
-/// What is said of a view where that array cannot be read; empty if nothing is.
+/// The error of a view where that array cannot be read; empty if there is none.
 template <class View>
 std::string refusal(View const& view, void const* unreadable) {
   picky::unreadable = unreadable;

@@ -3,7 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/all_pairs.cuh>
 #include <collide/detail/execution/launch.hpp>
+#include <collide/effects/bounce.hpp>
+#include <collide/karabassi.hpp>
+#include <collide/simulation.cuh>
+
+#include "execution/lockstep.hpp"
 
 namespace {
 
@@ -16,6 +22,12 @@ struct space {
   struct block {
     static constexpr int num_threads = 32, items = Kernel::items;
   };
+};
+
+/// A space of threads that share blocks.
+struct sharing_space {
+  template <class Kernel>
+  using block = tests::lockstep_block<32, 4, false>;
   std::size_t saturating, resident;
 
   std::size_t saturating_blocks() const { return saturating; }
@@ -35,7 +47,11 @@ TEST_CASE("launch: blocks cover all items, and no block has none") {
   }
 }
 
-TEST_CASE("launch: no more blocks than are resident, nor than saturate the space") {
-  CHECK(collide::detail::resident_blocks<kernel>(space{7, 12}) == 7);
-  CHECK(collide::detail::resident_blocks<kernel>(space{12, 7}) == 7);
+TEST_CASE("launch: a step has no more blocks than are resident, nor than saturate the space") {
+  using namespace collide::detail;
+  using effects = effect_list<float, collide::bounce>;
+  using step = step_kernel<step_context<float, collide::karabassi<>, all_pairs_ref<float>, effects>>;
+  CHECK(step::grid_size(sharing_space{7, 12}, 1 << 20) == 7);
+  CHECK(step::grid_size(sharing_space{12, 7}, 1 << 20) == 7);
+  CHECK(step::grid_size(sharing_space{12, 7}, 1) == 1);
 }

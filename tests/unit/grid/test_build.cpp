@@ -29,7 +29,7 @@ std::vector<S> triangles(std::size_t n) {
 /// A triangle in a cell, and the part of the cell that it covers.
 using entry = std::pair<collide::id, std::uint32_t>;
 
-/// What the cells of a grid should list.
+/// The triangles that the cells of a grid should list.
 template <class S>
 std::map<std::uint32_t, std::vector<entry>> expected_entries(collide::detail::grid<S> const& grid,
                                                              collide::mesh_view<S> const& mesh) {

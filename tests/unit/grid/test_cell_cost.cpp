@@ -1,4 +1,4 @@
-/// What cells cost, against volumes that random points find.
+/// Costs of cells, against volumes that random points find.
 #include <algorithm>
 #include <cmath>
 #include <random>

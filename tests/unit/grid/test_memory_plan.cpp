@@ -11,7 +11,7 @@ using collide::detail::table_size;
 
 namespace {
 
-/// What the tables and the entries of a plan take.
+/// The bytes of a plan's tables and entries.
 std::size_t bytes_of(memory_plan const& plan) {
   if (plan.grids == 0) return 0;
   return table_size(static_cast<std::size_t>(plan.grids) << plan.table_bits) * sizeof(collide::detail::item_range) +

@@ -1,4 +1,4 @@
-/// What a pass over a mesh, or over radii, finds, against plain loops.
+/// Statistics of a mesh, or of radii, against plain loops.
 #include <algorithm>
 #include <cmath>
 #include <limits>

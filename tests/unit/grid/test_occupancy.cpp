@@ -43,7 +43,7 @@ struct scene {
     occupancy.occupied = occupied.data();
   }
 
-  /// Whether a point is in a cell with triangles.
+  /// True if a point is in a cell with triangles.
   bool expects(collide::vec3<S> const& p) const {
     if (!cells.contains(p.x(), p.y(), p.z())) return false;
     std::uint32_t const c = cells.cell_at(cells.level[0], p).number;

@@ -1,4 +1,4 @@
-/// What sampled distances tell of a scene.
+/// Sampled distances of a scene.
 #include <cmath>
 #include <random>
 

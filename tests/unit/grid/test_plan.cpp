@@ -1,4 +1,4 @@
-/// What every plan of grids must keep to, whatever the scene.
+/// Limits that every plan of grids keeps to, in any scene.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

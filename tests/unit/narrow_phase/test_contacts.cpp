@@ -52,7 +52,7 @@ any_pair next_pair(tests::dice& roll, double smallest, double thinnest) {
   return made;
 }
 
-/// Whether the contact takes no exact numbers.
+/// True if the contact takes no exact numbers.
 bool is_measured_without(any_pair const& p) {
   collide::sphere<double> const centre{p.ball.centre, 0};
   auto const l = collide::detail::to_unit_range(collide::detail::to_local<double>(p.shape, centre), p.shape, centre);

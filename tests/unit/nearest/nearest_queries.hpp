@@ -59,7 +59,7 @@ bool same_bytes(std::vector<collide::nearest_triangle<S>> const& a,
   return true;
 }
 
-/// What the loop finds.
+/// The answer of a plain loop over all triangles.
 template <class Precision, class S>
 std::vector<collide::nearest_triangle<S>> nearest_by_loop(collide::mesh_view<S> const& mesh,
                                                           std::vector<S> const& points, S most) {

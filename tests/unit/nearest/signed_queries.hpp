@@ -141,7 +141,7 @@ void check_signed_queries_of_needles(Space const& space, int n) {
   CHECK(inside < 2 * n);
 }
 
-/// What public threads of other libraries ask for: rays through corners and edges, and in the planes of faces.
+/// Cases from public threads about other libraries: rays through corners and edges, and in the planes of faces.
 template <class BroadPhase, class S, class Space>
 void check_known_situations(Space const& space) {
   using points = std::vector<collide::vec3<S>>;

@@ -93,8 +93,8 @@ std::uint32_t bit_of(collide::feature f, std::uint32_t i) {
   return f == collide::feature::face ? 1u : (f == collide::feature::edge ? 2u << i : 16u << i);
 }
 
-/// What is told of the triangle that is nearest. Where coordinates are farther apart than the digits that the oracle
-/// has for a place, not where that is.
+/// Checks the distance and the place of the nearest triangle. Where coordinates are farther apart than the digits that
+/// the oracle has for a place, not where that is.
 template <class S>
 bool is_measured_right(collide::nearest_triangle<S> const& found, collide::triangle<S> const& t,
                        collide::vec3<S> const& p, bool with_place) {

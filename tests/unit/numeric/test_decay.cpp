@@ -1,4 +1,4 @@
-/// What decays, against long double.
+/// Exponential decay, against long double.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-/// What is decided on the bits of floating-point numbers.
+/// Decisions on the bits of floating-point numbers.
 #include <cmath>
 #include <limits>
 #include <vector>

@@ -28,7 +28,7 @@ int_words<N> random_words(std::mt19937_64& engine) {
 
 int128 as_128(int_words<2> const& x) { return static_cast<int128>(uint128{x.word[1]} << 64 | x.word[0]); }
 
-/// What an integer is modulo p.
+/// An integer modulo p.
 template <int N>
 std::uint64_t modulo(int_words<N> const& x, std::uint64_t p) {
   uint128 rest = 0, power = 1;  // of the words so far, and 2^64 to the number of them

@@ -1,4 +1,4 @@
-/// What the host knows of a mesh before triangles look for spheres, and which groups of triangles it leaves out.
+/// Measures of a mesh that the host takes before triangles look for spheres, and the groups of triangles it leaves out.
 #include <algorithm>
 #include <cmath>
 #include <limits>

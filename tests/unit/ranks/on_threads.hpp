@@ -27,7 +27,7 @@ void check_on_threads(Scene const& scene, std::vector<int> const& sizes = {1, 2,
   }
 }
 
-/// What ranks save is what one saves; one, and any number of ranks, go on from it.
+/// Ranks save the bytes that one saves; one, and any number of ranks, go on from them.
 template <class Scene>
 void check_checkpoints(Scene const& scene) {
   using simulation = typename Scene::simulation;

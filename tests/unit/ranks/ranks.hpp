@@ -1,5 +1,5 @@
 /// \file
-/// What every model of ranks must do, and what detectors on ranks must find: the same as one detector of everything.
+/// Checks of every model of ranks, and that detectors on ranks find the same as one detector of everything.
 /// Each rank checks its own part, and says what is wrong; used with threads by the unit tests, and with MPI by
 /// tests/mpi.
 #pragma once

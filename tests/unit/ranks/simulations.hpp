@@ -1,5 +1,5 @@
 /// \file
-/// What simulations on ranks must do: the same as one simulation of everything, bit for bit. Each rank checks its own
+/// Checks that simulations on ranks do the same as one simulation of everything, bit for bit. Each rank checks its own
 /// particles, and says what is wrong; used with threads by the unit tests, and with MPI by tests/mpi.
 #pragma once
 
@@ -123,7 +123,7 @@ class world_in {
   S radius_;
 };
 
-/// What one simulation makes of a scene: in the middle, and in the end.
+/// The states of one simulation of a scene: in the middle, and in the end.
 template <class Scene>
 struct expected_values {
   values_of<typename Scene::simulation> middle, end;
@@ -325,7 +325,7 @@ auto endless_radius() {
   return scene;
 }
 
-/// What the particles of all ranks give to bodies is what those of one do.
+/// The particles of all ranks give to bodies the same as those of one do.
 template <class Ranks>
 void check_reaction(Ranks const& ranks, complaints& wrong) {
   using namespace collide;
@@ -410,7 +410,7 @@ void check_short_memory_of_simulations(Ranks const& ranks, complaints& wrong) {
   wrong.expect(failures > 10, "memory can end in several places");
 }
 
-/// What makes no sense is refused on all ranks.
+/// Bad arguments are refused on all ranks.
 template <class Ranks>
 void check_refusals(Ranks const& ranks, complaints& wrong) {
   using namespace collide;

@@ -42,7 +42,7 @@ tests::world<float> grains() {
   return w;
 }
 
-/// What is given to bodies and to triangles, on one rank and on many.
+/// Sums over bodies and over triangles, on one rank and on many.
 struct given {
   std::vector<collide::body_impulse> bodies, triangles;
 };

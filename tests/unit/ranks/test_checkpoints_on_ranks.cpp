@@ -3,7 +3,7 @@
 
 namespace {
 
-/// What all ranks throw.
+/// The error that all ranks throw.
 template <class F>
 std::string thrown(F const& f) {
   try {

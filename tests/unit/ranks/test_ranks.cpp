@@ -23,7 +23,7 @@ std::string on_threads(int n, Check const& check) {
   return all;
 }
 
-/// What `run` throws.
+/// The error that `run` throws.
 template <class F>
 std::string thrown(int n, F const& f) {
   try {

@@ -1,4 +1,4 @@
-/// What a source makes where something is: counted, and not born if that is asked for. Instantiated by test_births.cpp
+/// Births where something is already: counted, and not born if that is asked for. Instantiated by test_births.cpp
 /// and test_births_cuda.cpp.
 #pragma once
 
@@ -261,7 +261,7 @@ struct revives {
   }
 };
 
-/// What an effect makes begins anew in a column that only another one writes that makes particles.
+/// Particles that an effect makes begin anew in a column that only another maker of particles writes.
 template <class Space>
 void check_two_makers(Space const& space) {
   using other = revives<temperature>;
@@ -282,7 +282,7 @@ void check_two_makers(Space const& space) {
   CHECK(made.simulation.template to_host<temperature>()[0] == 20);
 }
 
-/// What an effect of a user's own makes where a grain was that slid over the floor along `n` small ones moves as that
+/// A particle that a user's effect makes where a grain slid over the floor along `n` small ones moves as that
 /// did: contacts do not remember it.
 template <class S, class Space>
 void check_revived_touch_nothing(Space const& space, int n) {
@@ -319,7 +319,7 @@ void check_revived_touch_nothing(Space const& space, int n) {
   }
 }
 
-/// What an effect of a user's own makes where a particle stuck to the mesh falls: nothing holds it.
+/// A particle that a user's effect makes where one stuck to the mesh falls: nothing holds it.
 template <class Integrator, class Space>
 void check_revived_falls(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space>, revives<>, collide::absorbing_box, Integrator, gravity,

@@ -408,7 +408,7 @@ void check_floor_below_falling_plate(Space const& space) {
   }
 }
 
-/// What sticks to a drum goes round with it, until it turns so fast that nothing holds it.
+/// Particles that stick to a drum go round with it, until it turns so fast that nothing holds them.
 template <class NarrowPhase, class Space>
 void check_riding(Space const& space) {
   using simulation =
@@ -524,7 +524,7 @@ void check_same_bits(Space const& space, Other const& other) {
   CHECK(after(space) == after(other));
 }
 
-/// What bodies get is what particles lose, in the same bits however many lanes; what lies is weighed.
+/// Bodies get all that particles lose, in the same bits however many lanes; particles that lie are weighed.
 template <class Space, class Other>
 void check_reaction(Space const& space, Other const& other) {
   world<double> w;

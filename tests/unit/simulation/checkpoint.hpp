@@ -65,7 +65,7 @@ void load_from(std::string const& bytes, Simulation& simulation) {
   collide::load(simulation, from);
 }
 
-/// What went wrong; empty if nothing did.
+/// The error; empty if there is none.
 template <class Simulation>
 std::string fails_to_load(std::string const& bytes, Simulation& simulation) {
   try {
@@ -219,7 +219,7 @@ void check_bodies_go_on(Space const& space) {
   CHECK(fails_to_load(file, none.simulation).find("collide: load: poses of bodies: the file has") == 0);
 }
 
-/// What may not be saved is left as the program that loads has it.
+/// Effects that may not be saved stay as the program that loads has them.
 template <class Space>
 void check_pointers_stay(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space>, pushed_by, collide::gravity>;
@@ -232,7 +232,7 @@ void check_pointers_stay(Space const& space) {
   CHECK(next.simulation.template effect<collide::gravity>().z == 0);
 }
 
-/// What was saved in one space goes on in another, in the bits of that one if both agree.
+/// A scene saved in one space goes on in another, in the bits of that one if both agree.
 template <class From, class To>
 void check_other_space(From const& from, To const& to) {
   using collide::bounce;

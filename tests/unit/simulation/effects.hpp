@@ -353,7 +353,7 @@ void check_meeting_determinism(Space const& space, Other const& other) {
   CHECK((run(other) == first));
 }
 
-/// What rests falls asleep, where it is, and wakes up when it is hit or when the mesh changes.
+/// A particle at rest falls asleep, where it is, and wakes up when it is hit or when the mesh changes.
 template <class Space>
 void check_sleep(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space>, collide::sleep, sphere_contact, gravity, drag, bounce>;
@@ -384,7 +384,7 @@ void check_sleep(Space const& space) {
   CHECK(made.positions()[2] < 0.06f);
 }
 
-/// What sticks stays where it is until forces are too strong.
+/// A particle that sticks stays where it is until forces are too strong.
 template <class NarrowPhase, class Space>
 void check_stick(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, bounce, collide::adhesion>;
@@ -649,7 +649,7 @@ void check_rates(Space const& space) {
   }
 }
 
-/// What a source makes has the radius that it is given, or that of all; none is an error.
+/// Particles of a source have the radius that it is given, or that of all; none is an error.
 template <class Space>
 void check_source_radius(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space>, collide::emit, gravity, bounce, collide::polydisperse>;

@@ -81,7 +81,7 @@ void check_external_forces_of_materials(Space const& space) {
   }
 }
 
-/// What lies on a floor presses with the force on it; what sleeps does so too, and rises once it is woken.
+/// A particle on a floor presses with the force on it; asleep it does so too, and rises once it is woken.
 template <class Space>
 void check_external_forces_at_rest(Space const& space) {
   using forces = collide::external_forces<>;

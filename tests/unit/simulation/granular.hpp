@@ -283,7 +283,7 @@ auto bits_of_grains(typename Simulation::execution_space const& space, world<typ
   return bits;
 }
 
-/// What contacts remember is the same in every space, and goes on after a checkpoint, with lists and with runs of them.
+/// The memory of contacts is the same in every space, and goes on after a checkpoint, with lists and with runs of them.
 template <class S, class Space>
 void check_same_grains(Space const& space) {
   using law = granular_contact<hertz, mindlin, collide::epsd>;
@@ -355,7 +355,7 @@ void check_sleeping_grains(Space const& space) {
   CHECK(sums.read(space)[0].linear[2] == doctest::Approx(-mass * 9.81 * 10000 * dt).epsilon(1e-2).scale(0));
 }
 
-/// What sleeps on a body is woken where that begins to move, and goes with it, however slowly: the lowest of a stack
+/// Grains asleep on a body are woken where that begins to move, and go with it, however slowly: the lowest of a stack
 /// and what lies on it.
 template <class Integrator, class S, class Space>
 void check_sleep_on_bodies(Space const& space) {

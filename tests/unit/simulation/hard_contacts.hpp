@@ -111,7 +111,7 @@ void check_moving_wall(Space const& space, std::size_t n) {
   }
 }
 
-/// What friction holds on a slope, with rolling resistance where it can roll, stays where it is.
+/// A particle that friction holds on a slope, with rolling resistance where it can roll, stays where it is.
 template <class NarrowPhase, class S, class Space, class... Effect>
 void check_held(Space const& space, std::size_t steps, Effect const&... effects) {
   using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, Effect...>;

@@ -61,7 +61,7 @@ void check_crossings(Space const& space, double disc) {
   CHECK(flow.read(made.simulation.space()).particles == 0);
 }
 
-/// What goes round in a box that repeats comes through once each time around, also where the plane is next to a side.
+/// Grains that go round in a box that repeats come through once each time, also where the plane is next to a side.
 template <class Space>
 void check_rounds(Space const& space, double plane) {
   using simulation =
@@ -77,7 +77,7 @@ void check_rounds(Space const& space, double plane) {
   CHECK(flow.read(made.simulation.space()).particles == 30 * 4);
 }
 
-/// What the mesh stops dead far behind the plane, in the step in which it passes that, has come through.
+/// A grain that the mesh stops dead far behind the plane, in the step in which it passes that, has come through.
 template <class NarrowPhase, class S, class Space>
 void check_stopped_behind(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, collide::bounce, collide::mass_flow<>>;

@@ -1,4 +1,4 @@
-/// What a simulation takes of memory, and for how long it has run; instantiated by test_simulation.cpp and
+/// Memory of a simulation, and the time it has run; instantiated by test_simulation.cpp and
 /// test_simulation_cuda.cpp.
 #pragma once
 

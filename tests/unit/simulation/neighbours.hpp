@@ -9,7 +9,7 @@
 
 namespace tests {
 
-/// What a particle has met, as a number that depends on whom and in which order.
+/// The particles that one has met, as a number that depends on whom and in which order.
 struct greeted {
   template <class S>
   using value = std::uint32_t;

@@ -1,5 +1,5 @@
 /// \file
-/// What `reaction` must do with what its sums cannot hold.
+/// Checks of `reaction` with numbers that its sums cannot hold.
 #pragma once
 
 #include <limits>

@@ -1,9 +1,10 @@
-/// What is kept of a particle while its contacts are resolved.
+/// The state of a particle while its contacts are resolved.
 #include <cmath>
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/step/active_particle.hpp>
+#include <collide/detail/step/contact_scratch.hpp>
+#include <collide/detail/step/mesh_contact.hpp>
 #include <collide/detail/step/surface_at_rest.hpp>
 #include <collide/detail/step/wedge.hpp>
 

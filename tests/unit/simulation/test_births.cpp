@@ -1,4 +1,4 @@
-/// What a source makes where something is, on the host and as blocks of threads go.
+/// Births where something is already, on the host and as blocks of threads go.
 #include "compositions.hpp"
 #include "simulation/births.hpp"
 

@@ -1,4 +1,4 @@
-/// What a source makes where something is, on a GPU.
+/// Births where something is already, on a GPU.
 #include "simulation/births.hpp"
 
 TEST_CASE("births: on a GPU") {

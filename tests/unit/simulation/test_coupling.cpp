@@ -1,4 +1,4 @@
-/// What couples a simulation with others, on the host: forces that another program writes, and the mass that flows.
+/// Coupling of a simulation with others, on the host: forces that another program writes, and the mass that flows.
 #include "execution/lockstep.hpp"
 #include "simulation/external_forces.hpp"
 #include "simulation/mass_flow.hpp"

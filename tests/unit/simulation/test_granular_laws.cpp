@@ -24,7 +24,7 @@ struct impact {
   double normal_speed, tangential_speed = 0, turn = 0, other_turn = 0;  ///< turns about y
 };
 
-/// What comes of it: relative velocity of centres, turns; the largest overlap and the time of contact.
+/// The outcome of a collision: relative velocity of centres, turns; the largest overlap and the time of contact.
 struct outcome {
   double normal, tangential, turn, other_turn, overlap = 0, duration = 0;
 };
@@ -444,6 +444,9 @@ TEST_CASE("granular laws: energy and contacts of a scene, by hand") {
   CHECK(report.longest_good_step == doctest::Approx(0.8 * largest_time_step(made.simulation)).scale(0));
   CHECK(report.is_good_step(report.longest_good_step));
   CHECK_FALSE(report.is_good_step(1.01 * report.longest_good_step));
+  CHECK_THROWS_WITH_AS(report.require_shallow(), doctest::Contains("1 contacts overlap by more than a fifth"),
+                       collide::error);
+  collide::contact_counts{}.require_shallow();
 }
 
 TEST_CASE("granular laws: only solids that particles are of limit the step") {

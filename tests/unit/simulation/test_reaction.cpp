@@ -1,4 +1,4 @@
-/// What particles give to bodies, on the host and as blocks of threads go, where sums cannot hold it.
+/// Impulses of particles on bodies, on the host and as blocks of threads go, where sums cannot hold them.
 #include "compositions.hpp"
 #include "simulation/reaction.hpp"
 

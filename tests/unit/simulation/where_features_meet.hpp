@@ -1,4 +1,4 @@
-/// What must hold where two features meet: weights and momentum of what sticks, sleeps or rests, in each integrator;
+/// Checks where two features meet: weights and momentum of what sticks, sleeps or rests, in each integrator;
 /// what sleeps on what moves; what other particles pull at. Instantiated by test_where_features_meet.cpp and
 /// test_where_features_meet_cuda.cpp.
 #pragma once
@@ -42,7 +42,7 @@ world<S> ball_on_floor() {
   return w;
 }
 
-/// What lies on the mesh presses with its weight, on the mesh as on a body, whatever holds it.
+/// A particle on the mesh presses with its weight, on the mesh as on a body, whatever holds it.
 template <class NarrowPhase, class Integrator, class S, class Space, class... Effect>
 void check_weight(Space const& space, Effect... effects) {
   using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, Integrator, Effect..., mesh_forces,
@@ -134,7 +134,7 @@ void check_weight_in_a_corner(Space const& space) {
   }
 }
 
-/// What sleeps is woken where parameters change; not where they are read, or another thing moves.
+/// Sleeping particles are woken where parameters change; not where they are read, or another thing moves.
 template <class S, class Space>
 void check_waking_by_parameters(Space const& space) {
   using simulation =
@@ -210,7 +210,7 @@ void check_slow_support(Space const& space) {
     CHECK(double(x[3 * k + 2]) == doctest::Approx(0.1 + 0.1998 * static_cast<double>(k) + 0.008).epsilon(2e-3));
 }
 
-/// What spins in place does not sleep before it has come to rest.
+/// A particle that spins in place does not sleep before it has come to rest.
 template <class NarrowPhase, class S, class Space>
 void check_sleep_of_what_spins(Space const& space) {
   using simulation =
@@ -226,7 +226,7 @@ void check_sleep_of_what_spins(Space const& space) {
   CHECK(std::abs(double(made.simulation.template to_host<collide::angular_velocity>()[2])) < 0.1);
 }
 
-/// What hits a sphere that sleeps loses what that gets, also in the step that wakes it.
+/// A sphere that hits one asleep loses what that gets, also in the step that wakes it.
 template <class Integrator, class S, class Space>
 void check_momentum_of_waking(Space const& space) {
   using simulation =
@@ -248,7 +248,7 @@ void check_momentum_of_waking(Space const& space) {
   CHECK(std::abs(double(v[1]) + double(v[4]) + double(v[7])) < rounding);
 }
 
-/// What a ball loses of its angular momentum the mesh gets, rolling resistance included.
+/// Angular momentum that a ball loses the mesh gets, rolling resistance included.
 template <class NarrowPhase, class S, class Space>
 void check_angular_momentum(Space const& space) {
   using simulation =
@@ -297,7 +297,7 @@ double angular_momentum(Running const& made, double mass) {
   return sum;
 }
 
-/// What balls get of angular momentum on a table that turns far in a step the table loses.
+/// Angular momentum that balls get on a table that turns far in a step the table loses.
 template <class NarrowPhase, class S, class Space>
 void check_angular_momentum_of_turntable(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, friction, spin,
@@ -468,7 +468,7 @@ void check_pairs_without_forces(Space const& space) {
   CHECK(made.velocities()[0] == 0);
 }
 
-/// What adhesion holds another particle pulls off with more than it holds, and with no less; what is pulled along the
+/// A particle that adhesion holds is pulled off by another with more than it holds, and with no less; pulled along the
 /// mesh then slides as under gravity.
 template <class NarrowPhase, class Integrator, class S, class Space>
 void check_adhesion_and_others(Space const& space) {
@@ -493,7 +493,7 @@ void check_adhesion_and_others(Space const& space) {
   }
 }
 
-/// What stuck to a surface falls where that is gone, and stays where it is not.
+/// A particle that stuck to a surface falls where that is gone, and stays where it is not.
 template <class NarrowPhase, class S, class Space>
 void check_adhesion_without_surface(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, adhesion, moving_bodies<>>;
@@ -522,7 +522,7 @@ void check_adhesion_without_surface(Space const& space) {
   CHECK(moved[3] == 2);
 }
 
-/// What sticks to a plate that goes out of a box that repeats comes in on the other side, where no plate is, and falls.
+/// A particle on a plate that goes out of a box that repeats comes in on the other side, where no plate is, and falls.
 template <class NarrowPhase, class S, class Space>
 void check_adhesion_across(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, gravity, bounce, adhesion,
@@ -543,7 +543,7 @@ void check_adhesion_across(Space const& space) {
   CHECK(double(made.positions()[2]) < -0.2);
 }
 
-/// What stuck to a driven body is free where the next list of bodies does not have that.
+/// A particle that stuck to a driven body is free where the next list of bodies does not have that.
 template <class Space>
 void check_driven_body_that_is_gone(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space>, gravity, bounce, adhesion, moving_bodies<collide::driven>>;
@@ -577,7 +577,7 @@ void check_first_pose(Space const& space) {
   CHECK(made.velocities()[2] == 0);
 }
 
-/// What friction holds on a turntable goes round with it, to rounding.
+/// A particle that friction holds on a turntable goes round with it, to rounding.
 template <class Space>
 void check_turntable(Space const& space) {
   using simulation =
@@ -599,7 +599,7 @@ void check_turntable(Space const& space) {
   CHECK(std::abs(y[1] - (s * x[0] + c * x[1])) < 1e-9);
 }
 
-/// What friction holds on a plane that is far from the origin of its floats, `rise` higher for each step in y, and that
+/// A particle held by friction on a plane far from the origin of its floats, `rise` higher for each step in y, that
 /// turns about its own normal.
 template <class Space>
 struct far_plane {
@@ -656,7 +656,7 @@ void check_far_planes(Space const& space) {
   }
 }
 
-/// What is written into columns counts as if the simulation began with it, whatever slept, stuck, or was smaller.
+/// Numbers written into columns count as if the simulation began with them, whatever slept, stuck, or was smaller.
 template <class NarrowPhase, class Integrator, class S, class Space>
 void check_assigned(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, Integrator, collide::polydisperse,
@@ -704,7 +704,7 @@ struct stack_first {
   }
 };
 
-/// What sleeps on one whose place a source takes falls.
+/// A particle asleep on one whose place a source takes falls.
 template <class S, class Space>
 void check_place_of_another(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, collide::sleep, gravity,

@@ -97,7 +97,7 @@ collide::id& sphere_of(collide::impact<S>& i) {
   return i.contact.sphere;
 }
 
-/// What a sink of a record for each pair holds, chunk after chunk, with the numbers of all spheres.
+/// The records of a sink that has one for each pair, chunk after chunk, with the numbers of all spheres.
 template <class Found, class Streamed, class Spheres, class Sink>
 std::vector<Found> records_of(Streamed& streamed, Spheres const& spheres, Sink&& sink) {
   std::vector<Found> all;
@@ -238,7 +238,7 @@ void check_streamed_edges(Space const& space, std::pmr::memory_resource* memory)
   CHECK(kept.size() < expected.size());  // it holds those of the last sphere
 }
 
-/// What streams through takes memory of the space for three chunks, and for no more spheres than there are.
+/// A stream takes memory of the space for three chunks, and for no more spheres than there are.
 template <class Space>
 void check_streamed_memory(Space const& plain, counting_resource& counting) {
   layouts<float> const from(240, std::pmr::new_delete_resource());

@@ -18,7 +18,7 @@ class remote_space : public tests::lockstep<64, true> {
 
 using floats = collide::detector<collide::bucket>;
 
-/// What f throws.
+/// The error that f throws.
 template <class F>
 std::string thrown(F const& f) {
   try {

@@ -272,7 +272,7 @@ class body_memory {
     return {mesh, frames_.data(), numbers_.data(), vertex_velocities_, first_, static_cast<int>(count_) + 1, dt};
   }
 
-  /// Whether they have begun where the caller drives them.
+  /// True if bodies have begun where the caller drives them.
   bool are_placed() const { return is_placed_; }
   void place(bool placed) { is_placed_ = placed; }
 

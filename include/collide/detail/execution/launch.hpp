@@ -14,11 +14,4 @@ std::size_t grid_size(std::size_t n, Kernel const&) {
   return (n + per_block - 1) / per_block;
 }
 
-/// How many blocks of a kernel are at work at a time.
-template <class Kernel, class Space>
-std::size_t resident_blocks(Space const& space) {
-  std::size_t const most = space.saturating_blocks(), of_body = space.template max_resident_blocks<Kernel>();
-  return most < of_body ? most : of_body;
-}
-
 }  // namespace collide::detail

@@ -1,5 +1,5 @@
 /// \file
-/// The point of a triangle closest to a sphere's centre, in coordinates local to the sphere.
+/// The point of a triangle closest to a sphere's centre, in coordinates local to the sphere, and its measures.
 #pragma once
 
 #include <collide/contact.hpp>
@@ -23,6 +23,19 @@ template <class T>
 struct closest_point {
   vec3<T> point;
   T distance_squared;
+  feature kind;
+  int index;
+};
+
+/// How a point lies to a sphere: the distance from the centre, and how deep that is inside.
+struct separation {
+  double distance, depth;
+};
+
+/// A contact without its point.
+struct contact_without_point {
+  separation measured;
+  vec3<double> normal;
   feature kind;
   int index;
 };

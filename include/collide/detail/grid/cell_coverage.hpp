@@ -43,7 +43,7 @@ struct cell_coverage {
   /// An axis, to be united with others.
   static COLLIDE_HD_INLINE std::uint32_t axis(int k) { return 1u << 5 * k; }
 
-  /// Whether the box begins in a cell before on one of these axes.
+  /// True if the box begins in a cell before on one of these axes.
   static COLLIDE_HD_INLINE bool starts_in_earlier_cell(std::uint32_t coverage, std::uint32_t axes) {
     return (coverage >> 4 & coverage & axes) != 0;  // 17, the only odd number from 16 on
   }

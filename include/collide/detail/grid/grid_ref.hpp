@@ -186,7 +186,7 @@ struct bucket_ref : triangle_ref<S> {
     return left != 0;
   }
 
-  /// Whether the cell that was gone through last is known to be the last one of a level: a sphere at rest is in one.
+  /// True if the cell that was gone through last is known to be the last one of a level: a sphere at rest is in one.
   static COLLIDE_HD_INLINE bool was_last(sphere<S> const&, candidate_cursor const& c) { return c.step != 0; }
   static COLLIDE_HD_INLINE bool was_last(moving_sphere<S> const&, candidate_cursor const&) { return false; }
 

@@ -45,7 +45,7 @@ struct occupancy_view {
     return p;
   }
 
-  /// Whether there may be triangles near each of the centres, or spheres. False if that is not known.
+  /// Tells for each of the centres, or spheres, if there may be triangles near it. False if that is not known.
   template <int N>
   COLLIDE_HD_INLINE void test_occupied(places<N> const& p, bool (&near)[N]) const {
     for (int k = 0; k < N; ++k) near[k] = (p.inside[k] & occupied[p.cells[k] / 8] >> p.cells[k] % 8 & 1) != 0;

@@ -6,7 +6,7 @@
 
 #include <collide/detail/geometry/closest_point.hpp>
 #include <collide/detail/narrow_phase/contact_compensated.hpp>
-#include <collide/detail/narrow_phase/contact_without_point.hpp>
+#include <collide/detail/predicates/exact.hpp>
 
 namespace collide::detail {
 

@@ -10,7 +10,6 @@
 #include <limits>
 
 #include <collide/detail/geometry/closest_point.hpp>
-#include <collide/detail/narrow_phase/contact_without_point.hpp>
 #include <collide/detail/numeric/double_double.hpp>
 
 namespace collide::detail {

@@ -119,7 +119,7 @@ struct exact_predicate : std::true_type {
   }
 };
 
-/// Whether a sphere touches a triangle, where the narrow phase is quick to tell. `uncertain` is left to `resolve`,
+/// Tells if a sphere touches a triangle, where the narrow phase is quick to tell. `uncertain` is left to `resolve`,
 /// which takes long: where threads run together, as few of them as possible should go through it.
 template <class NarrowPhase, class S, class Sphere>
 COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, Sphere const& s) {
@@ -130,7 +130,7 @@ COLLIDE_HD_INLINE verdict filter(triangle<S> const& t, Sphere const& s) {
   }
 }
 
-/// Whether a sphere touches a triangle of which `filter` is unsure.
+/// True if a sphere touches a triangle of which `filter` is unsure.
 template <class NarrowPhase, class S, class Sphere>
 COLLIDE_HD_INLINE bool resolve([[maybe_unused]] triangle<S> const& t, [[maybe_unused]] Sphere const& s) {
   if constexpr (filtered_predicate<NarrowPhase>::value) {

@@ -1,5 +1,5 @@
 /// \file
-/// Whether a point is inside a closed mesh: an odd number of triangles above it.
+/// The test if a point is inside a closed mesh: an odd number of triangles above it.
 #pragma once
 
 #include <collide/detail/narrow_phase/intersects.hpp>

@@ -1,5 +1,5 @@
 /// \file
-/// Lists of columns: what they contain, their union, and how a column lies in memory.
+/// Lists of columns: what they contain, and their union.
 #pragma once
 
 #include <type_traits>
@@ -57,52 +57,5 @@ struct remaining<columns<C...>, B> {
 };
 template <class A, class B>
 using difference_of = typename remaining<A, B>::type;
-
-/// A value of a column is `width` numbers of type `element`, one after the other.
-template <class V>
-struct layout_of {
-  static_assert(std::is_arithmetic<V>::value, "collide: a column holds vec3<S>, S or an integer");
-  using element = V;
-  static constexpr int width = 1;
-  static COLLIDE_HD_INLINE V& at(V& v, int) { return v; }
-  static COLLIDE_HD_INLINE V const& at(V const& v, int) { return v; }
-};
-template <class S>
-struct layout_of<vec3<S>> {
-  using element = S;
-  static constexpr int width = 3;
-  static COLLIDE_HD_INLINE S& at(vec3<S>& v, int k) { return v[k]; }
-  static COLLIDE_HD_INLINE S const& at(vec3<S> const& v, int k) { return v[k]; }
-};
-
-template <class C, class S>
-using column_value = typename C::template value<S>;
-template <class C, class S>
-using column_layout = layout_of<column_value<C, S>>;
-template <class C, class S>
-using column_element = typename column_layout<C, S>::element;
-
-/// Bytes of a particle in a column.
-template <class C, class S>
-inline constexpr std::size_t column_bytes = sizeof(column_element<C, S>) * std::size_t(column_layout<C, S>::width);
-
-/// The initial value of a column.
-template <class C, class S, class = void>
-struct initial_of {
-  static COLLIDE_HD column_value<C, S> value() {
-    if constexpr (column_layout<C, S>::width == 3) {
-      return column_value<C, S>(S(0), S(0), S(0));
-    } else {
-      return column_value<C, S>(0);
-    }
-  }
-};
-template <class C, class S>
-struct initial_of<C, S, std::void_t<decltype(C::template initial<S>)>> {
-  static COLLIDE_HD column_value<C, S> value() {
-    constexpr column_value<C, S> v = C::template initial<S>;
-    return v;
-  }
-};
 
 }  // namespace collide::detail

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <collide/detail/particles/attributes.hpp>
+#include <collide/detail/particles/particle.hpp>
 #include <collide/memory.hpp>
 
 // the numbers of elements of small arrays are int

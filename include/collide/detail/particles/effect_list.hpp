@@ -61,7 +61,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   static constexpr bool keeps_pair_forces =
       (any_pair_contact || overlaps) && (adheres || has_half_kicks || keeps_support);
   static constexpr bool keeps_pair_torques =
-      (any_pair_contact || overlaps) && has_half_kicks && contains<named, angular_velocity>;
+      (any_pair_contact || overlaps) && (has_half_kicks || keeps_support) && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
   static constexpr bool ends_after_meeting = (any_pair_contact || overlaps) && has_half_kicks;
   /// Forces on the mesh are given for a whole step when particles meet, in its middle; so is the pressure of sleepers.
@@ -147,7 +147,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
   double due(double dt) const { return (due_of<E>(dt) + ... + 0.0); }
   static constexpr bool makes = (is_source<E> || ...);
-  /// Whether what a source makes where something is, is not born.
+  /// True if particles of a source are not born where something is already.
   bool makes_only_where_free() const { return (is_careful<E>() || ...); }
   S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
 

@@ -72,11 +72,6 @@ COLLIDE_HD inline double times_power(double x, int n) {
   return x * from_bits<double>(static_cast<std::uint64_t>(n + 1023) << 52);
 }
 
-/// How a point lies to a sphere: the distance from the centre, and how deep that is inside.
-struct separation {
-  double distance, depth;
-};
-
 /// Formulas on the numbers of a table, which must outlive this. Feet have numbers: corners 0, 1 and 2, edges 3, 4 and
 /// 5, the face 6.
 class exact_triangle {

@@ -1,5 +1,5 @@
 /// \file
-/// Whether the ray from a point along +z crosses a triangle, exactly, with every touch of an edge or a corner decided
+/// The test if the ray from a point along +z crosses a triangle, exactly, with every touch of an edge or corner decided
 /// one way: simulation of simplicity (H. Edelsbrunner and E. P. Mücke, ACM Transactions on Graphics 9(1), 1990).
 ///
 /// The point is moved by (e, e^2, 0) for an e that is smaller than any number. Then the ray meets no edge, and of the

@@ -1,5 +1,5 @@
 /// \file
-/// Whether two spheres touch, in exact arithmetic.
+/// The test if two spheres touch, in exact arithmetic.
 #pragma once
 
 #include <collide/detail/numeric/exact_sum.hpp>

@@ -44,7 +44,17 @@ inline constexpr bool stores_ids = false;
 template <class Output>
 inline constexpr bool stores_ids<Output, std::void_t<decltype(Output::stores_ids)>> = Output::stores_ids;
 
-/// True if more hits of a sphere would change nothing, as the output says; most outputs want them all.
+/// True if one hit of each sphere is enough, as the output says; most outputs want them all.
+template <class Output>
+auto wants_one_of_each(Output const& output, int) -> decltype(output.wants_one_of_each()) {
+  return output.wants_one_of_each();
+}
+template <class Output>
+bool wants_one_of_each(Output const&, long) {
+  return false;
+}
+
+/// True if more hits of a sphere would change nothing, as the output says.
 template <class Output>
 auto has_enough_of(Output const& output, id sphere, int) -> decltype(output.has_enough_of(sphere)) {
   return output.has_enough_of(sphere);
@@ -202,7 +212,7 @@ struct candidate_pipeline {
     if (decide<Block>(p, s)) push_hit(block, b, p);
   }
 
-  /// Whether a candidate is a hit. Where threads work together, a narrow phase in stages asks whether the box is in
+  /// True if a candidate is a hit. Where threads work together, a narrow phase in stages asks whether the box is in
   /// reach itself.
   template <class Block, class Sphere>
   COLLIDE_HD_INLINE bool decide(pair p, Sphere const& s) const {

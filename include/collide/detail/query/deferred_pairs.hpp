@@ -116,7 +116,7 @@ struct resolve_deferred {
   }
 
  private:
-  /// Whether a pair is a hit that the first pass has not written.
+  /// True if a pair is a hit that the first pass has not written.
   COLLIDE_HD_INLINE bool is_hit(pair p, bool is_deferred) const {
     triangle<S> const t = pipeline.mesh[p.triangle];
     auto const shape = pipeline.spheres[p.sphere];

@@ -174,7 +174,7 @@ struct batched_per_sphere_query {
 
   template <class Block>
   struct scratch {
-    static constexpr std::uint32_t room = 64;
+    static constexpr std::uint32_t room = 64, few = 4;
     pipeline_storage<Block> pipeline;
     candidate_batch<S> batch;
     id found[room];
@@ -185,6 +185,8 @@ struct batched_per_sphere_query {
   void operator()(Block& block, scratch<Block>& s) const {
     pipeline.reset(s.pipeline, 0);
     s.batch.size = 0;
+    bool const wants_one = wants_one_of_each(pipeline.output, 0);
+    std::uint32_t const most = wants_one ? s.few : s.room;
     std::size_t const begin = block.index() * Block::items, size = pipeline.spheres.size();
     for (std::size_t i = begin; i < begin + Block::items && i < size; ++i) {
       auto const own = pipeline.spheres[i];
@@ -196,10 +198,11 @@ struct batched_per_sphere_query {
           multiversioned([&] {
             if (begins) at = ref.begin(around);
             s.size = 0;
-            more = next_candidates(ref, around, at, s.room, [&](id t) { s.found[s.size++] = t; });
+            more = next_candidates(ref, around, at, most, [&](id t) { s.found[s.size++] = t; });
           });
           begins = false;
           for (std::uint32_t k = 0; k < s.size; ++k) take(block, s, {static_cast<id>(i), s.found[k]}, own);
+          if (wants_one && more) more = !touches_already(block, s, static_cast<id>(i));
         }
       } else {
         for_each_candidate(ref, own, [&](id t) { take(block, s, {static_cast<id>(i), t}, own); });
@@ -221,6 +224,14 @@ struct batched_per_sphere_query {
       pipeline.push(block, s.pipeline, p, own);
       pipeline.drain_if_full(block, s.pipeline);
     }
+  }
+
+  /// True if the candidates so far have a hit of a sphere, all of which are decided and written.
+  template <class Block>
+  bool touches_already(Block& block, scratch<Block>& s, id sphere) const {
+    flush(block, s);
+    pipeline.drain(block, s.pipeline);
+    return has_enough_of(pipeline.output, sphere, 0);
   }
 
   template <class Block>

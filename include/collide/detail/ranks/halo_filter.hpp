@@ -75,7 +75,7 @@ class halo_filter {
   /// The first cell of a box, in cells, one more than from the frame on.
   COLLIDE_HD_INLINE S place(int axis, S x, S radius) const { return mul_rn(x - lower_[axis] - radius, scale_[axis]); }
 
-  /// Whether a box that begins there may reach into the frame; on bits, which negative numbers and NaN have more of.
+  /// 1 if a box that begins there may reach into the frame; on bits, which negative numbers and NaN have more of.
   COLLIDE_HD_INLINE std::uint32_t is_inside(S place) const { return to_bits(place) < end_ ? 1u : 0u; }
 
   /// The cell of a place; the first for one before it.

@@ -155,7 +155,7 @@ class part_of_simulation {
     simulation_.begin_step(dt);
     if (any_pair_contact && knows_others() && !lists_tell_ && own() != 0) look_for_moved();
   }
-  /// Whether there are copies of all that this rank's own particles meet, as long as nothing has moved far. All ranks
+  /// True if there are copies of all that this rank's own particles meet, as long as nothing has moved far. All ranks
   /// know it alike.
   bool knows_others() const { return knows_others_ && effects().space() == around_; }
   /// After `begin_step`, with copies as they are in this step: true if some may be missing. Lists of neighbours that
@@ -180,7 +180,7 @@ class part_of_simulation {
   }
   /// Particles meet.
   void meet(S dt) { simulation_.meet(with_copies(), dt); }
-  /// Whether what a source makes may not be born, which others must know before particles meet.
+  /// True if particles of a source may not be born, which others must know before particles meet.
   bool refuses_births(S dt) const {
     return any_pair_contact && effects().due(static_cast<double>(dt)) > 0 && effects().makes_only_where_free();
   }
@@ -192,7 +192,7 @@ class part_of_simulation {
       simulation_.settle_births(with_copies(), dt);
     }
   }
-  /// Whether the next step knows what particles do to each other where it begins.
+  /// True if the next step knows what particles do to each other where it begins.
   bool knows_pair_forces() const { return simulation_.knows_pair_forces_; }
 
   /// The memory of contacts of the rank's own particles. Waits.

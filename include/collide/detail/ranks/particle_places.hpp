@@ -126,7 +126,7 @@ struct find_moved {
   }
 };
 
-/// Whether there is a particle at a place.
+/// True if there is a particle at a place.
 template <class State>
 COLLIDE_HD_INLINE bool is_there([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
   if constexpr (contains<typename State::list, alive>) {
@@ -135,7 +135,7 @@ COLLIDE_HD_INLINE bool is_there([[maybe_unused]] State const& state, [[maybe_unu
     return true;
   }
 }
-/// Whether it is at a point that is finite, too.
+/// True if there is a particle, at a point that is finite.
 template <class State>
 COLLIDE_HD_INLINE bool is_somewhere(State const& state, std::size_t i) {
   auto const* const x = state.at(position{}) + 3 * i;

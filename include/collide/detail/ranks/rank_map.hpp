@@ -97,7 +97,7 @@ class rank_map {
   static constexpr std::uint64_t bit(std::size_t i) { return std::uint64_t{1} << (i % 64); }
   std::size_t parent_word(std::size_t i) const { return coarse_grid::parent_of(i / words_) * words_ + i % words_; }
 
-  /// Whether ranks other than `self` are in a cell.
+  /// True if ranks other than `self` are in a cell.
   bool has_others(std::size_t cell, std::size_t self) const {
     std::uint64_t others = 0;
     for (std::size_t w = 0; w < words_; ++w) others |= masks_[cell * words_ + w] & ~(w == self / 64 ? bit(self) : 0);

@@ -93,9 +93,11 @@ struct output {
     if (slot < capacity) pairs[slot] = p;
     if (flags != nullptr) store_relaxed(flags + p.sphere, std::uint8_t{1});
   }
+  /// True if nothing but flags is wanted.
+  COLLIDE_HD_INLINE bool wants_one_of_each() const { return flags != nullptr && count.sum == nullptr; }
   /// True if more hits of a sphere would change nothing: its flag is set, and nothing else is wanted.
   COLLIDE_HD_INLINE bool has_enough_of(id sphere) const {
-    return flags != nullptr && count.sum == nullptr && load_relaxed(flags + sphere) != 0;
+    return wants_one_of_each() && load_relaxed(flags + sphere) != 0;
   }
   COLLIDE_HD_INLINE void end_pass() const {
     if (count.sum == nullptr) return;

@@ -35,7 +35,7 @@ using block_of_host = host::block<void>;
   COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT, true, bodies_ref<SCALAR, bucket_ref<SCALAR>>) \
   COLLIDE_SEARCH(PREFIX, SCALAR, NARROW_PHASE, IS_SWEPT, true, bodies_ref<SCALAR, all_pairs_ref<SCALAR>>)
 
-/// Whether particles are near a mesh that rests: as many as a step asks about at a time.
+/// Tells which particles are near a mesh that rests: of as many as a step asks about at a time.
 #define COLLIDE_NEAR_TRIANGLES(PREFIX, SCALAR, SHAPE)                                         \
   PREFIX std::uint32_t near_triangles(bucket_ref<SCALAR> const&, SHAPE<SCALAR> const(&)[16]); \
   PREFIX std::uint32_t near_triangles(all_pairs_ref<SCALAR> const&, SHAPE<SCALAR> const(&)[16]);

@@ -3,14 +3,35 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 
+#include <collide/detail/bodies/bodies_ref.hpp>
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/execution/block.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
-#include <collide/detail/step/active_particle.hpp>
+#include <collide/detail/step/contact_history.hpp>
 #include <collide/detail/step/surface_at_rest.hpp>
 
 namespace collide::detail {
+
+/// A particle that may touch the mesh in this step, in scratch memory.
+template <class S, bool IsSwept, bool HasBodies = false>
+struct active_particle : contact_history<S, IsSwept, HasBodies> {
+  bool is_active;
+  id number;
+  std::uint32_t candidate_count;  ///< how many contacts have been considered as the next one
+  std::uint64_t best_key;         ///< of the next contact
+  std::conditional_t<HasBodies, body_cursor, candidate_cursor> cursor;  ///< which triangles have been looked at
+  alignas(S) unsigned char best[sizeof(contact<S>)];                    ///< the next contact
+
+  COLLIDE_HD_INLINE void set_best(contact<S> const& c) { std::memcpy(best, static_cast<void const*>(&c), sizeof c); }
+  COLLIDE_HD_INLINE contact<S> best_contact() const {
+    contact<S> c;
+    std::memcpy(static_cast<void*>(&c), best, sizeof c);
+    return c;
+  }
+};
 
 /// Pairs of a particle of the batch and a triangle, that wait for the threads of their block.
 template <std::uint32_t Capacity>

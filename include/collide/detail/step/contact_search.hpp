@@ -269,7 +269,7 @@ struct contact_search {
     return consider<Block>(a, mesh, s, time, found);
   }
 
-  /// Whether a particle, which is `whole` in the frame of a triangle, leaves that after it has touched it.
+  /// True if a particle, which is `whole` in the frame of a triangle, leaves that after it has touched it.
   COLLIDE_HD_INLINE bool is_leaving(active const& a, id number, shape const& whole) const {
     auto const& mesh = triangles.mesh;
     return is_swept && a.is_leaving(number, motion_seen(mesh, a, frame_of(mesh, number), whole));

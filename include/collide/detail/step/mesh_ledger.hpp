@@ -43,10 +43,10 @@ COLLIDE_HD_INLINE void book(Context const& context, Particle& p, mesh_impulse<ty
   }
 }
 
-/// Tells the effects what holds a particle that sleeps against what would accelerate it for a part of the step: it does
-/// not move. The surfaces that have supported it give that: what they gave on the mean, and of the difference each has
-/// a part as large as what it gave. What lies on others that sleep is held by these but for a rest, which goes to what
-/// rests, unless effects may hold it that know no mesh.
+/// Tells the effects what holds a particle that sleeps against what would accelerate or turn it for a part of the step:
+/// it does not move. The surfaces that have supported it give that: what they gave on the mean, and of the difference,
+/// and of what would turn it, each has a part as large as what it gave. What lies on others that sleep is held by these
+/// but for a rest, which goes to what rests, unless effects may hold it that know no mesh.
 template <class Context, class Particle>
 COLLIDE_HD_INLINE void book_sleeping(Context const& context, Particle& p, typename Context::scalar part) {
   using S = typename Context::scalar;
@@ -56,8 +56,11 @@ COLLIDE_HD_INLINE void book_sleeping(Context const& context, Particle& p, typena
   Particle next = p;
   context.effects.accelerate(next, time);
   vec3<S> const change = p[velocity{}] - next[velocity{}];
-  auto const tell = [&](vec3<S> const& of_it, id body) {
-    mesh_impulse<S> const given{of_it, none, p[position{}], none, p[velocity{}], no_id, body};
+  vec3<S> turned = none;
+  if constexpr (contains<typename Particle::list, pair_angular_acceleration>)
+    turned = p[angular_velocity{}] - next[angular_velocity{}];
+  auto const tell = [&](vec3<S> const& of_it, S share, id body) {
+    mesh_impulse<S> const given{of_it, turned * share, p[position{}], none, p[velocity{}], no_id, body};
     context.effects.on_mesh_impulse(p, given, context.dt);
   };
   int surfaces = 0;
@@ -70,14 +73,13 @@ COLLIDE_HD_INLINE void book_sleeping(Context const& context, Particle& p, typena
     rest -= of * time;
   });
   if (surfaces == 0) {
-    if constexpr (!Context::effects_type::holds_without_mesh) tell(change, no_id);
+    if constexpr (!Context::effects_type::holds_without_mesh) tell(change, S(1), no_id);
     return;
   }
   for_each_support(p, [&](vec3<S> const& of, std::uint8_t by) {
     if (by == 0) return;
-    S const size = sqrt_rn(dot(of, of));
-    tell(surfaces == 1 ? change : vec3<S>(of * time + rest * (sizes > 0 ? size / sizes : 1 / S(surfaces))),
-         body_of_frame(by - 1));
+    S const share = sizes > 0 ? sqrt_rn(dot(of, of)) / sizes : 1 / S(surfaces);
+    tell(surfaces == 1 ? change : vec3<S>(of * time + rest * share), share, body_of_frame(by - 1));
   });
 }
 

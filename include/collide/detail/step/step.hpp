@@ -51,11 +51,16 @@ struct step_kernel {
     return static_cast<std::uint32_t>((particles + tile<Block> - 1) / tile<Block>);
   }
 
-  /// How many blocks there are to be where `resident` can be at work at a time.
-  template <class Block>
-  static std::size_t grid_size(std::size_t particles, std::size_t resident) {
-    std::size_t const tiles = tile_count<Block>(particles);
-    return has_many_tiles<Block> ? min(tiles, resident) : tiles;
+  /// How many blocks there are to be: one a tile, but where a block has many, no more than can be at work at a time.
+  template <class Space>
+  static std::size_t grid_size([[maybe_unused]] Space const& space, std::size_t particles) {
+    using block = typename Space::template block<step_kernel>;
+    std::size_t const tiles = tile_count<block>(particles);
+    if constexpr (has_many_tiles<block>) {
+      return min(tiles, min(space.saturating_blocks(), space.template max_resident_blocks<step_kernel>()));
+    } else {
+      return tiles;
+    }
   }
 
   template <class Block, bool Touches>

@@ -1,5 +1,5 @@
 /// \file
-/// Whether a tree suits a scene better than a grid: by a sample of its triangles and spheres.
+/// The choice between a tree and a grid for a scene on the host: by a sample of its triangles and spheres.
 #pragma once
 
 #include <cstddef>

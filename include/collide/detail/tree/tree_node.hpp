@@ -61,11 +61,14 @@ COLLIDE_HD_INLINE aabb<float> tree_box_of(triangle<S> const& t, vec3<S> const& o
   return box;
 }
 
-/// A point as the boxes of a tree see it: a box of floats around it, which for floats is itself.
+/// A point, or what has a box, as the boxes of a tree see it: a box of floats around it, which for a point of floats is
+/// itself.
 struct tree_point {
   float lower[3], upper[3];
 
   tree_point() = default;
+  COLLIDE_HD_INLINE explicit tree_point(aabb<float> const& b)
+      : lower{b.lower[0], b.lower[1], b.lower[2]}, upper{b.upper[0], b.upper[1], b.upper[2]} {}
   template <class S>
   COLLIDE_HD_INLINE tree_point(vec3<S> const& x, vec3<S> const& origin) {
     for (int k = 0; k < 3; ++k) {

@@ -203,11 +203,17 @@ struct tree_ref {
     if (nodes == nullptr || !is_finite(point)) return;
     tree_point ray(point, tree_origin(mesh));
     ray.upper[2] = std::numeric_limits<float>::infinity();
+    for_each_overlapping(ray, f);
+  }
+
+  /// Calls f(triangle) for all triangles whose box overlaps another, as long as that returns true. There is a tree.
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_overlapping(tree_point const& box, F const& f) const {
     struct level {
       std::uint32_t node, boxes;  ///< those still to be looked into
     };
     level stack[most_tree_levels];
-    stack[0] = {0, nodes[0].overlapping(ray)};
+    stack[0] = {0, nodes[0].overlapping(box)};
     for (int top = 0; top >= 0;) {
       level& here = stack[top];
       if (here.boxes == 0) {
@@ -218,8 +224,8 @@ struct tree_ref {
       std::uint32_t const child = nodes[here.node].child[k];
       here.boxes &= here.boxes - 1;
       if ((child & tree_node::leaf) == 0) {
-        stack[++top] = {child, nodes[child].overlapping(ray)};
-      } else if (is_first(here.node, k, ray) && !f(child & ~tree_node::leaf)) {
+        stack[++top] = {child, nodes[child].overlapping(box)};
+      } else if (is_first(here.node, k, box) && !f(child & ~tree_node::leaf)) {
         return;
       }
     }
