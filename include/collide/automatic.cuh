@@ -19,8 +19,11 @@ namespace collide {
 ///
 /// The same calls always go the same way, and the pairs are the same either way. It is chosen by `build` with a
 /// radius, and else by the first query for which it pays, counting what the queries before it would have saved.
-/// Complexity and memory are those of the chosen one; with a memory budget `bvh` is not chosen. A simulation names its
-/// broad phase itself.
+/// Complexity and memory are those of the chosen one; with a memory budget `bvh` is not chosen.
+///
+/// A simulation chooses between `bucket` and `bvh` once for a mesh, as soon as it has that and particles: for many
+/// steps, however long the build takes, and as if the particles, as large as the first, were at the mesh. Its bits are
+/// the same either way.
 struct automatic {
   bucket grid;  ///< options of `bucket`, for where that is chosen
 
@@ -38,7 +41,7 @@ struct automatic {
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
       detail::middles_as_spheres<S> const spheres{mesh_, radius};
-      way_ = prefers_tree(space, options, spheres) ? way::tree : best_without_tree(options);
+      way_ = prefers_tree<Space>(options, spheres) ? way::tree : best_without_tree(options);
       is_given_ = true;
       make_index(space, options, radius);
     }
@@ -48,10 +51,10 @@ struct automatic {
     void prepare(Space& space, automatic const& options, Spheres const& spheres) {
       if (!is_given_) {
         if constexpr (detail::serves_steps<Space>) {
-          way_ = prefers_tree_in_steps(space, options, spheres) ? way::tree : best_without_tree(options);
+          way_ = prefers_tree_in_steps<Space>(options, spheres) ? way::tree : best_without_tree(options);
           is_given_ = true;
         } else {
-          way_ = choose(space, options, spheres);
+          way_ = choose<Space>(options, spheres);
         }
       }
       make_index(space, options, spheres);
@@ -103,11 +106,11 @@ struct automatic {
     }
 
     template <class Space, class Spheres>
-    way choose(Space& space, automatic const& options, Spheres const& spheres) {
+    way choose(automatic const& options, Spheres const& spheres) {
       bool const wants_index =
           has_grid_ || has_tree_ || (best_without_tree(options) == way::grid && wants_grid<Space>(spheres.size()));
       if (!wants_index) return way::all_pairs;
-      return prefers_tree(space, options, spheres) ? way::tree : way::grid;
+      return prefers_tree<Space>(options, spheres) ? way::tree : way::grid;
     }
 
     template <class Space>
@@ -121,44 +124,42 @@ struct automatic {
 
     /// True if long thin triangles keep a grid so busy that a tree is faster, the build included.
     template <class Space, class Spheres>
-    bool prefers_tree([[maybe_unused]] Space& space, [[maybe_unused]] automatic const& options,
-                      [[maybe_unused]] Spheres const& spheres) {
+    bool prefers_tree([[maybe_unused]] automatic const& options, [[maybe_unused]] Spheres const& spheres) {
       if constexpr (bvh_tuning<Space>::divides_by_area) {
-        if (!may_prefer_tree(options)) return false;
+        if (options.grid.memory_budget != 0 || (is_sampled_ && !is_slender_)) return false;
+        detail::sampled_triangles<S> const sample(mesh_);
+        is_sampled_ = true;
+        is_slender_ = sample.are_slender();
+        if (!is_slender_) return false;
         double const build = has_tree_ ? 0 : slender_costs.per_triangle_ns * static_cast<double>(mesh_.size());
-        double saved = saved_by_tree(space, slender_costs, spheres, 8);  // mostly these tell
-        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by_tree(space, slender_costs, spheres, 128);
+        double saved = saved_by_tree(slender_costs, sample, spheres, 8);  // mostly these tell
+        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by_tree(slender_costs, sample, spheres, 128);
         return pays(build, saved, spent_on_boxes_);
       } else {
         return false;
       }
     }
 
-    /// The same in a simulation, which makes many steps with a mesh, by how large its spheres are.
+    /// True if a tree is faster in the steps of a simulation, which are many.
     template <class Space>
-    bool prefers_tree_in_steps([[maybe_unused]] Space& space, [[maybe_unused]] automatic const& options,
-                               [[maybe_unused]] sphere_view<S> const& spheres) {
+    bool prefers_tree_in_steps([[maybe_unused]] automatic const& options,
+                               [[maybe_unused]] sphere_view<S> const& spheres) const {
       if constexpr (bvh_tuning<Space>::divides_by_area) {
-        if (!may_prefer_tree(options)) return false;
+        if (options.grid.memory_budget != 0) return false;
+        detail::sampled_triangles<S> const sample(mesh_);
+        if (!sample.are_slender()) return false;
         S const radius = spheres.one_radius() ? spheres.common_radius() : spheres[0].radius;
-        return saved_by_tree(space, slender_costs_of_steps, detail::middles_as_spheres<S>{mesh_, radius}, 128) > 0;
+        return saved_by_tree(slender_costs_of_steps, sample, detail::middles_as_spheres<S>{mesh_, radius}, 128) > 0;
       } else {
         return false;
       }
     }
 
-    /// False if no sample of spheres has to be taken.
-    bool may_prefer_tree(automatic const& options) {
-      if (options.grid.memory_budget != 0) return false;
-      if (!is_sampled_) is_slender_ = detail::are_slender(mesh_);
-      is_sampled_ = true;
-      return is_slender_;
-    }
-
-    /// Nanoseconds by which a tree is faster than a grid, from at most so many spheres.
-    template <class Space, class Spheres>
-    double saved_by_tree(Space& space, slender_cost_model const& c, Spheres const& spheres, std::size_t most) {
-      detail::reached_by_sphere const mean = detail::mean_reached(space, mesh_, spheres, most, reached_);
+    /// Nanoseconds by which queries by a tree are faster than by a grid, from at most so many spheres.
+    template <class Spheres>
+    static double saved_by_tree(slender_cost_model const& c, detail::sampled_triangles<S> const& sample,
+                                Spheres const& spheres, std::size_t most) {
+      detail::reached_by_sphere const mean = sample.reached(spheres, most);
       return static_cast<double>(spheres.size()) *
              (c.per_box_ns * mean.boxes - c.per_sphere_ns - c.per_touched_ns * mean.triangles);
     }
@@ -198,7 +199,6 @@ struct automatic {
     way way_ = way::all_pairs;                      ///< of this query
     double spent_ = 0;                              ///< nanoseconds that a grid would have saved so far
     double spent_on_boxes_ = 0;                     ///< nanoseconds that a tree would have saved so far
-    buffer<detail::reached_pairs> reached_;
   };
 };
 

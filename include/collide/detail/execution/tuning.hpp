@@ -84,7 +84,7 @@ struct slender_cost_model {
 /// By what `automatic` chooses between `bucket` and `bvh` where triangles are long and thin. It does so in spaces where
 /// `bvh` divides by area.
 inline constexpr slender_cost_model slender_costs{19, 250, 200, 5000};
-/// The same in the steps of a simulation, however long the build takes.
+/// By what it chooses in a simulation, for its steps, however long the build takes.
 inline constexpr slender_cost_model slender_costs_of_steps{50, 500, 400, 0};
 
 /// By what `automatic` chooses in a space. The default is one thread of an AMD EPYC, or `cuda_shared` on an H100.
