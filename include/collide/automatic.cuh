@@ -5,6 +5,7 @@
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
+#include <collide/detail/query/grid_or_tree_ref.hpp>
 #include <collide/detail/tree/box_waste.hpp>
 
 namespace collide {
@@ -18,8 +19,11 @@ namespace collide {
 ///
 /// The same calls always go the same way, and the pairs are the same either way. It is chosen by `build` with a
 /// radius, and else by the first query for which it pays, counting what the queries before it would have saved.
-/// Complexity and memory are those of the chosen one; with a memory budget `bvh` is not chosen. A simulation names its
-/// broad phase itself.
+/// Complexity and memory are those of the chosen one; with a memory budget `bvh` is not chosen.
+///
+/// A simulation chooses between `bucket` and `bvh` once for a mesh, as soon as it has that and particles: for many
+/// steps, however long the build takes, and as if the particles, as large as the first, were at the mesh. Its bits are
+/// the same either way.
 struct automatic {
   bucket grid;  ///< options of `bucket`, for where that is chosen
 
@@ -37,15 +41,22 @@ struct automatic {
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
       detail::middles_as_spheres<S> const spheres{mesh_, radius};
-      way const other = detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? way::grid : way::all_pairs;
-      way_ = prefers_tree<Space>(options, spheres) ? way::tree : other;
+      way_ = prefers_tree<Space>(options, spheres) ? way::tree : best_without_tree(options);
       is_given_ = true;
       make_index(space, options, radius);
     }
 
+    /// Chooses for spheres; in a simulation once, for all until the next build, as if they were at the mesh.
     template <class Space, class Spheres>
     void prepare(Space& space, automatic const& options, Spheres const& spheres) {
-      if (!is_given_) way_ = choose<Space>(options, spheres);
+      if (!is_given_) {
+        if constexpr (detail::serves_steps<Space>) {
+          way_ = prefers_tree_in_steps<Space>(options, spheres) ? way::tree : best_without_tree(options);
+          is_given_ = true;
+        } else {
+          way_ = choose<Space>(options, spheres);
+        }
+      }
       make_index(space, options, spheres);
     }
 
@@ -73,6 +84,14 @@ struct automatic {
       }
     }
 
+    /// The triangles near a single sphere, for a kernel of a simulation; valid until the next build or prepare.
+    auto triangle_ref() const {
+      using ref = detail::grid_or_tree_ref<S, decltype(tree_.ref())>;
+      if (way_ == way::grid) return ref{grid_.triangle_ref(), {}};
+      detail::bucket_ref<S> const all{{mesh_, nullptr}, nullptr, 0, nullptr, nullptr, nullptr, nullptr, 0};
+      return way_ == way::tree ? ref{all, tree_.triangle_ref()} : ref{all, {}};
+    }
+
     /// Width of the finest cells in use; 0 if there is no grid.
     template <class Space>
     double cell_width(Space& space) const {
@@ -82,11 +101,14 @@ struct automatic {
    private:
     enum class way { all_pairs, grid, tree };
 
+    way best_without_tree(automatic const& options) const {
+      return detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? way::grid : way::all_pairs;
+    }
+
     template <class Space, class Spheres>
     way choose(automatic const& options, Spheres const& spheres) {
       bool const wants_index =
-          has_grid_ || has_tree_ ||
-          (detail::fits_grid(mesh_.size(), options.grid.most_triangles) && wants_grid<Space>(spheres.size()));
+          has_grid_ || has_tree_ || (best_without_tree(options) == way::grid && wants_grid<Space>(spheres.size()));
       if (!wants_index) return way::all_pairs;
       return prefers_tree<Space>(options, spheres) ? way::tree : way::grid;
     }
@@ -109,19 +131,37 @@ struct automatic {
         is_sampled_ = true;
         is_slender_ = sample.are_slender();
         if (!is_slender_) return false;
-        slender_cost_model const c = slender_costs;
-        auto const saved_by = [&](std::size_t most) {
-          detail::reached_by_sphere const mean = sample.reached(spheres, most);
-          return static_cast<double>(spheres.size()) *
-                 (c.per_box_ns * mean.boxes - c.per_sphere_ns - c.per_touched_ns * mean.triangles);
-        };
-        double const build = has_tree_ ? 0 : c.per_triangle_ns * static_cast<double>(mesh_.size());
-        double saved = saved_by(8);  // mostly these tell
-        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by(128);
+        double const build = has_tree_ ? 0 : slender_costs.per_triangle_ns * static_cast<double>(mesh_.size());
+        double saved = saved_by_tree(slender_costs, sample, spheres, 8);  // mostly these tell
+        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by_tree(slender_costs, sample, spheres, 128);
         return pays(build, saved, spent_on_boxes_);
       } else {
         return false;
       }
+    }
+
+    /// True if a tree is faster in the steps of a simulation, which are many.
+    template <class Space>
+    bool prefers_tree_in_steps([[maybe_unused]] automatic const& options,
+                               [[maybe_unused]] sphere_view<S> const& spheres) const {
+      if constexpr (bvh_tuning<Space>::divides_by_area) {
+        if (options.grid.memory_budget != 0) return false;
+        detail::sampled_triangles<S> const sample(mesh_);
+        if (!sample.are_slender()) return false;
+        S const radius = spheres.one_radius() ? spheres.common_radius() : spheres[0].radius;
+        return saved_by_tree(slender_costs_of_steps, sample, detail::middles_as_spheres<S>{mesh_, radius}, 128) > 0;
+      } else {
+        return false;
+      }
+    }
+
+    /// Nanoseconds by which queries by a tree are faster than by a grid, from at most so many spheres.
+    template <class Spheres>
+    static double saved_by_tree(slender_cost_model const& c, detail::sampled_triangles<S> const& sample,
+                                Spheres const& spheres, std::size_t most) {
+      detail::reached_by_sphere const mean = sample.reached(spheres, most);
+      return static_cast<double>(spheres.size()) *
+             (c.per_box_ns * mean.boxes - c.per_sphere_ns - c.per_touched_ns * mean.triangles);
     }
 
     /// True if what is saved pays for a build, with what queries have lost so far; else this one adds to that.

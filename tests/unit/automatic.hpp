@@ -6,7 +6,10 @@
 #include <doctest/doctest.h>
 
 #include <collide/automatic.cuh>
+#include <collide/bodies.hpp>
+#include <collide/effects/bounce.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/simulation.cuh>
 #include <collide/sinks/pairs.hpp>
 #include <collide/upload.hpp>
 
@@ -87,6 +90,58 @@ void check_automatic_swept(Space space) {
   auto const expected = found(collide::all_pairs());
   CHECK(expected.size() > 0);
   CHECK(found(collide::automatic()) == expected);
+}
+
+/// The scenes that libraries are compared on, small: each has the same pairs by whichever way.
+template <class Space>
+void check_automatic_scenes(Space space) {
+  auto const check = [&](io::scene_kind const& kind) {
+    CAPTURE(kind.name);
+    io::scene const s = kind.make(600, 900, 1);
+    std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()),
+        centres(s.centres.begin(), s.centres.end()), radii(s.radii.begin(), s.radii.end());
+    auto const mesh = collide::upload(
+        space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count()));
+    auto const balls =
+        collide::upload(space, radii.empty() ? collide::spheres_xyz(centres.data(), 600, static_cast<float>(s.radius))
+                                             : collide::spheres_xyz(centres.data(), 600, radii.data()));
+    auto const found = [&](auto broad) {
+      collide::detector<decltype(broad), collide::karabassi<>, Space> detector(space);
+      collide::pairs pairs(collide::order::canonical);
+      return detector.detect(mesh.view(), balls.view(), pairs).to_host();
+    };
+    auto const pairs = found(collide::automatic());
+    CHECK(pairs == found(collide::bucket()));
+    CHECK(pairs == found(collide::bvh()));
+  };
+  for (auto const& kind : io::measured_scenes) check(kind);
+  for (auto const& kind : io::needle_scenes) check(kind);
+}
+
+/// A simulation among bars has the bits of one with `bucket`, whichever way it goes.
+template <class NarrowPhase, class Space>
+void check_automatic_steps(Space space) {
+  for (auto const layout : {io::bars_in::tube, io::bars_in::cage}) {
+    io::scene const s = io::bars_scene(layout, 300, 0.2, 2000, 3000, 0);
+    std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()),
+        centres(s.centres.begin(), s.centres.end()), velocities(centres.rbegin(), centres.rend());
+    auto const mesh = collide::upload(
+        space, collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count()));
+    auto const balls = collide::upload(space, collide::spheres_xyz(centres.data(), 2000, static_cast<float>(s.radius)));
+    collide::buffer<float> moving;
+    space.copy_from_host(moving.reserve(space.resource(), velocities.size()), velocities.data(), velocities.size());
+    auto const run = [&](auto broad) {
+      collide::simulation<collide::detector<decltype(broad), NarrowPhase, Space>, collide::bounce> simulation(space);
+      simulation.set_mesh(mesh.view());
+      simulation.set(balls.view(), moving.data());
+      simulation.steps(20, 1e-3f);
+      return std::make_pair(simulation.template to_host<collide::position>(),
+                            simulation.template to_host<collide::velocity>());
+    };
+    auto const of_grid = run(collide::bucket());
+    CHECK((of_grid.second != velocities));  // some have bounced
+    CHECK((run(collide::automatic()) == of_grid));
+  }
 }
 
 }  // namespace tests

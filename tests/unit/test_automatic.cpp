@@ -16,8 +16,9 @@ namespace {
 
 /// A detector of a scene of bars finds what all pairs do; returns the width of the cells that it uses.
 template <class Space>
-double cells_for_bars(Space space, io::bars_in layout, double slender, double reach, bool radius_is_known) {
-  io::scene const s = io::bars_scene(layout, slender, reach, 4000, 3000, 0);
+double cells_for_bars(Space space, io::bars_in layout, double slender, double reach, bool radius_is_known,
+                      std::size_t triangles = 3000) {
+  io::scene const s = io::bars_scene(layout, slender, reach, 4000, triangles, 0);
   std::vector<float> const vertices(s.vertices.begin(), s.vertices.end()), centres(s.centres.begin(), s.centres.end());
   auto const mesh = collide::indexed_mesh(vertices.data(), vertices.size() / 3, s.corners.data(), s.triangle_count());
   auto const radius = static_cast<float>(s.radius);
@@ -43,6 +44,19 @@ TEST_CASE("automatic: a tree for long thin triangles that few spheres touch, a g
     CHECK(cells_for_bars(collide::host(1), io::bars_in::shaft, 100, 0.1, known) == 0);
   }
   CHECK(cells_for_bars(collide::host(1), io::bars_in::tube, 1000, 0.5, false) == 0);
+  // of a mesh of which the sample is a small part, spheres are not assumed at just these triangles
+  CHECK(cells_for_bars(collide::host(1), io::bars_in::tube, 1000, 0.5, true, 40000) == 0);
   // where trees are those of devices there is none
   CHECK(cells_for_bars(tests::lockstep<64, true>(1), io::bars_in::tube, 1000, 0.5, false) > 0);
+}
+
+TEST_CASE("automatic: small scenes have the same pairs by whichever way, on the host") {
+  tests::check_automatic_scenes(collide::host(1));
+  tests::check_automatic_scenes(tests::lockstep<64, true>(1));
+}
+
+TEST_CASE("automatic: a simulation has the bits of one with buckets, on the host") {
+  tests::check_automatic_steps<collide::karabassi<>>(collide::host(1));
+  tests::check_automatic_steps<collide::karabassi_swept<>>(collide::host(2));
+  tests::check_automatic_steps<collide::karabassi<>>(tests::lockstep<64, true>(1));
 }

@@ -13,6 +13,7 @@
 #include <doctest/doctest.h>
 
 #include <collide/all_pairs.cuh>
+#include <collide/automatic.cuh>
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
 #include <collide/effects/bounce.hpp>
@@ -379,6 +380,7 @@ void check_determinism(Space const& space, Other const& other) {
   CHECK((run(space, collide::bucket()) == first));
   CHECK((run(other, collide::bucket()) == first));
   CHECK((run(space, collide::bvh()) == first));
+  CHECK((run(space, collide::automatic()) == first));
   if constexpr (Space::host_accessible) CHECK((run(space, collide::all_pairs()) == first));
 }
 

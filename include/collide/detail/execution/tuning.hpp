@@ -48,6 +48,14 @@ struct bvh_tuning {
   static constexpr bool divides_by_area = Space::host_accessible;
 };
 
+namespace detail {
+
+/// True for a space as a simulation shows it to a broad phase: what is made of a mesh serves many steps.
+template <class Space>
+inline constexpr bool serves_steps = false;
+
+}  // namespace detail
+
 /// How a query works in a space.
 template <class Space>
 struct query_tuning {
@@ -76,6 +84,8 @@ struct slender_cost_model {
 /// By what `automatic` chooses between `bucket` and `bvh` where triangles are long and thin. It does so in spaces where
 /// `bvh` divides by area.
 inline constexpr slender_cost_model slender_costs{19, 250, 200, 5000};
+/// By what it chooses in a simulation, for its steps, however long the build takes.
+inline constexpr slender_cost_model slender_costs_of_steps{50, 500, 400, 0};
 
 /// By what `automatic` chooses in a space. The default is one thread of an AMD EPYC, or `cuda_shared` on an H100.
 template <class Space>

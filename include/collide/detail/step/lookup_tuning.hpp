@@ -18,6 +18,9 @@ struct lookup_tuning : Space {
   explicit lookup_tuning(Space const& space) : Space(space) {}
 };
 
+template <class Space>
+inline constexpr bool serves_steps<lookup_tuning<Space>> = true;
+
 template <class Index, class = void>
 struct has_triangle_ref : std::false_type {};
 template <class Index>
@@ -33,5 +36,8 @@ struct bucket_tuning<detail::lookup_tuning<Space>> : bucket_tuning<Space> {
                                       bucket_tuning<Space>::costs.candidate_ns, bucket_tuning<Space>::costs.level_ns,
                                       bucket_tuning<Space>::costs.step_ns};
 };
+
+template <class Space>
+struct bvh_tuning<detail::lookup_tuning<Space>> : bvh_tuning<Space> {};
 
 }  // namespace collide
