@@ -371,7 +371,6 @@ class simulation {
 
   /// The part of a step before particles meet.
   void begin_step(S dt) {
-    wake_where_others_go(dt);
     (begin_step_of<Effect>(dt), ...);
     if constexpr (effects_type::makes && effects_type::remembers_surfaces) {
       if (effects_.due(static_cast<double>(dt)) > 0)
@@ -384,6 +383,7 @@ class simulation {
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
     if constexpr (effects_type::ends_after_meeting) move(dt);
     wake_by_bodies(dt);
+    wake_where_others_went(dt);
   }
 
   /// Lets an effect begin a step. What it makes begins anew in all that it does not write.
@@ -464,11 +464,13 @@ class simulation {
     space_.launch(kernel.blocks, kernel);
   }
 
-  /// Sleepers wake, of which it is not known what others and walls do to them.
+  /// Sleepers wake. What others do to them is known where they press on what they lie on, but not what walls do by
+  /// forces.
   void wake_all() {
     if constexpr (detail::contains<columns, slow_steps>) {
       if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
-      knows_pair_forces_ = !effects_type::ends_after_meeting;
+      if (effects_type::overlaps || !effects_type::keeps_support)
+        knows_pair_forces_ = !effects_type::ends_after_meeting;
     }
   }
 
@@ -484,12 +486,11 @@ class simulation {
   }
 
   /// A source whose places have all been filled takes some from others, on which something may sleep: all of that is
-  /// woken.
-  void wake_where_others_go([[maybe_unused]] S dt) {
+  /// woken. Where half of a step is over by then, what held it has held it so long: so it is with what is awake.
+  void wake_where_others_went([[maybe_unused]] S dt) {
     if constexpr (effects_type::makes && effects_type::any_pair_contact && detail::contains<columns, slow_steps>) {
-      double const due = effects_.due(static_cast<double>(dt));
-      if (due > 0 && !effects_.makes_only_where_free())
-        space_.for_each(state_.size, detail::wake_where_others_go<state_type>{state_, due});
+      if (effects_.due(static_cast<double>(dt)) > 0 && !effects_.makes_only_where_free())
+        space_.for_each(state_.size, detail::wake_where_others_went<state_type>{state_});
     }
   }
 

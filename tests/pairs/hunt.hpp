@@ -11,6 +11,7 @@ namespace tests::pairs {
 /// A list that is hunted, without its type.
 struct hunted_list {
   std::string name;
+  std::string effects;  ///< in their order, as make_lists.py names them
   std::vector<surface> surfaces;
   void (*check)(trial const&);
 };
@@ -23,8 +24,8 @@ inline std::vector<hunted_list>& hunted() {
 
 /// Adds a list to those that are hunted.
 template <class List>
-bool hunt(char const* name) {
-  hunted().push_back({name, checked_list<List>::surfaces(), &check_list<List>});
+bool hunt(char const* name, char const* effects) {
+  hunted().push_back({name, effects, checked_list<List>::surfaces(), &check_list<List>});
   return true;
 }
 

@@ -55,6 +55,9 @@ TEST_CASE("where features meet: what spins does not sleep, and angular momentum 
   tests::check_angular_momentum_of_turntable<karabassi_swept<>, double>(host(1));
   tests::check_angular_momentum_of_riders<karabassi<>, semi_implicit_euler, double>(host(1));
   tests::check_angular_momentum_of_riders<karabassi_swept<>, velocity_verlet, double>(host(1));
+  tests::check_angular_momentum_beside_sleepers<karabassi<>, semi_implicit_euler, double>(host(1));
+  tests::check_angular_momentum_beside_sleepers<karabassi<>, velocity_verlet, float>(blocks());
+  tests::check_angular_momentum_beside_sleepers<karabassi_swept<>, velocity_verlet, double>(host(1));
 }
 
 TEST_CASE("where features meet: spin and friction give no energy in a corner, and keep angular momentum") {
@@ -102,7 +105,10 @@ TEST_CASE("where features meet: what is assigned counts as if the simulation beg
   tests::check_assigned<karabassi<>, velocity_verlet, float>(blocks());
 }
 
-TEST_CASE("where features meet: what sleeps on one whose place a source takes falls") {
+TEST_CASE("where features meet: what sleeps on one whose place a source takes falls, and nothing else") {
   tests::check_place_of_another<double>(host(1));
   tests::check_place_of_another<float>(blocks());
+  tests::check_place_far_away<semi_implicit_euler, double>(host(1));
+  tests::check_place_far_away<velocity_verlet, double>(host(1));
+  tests::check_place_far_away<velocity_verlet, float>(blocks());
 }

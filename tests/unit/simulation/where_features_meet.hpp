@@ -297,6 +297,24 @@ double angular_momentum(Running const& made, double mass) {
   return sum;
 }
 
+/// Angular momentum that balls still have to get which the mesh held at the end of a step of velocity Verlet.
+template <class Running>
+double half_kick_left(Running const& made, double mass, double dt) {
+  double sum = 0;
+  if constexpr (collide::detail::contains<typename decltype(made.simulation)::columns, collide::held>) {
+    auto const held = made.simulation.template to_host<collide::held>();
+    auto const x = made.positions();
+    auto const a = made.simulation.template to_host<collide::pair_acceleration>();
+    auto const turning = made.simulation.template to_host<collide::pair_angular_acceleration>();
+    for (std::size_t i = 0; i < x.size(); i += 3) {
+      if (held[i / 3] != 1) continue;
+      sum += mass * dt / 2 *
+             (double(x[i]) * double(a[i + 1]) - double(x[i + 1]) * double(a[i]) + 0.4 * 0.01 * double(turning[i + 2]));
+    }
+  }
+  return sum;
+}
+
 /// Angular momentum that balls get on a table that turns far in a step the table loses.
 template <class NarrowPhase, class S, class Space>
 void check_angular_momentum_of_turntable(Space const& space) {
@@ -335,6 +353,32 @@ void check_angular_momentum_of_riders(Space const& space) {
   auto const stuck = made.simulation.template to_host<collide::adhered>();
   CHECK(std::count(stuck.begin(), stuck.end(), 2) > 1);
   CHECK(sums.read(space)[0].angular[2] == doctest::Approx(-angular_momentum(made, mass)).epsilon(1e-9));
+}
+
+/// The same about what sleeps on a floor beside balls that push and turn it.
+template <class NarrowPhase, class Integrator, class S, class Space>
+void check_angular_momentum_beside_sleepers(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, NarrowPhase, S>, Integrator, gravity, sphere_contact, bounce,
+                                         friction, spin, adhesion, collide::sleep, collide::reaction>;
+  auto w = ball_on_floor<S>();
+  for (int i = 1; i < 27; ++i) w.particle(0.199 * (i % 3) + 0.3, 0.199 * (i / 3 % 3), 0.101 + 0.21 * (i / 9));
+  double const mass = mass_of_grain(0.1);
+  collide::reaction_sums sums(space, 0, 1e-12);
+  running<simulation> made(space, w, Integrator{}, gravity{},
+                           sphere_contact::from_restitution(0.5, 0.02, 0.1, density_of_grains, 0.3), bounce{0.3},
+                           friction{0.5, 0.5}, spin{0.02}, adhesion{30, 0.3}, collide::sleep{0.05, 10},
+                           sums.effect(density_of_grains));
+  int asleep = 0;
+  for (int i = 0; i < 10; ++i) {
+    made.simulation.steps(40, S(1e-3));
+    auto const slow = made.simulation.template to_host<slow_steps>();
+    auto const now = std::count_if(slow.begin(), slow.end(), [](int n) { return n >= 10 && n < 128; });
+    if (now < 27) asleep += int(now);
+  }
+  CHECK(asleep > 10);
+  double const kept = angular_momentum(made, mass) + half_kick_left(made, mass, 1e-3);
+  CHECK(std::abs(kept) > 0.1);
+  CHECK(sums.read(space)[0].angular[2] == doctest::Approx(-kept).epsilon(sizeof(S) == 4 ? 1e-4 : 1e-9));
 }
 
 /// Where balls that spin touch both walls of a corner, friction at one wall takes speed from the way to the other: no
@@ -720,6 +764,25 @@ void check_place_of_another(Space const& space) {
   made.simulation.steps(230, S(1e-3));
   CHECK(made.positions()[3] == S(2));
   CHECK(made.positions()[8] < S(0.15));
+}
+
+/// What sleeps on another goes on to lie there where a source takes a place of one that it does not touch.
+template <class Integrator, class S, class Space>
+void check_place_far_away(Space const& space) {
+  using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, collide::sleep,
+                                         gravity, sphere_contact, bounce, collide::emit>;
+  auto w = ball_on_floor<S>();
+  w.particle(0, 0, 0.2996);
+  running<simulation> made(space, w, Integrator{}, collide::sleep{}, gravity{},
+                           sphere_contact{1e6, 2000, 0, 0, density_of_grains}, bounce{0.2},
+                           collide::emit{2, {{2, 0, 0.1}}});
+  made.place(w, 3);
+  made.simulation.steps(1000, S(1.0 / 1024));
+  auto const slow = [&] { return made.simulation.template to_host<slow_steps>()[1]; };
+  CHECK(slow() >= 50);
+  for (int i = 0; i < 48 && slow() >= 50; ++i) made.simulation.step(S(1.0 / 1024));
+  CHECK(slow() == 1);
+  CHECK(std::abs(double(made.velocities()[5])) < 1e-3);  // in half a step it would fall by 5e-3
 }
 
 /// Particles that are nowhere are counted, and the others go on.

@@ -64,19 +64,17 @@ struct take_marks_off {
   }
 };
 
-/// Kernel functor of `for_each` over particles: wakes them where a source is about to take places from others.
+/// Kernel functor of `for_each` over particles: wakes them where a source has just taken places from others.
 template <class State>
-struct wake_where_others_go {
+struct wake_where_others_went {
   State state;
-  double due;  ///< particles in the step
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::uint64_t const made = begin_in_step(state.time, due);
     double room = static_cast<double>(state.size - state.placed);
     if constexpr (contains<typename State::list, global_number>)
       room = static_cast<double>(state.all_size - state.all_placed);
-    if (made == 0 || room <= 0) return;
-    if (state.time[clock_made] + static_cast<double>(made) > room) state.at(slow_steps{})[i] = 0;
+    if (state.time[clock_made_now] == 0 || room <= 0) return;
+    if (state.time[clock_made] > room) state.at(slow_steps{})[i] = 0;
   }
 };
 
@@ -108,7 +106,7 @@ struct end_particles {
   template <class Particle>
   COLLIDE_HD_INLINE void press(Particle& p) const {
     if (!effects.only_sleeps(p)) return;
-    book_sleeping(*this, p, Effects::presses_when_meeting ? S(1) : last_kick<end_particles>(p));
+    book_sleeping(*this, p, last_kick<end_particles>(p));
     state.store(p, p.number, typename Effects::integration_writes{});
   }
 };
