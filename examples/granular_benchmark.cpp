@@ -190,7 +190,7 @@ void read_bed(grains& of, std::string const& path, std::uint8_t small_of, std::u
   if (of.radii.empty()) throw std::runtime_error("there are no grains in " + path);
 }
 
-/// What `read_bed` reads.
+/// A bed, as `read_bed` reads it.
 void write_bed(grains const& of, std::string const& path) {
   std::ofstream file(path);
   file.precision(17);

@@ -1,4 +1,4 @@
-/// Whether two triangles meet elsewhere than at shared corners and edges, against the oracle.
+/// Two triangles that meet, or do not, elsewhere than at shared corners and edges, against the oracle.
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -766,7 +766,7 @@ void check_place_of_another(Space const& space) {
   CHECK(made.positions()[8] < S(0.15));
 }
 
-/// What sleeps on another goes on to lie there where a source takes a place of one that it does not touch.
+/// A grain that sleeps on another goes on to lie there where a source takes a place of one that it does not touch.
 template <class Integrator, class S, class Space>
 void check_place_far_away(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space, collide::karabassi<>, S>, Integrator, collide::sleep,

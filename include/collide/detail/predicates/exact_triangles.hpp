@@ -1,5 +1,5 @@
 /// \file
-/// Whether two triangles meet elsewhere than at corners and edges that they share, exactly, on the host.
+/// Exact test, on the host, of two triangles that meet elsewhere than at corners and edges that they share.
 ///
 /// What two triangles have in common is convex, and an edge of one meets the other in each of its corners. So edges are
 /// asked: whether they go through the other's plane within the triangle, or meet it in that plane.

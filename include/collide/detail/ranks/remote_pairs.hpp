@@ -154,7 +154,7 @@ class remote_pairs {
     }
   }
 
-  /// Those of the spheres received.
+  /// Hits of the spheres received.
   pairs& received_hits() { return of_one_ ? hits_of_one_ : hits_of_several_; }
 
   void answer_all(space_type const& space, divided_mesh<S> const& mesh) {

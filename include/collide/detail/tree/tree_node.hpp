@@ -86,12 +86,56 @@ COLLIDE_HD_INLINE bool overlap(aabb<float> const& box, tree_point const& other) 
   return !apart;
 }
 
-/// A node: boxes next to each other, number by number, for the processor's vector unit; and what is in them.
-struct alignas(32) tree_node {
+/// Boxes next to each other, number by number, for the processor's vector unit.
+struct alignas(32) tree_boxes {
   static constexpr int width = 8;
-  static constexpr std::uint32_t leaf = 0x80000000u;  ///< what has this bit is a triangle, else the number of a node
 
   float lower[3][width], upper[3][width];
+
+  /// The squared distance of box k, with a few roundings.
+  COLLIDE_HD_INLINE float distance_squared(int k, tree_point const& p) const {
+    float const x = gap(0, k, p), y = gap(1, k, p), z = gap(2, k, p);
+    return x * x + (y * y + z * z);
+  }
+
+  COLLIDE_HD_INLINE bool is_apart(int k, tree_point const& other) const {
+    return (lower[0][k] > other.upper[0]) | (upper[0][k] < other.lower[0]) | (lower[1][k] > other.upper[1]) |
+           (upper[1][k] < other.lower[1]) | (lower[2][k] > other.upper[2]) | (upper[2][k] < other.lower[2]);
+  }
+
+  /// These boxes; on a device a copy, loaded 16 bytes at a time, as each thread reads another node.
+#if defined(__CUDA_ARCH__)
+  __device__ __forceinline__ tree_boxes in_registers() const {
+    tree_boxes copy;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < width; k += 4) {
+        load(lower[i] + k, copy.lower[i] + k);
+        load(upper[i] + k, copy.upper[i] + k);
+      }
+    }
+    return copy;
+  }
+#else
+  tree_boxes const& in_registers() const { return *this; }
+#endif
+
+ private:
+  COLLIDE_HD_INLINE float gap(int axis, int k, tree_point const& p) const {
+    float const outside = max(lower[axis][k] - p.upper[axis], p.lower[axis] - upper[axis][k]);
+    return select(outside > 0, outside, 0.0f);
+  }
+#if defined(__CUDA_ARCH__)
+  static __device__ __forceinline__ void load(float const* from, float* to) {
+    float4 const x = *reinterpret_cast<float4 const*>(from);
+    to[0] = x.x, to[1] = x.y, to[2] = x.z, to[3] = x.w;
+  }
+#endif
+};
+
+/// A node: boxes, and the nodes and triangles in them.
+struct tree_node : tree_boxes {
+  static constexpr std::uint32_t leaf = 0x80000000u;  ///< what has this bit is a triangle, else the number of a node
+
   std::uint32_t child[width];
   std::uint32_t there;      ///< bit k: there is a box k
   std::uint32_t parent;     ///< number of a node; of the root, itself
@@ -119,49 +163,28 @@ struct alignas(32) tree_node {
     return all;
   }
 
-  /// The squared distances of all boxes, with a few roundings. Without branches, for the processor's vector unit.
-  COLLIDE_HD_INLINE void find_distances(tree_point const& p, float (&squared)[width]) const {
-    for (float& x : squared) x = 0;
-    for (int i = 2; i >= 0; --i) {
-      float from[width], to[width];
-      load(lower[i], from);
-      load(upper[i], to);
-      for (int k = 0; k < width; ++k) {
-        float const outside = max(from[k] - p.upper[i], p.lower[i] - to[k]);
-        float const gap = select(outside > 0, outside, 0.0f);
-        squared[k] = gap * gap + squared[k];
-      }
-    }
-  }
-
-  /// Bit k: box k is within a distance, given as its square.
+  /// Bit k: box k is within a distance, given as its square. Without branches, for the processor's vector unit.
   COLLIDE_HD_INLINE std::uint32_t reached(tree_point const& p, float reach_squared) const {
-    float squared[width];
-    find_distances(p, squared);
+    auto const& boxes = in_registers();
     std::uint32_t mask = 0;
-    for (int k = 0; k < width; ++k) mask |= squared[k] <= reach_squared ? bit(k) : 0u;
+    for (int k = 0; k < width; ++k) mask |= boxes.distance_squared(k, p) <= reach_squared ? bit(k) : 0u;
     return mask & there;
   }
 
   /// Bit k: box k and another have a point in common; see `overlap`.
   COLLIDE_HD_INLINE std::uint32_t overlapping(tree_point const& other) const {
-    std::uint32_t apart = 0;
-    for (int i = 0; i < 3; ++i) {
-      float from[width], to[width];
-      load(lower[i], from);
-      load(upper[i], to);
-      for (int k = 0; k < width; ++k) apart |= (from[k] > other.upper[i]) | (to[k] < other.lower[i]) ? bit(k) : 0u;
-    }
-    return ~apart & there;
+    auto const& boxes = in_registers();
+    std::uint32_t mask = 0;
+    for (int k = 0; k < width; ++k) mask |= boxes.is_apart(k, other) ? 0u : bit(k);
+    return mask & there;
   }
 
   /// The squared distances of boxes as numbers that sort like them, rounded down so far that rounding cannot make one
   /// larger than it is; the number of the box is in the lowest bits. `none` for boxes that are not in `boxes`.
   COLLIDE_HD_INLINE void find_keys(tree_point const& p, std::uint32_t boxes, std::uint32_t (&keys)[width]) const {
-    float squared[width];
-    find_distances(p, squared);
+    auto const& all = in_registers();
     for (int k = 0; k < width; ++k) {
-      std::uint32_t const key = (to_bits(squared[k]) & ~7u) | static_cast<std::uint32_t>(k);
+      std::uint32_t const key = (to_bits(all.distance_squared(k, p)) & ~7u) | static_cast<std::uint32_t>(k);
       keys[k] = key | ((boxes >> k & 1) - 1);
     }
   }
@@ -172,20 +195,6 @@ struct alignas(32) tree_node {
   }
   static COLLIDE_HD_INLINE void remove(std::uint32_t (&keys)[width], std::uint32_t key) {
     for (auto& other : keys) other = other == key ? none : other;
-  }
-
-  /// Sorts keys, the least first: Batcher's network for eight.
-  static COLLIDE_HD_INLINE void sort(std::uint32_t (&keys)[width]) {
-    auto const in_order = [&](int i, int j) {
-      std::uint32_t const less = min(keys[i], keys[j]);
-      keys[j] = max(keys[i], keys[j]);
-      keys[i] = less;
-    };
-    for (int i = 0; i < 4; ++i) in_order(2 * i, 2 * i + 1);
-    for (int i = 0; i < 8; i += 4) in_order(i, i + 2), in_order(i + 1, i + 3), in_order(i + 1, i + 2);
-    for (int i = 0; i < 4; ++i) in_order(i, i + 4);
-    in_order(2, 4), in_order(3, 5);
-    in_order(1, 2), in_order(3, 4), in_order(5, 6);
   }
 
   /// The largest key of a box that may have something within a distance, given as its square in any precision.
@@ -206,18 +215,6 @@ struct alignas(32) tree_node {
 #else
     constexpr std::uint32_t bits[width] = {1, 2, 4, 8, 16, 32, 64, 128};  // SSE cannot shift lanes by different amounts
     return bits[k];
-#endif
-  }
-
-  /// Copies a row of boxes; on a device 16 bytes at a time, which a thread alone reads elsewhere than its neighbours.
-  static COLLIDE_HD_INLINE void load(float const (&from)[width], float (&to)[width]) {
-#if defined(__CUDA_ARCH__)
-    for (int k = 0; k < width; k += 4) {
-      float4 const x = *reinterpret_cast<float4 const*>(from + k);
-      to[k] = x.x, to[k + 1] = x.y, to[k + 2] = x.z, to[k + 3] = x.w;
-    }
-#else
-    for (int k = 0; k < width; ++k) to[k] = from[k];
 #endif
   }
 };

@@ -160,17 +160,6 @@ struct tree_ref {
   COLLIDE_HD void for_each_nearer(vec3<S> const& point, S bound, F const& f) const {
     if (nodes == nullptr || !(bound >= 0) || !is_finite(point)) return;
     tree_point const p(point, tree_origin(mesh));
-#if defined(__CUDA_ARCH__)
-    for_each_nearer_by_stack(p, bound, f);
-#else
-    for_each_nearer_by_level(p, bound, f);
-#endif
-  }
-
-  /// The same with the nodes on the way down kept, whose boxes are measured again when it comes back to them: for the
-  /// vector units of a host.
-  template <class F>
-  COLLIDE_HD_INLINE void for_each_nearer_by_level(tree_point const& p, S bound, F const& f) const {
     struct level {
       std::uint32_t node, boxes;  ///< those still to be looked into
       std::uint32_t nearest;      ///< the least key of these
@@ -205,37 +194,6 @@ struct tree_ref {
         stack[++top] = {child, 0xff, key};
         break;
       }
-    }
-  }
-
-  /// The same with all boxes kept that are near enough, and each node read once: for a device.
-  template <class F>
-  COLLIDE_HD_INLINE void for_each_nearer_by_stack(tree_point const& p, S bound, F const& f) const {
-    struct entry {
-      std::uint32_t key, child;
-    };
-    entry stack[(tree_node::width - 1) * most_tree_levels + 1];  // the nearest boxes of each level lie on top
-    int size = 0;
-    std::uint32_t most = tree_node::key_of(bound), child = 0;
-    for (;;) {
-      if ((child & tree_node::leaf) != 0) {
-        most = tree_node::key_of(f(child & ~tree_node::leaf));
-      } else {
-        tree_node const& node = nodes[child];
-        std::uint32_t keys[tree_node::width];
-        multiversioned([&] {
-          node.find_keys(p, node.there, keys);
-          tree_node::sort(keys);
-        });
-        for (int k = tree_node::width - 1; k >= 0; --k) {
-          if (keys[k] <= most) stack[size++] = {keys[k], node.child[keys[k] % tree_node::width]};
-        }
-      }
-      do {
-        if (size == 0) return;
-        --size;
-      } while (stack[size].key > most);
-      child = stack[size].child;
     }
   }
 
