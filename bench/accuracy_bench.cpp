@@ -6,6 +6,8 @@
 ///   tests   the narrow phase alone, on candidates of `bucket`, the same in every space. Counters: timed_tests (what
 ///           the time is of), tests (what the others are of), colliding (those that truly do), for each precision
 ///           PRECISION_false_hits and PRECISION_false_misses, and how many tests each stage of `exact` decided.
+///   nearest a query of `nearest` on the host, in processor time, after the build. Counters: triangles, points, and for
+///           each precision PRECISION_wrong: how many points have another triangle that is nearer.
 /// The scenes are those of accuracy_scenes.hpp with coordinates of type float; study_double has type double.
 ///
 /// An iteration runs all precisions, one after the other, so that what disturbs the machine disturbs all alike. The
@@ -24,6 +26,9 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/bvh.cuh>
+#include <collide/detail/nearest/compare_distances.hpp>
+#include <collide/sinks/nearest.hpp>
 #include <collide/upload.hpp>
 
 #include "accuracy_scenes.hpp"
@@ -166,6 +171,41 @@ void test(benchmark::State& state, bench::scene_kind const& kind, Space space) {
   }
 }
 
+template <class S>
+void ask_nearest(benchmark::State& state, bench::scene_kind const& kind, collide::host space) {
+  bench::scene<S> const scene(kind.make(kind.spheres, 0));
+  auto const mesh = scene.mesh();
+  auto const points = scene.spheres().centres();
+  std::map<std::string, std::vector<collide::nearest_triangle<S>>> found;
+  auto const asks = [&](std::string const& name, auto of) {
+    using narrow_phase = decltype(of);
+    auto const detector = std::make_shared<collide::detector<collide::bvh, narrow_phase, collide::host, S>>(space);
+    auto const nearest = std::make_shared<collide::nearest<S>>();
+    detector->build(mesh);
+    found[name] = detector->query(points, *nearest).to_host();
+    return bench::contestant{name, [=] { detector->query(points, *nearest); }};
+  };
+  std::vector<bench::contestant> const all{asks("single", collide::karabassi<collide::single_precision>()),
+                                           asks("double", collide::karabassi<collide::double_precision>()),
+                                           asks("exact", collide::karabassi<collide::exact>())};
+  auto const& truth = found["exact"];
+  for (auto const& [name, guesses] : found) {
+    double wrong = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (guesses[i].triangle == truth[i].triangle) continue;
+      int const order =
+          collide::detail::compare_distances(mesh[guesses[i].triangle], mesh[truth[i].triangle], points[i]);
+      wrong += order > 0;
+      if (order < 0) state.SkipWithError("exact has not found the nearest triangle");
+    }
+    state.counters[name + "_wrong"] = wrong;
+  }
+  state.counters["triangles"] = static_cast<double>(mesh.size());
+  state.counters["points"] = static_cast<double>(points.size());
+  bench::processor_stopwatch watch;
+  bench::race_by(state, watch, all);
+}
+
 template <class F>
 void add(std::string const& name, F const& f) {
   benchmark::RegisterBenchmark(("accuracy/" + name).c_str(), f)->UseManualTime()->Unit(benchmark::kMillisecond);
@@ -196,6 +236,12 @@ void add_scenes(std::size_t spheres, Space space) {
   add_scene<double>({"study_double", spheres, bench::study}, space);
 }
 
+template <class S>
+void add_nearest(bench::scene_kind const& kind, collide::host space) {
+  add(kind.name + std::string("/bvh_x_host/nearest"),
+      [=](benchmark::State& state) { ask_nearest<S>(state, kind, space); });
+}
+
 template <class Space>
 void add_all_pairs(std::size_t spheres, Space space) {
   add_detect<collide::all_pairs, float>({"study", spheres, bench::study}, "all_pairs", space);
@@ -214,6 +260,12 @@ int main(int argc, char** argv) {
   collide::host const one(1);
   add_scenes(spheres, one);
   add_all_pairs(std::min(spheres, few_spheres), one);
+  // `nearest` takes longer, so an eighth of the points do
+  add_nearest<float>({"study", spheres / 8, bench::study}, one);
+  add_nearest<float>({"offset", spheres / 8, bench::far_away}, one);
+  add_nearest<float>({"slivers", spheres / 8, bench::thin}, one);
+  add_nearest<float>({"surface", spheres / 8, bench::on_surface}, one);
+  add_nearest<double>({"study_double", spheres / 8, bench::study}, one);
 #if defined(__CUDACC__)
   if (bench::has_gpu()) {
     add_scenes(spheres, collide::cuda());

@@ -109,6 +109,23 @@ inline io::scene contact(std::size_t spheres, std::uint64_t seed) {
   return s;
 }
 
+/// The study's scene in floats, with centres on faces, edges and corners, as far as floats are.
+inline io::scene on_surface(std::size_t spheres, std::uint64_t seed) {
+  io::scene s = study(spheres, seed);
+  for (double& x : s.vertices) x = static_cast<float>(x);
+  auto const mesh =
+      collide::indexed_mesh(s.vertices.data(), s.vertices.size() / 3, s.corners.data(), s.triangle_count());
+  io::random_numbers random(seed + 1);
+  for (std::size_t i = 0; i < spheres; ++i) {
+    auto const [a, b, c] = mesh[static_cast<std::size_t>(random.between(0, static_cast<double>(mesh.size())))];
+    double const u = random.between(0.1, 1), v = i % 3 > 0 ? random.between(0.1, 1) : 0,
+                 w = i % 3 > 1 ? random.between(0.1, 1) : 0;
+    vec const p = (u * a + v * b + w * c) / (u + v + w);
+    for (std::size_t k = 0; k < 3; ++k) s.centres[3 * i + k] = static_cast<float>(p[static_cast<int>(k)]);
+  }
+  return s;
+}
+
 /// A scene by its name, and how many spheres it is to have.
 struct scene_kind {
   char const* name;

@@ -28,9 +28,8 @@ inline std::vector<contestant> warmed(std::vector<contestant> contestants) {
 
 /// Times all of them in every iteration, each time, also of all repetitions, in another order. The counters NAME_ms are
 /// the medians of each; the time of the benchmark is the sum.
-template <class Space>
-void race(benchmark::State& state, Space const& space, std::vector<contestant> const& contestants) {
-  stopwatch<Space> watch(space);
+template <class Watch>
+void race_by(benchmark::State& state, Watch& watch, std::vector<contestant> const& contestants) {
   std::vector<std::vector<double>> times(contestants.size());
   static std::size_t first = 0;
   for (auto _ : state) {
@@ -45,6 +44,13 @@ void race(benchmark::State& state, Space const& space, std::vector<contestant> c
     state.SetIterationTime(sum);
   }
   for (std::size_t i = 0; i < times.size(); ++i) state.counters[contestants[i].name + "_ms"] = median(times[i]) * 1e3;
+}
+
+/// The same by the clock of a space.
+template <class Space>
+void race(benchmark::State& state, Space const& space, std::vector<contestant> const& contestants) {
+  stopwatch<Space> watch(space);
+  race_by(state, watch, contestants);
 }
 
 }  // namespace bench
