@@ -222,7 +222,7 @@ def header(lists):
 def test_file(lists, narrow, scalar):
     of = [n for n, one in enumerate(lists, 1) if (one.narrow, one.scalar) == (narrow, scalar)]
     lines = [f"/// Made by make_lists.py: the lists with {narrow} and {scalar}.", '#include "hunt.hpp"', '#include "lists.hpp"', ""]
-    lines += ["using namespace tests::pairs;", ""]
+    lines += ["using namespace tests::pairs;", "", "// clang-format off"]
     for n in of:
         lines.append(f'TEST_CASE("pairs: list {n}") {{ check_list<list_{n}>(); }}')
         lines.append(f'static bool const list_{n}_is_hunted = hunt<list_{n}>("{n}", "{" ".join(lists[n - 1].effects)}");')

@@ -4,6 +4,7 @@
 
 using namespace tests::pairs;
 
+// clang-format off
 TEST_CASE("pairs: list 7") { check_list<list_7>(); }
 static bool const list_7_is_hunted = hunt<list_7>("7", "sphere_contact sleep gravity bounce adhesion friction spin reaction velocity_verlet");
 TEST_CASE("pairs: list 9") { check_list<list_9>(); }

@@ -4,6 +4,7 @@
 
 using namespace tests::pairs;
 
+// clang-format off
 TEST_CASE("pairs: list 2") { check_list<list_2>(); }
 static bool const list_2_is_hunted = hunt<list_2>("2", "gravity bounce adhesion sphere_contact mesh_forces pair_forces reaction");
 TEST_CASE("pairs: list 3") { check_list<list_3>(); }

@@ -4,6 +4,7 @@
 
 using namespace tests::pairs;
 
+// clang-format off
 TEST_CASE("pairs: list 1") { check_list<list_1>(); }
 static bool const list_1_is_hunted = hunt<list_1>("1", "sphere_contact gravity bounce spin friction velocity_verlet reaction");
 TEST_CASE("pairs: list 4") { check_list<list_4>(); }

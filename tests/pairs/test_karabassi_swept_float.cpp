@@ -4,6 +4,7 @@
 
 using namespace tests::pairs;
 
+// clang-format off
 TEST_CASE("pairs: list 8") { check_list<list_8>(); }
 static bool const list_8_is_hunted = hunt<list_8>("8", "gravity sleep velocity_verlet granular_contact reaction mesh_forces");
 TEST_CASE("pairs: list 12") { check_list<list_12>(); }

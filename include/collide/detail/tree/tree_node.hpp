@@ -103,7 +103,7 @@ struct alignas(32) tree_boxes {
            (upper[1][k] < other.lower[1]) | (lower[2][k] > other.upper[2]) | (upper[2][k] < other.lower[2]);
   }
 
-  /// These boxes; on a device a copy, loaded 16 bytes at a time, as each thread reads another node.
+  /// Boxes to reckon with: these, on a device a copy, loaded 16 bytes at a time, as each thread reads another node.
 #if defined(__CUDA_ARCH__)
   __device__ __forceinline__ tree_boxes in_registers() const {
     tree_boxes copy;
