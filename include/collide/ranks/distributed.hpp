@@ -94,9 +94,8 @@ class distributed {
   /// As `detector::query`, of the spheres of this rank, perhaps none. Where the mesh is divided, spheres go to those
   /// other ranks that may have triangles for them, by way of memory of the host (pinned, if the space is a device), and
   /// pairs come back; with them the triangles, unless the sink says that it keeps ids alone (`keeps_ids_alone`, see
-  /// concepts.hpp). Takes 8 bytes of the space for each sphere that passes a quick test, 8 for each rank that one goes
-  /// to, as much again to sort them where there are more than two ranks, and 8 for each pair. `nearest` takes an entry
-  /// and a triangle for each sphere instead of pairs. Throws `error` if there was
+  /// concepts.hpp). Takes 8 bytes of the space for each such sphere and rank, as much again to sort them, and 8 for
+  /// each pair. `nearest` takes an entry and a triangle for each sphere instead of pairs. Throws `error` if there was
   /// no `build`, or the last one failed.
   template <class Sink>
   Sink query(spheres_type const& spheres, Sink&& sink) {

@@ -14,24 +14,14 @@
 
 namespace collide::detail {
 
-/// The columns of a list, of one particle. Aligned as far as each column's bytes allow, up to 8, so that a GPU copies
-/// words.
+/// The columns of a list, of one particle.
 template <class S, class List>
 struct particle_row;
 template <class S, class... C>
 struct particle_row<S, columns<C...>> {
   static constexpr std::size_t size = (column_bytes<C, S> + ... + std::size_t{0});
-  static constexpr std::size_t all_bits = (column_bytes<C, S> | ... | std::size_t{8}), alignment = all_bits & -all_bits;
-  alignas(alignment) unsigned char bytes[size];
+  unsigned char bytes[size];
 };
-
-/// Copies a column of one particle into or out of a `Row`.
-template <class Row, class C, class S>
-COLLIDE_HD_INLINE void copy_column(void* to, void const* from) {
-  constexpr std::size_t of_element = alignof(column_element<C, S>),
-                        alignment = of_element < Row::alignment ? of_element : Row::alignment;
-  std::memcpy(__builtin_assume_aligned(to, alignment), __builtin_assume_aligned(from, alignment), column_bytes<C, S>);
-}
 
 /// Places of particles that are listed.
 struct listed_places {
@@ -60,8 +50,7 @@ struct pack_rows<State, Places, particle_row<S, columns<C...>>> {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     unsigned char* to = rows[i].bytes;
-    ((copy_column<particle_row<S, columns<C...>>, C, S>(
-          to, state.at(C{}) + places[i] * std::size_t(column_layout<C, S>::width)),
+    ((std::memcpy(to, state.at(C{}) + places[i] * std::size_t(column_layout<C, S>::width), column_bytes<C, S>),
       to += column_bytes<C, S>),
      ...);
   }
@@ -78,8 +67,7 @@ struct unpack_rows<State, Places, particle_row<S, columns<C...>>> {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     unsigned char const* from = rows[i].bytes;
-    ((copy_column<particle_row<S, columns<C...>>, C, S>(
-          state.at(C{}) + places[i] * std::size_t(column_layout<C, S>::width), from),
+    ((std::memcpy(state.at(C{}) + places[i] * std::size_t(column_layout<C, S>::width), from, column_bytes<C, S>),
       from += column_bytes<C, S>),
      ...);
   }

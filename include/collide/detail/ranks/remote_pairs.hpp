@@ -130,32 +130,23 @@ class remote_pairs {
     space.for_each(hits_.size(), pack_answers{hits_.data(), 0, mesh.numbers(), to});
   }
 
-  /// Finds the pairs of what was received, and which of them are of which rank. Those of several are sorted for that.
+  /// Finds the pairs of what was received, and which of them are of which rank.
   void query_received(Detector& detector) {
     std::size_t const n = received_.size();
     starts_.assign(received_.counts.size() + 1, 0);
     for (std::size_t r = 0; r + 1 < starts_.size(); ++r) starts_[r + 1] = starts_[r] + received_.counts[r];
     ends_.assign(starts_.size(), 0);
-    of_one_ = *std::max_element(received_.counts.begin(), received_.counts.end()) == n;
     if (n == 0) return;
-    pairs& hits = received_hits();
     S const* const at = received_.data()->numbers;
     sphere_view<S> const spheres(points(at, n, sent::size), at + 3, sent::size, S(0));
     if constexpr (moves) {
-      detector.query(view(spheres, points(at + 4, n, sent::size)), hits);
+      detector.query(view(spheres, points(at + 4, n, sent::size)), received_hits_);
     } else {
-      detector.query(spheres, hits);
+      detector.query(spheres, received_hits_);
     }
     ends_ = starts_;
-    if (of_one_) {
-      for (std::uint64_t& end : ends_) end = end == 0 ? 0 : hits.size();
-    } else {
-      bounds_.find(detector.space(), hits.data(), hits.size(), ends_);
-    }
+    bounds_.find(detector.space(), received_hits_.data(), received_hits_.size(), ends_);
   }
-
-  /// Hits of the spheres received.
-  pairs& received_hits() { return of_one_ ? hits_of_one_ : hits_of_several_; }
 
   void answer_all(space_type const& space, divided_mesh<S> const& mesh) {
     std::size_t const ranks = received_.counts.size();
@@ -165,7 +156,7 @@ class remote_pairs {
     for (std::size_t r = 0; r < ranks; ++r) {
       space.for_each(
           static_cast<std::size_t>(answers_.counts[r]),
-          pack_answers{received_hits().data() + ends_[r], static_cast<id>(starts_[r]), mesh.numbers(), to + ends_[r]});
+          pack_answers{received_hits_.data() + ends_[r], static_cast<id>(starts_[r]), mesh.numbers(), to + ends_[r]});
     }
   }
 
@@ -173,7 +164,7 @@ class remote_pairs {
   void name_triangles(divided_mesh<S> const& mesh) {
     named_.clear(static_cast<int>(received_.counts.size()));
     if (ends_.back() == 0) return;
-    auto const hits = received_hits().to_host();
+    auto const hits = received_hits_.to_host();
     std::vector<id> local;
     for (std::size_t r = 0; r < named_.counts.size(); ++r) {
       local.clear();
@@ -207,8 +198,7 @@ class remote_pairs {
 
   sphere_send_plan sends_;
   device_exchange_buffer<sent> sent_, received_;
-  pairs hits_, hits_of_one_, hits_of_several_{order::canonical};
-  bool of_one_ = false;                       ///< all spheres received are of one rank
+  pairs hits_, received_hits_{order::canonical};
   std::vector<std::uint64_t> starts_, ends_;  ///< of each rank's spheres received, and of their hits
   pair_bounds bounds_;
   device_exchange_buffer<pair> answers_, answered_;

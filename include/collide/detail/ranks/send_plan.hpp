@@ -76,17 +76,13 @@ class pair_bounds {
 class send_plan {
  public:
   /// Finds those of so many things. `find` is a kernel functor of `for_each`, which is called so often:
-  /// `add_send(to, rank, thing)`, with its member `to`, lists one. If all go to the `only` rank, they are in any order.
+  /// `add_send(to, rank, thing)`, with its member `to`, lists one.
   template <class Space, class Find>
-  void find(Space& space, Find const& find, std::size_t calls, std::size_t things, int ranks, int only = -1) {
+  void find(Space& space, Find const& find, std::size_t calls, std::size_t things, int ranks) {
     ends_.resize(static_cast<std::size_t>(ranks) + 1);
     for (std::size_t r = 0; r < ends_.size(); ++r) ends_[r] = r;
     send_query<Space, Find> const query{space, find, calls, {static_cast<std::size_t>(ranks)}, {things}};
     list_.fill(space, query);
-    if (only >= 0) {
-      for (std::uint64_t& end : ends_) end = end > static_cast<std::uint64_t>(only) ? list_.size() : 0;
-      return;
-    }
     list_.sort(space, query);
     bounds_.find(space, list_.data(), list_.size(), ends_);
   }
