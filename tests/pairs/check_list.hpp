@@ -167,7 +167,9 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
   /// Momentum that grains lose goes to bodies and to the mesh at rest, and gravity gives it, to sleeping grains too; so
   /// with their angular momentum about the vertical, to which gravity gives nothing.
   void check_momentum() const {
-    if constexpr (momentum_closes) {
+    // where a mesh is set again all wakes and meets it once more, of which half is booked, also for what was awake
+    bool const is_set_again = trial_.how == surface::deforming;
+    if (momentum_closes && !(presses_by_forces && has<collide::sleep> && is_set_again)) {
       host const space(1);
       list_sums const sums(space, unit);
       simulation<host> made(space, parameters<Effect>(trial_, sums, has_sizes)...);
