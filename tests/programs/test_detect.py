@@ -221,7 +221,7 @@ class Points(ProgramTest):
         moved = [[x + 0.5 for x in corner] for corner in corners]
         second = [[i + len(corners) for i in face] for face in faces]
         self.scene(corners + moved, faces + second, [[0.25, 0.25, 0.25], [0.75, 0.75, 0.75]])
-        done = self.run_program("detect", "mesh.obj", "spheres.csv", "inside.csv", "--inside")
+        done = self.run_program("detect", "mesh.obj", "spheres.csv", "--inside")
         self.assertRegex(done.stderr.decode(), r"\Adetect: the mesh cuts or touches itself, and what is inside twice "
                                                r"counts as outside: \d+ pair\(s\) of triangles, [^\n]*\n\Z")
         self.succeed("detect", "mesh.obj", "spheres.csv", "--nearest")
