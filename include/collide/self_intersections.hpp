@@ -16,11 +16,14 @@ namespace collide {
 
 /// Two triangles.
 struct triangle_pair {
-  id first, second;  ///< their numbers, the smaller one first
+  id first;   ///< the smaller number
+  id second;  ///< the larger number
 
+  /// True of the same two.
   friend bool operator==(triangle_pair const& p, triangle_pair const& q) {
     return p.first == q.first && p.second == q.second;
   }
+  /// By the first, then by the second.
   friend bool operator<(triangle_pair const& p, triangle_pair const& q) {
     return p.first != q.first ? p.first < q.first : p.second < q.second;
   }
