@@ -64,6 +64,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       (any_pair_contact || overlaps) && (has_half_kicks || keeps_support) && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
   static constexpr bool ends_after_meeting = (any_pair_contact || overlaps) && has_half_kicks;
+  /// Forces on the mesh are given for a whole step when particles meet, in its middle; so is the pressure of sleepers.
+  static constexpr bool presses_when_meeting = overlaps && has_half_kicks;
 
  private:
   template <bool Needed, class... C>

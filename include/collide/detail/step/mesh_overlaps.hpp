@@ -193,7 +193,7 @@ struct press_on_mesh {
   Memory memory;
   pressing_list pressing;
   S dt;
-  bool only_kicks;  ///< no particle is written otherwise
+  bool only_kicks;  ///< nothing else is written
 
   COLLIDE_HD void operator()(std::size_t k) const {
     if (k < *pressing.count) press_with(pressing.numbers[k]);
@@ -308,14 +308,13 @@ struct press_on_mesh {
       if (o.body != no_id && triangles.mesh.frames[o.body + 1].moves) p[slow_steps{}] = carried_by_moving;
     }
     if constexpr (Effects::any_mesh_impulse) {
-      S const part = only_kicks ? S(0.5) : S(1);  // a step begins with half of what is found before it
+      if (only_kicks) return goes_on;
       vec3<S> const none(S(0), S(0), S(0));
       vec3<S> turned = none;
       if constexpr (contains<typename integrated::list, angular_velocity>)
-        turned = (p[angular_velocity{}] - before[angular_velocity{}]) * part;
+        turned = p[angular_velocity{}] - before[angular_velocity{}];
       book(*this, p,
-           {(p[velocity{}] - before[velocity{}]) * part, turned, self[position{}], none, p[velocity{}], o.triangle,
-            o.body});
+           {p[velocity{}] - before[velocity{}], turned, self[position{}], none, p[velocity{}], o.triangle, o.body});
     }
     return goes_on;
   }

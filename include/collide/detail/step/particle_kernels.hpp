@@ -106,7 +106,7 @@ struct end_particles {
   template <class Particle>
   COLLIDE_HD_INLINE void press(Particle& p) const {
     if (!effects.only_sleeps(p)) return;
-    book_sleeping(*this, p, last_kick<end_particles>(p));
+    book_sleeping(*this, p, Effects::presses_when_meeting ? S(1) : last_kick<end_particles>(p));
     state.store(p, p.number, typename Effects::integration_writes{});
   }
 };
