@@ -133,6 +133,11 @@ struct moving_bodies {
 
   Motion motion = Motion();  ///< of all bodies, if it is a function object of your own
 
+  template <class F>
+  void for_each_part(F const& f) {
+    detail::for_each_part_of(motion, f);
+  }
+
   /// Nothing: but with it the simulation keeps the time on the device.
   template <class Space, class State, class S>
   void begin_step(Space&, State const&, S) const {}

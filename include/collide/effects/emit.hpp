@@ -118,8 +118,14 @@ struct emit_from {
   Source source = Source();  ///< how they begin
   double radius = 0;         ///< theirs, with `polydisperse`, as it is when `set` is called; 0: that of all in `set`
   bool only_where_free = false;  ///< one that would overlap another, or whose place in memory is taken, is not born
-  bool unused[7] = {};           ///< in place of padding, which would be bytes of a checkpoint that no one sets
 
+  template <class F>
+  void for_each_part(F const& f) {
+    f(rate);
+    detail::for_each_part_of(source, f);
+    f(radius);
+    f(only_where_free);
+  }
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(rate), "emit: rate is not negative, and finite");
     detail::check_parameter(detail::is_amount(radius), "emit: radius is not negative, and finite");

@@ -39,6 +39,12 @@ struct wind {
   double quadratic = 0;   ///< per length, not negative
   Field field = Field();  ///< gives the velocity of the medium, in length per time
 
+  template <class F>
+  void for_each_part(F const& f) {
+    f(linear);
+    f(quadratic);
+    detail::for_each_part_of(field, f);
+  }
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(linear) && detail::is_amount(quadratic),
                             "wind: linear and quadratic are not negative, and finite");

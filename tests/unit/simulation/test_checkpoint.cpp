@@ -1,7 +1,13 @@
 /// Checkpoints on the host.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <new>
+
+#include <collide/effects/emit.hpp>
+#include <collide/effects/wind.hpp>
 
 #include "compositions.hpp"
 #include "simulation/checkpoint.hpp"
@@ -49,6 +55,44 @@ std::string with_checksum(std::string bytes) {
   return bytes.append(reinterpret_cast<char const*>(&sum), 8);
 }
 
+/// Functions without a state: of no byte that anyone sets.
+struct calm {
+  template <class S>
+  COLLIDE_HD collide::vec3<S> operator()(collide::vec3<S> const&) const {
+    return {S(0), S(0), S(0)};
+  }
+};
+struct from_above {
+  template <class S>
+  COLLIDE_HD void operator()(std::uint64_t number, collide::vec3<S>& x, collide::vec3<S>& v) const {
+    x = {S(0), S(0), S(1 + number)};
+    v = {S(0), S(0), S(-1)};
+  }
+};
+
+/// An effect in memory that was full of `byte`.
+template <class E>
+E& made_in(unsigned char byte) {
+  alignas(E) static unsigned char memory[sizeof(E)];
+  std::fill(std::begin(memory), std::end(memory), byte);
+  return *new (memory) E;
+}
+
+/// A checkpoint of a scene whose effects have been in such memory.
+std::string saved_from(unsigned char byte) {
+  auto& wind = made_in<collide::wind<calm>>(byte);
+  auto& source = made_in<collide::emit_from<from_above>>(byte);
+  auto const& moving = made_in<collide::moving_bodies<collide::driven>>(byte);
+  wind.linear = 1;
+  source.rate = 10;
+  using scene = collide::simulation<tests::meets_mesh<host>, collide::wind<calm>, collide::emit_from<from_above>,
+                                    collide::moving_bodies<collide::driven>>;
+  tests::world<float> const w = tests::layers<float>(2, 1, 0.05);
+  tests::running<scene> made{host(1), w, wind, source, moving};
+  made.simulation.steps(3, 1e-2f);
+  return tests::saved(made.simulation);
+}
+
 std::string read_file(std::string const& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -89,6 +133,8 @@ TEST_CASE("checkpoint: each byte that is damaged, and each cut, is found, and no
   CHECK(tests::bits_of(s.next.simulation) == tests::bits_of(s.first.simulation));
   CHECK(s.next.simulation.effect<bounce>().restitution == 0.25);
 }
+
+TEST_CASE("checkpoint: no byte is of memory that no one has set") { CHECK(saved_from(0) == saved_from(0xff)); }
 
 TEST_CASE("checkpoint: what is another's is refused by name") {
   two_simulations s;
