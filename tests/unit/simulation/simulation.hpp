@@ -336,9 +336,12 @@ world<S> crowd(std::size_t n, double half, double radius, double speed, unsigned
   w.radius = static_cast<S>(radius);
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  auto const inside = [&] { return (half - radius) * uniform(engine); };
-  for (std::size_t i = 0; i < n; ++i)
-    w.particle(inside(), inside(), inside(), speed * uniform(engine), speed * uniform(engine), speed * uniform(engine));
+  double const inside = half - radius;
+  for (std::size_t i = 0; i < n; ++i) {
+    double r[6];
+    for (int k = 5; k >= 0; --k) r[k] = uniform(engine);
+    w.particle(inside * r[0], inside * r[1], inside * r[2], speed * r[3], speed * r[4], speed * r[5]);
+  }
   return w;
 }
 
