@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/detail/step/contact_key.hpp>
 #include <collide/detail/step/contact_scratch.hpp>
 #include <collide/detail/step/mesh_contact.hpp>
 #include <collide/detail/step/surface_at_rest.hpp>

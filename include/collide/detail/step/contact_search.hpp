@@ -13,6 +13,7 @@
 
 #include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/narrow_phase/traits.hpp>
+#include <collide/detail/step/contact_key.hpp>
 #include <collide/detail/step/contact_scratch.hpp>
 #include <collide/detail/step/mesh_contact.hpp>
 #include <collide/detail/step/moving_surface.hpp>

@@ -98,12 +98,14 @@ struct alignas(32) tree_boxes {
     return x * x + (y * y + z * z);
   }
 
+  /// True if box k and another have no point in common.
   COLLIDE_HD_INLINE bool is_apart(int k, tree_point const& other) const {
     return (lower[0][k] > other.upper[0]) | (upper[0][k] < other.lower[0]) | (lower[1][k] > other.upper[1]) |
            (upper[1][k] < other.lower[1]) | (lower[2][k] > other.upper[2]) | (upper[2][k] < other.lower[2]);
   }
 
-  /// Boxes to reckon with: these, on a device a copy, loaded 16 bytes at a time, as each thread reads another node.
+  /// Boxes for arithmetic: on a device a copy in registers, loaded 16 bytes at a time, as each thread reads another
+  /// node.
 #if defined(__CUDA_ARCH__)
   __device__ __forceinline__ tree_boxes in_registers() const {
     tree_boxes copy;
