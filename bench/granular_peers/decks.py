@@ -6,7 +6,6 @@ Writes what the input decks here read, into FOLDER: penetration.data and drum.da
     liggghts -var steps 60000 -in liggghts_penetration.in
     liggghts -var steps 20000 -in liggghts_drum.in
     yade -n -x yade_penetration.py PENETRATION_BED STEPS CURVE.csv
-    python3 dem_engine_penetration.py PENETRATION_BED FROM UNTIL > CURVE.csv
 """
 import math
 import pathlib
