@@ -35,7 +35,7 @@ endif()
 # collide_quick_build(NAME): a target that takes longer to compile than what it computes takes in the tests
 function(collide_quick_build name)
   if(COLLIDE_QUICK_BUILD)
-    target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-O1>)
+    target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Og>)
   endif()
 endfunction()
 
@@ -51,6 +51,9 @@ function(collide_program name)
   if(COLLIDE_CUDA)
     target_link_libraries(${name} PRIVATE collide::compiled_cuda)
     set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
+    if(COLLIDE_QUICK_BUILD)  # tests run it on the host
+      target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-O1>)
+    endif()
   endif()
 endfunction()
 
