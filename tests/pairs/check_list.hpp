@@ -234,7 +234,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
       auto const x = made.template to_host<position>(), v = made.template to_host<velocity>();
       sums.clear(space);
       scene.play(made, 3000, 3200);
-      double const weight = -weight_of(made)[2], close = sizeof(S) == 4 ? 1e-5 : 1e-9;
+      double const weight = -weight_of(made)[2], close = (sizeof(S) == 4 ? 1e-5 : 1e-9) + lost_to_drag();
       if constexpr (has<collide::reaction>) {
         double pressed = 0;
         for (auto const& one : sums.read(space)) pressed -= one.linear[2];
@@ -333,6 +333,15 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
       sum += m * momentum(u[0], u[1], u[2], angular);
     }
     return sum;
+  }
+  /// The part of its weight that drag takes from a grain at rest, which falls in each step until the mesh holds it.
+  double lost_to_drag() const {
+    if constexpr (has<collide::drag>) {
+      auto const by = parameters<collide::drag>(trial_, list_sums(host(1), unit), has_sizes);
+      return (by.linear + by.quadratic * 9.81 * trial_.dt()) * trial_.dt() / 2;
+    } else {
+      return 0;
+    }
   }
   /// After how many slow steps a grain sleeps.
   int sleeps_from() const {
