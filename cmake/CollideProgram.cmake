@@ -51,7 +51,7 @@ function(collide_program name)
   if(COLLIDE_CUDA)
     target_link_libraries(${name} PRIVATE collide::compiled_cuda)
     set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
-    if(COLLIDE_QUICK_BUILD)  # tests run it on the host
+    if(COLLIDE_QUICK_BUILD)  # tests run it on the host; where nvcc has an -O of its own, that holds
       target_compile_options(${name} PRIVATE $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-O1>)
     endif()
   endif()

@@ -234,7 +234,7 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
       auto const x = made.template to_host<position>(), v = made.template to_host<velocity>();
       sums.clear(space);
       scene.play(made, 3000, 3200);
-      double const weight = -weight_of(made)[2], close = (sizeof(S) == 4 ? 1e-5 : 1e-9) + lost_to_drag();
+      double const weight = -weight_of(made)[2] * part_that_presses(), close = sizeof(S) == 4 ? 1e-5 : 1e-9;
       if constexpr (has<collide::reaction>) {
         double pressed = 0;
         for (auto const& one : sums.read(space)) pressed -= one.linear[2];
@@ -334,13 +334,19 @@ class checked_list<scene_list<Kind, NarrowPhase, S, Effect...>> {
     }
     return sum;
   }
-  /// The part of its weight that drag takes from a grain at rest, which falls in each step until the mesh holds it.
-  double lost_to_drag() const {
+  /// The part of its weight with which a grain at rest presses: in each step it falls until the mesh holds it, and drag
+  /// slows that.
+  double part_that_presses() const {
     if constexpr (has<collide::drag>) {
       auto const by = parameters<collide::drag>(trial_, list_sums(host(1), unit), has_sizes);
-      return (by.linear + by.quadratic * 9.81 * trial_.dt()) * trial_.dt() / 2;
+      constexpr int parts = 10'000;
+      double const dt = trial_.dt() / parts;
+      auto const rate = [&](double v) { return 9.81 - (by.linear + by.quadratic * v) * v; };
+      double v = 0;
+      for (int i = 0; i < parts; ++i) v += dt * rate(v + dt / 2 * rate(v));
+      return v / (9.81 * trial_.dt());
     } else {
-      return 0;
+      return 1;
     }
   }
   /// After how many slow steps a grain sleeps.

@@ -160,7 +160,7 @@ def in_order(effects, rng):
 
 
 def make_lists():
-    rng, left, lists = random.Random(67), every_meeting(), []
+    rng, left, lists = random.Random(67), every_meeting(), []  # of eight seeds that of the fewest lists
 
     def add(one):
         left.difference_update(covered(one))

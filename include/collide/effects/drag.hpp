@@ -12,8 +12,8 @@ namespace collide {
 /// strong it is, a step is exact if the drag is linear, or v and a are parallel, so that what falls gets the terminal
 /// velocity; else it is of second order, and never faster than both the velocity before and the terminal one.
 ///
-/// What rests on a mesh by `bounce` is slowed as if it fell for each step: a part of `linear` dt / 2 of its weight does
-/// not reach `reaction` and `mesh_forces`.
+/// What rests on a mesh by `bounce` is slowed as if it fell for each step: `reaction` and `mesh_forces` get
+/// 1 - `linear` dt / 2 of its weight, to first order.
 ///
 /// For a sphere of radius R and density D in a medium of density d and viscosity m, linear = 9 m / (2 D R^2) (Stokes),
 /// and quadratic = 3 C d / (8 D R) with the drag coefficient C, about 0.5.
