@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <collide/detail/tree/pack_tree.hpp>
+#include <collide/detail/tree/radix_tree.hpp>
 #include <collide/detail/tree/sah_tree.hpp>
 #include <collide/detail/tree/tree_ref.hpp>
 #include <collide/detail/tree/winding_tree.hpp>
@@ -23,8 +23,7 @@ struct tree_policy {
     template <class Space>
     void build(Space& space, tree_policy const&, mesh_view<S> mesh) {
       constexpr bool divides = bvh_tuning<Space>::divides_by_area;
-      if (mesh.size() >= (divides ? std::size_t{1} << 29 : std::size_t{tree_node::leaf}))
-        throw error("collide: bvh: a mesh has fewer than 2^29 triangles on the host, and 2^31 on a device");
+      if (mesh.size() >= std::size_t{1} << 29) throw error("collide: bvh: a mesh has fewer than 2^29 triangles");
       mesh_ = mesh;
       has_tree_ = false;
       before_ = nullptr;
@@ -32,7 +31,7 @@ struct tree_policy {
         has_tree_ = divided_.build(space, mesh, nodes_);
         before_ = divided_.before();
       } else {
-        packed_.build(space, mesh, nodes_);
+        radix_.build(space, mesh, nodes_);
         has_tree_ = true;
       }
       has_windings_ = false;
@@ -46,7 +45,7 @@ struct tree_policy {
         has_tree_ = divided_.refit(space, mesh, nodes_);
         before_ = divided_.before();
       } else {
-        packed_.refit(space, mesh, nodes_);
+        radix_.refit(space, mesh, nodes_);
       }
       has_windings_ = false;
     }
@@ -67,7 +66,7 @@ struct tree_policy {
     boxes_before const* before_ = nullptr;
     buffer<tree_node> nodes_;
     sah_tree<S> divided_;
-    packed_tree<S> packed_;
+    radix_tree<S> radix_;
     winding_tree<S> windings_;
   };
 };

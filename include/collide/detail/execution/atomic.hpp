@@ -90,6 +90,15 @@ COLLIDE_HD_INLINE void fetch_max(U* target, U value) {
 #endif
 }
 
+/// What this thread wrote before is seen by those that see what it writes, or adds atomically, afterwards.
+COLLIDE_HD_INLINE void thread_fence() {
+#if defined(__CUDA_ARCH__)
+  __threadfence();
+#else
+  __atomic_thread_fence(__ATOMIC_ACQ_REL);
+#endif
+}
+
 /// A load of what other threads may change meanwhile.
 template <class T>
 COLLIDE_HD_INLINE T load_relaxed(T const* from) {

@@ -16,14 +16,6 @@ COLLIDE_HD inline int trailing_zeros(std::uint64_t x) {  // x != 0
 #endif
 }
 
-COLLIDE_HD inline int leading_zeros(std::uint64_t x) {  // x != 0
-#if defined(__CUDA_ARCH__)
-  return __clzll(static_cast<long long>(x));
-#else
-  return __builtin_clzll(x);
-#endif
-}
-
 /// A float as a double, also if it is subnormal and the hardware flushes such to zero.
 COLLIDE_HD_RARE double widened(float x) {
   using f = ieee_traits<float>;

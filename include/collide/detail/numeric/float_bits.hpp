@@ -11,6 +11,15 @@
 
 namespace collide::detail {
 
+/// How many of the highest bits of a number that is not 0 are 0.
+COLLIDE_HD_INLINE int leading_zeros(std::uint64_t x) {
+#if defined(__CUDA_ARCH__)
+  return __clzll(static_cast<long long>(x));
+#else
+  return __builtin_clzll(x);
+#endif
+}
+
 /// The unsigned integer of the size of `T`.
 template <class T>
 using uint_for = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;

@@ -143,12 +143,16 @@ struct tree_node : tree_boxes {
   std::uint32_t parent;     ///< number of a node; of the root, itself
   std::uint32_t slot;       ///< which box of the parent this node is
   std::uint32_t continues;  ///< bit k: box k is of a piece of a triangle, and not of the first
+  std::uint32_t arrived;    ///< while boxes are made: how many there are
 
-  COLLIDE_HD_INLINE void set(int k, aabb<float> const& box, std::uint32_t what) {
+  COLLIDE_HD_INLINE void set_box(int k, aabb<float> const& box) {
     for (int i = 0; i < 3; ++i) {
       lower[i][k] = box.lower[i];
       upper[i][k] = box.upper[i];
     }
+  }
+  COLLIDE_HD_INLINE void set(int k, aabb<float> const& box, std::uint32_t what) {
+    set_box(k, box);
     child[k] = what;
   }
 

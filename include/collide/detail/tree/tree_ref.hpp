@@ -15,9 +15,10 @@
 
 namespace collide::detail {
 
-/// The most levels of nodes that a tree has: on a device they are full.
+/// The most levels of nodes that a tree has. On a device each is of three bits of a place on a curve and a number, but
+/// for the lowest.
 #if defined(__CUDA_ARCH__)
-inline constexpr int most_tree_levels = 12;
+inline constexpr int most_tree_levels = 32;
 #else
 inline constexpr int most_tree_levels = 64;
 #endif

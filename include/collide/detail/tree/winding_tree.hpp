@@ -7,9 +7,29 @@
 #include <cstdint>
 
 #include <collide/detail/nearest/normal_moments.hpp>
-#include <collide/detail/tree/pack_tree.hpp>
+#include <collide/detail/tree/curve_order.hpp>
 
 namespace collide::detail {
+
+/// The levels of a tree whose nodes are full, the root first: how many nodes each has, and the number of its first.
+struct tree_levels {
+  static constexpr int most = 12;
+  static constexpr std::size_t width = 8;
+
+  std::size_t count[most], first[most];  ///< of level 0, with the triangles, and of those above
+  int levels;
+  std::size_t nodes;  ///< in all
+
+  explicit tree_levels(std::size_t triangles) : levels{0}, nodes{0} {
+    std::size_t n = triangles;
+    do count[levels++] = n = (n + width - 1) / width;
+    while (n > 1);
+    for (int l = levels - 1; l >= 0; --l) {
+      first[l] = nodes;
+      nodes += count[l];
+    }
+  }
+};
 
 /// A point, times the power of two that makes the coordinates of a mesh at most 2: exact, but for what underflows.
 template <class S>
@@ -28,7 +48,7 @@ struct make_moments {
   int level;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    constexpr std::size_t width = tree_node::width;
+    constexpr std::size_t width = tree_levels::width;
     std::size_t const begin = i * width, below = level == 0 ? mesh.size() : levels.count[level - 1];
     std::size_t const end = min(begin + width, below);
     normal_moments parts[width];
@@ -95,19 +115,19 @@ struct winding_tree_ref {
         node.add_to(sum, p);
       } else if (level > 0) {
         --level;
-        i *= tree_node::width;
+        i *= tree_levels::width;
         continue;
       } else {
-        std::size_t const begin = i * tree_node::width, end = min(begin + tree_node::width, mesh.size());
+        std::size_t const begin = i * tree_levels::width, end = min(begin + tree_levels::width, mesh.size());
         for (std::size_t k = begin; k < end; ++k) sum.add(mesh[ids[k]], point);
       }
       // the next node of this level, or the one behind that above
-      while (++i % tree_node::width == 0 || i == levels.count[level]) {
+      while (++i % tree_levels::width == 0 || i == levels.count[level]) {
         if (++level >= levels.levels) {
           sum.settle();
           return sum;
         }
-        i = (i - 1) / tree_node::width;
+        i = (i - 1) / tree_levels::width;
       }
     }
   }
@@ -122,7 +142,7 @@ class winding_tree {
   void build(Space& space, mesh_view<S> const& mesh) {
     order_.sort(space, mesh);
     tree_levels const l(mesh.size());
-    ref_ = {order_.sorted(), order_.summary(), nodes_.reserve(space.resource(), l.nodes), l};
+    ref_ = {order_.ids(), order_.summary(), nodes_.reserve(space.resource(), l.nodes), l};
     for (int k = 0; k < l.levels; ++k)
       space.for_each(l.count[k], make_moments<S>{mesh, ref_.ids, ref_.summary, nodes_.data(), l, k});
   }
@@ -130,7 +150,7 @@ class winding_tree {
   winding_tree_ref<S> const& ref() const { return ref_; }
 
  private:
-  packed_tree<S> order_;
+  curve_order<S> order_;
   buffer<normal_moments> nodes_;
   winding_tree_ref<S> ref_;
 };
