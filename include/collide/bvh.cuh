@@ -58,6 +58,15 @@ struct tree_policy {
       return windings_.ref();
     }
 
+    /// An order of many points in which neighbours search the same nodes; null where the one that they have will do.
+    template <class Space>
+    id const* search_order([[maybe_unused]] Space& space, [[maybe_unused]] sphere_view<S> const& spheres) {
+      if constexpr (!bvh_tuning<Space>::divides_by_area) {
+        if (spheres.size() >= bvh_tuning<Space>::least_sorted_points) return radix_.order_of(space, spheres);
+      }
+      return nullptr;
+    }
+
     tree_ref<S> ref() const { return {mesh_, has_tree_ ? nodes_.data() : nullptr, before_}; }
 
    private:

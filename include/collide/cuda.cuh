@@ -74,7 +74,7 @@ __global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<Kernel, 
 }
 
 template <class F>
-__global__ void __launch_bounds__(threads_per_block) run_for_each(std::size_t n, F f) {
+__global__ void __launch_bounds__(threads_per_block, (min_blocks_per_sm<F, void>)) run_for_each(std::size_t n, F f) {
   pdl_wait();  // first: blocks of the next kernel would take the room of those that it waits for
   pdl_launch_dependents();
   std::size_t const i = std::size_t{blockIdx.x} * threads_per_block + threadIdx.x;

@@ -243,6 +243,13 @@ struct per_sphere {
       return index_.windings(space);
     }
 
+    /// An order in which points search faster, or null, if the policy has one.
+    template <class Space, class Index = policy_index>
+    auto search_order(Space& space, sphere_view<S> const& spheres)
+        -> decltype(std::declval<Index&>().search_order(space, spheres)) {
+      return index_.search_order(space, spheres);
+    }
+
     /// A reference for kernels to the triangles near a point, see `nearest`; valid until the next build.
     auto ref() const { return index_.ref(); }
 

@@ -238,7 +238,9 @@ MUTATIONS = {
     "measured-edge": ('edges for which twice the digits are too few', 'nearest', 'plain',
         [('    if (!(by.high >= limit && square.high >= mul_rn(limit, by.high))) return false;\n', '')]),
     "measured-face": ('the same, faces', 'nearest', 'plain',
-        [(' && mul_rn(height.high, height.high) >= limit', '')]),
+        [('(is_on || mul_rn(height.high, height.high) >= limit)', 'true')]),
+    "measured-level": ('a point on a face across an axis', 'nearest', 'plain',
+        [(' & (t.c[k] == point[k])', '')]),
 }
 
 # The same without a mutation: nothing may be wrong.

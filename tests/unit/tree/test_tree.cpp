@@ -214,17 +214,21 @@ TEST_CASE("tree: where more levels are above than a cursor keeps, it finds out a
     float const x = std::ldexp(1.0f, -(i % 120)) * (1 + 1e-3f * static_cast<float>(i / 120));
     corners.insert(corners.end(), {x, 0, 0, x, x / 8, 0, x, 0, x / 8});
   }
-  tree<float, host> const t(collide::triangle_soup(corners.data(), 4000));
-  walk<float> seen{t.ref, {}};
-  constexpr float far = std::numeric_limits<float>::infinity();
-  seen.visit(0, 0, 0, {{-far, -far, -far}, {far, far, far}}, 0);
-  CHECK(seen.levels > 7);
-  CHECK(seen.levels <= most_tree_levels);
-  std::vector<id> all;
-  t.ref.for_each_candidate({{0, 0, 0}, 10}, [&](id k) { all.push_back(k); });
-  CHECK(all.size() == 4000);
-  std::sort(all.begin(), all.end());
-  CHECK(std::unique(all.begin(), all.end()) == all.end());
+  auto const check = [&](auto const& t, int more_levels_than, int most_levels) {
+    walk<float> seen{t.ref, {}};
+    constexpr float far = std::numeric_limits<float>::infinity();
+    seen.visit(0, 0, 0, {{-far, -far, -far}, {far, far, far}}, 0);
+    CHECK(seen.levels > more_levels_than);
+    CHECK(seen.levels <= most_levels);
+    std::vector<id> all;
+    t.ref.for_each_candidate({{0, 0, 0}, 10}, [&](id k) { all.push_back(k); });
+    CHECK(all.size() == 4000);
+    std::sort(all.begin(), all.end());
+    CHECK(std::unique(all.begin(), all.end()) == all.end());
+  };
+  auto const mesh = collide::triangle_soup(corners.data(), 4000);
+  check(tree<float, host>(mesh), 7, most_tree_levels);
+  check(tree<float, in_lockstep>(mesh), 5, 32);  // as many as on a device
 }
 
 TEST_CASE("tree: near triangles come first, and most others never") {

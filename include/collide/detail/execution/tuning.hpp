@@ -3,6 +3,8 @@
 /// defaults follow from where its memory is; specialise a trait for a space that wants other numbers.
 #pragma once
 
+#include <cstddef>
+
 namespace collide {
 
 /// Costs of the cells of `bucket`, in nanoseconds; only the ratios count.
@@ -46,6 +48,9 @@ struct bvh_tuning {
   /// True if triangles are divided by the areas of boxes, which takes longer and finds faster than to sort them, and is
   /// for hosts. Needs memory that the host can access.
   static constexpr bool divides_by_area = Space::host_accessible;
+  /// How many points are sorted before they search a tree that was not divided by area, so that neighbours search the
+  /// same nodes.
+  static constexpr std::size_t least_sorted_points = Space::host_accessible ? ~std::size_t{0} : std::size_t{1} << 18;
 };
 
 namespace detail {

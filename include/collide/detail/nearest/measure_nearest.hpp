@@ -71,6 +71,14 @@ COLLIDE_HD_NOINLINE inline measured_foot measure_foot_exactly(triangle<double> c
   return found;
 }
 
+/// True if a triangle and a point lie in a plane across an axis, as many faces of buildings and machines do.
+COLLIDE_HD_INLINE bool is_level(triangle<double> const& t, vec3<double> const& point) {
+  bool level = false;
+  // guard: measured-level
+  for (int k = 0; k < 3; ++k) level |= (t.a[k] == point[k]) & (t.b[k] == point[k]) & (t.c[k] == point[k]);
+  return level;
+}
+
 /// The foot in numbers of twice the digits. False if these do not suffice.
 COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<double> const& point, int foot,
                                                 measured_foot& found) {
@@ -104,11 +112,13 @@ COLLIDE_HD inline bool measure_foot_compensated(triangle<double> const& t, vec3<
     double const longest = max(max(r.length_squared[0], r.length_squared[1]), r.length_squared[2]);
     double const limit = mul_rn(mul_rn(least, 64.0), mul_rn(longest, longest));
     // guard: measured-face
-    if (!(longest >= 0x1p-160 && by.high >= mul_rn(least * 64, longest) && mul_rn(height.high, height.high) >= limit))
+    bool const is_on = is_level(t, point);
+    if (!(longest >= 0x1p-160 && by.high >= mul_rn(least * 64, longest) &&
+          (is_on || mul_rn(height.high, height.high) >= limit)))
       return false;
-    distance = height / root(by);
-    bool const above = distance.high < 0;  // on the side that the normal points to
-    if (above) distance = -distance;
+    distance = is_on ? double_double{0, 0} : height / root(by);
+    bool const above = is_on || distance.high < 0;  // on the side that the normal points to
+    if (distance.high < 0) distance = -distance;
     found.direction = above ? n.rounded() : vec3<double>(-n.rounded());
     set_weights(found, foot, dot(cross(l.corner[2], l.edge[2]), n) / by, dot(cross(l.corner[0], l.edge[0]), n) / by);
   }

@@ -74,6 +74,10 @@ template <class Index, class S>
 using index_for_each_on_ray = decltype(std::declval<Index const&>().ref().for_each_on_ray(
     std::declval<vec3<S> const&>(), std::declval<bool (&)(id)>()));
 
+template <class Index, class Space, class S>
+using index_search_order =
+    decltype(std::declval<Index&>().search_order(std::declval<Space&>(), std::declval<sphere_view<S> const&>()));
+
 template <class Index, class NarrowPhase, class Space, class Spheres>
 using index_expected_hits = decltype(std::declval<Index&>().template expected_hits<NarrowPhase>(
     std::declval<Space&>(), std::declval<Spheres const&>()));
@@ -105,12 +109,17 @@ struct mesh_search {
 /// Kernel functor of `for_each` over spheres.
 template <class S, class Ref, class F>
 struct search_of_sphere {
+  template <class>
+  static constexpr int min_blocks_per_sm = 3;
+
   Ref ref;
   mesh_view<S> mesh;
   sphere_view<S> spheres;
   F f;
+  id const* order;  ///< of the spheres, or null
 
-  COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_HD void operator()(std::size_t k) const {
+    std::size_t const i = order != nullptr ? order[k] : k;
     sphere<S> const own = spheres[i];
     f(i, own, mesh, mesh_search<S, Ref>{ref, own.centre});
   }
@@ -127,7 +136,11 @@ void query_pass<Index, NarrowPhase, Space, S>::search(F const& f) const {
                 "collide: nearest, contains, signed_distance and winding_number are for points and spheres that rest");
   using ref_type = decltype(index.ref());
   ref_type const ref = mesh.size() != 0 ? index.ref() : ref_type{};
-  space.for_each(spheres.size(), search_of_sphere<S, ref_type, F>{ref, mesh, spheres, f});
+  id const* order = nullptr;
+  if constexpr (is_valid<index_search_order, Index, Space, S>) {
+    if (mesh.size() != 0) order = index.search_order(space, spheres);
+  }
+  space.for_each(spheres.size(), search_of_sphere<S, ref_type, F>{ref, mesh, spheres, f, order});
 }
 
 template <class Index, class NarrowPhase, class Space, class S>

@@ -69,6 +69,48 @@ struct find_places {
   }
 };
 
+/// Numbers and their places on the curve, which are sorted.
+class curve_sort {
+ public:
+  template <class Space>
+  void reserve(Space& space, std::size_t n) {
+    n_ = n;
+    places_.reserve(space.resource(), 2 * n);
+    ids_.reserve(space.resource(), 2 * n);
+  }
+
+  /// To be sorted,
+  std::uint64_t* places() { return places_.data(); }
+  id* ids() { return ids_.data(); }
+  /// and sorted, of equal places the lowest number first.
+  std::uint64_t const* places_in_order() const { return places_.data() + n_; }
+  id const* ids_in_order() const { return ids_.data() + n_; }
+
+  /// Sorts by the lowest `bits` bits, which are all that are set.
+  template <class Space>
+  void sort([[maybe_unused]] Space& space, [[maybe_unused]] int bits) {
+    std::uint64_t *const from = places_.data(), *const to = from + n_;
+    id *const ids = ids_.data(), *const ids_to = ids + n_;
+    if constexpr (Space::host_accessible) {
+      std::copy(ids, ids + n_, ids_to);
+      std::stable_sort(ids_to, ids_to + n_, [&](id a, id b) { return from[a] < from[b]; });
+      std::transform(ids_to, ids_to + n_, to, [&](id t) { return from[t]; });
+    } else {
+#if defined(__CUDACC__)
+      sort_ids_on_device(space.stream(), space.resource(), from, to, ids, ids_to, n_, bits, scratch_);
+#else
+      throw error("collide: bvh: triangles in memory of a device are sorted where nvcc compiles the program");
+#endif
+    }
+  }
+
+ private:
+  std::size_t n_ = 0;
+  buffer<std::uint64_t> places_;
+  buffer<id> ids_;
+  buffer<unsigned char> scratch_;
+};
+
 /// Sorts triangles along the curve.
 template <class S>
 class curve_order {
@@ -81,45 +123,62 @@ class curve_order {
     mesh_statistics<S>::clear(space, summary);
     compute_mesh_statistics<S> const seen{mesh, summary, nullptr};
     space.launch(grid_size<Space>(n, seen), seen);
-    std::uint64_t* const places = places_.reserve(space.resource(), 2 * n);
-    id* const ids = ids_.reserve(space.resource(), 2 * n);
-    space.for_each(n, find_places<S>{mesh, summary, places, ids});
-    places_in_order_ = places + n;
-    ids_in_order_ = ids + n;
-    sort(space, n);
+    sort_.reserve(space, n);
+    space.for_each(n, find_places<S>{mesh, summary, sort_.places(), sort_.ids()});
+    sort_.sort(space, 3 * find_places<S>::bits + 1);
   }
 
   /// The numbers of the triangles in order,
-  id const* ids() const { return ids_in_order_; }
+  id const* ids() const { return sort_.ids_in_order(); }
   /// their places, which rise,
-  std::uint64_t const* places() const { return places_in_order_; }
+  std::uint64_t const* places() const { return sort_.places_in_order(); }
   /// and statistics of the mesh, in memory of the space.
   mesh_statistics<S> const* summary() const { return summary_.data(); }
 
  private:
-  template <class Space>
-  void sort([[maybe_unused]] Space& space, std::size_t n) {
-    if constexpr (Space::host_accessible) {
-      std::uint64_t const* const places = places_.data();
-      std::copy(ids_.data(), ids_.data() + n, ids_in_order_);
-      std::stable_sort(ids_in_order_, ids_in_order_ + n, [&](id a, id b) { return places[a] < places[b]; });
-      std::transform(ids_in_order_, ids_in_order_ + n, places_in_order_, [&](id t) { return places[t]; });
-    } else {
-#if defined(__CUDACC__)
-      sort_ids_on_device(space.stream(), space.resource(), places_.data(), places_in_order_, ids_.data(), ids_in_order_,
-                         n, 3 * find_places<S>::bits + 1, scratch_);
-#else
-      throw error("collide: bvh: triangles in memory of a device are sorted where nvcc compiles the program");
-#endif
+  buffer<mesh_statistics<S>> summary_;
+  curve_sort sort_;
+};
+
+/// Kernel functor of `for_each` over points: where each is on a curve through a cube three times as wide as the mesh.
+template <class S>
+struct find_places_of_points {
+  static constexpr int bits = 10;  ///< of a coordinate
+
+  sphere_view<S> spheres;
+  mesh_statistics<S> const* mesh;
+  std::uint64_t* places;
+  id* ids;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    vec3<S> const p = spheres[i].centre;
+    S extent = 0;
+    for (int k = 0; k < 3; ++k) extent = max(extent, mesh->upper_of(k) / 2 - mesh->lower_of(k) / 2);
+    std::uint32_t x[3];
+    for (int k = 0; k < 3; ++k) {
+      S const part = div_rn(p[k] / 2 - mesh->lower_of(k) / 2 + extent, 3 * extent);
+      x[k] = static_cast<std::uint32_t>(static_cast<std::int32_t>(saturate(part) * S((1 << bits) - 1)));
     }
+    places[i] = place_on_curve<bits>(x);
+    ids[i] = static_cast<id>(i);
+  }
+};
+
+/// Sorts points along the curve.
+template <class S>
+class point_order {
+ public:
+  /// The numbers of points in order. O(points).
+  template <class Space>
+  id const* sort(Space& space, sphere_view<S> const& spheres, mesh_statistics<S> const* mesh) {
+    sort_.reserve(space, spheres.size());
+    space.for_each(spheres.size(), find_places_of_points<S>{spheres, mesh, sort_.places(), sort_.ids()});
+    sort_.sort(space, 3 * find_places_of_points<S>::bits);
+    return sort_.ids_in_order();
   }
 
-  std::uint64_t* places_in_order_ = nullptr;
-  id* ids_in_order_ = nullptr;
-  buffer<mesh_statistics<S>> summary_;
-  buffer<std::uint64_t> places_;
-  buffer<id> ids_;
-  buffer<unsigned char> scratch_;
+ private:
+  curve_sort sort_;
 };
 
 }  // namespace collide::detail

@@ -1,15 +1,15 @@
 /// \file
-/// A tree of boxes made by many threads at once: triangles in the order of a curve through space are divided where the
-/// highest bit of their places changes, so that boxes overlap little (T. Karras, "Maximizing parallelism in the
+/// A tree of boxes made by many threads at once. Triangles in the order of a curve through space are cut into groups of
+/// about 32, and these into parts of at most eight, where the highest bit of their places changes: so boxes overlap
+/// little, and nodes are rather full. Above the groups is a radix tree (T. Karras, "Maximizing parallelism in the
 /// construction of BVHs, octrees, and k-d trees", 2012; splits are known by the place before them, as C. Apetrei has
-/// it, "Fast and simple agglomerative LBVH construction", 2014). Of that binary tree each node takes three levels; the
-/// largest parts of at most eight triangles are a node each.
+/// it, "Fast and simple agglomerative LBVH construction", 2014), of which each node takes three levels.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include <collide/detail/execution/aggregated_count.hpp>
+#include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/tree/curve_order.hpp>
 #include <collide/detail/tree/tree_node.hpp>
 
@@ -19,18 +19,9 @@
 
 namespace collide::detail {
 
-/// Triangles that follow each other in the order of the curve.
-struct curve_range {
-  id first, last;  ///< inclusive
-
-  COLLIDE_HD_INLINE id size() const { return last - first + 1; }
-};
-
-/// Where the triangles of a range are divided, and what they are a part of. Split `i` lies between the triangles at `i`
-/// and at `i + 1` in the order; each is of one range.
-struct curve_splits {
-  std::uint64_t const* places;  ///< in order
-  id triangles;
+/// Places that rise, and how much of them neighbours have in common.
+struct curve_places {
+  std::uint64_t const* places;
 
   /// How many leading bits two places have in common; those of equal places, their numbers.
   COLLIDE_HD_INLINE int common(id i, id j) const {
@@ -38,32 +29,98 @@ struct curve_splits {
     return differ != 0 ? leading_zeros(differ) : 64 + leading_zeros(i ^ j);
   }
 
-  /// The range that is divided at split `i`: all that has more in common with either side than those two have.
-  COLLIDE_HD id furthest(id from, id steps, bool up, int more_than) const {
-    auto const at = [&](id d) { return up ? from + d : from - d; };
-    auto const reaches = [&](id d) { return d <= steps && common(from, at(d)) > more_than; };
-    id step = 1, d = 0;
-    while (reaches(step)) step *= 2;
-    for (; step != 0; step /= 2) d += reaches(d + step) ? step : 0;
-    return at(d);
+  /// Where to cut what lies between: before `from` at the earliest, before `to` at the latest.
+  COLLIDE_HD_INLINE id best_cut(id from, id to) const {
+    id best = from;
+    int least = common(from - 1, from);
+    for (id i = from + 1; i <= to; ++i) {
+      int const here = common(i - 1, i);
+      best = here < least ? i : best;
+      least = min(here, least);
+    }
+    return best;
   }
+};
+
+/// Triangles in order, in groups; and the numbers of nodes: those above groups first, then one for each group, then
+/// those that have nothing but triangles.
+struct curve_groups {
+  static constexpr id size = 32;  ///< of a group, about: at least 1, at most twice as much less one
+
+  id triangles, count;
+
+  explicit curve_groups(std::size_t n)
+      : triangles{static_cast<id>(n)}, count{n < size ? 1 : static_cast<id>((n + size / 2) / size)} {}
+
+  std::size_t nodes() const { return std::size_t{3} * count + triangles / tree_node::width; }
+  COLLIDE_HD_INLINE std::uint32_t node_of(id group) const { return count == 1 ? 0 : count + group; }
+  /// Of a group that begins with triangle `first`; there is room for one node more than full ones would be.
+  COLLIDE_HD_INLINE std::uint32_t first_part_of(id group, id first) const {
+    return 2 * count + group + first / tree_node::width;
+  }
+};
+
+/// Kernel functor of `for_each` over groups and what is behind the last.
+struct cut_groups {
+  curve_groups groups;
+  curve_places triangles;
+  id* firsts;             ///< the first triangle of each group
+  std::uint64_t* places;  ///< of groups
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    id const group = static_cast<id>(i), middle = group * curve_groups::size, half = curve_groups::size / 2;
+    id first = 0;
+    if (group == groups.count) {
+      first = groups.triangles;
+    } else if (group != 0) {
+      first = triangles.best_cut(middle - half, min(middle + half, groups.triangles) - 1);
+    }
+    firsts[group] = first;
+    if (group < groups.count) places[group] = triangles.places[first];
+  }
+};
+
+/// Groups that follow each other.
+struct curve_range {
+  id first, last;  ///< inclusive
+
+  COLLIDE_HD_INLINE id size() const { return last - first + 1; }
+};
+
+/// Where ranges of groups are divided, and what they are a part of. Split `i` lies between the groups `i` and `i + 1`;
+/// each is of one range.
+struct curve_splits {
+  curve_places groups;
+  id count;
+
   COLLIDE_HD curve_range range_of(id i) const {
-    int const between = common(i, i + 1);
-    return {furthest(i, i, false, between), furthest(i + 1, triangles - 2 - i, true, between)};
+    int const between = groups.common(i, i + 1);
+    return {furthest(i, i, false, between), furthest(i + 1, count - 2 - i, true, between)};
   }
 
-  /// The split of a range of two triangles or more.
+  /// The split of a range of two groups or more.
   COLLIDE_HD id split_of(curve_range const& r) const {
-    return furthest(r.first, r.last - r.first, true, common(r.first, r.last));
+    return furthest(r.first, r.last - r.first, true, groups.common(r.first, r.last));
   }
 
-  COLLIDE_HD_INLINE bool is_whole(curve_range const& r) const { return r.first == 0 && r.last == triangles - 1; }
+  COLLIDE_HD_INLINE bool is_whole(curve_range const& r) const { return r.size() == count; }
 
   /// The split whose range is divided into this one and another.
   COLLIDE_HD_INLINE id above(curve_range const& r) const {
     if (r.first == 0) return r.last;
-    if (r.last == triangles - 1) return r.first - 1;
-    return common(r.first - 1, r.first) > common(r.last, r.last + 1) ? r.first - 1 : r.last;
+    if (r.last == count - 1) return r.first - 1;
+    return groups.common(r.first - 1, r.first) > groups.common(r.last, r.last + 1) ? r.first - 1 : r.last;
+  }
+
+ private:
+  /// The last group, at most some steps up or down, that has more in common with one than so many bits.
+  COLLIDE_HD id furthest(id from, id steps, bool up, int more_than) const {
+    auto const at = [&](id d) { return up ? from + d : from - d; };
+    auto const reaches = [&](id d) { return d <= steps && groups.common(from, at(d)) > more_than; };
+    id step = 1, d = 0;
+    while (reaches(step)) step *= 2;
+    for (; step != 0; step /= 2) d += reaches(d + step) ? step : 0;
+    return at(d);
   }
 };
 
@@ -75,88 +132,114 @@ struct find_ranges {
   COLLIDE_HD void operator()(std::size_t i) const { ranges[i] = splits.range_of(static_cast<id>(i)); }
 };
 
-/// Kernel functor of `for_each` over splits: gives those numbers that are nodes, 0 to the root.
+/// Kernel functor of `for_each` over splits: which are nodes, and their numbers.
 struct number_nodes {
   curve_splits splits;
   curve_range const* ranges;
-  std::uint32_t* numbers;  ///< of nodes, or `no_id`
-  std::uint32_t* nodes;    ///< how many there are but for the root
+  std::uint32_t* numbers;  ///< of nodes, 0 the root, or `no_id`
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    bool const counts = is_node(ranges[i]);
-    aggregated_count<1> count;
-    count.match([](std::uint32_t) { return 0u; }, counts ? 1 : 0);
-    count.add([&](std::uint32_t) { return nodes; });
-    std::uint32_t const before = count.before(0);
-    numbers[i] = counts ? 1 + before : (splits.is_whole(ranges[i]) ? 0 : no_id);
-  }
-
- private:
-  COLLIDE_HD bool is_node(curve_range r) const {
-    if (splits.is_whole(r)) return false;
-    bool const is_lowest = r.size() <= tree_node::width;
-    r = ranges[splits.above(r)];
-    if (is_lowest) return r.size() > tree_node::width;
-    int levels = 1;
-    for (; !splits.is_whole(r); ++levels) r = ranges[splits.above(r)];
-    return levels % 3 == 0;
+    int levels = 0;
+    for (curve_range r = ranges[i]; !splits.is_whole(r); ++levels) r = ranges[splits.above(r)];
+    numbers[i] = levels == 0 ? 0 : (levels % 3 == 0 ? static_cast<std::uint32_t>(i) + 1 : no_id);
   }
 };
 
-/// Kernel functor of `for_each` over splits: sets what a node is, but for its boxes.
-struct link_nodes {
-  curve_splits splits;
-  curve_range const* ranges;
-  std::uint32_t const* numbers;
-  id const* ids;  ///< of triangles, in order
+/// Sets what is in the boxes of a node, and where it is: its boxes come later.
+struct node_links {
   tree_node* nodes;
-  std::uint32_t* slots;  ///< of triangles, in order: eight times the number of a node, and which of its boxes
+  std::uint32_t number;
 
-  COLLIDE_HD void operator()(std::size_t i) const {
-    if (numbers[i] == no_id) return;
-    curve_range parts[tree_node::width];
-    std::uint32_t const n = divide(static_cast<id>(i), parts), number = numbers[i];
+  /// Box `k` is of a node.
+  COLLIDE_HD_INLINE void set_node(std::uint32_t k, std::uint32_t child) const {
+    nodes[number].child[k] = child;
+    nodes[child].parent = number;
+    nodes[child].slot = k;
+  }
+
+  /// There are `n` boxes. The root has nothing above it.
+  COLLIDE_HD_INLINE void finish(std::uint32_t n) const {
     tree_node& node = nodes[number];
-    for (std::uint32_t k = 0; k < tree_node::width; ++k) {
+    for (std::uint32_t k = n; k < tree_node::width; ++k)
       node.set(static_cast<int>(k), aabb<float>::empty(), tree_node::leaf);
-      if (k >= n) continue;
-      curve_range const part = parts[k];
-      if (part.size() == 1) {
-        node.child[k] = ids[part.first] | tree_node::leaf;
-        slots[part.first] = tree_node::width * number + k;
-      } else {
-        std::uint32_t const child = node.child[k] = numbers[splits.split_of(part)];
-        nodes[child].parent = number;
-        nodes[child].slot = k;
-      }
-    }
     node.there = (1u << n) - 1;
     node.continues = node.arrived = 0;
     if (number == 0) node.parent = node.slot = 0;
   }
+};
 
- private:
-  /// What is in the boxes of a node: triangles, and ranges that are nodes.
-  COLLIDE_HD std::uint32_t divide(id split, curve_range (&parts)[tree_node::width]) const {
-    curve_range const whole = ranges[split];
-    std::uint32_t n = 0;
-    if (whole.size() <= tree_node::width) {
-      for (id t = whole.first; t <= whole.last; ++t) parts[n++] = {t, t};
-      return n;
-    }
-    parts[n++] = {whole.first, split};
-    parts[n++] = {split + 1, whole.last};
+/// Kernel functor of `for_each` over splits: the nodes above groups.
+struct link_nodes {
+  curve_groups groups;
+  curve_splits splits;
+  curve_range const* ranges;
+  std::uint32_t const* numbers;
+  tree_node* nodes;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (numbers[i] == no_id) return;
+    auto const split = static_cast<id>(i);
+    curve_range parts[tree_node::width] = {{ranges[i].first, split}, {split + 1, ranges[i].last}};
+    std::uint32_t n = 2;
     for (int level = 1; level < 3; ++level) {
       for (std::uint32_t k = n; k-- != 0;) {
         curve_range const part = parts[k];
         if (part.size() == 1) continue;
         id const at = splits.split_of(part);
-        if (numbers[at] != no_id) continue;
         parts[k] = {part.first, at};
         parts[n++] = {at + 1, part.last};
       }
     }
-    return n;
+    node_links const links{nodes, numbers[i]};
+    for (std::uint32_t k = 0; k < n; ++k)
+      links.set_node(k, parts[k].size() == 1 ? groups.node_of(parts[k].first) : numbers[splits.split_of(parts[k])]);
+    links.finish(n);
+  }
+};
+
+/// Kernel functor of `for_each` over groups: the nodes of a group, and of its triangles.
+struct divide_groups {
+  curve_groups groups;
+  curve_places triangles;
+  id const* ids;     ///< of triangles, in order
+  id const* firsts;  ///< of groups
+  tree_node* nodes;
+  std::uint32_t* slots;  ///< of triangles, in order: eight times the number of a node, and which of its boxes
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const group = static_cast<id>(i);
+    id const end = firsts[i + 1];
+    id at = firsts[i];
+    std::uint32_t const own = groups.node_of(group), parts = (end - at + most - 1) / most;
+    if (parts == 1) {
+      set_triangles(own, at, end);
+      return;
+    }
+    std::uint32_t part = groups.first_part_of(group, at);
+    node_links const links{nodes, own};
+    for (std::uint32_t k = 0; k < parts; ++k, ++part) {
+      id const left = parts - 1 - k;  // as many of the parts are to come
+      id const next =
+          left == 0 ? end : triangles.best_cut(at + 1 + room(end - at - 1, left), min(at + most, end - left));
+      links.set_node(k, part);
+      set_triangles(part, at, next);
+      at = next;
+    }
+    links.finish(parts);
+  }
+
+ private:
+  static constexpr id most = tree_node::width;
+
+  /// How many of `n` triangles have no room in so many parts.
+  static COLLIDE_HD_INLINE id room(id n, id parts) { return n > parts * most ? n - parts * most : 0; }
+
+  COLLIDE_HD_INLINE void set_triangles(std::uint32_t number, id first, id end) const {
+    for (id t = first; t < end; ++t) {
+      nodes[number].child[t - first] = ids[t] | tree_node::leaf;
+      slots[t] = tree_node::width * number + (t - first);
+    }
+    node_links{nodes, number}.finish(end - first);
   }
 };
 
@@ -190,30 +273,27 @@ struct fit_boxes {
 template <class S>
 class radix_tree {
  public:
-  /// The most nodes of a tree. Those of triangles have two at least, and where they have two the others are not more
-  /// than a third of them.
-  static std::size_t most_nodes(std::size_t triangles) { return triangles / 3 * 2 + 3; }
-
   /// O(triangles).
   template <class Space>
   void build(Space& space, mesh_view<S> const& mesh, buffer<tree_node>& memory) {
-    std::size_t const n = mesh.size();
-    if (n == 0) return;
+    if (mesh.size() == 0) return;
     order_.sort(space, mesh);
-    curve_splits const splits{order_.places(), static_cast<id>(n)};
-    auto* const nodes = memory.reserve(space.resource(), most_nodes(n));
-    auto* const ranges = ranges_.reserve(space.resource(), n);
-    auto* const numbers = numbers_.reserve(space.resource(), n + 1);  // and how many there are
-    auto* const slots = slots_.reserve(space.resource(), n);
-    space.fill(numbers + n, 0, sizeof *numbers);
-    if (n == 1) {
-      space.fill(ranges, 0, sizeof *ranges);
-    } else {
-      space.for_each(n - 1, find_ranges{splits, ranges});
+    curve_places const triangles{order_.places()};
+    curve_groups const groups(mesh.size());
+    auto* const nodes = memory.reserve(space.resource(), groups.nodes());
+    auto* const slots = slots_.reserve(space.resource(), mesh.size());
+    auto* const firsts = firsts_.reserve(space.resource(), groups.count + 1);
+    auto* const places = places_.reserve(space.resource(), groups.count);
+    space.for_each(groups.count + 1, cut_groups{groups, triangles, firsts, places});
+    space.for_each(groups.count, divide_groups{groups, triangles, order_.ids(), firsts, nodes, slots});
+    if (id const count = groups.count - 1; count != 0) {
+      curve_splits const splits{{places}, groups.count};
+      auto* const ranges = ranges_.reserve(space.resource(), count);
+      auto* const numbers = numbers_.reserve(space.resource(), count);
+      space.for_each(count, find_ranges{splits, ranges});
+      space.for_each(count, number_nodes{splits, ranges, numbers});
+      space.for_each(count, link_nodes{groups, splits, ranges, numbers, nodes});
     }
-    std::size_t const count = n == 1 ? 1 : n - 1;
-    space.for_each(count, number_nodes{splits, ranges, numbers, numbers + n});
-    space.for_each(count, link_nodes{splits, ranges, numbers, order_.ids(), nodes, slots});
     refit(space, mesh, memory);
   }
 
@@ -225,8 +305,17 @@ class radix_tree {
     space.for_each(mesh.size(), fit_boxes<S>{mesh, order_.ids(), slots_.data(), memory.data()});
   }
 
+  /// The numbers of points in the order of a curve. O(points).
+  template <class Space>
+  id const* order_of(Space& space, sphere_view<S> const& spheres) {
+    return points_.sort(space, spheres, order_.summary());
+  }
+
  private:
   curve_order<S> order_;
+  point_order<S> points_;
+  buffer<id> firsts_;
+  buffer<std::uint64_t> places_;
   buffer<curve_range> ranges_;
   buffer<std::uint32_t> numbers_, slots_;
 };

@@ -165,36 +165,35 @@ struct tree_ref {
       std::uint32_t node, boxes;  ///< those still to be looked into
       std::uint32_t nearest;      ///< the least key of these
     };
-    level stack[most_tree_levels];
-    stack[0] = {0, 0xff, 0};
-    std::uint32_t most = tree_node::key_of(bound);
-    for (int top = 0; top >= 0;) {
-      level& here = stack[top];
-      if (here.nearest > most) {
-        --top;
-        continue;
-      }
-      tree_node const& node = nodes[here.node];
-      std::uint32_t keys[tree_node::width], left = here.boxes & node.there;
-      multiversioned([&] { node.find_keys(p, left, keys); });
+    level above[most_tree_levels], here;
+    std::uint32_t keys[tree_node::width], most = tree_node::key_of(bound);
+    auto const enter = [&](std::uint32_t node, std::uint32_t boxes) {
+      here = {node, boxes & nodes[node].there, 0};
+      multiversioned([&] { nodes[node].find_keys(p, here.boxes, keys); });
+    };
+    enter(0, 0xff);
+    for (int levels = 0;;) {
+      // threads of a warp come to their triangles at different times, and look at them at the same
+      std::uint32_t child;
       for (;;) {
         std::uint32_t const key = tree_node::least(keys), k = key % tree_node::width;
-        if (key > most) {
-          --top;
-          break;
+        level next{0, 0xff, 0};
+        if (key <= most) {
+          next.node = child = nodes[here.node].child[k];
+          tree_node::remove(keys, key);
+          here.boxes &= ~(1u << k);
+          if ((child & tree_node::leaf) != 0) break;
+          here.nearest = tree_node::least(keys);
+          if (here.nearest <= most) above[levels++] = here;
+        } else {
+          do {
+            if (levels == 0) return;
+            next = above[--levels];
+          } while (next.nearest > most);
         }
-        tree_node::remove(keys, key);
-        left &= ~(1u << k);
-        std::uint32_t const child = node.child[k];
-        if ((child & tree_node::leaf) != 0) {
-          most = tree_node::key_of(f(child & ~tree_node::leaf));
-          continue;
-        }
-        here.boxes = left;
-        here.nearest = tree_node::least(keys);
-        stack[++top] = {child, 0xff, key};
-        break;
+        enter(next.node, next.boxes);
       }
+      most = tree_node::key_of(f(child & ~tree_node::leaf));
     }
   }
 
