@@ -59,12 +59,19 @@ struct tree_policy {
     }
 
     /// An order of many points in which neighbours search the same nodes; null where the one that they have will do.
-    template <class Space>
-    id const* search_order([[maybe_unused]] Space& space, [[maybe_unused]] sphere_view<S> const& spheres) {
+    template <class Space, class Spheres>
+    id const* search_order([[maybe_unused]] Space& space, [[maybe_unused]] Spheres const& spheres) {
       if constexpr (!bvh_tuning<Space>::divides_by_area) {
-        if (spheres.size() >= bvh_tuning<Space>::least_sorted_points) return radix_.order_of(space, spheres);
+        if (spheres.size() >= bvh_tuning<Space>::least_sorted_points)
+          return points_.sort(space, spheres, radix_.summary());
       }
       return nullptr;
+    }
+    template <class Space>
+    void reserve([[maybe_unused]] Space& space, [[maybe_unused]] std::size_t spheres) {
+      if constexpr (!bvh_tuning<Space>::divides_by_area) {
+        if (spheres >= bvh_tuning<Space>::least_sorted_points) points_.reserve(space, spheres);
+      }
     }
 
     tree_ref<S> ref() const { return {mesh_, has_tree_ ? nodes_.data() : nullptr, before_}; }
@@ -76,6 +83,7 @@ struct tree_policy {
     buffer<tree_node> nodes_;
     sah_tree<S> divided_;
     radix_tree<S> radix_;
+    point_order points_;
     winding_tree<S> windings_;
   };
 };

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include <collide/detail/execution/launch.hpp>
+#include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/memory.hpp>
 #if defined(__CUDACC__)
@@ -72,11 +73,15 @@ struct find_places {
 /// Numbers and their places on the curve, which are sorted.
 class curve_sort {
  public:
+  /// Makes room for `n` numbers.
   template <class Space>
   void reserve(Space& space, std::size_t n) {
     n_ = n;
     places_.reserve(space.resource(), 2 * n);
     ids_.reserve(space.resource(), 2 * n);
+#if defined(__CUDACC__)
+    if constexpr (!Space::host_accessible) scratch_.reserve(space.resource(), bytes_to_sort_on_device(n));
+#endif
   }
 
   /// To be sorted,
@@ -97,7 +102,7 @@ class curve_sort {
       std::transform(ids_to, ids_to + n_, to, [&](id t) { return from[t]; });
     } else {
 #if defined(__CUDACC__)
-      sort_ids_on_device(space.stream(), space.resource(), from, to, ids, ids_to, n_, bits, scratch_);
+      sort_ids_on_device(space.stream(), from, to, ids, ids_to, n_, bits, scratch_.data());
 #else
       throw error("collide: bvh: triangles in memory of a device are sorted where nvcc compiles the program");
 #endif
@@ -140,18 +145,18 @@ class curve_order {
   curve_sort sort_;
 };
 
-/// Kernel functor of `for_each` over points: where each is on a curve through a cube three times as wide as the mesh.
-template <class S>
+/// Kernel functor of `for_each` over spheres: where each is on a curve through a cube three times as wide as the mesh.
+template <class S, class Spheres>
 struct find_places_of_points {
   static constexpr int bits = 10;  ///< of a coordinate
 
-  sphere_view<S> spheres;
+  Spheres spheres;
   mesh_statistics<S> const* mesh;
   std::uint64_t* places;
   id* ids;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    vec3<S> const p = spheres[i].centre;
+    vec3<S> const p = swept_bounding_sphere(spheres[i]).centre;
     S extent = 0;
     for (int k = 0; k < 3; ++k) extent = max(extent, mesh->upper_of(k) / 2 - mesh->lower_of(k) / 2);
     std::uint32_t x[3];
@@ -164,16 +169,21 @@ struct find_places_of_points {
   }
 };
 
-/// Sorts points along the curve.
-template <class S>
+/// Sorts spheres along the curve.
 class point_order {
  public:
-  /// The numbers of points in order. O(points).
   template <class Space>
-  id const* sort(Space& space, sphere_view<S> const& spheres, mesh_statistics<S> const* mesh) {
+  void reserve(Space& space, std::size_t n) {
+    sort_.reserve(space, n);
+  }
+
+  /// Their numbers in order. O(spheres).
+  template <class Space, class Spheres, class S>
+  id const* sort(Space& space, Spheres const& spheres, mesh_statistics<S> const* mesh) {
+    using find_places = find_places_of_points<S, Spheres>;
     sort_.reserve(space, spheres.size());
-    space.for_each(spheres.size(), find_places_of_points<S>{spheres, mesh, sort_.places(), sort_.ids()});
-    sort_.sort(space, 3 * find_places_of_points<S>::bits);
+    space.for_each(spheres.size(), find_places{spheres, mesh, sort_.places(), sort_.ids()});
+    sort_.sort(space, 3 * find_places::bits);
     return sort_.ids_in_order();
   }
 

@@ -305,15 +305,11 @@ class radix_tree {
     space.for_each(mesh.size(), fit_boxes<S>{mesh, order_.ids(), slots_.data(), memory.data()});
   }
 
-  /// The numbers of points in the order of a curve. O(points).
-  template <class Space>
-  id const* order_of(Space& space, sphere_view<S> const& spheres) {
-    return points_.sort(space, spheres, order_.summary());
-  }
+  /// Statistics of the mesh, in memory of the space.
+  mesh_statistics<S> const* summary() const { return order_.summary(); }
 
  private:
   curve_order<S> order_;
-  point_order<S> points_;
   buffer<id> firsts_;
   buffer<std::uint64_t> places_;
   buffer<curve_range> ranges_;
