@@ -59,8 +59,8 @@ struct tree_policy {
     }
 
     /// An order of many points in which neighbours search the same nodes; null where the one that they have will do.
-    template <class Space, class Spheres>
-    id const* search_order([[maybe_unused]] Space& space, [[maybe_unused]] Spheres const& spheres) {
+    template <class Space>
+    id const* search_order([[maybe_unused]] Space& space, [[maybe_unused]] sphere_view<S> const& spheres) {
       if constexpr (!bvh_tuning<Space>::divides_by_area) {
         if (spheres.size() >= bvh_tuning<Space>::least_sorted_points)
           return points_.sort(space, spheres, radix_.summary());
@@ -83,7 +83,7 @@ struct tree_policy {
     buffer<tree_node> nodes_;
     sah_tree<S> divided_;
     radix_tree<S> radix_;
-    point_order points_;
+    point_order<S> points_;
     winding_tree<S> windings_;
   };
 };

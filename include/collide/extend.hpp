@@ -223,21 +223,13 @@ struct per_sphere {
     void prepare(Space&, per_sphere const&, RadiusOrSpheres const&) {}
 
     template <class NarrowPhase, class Space, class Output>
-    void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
+    void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) const {
       using ref_type = decltype(index_.ref());
       using shared = detail::per_sphere_query<S, NarrowPhase, Output, ref_type>;
       using batched = detail::batched_per_sphere_query<S, NarrowPhase, Output, ref_type>;
       constexpr bool batches = Space::host_accessible && Space::template block<batched>::num_threads == 1;
-      if constexpr (batches) {
-        batched const kernel{{mesh_, spheres, output}, index_.ref()};
-        space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);
-      } else {
-        id const* order = nullptr;
-        if constexpr (detail::is_valid<detail::index_search_order, policy_index, Space, decltype(spheres)>)
-          order = index_.search_order(space, spheres);
-        shared const kernel{{mesh_, spheres, output}, index_.ref(), order};
-        space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);
-      }
+      std::conditional_t<batches, batched, shared> const kernel{{mesh_, spheres, output}, index_.ref()};
+      space.launch(detail::grid_size<Space>(spheres.size(), kernel), kernel);
     }
 
     /// The triangles near a single sphere, for a kernel of a simulation; valid until the next build.
@@ -252,8 +244,8 @@ struct per_sphere {
     }
 
     /// An order in which points search faster, or null, if the policy has one, and room for it.
-    template <class Space, class Spheres, class Index = policy_index>
-    auto search_order(Space& space, Spheres const& spheres)
+    template <class Space, class Index = policy_index>
+    auto search_order(Space& space, sphere_view<S> const& spheres)
         -> decltype(std::declval<Index&>().search_order(space, spheres)) {
       return index_.search_order(space, spheres);
     }

@@ -102,7 +102,6 @@ struct per_sphere_query {
 
   candidate_pipeline<S, NarrowPhase, Output> pipeline;
   Ref ref;
-  id const* order;  ///< of the spheres, or null
 
   template <class Block>
   struct scratch {
@@ -125,7 +124,7 @@ struct per_sphere_query {
         progress& p = own[thread_rank];
         std::size_t const first = base + static_cast<std::size_t>(thread_rank);
         for (std::uint32_t room = items_per_thread; room != 0 && p.k < Block::items;) {
-          std::size_t const i = number_of(first + static_cast<std::size_t>(p.k) * Block::num_threads);
+          std::size_t const i = first + static_cast<std::size_t>(p.k) * Block::num_threads;
           auto const sphere = pipeline.spheres[i];
           bool const more = next_candidates(ref, sphere, p.at, room, [&](id t) {
             pipeline.push(block, s.pipeline, {static_cast<id>(i), t}, sphere);
@@ -160,10 +159,8 @@ struct per_sphere_query {
       p.k = all;
       return;
     }
-    p.at = begin_candidates(ref, swept_bounding_sphere(pipeline.spheres[number_of(i)]));
+    p.at = begin_candidates(ref, swept_bounding_sphere(pipeline.spheres[i]));
   }
-
-  COLLIDE_HD_INLINE std::size_t number_of(std::size_t i) const { return order != nullptr ? order[i] : i; }
 };
 
 /// Kernel functor of a host, for blocks of one thread: candidates are decided many at a time, in the lanes of the

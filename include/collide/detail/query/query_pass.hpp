@@ -74,9 +74,9 @@ template <class Index, class S>
 using index_for_each_on_ray = decltype(std::declval<Index const&>().ref().for_each_on_ray(
     std::declval<vec3<S> const&>(), std::declval<bool (&)(id)>()));
 
-template <class Index, class Space, class Spheres>
+template <class Index, class Space, class S>
 using index_search_order =
-    decltype(std::declval<Index&>().search_order(std::declval<Space&>(), std::declval<Spheres const&>()));
+    decltype(std::declval<Index&>().search_order(std::declval<Space&>(), std::declval<sphere_view<S> const&>()));
 
 template <class Index, class NarrowPhase, class Space, class Spheres>
 using index_expected_hits = decltype(std::declval<Index&>().template expected_hits<NarrowPhase>(
@@ -137,7 +137,7 @@ void query_pass<Index, NarrowPhase, Space, S>::search(F const& f) const {
   using ref_type = decltype(index.ref());
   ref_type const ref = mesh.size() != 0 ? index.ref() : ref_type{};
   id const* order = nullptr;
-  if constexpr (is_valid<index_search_order, Index, Space, sphere_view<S>>) {
+  if constexpr (is_valid<index_search_order, Index, Space, S>) {
     if (mesh.size() != 0) order = index.search_order(space, spheres);
   }
   space.for_each(spheres.size(), search_of_sphere<S, ref_type, F>{ref, mesh, spheres, f, order});

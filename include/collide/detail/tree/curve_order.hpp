@@ -7,7 +7,6 @@
 #include <cstdint>
 
 #include <collide/detail/execution/launch.hpp>
-#include <collide/detail/geometry/swept_bounds.hpp>
 #include <collide/detail/grid/mesh_statistics.hpp>
 #include <collide/memory.hpp>
 #if defined(__CUDACC__)
@@ -145,18 +144,18 @@ class curve_order {
   curve_sort sort_;
 };
 
-/// Kernel functor of `for_each` over spheres: where each is on a curve through a cube three times as wide as the mesh.
-template <class S, class Spheres>
+/// Kernel functor of `for_each` over points: where each is on a curve through a cube three times as wide as the mesh.
+template <class S>
 struct find_places_of_points {
   static constexpr int bits = 10;  ///< of a coordinate
 
-  Spheres spheres;
+  sphere_view<S> points;
   mesh_statistics<S> const* mesh;
   std::uint64_t* places;
   id* ids;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    vec3<S> const p = swept_bounding_sphere(spheres[i]).centre;
+    vec3<S> const p = points[i].centre;
     S extent = 0;
     for (int k = 0; k < 3; ++k) extent = max(extent, mesh->upper_of(k) / 2 - mesh->lower_of(k) / 2);
     std::uint32_t x[3];
@@ -169,7 +168,8 @@ struct find_places_of_points {
   }
 };
 
-/// Sorts spheres along the curve.
+/// Sorts points along the curve.
+template <class S>
 class point_order {
  public:
   template <class Space>
@@ -177,13 +177,12 @@ class point_order {
     sort_.reserve(space, n);
   }
 
-  /// Their numbers in order. O(spheres).
-  template <class Space, class Spheres, class S>
-  id const* sort(Space& space, Spheres const& spheres, mesh_statistics<S> const* mesh) {
-    using find_places = find_places_of_points<S, Spheres>;
-    sort_.reserve(space, spheres.size());
-    space.for_each(spheres.size(), find_places{spheres, mesh, sort_.places(), sort_.ids()});
-    sort_.sort(space, 3 * find_places::bits);
+  /// Their numbers in order. O(points).
+  template <class Space>
+  id const* sort(Space& space, sphere_view<S> const& points, mesh_statistics<S> const* mesh) {
+    sort_.reserve(space, points.size());
+    space.for_each(points.size(), find_places_of_points<S>{points, mesh, sort_.places(), sort_.ids()});
+    sort_.sort(space, 3 * find_places_of_points<S>::bits);
     return sort_.ids_in_order();
   }
 
