@@ -93,11 +93,14 @@ struct tree_policy {
 /// Broad phase: a tree of boxes around the triangles, eight to a node, in float, rounded outward. For meshes that a
 /// grid does not suit: long thin triangles, a few that are very large beside many small ones, spheres of very different
 /// sizes; and to find the nearest triangle. The host divides the triangles by the surface area heuristic, O(n log n),
-/// long thin ones in up to 64 pieces; devices sort them along Hilbert's curve, O(n). Query O(spheres * (log(triangles)
-/// + candidates)). `detector::refit` lets the tree of a mesh that deforms stay as it is. Memory: at most 72 bytes for
-/// each triangle on a device, 110 on the host; where triangles are cut 210 for each piece, of which there are at most 4
-/// for each triangle, or 2^18 more than triangles in small meshes; there is no budget for that, as `bucket` has one;
-/// with `winding_number` 61 more. A mesh has fewer than 2^31 triangles, on the host fewer than 2^29.
+/// long thin ones in up to 64 pieces; devices sort them along Hilbert's curve and make a radix tree of groups of them,
+/// O(n). Query O(spheres * (log(triangles) + candidates)). `detector::refit` lets the tree of a mesh that deforms stay
+/// as it is. On a device 2^18 points or more that search, for `nearest` and others, are put in order first.
+///
+/// Memory: at most 100 bytes for each triangle on a device, and 40 for each point that is put in order; 110 for each
+/// triangle on the host; where triangles are cut 210 for each piece, of which there are at most 4 for each triangle, or
+/// 2^18 more than triangles in small meshes; there is no budget for that, as `bucket` has one; with `winding_number` 61
+/// more. A mesh has fewer than 2^29 triangles.
 struct bvh : per_sphere<detail::tree_policy> {};
 
 }  // namespace collide

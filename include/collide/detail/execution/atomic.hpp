@@ -90,7 +90,7 @@ COLLIDE_HD_INLINE void fetch_max(U* target, U value) {
 #endif
 }
 
-/// What this thread wrote before is seen by those that see what it writes, or adds atomically, afterwards.
+/// Orders memory: who sees what this thread writes, or adds atomically, afterwards, sees what it wrote before.
 COLLIDE_HD_INLINE void thread_fence() {
 #if defined(__CUDA_ARCH__)
   __threadfence();

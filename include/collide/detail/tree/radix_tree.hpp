@@ -19,7 +19,7 @@
 
 namespace collide::detail {
 
-/// Places that rise, and how much of them neighbours have in common.
+/// Places along the curve, in order.
 struct curve_places {
   std::uint64_t const* places;
 
@@ -42,10 +42,10 @@ struct curve_places {
   }
 };
 
-/// Triangles in order, in groups; and the numbers of nodes: those above groups first, then one for each group, then
+/// Groups of triangles, and the numbers of nodes: those above groups first, then one for each group, then
 /// those that have nothing but triangles.
 struct curve_groups {
-  static constexpr id size = 32;  ///< of a group, about: at least 1, at most twice as much less one
+  static constexpr id size = 32;  ///< of a group, about: from 1 to twice as much less one
 
   id triangles, count;
 
