@@ -29,7 +29,7 @@ struct curve_places {
     return differ != 0 ? leading_zeros(differ) : 64 + leading_zeros(i ^ j);
   }
 
-  /// Where to cut what lies between: before `from` at the earliest, before `to` at the latest.
+  /// The best cut between two: before the one that has the least in common with the one before, from `from` to `to`.
   COLLIDE_HD_INLINE id best_cut(id from, id to) const {
     id best = from;
     int least = common(from - 1, from);
@@ -54,7 +54,7 @@ struct curve_groups {
 
   std::size_t nodes() const { return std::size_t{3} * count + triangles / tree_node::width; }
   COLLIDE_HD_INLINE std::uint32_t node_of(id group) const { return count == 1 ? 0 : count + group; }
-  /// Of a group that begins with triangle `first`; there is room for one node more than full ones would be.
+  /// The first node of triangles of a group that begins with `first`: there is room for one more than full ones.
   COLLIDE_HD_INLINE std::uint32_t first_part_of(id group, id first) const {
     return 2 * count + group + first / tree_node::width;
   }
@@ -87,7 +87,7 @@ struct curve_range {
   COLLIDE_HD_INLINE id size() const { return last - first + 1; }
 };
 
-/// Where ranges of groups are divided, and what they are a part of. Split `i` lies between the groups `i` and `i + 1`;
+/// Splits of ranges of groups, and what ranges are a part of. Split `i` lies between the groups `i` and `i + 1`;
 /// each is of one range.
 struct curve_splits {
   curve_places groups;
