@@ -1,7 +1,7 @@
 /// make_rows FOLDER FILE...: writes the rows of the mutation check: those of files with the columns of tests/data, and
-/// cases next to contact; and four triangles each, of which it is hard to tell which is nearest to a point, or on which
-/// side of them that is. The rows of names that end in f32.csv are rows of floats, and all are rows of doubles. The
-/// verdicts, distances and depths are the oracle's.
+/// cases next to contact; four triangles each, of which it is hard to tell which is nearest to a point, or on which
+/// side of them that is; and pairs of triangles, which meet or do not. The rows of names that end in f32.csv are rows
+/// of floats, and all are rows of doubles. The verdicts, distances and depths are the oracle's.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -172,6 +172,28 @@ class nearest_writer {
   }
 };
 
+/// Two triangles with corners on a small lattice, many of them in one plane or with corners in common.
+void write_pairs(std::string const& folder) {
+  std::ofstream file(tests::path_of_pairs(folder), std::ios::binary);
+  tests::dice roll(66);
+  for (int i = 0; i < 6000; ++i) {
+    int const depth = i % 3 == 0 ? 0 : 1, width = 1 + i % 2;
+    auto const point = [&]() -> oracle::point {
+      return {double(roll.integer(-width, width)), double(roll.integer(-width, width)),
+              double(roll.integer(-depth, depth))};
+    };
+    oracle::triangle const t[] = {{point(), point(), point()}, {point(), point(), point()}};
+    tests::pair_row r{};
+    std::size_t n = 0;
+    for (auto const& own : t)
+      for (auto const& q : {own.a, own.b, own.c})
+        for (double const x : {q.x, q.y, q.z}) r.numbers[n++] = x;
+    r.meet = oracle::meet(t[0], t[1]) ? 1 : 0;
+    file.write(reinterpret_cast<char const*>(&r), sizeof r);
+  }
+  if (!file.flush()) throw std::runtime_error("cannot write the rows");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -189,6 +211,7 @@ int main(int argc, char** argv) {
   }
   each_near_contact<float>(add_both);
   each_near_contact<double>(add_double);
+  write_pairs(argv[1]);
   nearest_writer<float>(argv[1], 64).add_all();
   nearest_writer<double>(argv[1], 65).add_all();
   floats.close();

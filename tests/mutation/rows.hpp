@@ -45,6 +45,15 @@ struct nearest_row {
   collide::vec3<S> at(std::size_t i) const { return {numbers[i], numbers[i + 1], numbers[i + 2]}; }
 };
 
+/// Two triangles.
+struct pair_row {
+  std::array<double, 18> numbers;
+  int meet;  ///< as `oracle::meet` has it
+
+  collide::triangle<double> triangle(std::size_t i) const { return {at(9 * i), at(9 * i + 3), at(9 * i + 6)}; }
+  collide::vec3<double> at(std::size_t i) const { return {numbers[i], numbers[i + 1], numbers[i + 2]}; }
+};
+
 /// The file of the rows of `S`.
 template <class S>
 std::string path_of(std::string const& folder) {
@@ -54,6 +63,8 @@ template <class S>
 std::string path_of_nearest(std::string const& folder) {
   return path_of<S>(folder) + ".nearest";
 }
+
+inline std::string path_of_pairs(std::string const& folder) { return folder + "/rows.pairs"; }
 
 template <class Row>
 std::vector<Row> read_all(std::string const& path) {

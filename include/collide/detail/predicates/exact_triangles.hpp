@@ -18,6 +18,7 @@ class seen_triangle {
  public:
   seen_triangle(triangle<double> const& t, std::array<std::uint32_t, 3> const& vertices)
       : corners_{{t.a, t.b, t.c}}, vertices_{vertices} {
+    // guard: pair-axis
     do {
       turn_ = side(t.a, t.b, t.c);
     } while (turn_ == 0 && ++axis_ < 3);
@@ -31,6 +32,7 @@ class seen_triangle {
   static bool meet(seen_triangle const& s, seen_triangle const& t) {
     int shared = 0;
     for (unsigned i = 0; i < 3; ++i) shared += t.shares(s, i) ? 1 : 0;
+    // guard: pair-same
     if (shared == 3) return true;
     heights const of_s = t.heights_of(s);
     if (std::abs(of_s[0] + of_s[1] + of_s[2]) == 3 - shared) return false;
@@ -79,9 +81,11 @@ class seen_triangle {
     unsigned const p_at = corner_of(other, i), q_at = corner_of(other, next(i));
     bool const in_plane = h[i] == 0 && h[next(i)] == 0;
     if (p_at != 3 || q_at != 3) {
+      // guard: pair-shared-edge, pair-shared-corner
       if (p_at != 3 && q_at != 3) return false;
       return in_plane && begins_inside(p_at != 3 ? p_at : q_at, p_at != 3 ? q : p);
     }
+    // guard: pair-plane, pair-one-side
     if (in_plane) return meets_in_plane(p, q);
     if (h[i] * h[next(i)] > 0) return false;
     bool left = false, right = false;  // how the line goes around the edges of this triangle
@@ -90,17 +94,20 @@ class seen_triangle {
       left = left || turn > 0;
       right = right || turn < 0;
     }
+    // guard: pair-through
     return !(left && right);
   }
 
   /// True if the way from corner k to a point of the plane begins in the triangle or along its edge.
   bool begins_inside(unsigned k, vec3<double> const& to) const {
+    // guard: pair-begins
     return side_of_edge(k, to) >= 0 && side_of_edge(next(next(k)), to) >= 0;
   }
 
   /// True if a segment in the plane meets the triangle: if no line along an edge or the segment is between them.
   bool meets_in_plane(vec3<double> const& p, vec3<double> const& q) const {
     bool left = true, right = true;
+    // guard: pair-along-edge, pair-along-segment
     for (unsigned k = 0; k < 3; ++k) {
       if (side_of_edge(k, p) < 0 && side_of_edge(k, q) < 0) return false;
       int const of_corner = side(p, q, corners_[k]);
