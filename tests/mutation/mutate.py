@@ -240,7 +240,7 @@ MUTATIONS = {
     "measured-face": ('the same, faces', 'nearest', 'plain',
         [('(is_on || mul_rn(height.high, height.high) >= limit)', 'true')]),
     "measured-level": ('a point on a face across an axis', 'nearest', 'plain',
-        [(' & (t.c[k] == point[k])', '')]),
+        [(' && t.c[k] == point[k])', ')')]),
     "pair-axis": ('an axis along which a triangle is seen as one', 'triangles', 'plain',
         [('while (turn_ == 0 && ++axis_ < 3)', 'while (false)')]),
     "pair-same": ('triangles of the same corners overlap', 'triangles', 'plain',

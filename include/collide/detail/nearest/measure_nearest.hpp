@@ -75,7 +75,7 @@ COLLIDE_HD_NOINLINE inline measured_foot measure_foot_exactly(triangle<double> c
 COLLIDE_HD_INLINE bool is_level(triangle<double> const& t, vec3<double> const& point) {
   bool level = false;
   // guard: measured-level
-  for (int k = 0; k < 3; ++k) level |= (t.a[k] == point[k]) & (t.b[k] == point[k]) & (t.c[k] == point[k]);
+  for (int k = 0; k < 3; ++k) level = level || (t.a[k] == point[k] && t.b[k] == point[k] && t.c[k] == point[k]);
   return level;
 }
 
