@@ -28,7 +28,7 @@ namespace collide {
 namespace detail {
 
 /// How many blocks of a kernel a processor should hold at a time, which limits the registers of a thread: its member
-/// `min_blocks_per_sm<Block>`, or 1.
+/// `min_blocks_per_sm<Block>`, or 1. For a functor of `for_each` the block is void.
 template <class Kernel, class Block, class = void>
 inline constexpr int min_blocks_per_sm = 1;
 template <class Kernel, class Block>

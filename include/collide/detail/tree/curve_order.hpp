@@ -1,5 +1,5 @@
 /// \file
-/// Triangles in the order of a curve through space, as devices sort them: alike in every run.
+/// Triangles, and points that look for them, in the order of a curve through space: alike in every run.
 #pragma once
 
 #include <algorithm>
@@ -42,6 +42,23 @@ COLLIDE_HD_INLINE std::uint64_t place_on_curve(std::uint32_t (&x)[3]) {
   return place;
 }
 
+/// The same from parts of the width of the cube, which are limited to 0 and 1.
+template <int Bits, class S>
+COLLIDE_HD_INLINE std::uint64_t place_of_parts(vec3<S> const& parts) {
+  std::uint32_t x[3];
+  for (int k = 0; k < 3; ++k)
+    x[k] = static_cast<std::uint32_t>(static_cast<std::int32_t>(saturate(parts[k]) * S((1 << Bits) - 1)));
+  return place_on_curve<Bits>(x);
+}
+
+/// Half of the largest width of a mesh.
+template <class S>
+COLLIDE_HD_INLINE S half_extent(mesh_statistics<S> const& mesh) {
+  S half = 0;
+  for (int k = 0; k < 3; ++k) half = max(half, mesh.upper_of(k) / 2 - mesh.lower_of(k) / 2);
+  return half;
+}
+
 /// Kernel functor of `for_each` over triangles: where each is on the curve, and its number.
 template <class S>
 struct find_places {
@@ -58,14 +75,11 @@ struct find_places {
     ids[i] = static_cast<id>(i);
     places[i] = none;
     if (box.is_empty()) return;
-    S extent = 0;
-    for (int k = 0; k < 3; ++k) extent = max(extent, summary->upper_of(k) / 2 - summary->lower_of(k) / 2);
-    std::uint32_t x[3];
-    for (int k = 0; k < 3; ++k) {
-      S const part = div_rn((box.lower[k] / 2 + box.upper[k] / 2 - summary->lower_of(k)) / 2, extent);
-      x[k] = static_cast<std::uint32_t>(static_cast<std::int32_t>(saturate(part) * S((1 << bits) - 1)));
-    }
-    places[i] = place_on_curve<bits>(x);
+    S const half = half_extent(*summary);
+    vec3<S> parts;
+    for (int k = 0; k < 3; ++k)
+      parts[k] = div_rn((box.lower[k] / 2 + box.upper[k] / 2 - summary->lower_of(k)) / 2, half);
+    places[i] = place_of_parts<bits>(parts);
   }
 };
 
@@ -156,14 +170,10 @@ struct find_places_of_points {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     vec3<S> const p = points[i].centre;
-    S extent = 0;
-    for (int k = 0; k < 3; ++k) extent = max(extent, mesh->upper_of(k) / 2 - mesh->lower_of(k) / 2);
-    std::uint32_t x[3];
-    for (int k = 0; k < 3; ++k) {
-      S const part = div_rn(p[k] / 2 - mesh->lower_of(k) / 2 + extent, 3 * extent);
-      x[k] = static_cast<std::uint32_t>(static_cast<std::int32_t>(saturate(part) * S((1 << bits) - 1)));
-    }
-    places[i] = place_on_curve<bits>(x);
+    S const half = half_extent(*mesh);
+    vec3<S> parts;
+    for (int k = 0; k < 3; ++k) parts[k] = div_rn(p[k] / 2 - mesh->lower_of(k) / 2 + half, 3 * half);
+    places[i] = place_of_parts<bits>(parts);
     ids[i] = static_cast<id>(i);
   }
 };
