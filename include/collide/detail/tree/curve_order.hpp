@@ -42,7 +42,7 @@ COLLIDE_HD_INLINE std::uint64_t place_on_curve(std::uint32_t (&x)[3]) {
   return place;
 }
 
-/// The same from parts of the width of the cube, which are limited to 0 and 1.
+/// The position of a place given in parts of the width of the cube, which are limited to 0 and 1.
 template <int Bits, class S>
 COLLIDE_HD_INLINE std::uint64_t place_of_parts(vec3<S> const& parts) {
   std::uint32_t x[3];
