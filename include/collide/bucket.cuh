@@ -153,16 +153,19 @@ class bucket::index {
     auto const affords = [&](std::size_t bytes) {
       return options.memory_budget == 0 || bytes <= options.memory_budget;
     };
-    if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_aabb<S>))) {
-      measures_.box_memory.reserve(space.resource(), mesh.size());
-      measures_.has_boxes = true;
-      forget_grids();
-    } else {
-      measures_.box_memory.release();
+    if constexpr (keeps_boxes<Space>) {
+      if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_aabb<S>))) {
+        measures_.box_memory.reserve(space.resource(), mesh.size());
+        measures_.has_boxes = true;
+        forget_grids();
+      } else {
+        measures_.box_memory.release();
+      }
     }
     if (!affords(fixed_bytes)) return measures_.statistics.release();
     auto* const statistics = measures_.clear(space);
-    detail::compute_mesh_statistics<S> const kernel{mesh, statistics, measures_.box_memory.data()};
+    detail::compute_mesh_statistics<S> const kernel{mesh, statistics,
+                                                    measures_.has_boxes ? measures_.box_memory.data() : nullptr};
     space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
   }
 
@@ -236,6 +239,10 @@ class bucket::index {
   /// Up to so many triangles entries have memory for as many as there may be; the device is asked how many there are if
   /// there are more triangles, or several grids.
   static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
+
+  /// True if boxes of triangles are kept. On a device what looks at a triangle once reads the mesh in less time.
+  template <class Space>
+  static constexpr bool keeps_boxes = bucket_tuning<Space>::bins_spheres || detail::serves_steps<Space>;
 
   /// True if spheres can be sorted into the cells: what that takes is not part of a budget.
   template <class Space>
