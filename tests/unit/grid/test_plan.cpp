@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <io/scenes.hpp>
 
 #include <collide/bucket.cuh>
 
@@ -102,5 +103,22 @@ TEST_CASE_TEMPLATE("plan: the grid holds the mesh and the reach, and its cells a
         }
       }
     }
+  }
+}
+
+TEST_CASE("plan: a triangle that one block would enter for long has cells of its own on a device") {
+  for (std::size_t giants : {std::size_t{0}, std::size_t{1}}) {
+    auto const scene = io::giants_scene(giants, 30000, 30000, 0);
+    std::vector<float> const corners(scene.vertices.begin(), scene.vertices.end()),
+        centres(scene.centres.begin(), scene.centres.end());
+    tests::lockstep<8, false> space;
+    collide::bucket::index<float> index;
+    index.build(space, {}, collide::triangle_soup(corners.data(), corners.size() / 9));
+    index.prepare(space, {},
+                  collide::spheres_xyz(centres.data(), centres.size() / 3, static_cast<float>(scene.radius)));
+    auto const made = index.triangle_ref();
+    REQUIRE(made.grid_count == 1);
+    CHECK(made.grids[0].levels == (giants == 0 ? 1 : 2));
+    CHECK(*made.total < 8 * 30000);
   }
 }
