@@ -28,7 +28,7 @@ void check_with(tests::scene<S> const& made, oracle::expectation const& expected
     detector->place(made.spheres, sphere_form::xyz);
     CHECK((detector->count() >= expected.certain.size()));
     // two numbers of 8 bytes are the sink's own, and a list of undecided pairs, where there is one, the detector's
-    std::size_t const list = detector->exact() ? 16 + (1024 + made.spheres.size() / 64) * sizeof(collide::pair) : 0;
+    std::size_t const list = detector->exact() ? 16 + (1024 + made.spheres.size()) * sizeof(collide::pair) : 0;
     if (policy.memory_budget != 0 && c.broad == "bucket")
       CHECK(detector->memory().peak <= policy.memory_budget + 16 + list);
     tests::check_pairs(*detector, expected);
