@@ -30,13 +30,14 @@
 namespace collide {
 
 /// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid/grid.hpp explains how.
-/// Build O(triangles + entries), query O(spheres + candidates). Memory: 8 scalars for each triangle; for each grid
-/// entries of 8 bytes, at most 16 for each triangle (48 where there are fewer spheres) and one for each two spheres,
-/// and cells of 8 bytes, at most 32 for each triangle; several grids only where radii differ by more than a factor
-/// of 4, on a device each but the first for more than two spheres a triangle. The host sorts the spheres instead where
-/// there are many (detail/query/sorted_spheres.hpp): that takes O(triangles + spheres) for a query, 1 scalar per
-/// triangle, about 36 bytes more where triangles that follow each other are far apart, 4 bytes per cell, and about 12
-/// scalars for each sphere in a cell with triangles, 19 if it moves; no entries.
+/// Build O(triangles + entries), query O(spheres + candidates). Memory: 8 scalars for each triangle, but in
+/// `cuda_shared` for simulations only; for each grid entries of 8 bytes, at most 16 for each triangle (48 where there
+/// are fewer spheres) and one for each four spheres, and cells of 8 bytes, at most 32 for each triangle; several grids
+/// only where radii differ by more than a factor of 4, on a device each but the first for more than two spheres a
+/// triangle. The host sorts the spheres instead where there are many (detail/query/sorted_spheres.hpp): that takes
+/// O(triangles + spheres) for a query, 1 scalar per triangle, about 36 bytes more where triangles that follow each
+/// other are far apart, 4 bytes per cell, and about 12 scalars for each sphere in a cell with triangles, 19 if it
+/// moves; no entries.
 struct bucket {
   /// Width of the cells, in the units of the coordinates; 0 lets the library choose, which is nearly always right. The
   /// study's was 4 R. They are wider where triangles would meet too many of them.
@@ -153,12 +154,14 @@ class bucket::index {
     auto const affords = [&](std::size_t bytes) {
       return options.memory_budget == 0 || bytes <= options.memory_budget;
     };
-    if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_aabb<S>))) {
-      measures_.box_memory.reserve(space.resource(), mesh.size());
-      measures_.has_boxes = true;
-      forget_grids();
-    } else {
-      measures_.box_memory.release();
+    if constexpr (keeps_boxes<Space>) {
+      if (affords(fixed_bytes + mesh.size() * sizeof(detail::triangle_aabb<S>))) {
+        measures_.box_memory.reserve(space.resource(), mesh.size());
+        measures_.has_boxes = true;
+        forget_grids();
+      } else {
+        measures_.box_memory.release();
+      }
     }
     if (!affords(fixed_bytes)) return measures_.statistics.release();
     auto* const statistics = measures_.clear(space);
@@ -236,6 +239,12 @@ class bucket::index {
   /// Up to so many triangles entries have memory for as many as there may be; the device is asked how many there are if
   /// there are more triangles, or several grids.
   static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
+
+  /// True if boxes of triangles are kept: a thread that works alone asks them before it reads a triangle, and a
+  /// simulation in each step. Where threads work together to read the mesh again takes less time.
+  template <class Space>
+  static constexpr bool keeps_boxes =
+      Space::template block<detail::compute_mesh_statistics<S>>::num_threads == 1 || detail::serves_steps<Space>;
 
   /// True if spheres can be sorted into the cells: what that takes is not part of a budget.
   template <class Space>

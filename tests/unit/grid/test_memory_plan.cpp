@@ -1,10 +1,16 @@
 /// How many grids and cells a memory budget allows.
 #include <algorithm>
 #include <cstddef>
+#include <memory_resource>
+#include <vector>
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/grid/memory_plan.hpp>
+#include <collide/bucket.cuh>
+
+#include "execution/lockstep.hpp"
+#include "io/counting.hpp"
+#include "random_triangles.hpp"
 
 using collide::detail::memory_plan;
 using collide::detail::table_size;
@@ -51,4 +57,33 @@ TEST_CASE("memory plan: too little memory, or too many triangles for numbers of 
   CHECK(memory_plan::make(1000, 0, 4, false, 1 << 20, 1 << 20).grids == 0);
   CHECK(memory_plan::make(536870911, 0, 1, false, 0, 0).grids == 1);
   CHECK(memory_plan::make(536870912, 0, 1, false, 0, 0).grids == 0);
+}
+
+TEST_CASE("memory plan: what a device holds besides the mesh, the spheres and the pairs") {
+  constexpr std::size_t triangles = 2000, spheres = 200000, cells = std::size_t{1} << 14;
+  auto const corners = tests::random_triangles<float>(triangles, {9, 5, 1}, [](std::size_t, auto const&) { return 1; });
+  std::vector<float> centres;
+  for (std::size_t i = 0; i < 3 * spheres; ++i) centres.push_back(corners[i % corners.size()]);
+  io::counting_resource memory(std::pmr::new_delete_resource());
+  using space = tests::lockstep<64, false>;
+  collide::detector<collide::bucket, collide::karabassi<>, space> detector(space(1, &memory));
+  collide::any_hit touched;
+  auto const run = [&] {
+    detector.build(collide::triangle_soup(corners.data(), triangles));
+    detector.query(collide::spheres_xyz(static_cast<float const*>(centres.data()), spheres, 0.01f), touched);
+  };
+  run();
+  // no boxes; 16 entries for each triangle and one for four spheres; cells; a list of undecided pairs; flags
+  std::size_t const numbers = 16 * triangles + spheres / 4 + 4096 + table_size(cells) + spheres + 1024;
+  CHECK(memory.in_use <= 8 * numbers + spheres + 40000);
+  CHECK(memory.in_use >= 8 * numbers);
+  auto const before = memory.allocations;
+  run();
+  CHECK(memory.allocations == before);
+}
+
+TEST_CASE("memory plan: few spheres do not pay for a cell of each of many triangles") {
+  CHECK(memory_plan::make(10000000, 1 << 20, 1, false, 0, 0).table_bits == 20);
+  CHECK(memory_plan::make(10000000, 1, 1, false, 0, 0).table_bits == 18);
+  CHECK(memory_plan::make(2000000, 2000000, 1, false, 0, 0).table_bits == 21);
 }

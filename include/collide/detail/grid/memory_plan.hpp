@@ -45,15 +45,17 @@ struct memory_plan {
   static memory_plan make(std::size_t triangles, std::size_t spheres, int wanted, bool width_is_given,
                           std::size_t fixed, std::size_t budget) {
     std::uint32_t most_bits = 12;
-    std::size_t const cells =
-        std::max({triangles, std::min(4 * triangles, std::size_t{1} << 18), std::min(spheres / 16, 16 * triangles)});
+    // few spheres do not pay for cells of each of many triangles
+    std::size_t const cells = std::max({std::min(triangles, spheres), std::min(4 * triangles, std::size_t{1} << 18),
+                                        std::min(spheres / 16, 16 * triangles)});
     while (most_bits < 28 && (std::size_t{1} << most_bits) < cells) ++most_bits;
     for (int g = wanted; g > 0; --g) {
       auto const grids = static_cast<std::size_t>(g);
       std::size_t const least = 8 * triangles * grids;
       if (least > most_entries) continue;
-      // the few spheres that use many triangles have, in the end, many pairs
-      std::size_t const chosen = (spheres < triangles ? 48 : 16) * triangles + spheres / 2 + 4096,
+      // the few spheres that use many triangles have, in the end, many pairs; the entries of several grids are counted
+      // before there is memory for them
+      std::size_t const chosen = (spheres < triangles ? 48 : 16) * triangles + spheres / (wanted > 1 ? 2 : 4) + 4096,
                         given = 1024 * triangles + (std::size_t{1} << 21);
       std::size_t const most = std::min((width_is_given ? given : chosen) * grids, most_entries);
       for (std::uint32_t bits = most_bits; bits >= 6; --bits) {
