@@ -233,7 +233,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       part_.check_step(dt);
       mine[1] = 1;
       part_.begin_step(dt);
-      if (sends) exchange_.pack(ranks_, part_);
+      if (sends) exchange_.pack(ranks_, part_, [&] { part_.check_own(); });
     });
     if (sends) failure.attempt([&] { exchange_.send(ranks_, part_); });
     if (!failure.get()) {
@@ -263,7 +263,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
         }
         if (part_.refuses_births(dt)) {
           part_.settle_births(dt);
-          exchange_.pack(ranks_, part_);
+          exchange_.pack(ranks_, part_, [] {});
           exchange_.send(ranks_, part_);
           exchange_.unpack(ranks_, part_);
         }

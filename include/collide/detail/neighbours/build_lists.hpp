@@ -16,7 +16,7 @@ namespace collide::detail {
 
 /// Kernel functor of `for_each` over particles, and places in the order: copies what particles must know of each other,
 /// and asks for new lists if these may lack something: where a particle has come, or has moved too far; or have too
-/// much: where a source has made a particle in place of another.
+/// much: where a source has made a particle in place of another. Not for copies of other ranks' particles.
 template <class S, class Effects>
 struct update_and_check_skin {
   particle_state<S, typename Effects::all> state;
@@ -26,12 +26,21 @@ struct update_and_check_skin {
   using ordered = sorted_particles<S, Effects>;
 
   COLLIDE_HD void operator()(std::size_t i) const {
+    if (!order.is_of_another(state, i)) check_births(i);
+    if (i >= order.header->count) return;
+    id const number = order.numbers[i];
+    if (!order.is_of_another(state, number)) update(i, number);
+  }
+
+ protected:
+  COLLIDE_HD_INLINE void check_births([[maybe_unused]] std::size_t i) const {
     if constexpr (ordered::has_absent) {
       std::uint8_t const mark = state.at(alive{})[i];
       if (mark >= newborn || (mark != 0 && order.known[i] == 0)) order.ask_to_rebuild();
     }
-    if (i >= order.header->count) return;
-    id const number = order.numbers[i];
+  }
+
+  COLLIDE_HD_INLINE void update(std::size_t i, id number) const {
     if constexpr (ordered::has_absent) {
       if (!is_there(number)) return order.deactivate(i);
     }
@@ -48,6 +57,17 @@ struct update_and_check_skin {
 
  private:
   COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(alive{})[number] != 0; }
+};
+
+/// The same, over the copies of other ranks' particles.
+template <class S, class Effects>
+struct update_copies : update_and_check_skin<S, Effects> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::size_t const number = this->state.own + i;
+    this->check_births(number);
+    std::uint32_t const place = this->order.places_of_copies[i];
+    if (place < this->order.header->count) this->update(place, static_cast<id>(number));
+  }
 };
 
 /// Kernel functor of `for_each_if_nonzero` over the table: empties it.
@@ -79,6 +99,7 @@ struct count_or_scatter {
       if constexpr (Fill) order.known[i] = p[alive{}];
       if (p[alive{}] == 0) {
         if constexpr (sorted_particles<S, Effects>::has_memory) order.memory.kept_of[i].count = 0;
+        if constexpr (Fill) order.keep_place(state, i, order.overflow_mark);
         return;
       }
     }
@@ -86,7 +107,10 @@ struct count_or_scatter {
     S own = 0;
     if constexpr (contains<placing, radius>) own = p[radius{}];
     std::uint32_t const slot = fetch_add(order.ends + order.place_in_table(c, own) + 1, 1u);
-    if constexpr (Fill) order.numbers[slot] = static_cast<id>(i);
+    if constexpr (Fill) {
+      order.numbers[slot] = static_cast<id>(i);
+      order.keep_place(state, i, slot);
+    }
   }
 };
 

@@ -30,13 +30,8 @@ struct pair_interaction {
     COLLIDE_HD_INLINE explicit pair_state(interaction const& p) : self(p), changed(p) {}
   };
 
-  /// True at the places of copies of particles of other ranks, which meet their neighbours there.
-  COLLIDE_HD_INLINE bool is_of_another([[maybe_unused]] std::size_t place) const {
-    if constexpr (contains<typename Effects::all, global_number>) {
-      return order.numbers[place] >= state.own;
-    } else {
-      return false;
-    }
+  COLLIDE_HD_INLINE bool is_of_another(std::size_t place) const {
+    return order.is_of_another(state, order.numbers[place]);
   }
 
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {

@@ -93,7 +93,28 @@ struct sorted_particles {
   static constexpr bool has_memory = remembered::size != 0;
   contact_memory_ref<S, remembered> memory;
 
+  std::uint32_t* places_of_copies;  ///< places of copies of other ranks' particles, by numbers
+
   COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
+
+  /// True of the numbers of copies of other ranks' particles, which meet their neighbours there.
+  template <class State>
+  static COLLIDE_HD_INLINE bool is_of_another([[maybe_unused]] State const& state,
+                                              [[maybe_unused]] std::size_t number) {
+    if constexpr (contains<all, global_number>) {
+      return number >= state.own;
+    } else {
+      return false;
+    }
+  }
+
+  /// Keeps the place of a particle, if that is a copy of another rank's.
+  template <class State>
+  COLLIDE_HD_INLINE void keep_place(State const& state, std::size_t number, std::uint32_t place) const {
+    if constexpr (contains<all, global_number>) {
+      if (is_of_another(state, number)) places_of_copies[number - state.own] = place;
+    }
+  }
 
   COLLIDE_HD_INLINE packed_sphere<S> store(std::size_t i, interaction const& p) const {
     vec3<S> const c = inside(p[position{}]);

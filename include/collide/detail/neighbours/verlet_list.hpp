@@ -28,6 +28,7 @@
 #include <vector>
 
 #include <collide/detail/execution/algorithms.hpp>
+#include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/neighbours/births.hpp>
 #include <collide/detail/neighbours/build_lists.hpp>
 #include <collide/detail/neighbours/pair_interaction.hpp>
@@ -59,9 +60,10 @@ class verlet_list {
     contacts_.reserve(resource, n, order::listed, runs_.capacity());
   }
 
-  /// For `n` particles, for which there is room: there are no lists yet.
+  /// For `n` particles, for which there is room, the last `copies` of them other ranks': there are no lists yet.
   template <class Space>
-  void clear(Space& space, std::size_t n, radius_range<S> const& radii) {
+  void clear(Space& space, std::size_t n, radius_range<S> const& radii, std::size_t copies = 0) {
+    make_room(places_of_copies_, space.resource(), copies);
     space.fill(header_.data(), 0, sizeof(list_state));
     fit(space, n, radii);
     if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
@@ -139,19 +141,26 @@ class verlet_list {
   /// Memory taken from the resource.
   std::size_t bytes() const {
     return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
-           references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + contacts_.bytes();
+           references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + places_of_copies_.bytes() +
+           contacts_.bytes();
   }
 
-  /// The first part of `renew`: finds out whether lists are to be made anew for particles where they now are.
+  /// The first part of `renew`: finds out whether lists are to be made anew for particles where they now are, but for
+  /// copies of other ranks', which may not yet be there.
   template <class Space>
   void check(Space& space, state_type const& state, typename Effects::space_type const& around) {
     if (!(around == around_)) space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
     around_ = around;
     listed_ = state.size;
-    // half of the skin, but for rounding
-    space.for_each(state.size, update_and_check_skin<S, Effects>{state, order_of(state), S(0.495) * skin_});
+    space.for_each(state.size, update_and_check_skin<S, Effects>{state, order_of(state), most_moved()});
   }
-  /// After `check`: true if lists are to be made anew. If not, the next `renew` has nothing to do. Waits.
+  /// After `check`: the same for the copies.
+  template <class Space>
+  void check_copies(Space& space, state_type const& state) {
+    if constexpr (contains<typename Effects::all, global_number>)
+      space.for_each(state.size - state.own, update_copies<S, Effects>{{state, order_of(state), most_moved()}});
+  }
+  /// After both: true if lists are to be made anew. If not, the next `renew` has nothing to do. Waits.
   template <class Space>
   bool must_rebuild(Space const& space) {
     are_complete_ = space.read(&header_.data()->rebuild) == 0;
@@ -167,6 +176,7 @@ class verlet_list {
       return;
     }
     check(space, state, around);
+    check_copies(space, state);
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
@@ -247,8 +257,9 @@ class verlet_list {
             known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
             lists_.data(),   state.size,
             runs_.data(),    runs_.capacity(),
-            contacts_.ref()};
+            contacts_.ref(), places_of_copies_.data()};
   }
+  S most_moved() const { return S(0.495) * skin_; }  ///< half of the skin, but for rounding
 
   typename Effects::space_type around_{};
   cells cells_{};
@@ -257,7 +268,7 @@ class verlet_list {
   std::size_t blocks_ = 0, listed_ = 0;  ///< how many particles have lists
   bool are_complete_ = false;            ///< for particles where they are: `check` has just found that
   buffer<list_state> header_;
-  buffer<std::uint32_t> ends_, lists_, runs_;
+  buffer<std::uint32_t> ends_, lists_, runs_, places_of_copies_;
   buffer<id> numbers_;
   buffer<packed_sphere<S>> spheres_;
   buffer<reference<S, contains<typename Effects::all, radius>>> references_;

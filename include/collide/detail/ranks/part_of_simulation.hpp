@@ -153,19 +153,29 @@ class part_of_simulation {
   void begin_step(S dt) {
     simulation_.time_ += static_cast<double>(dt);
     simulation_.begin_step(dt);
-    if (any_pair_contact && knows_others() && !lists_tell_ && own() != 0) look_for_moved();
+  }
+  /// After `begin_step`, while copies are under way: looks for what has moved. Lists of neighbours that are complete
+  /// have all within the skin, so one kernel looks for both, where the skins are the same.
+  void check_own() {
+    if constexpr (any_pair_contact) {
+      if (own() == 0) return;
+      if (lists_tell_) {
+        simulation_.neighbours_.check(space(), with_copies(), around_);
+      } else {
+        look_for_moved();
+      }
+    }
   }
   /// True if there are copies of all that this rank's own particles meet, as long as nothing has moved far. All ranks
   /// know it alike.
   bool knows_others() const { return knows_others_ && effects().space() == around_; }
-  /// After `begin_step`, with copies as they are in this step: true if some may be missing. Lists of neighbours that
-  /// are complete have all within the skin, so one kernel looks for both, where the skins are the same. Waits.
+  /// After `check_own`, with copies as they are in this step: true if some may be missing. Waits.
   template <class Ranks>
   bool has_moved([[maybe_unused]] Ranks const& ranks) {
     if constexpr (any_pair_contact) {
       if (!knows_others()) return true;
       if (own() == 0) return false;
-      if (lists_tell_) simulation_.neighbours_.check(space(), with_copies(), around_);
+      if (lists_tell_) simulation_.neighbours_.check_copies(space(), with_copies());
       wait_for_messages(ranks, space());
       return lists_tell_ ? simulation_.neighbours_.must_rebuild(space()) : space().read(flag_.data()) != 0;
     } else {
@@ -306,7 +316,7 @@ class part_of_simulation {
     make_room(own() + n);
     copies_ = n;
     if constexpr (any_pair_contact) {
-      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_);
+      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_, n);
       lists_tell_ = skin_ > 0 && simulation_.neighbours_.skin() >= skin_;
     }
     around_ = effects().space();
