@@ -35,7 +35,10 @@ class side_stream<Space, std::enable_if_t<std::is_base_of<cuda_space, Space>::va
     if (side_) space.after(side_->mark());
   }
   /// A space that puts its work on the side stream, or the space itself where there is none yet.
-  cuda_space const& of(Space const& space) const { return side_ ? *side_ : space; }
+  cuda_space const& of(Space const& space) const {
+    if (side_) return *side_;
+    return space;
+  }
 
  private:
   /// Kernels that copy, as NCCL's do, go before blocks of a large kernel that has begun.
