@@ -26,10 +26,10 @@ struct update_and_check_skin {
   using ordered = sorted_particles<S, Effects>;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (!order.is_of_another(state, i)) check_births(i);
+    if (!order.is_of_another(i)) check_births(i);
     if (i >= order.header->count) return;
     id const number = order.numbers[i];
-    if (!order.is_of_another(state, number)) update(i, number);
+    if (!order.is_of_another(number)) update(i, number);
   }
 
  protected:
@@ -63,7 +63,7 @@ struct update_and_check_skin {
 template <class S, class Effects>
 struct update_copies : update_and_check_skin<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
-    std::size_t const number = this->state.own + i;
+    std::size_t const number = this->order.own + i;
     this->check_births(number);
     std::uint32_t const place = this->order.places_of_copies[i];
     if (place < this->order.header->count) this->update(place, static_cast<id>(number));
@@ -79,7 +79,7 @@ struct clear_cells {
     order.ends[i] = 0;
     if (i == 0) {
       list_state& h = *order.header;
-      h.overflowed = h.count = h.in_runs = h.kept = 0;
+      h.overflowed = h.count = h.in_runs = h.kept = h.at_border = 0;
     }
   }
 };
@@ -99,7 +99,7 @@ struct count_or_scatter {
       if constexpr (Fill) order.known[i] = p[alive{}];
       if (p[alive{}] == 0) {
         if constexpr (sorted_particles<S, Effects>::has_memory) order.memory.kept_of[i].count = 0;
-        if constexpr (Fill) order.keep_place(state, i, order.overflow_mark);
+        if constexpr (Fill) order.keep_place(i, order.overflow_mark);
         return;
       }
     }
@@ -109,7 +109,7 @@ struct count_or_scatter {
     std::uint32_t const slot = fetch_add(order.ends + order.place_in_table(c, own) + 1, 1u);
     if constexpr (Fill) {
       order.numbers[slot] = static_cast<id>(i);
-      order.keep_place(state, i, slot);
+      order.keep_place(i, slot);
     }
   }
 };
@@ -184,6 +184,7 @@ struct build_lists {
     COLLIDE_NO_UNROLL
     for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];
     if (near.size < room) order.list(near.size, i) = i;
+    mark_border(i, near.places, near.size);
     if constexpr (ordered::has_memory) {
       std::uint32_t touching = 0;
       restore(i, near.places, near.size, [&](std::uint32_t n, auto const& record) {
@@ -191,6 +192,20 @@ struct build_lists {
         touching |= 1u << n;
       });
       order.memory.touching[i] = touching;
+    }
+  }
+
+  /// Keeps whether any on a particle's list is another rank's.
+  COLLIDE_HD_INLINE void mark_border([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t const* places,
+                                     [[maybe_unused]] std::uint32_t size) const {
+    if constexpr (ordered::on_ranks) {
+      bool meets = false;
+      for (std::uint32_t n = 0; n < size; ++n) meets = meets || order.is_of_another(order.numbers[places[n]]);
+      meets = meets && !order.is_of_another(order.numbers[i]);
+      order.is_at_border[i] = meets ? 1 : 0;
+      if (!meets) return;
+      std::uint32_t const k = fetch_add(&order.header->at_border, 1u);
+      if (k < order.border_room) order.border[k] = i;
     }
   }
 

@@ -169,17 +169,23 @@ class part_of_simulation {
   /// True if there are copies of all that this rank's own particles meet, as long as nothing has moved far. All ranks
   /// know it alike.
   bool knows_others() const { return knows_others_ && effects().space() == around_; }
-  /// After `check_own`, with copies as they are in this step: true if some may be missing. Waits.
+  /// After `check_own`: true if copies may be missing. All of those that others have are looked at there. Waits.
   template <class Ranks>
   bool has_moved([[maybe_unused]] Ranks const& ranks) {
     if constexpr (any_pair_contact) {
       if (!knows_others()) return true;
       if (own() == 0) return false;
-      if (lists_tell_) simulation_.neighbours_.check_copies(space(), with_copies());
       wait_for_messages(ranks, space());
       return lists_tell_ ? simulation_.neighbours_.must_rebuild(space()) : space().read(flag_.data()) != 0;
     } else {
       return false;
+    }
+  }
+
+  /// Particles meet that need no copies, while those are under way, where that is the same.
+  void meet_inside([[maybe_unused]] S dt) {
+    if constexpr (any_pair_contact && !effects_type::makes) {
+      if (lists_tell_ && own() != 0) simulation_.meet_inside(with_copies(), dt);
     }
   }
 
@@ -335,6 +341,12 @@ class part_of_simulation {
   /// Takes over what is known of all copies.
   void unpack_seen(particle_row<S, seen_columns> const* from) {
     detail::unpack(space(), state(), places_from{own()}, copies_, from);
+  }
+  /// After that, if no copies are missing.
+  void check_copies() {
+    if constexpr (any_pair_contact) {
+      if (lists_tell_ && own() != 0) simulation_.neighbours_.check_copies(space(), with_copies());
+    }
   }
 
  private:

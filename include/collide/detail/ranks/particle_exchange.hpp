@@ -65,13 +65,23 @@ class particle_exchange {
   template <class Ranks>
   void send(Ranks const& ranks, Part& part) {
     by(ranks, part).send(sent_, received_);
+    side_.end(part.space());
+  }
+  /// True if it may be on its way until `receive`.
+  template <class Ranks>
+  bool is_under_way(Ranks const& ranks, Part& part) const {
+    return by(ranks, part).is_under_way();
+  }
+  /// Waits until it is there.
+  template <class Ranks>
+  void receive(Ranks const& ranks, Part& part) const {
+    by(ranks, part).end();
   }
 
   /// Takes over what the others have sent.
   template <class Ranks>
   void unpack(Ranks const& ranks, Part& part) {
     by(ranks, part).unstage(received_);
-    side_.end(part.space());
     part.unpack_seen(received_.data());
   }
 
