@@ -237,35 +237,39 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       if (sends) exchange_.pack(ranks_, part_, [&] { part_.check_own(); });
     });
     if (sends) failure.attempt([&] { exchange_.send(ranks_, part_); });
-    if (!failure.get()) failure.attempt([&] { mine[0] = part_.has_moved(ranks_) ? 1 : 0; });
+    if (!failure.get()) {
+      failure.attempt([&] {
+        if (sends && !exchange_.is_under_way(ranks_, part_)) exchange_.unpack(ranks_, part_);
+        mine[0] = part_.has_moved(ranks_) ? 1 : 0;
+      });
+    }
     failed = failure.get();
     if (failed) mine[0] = 2;
   }
 
-  /// Takes over copies that are under way, of which none is missing. Meanwhile those meet that need none.
+  /// Waits for copies that are under way, of which none is missing. Meanwhile those meet that need none.
   void receive(S dt) {
     detail::first_failure failure;
-    if (exchange_.is_under_way(ranks_, part_)) failure.attempt([&] { part_.meet_inside(dt); });
+    failure.attempt([&] { part_.meet_inside(dt); });
     exchange_.receive(ranks_, part_);
     failure.rethrow();
     exchange_.unpack(ranks_, part_);
-    part_.check_copies();
   }
 
   /// A step, until this rank is done: what went wrong here then. All throw what goes wrong before, or has `failed` here
   /// in the last step.
   std::exception_ptr try_step(S dt, std::exception_ptr failed) {
     std::uint64_t mine[2] = {0, 0}, all[2];  // 1: particles must change ranks, 2: something is wrong; has it begun?
-    bool const sends = any_pair_contact && part_.knows_others();
+    bool const travels = any_pair_contact && part_.knows_others() && exchange_.is_under_way(ranks_, part_);
     begin_step(dt, failed, mine);
     ranks_.reduce(mine, all, 2, reduction::max);
     is_sound_ = is_sound_ && all[1] == 0;
-    if (sends && all[0] != 0) exchange_.receive(ranks_, part_);
+    if (travels && all[0] != 0) exchange_.receive(ranks_, part_);
     if (all[0] == 2) agree(ranks_, failed);
     if (any_pair_contact && all[0] == 1) exchange_.exchange(ranks_, part_);
     try {
       if constexpr (any_pair_contact) {
-        if (sends && all[0] == 0) receive(dt);
+        if (travels && all[0] == 0) receive(dt);
         if (all[0] == 1) {
           exchange_.send(ranks_, part_);
           exchange_.receive(ranks_, part_);

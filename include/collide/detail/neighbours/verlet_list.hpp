@@ -161,7 +161,7 @@ class verlet_list {
   }
   /// After `check`: the same for the copies.
   template <class Space>
-  void check_copies(Space& space, state_type const& state) {
+  void check_copies(Space const& space, state_type const& state) {
     if constexpr (order::on_ranks)
       space.for_each(state.size - state.own, update_copies<S, Effects>{{state, order_of(state), most_moved()}});
   }

@@ -169,7 +169,7 @@ class part_of_simulation {
   /// True if there are copies of all that this rank's own particles meet, as long as nothing has moved far. All ranks
   /// know it alike.
   bool knows_others() const { return knows_others_ && effects().space() == around_; }
-  /// After `check_own`: true if copies may be missing. All of those that others have are looked at there. Waits.
+  /// After `check_own`: true if copies may be missing. Other ranks look at those that are here. Waits.
   template <class Ranks>
   bool has_moved([[maybe_unused]] Ranks const& ranks) {
     if constexpr (any_pair_contact) {
@@ -317,12 +317,13 @@ class part_of_simulation {
     space().synchronize();  // the rows go
   }
 
-  /// Prepares for copies of so many particles of other ranks, and keeps where its own are.
-  void expect_copies(std::size_t n) {
+  /// Prepares for copies of so many particles of other ranks, where others have some of `border`, and keeps where its own
+  /// are.
+  void expect_copies(std::size_t n, std::size_t border) {
     make_room(own() + n);
     copies_ = n;
     if constexpr (any_pair_contact) {
-      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_, n);
+      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_, n, border);
       lists_tell_ = skin_ > 0 && simulation_.neighbours_.skin() >= skin_;
     }
     around_ = effects().space();
@@ -335,17 +336,16 @@ class part_of_simulation {
   }
 
   /// Writes what others know of particles.
-  void pack_seen(send_plan const& copied, particle_row<S, seen_columns>* to) {
-    detail::pack(space(), state(), routed_places{copied.data()}, copied.size(), to);
+  template <class Space>
+  void pack_seen(Space const& on, send_plan const& copied, particle_row<S, seen_columns>* to) {
+    detail::pack(on, state(), routed_places{copied.data()}, copied.size(), to);
   }
   /// Takes over what is known of all copies.
-  void unpack_seen(particle_row<S, seen_columns> const* from) {
-    detail::unpack(space(), state(), places_from{own()}, copies_, from);
-  }
-  /// After that, if no copies are missing.
-  void check_copies() {
+  template <class Space>
+  void unpack_seen(Space const& on, particle_row<S, seen_columns> const* from) {
+    detail::unpack(on, state(), places_from{own()}, copies_, from);
     if constexpr (any_pair_contact) {
-      if (lists_tell_ && own() != 0) simulation_.neighbours_.check_copies(space(), with_copies());
+      if (lists_tell_ && own() != 0) simulation_.neighbours_.check_copies(on, with_copies());
     }
   }
 

@@ -45,7 +45,7 @@ class particle_exchange {
     ranks.exchange_counts(sent_.counts.data(), received_.counts.data());
     together(ranks, [&] {
       device_exchange<Ranks, space_type>(ranks, part.space()).expect(received_);
-      part.expect_copies(received_.size());
+      part.expect_copies(received_.size(), sent_.size());
       part.set_contacts(contacts);
       pack(ranks, part, [] {});
     });
@@ -55,8 +55,8 @@ class particle_exchange {
   /// travels.
   template <class Ranks, class Meanwhile>
   void pack(Ranks const& ranks, Part& part, Meanwhile const& meanwhile) {
-    part.pack_seen(copied_, sent_.data());
     side_.begin(part.space());
+    part.pack_seen(side_.of(part.space()), copied_, sent_.data());
     meanwhile();
     by(ranks, part).stage(sent_);
   }
@@ -65,9 +65,8 @@ class particle_exchange {
   template <class Ranks>
   void send(Ranks const& ranks, Part& part) {
     by(ranks, part).send(sent_, received_);
-    side_.end(part.space());
   }
-  /// True if it may be on its way until `receive`.
+  /// True if what is sent may be on its way until `receive`.
   template <class Ranks>
   bool is_under_way(Ranks const& ranks, Part& part) const {
     return by(ranks, part).is_under_way();
@@ -82,7 +81,8 @@ class particle_exchange {
   template <class Ranks>
   void unpack(Ranks const& ranks, Part& part) {
     by(ranks, part).unstage(received_);
-    part.unpack_seen(received_.data());
+    part.unpack_seen(side_.of(part.space()), received_.data());
+    side_.end(part.space());
   }
 
  private:
