@@ -59,7 +59,7 @@ struct update_and_check_skin {
   COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(alive{})[number] != 0; }
 };
 
-/// The same, over the copies of other ranks' particles.
+/// Kernel functor of `for_each` over copies of other ranks' particles: as `update_and_check_skin`.
 template <class S, class Effects>
 struct update_copies : update_and_check_skin<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
