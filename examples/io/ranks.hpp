@@ -30,6 +30,7 @@ class any_device {
       : space_{&space},
         stream_{space.stream()},
         synchronize_{[](void const* of) { static_cast<Space const*>(of)->synchronize(); }},
+        is_done_{[](void const* of) { return static_cast<Space const*>(of)->is_done(); }},
         copy_{[](void const* of, void* to, void const* from, std::size_t bytes) {
           static_cast<Space const*>(of)->copy_from_any_device(to, from, bytes);
         }},
@@ -38,6 +39,7 @@ class any_device {
 
   CUstream_st* stream() const { return stream_; }
   void synchronize() const { synchronize_(space_); }
+  bool is_done() const { return is_done_(space_); }
   void copy_from_any_device(void* to, void const* from, std::size_t bytes) const { copy_(space_, to, from, bytes); }
   std::shared_ptr<void> mark() const { return mark_(space_); }
   void after(std::shared_ptr<void> const& mark) const { after_(space_, mark); }
@@ -46,17 +48,23 @@ class any_device {
   void const* space_;
   CUstream_st* stream_;
   void (*synchronize_)(void const*);
+  bool (*is_done_)(void const*);
   void (*copy_)(void const*, void*, void const*, std::size_t);
   std::shared_ptr<void> (*mark_)(void const*);
   void (*after_)(void const*, std::shared_ptr<void> const&);
 };
 
-/// Says if ranks can wait for a device, and send from memory of devices, and if they know that at run time alone.
+/// Says if ranks can wait for a device, send while something else is done, or from memory of devices, and if they know
+/// that at run time alone.
 template <class Ranks, class = void>
 inline constexpr bool waits_for_devices = false;
 template <class Ranks>
 inline constexpr bool waits_for_devices<
     Ranks, std::void_t<decltype(std::declval<Ranks const&>().wait_for(std::declval<any_device const&>()))>> = true;
+template <class Ranks, class = void>
+inline constexpr bool sends_meanwhile = false;
+template <class Ranks>
+inline constexpr bool sends_meanwhile<Ranks, std::void_t<decltype(std::declval<Ranks const&>().end_exchange())>> = true;
 template <class Ranks, class = void>
 inline constexpr bool sends_from_devices = false;
 template <class Ranks>
@@ -88,6 +96,11 @@ class any_ranks {
                 std::size_t bytes) const {
     ranks_->exchange(from, to_each, to, of_each, bytes);
   }
+  void begin_exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
+                      std::size_t bytes) const {
+    ranks_->begin_exchange(from, to_each, to, of_each, bytes);
+  }
+  void end_exchange() const { ranks_->end_exchange(); }
   bool takes_device_memory() const { return ranks_->takes_device_memory(); }
   template <class Space>
   auto exchange_in_space(Space const& space, void const* from, std::uint64_t const* to_each, void* to,
@@ -110,6 +123,8 @@ class any_ranks {
     virtual void reduce(std::uint64_t const*, std::uint64_t*, std::size_t, collide::reduction) const = 0;
     virtual void exchange_counts(std::uint64_t const*, std::uint64_t*) const = 0;
     virtual void exchange(void const*, std::uint64_t const*, void*, std::uint64_t const*, std::size_t) const = 0;
+    virtual void begin_exchange(void const*, std::uint64_t const*, void*, std::uint64_t const*, std::size_t) const = 0;
+    virtual void end_exchange() const = 0;
     virtual bool takes_device_memory() const = 0;
     virtual void exchange_in_space(any_device const&, void const*, std::uint64_t const*, void*, std::uint64_t const*,
                                    std::size_t) const = 0;
@@ -132,6 +147,17 @@ class any_ranks {
     void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
                   std::size_t bytes) const override {
       ranks.exchange(from, to_each, to, of_each, bytes);
+    }
+    void begin_exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
+                        std::size_t bytes) const override {
+      if constexpr (sends_meanwhile<Ranks>) {
+        ranks.begin_exchange(from, to_each, to, of_each, bytes);
+      } else {
+        ranks.exchange(from, to_each, to, of_each, bytes);
+      }
+    }
+    void end_exchange() const override {
+      if constexpr (sends_meanwhile<Ranks>) ranks.end_exchange();
     }
     bool takes_device_memory() const override {
       if constexpr (knows_at_run_time<Ranks>) {

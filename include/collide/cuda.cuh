@@ -116,6 +116,13 @@ class cuda_space {
   /// Waits until all work on the stream is done.
   void synchronize() const { cuda_check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
 
+  /// True if all work on the stream is done.
+  bool is_done() const {
+    cudaError_t const status = cudaStreamQuery(stream_);
+    if (status != cudaErrorNotReady) cuda_check(status, "cudaStreamQuery");
+    return status == cudaSuccess;
+  }
+
   /// True if the host reads this memory without waiting for anything: not here.
   static constexpr bool host_accessible = false;
 

@@ -411,12 +411,12 @@ class simulation {
     if (is_first && !bodies_.are_placed())
       advance_bodies(0, true);  // those that the caller drives, to where they begin
     if constexpr (effects_type::any_pair_contact) {
-      if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
+      if (!neighbours_.inside_is_done()) forget_pair_kicks();
       neighbours_.renew(space_, with_copies, effects_.space());
       settle_births(with_copies, dt);
       neighbours_.interact(space_, with_copies, effects_, dt, is_first);
-    } else if constexpr (effects_type::keeps_pair_forces) {
-      forget_pair_kicks(typename effects_type::interaction_kicks{});
+    } else {
+      forget_pair_kicks();
     }
     if constexpr (effects_type::overlaps) {
       auto const memory = surfaces_.ref(state_.size);
@@ -431,6 +431,11 @@ class simulation {
                                        state_, effects_, triangles, memory, pressing, dt, is_first});
     }
   }
+  /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.
+  void meet_inside(state_type const& with_copies, S dt) {
+    forget_pair_kicks();
+    neighbours_.interact_inside(space_, with_copies, effects_, dt);
+  }
   /// Says which of those that a source has made overlap others, once the lists are renewed.
   void settle_births([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
     if constexpr (effects_type::makes) {
@@ -439,6 +444,9 @@ class simulation {
     }
     if constexpr (may_be_made && effects_type::remembered::size != 0)
       space_.for_each(state_.size, detail::take_marks_off{state_.at(alive{})});
+  }
+  void forget_pair_kicks() {
+    if constexpr (effects_type::keeps_pair_forces) forget_pair_kicks(typename effects_type::interaction_kicks{});
   }
   template <class... Kick>
   void forget_pair_kicks(collide::columns<Kick...>) {

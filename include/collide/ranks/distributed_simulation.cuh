@@ -217,6 +217,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     together(ranks_, [&] { part_.check_step(dt); });
     exchange_.exchange(ranks_, part_);
     exchange_.send(ranks_, part_);
+    exchange_.receive(ranks_, part_);
     together(ranks_, [&] {
       exchange_.unpack(ranks_, part_);
       part_.meet(dt);
@@ -233,12 +234,12 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       part_.check_step(dt);
       mine[1] = 1;
       part_.begin_step(dt);
-      if (sends) exchange_.pack(ranks_, part_);
+      if (sends) exchange_.pack(ranks_, part_, [&] { part_.check_own(); });
     });
     if (sends) failure.attempt([&] { exchange_.send(ranks_, part_); });
     if (!failure.get()) {
       failure.attempt([&] {
-        if (sends) exchange_.unpack(ranks_, part_);
+        if (sends && !exchange_.is_under_way(ranks_, part_)) exchange_.unpack(ranks_, part_);
         mine[0] = part_.has_moved(ranks_) ? 1 : 0;
       });
     }
@@ -246,25 +247,39 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     if (failed) mine[0] = 2;
   }
 
+  /// Waits for copies that are under way, of which none is missing. Meanwhile those meet that need none.
+  void receive(S dt) {
+    detail::first_failure failure;
+    failure.attempt([&] { part_.meet_inside(dt); });
+    exchange_.receive(ranks_, part_);
+    failure.rethrow();
+    exchange_.unpack(ranks_, part_);
+  }
+
   /// A step, until this rank is done: what went wrong here then. All throw what goes wrong before, or has `failed` here
   /// in the last step.
   std::exception_ptr try_step(S dt, std::exception_ptr failed) {
     std::uint64_t mine[2] = {0, 0}, all[2];  // 1: particles must change ranks, 2: something is wrong; has it begun?
+    bool const travels = any_pair_contact && part_.knows_others() && exchange_.is_under_way(ranks_, part_);
     begin_step(dt, failed, mine);
     ranks_.reduce(mine, all, 2, reduction::max);
     is_sound_ = is_sound_ && all[1] == 0;
+    if (travels && all[0] != 0) exchange_.receive(ranks_, part_);
     if (all[0] == 2) agree(ranks_, failed);
     if (any_pair_contact && all[0] == 1) exchange_.exchange(ranks_, part_);
     try {
       if constexpr (any_pair_contact) {
+        if (travels && all[0] == 0) receive(dt);
         if (all[0] == 1) {
           exchange_.send(ranks_, part_);
+          exchange_.receive(ranks_, part_);
           exchange_.unpack(ranks_, part_);
         }
         if (part_.refuses_births(dt)) {
           part_.settle_births(dt);
-          exchange_.pack(ranks_, part_);
+          exchange_.pack(ranks_, part_, [] {});
           exchange_.send(ranks_, part_);
+          exchange_.receive(ranks_, part_);
           exchange_.unpack(ranks_, part_);
         }
       }

@@ -82,7 +82,7 @@ class mpi_ranks {
       return;
     }
     auto const* const from = static_cast<unsigned char const*>(mine);
-    transfer(
+    begin_transfer(
         [&](int) {
           return message<unsigned char const>{from, bytes};
         },
@@ -90,6 +90,7 @@ class mpi_ranks {
           return message<unsigned char>{to + static_cast<std::size_t>(r) * bytes, bytes};
         },
         [](void* at, void const* own, std::size_t n) { std::memcpy(at, own, n); });
+    end_exchange();
   }
 
   void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, reduction how) const {
@@ -106,8 +107,27 @@ class mpi_ranks {
 
   void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
                 std::size_t bytes) const {
-    exchange_by([](void* at, void const* own, std::size_t n) { std::memcpy(at, own, n); }, from, to_each, to, of_each,
-                bytes);
+    begin_exchange(from, to_each, to, of_each, bytes);
+    end_exchange();
+  }
+
+  /// Begins an `exchange`: until `end_exchange`, nothing but `reduce` may be called, and all stays where it is.
+  void begin_exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
+                      std::size_t bytes) const {
+    begin_by([](void* at, void const* own, std::size_t n) { std::memcpy(at, own, n); }, from, to_each, to, of_each,
+             bytes);
+  }
+  /// Waits until all is there.
+  void end_exchange() const {
+    MPI_Waitall(static_cast<int>(requests_->size()), requests_->data(), MPI_STATUSES_IGNORE);
+    requests_->clear();
+  }
+  /// Waits for the work of a space. Messages go on meanwhile: MPI moves them only while it is called.
+  template <class Space>
+  auto wait_for(Space const& space) const -> decltype(space.is_done(), void()) {
+    int all = 0;
+    while (!requests_->empty() && !space.is_done())
+      MPI_Testall(static_cast<int>(requests_->size()), requests_->data(), &all, MPI_STATUSES_IGNORE);
   }
 
   /// True if MPI takes pointers to memory of CUDA devices: what MPIX_Query_cuda_support() says. False where MPI does
@@ -127,9 +147,10 @@ class mpi_ranks {
       -> decltype(space.copy_from_any_device(to, from, bytes)) {
     detail::first_failure failure;
     failure.attempt([&] { space.synchronize(); });
-    exchange_by([&](void* at, void const* own,
-                    std::size_t n) { failure.attempt([&] { space.copy_from_any_device(at, own, n); }); },
-                from, to_each, to, of_each, bytes);
+    begin_by([&](void* at, void const* own,
+                 std::size_t n) { failure.attempt([&] { space.copy_from_any_device(at, own, n); }); },
+             from, to_each, to, of_each, bytes);
+    end_exchange();
     if (to_each[rank_] != 0) failure.attempt([&] { space.synchronize(); });
     failure.rethrow();
   }
@@ -153,10 +174,11 @@ class mpi_ranks {
     MPI_Comm comm = MPI_COMM_NULL;
   };
 
-  /// Sends items to each rank and receives some from each; copy(to, from, bytes) copies those to this rank itself.
+  /// Begins to send items to each rank and to receive some from each; copy(to, from, bytes) copies those to this rank
+  /// itself.
   template <class Copy>
-  void exchange_by(Copy const& copy, void const* from, std::uint64_t const* to_each, void* to,
-                   std::uint64_t const* of_each, std::size_t bytes) const {
+  void begin_by(Copy const& copy, void const* from, std::uint64_t const* to_each, void* to,
+                std::uint64_t const* of_each, std::size_t bytes) const {
     auto const* sent = static_cast<unsigned char const*>(from);
     auto* received = static_cast<unsigned char*>(to);
     auto const next = [bytes](auto*& at, std::uint64_t items) {
@@ -164,14 +186,15 @@ class mpi_ranks {
       if (m.bytes != 0) at += m.bytes;
       return m;
     };
-    transfer([&](int r) { return next(sent, to_each[r]); }, [&](int r) { return next(received, of_each[r]); }, copy);
+    begin_transfer([&](int r) { return next(sent, to_each[r]); }, [&](int r) { return next(received, of_each[r]); },
+                   copy);
   }
 
-  /// Sends to each rank and receives from each, in pieces; the two functions give the messages, rank after rank. A
-  /// message to this rank itself is copied. Others wait for it already, so without memory for requests the program
-  /// ends.
+  /// Begins to send to each rank and to receive from each, in pieces; the two functions give the messages, rank after
+  /// rank. A message to this rank itself is copied. Others wait for it already, so without memory for requests the
+  /// program ends.
   template <class Outgoing, class Incoming, class Copy>
-  void transfer(Outgoing const& outgoing, Incoming const& incoming, Copy const& copy) const noexcept {
+  void begin_transfer(Outgoing const& outgoing, Incoming const& incoming, Copy const& copy) const noexcept {
     auto& requests = *requests_;
     requests.clear();
     message<unsigned char> self{nullptr, 0};
@@ -189,7 +212,6 @@ class mpi_ranks {
         MPI_Isend(m.at + i, length(m.bytes - i), MPI_BYTE, r, 0, comm_->comm, &requests.emplace_back());
       }
     }
-    MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   }
 
   int length(std::size_t bytes) const { return static_cast<int>(std::min(bytes, piece_)); }

@@ -1,7 +1,12 @@
 /// Simulations on ranks that are threads, on the host.
 #pragma once
 
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include <collide/ranks/distributed_checkpoint.hpp>
 #include <collide/ranks/thread_ranks.hpp>
@@ -10,8 +15,39 @@
 
 namespace tests {
 
+/// Ranks whose messages are under way until `end_exchange`: what is to be overwritten has other bytes till then.
+class late_ranks {
+ public:
+  explicit late_ranks(collide::thread_ranks ranks) : ranks_(ranks) {}
+
+  int rank() const { return ranks_.rank(); }
+  int size() const { return ranks_.size(); }
+  void all_gather(void const* mine, std::size_t bytes, void* all) const { ranks_.all_gather(mine, bytes, all); }
+  void reduce(std::uint64_t const* mine, std::uint64_t* all, std::size_t n, collide::reduction how) const {
+    ranks_.reduce(mine, all, n, how);
+  }
+  void exchange_counts(std::uint64_t const* to_each, std::uint64_t* of_each) const {
+    ranks_.exchange_counts(to_each, of_each);
+  }
+  void exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
+                std::size_t bytes) const {
+    ranks_.exchange(from, to_each, to, of_each, bytes);
+  }
+  void begin_exchange(void const* from, std::uint64_t const* to_each, void* to, std::uint64_t const* of_each,
+                      std::size_t bytes) const {
+    std::size_t const n = std::accumulate(of_each, of_each + size(), std::size_t{0}) * bytes;
+    if (n != 0) std::memset(to, 0xff, n);
+    *under_way_ = [=, ranks = ranks_] { ranks.exchange(from, to_each, to, of_each, bytes); };
+  }
+  void end_exchange() const { std::exchange(*under_way_, nullptr)(); }
+
+ private:
+  collide::thread_ranks ranks_;
+  std::shared_ptr<std::function<void()>> under_way_ = std::make_shared<std::function<void()>>();
+};
+
 /// So many ranks make of the scene what one simulation does, however its particles are divided.
-template <class Scene>
+template <class Ranks = collide::thread_ranks, class Scene>
 void check_on_threads(Scene const& scene, std::vector<int> const& sizes = {1, 2, 3, 4, 7},
                       std::vector<split> const& splits = {split::evenly, split::last, split::odd}) {
   expected_values<Scene> const expected(scene);
@@ -20,7 +56,7 @@ void check_on_threads(Scene const& scene, std::vector<int> const& sizes = {1, 2,
       if (n == 1 && how != splits.front()) continue;
       std::vector<complaints> wrong(static_cast<std::size_t>(n));
       collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
-        check_scene(ranks, scene, expected, how, wrong[static_cast<std::size_t>(ranks.rank())]);
+        check_scene(Ranks(ranks), scene, expected, how, wrong[static_cast<std::size_t>(ranks.rank())]);
       });
       for (auto const& w : wrong) CHECK(w.text() == "");
     }

@@ -76,6 +76,8 @@ TEST_CASE("granular contact on ranks: a body wakes what sleeps as on one") {
 
 TEST_CASE("granular contact on ranks: contacts remember as on one") {
   tests::check_on_threads(sizes(), {1, 2, 3, 7}, {tests::split::odd});
+  tests::check_on_threads<tests::late_ranks>(sizes(), {2, 3}, {tests::split::odd});
+  tests::check_on_threads<tests::late_ranks>(plate<velocity_verlet>(), {2, 3}, {tests::split::odd});
   tests::check_on_threads(belt(), {1, 2, 3, 7}, {tests::split::last});
 }
 

@@ -16,7 +16,7 @@ namespace collide::detail {
 
 /// Kernel functor of `for_each` over particles, and places in the order: copies what particles must know of each other,
 /// and asks for new lists if these may lack something: where a particle has come, or has moved too far; or have too
-/// much: where a source has made a particle in place of another.
+/// much: where a source has made a particle in place of another. Not for copies of other ranks' particles.
 template <class S, class Effects>
 struct update_and_check_skin {
   particle_state<S, typename Effects::all> state;
@@ -26,12 +26,21 @@ struct update_and_check_skin {
   using ordered = sorted_particles<S, Effects>;
 
   COLLIDE_HD void operator()(std::size_t i) const {
+    if (!order.is_of_another(i)) check_births(i);
+    if (i >= order.header->count) return;
+    id const number = order.numbers[i];
+    if (!order.is_of_another(number)) update(i, number);
+  }
+
+ protected:
+  COLLIDE_HD_INLINE void check_births([[maybe_unused]] std::size_t i) const {
     if constexpr (ordered::has_absent) {
       std::uint8_t const mark = state.at(alive{})[i];
       if (mark >= newborn || (mark != 0 && order.known[i] == 0)) order.ask_to_rebuild();
     }
-    if (i >= order.header->count) return;
-    id const number = order.numbers[i];
+  }
+
+  COLLIDE_HD_INLINE void update(std::size_t i, id number) const {
     if constexpr (ordered::has_absent) {
       if (!is_there(number)) return order.deactivate(i);
     }
@@ -50,6 +59,17 @@ struct update_and_check_skin {
   COLLIDE_HD_INLINE bool is_there(std::size_t number) const { return state.at(alive{})[number] != 0; }
 };
 
+/// Kernel functor of `for_each` over copies of other ranks' particles: as `update_and_check_skin`.
+template <class S, class Effects>
+struct update_copies : update_and_check_skin<S, Effects> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::size_t const number = this->order.own + i;
+    this->check_births(number);
+    std::uint32_t const place = this->order.places_of_copies[i];
+    if (place < this->order.header->count) this->update(place, static_cast<id>(number));
+  }
+};
+
 /// Kernel functor of `for_each_if_nonzero` over the table: empties it.
 template <class S, class Effects>
 struct clear_cells {
@@ -59,7 +79,7 @@ struct clear_cells {
     order.ends[i] = 0;
     if (i == 0) {
       list_state& h = *order.header;
-      h.overflowed = h.count = h.in_runs = h.kept = 0;
+      h.overflowed = h.count = h.in_runs = h.kept = h.at_border = 0;
     }
   }
 };
@@ -79,6 +99,7 @@ struct count_or_scatter {
       if constexpr (Fill) order.known[i] = p[alive{}];
       if (p[alive{}] == 0) {
         if constexpr (sorted_particles<S, Effects>::has_memory) order.memory.kept_of[i].count = 0;
+        if constexpr (Fill) order.keep_place(i, order.overflow_mark);
         return;
       }
     }
@@ -86,7 +107,10 @@ struct count_or_scatter {
     S own = 0;
     if constexpr (contains<placing, radius>) own = p[radius{}];
     std::uint32_t const slot = fetch_add(order.ends + order.place_in_table(c, own) + 1, 1u);
-    if constexpr (Fill) order.numbers[slot] = static_cast<id>(i);
+    if constexpr (Fill) {
+      order.numbers[slot] = static_cast<id>(i);
+      order.keep_place(i, slot);
+    }
   }
 };
 
@@ -160,6 +184,7 @@ struct build_lists {
     COLLIDE_NO_UNROLL
     for (std::uint32_t n = 0; n < near.size; ++n) order.list(n, i) = near.places[n];
     if (near.size < room) order.list(near.size, i) = i;
+    mark_border(i, near.places, near.size);
     if constexpr (ordered::has_memory) {
       std::uint32_t touching = 0;
       restore(i, near.places, near.size, [&](std::uint32_t n, auto const& record) {
@@ -167,6 +192,20 @@ struct build_lists {
         touching |= 1u << n;
       });
       order.memory.touching[i] = touching;
+    }
+  }
+
+  /// Keeps whether any on a particle's list is another rank's.
+  COLLIDE_HD_INLINE void mark_border([[maybe_unused]] std::uint32_t i, [[maybe_unused]] std::uint32_t const* places,
+                                     [[maybe_unused]] std::uint32_t size) const {
+    if constexpr (ordered::on_ranks) {
+      bool meets = false;
+      for (std::uint32_t n = 0; n < size; ++n) meets = meets || order.is_of_another(order.numbers[places[n]]);
+      meets = meets && !order.is_of_another(order.numbers[i]);
+      order.is_at_border[i] = meets ? 1 : 0;
+      if (!meets) return;
+      std::uint32_t const k = fetch_add(&order.header->at_border, 1u);
+      if (k < order.border_room) order.border[k] = i;
     }
   }
 

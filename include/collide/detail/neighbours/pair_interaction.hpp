@@ -30,14 +30,7 @@ struct pair_interaction {
     COLLIDE_HD_INLINE explicit pair_state(interaction const& p) : self(p), changed(p) {}
   };
 
-  /// True at the places of copies of particles of other ranks, which meet their neighbours there.
-  COLLIDE_HD_INLINE bool is_of_another([[maybe_unused]] std::size_t place) const {
-    if constexpr (contains<typename Effects::all, global_number>) {
-      return order.numbers[place] >= state.own;
-    } else {
-      return false;
-    }
-  }
+  COLLIDE_HD_INLINE bool is_of_another(std::size_t place) const { return order.is_of_another(order.numbers[place]); }
 
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
@@ -135,7 +128,12 @@ struct interact_listed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
     if (i == 0) places.header->rebuild = 0;  // not read again in this step
-    if (i >= places.header->count || this->is_of_another(i)) return;
+    if (i < places.header->count && !this->is_of_another(i)) meet_listed(i);
+  }
+
+ protected:
+  COLLIDE_HD_INLINE void meet_listed(std::size_t i) const {
+    auto const& places = this->order;
     auto const self = static_cast<std::uint32_t>(i);
     if (places.list(0, i) == places.overflow_mark) return;
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
@@ -203,6 +201,21 @@ struct interact_listed : pair_interaction<S, Effects> {
     }
 #endif
   }
+};
+
+/// Kernel functor of `for_each` over places in the order: the same for particles that meet none of other ranks.
+template <class S, class Effects>
+struct interact_inside : interact_listed<S, Effects> {
+  COLLIDE_HD void operator()(std::size_t i) const {
+    auto const& places = this->order;
+    if (i >= places.header->count || places.is_at_border[i] != 0 || this->is_of_another(i)) return;
+    this->meet_listed(i);
+  }
+};
+/// Kernel functor of `for_each` over the others.
+template <class S, class Effects>
+struct interact_at_border : interact_listed<S, Effects> {
+  COLLIDE_HD void operator()(std::size_t k) const { this->meet_listed(this->order.border[k]); }
 };
 
 /// Kernel functor of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have

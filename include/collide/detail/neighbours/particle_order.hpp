@@ -55,6 +55,7 @@ struct list_state {
   std::uint32_t count;       ///< how many particles are in the order
   std::uint32_t in_runs;     ///< how many neighbours are in runs, or would be if there were room
   std::uint32_t kept;        ///< how many contacts are kept while lists are made anew
+  std::uint32_t at_border;   ///< how many particles have copies of other ranks' on their list
   std::uint32_t forgotten;   ///< not 0: there was no room for what some contact remembers
 };
 
@@ -68,6 +69,7 @@ struct sorted_particles {
   static constexpr bool has_absent = contains<all, alive>;
   static constexpr bool repeats = Effects::repeats;
   static constexpr bool sizes_differ = contains<all, radius>;
+  static constexpr bool on_ranks = contains<all, global_number>;
 
   typename Effects::space_type space;
   spatial_hash<S> cells;
@@ -93,7 +95,21 @@ struct sorted_particles {
   static constexpr bool has_memory = remembered::size != 0;
   contact_memory_ref<S, remembered> memory;
 
+  std::size_t own;                  ///< on ranks: copies of other ranks' particles have the numbers from here on
+  std::uint32_t* places_of_copies;  ///< by those numbers
+  std::uint8_t* is_at_border;       ///< by places: not 0 if one on the list is such a copy
+  std::uint32_t* border;            ///< those places, as many as there is room for
+  std::size_t border_room;
+
   COLLIDE_HD_INLINE std::uint32_t& list(std::uint32_t k, std::size_t i) const { return lists[k * capacity + i]; }
+
+  /// True of the numbers of copies of other ranks' particles, which meet their neighbours there.
+  COLLIDE_HD_INLINE bool is_of_another(std::size_t number) const { return on_ranks && number >= own; }
+
+  /// Keeps the place of a particle, if that is a copy of another rank's.
+  COLLIDE_HD_INLINE void keep_place(std::size_t number, std::uint32_t place) const {
+    if (is_of_another(number)) places_of_copies[number - own] = place;
+  }
 
   COLLIDE_HD_INLINE packed_sphere<S> store(std::size_t i, interaction const& p) const {
     vec3<S> const c = inside(p[position{}]);

@@ -28,6 +28,7 @@
 #include <vector>
 
 #include <collide/detail/execution/algorithms.hpp>
+#include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/neighbours/births.hpp>
 #include <collide/detail/neighbours/build_lists.hpp>
 #include <collide/detail/neighbours/pair_interaction.hpp>
@@ -54,15 +55,21 @@ class verlet_list {
     spheres_.reserve(resource, n);
     references_.reserve(resource, n);
     if constexpr (order::has_absent) known_.reserve(resource, n);
+    if constexpr (order::on_ranks) is_at_border_.reserve(resource, n);
     lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
     contacts_.reserve(resource, n, order::listed, runs_.capacity());
   }
 
-  /// For `n` particles, for which there is room: there are no lists yet.
+  /// For `n` particles, for which there is room, the last `copies` of them other ranks', which at most `border` meet:
+  /// there are no lists yet.
   template <class Space>
-  void clear(Space& space, std::size_t n, radius_range<S> const& radii) {
+  void clear(Space& space, std::size_t n, radius_range<S> const& radii, std::size_t copies = 0,
+             std::size_t border = 0) {
+    make_room(places_of_copies_, space.resource(), copies);
+    make_room(border_, space.resource(), border);
     space.fill(header_.data(), 0, sizeof(list_state));
+    inside_is_done_ = false;
     fit(space, n, radii);
     if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
     contacts_.clear(space, n);
@@ -139,22 +146,31 @@ class verlet_list {
   /// Memory taken from the resource.
   std::size_t bytes() const {
     return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
-           references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + contacts_.bytes();
+           references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + places_of_copies_.bytes() +
+           is_at_border_.bytes() + border_.bytes() + contacts_.bytes();
   }
 
-  /// The first part of `renew`: finds out whether lists are to be made anew for particles where they now are.
+  /// The first part of `renew`: finds out whether lists are to be made anew for particles where they now are, but for
+  /// copies of other ranks', which may not yet be there.
   template <class Space>
   void check(Space& space, state_type const& state, typename Effects::space_type const& around) {
     if (!(around == around_)) space.fill(&header_.data()->rebuild, 1, sizeof(list_state::rebuild));
     around_ = around;
     listed_ = state.size;
-    // half of the skin, but for rounding
-    space.for_each(state.size, update_and_check_skin<S, Effects>{state, order_of(state), S(0.495) * skin_});
+    space.for_each(state.size, update_and_check_skin<S, Effects>{state, order_of(state), most_moved()});
   }
-  /// After `check`: true if lists are to be made anew. If not, the next `renew` has nothing to do. Waits.
+  /// After `check`: the same for the copies.
+  template <class Space>
+  void check_copies(Space const& space, state_type const& state) {
+    if constexpr (order::on_ranks)
+      space.for_each(state.size - state.own, update_copies<S, Effects>{{state, order_of(state), most_moved()}});
+  }
+  /// After both: true if lists are to be made anew. If not, the next `renew` has nothing to do. Waits.
   template <class Space>
   bool must_rebuild(Space const& space) {
-    are_complete_ = space.read(&header_.data()->rebuild) == 0;
+    list_state const header = space.read(header_.data());
+    are_complete_ = header.rebuild == 0;
+    at_border_ = header.at_border;
     return !are_complete_;
   }
 
@@ -167,6 +183,7 @@ class verlet_list {
       return;
     }
     check(space, state, around);
+    check_copies(space, state);
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
@@ -197,6 +214,17 @@ class verlet_list {
     if (refuse) space.for_each(state.size, leave_out_unborn<S, Effects>{state, o});
   }
 
+  /// Before copies of other ranks' particles are there, if lists are not to be made anew: those meet that need no copy,
+  /// and `interact` leaves them out.
+  template <class Space>
+  void interact_inside(Space& space, state_type const& state, Effects const& effects, S dt) {
+    if (!are_complete_ || at_border_ > border_.capacity()) return;
+    space.for_each(state.size, detail::interact_inside<S, Effects>{{{state, order_of(state), effects, dt, false}}});
+    inside_is_done_ = true;
+  }
+
+  bool inside_is_done() const { return inside_is_done_; }
+
   /// After `renew`: one pass of `on_pair_contact` over all pairs; if `only_kicks`, to know what they do to each other's
   /// velocities.
   template <class Space>
@@ -204,7 +232,16 @@ class verlet_list {
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const overflowed = &o.header->overflowed;
-    space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, only_kicks}});
+    if constexpr (order::on_ranks) {
+      if (inside_is_done_) {
+        inside_is_done_ = false;
+        space.for_each(at_border_, interact_at_border<S, Effects>{{{state, o, effects, dt, only_kicks}}});
+      } else {
+        space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, only_kicks}});
+      }
+    } else {
+      space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, only_kicks}});
+    }
     for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, only_kicks}});
   }
 
@@ -240,15 +277,32 @@ class verlet_list {
   }
 
   order order_of(state_type const& state) const {
-    return {around_,         cells_,
-            small_,          ends_.data(),
-            header_.data(),  numbers_.data(),
-            spheres_.data(), references_.data(),
-            known_.data(),   memory_.state(state.size, state.placed, state.common_radius),
-            lists_.data(),   state.size,
-            runs_.data(),    runs_.capacity(),
-            contacts_.ref()};
+    return {around_,
+            cells_,
+            small_,
+            ends_.data(),
+            header_.data(),
+            numbers_.data(),
+            spheres_.data(),
+            references_.data(),
+            known_.data(),
+            memory_.state(state.size, state.placed, state.common_radius),
+            lists_.data(),
+            state.size,
+            runs_.data(),
+            runs_.capacity(),
+            contacts_.ref(),
+            own_of(state),
+            places_of_copies_.data(),
+            is_at_border_.data(),
+            border_.data(),
+            border_.capacity()};
   }
+  static std::size_t own_of(state_type const& state) {
+    if constexpr (order::on_ranks) return state.own;
+    return state.size;
+  }
+  S most_moved() const { return S(0.495) * skin_; }  ///< half of the skin, but for rounding
 
   typename Effects::space_type around_{};
   cells cells_{};
@@ -257,7 +311,10 @@ class verlet_list {
   std::size_t blocks_ = 0, listed_ = 0;  ///< how many particles have lists
   bool are_complete_ = false;            ///< for particles where they are: `check` has just found that
   buffer<list_state> header_;
-  buffer<std::uint32_t> ends_, lists_, runs_;
+  std::size_t at_border_ = 0;    ///< particles that copies of other ranks' may meet, while lists are complete
+  bool inside_is_done_ = false;  ///< all others have met
+  buffer<std::uint32_t> ends_, lists_, runs_, places_of_copies_, border_;
+  buffer<std::uint8_t> is_at_border_;
   buffer<id> numbers_;
   buffer<packed_sphere<S>> spheres_;
   buffer<reference<S, contains<typename Effects::all, radius>>> references_;

@@ -79,7 +79,12 @@ using ranks_takes_device_memory = decltype(std::declval<R const&>().takes_device
 template <class R, class Space>
 using ranks_wait_for = decltype(std::declval<R const&>().wait_for(std::declval<Space const&>()));
 
-/// Waits for the work of a space, if messages may be in it that never come: those ranks know when to give up.
+/// The members of those whose messages from the host travel while the caller does something else.
+template <class R>
+using ranks_end_exchange = decltype(std::declval<R const&>().end_exchange());
+
+/// Waits for the work of a space where the ranks have a say in it: they know when to give up messages in it that never
+/// come, or have messages under way.
 template <class Ranks, class Space>
 void wait_for_messages([[maybe_unused]] Ranks const& ranks, [[maybe_unused]] Space const& space) {
   if constexpr (is_valid<ranks_wait_for, Ranks, Space>) ranks.wait_for(space);
@@ -98,8 +103,8 @@ class device_exchange {
     if (!is_direct()) out.to_host(space_);
   }
 
-  /// Sends `out`, which has been staged, and receives `in`, which has room. All ranks come out of it; if something
-  /// goes wrong on one in the space, that one throws.
+  /// Sends `out`, which has been staged, and receives `in`, which has room; they may travel until `end`. All ranks come
+  /// out of it; if something goes wrong on one in the space, that one throws.
   template <class T>
   void send(device_exchange_buffer<T>& out, device_exchange_buffer<T>& in) const {
     if constexpr (can_be_direct) {
@@ -107,7 +112,19 @@ class device_exchange {
         return ranks_.exchange_in_space(space_, out.data(), out.counts.data(), in.data(), in.counts.data(), sizeof(T));
       }
     }
-    ranks_.exchange(out.on_host(), out.counts.data(), in.on_host(), in.counts.data(), sizeof(T));
+    if constexpr (travels) {
+      ranks_.begin_exchange(out.on_host(), out.counts.data(), in.on_host(), in.counts.data(), sizeof(T));
+    } else {
+      ranks_.exchange(out.on_host(), out.counts.data(), in.on_host(), in.counts.data(), sizeof(T));
+    }
+  }
+  /// True if what `send` sends is under way until `end`.
+  bool is_under_way() const { return travels && !is_direct(); }
+  /// Waits until all is there.
+  void end() const {
+    if constexpr (travels) {
+      if (!is_direct()) ranks_.end_exchange();
+    }
   }
 
   /// Brings what was received to the space.
@@ -124,6 +141,7 @@ class device_exchange {
   }
 
  private:
+  static constexpr bool travels = is_valid<ranks_end_exchange, Ranks>;
   static constexpr bool can_be_direct = is_valid<ranks_exchange_in_space, Ranks, Space>;
 
   bool is_direct() const {
@@ -152,6 +170,7 @@ void deliver(Ranks const& ranks, Space const& space, device_exchange_buffer<T>& 
   first_failure failure;
   failure.attempt([&] {
     by.send(out, in);
+    by.end();
     by.unstage(in);
   });
   agree(ranks, failure.get());

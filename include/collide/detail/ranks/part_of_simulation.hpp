@@ -153,23 +153,39 @@ class part_of_simulation {
   void begin_step(S dt) {
     simulation_.time_ += static_cast<double>(dt);
     simulation_.begin_step(dt);
-    if (any_pair_contact && knows_others() && !lists_tell_ && own() != 0) look_for_moved();
+  }
+  /// After `begin_step`, while copies are under way: looks for what has moved. Lists of neighbours that are complete
+  /// have all within the skin, so one kernel looks for both, where the skins are the same.
+  void check_own() {
+    if constexpr (any_pair_contact) {
+      if (own() == 0) return;
+      if (lists_tell_) {
+        simulation_.neighbours_.check(space(), with_copies(), around_);
+      } else {
+        look_for_moved();
+      }
+    }
   }
   /// True if there are copies of all that this rank's own particles meet, as long as nothing has moved far. All ranks
   /// know it alike.
   bool knows_others() const { return knows_others_ && effects().space() == around_; }
-  /// After `begin_step`, with copies as they are in this step: true if some may be missing. Lists of neighbours that
-  /// are complete have all within the skin, so one kernel looks for both, where the skins are the same. Waits.
+  /// After `check_own`: true if copies may be missing. Other ranks look at those that are here. Waits.
   template <class Ranks>
   bool has_moved([[maybe_unused]] Ranks const& ranks) {
     if constexpr (any_pair_contact) {
       if (!knows_others()) return true;
       if (own() == 0) return false;
-      if (lists_tell_) simulation_.neighbours_.check(space(), with_copies(), around_);
       wait_for_messages(ranks, space());
       return lists_tell_ ? simulation_.neighbours_.must_rebuild(space()) : space().read(flag_.data()) != 0;
     } else {
       return false;
+    }
+  }
+
+  /// Particles meet that need no copies, while those are under way, where that is the same.
+  void meet_inside([[maybe_unused]] S dt) {
+    if constexpr (any_pair_contact && !effects_type::makes) {
+      if (lists_tell_ && own() != 0) simulation_.meet_inside(with_copies(), dt);
     }
   }
 
@@ -301,12 +317,13 @@ class part_of_simulation {
     space().synchronize();  // the rows go
   }
 
-  /// Prepares for copies of so many particles of other ranks, and keeps where its own are.
-  void expect_copies(std::size_t n) {
+  /// Prepares for copies of so many particles of other ranks, where others have some of `border`, and keeps where its own
+  /// are.
+  void expect_copies(std::size_t n, std::size_t border) {
     make_room(own() + n);
     copies_ = n;
     if constexpr (any_pair_contact) {
-      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_);
+      simulation_.neighbours_.clear(space(), own() + n, simulation_.radii_, n, border);
       lists_tell_ = skin_ > 0 && simulation_.neighbours_.skin() >= skin_;
     }
     around_ = effects().space();
@@ -319,12 +336,17 @@ class part_of_simulation {
   }
 
   /// Writes what others know of particles.
-  void pack_seen(send_plan const& copied, particle_row<S, seen_columns>* to) {
-    detail::pack(space(), state(), routed_places{copied.data()}, copied.size(), to);
+  template <class Space>
+  void pack_seen(Space const& on, send_plan const& copied, particle_row<S, seen_columns>* to) {
+    detail::pack(on, state(), routed_places{copied.data()}, copied.size(), to);
   }
   /// Takes over what is known of all copies.
-  void unpack_seen(particle_row<S, seen_columns> const* from) {
-    detail::unpack(space(), state(), places_from{own()}, copies_, from);
+  template <class Space>
+  void unpack_seen(Space const& on, particle_row<S, seen_columns> const* from) {
+    detail::unpack(on, state(), places_from{own()}, copies_, from);
+    if constexpr (any_pair_contact) {
+      if (lists_tell_ && own() != 0) simulation_.neighbours_.check_copies(on, with_copies());
+    }
   }
 
  private:

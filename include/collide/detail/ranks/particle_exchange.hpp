@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <collide/detail/execution/side_stream.hpp>
 #include <collide/detail/ranks/bisection.hpp>
 #include <collide/detail/ranks/device_exchange_buffer.hpp>
 #include <collide/detail/ranks/part_of_simulation.hpp>
@@ -22,8 +24,7 @@ class particle_exchange {
   using S = typename Part::S;
   using all_row = particle_row<S, typename Part::all_columns>;
   using seen_row = particle_row<S, typename Part::seen_columns>;
-  template <class Ranks>
-  using device_exchange_of = device_exchange<Ranks, typename Part::space_type>;
+  using space_type = typename Part::space_type;
 
  public:
   /// Forgets the bricks: there are other particles.
@@ -43,34 +44,55 @@ class particle_exchange {
     });
     ranks.exchange_counts(sent_.counts.data(), received_.counts.data());
     together(ranks, [&] {
-      device_exchange_of<Ranks>(ranks, part.space()).expect(received_);
-      part.expect_copies(received_.size());
+      device_exchange<Ranks, space_type>(ranks, part.space()).expect(received_);
+      part.expect_copies(received_.size(), sent_.size());
       part.set_contacts(contacts);
-      pack(ranks, part);
+      pack(ranks, part, [] {});
     });
   }
 
-  /// Makes ready what others must know in this step.
-  template <class Ranks>
-  void pack(Ranks const& ranks, Part& part) {
-    part.pack_seen(copied_, sent_.data());
-    device_exchange_of<Ranks>(ranks, part.space()).stage(sent_);
+  /// Makes ready what others must know in this step. What meanwhile() puts on the part's stream runs while that
+  /// travels.
+  template <class Ranks, class Meanwhile>
+  void pack(Ranks const& ranks, Part& part, Meanwhile const& meanwhile) {
+    side_.begin(part.space());
+    part.pack_seen(side_.of(part.space()), copied_, sent_.data());
+    meanwhile();
+    by(ranks, part).stage(sent_);
   }
 
   /// Sends it. All ranks come out of it.
   template <class Ranks>
   void send(Ranks const& ranks, Part& part) {
-    device_exchange_of<Ranks>(ranks, part.space()).send(sent_, received_);
+    by(ranks, part).send(sent_, received_);
+  }
+  /// True if what is sent may be on its way until `receive`.
+  template <class Ranks>
+  bool is_under_way(Ranks const& ranks, Part& part) const {
+    return by(ranks, part).is_under_way();
+  }
+  /// Waits until it is there.
+  template <class Ranks>
+  void receive(Ranks const& ranks, Part& part) const {
+    by(ranks, part).end();
   }
 
   /// Takes over what the others have sent.
   template <class Ranks>
   void unpack(Ranks const& ranks, Part& part) {
-    device_exchange_of<Ranks>(ranks, part.space()).unstage(received_);
-    part.unpack_seen(received_.data());
+    by(ranks, part).unstage(received_);
+    part.unpack_seen(side_.of(part.space()), received_.data());
+    side_.end(part.space());
   }
 
  private:
+  /// How messages go, on the stream beside that of the part.
+  template <class Ranks>
+  auto by(Ranks const& ranks, Part& part) const {
+    auto const& side = side_.of(part.space());
+    return device_exchange<Ranks, std::decay_t<decltype(side)>>(ranks, side);
+  }
+
   /// Cuts bricks if there are none, or one has many more particles than it should.
   template <class Ranks>
   void divide(Ranks const& ranks, Part& part) {
@@ -112,6 +134,7 @@ class particle_exchange {
     together(ranks, [&] { part.replace(leaving, coming); });
   }
 
+  side_stream<space_type> side_;
   bisection bricks_;
   buffer<brick> brick_memory_;
   brick_lookup lookup_{};
