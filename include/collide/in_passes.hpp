@@ -25,13 +25,13 @@ namespace collide {
 /// a query of one detector of the whole mesh; in canonical order, the same bytes.
 ///
 /// Memory of the space: what the detector takes for the triangles of a pass, with `bucket`, float and one radius about
-/// 60 bytes each where most are small, and 450 at most if no cell width is given, on the host about 10; with
-/// `all_pairs` 32; what it takes for the spheres; up to 20 bytes for each pair, also where the sink only counts; and
-/// what the sink takes. On a device, besides, 36 bytes of float or 72 of double for each triangle of a pass; and,
-/// unless the sink keeps ids alone (`keeps_ids_alone`, see concepts.hpp), 40 or 80 for each triangle that is hit, up to
-/// three times that of the host, and 8 of the host for each pair of a pass. It is kept between queries. On the host the
-/// mesh is read where it lies. `nearest` has no pairs: it takes, besides its result, as much again and a triangle for
-/// each point.
+/// 60 bytes each where most are small (30 in `cuda_shared`), and 450 at most (420) if no cell width is given, on the
+/// host about 10; with `all_pairs` 32; what it takes for the spheres; up to 20 bytes for each pair, also where the sink
+/// only counts; and what the sink takes. On a device, besides, 36 bytes of float or 72 of double for each triangle of a
+/// pass; and, unless the sink keeps ids alone (`keeps_ids_alone`, see concepts.hpp), 40 or 80 for each triangle that is
+/// hit, up to three times that of the host, and 8 of the host for each pair of a pass. It is kept between queries. On
+/// the host the mesh is read where it lies. `nearest` has no pairs: it takes, besides its result, as much again and a
+/// triangle for each point.
 ///
 /// If one pass is enough the mesh is built once, and a query is one of the detector. Otherwise each query builds
 /// every part again: give it all spheres at once. One object is for one thread at a time.
