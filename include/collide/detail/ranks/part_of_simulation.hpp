@@ -317,8 +317,8 @@ class part_of_simulation {
     space().synchronize();  // the rows go
   }
 
-  /// Prepares for copies of so many particles of other ranks, where others have some of `border`, and keeps where its own
-  /// are.
+  /// Prepares for copies of so many particles of other ranks, where others have some of `border`, and keeps where its
+  /// own are.
   void expect_copies(std::size_t n, std::size_t border) {
     make_room(own() + n);
     copies_ = n;
