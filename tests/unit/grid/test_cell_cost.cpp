@@ -27,8 +27,8 @@ double distance(double x, double y, double z) {
 TEST_CASE("cell cost: the number of entries is the volume around the triangles, in cells") {
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> uniform(0, 1);
-  triangle_sums sum{0, 0, 0};
-  for (int i = 0; i < 7; ++i) sum += triangle_sums{1, 6, 12};  // seven of these
+  triangle_sums sum{};
+  for (int i = 0; i < 7; ++i) sum += triangle_sums{1, 6, 12, 4};  // seven of these
   for (float width : {0.3f, 1.f, 5.f}) {
     for (float reach : {0.f, 0.5f, 3.f}) {
       double const d = static_cast<double>(reach + 0.7f * width), box = (4 + 2 * d) * (3 + 2 * d) * 2 * d;
@@ -50,7 +50,7 @@ TEST_CASE("cell cost: a level costs its entries, its candidates and the steps of
   for (std::uint32_t k = 8; k < 28; ++k)
     seen.counts[k] = seen.sampled * collide::detail::pair_distances::triangles / 20;
   collide::detail::share_of_pairs const share(seen);
-  triangle_sums const triangles{1000, 1, 100};
+  triangle_sums const triangles{1000, 1, 100, 0};
   auto const cost_of = [&](float entry_ns, float candidate_ns, float step_ns, float path, float width) {
     collide::bucket_costs costs{};
     costs.entry_ns = entry_ns;

@@ -17,7 +17,7 @@ namespace collide::detail {
 /// Sums over triangles.
 struct triangle_sums {
   float count, area, perimeter;
-  float widest = 0;  ///< the extent of the largest of their boxes, about
+  float widest;  ///< the extent of the largest of their boxes, about
 
   COLLIDE_HD_INLINE triangle_sums& operator+=(triangle_sums const& o) {
     count += o.count, area += o.area, perimeter += o.perimeter, widest = max(widest, o.widest);
@@ -246,7 +246,7 @@ struct plan_grid {
   template <class Scratch>
   COLLIDE_HD_INLINE void sum_class(Scratch& s, int c) const {
     int const first = summary->extents.first(), per_class = (summary->extents.last() - first) / size_classes + 1;
-    triangle_sums sum{0, 0, 0};
+    triangle_sums sum{};
     float end = 0;
     COLLIDE_NO_UNROLL
     for (int b = first + c * per_class; b < first + (c + 1) * per_class && b < size_bins; ++b) {
@@ -272,7 +272,7 @@ struct plan_grid {
   COLLIDE_HD_INLINE void weigh(Block& block, Scratch& s) const {
     typename Block::template thread_private<cell_choice> best;
     block.for_each_thread([&](int thread_rank) {
-      triangle_sums all{0, 0, 0};
+      triangle_sums all{};
       for (int c = 0; c < size_classes; ++c) all += s.classes[c];
       share_of_pairs const share(s.distances);
       level_cost const cost{request.costs, spheres_served(s), static_cast<float>(s.planned.dilation / s.extent),
@@ -335,7 +335,7 @@ struct plan_grid {
 
   template <class Scratch>
   COLLIDE_HD_INLINE triangle_sums sum_of(Scratch const& s, int first, int end) const {
-    triangle_sums sum{0, 0, 0};
+    triangle_sums sum{};
     COLLIDE_NO_UNROLL
     for (int c = first; c < end; ++c) sum += s.classes[c];
     return sum;
