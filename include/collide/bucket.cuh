@@ -353,7 +353,7 @@ class bucket::index {
     auto const* const boxes = measures_.boxes();
     std::size_t const taken = fixed_bytes + (boxes != nullptr ? mesh_.size() * sizeof *boxes : 0);
     auto const plan = detail::memory_plan::make(mesh_.size(), spheres.size(), asked.count, options.cell_width > 0,
-                                                taken, options.memory_budget);
+                                                taken, options.memory_budget, detail::serves_steps<Space>);
     if (plan.grids != 0) {
       auto const count = static_cast<std::size_t>(plan.grids);
       // what is held for another number of cells would come on top of what the budget was planned for

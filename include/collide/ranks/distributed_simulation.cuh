@@ -224,8 +224,8 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
     });
   }
 
-  /// The part of a step before ranks agree, for which copies go to others also where something has gone wrong: `mine`
-  /// is what a rank tells the others. What has `failed` is from the last step, or this one.
+  /// The part of a step before ranks agree, in which copies are sent to others also where something has gone wrong:
+  /// `mine` is what a rank tells the others. What has `failed` is from the last step, or this one.
   void begin_step(S dt, std::exception_ptr& failed, std::uint64_t* mine) {
     bool const sends = any_pair_contact && part_.knows_others();
     detail::first_failure failure;
@@ -243,6 +243,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
         mine[0] = part_.has_moved(ranks_) ? 1 : 0;
       });
     }
+    if (sends && failure.get()) failure.attempt([&] { exchange_.abandon(part_); });
     failed = failure.get();
     if (failed) mine[0] = 2;
   }

@@ -12,7 +12,8 @@
 ///     `of_each[r]` from it, each time in the order of the ranks and without gaps;
 ///   - `exchange_in_space(space, from, to_each, to, of_each, bytes)`, if they can: the same of memory of devices, at
 ///     once or in the order of the spaces' work. All ranks come out of it, also where one of them throws;
-///   - `wait_for(space)`, if they can: waits for a space's work, but throws where messages in it do not come;
+///   - `wait_for(space)`, if they can: waits for a space's work, but throws where messages in it do not come; messages
+///     that are under way go on;
 ///   - `begin_exchange`, with the parameters of `exchange`, and `end_exchange()`, if they can: what is sent may travel
 ///     until the second, and only `reduce` and `wait_for` are called in between;
 ///   - `bool takes_device_memory()`, if that is known at run time alone: whether `exchange_in_space` can be called.

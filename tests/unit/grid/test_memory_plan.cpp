@@ -82,8 +82,9 @@ TEST_CASE("memory plan: what a device holds besides the mesh, the spheres and th
   CHECK(memory.allocations == before);
 }
 
-TEST_CASE("memory plan: few spheres do not pay for a cell of each of many triangles") {
+TEST_CASE("memory plan: few spheres do not pay for a cell of each of many triangles, but many steps do") {
   CHECK(memory_plan::make(10000000, 1 << 20, 1, false, 0, 0).table_bits == 20);
   CHECK(memory_plan::make(10000000, 1, 1, false, 0, 0).table_bits == 18);
+  CHECK(memory_plan::make(10000000, 1, 1, false, 0, 0, true).table_bits == 24);
   CHECK(memory_plan::make(2000000, 2000000, 1, false, 0, 0).table_bits == 21);
 }
