@@ -196,7 +196,7 @@ TEST_CASE("misuse: parameters of effects") {
     CHECK(said_with(wind<>{x, 0, {}}) == "collide: wind: linear and quadratic are not negative, and finite");
     CHECK(said_with(wind<>{0, x, {}}) == "collide: wind: linear and quadratic are not negative, and finite");
     CHECK(said_with(emit{x, {}}) == "collide: emit: rate is not negative, and finite");
-    CHECK(said_with(sleep{x, 3}) == "collide: sleep: speed is not negative, and finite");
+    CHECK(said_with(collide::sleep{x, 3}) == "collide: sleep: speed is not negative, and finite");
     CHECK(said_with(mesh_forces{x}) == "collide: mesh_forces: density is above 0, and finite");
     CHECK(said_with<sphere_contact>(pair_forces{x}) == "collide: pair_forces: density is above 0, and finite");
     for (int k = 0; k < 4; ++k) {
@@ -215,7 +215,7 @@ TEST_CASE("misuse: parameters of effects") {
   CHECK(said_with(mesh_forces{0}) == "collide: mesh_forces: density is above 0, and finite");
   CHECK(said_with<sphere_contact>(pair_forces{0}) == "collide: pair_forces: density is above 0, and finite");
   CHECK(said_with(sphere_contact{1000, 0, 0, 0, 0}) == "collide: sphere_contact: density is above 0, and finite");
-  CHECK(said_with(sleep{0.01, 300}) == "collide: sleep: steps are from 1 to 127");
+  CHECK(said_with(collide::sleep{0.01, 300}) == "collide: sleep: steps are from 1 to 127");
   for (double const x : {not_a_number, infinity, -infinity}) {
     CHECK(said_with(gravity{0, 0, x}) == "collide: gravity: the acceleration is finite");
     CHECK(said_with(wind<>{1, 0, {0, x, 0}}) == "collide: wind: the velocity of uniform_field is finite");
