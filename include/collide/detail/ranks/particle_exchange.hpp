@@ -77,7 +77,7 @@ class particle_exchange {
     by(ranks, part).end();
   }
 
-  /// Where something has gone wrong: what the part does from now on comes after what is sent.
+  /// If something has gone wrong: what the part does from now on comes after what is sent.
   void abandon(Part& part) const { side_.end(part.space()); }
 
   /// Takes over what the others have sent.
