@@ -78,8 +78,9 @@ struct clear_cells {
   COLLIDE_HD void operator()(std::size_t i) const {
     order.ends[i] = 0;
     if (i == 0) {
-      list_state& h = *order.header;
-      h.overflowed = h.count = h.in_runs = h.kept = h.at_border = 0;
+      auto& h = *order.header;
+      h.overflowed = h.count = h.in_runs = h.kept = 0;
+      if constexpr (order.on_ranks) h.at_border = 0;
     }
   }
 };

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/neighbours/spatial_hash.hpp>
@@ -55,8 +56,12 @@ struct list_state {
   std::uint32_t count;       ///< how many particles are in the order
   std::uint32_t in_runs;     ///< how many neighbours are in runs, or would be if there were room
   std::uint32_t kept;        ///< how many contacts are kept while lists are made anew
-  std::uint32_t at_border;   ///< how many particles have copies of other ranks' on their list
   std::uint32_t forgotten;   ///< not 0: there was no room for what some contact remembers
+};
+
+/// The same on ranks.
+struct list_state_on_ranks : list_state {
+  std::uint32_t at_border;  ///< how many particles have copies of other ranks' on their list
 };
 
 /// The particles in the order of the grid, with all that they must know of each other.
@@ -70,12 +75,13 @@ struct sorted_particles {
   static constexpr bool repeats = Effects::repeats;
   static constexpr bool sizes_differ = contains<all, radius>;
   static constexpr bool on_ranks = contains<all, global_number>;
+  using state_of_lists = std::conditional_t<on_ranks, list_state_on_ranks, list_state>;
 
   typename Effects::space_type space;
   spatial_hash<S> cells;
   small_cells<S> small;
   std::uint32_t* ends;  ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
-  list_state* header;
+  state_of_lists* header;
   id* numbers;
   packed_sphere<S>* spheres;               ///< as they are in this step
   reference<S, sizes_differ>* references;  ///< as they were when the lists were made

@@ -68,7 +68,7 @@ class verlet_list {
              std::size_t border = 0) {
     make_room(places_of_copies_, space.resource(), copies);
     make_room(border_, space.resource(), border);
-    space.fill(header_.data(), 0, sizeof(list_state));
+    space.fill(header_.data(), 0, sizeof(state_of_lists));
     inside_is_done_ = false;
     fit(space, n, radii);
     if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
@@ -168,7 +168,7 @@ class verlet_list {
   /// After both: true if lists are to be made anew. If not, the next `renew` has nothing to do. Waits.
   template <class Space>
   bool must_rebuild(Space const& space) {
-    list_state const header = space.read(header_.data());
+    state_of_lists const header = space.read(header_.data());
     are_complete_ = header.rebuild == 0;
     at_border_ = header.at_border;
     return !are_complete_;
@@ -248,6 +248,7 @@ class verlet_list {
  private:
   using order = sorted_particles<S, Effects>;
   using cells = spatial_hash<S>;
+  using state_of_lists = typename order::state_of_lists;
 
   static constexpr S skin_fraction = S(0.1);
   static S skin_of(S radius, S smallest) {
@@ -310,7 +311,7 @@ class verlet_list {
   S skin_{};
   std::size_t blocks_ = 0, listed_ = 0;  ///< how many particles have lists
   bool are_complete_ = false;            ///< for particles where they are: `check` has just found that
-  buffer<list_state> header_;
+  buffer<state_of_lists> header_;
   std::size_t at_border_ = 0;    ///< particles that copies of other ranks' may meet, while lists are complete
   bool inside_is_done_ = false;  ///< all others have met
   buffer<std::uint32_t> ends_, lists_, runs_, places_of_copies_, border_;
