@@ -1,11 +1,12 @@
 /// \file
-/// Costs and gains of many ranks: ranks_bench RANKS SPHERES PARTICLES [OPTION OF GOOGLE BENCHMARK...]
+/// Costs and gains of many ranks: ranks_bench RANKS SPHERES PARTICLES [TRIANGLES] [OPTION OF GOOGLE BENCHMARK...]
 ///
 /// RANKS is how many threads there are at most; or under mpirun `mpi` or `nccl`, its processes. Names are
 /// ranks/SPACE/WORK/KIND:RANKS; threads are from 1 to RANKS, with a GPU each where there are as many. On the host ranks
 /// have one thread each; there KIND is also `cores`: one rank with so many threads. WORK is
 ///   copied   a query of SPHERES spheres of all ranks together, the study's mesh on every rank;
 ///   divided  the same with that mesh divided among the ranks;
+///   ground   the same with hilly ground of TRIANGLES, if given, of which each rank makes a strip;
 ///   packed   a step of PARTICLES spheres for each rank, that touch each other, with gravity and walls.
 /// Times are of the slowest rank, medians of `repeats`, from when all ranks are ready until it is done. The counter
 /// cpu_ms is the time of all cores that this process has taken, which others that run beside it change less.
@@ -38,7 +39,7 @@ namespace {
 constexpr int repeats = 11;
 constexpr double radius = 0.01;  // of packed spheres
 
-std::size_t spheres_in_all = 0, particles_of_rank = 0;
+std::size_t spheres_in_all = 0, particles_of_rank = 0, triangles_of_ground = 0;
 
 /// The part of `n` things that a rank does: from `first` to `end`.
 struct share {
@@ -76,16 +77,16 @@ duration time_of(io::any_ranks const& ranks, int parts, F const& f) {
   return {bench::median(seconds), bench::median(of_cores)};
 }
 
+/// A query of this rank's spheres; it has all of the mesh, or a part that no other has.
 template <class Space>
-duration time_query(io::any_ranks const& ranks, Space const& space, bool divides) {
-  io::scene const& scene = study();
-  share const triangles(ranks, scene.triangle_count()), own(ranks, spheres_in_all);
+duration time_query(io::any_ranks const& ranks, Space const& space, io::scene const& scene, share const& triangles,
+                    share const& own, bool divides) {
   std::vector<float> const vertices(scene.vertices.begin(), scene.vertices.end());
   std::vector<float> const centres(scene.centres.begin() + static_cast<std::ptrdiff_t>(3 * own.first),
                                    scene.centres.begin() + static_cast<std::ptrdiff_t>(3 * own.end));
-  share const all(collide::one_rank(), scene.triangle_count()), part = divides ? triangles : all;
-  auto const mesh = collide::upload(space, collide::indexed_mesh(vertices.data(), vertices.size() / 3,
-                                                                 scene.corners.data() + 3 * part.first, part.size()));
+  auto const mesh =
+      collide::upload(space, collide::indexed_mesh(vertices.data(), vertices.size() / 3,
+                                                   scene.corners.data() + 3 * triangles.first, triangles.size()));
   auto const spheres =
       collide::upload(space, collide::spheres_xyz(centres.data(), own.size(), static_cast<float>(scene.radius)));
   collide::distributed<collide::detector<collide::bucket, collide::karabassi<>, Space>, io::any_ranks> detector(ranks,
@@ -100,6 +101,33 @@ duration time_query(io::any_ranks const& ranks, Space const& space, bool divides
     detector.query(spheres.view(), found);
     space.synchronize();
   });
+}
+
+template <class Space>
+duration time_study(io::any_ranks const& ranks, Space const& space, bool divides) {
+  io::scene const& scene = study();
+  share const all(collide::one_rank(), scene.triangle_count()), part(ranks, scene.triangle_count());
+  return time_query(ranks, space, scene, divides ? part : all, share(ranks, spheres_in_all), divides);
+}
+
+/// Spheres as wide as triangles, anywhere near hilly ground of which each rank makes a strip.
+template <class Space>
+duration time_ground(io::any_ranks const& ranks, Space const& space) {
+  auto const columns = static_cast<std::size_t>(std::sqrt(static_cast<double>(triangles_of_ground) / 2));
+  double const side = 1000, width = side / static_cast<double>(columns);
+  share const strip(ranks, columns), own(ranks, spheres_in_all);
+  io::scene s;
+  s.radius = width / 2;
+  io::add_surface(s, strip.size(), columns, false, [&](double across, double along) {
+    double const x = width * (static_cast<double>(strip.first) + across * static_cast<double>(strip.size()));
+    return io::point{x, side * along, io::hills(x, side * along)};
+  });
+  io::random_numbers random(own.first);
+  s.centres.reserve(3 * own.size());
+  for (std::size_t i = 0; i < own.size(); ++i)
+    io::add_point(s.centres, {random.between(0, side), random.between(0, side), random.between(-60, 60)});
+  share const mine(collide::one_rank(), s.triangle_count()), all(collide::one_rank(), own.size());
+  return time_query(ranks, space, s, mine, all, true);
 }
 
 /// For so many times the particles of a rank.
@@ -173,6 +201,7 @@ void add(std::string const& name, crew const& of, Work const& work) {
         }
         state.counters["ranks"] = of.size;
         state.counters["spheres"] = static_cast<double>(spheres_in_all);
+        if (triangles_of_ground != 0) state.counters["triangles_of_ground"] = static_cast<double>(triangles_of_ground);
         state.counters["particles_of_rank"] = static_cast<double>(particles_of_rank);
       })
       ->UseManualTime()
@@ -182,8 +211,10 @@ void add(std::string const& name, crew const& of, Work const& work) {
 
 template <class Space>
 void add_all(crew const& of) {
-  add<Space>("copied", of, [](auto const& r, Space const& space, int) { return time_query(r, space, false); });
-  add<Space>("divided", of, [](auto const& r, Space const& space, int) { return time_query(r, space, true); });
+  add<Space>("copied", of, [](auto const& r, Space const& space, int) { return time_study(r, space, false); });
+  add<Space>("divided", of, [](auto const& r, Space const& space, int) { return time_study(r, space, true); });
+  if (triangles_of_ground != 0)
+    add<Space>("ground", of, [](auto const& r, Space const& space, int) { return time_ground(r, space); });
   add<Space>("packed", of, [](auto const& r, Space const& space, int times) { return time_step(r, space, times); });
 }
 
@@ -222,12 +253,14 @@ int main(int argc, char** argv) try {
   }
   benchmark::Initialize(&argc, argv);
   int threads = 0;
-  if (argc == 4 && (processes || (io::parse_number<int>(kind, threads) && threads >= 1 && threads <= 64))) {
+  if ((argc == 4 || argc == 5) &&
+      (processes || (io::parse_number<int>(kind, threads) && threads >= 1 && threads <= 64))) {
     spheres_in_all = bench::count_of(argv[2], 1);
     particles_of_rank = bench::count_of(argv[3], 1);
+    if (argc == 5) triangles_of_ground = bench::count_of(argv[4], 2);
   }
-  if (spheres_in_all == 0 || particles_of_rank == 0) {
-    std::fputs("usage: ranks_bench N|mpi|nccl SPHERES PARTICLES [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
+  if (spheres_in_all == 0 || particles_of_rank == 0 || (argc == 5 && triangles_of_ground == 0)) {
+    std::fputs("usage: ranks_bench N|mpi|nccl SPHERES PARTICLES [TRIANGLES] [OPTION OF GOOGLE BENCHMARK...]\n", stderr);
     return 2;
   }
   if (processes) add_all({kind, size});
