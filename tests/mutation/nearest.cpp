@@ -3,13 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
 #include <collide/detail/nearest/nearest_search.hpp>
 #include <collide/detail/nearest/ray_parity.hpp>
 
+#include "../flush_to_zero.hpp"
 #include "rows.hpp"
 
 namespace detail = collide::detail;
@@ -82,9 +79,7 @@ bool all_right(char const* folder, bool flushed) {
 
 int main(int, char** argv) {
   bool right = all_right<float>(argv[1], false) && all_right<double>(argv[1], false);
-#if defined(__SSE__)
-  _mm_setcsr(_mm_getcsr() | 0x8040);
+  tests::flush_to_zero const flushes;
   right = right && all_right<float>(argv[1], true) && all_right<double>(argv[1], true);
-#endif
   return !right;
 }

@@ -1,13 +1,10 @@
 /// stages FOLDER: fails at a row that some stage of a verdict gets wrong, or the ball of the broad phase drops;
 /// subnormal numbers as they are and flushed to zero.
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
 #include <collide/detail/geometry/bounding_sphere.hpp>
 #include <collide/detail/geometry/lifted_bounds.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
 
+#include "../flush_to_zero.hpp"
 #include "rows.hpp"
 
 template <class S>
@@ -60,9 +57,7 @@ int main(int, char** argv) {
     return tests::all_right(floats, is_right<float>) && tests::all_right(doubles, is_right<double>);
   };
   bool right = all_right();
-#if defined(__SSE__)
-  _mm_setcsr(_mm_getcsr() | 0x8040);
+  tests::flush_to_zero const flushes;
   right = right && all_right();
-#endif
   return !right;
 }

@@ -6,14 +6,11 @@
 #include <numeric>
 #include <vector>
 
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
 #include <doctest/doctest.h>
 
 #include <collide/detail/nearest/nearest_search.hpp>
 
+#include "../../flush_to_zero.hpp"
 #include "narrow_phase/near_contact.hpp"
 #include "nearest/point_cases.hpp"
 
@@ -222,7 +219,6 @@ TEST_CASE_TEMPLATE("nearest: coordinates of all exponents", S, float, double) {
   check(all);
 }
 
-#if defined(__SSE__)
 TEST_CASE_TEMPLATE("nearest: the same triangle where the processor takes subnormal numbers for zero", S, float,
                    double) {
   tests::dice roll(4);
@@ -230,15 +226,11 @@ TEST_CASE_TEMPLATE("nearest: the same triangle where the processor takes subnorm
   for (int i = 0; i < (sizeof(S) == sizeof(float) ? 1000 : 60); ++i) {
     any_exponents<S> const c(roll);
     auto const expected = search(c.mesh, c.point).triangle;
-    unsigned const mode = _mm_getcsr();
-    _mm_setcsr(mode | 0x8040);
-    auto const found = search(c.mesh, c.point).triangle;
-    _mm_setcsr(mode);
-    wrong += found != expected;
+    tests::flush_to_zero const flushes;
+    wrong += search(c.mesh, c.point).triangle != expected;
   }
   CHECK(wrong == 0);
 }
-#endif
 
 TEST_CASE_TEMPLATE("nearest: points around closed meshes, at the origin and far from it", S, float, double) {
   for (double const offset : {0.0, 1e2, 1e5}) {
