@@ -42,9 +42,10 @@
 /// particles wherever they are says `static constexpr bool begins_on_ranks = true`; see distributed_simulation.cuh. One
 /// with `static constexpr bool asks_forces = true` has `end_step(particle&, forces, dt)` instead: `forces.change(dt)`
 /// is by how much `accelerate` of all effects changes the velocity. One that makes the mesh solid says `static
-/// constexpr bool repels = true`. `on_pair_contact` is called before the other members but `begin_step`, with
-/// `velocity_verlet` when all particles have moved: `self` and `other` are as they were then. What changes is
-/// `particle`, so that both of a pair see the same.
+/// constexpr bool repels = true`. One that looks at what others do between particles says `static constexpr bool
+/// follows_pair_contacts = true`: in a list it comes behind them. `on_pair_contact` is called before the other members
+/// but `begin_step`, with `velocity_verlet` when all particles have moved: `self` and `other` are as they were then.
+/// What changes is `particle`, so that both of a pair see the same.
 ///
 /// `accelerate` of every effect is called once more for each contact with the mesh, on a copy of the particle, to learn
 /// `mesh_contact::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.

@@ -43,7 +43,7 @@ TESTS = {(n, s): HERE / f"test_{n}_{s}.cpp" for n in NARROW_PHASES for s in SCAL
 
 # One of these must be in the list, too; what a simulation without them says is in tests/compile_fail.
 REQUIRED = {"friction": ["bounce"], "adhesion": ["bounce"], "spin": ["bounce", "sphere_contact"]}
-# runs_after of the effects; pair_forces sees nothing of a user's effect that comes after it.
+# runs_after of the effects; pair_forces follows_pair_contacts.
 AFTER = {
     "friction": ["bounce"],
     "spin": ["bounce"],
@@ -78,6 +78,7 @@ REFUSED = {
     "friction_before_bounce": "friction, spin or adhesion before bounce",
     "spin_without_contacts": "spin without bounce, sphere_contact or an effect of a user's that does the same",
     "forces_before_bounce": "mesh_forces before bounce, friction, spin or adhesion",
+    "pair_forces_before_granular_contact": "pair_forces before an effect that acts between particles",
     "reaction_before_bounce": "reaction before bounce, friction, spin or adhesion",
     "granular_contact_with_bounce": "granular_contact beside bounce, friction, spin, adhesion or absorb, which act where "
     "particles hit the mesh",

@@ -10,7 +10,6 @@ struct bounce;
 struct friction;
 struct spin;
 struct adhesion;
-struct sphere_contact;
 
 /// Force of the mesh on a particle, in mass times length per time squared; see `mesh_forces`.
 struct mesh_force {
@@ -60,14 +59,14 @@ struct mesh_forces {
   }
 };
 
-/// Sums the forces with which other particles act on each particle in a step: mass times what `sphere_contact` (or an
-/// effect of your own with `on_pair_contact`) changes of the velocity, over dt. 0 for particles that `sleep`.
-/// `to_host<pair_force>()` reads it after a step. An effect for the end of the list: of those behind it it sees
-/// nothing. 3 scalars a particle, and as many in the lists of neighbours, which a scene has with it if it had none.
+/// Sums the forces with which other particles act on each particle in a step: mass times what `sphere_contact`,
+/// `granular_contact` or an effect of your own with `on_pair_contact` changes of the velocity, over dt. 0 for particles
+/// that `sleep`. `to_host<pair_force>()` reads it after a step. In a list it comes behind all of these, else it does
+/// not compile. 3 scalars a particle, and as many in the lists of neighbours, which a scene has with it if it had none.
 struct pair_forces {
   using reads = columns<velocity>;
   using writes = columns<pair_force>;
-  using runs_after = effects<sphere_contact>;
+  static constexpr bool follows_pair_contacts = true;
   static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
 
   double density = 1;  ///< mass per volume, above 0: that of `sphere_contact`

@@ -59,7 +59,7 @@ struct list_state {
   std::uint32_t forgotten;   ///< not 0: there was no room for what some contact remembers
 };
 
-/// The same on ranks.
+/// State of the lists on ranks.
 struct list_state_on_ranks : list_state {
   std::uint32_t at_border;  ///< how many particles have copies of other ranks' on their list
 };

@@ -113,7 +113,7 @@ constexpr bool check_effects() {
   static_assert((int(is_source<Effect>) + ... + 0) <= 1,
                 "collide: a simulation has one source: give emit_from a Source that begins at several places");
   static_assert(
-      respects_order<Effect...>,
+      respects_order<Effect...> && follows_all_pair_contacts<S, Effect...>,
       "collide: an effect comes after those whose result it uses: name friction after bounce, and what reads forces "
       "(mesh_forces, pair_forces, reaction) behind what makes them");
   constexpr bool is_solid = (repels<Effect> || ...), meets = (pairs_in<Effect, S> || ...);

@@ -180,6 +180,21 @@ template <class E, class... Later>
 inline constexpr bool respects_order<E, Later...> =
     !(names<typename runs_after_of<E>::type, Later> || ...) && respects_order<Later...>;
 
+/// True of an effect that looks at what others do between particles.
+template <class E, class = void>
+inline constexpr bool follows_pair_contacts = false;
+template <class E>
+inline constexpr bool follows_pair_contacts<E, std::void_t<decltype(E::follows_pair_contacts)>> =
+    E::follows_pair_contacts;
+
+/// True if no effect of the list comes before one that acts between particles and that it follows.
+template <class S, class... E>
+inline constexpr bool follows_all_pair_contacts = true;
+template <class S, class E, class... Later>
+inline constexpr bool follows_all_pair_contacts<S, E, Later...> =
+    !(follows_pair_contacts<E> && ((pairs_in<Later, S> && !follows_pair_contacts<Later>) || ...)) &&
+    follows_all_pair_contacts<S, Later...>;
+
 template <class... E>
 struct integrator_of {
   using type = semi_implicit_euler;
