@@ -98,7 +98,7 @@ class simulation_of final : public simulation_base {
   double largest_time_step() override { return collide::largest_time_step(one_); }
   std::vector<double> energy(double density) override {
     collide::energy_sums const e = collide::energy(one_, density);
-    return {e.kinetic, e.rotational, e.elastic, e.potential};
+    return {e.kinetic, e.rotational, e.elastic, e.potential, e.tangential};
   }
 
   std::vector<double> sums(std::size_t effect) override {  // not by way of the effect, which would wake what sleeps

@@ -193,10 +193,10 @@ class Simulation:
         return self._simulation.largest_time_step(self._stream())
 
     def energy(self, density: float = 0) -> Dict[str, float]:
-        """Kinetic, rotational, elastic and potential energy. ``density`` is mass per volume, 0 that of `sphere_contact`.
-        Waits; O(n), O(n^2) with `sphere_contact`."""
-        four = self._simulation.energy(self._stream(), density)
-        return dict(zip(("kinetic", "rotational", "elastic", "potential"), four))
+        """Kinetic, rotational, elastic and potential energy, and that of tangential springs. ``density`` is mass per
+        volume, 0 that of `sphere_contact`. Waits; O(n), O(n log n) where particles meet."""
+        of_all = self._simulation.energy(self._stream(), density)
+        return dict(zip(("kinetic", "rotational", "elastic", "potential", "tangential"), of_all))
 
     def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow]:
         """What `reaction` or `mass_flow`, by its name or its place in the list, has summed up since `set`, `load`, `clear`,
