@@ -80,7 +80,7 @@ struct clear_cells {
     if (i == 0) {
       auto& h = *order.header;
       h.overflowed = h.count = h.in_runs = h.kept = 0;
-      if constexpr (order.on_ranks) h.at_border = 0;
+      if constexpr (sorted_particles<S, Effects>::on_ranks) h.at_border = 0;
     }
   }
 };
