@@ -186,6 +186,7 @@ def test_granular_contact_of_two_materials():
         sim.steps(int(5e-3 / dt), dt)
         assert numpy.allclose(sim["velocity"][:, 2] / speed, expected, atol=0.01) and (sim["position"][:, 2] > radius).all()
     assert "angular_velocity" in sim.columns and 0 < dt < 1e-3
+    sim.change("granular_contact", materials=granular.materials(solids, granular.SurfacePair(0.3, 0.5)))
     sim.set(numpy.array([[0, 0, radius - 1e-6], [1, 0, radius - 1e-6]]), radius, numpy.array([[0.01, 0, 0]] * 2))
     sim.steps(2, dt)
     assert set(sim.energy()) == {"kinetic", "rotational", "elastic", "potential", "tangential"} and sim.energy()["tangential"] > 0

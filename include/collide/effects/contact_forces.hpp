@@ -67,7 +67,7 @@ struct pair_forces {
   using reads = columns<velocity>;
   using writes = columns<pair_force>;
   static constexpr bool follows_pair_contacts = true;  ///< in a list it comes behind what acts between particles
-  static constexpr bool begins_on_ranks = true;  ///< `begin_step` does its work whatever rank a particle is on
+  static constexpr bool begins_on_ranks = true;        ///< `begin_step` does its work whatever rank a particle is on
 
   double density = 1;  ///< mass per volume, above 0: that of `sphere_contact`
 
