@@ -194,7 +194,7 @@ class Simulation:
 
     def energy(self, density: float = 0) -> Dict[str, float]:
         """Kinetic, rotational, elastic and potential energy, and that of tangential springs. ``density`` is mass per
-        volume, 0 that of `sphere_contact`. Waits; O(n), O(n log n) where particles meet."""
+        volume, 0 that of the effect by which particles meet. Waits; O(n), O(n log n) where particles meet."""
         of_all = self._simulation.energy(self._stream(), density)
         return dict(zip(("kinetic", "rotational", "elastic", "potential", "tangential"), of_all))
 
