@@ -222,6 +222,7 @@ struct springs_at_mesh {
     granular_pair<S> p{};
     p.overlap = wall.overlap;
     p.radius = self.the_radius;
+    p.is_wall = true;
     auto const& m = law.made_of.with_wall(self, wall.triangle, wall.body);
     normal_force<S> force = law.normal.force(p, m);
     spring_energies found;
