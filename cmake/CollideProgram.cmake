@@ -14,6 +14,8 @@ find_package(assimp QUIET)
 set(COLLIDE_ASSIMP "")
 if(TARGET assimp::assimp)
   set(COLLIDE_ASSIMP assimp::assimp)
+else()
+  collide_missing("Assimp (Debian: libassimp-dev)")
 endif()
 
 add_library(collide_options INTERFACE)
