@@ -66,7 +66,7 @@ def mindlin_rescale(
     return _mindlin(damping, test)
 
 
-@_describes(Law, "effects/granular/mindlin")
+@_describes(Law, "effects/granular/mindlin", part="tangential")
 def mindlin_force(
     stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False,
     rescales: bool = True,
@@ -89,7 +89,7 @@ def epsd(damping: float = 0.3) -> Law:
     """Rolling law: a spring that remembers, and a dashpot, a ratio to critical damping. Piles stand still."""
 
 
-@_describes(Law, "effects/granular/rolling")
+@_describes(Law, "effects/granular/rolling", part="rolling")
 def epsd2() -> Law:
     """Rolling law, with `hertz`: `epsd` without the dashpot, and with the stiffness of `mindlin`'s spring."""
 
