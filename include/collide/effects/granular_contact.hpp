@@ -133,6 +133,7 @@ struct granular_contact {
   struct no_memory {
     S dt;
     COLLIDE_HD_INLINE S elapsed() const { return dt; }
+    COLLIDE_HD_INLINE no_memory const& values() const { return *this; }
   };
 
   /// Two spheres. True if the contact goes on.
@@ -165,25 +166,34 @@ struct granular_contact {
     return apply(p, c, m, made_of.between(self, other), memory, dt);
   }
 
-  /// A sphere and a wall.
+  /// A sphere and a wall. Of a contact that joins a deeper one, all forces are less by those at the saddle, which has
+  /// the memory of the contact: where the two become the same, they vanish.
   template <class Particle, class Seen, class Memory, class S>
   COLLIDE_HD_INLINE bool press(Particle& p, Seen const& self, mesh_overlap<S> const& wall, Memory const& memory,
                                S dt) const {
     S const r = self.radius(), m = detail::sphere_mass(S(1), r) * made_of.template density_of<S>(self);
-    granular_pair<S> c;
-    c.normal = wall.normal;
-    c.overlap = wall.overlap;
-    c.radius = c.own_radius = r;
-    c.mass = m;
-    c.rolling_inertia = S(1.4) * m * r * r;
-    vec3<S> turned(S(0), S(0), S(0));
-    c.own_turning = c.turning = turned;
-    if constexpr (turns) {
-      turned = self[angular_velocity{}] * r;
-      c.own_turning = c.turning = along_surface(self[angular_velocity{}], c.normal);
+    auto const& of = made_of.with_wall(self, wall.triangle, wall.body);
+    vec3<S> const relative = self[velocity{}] - wall.surface_velocity;
+    auto const before = memory.values();
+    COLLIDE_NO_UNROLL
+    for (bool at_saddle = wall.has_saddle();; at_saddle = false) {
+      granular_pair<S> c;
+      c.normal = at_saddle ? wall.saddle_normal : wall.normal;
+      c.overlap = at_saddle ? wall.saddle_overlap : wall.overlap;
+      c.radius = c.own_radius = r;
+      c.mass = m;
+      c.rolling_inertia = S(1.4) * m * r * r;
+      vec3<S> turned(S(0), S(0), S(0));
+      c.own_turning = c.turning = turned;
+      if constexpr (turns) {
+        turned = self[angular_velocity{}] * r;
+        c.own_turning = c.turning = along_surface(self[angular_velocity{}], c.normal);
+      }
+      set_velocity(c, relative, turned);
+      bool const goes_on = apply(p, c, m, of, memory, at_saddle ? -dt : dt);
+      if (!at_saddle) return goes_on;
+      if constexpr (!is_memoryless) memory.values() = before;
     }
-    set_velocity(c, vec3<S>(self[velocity{}] - wall.surface_velocity), turned);
-    return apply(p, c, m, made_of.with_wall(self, wall.triangle, wall.body), memory, dt);
   }
 
   template <class S>
