@@ -58,6 +58,8 @@ struct granular_contact {
   static constexpr bool repels = true;                             ///< the mesh is solid
   static constexpr double farther = detail::farther_of<Cohesion>;  ///< than its radius a sphere sees the mesh, in radii
 
+  static constexpr double farthest_saddle = detail::farthest_saddle_of<Cohesion>;  ///< from the centre, less the radius
+
   using reads = detail::union_of<columns<position>, typename Materials::reads>;
   using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;
   using remembers =
@@ -181,6 +183,10 @@ struct granular_contact {
       c.normal = at_saddle ? wall.saddle_normal : wall.normal;
       c.overlap = at_saddle ? wall.saddle_overlap : wall.overlap;
       c.radius = c.own_radius = r;
+      S times = at_saddle ? S(-1) : S(1);
+      if constexpr (farthest_saddle > 0) {
+        if (at_saddle) times = -hold_saddle(c, of);
+      }
       c.mass = m;
       c.rolling_inertia = S(1.4) * m * r * r;
       vec3<S> turned(S(0), S(0), S(0));
@@ -190,10 +196,21 @@ struct granular_contact {
         c.own_turning = c.turning = along_surface(self[angular_velocity{}], c.normal);
       }
       set_velocity(c, relative, turned);
-      bool const goes_on = apply(p, c, m, of, memory, at_saddle ? -dt : dt);
+      bool const goes_on = apply(p, c, m, of, memory, times * dt);
       if (!at_saddle) return goes_on;
       if constexpr (!is_memoryless) memory.values() = before;
     }
+  }
+
+  /// How much of a saddle counts: less and less where it is farther from the sphere than what holds; there it is as if
+  /// it just held.
+  template <class S>
+  COLLIDE_HD_INLINE S hold_saddle(granular_pair<S>& c, detail::contact_material const& of) const {
+    S const least = cohesion.least_overlap(c, of);
+    if (c.overlap >= least) return 1;
+    S const part = 1 - (least - c.overlap) / (S(farthest_saddle - farther) * c.own_radius);
+    c.overlap = least;
+    return detail::max(part, S(0));
   }
 
   template <class S>

@@ -164,13 +164,8 @@ struct press_on_mesh {
         near.sort();
       }
     }
-    auto const reaches = [&](std::uint32_t i, vec3<double> const& p) {
-      return is_at(open, shape, near[i], p, near.tolerance());
-    };
-    std::uint32_t const minima = near.find_minima(reaches);
-    if (minima > 1)
-      near.join(minima, static_cast<double>(shape.radius) * (1 + Effects::farthest_saddle), reaches,
-                [&](std::uint32_t i, std::uint32_t k) { return saddle_point(open, shape, near[i], k); });
+    near.find_contacts(static_cast<double>(shape.radius) * (1 + Effects::farthest_saddle),
+                       [&](overlap_item const& item) { return corners_of(open, shape, item); });
   }
 
   COLLIDE_HD overlap_item* items_for(std::uint32_t n) const {
@@ -218,43 +213,21 @@ struct press_on_mesh {
     if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) return;
     nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
     if (!(n.distance < static_cast<double>(seen.radius))) return;
-    overlap_item item;
-    item.nearest = in_world(open, frame, scaled(n.normal, -n.distance));
-    item.distance = n.distance;
-    item.triangle = triangle;
-    item.frame = static_cast<std::uint8_t>(frame);
-    item.kind = n.kind;
-    near.add(item);
+    vec3<double> const nearest = in_world(open, frame, scaled(n.normal, -n.distance));
+    near.add({nearest, n.distance, triangle, static_cast<std::uint8_t>(frame), n.kind, false, false, 0, 0, 0, 0, 0});
   }
 
-  /// A triangle relative to the centre of a sphere, along the axes of its frame.
-  COLLIDE_HD_INLINE local_triangle<double> local(Triangles const& open, sphere<S> const& shape,
-                                                 overlap_item const& item) const {
-    return to_local<double>(open.mesh[item.triangle], seen_from(open, item.frame, shape));
-  }
-  /// Is a point, relative to the centre, within the tolerance of a triangle?
-  COLLIDE_HD bool is_at(Triangles const& open, sphere<S> const& shape, overlap_item const& item, vec3<double> p,
-                        double tolerance) const {
+  /// A triangle relative to the centre of a sphere, along the axes of the world.
+  static COLLIDE_HD_INLINE local_triangle<double> corners_of(Triangles const& open, sphere<S> const& shape,
+                                                             overlap_item const& item) {
+    local_triangle<double> t = to_local<double>(open.mesh[item.triangle], seen_from(open, item.frame, shape));
     if constexpr (has_moving_mesh<Triangles>) {
-      if (item.frame != 0) p = open.mesh.frames[item.frame].now.rotated_back(p);
+      if (item.frame != 0) {
+        auto const& now = open.mesh.frames[item.frame].now;
+        t.a = now.rotated(t.a), t.b = now.rotated(t.b), t.c = now.rotated(t.c);
+      }
     }
-    local_triangle<double> t = local(open, shape, item);
-    t.a -= p;
-    t.b -= p;
-    t.c -= p;
-    if (!aabb_within(t, tolerance)) return false;
-    return closest_to_origin(t, cross<double>(t.b - t.a, t.c - t.a)).distance_squared <= mul_rn(tolerance, tolerance);
-  }
-  COLLIDE_HD vec3<double> saddle_point(Triangles const& open, sphere<S> const& shape, overlap_item const& item,
-                                       std::uint32_t k) const {
-    if (k == overlap_list::saddle_points - 1) return item.nearest;
-    local_triangle<double> const t = local(open, shape, item);
-    vec3<double> const corner = k % 3 == 0 ? t.a : k % 3 == 1 ? t.b : t.c;
-    if (k >= 3) return in_world(open, item.frame, corner);
-    vec3<double> const edge = (k == 0 ? t.b : k == 1 ? t.c : t.a) - corner;
-    double const along = -dot(corner, edge), squared = dot(edge, edge);
-    double const part = along > 0 ? (along < squared ? div_rn(along, squared) : 1.0) : 0.0;
-    return in_world(open, item.frame, corner + scaled(edge, part));
+    return t;
   }
 
   COLLIDE_HD void press(Triangles const& open, std::size_t i, overlap_list const& near, int before) const {
@@ -333,8 +306,7 @@ struct press_on_mesh {
                       item.triangle,         body_of_frame(item.frame),           rounded_to<S>(normal),
                       mesh_overlap<S>::apart};
     if (item.has_saddle) {
-      constexpr std::uint32_t points = overlap_list::saddle_points;
-      vec3<double> const p = saddle_point(open, shape, near[item.saddle_of / points], item.saddle_of % points);
+      vec3<double> const p = near.saddle_of(item, [&](overlap_item const& of) { return corners_of(open, shape, of); });
       double const distance = sqrt_rn(dot(p, p));
       o.saddle_overlap = static_cast<S>(radius - max(distance, n.distance));
       if (distance > n.distance) o.saddle_normal = rounded_to<S>(scaled(p, -div_rn(1.0, distance)));
