@@ -59,6 +59,8 @@ struct granular_contact {
   static constexpr bool repels = true;                             ///< the mesh is solid
   static constexpr double farther = detail::farther_of<Cohesion>;  ///< than its radius a sphere sees the mesh, in radii
 
+  static constexpr double farthest_saddle = detail::farthest_saddle_of<Cohesion>;  ///< from the centre, less the radius
+
   using reads = detail::union_of<columns<position>, typename Materials::reads>;
   using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;
   using remembers =
@@ -140,6 +142,7 @@ struct granular_contact {
   struct no_memory {
     S dt;
     COLLIDE_HD_INLINE S elapsed() const { return dt; }
+    COLLIDE_HD_INLINE no_memory const& values() const { return *this; }
   };
 
   /// Two spheres. True if the contact goes on.
@@ -172,26 +175,50 @@ struct granular_contact {
     return apply(p, c, m, made_of.between(self, other), memory, dt);
   }
 
-  /// A sphere and a wall.
+  /// A sphere and a wall. Of a contact that joins a deeper one, all forces are less by those at the saddle, which has
+  /// the memory of the contact: where the two become the same, they vanish.
   template <class Particle, class Seen, class Memory, class S>
   COLLIDE_HD_INLINE bool press(Particle& p, Seen const& self, mesh_overlap<S> const& wall, Memory const& memory,
                                S dt) const {
     S const r = self.radius(), m = detail::sphere_mass(S(1), r) * made_of.template density_of<S>(self);
-    granular_pair<S> c;
-    c.normal = wall.normal;
-    c.overlap = wall.overlap;
-    c.radius = c.own_radius = r;
-    c.mass = m;
-    c.is_wall = true;
-    c.rolling_inertia = S(1.4) * m * r * r;
-    vec3<S> turned(S(0), S(0), S(0));
-    c.own_turning = c.turning = turned;
-    if constexpr (turns) {
-      turned = self[angular_velocity{}] * slip_arm(r, c.overlap);
-      c.own_turning = c.turning = along_surface(self[angular_velocity{}], c.normal);
+    auto const& of = made_of.with_wall(self, wall.triangle, wall.body);
+    vec3<S> const relative = self[velocity{}] - wall.surface_velocity;
+    auto const before = memory.values();
+    COLLIDE_NO_UNROLL
+    for (bool at_saddle = wall.has_saddle();; at_saddle = false) {
+      granular_pair<S> c;
+      c.normal = at_saddle ? wall.saddle_normal : wall.normal;
+      c.overlap = at_saddle ? wall.saddle_overlap : wall.overlap;
+      c.radius = c.own_radius = r;
+      S times = at_saddle ? S(-1) : S(1);
+      if constexpr (farthest_saddle > 0) {
+        if (at_saddle) times = -hold_saddle(c, of);
+      }
+      c.mass = m;
+      c.is_wall = true;
+      c.rolling_inertia = S(1.4) * m * r * r;
+      vec3<S> turned(S(0), S(0), S(0));
+      c.own_turning = c.turning = turned;
+      if constexpr (turns) {
+        turned = self[angular_velocity{}] * slip_arm(r, c.overlap);
+        c.own_turning = c.turning = along_surface(self[angular_velocity{}], c.normal);
+      }
+      set_velocity(c, relative, turned);
+      bool const goes_on = apply(p, c, m, of, memory, times * dt);
+      if (!at_saddle) return goes_on;
+      if constexpr (!is_memoryless) memory.values() = before;
     }
-    set_velocity(c, vec3<S>(self[velocity{}] - wall.surface_velocity), turned);
-    return apply(p, c, m, made_of.with_wall(self, wall.triangle, wall.body), memory, dt);
+  }
+
+  /// How much of a saddle counts: less and less where it is farther from the sphere than what holds; there it is as if
+  /// it just held.
+  template <class S>
+  COLLIDE_HD_INLINE S hold_saddle(granular_pair<S>& c, detail::contact_material const& of) const {
+    S const least = cohesion.least_overlap(c, of);
+    if (c.overlap >= least) return 1;
+    S const part = 1 - (least - c.overlap) / (S(farthest_saddle - farther) * c.own_radius);
+    c.overlap = least;
+    return detail::max(part, S(0));
   }
 
   template <class S>

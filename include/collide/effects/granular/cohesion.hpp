@@ -2,6 +2,8 @@
 /// Cohesion: forces that pull grains together.
 #pragma once
 
+#include <limits>
+
 #include <collide/effects/granular/law.hpp>
 
 namespace collide {
@@ -28,7 +30,14 @@ struct sjkr {
 /// Hertz' force less a constant pull, 4 pi gamma R*, of hard grains: B. V. Derjaguin, V. M. Muller and Y. P. Toporov,
 /// Journal of Colloid and Interface Science 53, 1975.
 struct dmt {
-  static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
+  static constexpr bool needs_hertz = true;        ///< the normal law must be `hertz`
+  static constexpr double farthest_saddle = 1e-3;  ///< from a sphere, in its radii, so that a shallow fold is a plane
+
+  /// The least overlap that holds.
+  template <class S>
+  COLLIDE_HD_INLINE S least_overlap(granular_pair<S> const&, detail::contact_material const&) const {
+    return std::numeric_limits<S>::min();
+  }
 
   template <class S, class Memory>
   COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
@@ -47,7 +56,8 @@ struct dmt {
 struct jkr {
   using remembers = contact_columns<contact_radius>;  ///< so that a contact goes on where the two are apart
   static constexpr double farther = 0.05;             ///< than its radius a sphere sees the mesh, in radii
-  static constexpr bool needs_hertz = true;           ///< the normal law must be `hertz`
+  static constexpr double farthest_saddle = farther + dmt::farthest_saddle;  ///< from a sphere, in its radii
+  static constexpr bool needs_hertz = true;                                  ///< the normal law must be `hertz`
 
   template <class S, class Memory>
   COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
@@ -66,6 +76,17 @@ struct jkr {
     n.elastic = S(4.0 / 3) * young * cube / p.radius - 4 * k * young * detail::sqrt_rn(cube);
     n.pull_off = S(9.42477796076938) * gamma * p.radius;
     n.goes_on = true;
+  }
+
+  /// The least overlap that holds: -3/2 k x with x^3 = k R* / 2 and k^2 = pi gamma / E*, less what rounding takes.
+  template <class S>
+  COLLIDE_HD_INLINE S least_overlap(granular_pair<S> const& p, detail::contact_material const& m) const {
+    S const k = detail::sqrt_rn(S(3.141592653589793) * S(m.cohesion) / S(m.young)), cube = k * p.radius / 2;
+    if (!(cube > 0)) return 0;
+    S x = detail::max(detail::sqrt_rn(p.radius), k);  // above the root, to which Newton's method descends
+    COLLIDE_NO_UNROLL
+    for (S next; (next = (2 * x + cube / (x * x)) / 3) < x;) x = next;
+    return S(-1.5) * k * x * (1 - 16 * std::numeric_limits<S>::epsilon());
   }
 
  private:
