@@ -290,7 +290,7 @@ void check_digits(char const* code, Law const& law, std::vector<grain> grains, i
   std::array<double, 4> const found{grains[0].v.x(), grains[0].v.z(), grains[0].w.y(), grains[1].w.y()};
   for (std::size_t i = 0; i < 4; ++i) CHECK(found[i] == doctest::Approx(expected[i]).epsilon(2e-11).scale(0));
   CHECK(angular_momentum() == doctest::Approx(before).epsilon(1e-11).scale(0));
-  tests::compared<double>("two spheres meet aslant, law by law", code, found[0], expected[0]);
+  tests::compared<double>("two spheres meet aslant, each law without a simulation", code, found[0], expected[0]);
 }
 
 }  // namespace
@@ -365,7 +365,8 @@ TEST_CASE("granular laws: a grain that sticks to a vertical wall rolls down it")
   CHECK(grains[0].v.y() == doctest::Approx(expected).epsilon(1e-10).scale(0));
   CHECK(grains[0].w.x() == doctest::Approx(701.8168687324635).epsilon(1e-10).scale(0));
   CHECK(grains[0].v.y() == doctest::Approx(-5.0 / 7 * 9.81 * 0.1).epsilon(3e-3));
-  tests::compared<double>("rolls down a vertical wall, `sjkr`", "LIGGGHTS, all its digits", grains[0].v.y(), expected);
+  tests::compared<double>("rolls down a vertical wall, `sjkr` without a simulation", "LIGGGHTS, all its digits",
+                          grains[0].v.y(), expected);
   by.cohesion.wall_factor = 1;  // as of two spheres: twice the pull, four times the overlap
   double const overlap = 0.001 - grains[0].x.z();
   play(by, grains, 20000, 1e-6);
