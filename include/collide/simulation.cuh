@@ -442,7 +442,7 @@ class simulation {
     return {overlaps_.data(), static_cast<std::uint32_t>(overlaps_.capacity()), pressing_counts_.data() + 1,
             pressing_counts_.data() + 2};
   }
-  /// And the list of those that press on the mesh.
+  /// Empties the pool, and the list of those that press on the mesh.
   void clear_overlap_pool() const { space_.fill(pressing_counts_.data(), 0, 2 * sizeof(std::uint32_t)); }
   /// Says which of those that a source has made overlap others, once the lists are renewed.
   void settle_births([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
@@ -642,7 +642,7 @@ class simulation {
   surface_memory surfaces_;
   buffer<id> overflow_;
   buffer<id> pressing_;                    ///< particles that may press on the mesh, and how many they are
-  buffer<std::uint32_t> pressing_counts_;  ///< then how much of `overlaps_` is used, and whether it was too little
+  buffer<std::uint32_t> pressing_counts_;  ///< of those, of used `overlaps_`, and whether they were too few
   buffer<detail::overlap_item> overlaps_;  ///< of a device, for particles that overlap many triangles
   bodies_memory bodies_;
 };

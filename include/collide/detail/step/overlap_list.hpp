@@ -79,7 +79,7 @@ struct overlap_item {
   std::uint32_t parent;     ///< the minimum of its part of the surface; of a minimum a nearer one that it has joined
   std::uint32_t neighbour;  ///< of a minimum while parts join: another, to which the lowest way leads
   std::uint32_t pass;       ///< the highest point of that way, as `saddle`,
-  double pass_distance;     ///< and its distance
+  double pass_distance;     ///< the distance of the pass
 };
 
 /// The triangles that a sphere overlaps, the nearest first: here as long as there are few, else in memory that the
@@ -254,7 +254,7 @@ class overlap_list {
     return false;
   }
 
-  /// Where two parts of the surface join, in the order of the distances, the minimum that is farther has its saddle.
+  /// Joins parts of the surface in the order of their passes: the minimum that is farther has its saddle there.
   COLLIDE_HD void join(std::uint32_t minima, double reach) {
     COLLIDE_NO_UNROLL
     while (minima-- > 1) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <collide/detail/grid/triangle_ref.hpp>
 #include <collide/detail/particles/contact_memory.hpp>
 
 // the numbers of elements of small arrays are int
