@@ -105,9 +105,9 @@ mesh_data<S> read_with_assimp(std::string const& path, std::string const& what, 
 template <class S = float>
 mesh_data<S> read_mesh(std::string const& path) {
   if (detail::has_ending(path, ".stl")) return read_stl<S>(path);
-  if (detail::has_ending(path, ".ply")) return detail::joined(read_ply<S>(path));
-  if (detail::has_ending(path, ".off")) return detail::joined(read_off<S>(path));
-  if (detail::has_ending(path, ".obj")) return detail::joined(read_obj<S>(path));
+  if (detail::has_ending(path, ".ply")) return detail::welded(read_ply<S>(path));
+  if (detail::has_ending(path, ".off")) return detail::welded(read_off<S>(path));
+  if (detail::has_ending(path, ".obj")) return detail::welded(read_obj<S>(path));
   std::string const what = "collide: read_mesh: " + path;
   std::size_t expected = 0;
   if (detail::has_ending(path, ".gltf") || detail::has_ending(path, ".glb")) {
@@ -118,7 +118,7 @@ mesh_data<S> read_mesh(std::string const& path) {
     throw error(what + ": this program was compiled without nlohmann/json.hpp, which glTF needs");
 #endif
   }
-  return detail::joined(detail::read_with_assimp<S>(path, what, expected));
+  return detail::welded(detail::read_with_assimp<S>(path, what, expected));
 }
 
 }  // namespace collide

@@ -91,7 +91,7 @@ void add_face(mesh_data<S>& mesh, std::vector<std::int64_t> const& corners, int 
 
 /// The same triangles, where vertices of equal coordinates, which are finite, are one: the first.
 template <class S>
-mesh_data<S> joined(mesh_data<S> mesh) {
+mesh_data<S> welded(mesh_data<S> mesh) {
   std::vector<std::uint32_t> order(mesh.vertices.size() / 3), number(order.size());
   auto const at = [&](std::uint32_t i) {
     S const* const p = &mesh.vertices[3 * std::size_t{i}];

@@ -82,7 +82,7 @@ mesh_data<S> read_stl(std::string const& path) {
   }
   mesh.corners.resize(mesh.vertices.size() / 3);
   for (std::size_t i = 0; i < mesh.corners.size(); ++i) mesh.corners[i] = static_cast<std::uint32_t>(i);
-  return detail::joined(detail::checked_mesh(std::move(mesh), what));
+  return detail::welded(detail::checked_mesh(std::move(mesh), what));
 }
 
 }  // namespace collide
