@@ -334,7 +334,7 @@ class OtherFormats(ProgramTest):
         super().setUp()
         self.scene(*CUBE, self.SPHERES)
 
-    def pairs(self, name, content):
+    def pairs_of(self, name, content):
         self.write(name, content)
         said = [f"{name}: coordinates are floats, as Assimp reads them"] if name.endswith(".gltf") else []
         self.succeed_saying(said, "detect", name, "spheres.csv", .4, "out.csv")
@@ -347,11 +347,11 @@ class OtherFormats(ProgramTest):
         self.assertGreater(len(truth.splitlines()), 5)
         numbers = lambda rows: "".join(" ".join(map(str, row)) + "\n" for row in rows)
         faces = numbers((3, *t) for t in triangles)
-        self.assertEqual(self.pairs("cube.off", f"OFF\n8 12 0\n{numbers(vertices)}{faces}"), truth)
-        self.assertEqual(self.pairs("cube.PLY", "ply\nformat ascii 1.0\nelement vertex 8\n" + "".join(f"property float {x}\n" for x in "xyz") +
+        self.assertEqual(self.pairs_of("cube.off", f"OFF\n8 12 0\n{numbers(vertices)}{faces}"), truth)
+        self.assertEqual(self.pairs_of("cube.PLY", "ply\nformat ascii 1.0\nelement vertex 8\n" + "".join(f"property float {x}\n" for x in "xyz") +
                                     f"element face 12\nproperty list uchar int vertex_indices\nend_header\n{numbers(vertices)}{faces}"), truth)
         soup = b"".join(struct.pack("<12fH", 0, 0, 0, *(x for i in t for x in vertices[i]), 0) for t in triangles)
-        self.assertEqual(self.pairs("cube.stl", bytes(80) + struct.pack("<I", 12) + soup), truth)
+        self.assertEqual(self.pairs_of("cube.stl", bytes(80) + struct.pack("<I", 12) + soup), truth)
 
     def gltf(self, node):
         data = struct.pack("<36H", *(i for t in CUBE[1] for i in t)) + struct.pack("<24f", *(x for v in CUBE[0] for x in v))
@@ -368,11 +368,11 @@ class OtherFormats(ProgramTest):
         if b"built without Assimp" in self.run_program("detect", "mesh.gltf", "spheres.csv", 1).stderr:
             self.skipTest("detect was built without Assimp")
         self.succeed("detect", "mesh.obj", "spheres.csv", .4, "truth.csv")
-        self.assertEqual(self.pairs("cube.gltf", self.gltf({})), self.read("truth.csv"))
+        self.assertEqual(self.pairs_of("cube.gltf", self.gltf({})), self.read("truth.csv"))
         self.write("mesh.obj", "".join("v %g %g %g\n" % tuple(2 * x for x in v) for v in CUBE[0]) +
                    "".join("f %d %d %d\n" % tuple(i + 1 for i in t) for t in CUBE[1]))
         self.succeed("detect", "mesh.obj", "spheres.csv", .4, "truth.csv")
-        self.assertEqual(self.pairs("cube.gltf", self.gltf({"scale": [2, 2, 2]})), self.read("truth.csv"))
+        self.assertEqual(self.pairs_of("cube.gltf", self.gltf({"scale": [2, 2, 2]})), self.read("truth.csv"))
 
     def test_numbers_that_are_no_floats_stay_doubles(self):
         # 431207.1 and 431207.3 are 0.2 apart, as floats 0.1875
