@@ -24,7 +24,7 @@ endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4)")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake (>= 3.25), nvidia-cuda-toolkit (>= 12), libtinyobjloader-dev, libassimp-dev")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake (>= 3.25), nvidia-cuda-toolkit (>= 12), libassimp-dev, nlohmann-json3-dev")
 
 # Debian wants these of every package; no other install has them.
 set(debian_doc ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_PACKAGE_NAME})

@@ -326,21 +326,17 @@ class ObjForms(ObjTest):
 
 
 class OtherFormats(ProgramTest):
-    """Files that Assimp reads, where the program is built with it: the same triangles in the same order as in OBJ."""
+    """The same triangles in the same order as in OBJ; glTF where the program is built with Assimp."""
 
     SPHERES = [(0, 0, 0), (3, 3, 3), (.5, .5, .5), (1.25, 0, .5), (2.25, 2, 2)]
 
     def setUp(self):
         super().setUp()
         self.scene(*CUBE, self.SPHERES)
-        self.write("mesh.stl", "solid a\nendsolid a\n")
-        done = self.run_program("detect", "mesh.stl", "spheres.csv", 1)
-        if b"built without Assimp" in done.stderr:
-            self.skipTest("detect was built without Assimp")
 
-    def pairs(self, name, content):
+    def pairs_of(self, name, content):
         self.write(name, content)
-        said = [f"{name}: coordinates are floats, as Assimp reads them"] if name.endswith((".gltf", ".glb")) else []
+        said = [f"{name}: coordinates are floats, as Assimp reads them"] if name.endswith(".gltf") else []
         self.succeed_saying(said, "detect", name, "spheres.csv", .4, "out.csv")
         return self.read("out.csv")
 
@@ -351,11 +347,11 @@ class OtherFormats(ProgramTest):
         self.assertGreater(len(truth.splitlines()), 5)
         numbers = lambda rows: "".join(" ".join(map(str, row)) + "\n" for row in rows)
         faces = numbers((3, *t) for t in triangles)
-        self.assertEqual(self.pairs("cube.off", f"OFF\n8 12 0\n{numbers(vertices)}{faces}"), truth)
-        self.assertEqual(self.pairs("cube.PLY", "ply\nformat ascii 1.0\nelement vertex 8\n" + "".join(f"property float {x}\n" for x in "xyz") +
+        self.assertEqual(self.pairs_of("cube.off", f"OFF\n8 12 0\n{numbers(vertices)}{faces}"), truth)
+        self.assertEqual(self.pairs_of("cube.PLY", "ply\nformat ascii 1.0\nelement vertex 8\n" + "".join(f"property float {x}\n" for x in "xyz") +
                                     f"element face 12\nproperty list uchar int vertex_indices\nend_header\n{numbers(vertices)}{faces}"), truth)
         soup = b"".join(struct.pack("<12fH", 0, 0, 0, *(x for i in t for x in vertices[i]), 0) for t in triangles)
-        self.assertEqual(self.pairs("cube.stl", bytes(80) + struct.pack("<I", 12) + soup), truth)
+        self.assertEqual(self.pairs_of("cube.stl", bytes(80) + struct.pack("<I", 12) + soup), truth)
 
     def gltf(self, node):
         data = struct.pack("<36H", *(i for t in CUBE[1] for i in t)) + struct.pack("<24f", *(x for v in CUBE[0] for x in v))
@@ -368,12 +364,28 @@ class OtherFormats(ProgramTest):
                           {"bufferView": 1, "componentType": 5126, "count": 8, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]}]})
 
     def test_a_scene_is_placed_as_its_nodes_say(self):
+        self.write("mesh.gltf", "{}")
+        if b"built without Assimp" in self.run_program("detect", "mesh.gltf", "spheres.csv", 1).stderr:
+            self.skipTest("detect was built without Assimp")
         self.succeed("detect", "mesh.obj", "spheres.csv", .4, "truth.csv")
-        self.assertEqual(self.pairs("cube.gltf", self.gltf({})), self.read("truth.csv"))
+        self.assertEqual(self.pairs_of("cube.gltf", self.gltf({})), self.read("truth.csv"))
         self.write("mesh.obj", "".join("v %g %g %g\n" % tuple(2 * x for x in v) for v in CUBE[0]) +
                    "".join("f %d %d %d\n" % tuple(i + 1 for i in t) for t in CUBE[1]))
         self.succeed("detect", "mesh.obj", "spheres.csv", .4, "truth.csv")
-        self.assertEqual(self.pairs("cube.gltf", self.gltf({"scale": [2, 2, 2]})), self.read("truth.csv"))
+        self.assertEqual(self.pairs_of("cube.gltf", self.gltf({"scale": [2, 2, 2]})), self.read("truth.csv"))
+
+    def test_numbers_that_are_no_floats_stay_doubles(self):
+        # 431207.1 and 431207.3 are 0.2 apart, as floats 0.1875
+        self.write("mesh.off", "OFF\n3 1 0\n431207.1 0 0\n431207.1 1 0\n431207.1 0 1\n3 0 1 2\n")
+        self.write("spheres.csv", "x,y,z\n431207.3,.2,.2\n")
+        self.assertEqual(self.detect("mesh.off", "spheres.csv", "--radius", .19), [])
+        self.assertEqual(self.detect("mesh.off", "spheres.csv", "--radius", .21), [(0, 0)])
+
+    def test_what_is_cut_is_refused(self):
+        self.write("mesh.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        self.fail_with(1, ["mesh.off: line 6: the file ends among its faces"], "detect", "mesh.off", "spheres.csv", 1, "out.csv")
+        self.write("mesh.stl", bytes(80) + struct.pack("<I", 2) + bytes(50))
+        self.fail_with(1, ["mesh.stl: ", "134 bytes"], "detect", "mesh.stl", "spheres.csv", 1, "out.csv")
 
     def test_what_is_no_mesh_is_named(self):
         self.write("mesh.off", "nonsense\n")

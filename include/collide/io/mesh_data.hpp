@@ -89,7 +89,7 @@ void add_face(mesh_data<S>& mesh, std::vector<std::int64_t> const& corners, int 
     fail("a face of " + std::to_string(polygon.size()) + " corners is too concave: triangulate the mesh");
 }
 
-/// A mesh of the same triangles whose vertices of equal coordinates, which are finite, are one: the first of them.
+/// A mesh whose vertices of equal coordinates, which are finite, are one: the first of them.
 template <class S>
 mesh_data<S> welded(mesh_data<S> mesh) {
   std::vector<std::uint32_t> order(mesh.vertices.size() / 3), number(order.size());

@@ -19,7 +19,7 @@ using tests::written;
 
 collide::mesh_data<float> read(std::string const& text) { return collide::read_obj<float>(written(text, ".obj").path); }
 
-/// The words of a reader of a file that it refuses, behind the file's name; "read" if it reads it.
+/// The reason for which a reader refuses a file, behind the file's name; "read" if it reads it.
 template <class Read>
 std::string why(Read const& read_file, std::string const& reader) {
   try {
@@ -105,7 +105,7 @@ TEST_CASE("read_obj: what exporters write") {
   CHECK(read(corners + round + "\n").size() == 298);
 }
 
-/// The mesh of an OFF, PLY or STL file, and the words of a reader that refuses it.
+/// `why` of a reader of OFF, PLY or STL files and a file.
 template <class Read>
 std::string said(Read const& of_path, char const* reader, std::string const& file) {
   return why([&] { of_path(written(file, ".file").path); }, reader);

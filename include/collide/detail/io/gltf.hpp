@@ -139,7 +139,7 @@ class gltf_file {
     return mode == 4 ? n / 3 : n - 2;
   }
 
-  /// The triangles of a node and of all nodes below it. Each node is in one place.
+  /// Triangles of a node and of its children. Each node is in one place.
   std::size_t triangles_of_node(json const& number, std::size_t& nodes_left, int depth) const {
     if (depth > 1000 || nodes_left-- == 0 || !number.is_number_unsigned()) fail("its nodes are no tree");
     auto const& node = at("nodes", number.get<std::size_t>());

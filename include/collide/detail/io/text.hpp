@@ -98,7 +98,7 @@ class text_lines {
     if (!w.empty()) fail(quoted(w) + " is more than is expected in this line");
   }
 
-  /// The text behind the line.
+  /// The text after the line.
   std::string_view left() const { return left_; }
   /// The number of the line, from 1.
   std::size_t line_number() const { return number_; }
