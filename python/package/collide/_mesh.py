@@ -338,7 +338,7 @@ class Mesh:
         stream = stream_of(library, self._device)
         if capacity is not None:
             capacity = whole("capacity", capacity, 0, 2**63 - 1)
-        if function == self._mesh.query:
+        if len(asked) == 3:  # of spheres
             choice("precision", asked[2], PRECISIONS)
         is_canonical = choice("order", order, ("unspecified", "canonical")) == "canonical"
         results = is_canonical, capacity, out, library.is_numpy
