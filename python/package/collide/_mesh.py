@@ -374,6 +374,9 @@ def _is_wide(array):
     if not hasattr(array, "dtype") and device_of(array, "vertices")[0] != CUDA:
         import numpy
 
-        array = numpy.from_dlpack(array)
+        try:
+            array = numpy.from_dlpack(array)
+        except Exception:  # noqa: BLE001: it is told below what is wrong
+            return False
     dtype = getattr(array, "dtype", "")
     return "float64" in str(getattr(dtype, "_wp_scalar_type_", dtype))  # of warp's vectors, such as vec3
