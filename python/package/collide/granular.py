@@ -61,7 +61,21 @@ def mindlin(
 def mindlin_rescale(
     stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False
 ) -> Law:
-    """`mindlin`, whose spring also becomes shorter where the area of contact does: Thornton et al., 2013."""
+    """`mindlin`, whose spring also becomes shorter where the area of contact does, as LAMMPS' of that name. Cycles of load
+    and slip may make energy, as with `mindlin`."""
+    return _mindlin(damping, test)
+
+
+@_describes(Law, "effects/granular/mindlin", part="tangential")
+def mindlin_force(
+    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False,
+    rescales: bool = True,
+) -> Law:
+    """`mindlin`, whose force a growing load leaves as it is, and a falling one reduces: no cycle of load and slip makes
+    energy. Thornton, Cummins and Cleary, 2013; LAMMPS' mindlin_rescale/force.
+
+    rescales  False: a falling load leaves the force as it is, too, and may make energy: LAMMPS' mindlin/force
+    """
     return _mindlin(damping, test)
 
 
@@ -75,9 +89,15 @@ def epsd(damping: float = 0.3) -> Law:
     """Rolling law: a spring that remembers, and a dashpot, a ratio to critical damping. Piles stand still."""
 
 
+@_describes(Law, "effects/granular/rolling", part="rolling")
+def epsd2() -> Law:
+    """Rolling law, with `hertz`: `epsd` without the dashpot, and with the stiffness of `mindlin`'s spring."""
+
+
 @_describes(Law, "effects/granular/cohesion", part="cohesion")
-def sjkr() -> Law:
-    """Cohesion: a pull of the surfaces' cohesion (energy per volume) times the area of overlap."""
+def sjkr(wall_factor: float = 0.5) -> Law:
+    """Cohesion: a pull of the surfaces' cohesion (energy per volume) times the area of overlap, 4 pi R* overlap; at walls
+    wall_factor of it. Friction has the limits that it has without the pull."""
 
 
 @_describes(Law, "effects/granular/cohesion", part="cohesion")
@@ -135,6 +155,7 @@ def materials(
 def granular_contact(
     normal: Law, tangential: Optional[Law] = None, rolling: Optional[Law] = None, cohesion: Optional[Law] = None, *,
     materials: Sequence[float] = materials(Solid(), SurfacePair()), wall_material: int = 0, arm_shortening: float = 0.5,
+    slip_shortening: float = 0.5,
 ) -> Effect:
     """Granular contact between particles, which are solid, and of particles with the mesh, which is solid then. Use float64
     and `velocity_verlet`; no `bounce`, `friction`, `adhesion` or `spin` beside it.
@@ -143,6 +164,7 @@ def granular_contact(
     materials       `granular.materials(...)`
     wall_material   the number of the mesh's solid, where there are several
     arm_shortening  torques have the arm radius - arm_shortening overlap
+    slip_shortening  slip is that of the surface at radius - slip_shortening overlap, from 0 to 1
 
     Parameters of a law are those of the effect with the word before them: ``sim.change('granular_contact',
     normal_stiffness=2000)``. `Simulation.largest_time_step` says how long a step may be.
@@ -157,7 +179,8 @@ def granular_contact(
     count = next((n for n in range(1, 33) if 3 * n + 2 * n * (n + 1) == len(materials)), None)
     if count is None:
         raise ValueError("materials: expected what collide.granular.materials makes of 1 to 32 solids")
-    made = Effect("granular_contact", {"materials": materials, "arm_shortening": arm_shortening})
+    arms = {"arm_shortening": arm_shortening, "slip_shortening": slip_shortening}
+    made = Effect("granular_contact", {"materials": materials, **arms})
     solids = "collide::one_material" if count == 1 else f"collide::materials<{count}>"
     setter = "collide_python::set_materials(e.made_of, v)"
     made._members["materials"] = f"{len(materials)}, [&](double const* v) {{ {setter}; }}"
