@@ -54,7 +54,7 @@ class host {
 #endif
   }
 
-  /// Has the thread that makes a call look around while it works, some thousands of times a second; null: not. If
+  /// Has the thread that makes a call look around while it works, thousands of times a second; null: not. If
   /// `look` throws, all threads stop, and the call throws that. A simulation is then between two states: not for steps.
   void watch(void (*look)()) { look_ = look; }
 
@@ -162,7 +162,7 @@ class host {
     std::atomic<bool> failed{false};
     std::thread::id const caller = look_ != nullptr ? std::this_thread::get_id() : std::thread::id();
     auto const work = [&](std::size_t first, std::size_t last) {
-      std::size_t const part = look_ != nullptr ? 2 : last - first;
+      std::size_t const part = look_ != nullptr ? 1 : last - first;
       for (; first < last && !failed; first += part) {
         if (look_ != nullptr && std::this_thread::get_id() == caller) look_();
         whole(first, std::min(last, first + part));

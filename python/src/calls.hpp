@@ -3,9 +3,12 @@
 /// after a fork.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -72,7 +75,7 @@ inline void look_for_signals() {
   check_signals();
 }
 
-/// What one thread uses at a time.
+/// What one thread uses at a time, in the order in which they come.
 class turns {
  public:
   /// Waits for other threads. Refuses a call from within another one of this thread, which would wait for itself.
@@ -84,32 +87,50 @@ class turns {
     if (holder_ == std::this_thread::get_id())
       throw collide::error(
           "collide: a call from within another one to the same object: from a signal's handler, __del__ or __dlpack__");
-    while (!mutex_.try_lock()) {
+    std::uint64_t const ticket = next_++;
+    auto const is_next = [&] { return holder_ == std::thread::id() && queue_.front() == ticket; };
+    std::unique_lock<std::mutex> lock(mutex_);
+    queue_.push_back(ticket);
+    while (!is_next()) {
+      lock.unlock();  // before this thread takes the GIL again
       {
-        without_gil const others_run;  // so that the other thread can finish
-        if (mutex_.try_lock_for(std::chrono::milliseconds(100))) break;
+        without_gil const others_run;
+        lock.lock();
+        changed_.wait_for(lock, std::chrono::milliseconds(100), is_next);
+        if (!is_next()) queue_.erase(std::find(queue_.begin(), queue_.end(), ticket));  // for a handler's own calls
+        lock.unlock();
       }
+      lock.lock();
+      if (!queue_.empty() && queue_.front() == ticket) continue;
+      lock.unlock();
       check_signals();
+      lock.lock();
+      queue_.push_front(ticket);
     }
+    queue_.pop_front();
     holder_ = std::this_thread::get_id();
   }
   void end() {
+    std::lock_guard<std::mutex> const lock(mutex_);
     holder_ = std::thread::id();
-    mutex_.unlock();
+    changed_.notify_all();
   }
 
   /// Whether a thread that a fork has left behind is in the middle of its turn.
   bool is_lost() {
     if (forks_ == forks || holder_ == std::this_thread::get_id()) return false;
-    if (!mutex_.try_lock()) return true;
-    mutex_.unlock();
+    std::unique_lock<std::mutex> const lock(mutex_, std::try_to_lock);
+    if (!lock || holder_ != std::thread::id() || !queue_.empty()) return true;
     forks_ = forks;
     return false;
   }
 
  private:
-  std::timed_mutex mutex_;
+  std::mutex mutex_;  ///< of what follows
+  std::condition_variable changed_;
   std::atomic<std::thread::id> holder_{};
+  std::deque<std::uint64_t> queue_;  ///< tickets of those that wait
+  std::uint64_t next_ = 0;
   int forks_ = forks;
 };
 

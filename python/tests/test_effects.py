@@ -186,6 +186,8 @@ def test_granular_contact_of_two_materials():
         dt = sim.largest_time_step() / 5
         sim.steps(int(5e-3 / dt), dt)
         assert numpy.allclose(sim["velocity"][:, 2] / speed, expected, atol=0.01) and (sim["position"][:, 2] > radius).all()
+    with pytest.raises(ValueError, match="material: is 200, and there are 2, from 0"):
+        sim["material"] = numpy.array([0, 200], numpy.uint8)
     assert "angular_velocity" in sim.columns and 0 < dt < 1e-3
     sim.change("granular_contact", materials=granular.materials(solids, granular.SurfacePair(0.3, 0.5)))
     sim.set(numpy.array([[0, 0, radius - 1e-6], [1, 0, radius - 1e-6]]), radius, numpy.array([[0.01, 0, 0]] * 2))
@@ -218,6 +220,9 @@ def test_own_law_among_those_of_the_library():
 @pytest.mark.parametrize("call, error, text", [
     (lambda: collide.granular_contact("hertz"), TypeError, "normal: expected a law"),
     (lambda: collide.granular_contact(collide.gravity()), TypeError, "normal: expected a law"),
+    (lambda: collide.granular_contact(granular.mindlin(), granular.hertz()), ValueError, "normal: mindlin is no law of this part, but of tangential"),
+    (lambda: collide.granular_contact(granular.none()), ValueError, "normal: none is no law of this part"),
+    (lambda: granular.materials(granular.Solid("soft"), granular.SurfacePair()), TypeError, "solids: expected numbers"),
     (lambda: granular.mindlin(damping="some"), ValueError, "damping: is 'some', expected 'none' or 'of_tangent'"),
     (lambda: granular.mindlin(test=1), ValueError, "test: is 1, expected 'spring'"),
     (lambda: granular.materials([granular.Solid()] * 2, {(0, 0): granular.SurfacePair()}), ValueError, r"pairs: .*\(0, 1\)"),

@@ -1,7 +1,10 @@
 """Meshes and their queries: arguments, results, errors."""
 
+import copy
 import fractions
 import gc
+import os
+import pickle
 
 import numpy
 import pytest
@@ -216,14 +219,130 @@ def test_many_rows_of_one_point():
     assert mesh.count(centres, 0.01) == 1_000_000
 
 
+def test_triangles_stay_what_they_were():
+    """They are copied, and those of an update are checked, too."""
+    triangles, centres = TRIANGLES.copy(), random_points(500)
+    mesh = collide.Mesh(VERTICES, triangles)
+    expected = mesh.count(centres, 0.1)
+    triangles[:] = 2**31 - 1
+    mesh.update(VERTICES)
+    assert mesh.count(centres, 0.1) == expected and len(mesh.nearest(centres)) == 500
+    with pytest.raises(ValueError, match="triangles: 4 triangle.* not a vertex"):
+        mesh.update(VERTICES, triangles)
+    assert mesh.count(centres, 0.1) == expected
+    mesh.update(VERTICES, triangles, validate=False)  # all corners are the last vertex
+    assert mesh.count(centres, 0.1) == 4 * collide.Mesh(VERTICES[[3, 3, 3]]).count(centres, 0.1)
+    with pytest.raises(ValueError, match="triangles: there are some, and no vertices"):
+        collide.Mesh(VERTICES[:0], TRIANGLES, validate=False)
+
+
+@pytest.mark.parametrize("dtype", [numpy.int64, numpy.uint64, numpy.uint32])
+def test_integers_of_triangles(dtype):
+    centres, expected = random_points(300), collide.Mesh(VERTICES, TRIANGLES)
+    backwards = numpy.ascontiguousarray(TRIANGLES[::-1, ::-1]).astype(dtype)[::-1, ::-1]
+    mesh = collide.Mesh(VERTICES, backwards)
+    assert (mesh.nearest(centres).records == expected.nearest(centres).records).all()
+    for wrong in (-1, 4) if dtype == numpy.uint32 else (-1, 4, 2**32, 2**33 + 1):
+        with pytest.raises(ValueError, match="triangles: 1 triangle.* the first is number 2"):
+            triangles = TRIANGLES.astype(numpy.int64)
+            triangles[2, 1] = wrong
+            collide.Mesh(VERTICES, triangles.astype(dtype))
+
+
+@pytest.mark.parametrize("capacity", [2**31, 2**58, 2**61 + 1, 2**63 - 1])
+def test_sizes_do_not_overflow(capacity):
+    mesh, centres = collide.Mesh(VERTICES, TRIANGLES), random_points(100)
+    try:
+        assert len(mesh.contacts(centres, 0.3, capacity=capacity)) == mesh.count(centres, 0.3)
+    except MemoryError:
+        assert capacity >= 2**31
+
+
+def test_too_many_rows():
+    mesh = collide.Mesh(VERTICES, TRIANGLES)
+    many = numpy.broadcast_to(VERTICES[:1], (2**31, 3))
+    for call in (lambda: mesh.any(many, 1), lambda: mesh.nearest(many), lambda: collide.Mesh(many, TRIANGLES), lambda: mesh.update(many)):
+        with pytest.raises(ValueError, match="has more than 2,147,483,647 rows|has shape"):
+            call()
+    with pytest.raises(ValueError, match="triangles: has more than 2,147,483,647 rows"):
+        collide.Mesh(VERTICES, numpy.broadcast_to(TRIANGLES[:1], (2**40, 3)))
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))])
+def test_copies(copied):
+    centres = random_points(100)
+    for triangles in (TRIANGLES, None):
+        mesh = collide.Mesh(VERTICES.copy() if triangles is not None else VERTICES[TRIANGLES].reshape(-1, 3), triangles)
+        other = copied(mesh)
+        assert len(other) == 4 and (other.signed_distance(centres).records == mesh.signed_distance(centres).records).all()
+        if copied is not copy.copy:
+            mesh.update(VERTICES + 9 if triangles is not None else (VERTICES + 9)[TRIANGLES].reshape(-1, 3))
+            assert other.count(centres, 0.3) > 0 == mesh.count(centres, 0.3)
+    pairs, contacts = mesh.query(centres - 9, 1), other.contacts(centres, 1)
+    for found, name in ((pairs, "triangle"), (contacts, "point"), (other.nearest(centres), "distance")):
+        again = copied(found)
+        assert type(again) is type(found) and (getattr(again, name) == getattr(found, name)).all() and len(again) == len(found)
+    rows = other.query(centres, 1, output="csr")
+    assert all((a == b).all() for a, b in zip(rows, copied(rows)))
+
+
+class OfOpen3d:
+    """Its kinds of devices are no integers."""
+
+    class Kind:
+        value = 1
+
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack_device__(self):
+        return self.Kind(), 0
+
+    def __dlpack__(self, **options):
+        return self.array.__dlpack__(**options)
+
+
+def test_devices_that_are_no_numbers():
+    mesh = collide.Mesh(OfOpen3d(VERTICES.copy()), OfOpen3d(TRIANGLES.copy()))
+    assert mesh.count(OfOpen3d(VERTICES.copy()), 0) == 12
+
+
 class NoArray:
     pass
+
+
+class Liar:
+    """Says that it is an array."""
+
+    def __dlpack_device__(self):
+        return "the host"
+
+    def __dlpack__(self, **options):
+        return 5
+
+    def __repr__(self):
+        raise RuntimeError
+
+
+UNALIGNED = numpy.frombuffer(bytes(61), numpy.uint8)[1:].view(numpy.float32).reshape(5, 3)
 
 
 BAD = [
     (dict(centres=[[0, 0, 0]]), TypeError, "centres: expected an array"),
     (dict(centres=None), TypeError, "centres: expected an array"),
     (dict(centres=NoArray()), TypeError, "centres: expected an array"),
+    (dict(centres=Liar()), TypeError, "centres: "),
+    (dict(radius=Liar()), TypeError, "radius: "),
+    (dict(centres=numpy.ndarray), TypeError, "centres: "),
+    (dict(centres=UNALIGNED), ValueError, "centres: lies at an address that is no multiple"),
+    (dict(radius=10**400), ValueError, "radius: int too large"),
+    (dict(capacity=-1), ValueError, "capacity: is -1, expected 0 to"),
+    (dict(capacity=2**64), ValueError, "capacity: is 18446744073709551616, expected 0 to"),
+    (dict(capacity=1.5), TypeError, "capacity: expected a whole number, got 1.5"),
+    (dict(capacity=Liar()), TypeError, "capacity: expected a whole number, got .?"),
+    (dict(precision=5), ValueError, "precision: is 5"),
+    (dict(order=numpy.zeros(2)), ValueError, "order: is array"),
+    (dict(output=None), ValueError, "output: is None, expected 'pairs' or 'csr'"),
     (dict(centres=numpy.zeros((5, 3))), TypeError, "centres: has dtype float64, expected float32"),
     (dict(centres=numpy.zeros((5, 3), ">f4")), TypeError, "centres: "),
     (dict(centres=numpy.zeros((5, 3), int)), TypeError, "centres: has dtype int64"),
@@ -280,6 +399,26 @@ def test_read_only_out():
 def test_bad_meshes_are_named(vertices, triangles, error, text):
     with pytest.raises(error, match=text):
         collide.Mesh(vertices, triangles)
+
+
+@pytest.mark.parametrize("call, error, text", [
+    (lambda m, x: m.nearest(x, max_distance=None), TypeError, "max_distance: expected a number, got None"),
+    (lambda m, x: m.nearest(x, max_distance="1"), TypeError, "max_distance: expected a number, got '1'"),
+    (lambda m, x: m.nearest(x, max_distance=numpy.nan), ValueError, "max_distance: is negative or NaN"),
+    (lambda m, x: m.k_nearest(x, 1.5), TypeError, "k: expected a whole number, got 1.5"),
+    (lambda m, x: m.k_nearest(x, 2**40), ValueError, "k: is 1099511627776, expected 1 to 32"),
+    (lambda m, x: collide.Mesh(x, threads=-1), ValueError, "threads: is -1"),
+    (lambda m, x: collide.Mesh(x, threads=None), TypeError, "threads: expected a whole number"),
+])
+def test_bad_numbers_are_named(call, error, text):
+    with pytest.raises(error, match=text):
+        call(collide.Mesh(VERTICES, TRIANGLES), random_points(5))
+
+
+def test_no_more_threads_than_cores():
+    mesh = collide.Mesh(VERTICES, TRIANGLES, threads=10**5)
+    assert mesh.count(numpy.repeat(VERTICES, 10**4, axis=0), 0) == 12 * 10**4
+    assert len(os.listdir("/proc/self/task")) < 200
 
 
 def test_help():

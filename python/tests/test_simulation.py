@@ -1,6 +1,8 @@
 """Simulations: columns, parameters, lists that are compiled, errors."""
 
+import copy
 import os
+import pickle
 import subprocess
 import sys
 
@@ -74,6 +76,25 @@ def test_velocities_strides_and_errors():
         (lambda: sim.set(ABOVE, 0.25, wide[:, 1:4]), ValueError, "velocities: .* packed"),
         (lambda: sim.set(ABOVE, 0.25, ABOVE[:1]), ValueError, "velocities: has shape"),
         (lambda: sim.set(ABOVE, numpy.float32([1, 2])), collide.Error, "radii differ: name the effect polydisperse"),
+        (lambda: sim.set(ABOVE, -1), ValueError, "radius: 2 sphere.* negative radius"),
+        (lambda: sim.set(ABOVE, numpy.nan), ValueError, "radius: 2 sphere.* NaN radius"),
+        (lambda: sim.set(ABOVE, numpy.float32([0.1, -1])), ValueError, "radius: 1 sphere.* negative radius, .* number 1"),
+        (lambda: sim.set(ABOVE, 0.25, capacity=-1), ValueError, "capacity: is -1"),
+        (lambda: sim.steps(10.0, 1e-3), TypeError, "n: expected a whole number, got 10.0"),
+        (lambda: sim.step("1"), TypeError, "dt: expected a number, got '1'"),
+        (lambda: sim.energy("1"), TypeError, "density: expected a number"),
+        (lambda: sim.save("a\0b"), ValueError, "path: has a null character"),
+        (lambda: sim.load(5), TypeError, "path: expected one, got 5"),
+        (lambda: sim.set_mesh("floor"), TypeError, "mesh: expected a collide.Mesh, got 'floor'"),
+        (lambda: sim.set_mesh(bodies=[1]), TypeError, "bodies: expected bodies such as"),
+        (lambda: sim.sums(numpy.zeros(2)), ValueError, "effect: there is no array"),
+        (lambda: collide.Body(10**300, 1), ValueError, "first: is "),
+        (lambda: collide.Body(0, 0.5), TypeError, "size: expected a whole number, got 0.5"),
+        (lambda: collide.Body(0, 1, pivot=(1, 2)), ValueError, "pivot: expected 3 numbers"),
+        (lambda: collide.Simulation("floor", FALL), TypeError, "mesh: expected a collide.Mesh"),
+        (lambda: collide.Simulation(floor(), None), TypeError, "effects: expected effects such as .* got None"),
+        (lambda: collide.Simulation(floor(), FALL[:1] * 2), ValueError, "effects: gravity is in the list more than once"),
+        (lambda: collide.Effect("a b"), ValueError, "name: expected that of a struct, got 'a b'"),
         (lambda: sim.step(0), collide.Error, "dt of a step"),
         (lambda: sim.steps(-1, 0.1), ValueError, "n: is -1, expected 0 to"),
         (lambda: sim["spin"], KeyError, "there is no column 'spin' in this simulation; there are position, velocity"),
@@ -117,6 +138,43 @@ def test_mesh_moves():
     sim.set_mesh()
     sim.steps(5000, 1e-3)
     assert numpy.allclose(sim["position"][:, 2], -1.75, atol=1e-3)
+
+
+def test_mesh_moves_to_other_arrays():
+    """Without set_mesh: the next step sees it, and nothing reads memory that is gone. So with half a million vertices."""
+    fine = numpy.repeat(SQUARE[TRIANGLES].reshape(-1, 3), 100_000, axis=0).reshape(2, 3, -1, 3).swapaxes(1, 2).reshape(-1, 3)
+    for vertices in (SQUARE[TRIANGLES].reshape(-1, 3), numpy.ascontiguousarray(fine)):
+        mesh = collide.Mesh(vertices.copy())
+        sim = collide.Simulation(mesh, FALL)
+        sim.set(ABOVE, 0.25)
+        sim.steps(10, 1e-3)
+        mesh.update(vertices + numpy.float32([0, 0, -2]))
+        sim.steps(5000 if len(vertices) < 10 else 10, 1e-3)
+        assert sim["position"].shape == (2, 3) and (len(vertices) > 10 or numpy.allclose(sim["position"][:, 2], -1.75, atol=1e-3))
+        del mesh
+        sim.steps(1, 1e-3)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))])
+def test_copies(copied):
+    sim = falling()
+    sim.change("gravity", z=-5)
+    sim.steps(100, 1e-3)
+    other = copied(sim)
+    assert other.time == sim.time and other["position"].tobytes() == sim["position"].tobytes()
+    sim.steps(900, 1e-3)
+    before = other["position"].copy()
+    assert (before == other["position"]).all()
+    other.steps(900, 1e-3)
+    assert other["position"].tobytes() == sim["position"].tobytes() and other.effects[0].parameters["z"] == [-5]
+    assert len(copied(collide.Simulation(floor(), FALL))) == 0
+
+
+def test_effects_of_a_generator():
+    sim = collide.Simulation(floor(), (effect for effect in FALL))
+    sim.set(ABOVE, 0.25)
+    sim.steps(10, 1e-3)
+    assert len(sim.effects) == 2 and sim["velocity"][0, 2] < 0 and "velocity" in sim and "spin" not in sim
 
 
 def test_save_and_load(tmp_path):
@@ -205,6 +263,16 @@ def test_bodies():
 def test_what_does_not_fit_together_says_so():
     with pytest.raises(collide.Error, match="friction and adhesion act where the mesh is solid: name bounce before them"):
         collide.Simulation(floor(), [collide.friction()])
+
+
+@compiles
+def test_a_mistake_in_an_effect_is_shown():
+    wrong = SPRING.replace("v[k] +=", "velocity[k] +=")
+    with pytest.raises(collide.Error) as error:
+        collide.Simulation(floor(), [collide.gravity(), collide.Effect("spring", {"stiffness": 4.0}, code=wrong)])
+    lines = str(error.value).splitlines()
+    assert any(line.startswith("effect spring:10:") and "error: " in line for line in lines) and len(lines) < 20
+    assert any("velocity[k] +=" in line for line in lines)
 
 
 def test_without_a_compiler(monkeypatch, tmp_path):

@@ -1,9 +1,9 @@
 """Compiles a simulation's list of effects with the machine's compiler, once, and keeps it."""
 
 import hashlib
-import itertools
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -90,19 +90,20 @@ def _compile(text, command, path, names, space):
         done = subprocess.run([*command, str(file), "-o", str(made)], capture_output=True, text=True, check=False)
         if done.returncode != 0:
             print(" failed", file=sys.stderr)
-            raise Error(f"collide: {tool} does not compile this simulation:\n{_what_matters(done.stderr)}")
+            raise Error(f"collide: {tool} does not compile this simulation:\n{_what_matters(done.stderr, text)}")
         os.replace(made, path)  # another process may have been as fast: the same file
     print(f" {time.monotonic() - began:.0f} s, kept in {path.parent}", file=sys.stderr)
 
 
-def _what_matters(errors):
+def _what_matters(errors, text):
     """Errors in the code of the user, each with the line that it is in, and the sentences of the library; where there
     are none, the first lines."""
     lines, found = errors.splitlines(), []
-    for number, line in enumerate(lines):
-        if "error" in line and "collide:" in line:
+    for line in lines:
+        where = re.match(r"((?:effect|law) \w+)[:(](\d+)", line)
+        if where and ("error" in line or "required from" in line):
+            code = text.partition(f'#line 1 "{where[1]}"\n')[2].splitlines()
+            found += [line, *code[int(where[2]) - 1 : int(where[2])]]
+        elif "error" in line and "collide:" in line:
             found.append(line)
-        elif line.startswith(("effect ", "law ")) and ("error" in line or "required from" in line):
-            context = list(itertools.takewhile(lambda of: of.startswith(" "), lines[number + 1 : number + 4]))
-            found += [line, *context]
     return "\n".join(dict.fromkeys(found[:40] or lines[:40]))

@@ -338,7 +338,7 @@ class Mesh:
         stream = stream_of(library, self._device)
         if capacity is not None:
             capacity = whole("capacity", capacity, 0, 2**63 - 1)
-        if function == self._mesh.query:
+        if len(asked) == 3:  # of spheres
             choice("precision", asked[2], PRECISIONS)
         is_canonical = choice("order", order, ("unspecified", "canonical")) == "canonical"
         results = is_canonical, capacity, out, library.is_numpy
@@ -374,6 +374,9 @@ def _is_wide(array):
     if not hasattr(array, "dtype") and device_of(array, "vertices")[0] != CUDA:
         import numpy
 
-        array = numpy.from_dlpack(array)
+        try:
+            array = numpy.from_dlpack(array)
+        except Exception:  # noqa: BLE001: it is told below what is wrong
+            return False
     dtype = getattr(array, "dtype", "")
     return "float64" in str(getattr(dtype, "_wp_scalar_type_", dtype))  # of warp's vectors, such as vec3

@@ -295,6 +295,7 @@ def _listed(name, values, kind, example):
 
 def _path(path):
     """The name of a file, as text."""
+    refuse(not isinstance(path, (str, bytes, os.PathLike)), "path", f"expected one, got {shown(path)}", TypeError)
     name = os.fsdecode(path)
     refuse("\0" in name, "path", "has a null character")
     return name
