@@ -286,7 +286,6 @@ struct integration {
 
   /// A particle that sleeps presses on what it lies on.
   COLLIDE_HD_INLINE void press(std::size_t i) const {
-    if constexpr (effects_type::presses_when_meeting) return;
     integrated p;
     context.state.load(p, i);
     book_sleeping(context, p,

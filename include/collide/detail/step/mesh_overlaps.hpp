@@ -10,6 +10,7 @@
 #include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/particles/contact_memory.hpp>
 #include <collide/detail/particles/effect_list.hpp>
+#include <collide/detail/step/mesh_kicks.hpp>
 #include <collide/detail/step/mesh_ledger.hpp>
 #include <collide/detail/step/overlap_list.hpp>
 
@@ -161,8 +162,11 @@ struct list_pressing {
   Triangles triangles;
   Memory memory;
   pressing_list found;
+  meeting what;
 
   COLLIDE_HD void operator()(std::size_t i) const {
+    if (what == meeting::of_woken && !(is_just_woken(state, i) && has_no_mesh_kicks(state, i))) return;
+    forget_mesh_kicks(state, i);
     if constexpr (Effects::any_inactive) {
       particle<S, typename Effects::inactive_reads> p;
       state.load(p, i);
@@ -174,7 +178,7 @@ struct list_pressing {
     if (is_finite(shape.centre) && !triangles.without_overflown_grids().empty(shape)) {
       found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
     } else if constexpr (Effects::remembered::size != 0) {
-      if (memory.counts[i] != 0) memory.counts[i] = 0;
+      if (what == meeting::in_step && memory.counts[i] != 0) memory.counts[i] = 0;
     }
   }
 };
@@ -193,7 +197,7 @@ struct press_on_mesh {
   Memory memory;
   pressing_list pressing;
   S dt;
-  bool only_kicks;  ///< nothing else is written
+  meeting what;
 
   COLLIDE_HD void operator()(std::size_t k) const {
     if (k < *pressing.count) press_with(pressing.numbers[k]);
@@ -214,7 +218,7 @@ struct press_on_mesh {
     if constexpr (has_memory) before = memory.counts[i];
     if (near.size != 0) return press(open, i, near, before);
     if constexpr (has_memory) {
-      if (before != 0) memory.counts[i] = 0;
+      if (what == meeting::in_step && before != 0) memory.counts[i] = 0;
     }
   }
 
@@ -262,12 +266,16 @@ struct press_on_mesh {
     id bodies[overlap_list::room] = {};
     values_type values[most] = {};
     bool kept[most] = {};
+    kicks_by_mesh<S, Effects> kicks;
     int const size = for_each_contact(open, i, self, near, before, normals, bodies,
                                       [&](int n, mesh_overlap<S> const& o, values_type& own) {
-                                        bool const goes_on = meet(p, self, o, own);
+                                        bool const goes_on = meet(p, self, o, own, kicks);
                                         if (n < most) values[n] = own, kept[n] = goes_on;
                                       });
-    if constexpr (has_memory) keep(i, size, normals, bodies, values, kept);
+    if constexpr (has_memory) {
+      if (what == meeting::in_step) keep(i, size, normals, bodies, values, kept);
+    }
+    kicks.store(state, i);
     store(i, p, self);
   }
 
@@ -301,20 +309,29 @@ struct press_on_mesh {
   static constexpr double same_normal = 5e-7;  ///< 1 - cosine of the angle up to which contacts of a body are one
 
   /// Calls the effects, and tells them what the mesh has given.
-  COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values) const {
+  COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values,
+                              [[maybe_unused]] kicks_by_mesh<S, Effects>& kicks) const {
     integrated const before = p;
-    bool const goes_on = effects.on_mesh_overlap(p, self, o, values, only_kicks ? S(0) : dt, dt);
+    S const elapsed = what == meeting::in_step ? dt : dt * elapsed_between_steps<S>;
+    bool const goes_on = effects.on_mesh_overlap(p, self, o, values, elapsed, dt);
+    if (o.overlap > 0 || goes_on) mark_contact(p);
     if constexpr (has_moving_mesh<Triangles> && contains<typename integrated::list, slow_steps>) {
       if (o.body != no_id && triangles.mesh.frames[o.body + 1].moves) p[slow_steps{}] = carried_by_moving;
     }
     if constexpr (Effects::any_mesh_impulse) {
-      if (only_kicks) return goes_on;
       vec3<S> const none(S(0), S(0), S(0));
       vec3<S> turned = none;
       if constexpr (contains<typename integrated::list, angular_velocity>)
         turned = p[angular_velocity{}] - before[angular_velocity{}];
-      book(*this, p,
-           {p[velocity{}] - before[velocity{}], turned, self[position{}], none, p[velocity{}], o.triangle, o.body});
+      mesh_impulse<S> given{
+          p[velocity{}] - before[velocity{}], turned, self[position{}], none, p[velocity{}], o.triangle, o.body};
+      if constexpr (Effects::keeps_mesh_kicks) kicks.add(given, 1 / dt);
+      if (what != meeting::in_step) return goes_on;
+      keep_support(*this, p, given);
+      constexpr S part = Effects::keeps_mesh_kicks ? S(Effects::integrator::kick_after) : S(1);
+      given.change *= part;
+      given.spin_change *= part;
+      effects.on_mesh_impulse(p, given, dt);
     }
     return goes_on;
   }
@@ -379,7 +396,7 @@ struct press_on_mesh {
       if constexpr (Effects::keeps_pair_torques)
         p[pair_angular_acceleration{}] += (p[angular_velocity{}] - self[angular_velocity{}]) * (1 / dt);
     }
-    if (only_kicks) {
+    if (what != meeting::in_step) {
       state.store(p, i, typename Effects::interaction_kicks{});
     } else {
       state.store(p, i, typename Effects::overlap_writes{});
