@@ -21,6 +21,10 @@ namespace detail {
 
 /// In `slow_steps` from here on: the particle touches, by way of so many others, what moves.
 inline constexpr int carried_by_moving = 128;
+/// In `adhered`: the particle is free, and came too fast to stick.
+inline constexpr std::uint8_t came_too_fast = 255;
+COLLIDE_HD_INLINE bool is_stuck(std::uint8_t adhered) { return adhered != 0 && adhered != came_too_fast; }
+
 /// In `in_contact`: the particle has been woken between steps, and forces on it are not known.
 inline constexpr std::uint8_t just_woken = 2;
 
@@ -117,7 +121,8 @@ struct in_contact {
   using value = std::uint8_t;
 };
 
-/// 1 if the particle sticks to what rests of the mesh, 2 + k if to body number k, 0 if it is free; see `adhesion`.
+/// 1 if the particle sticks to what rests of the mesh, 2 + k if to body number k, 0 if it is free; 255 if it is free
+/// and touched the mesh too fast to stick when it last came to it. See `adhesion`.
 struct adhered {
   template <class S>
   using value = std::uint8_t;

@@ -78,6 +78,7 @@ struct smallest_radii {
 
   double of_all = 0;                 ///< of all particles
   double of_material[numbers] = {};  ///< of those of each material, the last also of greater numbers; infinite if none
+  int largest_material = -1;         ///< the greatest number of those that particles have; -1: not known
 
   smallest_radii() = default;
   /// Nothing is known about materials: there may be particles of each.

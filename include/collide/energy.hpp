@@ -255,7 +255,7 @@ struct mesh_contacts_of {
     using kernel = sum_over_mesh_contacts<S, typename simulated::effects_type, std::decay_t<decltype(triangles)>,
                                           std::decay_t<decltype(memory)>, F, Sum>;
     of.space_.for_each(found.size(),
-                       kernel{{of.state_, of.effects_, triangles, memory, {}, S(0), true}, f, sums.data()});
+                       kernel{{of.state_, of.effects_, triangles, memory, {}, S(0), meeting::of_all}, f, sums.data()});
     of.space_.copy_to_host(found.data(), sums.data(), found.size());
     return found;
   }

@@ -151,6 +151,7 @@ class simulation {
   /// `error` if there are more than 64 bodies, triangles not in the mesh or in two, or a motion is not finite.
   COLLIDE_COLD void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
     bodies_.check(bodies, mesh.size(), velocities);
+    (detail::check_walls_of<Effect>(effects_, space_, mesh.size(), bodies.size()), ...);
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
@@ -234,8 +235,9 @@ class simulation {
 
   /// Gives all particles a column's values, from memory of the space, in the order of the stream. Waits if that is
   /// `radius` or `material`. If it says where particles are, how they move, what they are, or which there are, all that
-  /// sleeps is woken; what adhered and does not touch the mesh any more is free. What is written by way of `data` wakes
-  /// nothing. Throws `error` if a radius is 0 where particles touch a mesh.
+  /// sleeps is woken, as by what accelerates it; what adhered and does not touch the mesh any more is free. What is
+  /// written by way of `data` wakes nothing. Throws `error` if a radius is not finite, or 0 where particles touch a
+  /// mesh.
   template <class Column>
   void assign(detail::column_element<Column, S> const* values) {
     check<Column>();
@@ -245,6 +247,7 @@ class simulation {
       S const largest = radii_.largest;  // effects may let particles grow up to it
       radii_ = detail::radius_range_of(*this);
       radii_.largest = detail::max(radii_.largest, largest);
+      check_radii("assign");
       if constexpr (effects_type::any_pair_contact) {
         if (is_set_) neighbours_.fit(space_, state_.size, radii_);
       }
@@ -259,7 +262,6 @@ class simulation {
       next_meeting_ = effects_type::ends_after_meeting ? detail::meeting::of_all : detail::meeting::in_step;
       if (has_mesh_) release_adhered();
     }
-    if constexpr (std::is_same<Column, radius>::value) check_radii("assign");
   }
 
   /// Gives all particles a column's values, from a container such as std::vector or thrust::device_vector, whose memory
@@ -552,6 +554,8 @@ class simulation {
   COLLIDE_COLD void check_radii(char const* member) const {
     if (asks_mesh && state_.placed != 0 && radii_.smallest == 0)
       throw error(std::string("collide: simulation: ") + member + ": radii of particles that touch a mesh are above 0");
+    if (detail::contains<columns, radius> && state_.placed != 0 && !detail::is_finite(radii_.largest))
+      throw error(std::string("collide: simulation: ") + member + ": radii are finite");
   }
 
   COLLIDE_COLD void prepare() {
@@ -577,7 +581,9 @@ class simulation {
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
     if (!(dt > 0) || !detail::is_finite(dt))
       throw error("collide: simulation: the time dt of a step is finite and above 0");
-    ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
+    ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size()),
+      detail::check_materials_of<Effect>(effects_, smallest_)),
+     ...);
     (check_box_of<Effect>(), ...);
     if constexpr (effects_type::repeats) check_sides();
     ((detail::check_time_step_of<Effect>(effects_, dt, smallest_)), ...);

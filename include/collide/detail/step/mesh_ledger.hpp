@@ -95,7 +95,7 @@ template <class Particle>
 COLLIDE_HD_INLINE int frame_ridden([[maybe_unused]] Particle const& p) {
   if constexpr (contains<typename Particle::list, adhered>) {
     int const held = p[adhered{}];
-    return held > 1 ? held - 1 : 0;
+    return held > 1 && is_stuck(p[adhered{}]) ? held - 1 : 0;
   } else {
     return 0;
   }

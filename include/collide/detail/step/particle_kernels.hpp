@@ -142,13 +142,14 @@ struct release_adhered {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     std::uint8_t& held = state.at(adhered{})[i];
-    if (are_driven && std::size_t{held} > bodies + 1) held = 0;  // there is no such body any more
+    if (are_driven && is_stuck(held) && std::size_t{held} > bodies + 1) held = 0;  // there is no such body any more
     if (held == 0 || (are_driven && held > 1)) return;
     auto const* const x = state.at(position{}) + 3 * i;
     using S = std::decay_t<decltype(*x)>;
     vec3<S> const centre(x[0], x[1], x[2]);
     S const r = state.radius_at(i);
-    held = find(sphere<S>{centre, r + 2 * (contact_tolerance<S> * r + rounding_at(centre))});
+    std::uint8_t const found = find(sphere<S>{centre, r + 2 * (contact_tolerance<S> * r + rounding_at(centre))});
+    if (held != came_too_fast || found == 0) held = found;
   }
 
  private:
