@@ -66,7 +66,7 @@ struct pair_interaction {
         contact_values<S, typename Effects::remembered> values;
         if (was) values = record.values();
         bool const stays = !is_awake && is_inactive(p.self);  // of two that sleep the contact is as it was
-        S const elapsed = what == meeting::in_step ? (stays ? S(0) : dt) : dt * elapsed_between_steps<S>;
+        S const elapsed = stays || (what != meeting::in_step && !was) ? S(0) : dt;
         goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, elapsed, dt);
         if (overlap || goes_on) mark_contact(p.changed);
         if (what != meeting::in_step) {

@@ -13,16 +13,12 @@
 namespace collide::detail {
 
 /// Why particles meet: in a step, or between two, to know the forces with which the next begins. Then nothing else is
-/// written, and nothing that contacts remember changes.
+/// written, and nothing that contacts remember changes: old ones are seen a step later, so what slid goes on sliding.
 enum class meeting : std::uint8_t {
   in_step,
   of_all,   ///< between steps
   of_woken  ///< between steps: only those that slept ask, the others know
 };
-
-/// Between steps contacts are as they were, but what slid goes on sliding: this part of a step has gone by.
-template <class S>
-inline constexpr S elapsed_between_steps = S(0.0009765625);
 
 /// True of a particle that has been woken between steps, and not met others yet.
 template <class State>

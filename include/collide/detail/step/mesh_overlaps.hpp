@@ -267,9 +267,10 @@ struct press_on_mesh {
     values_type values[most] = {};
     bool kept[most] = {};
     kicks_by_mesh<S, Effects> kicks;
+    S const elapsed = what == meeting::in_step || before != 0 ? dt : S(0);
     int const size = for_each_contact(open, i, self, near, before, normals, bodies,
                                       [&](int n, mesh_overlap<S> const& o, values_type& own) {
-                                        bool const goes_on = meet(p, self, o, own, kicks);
+                                        bool const goes_on = meet(p, self, o, own, elapsed, kicks);
                                         if (n < most) values[n] = own, kept[n] = goes_on;
                                       });
     if constexpr (has_memory) {
@@ -309,10 +310,9 @@ struct press_on_mesh {
   static constexpr double same_normal = 5e-7;  ///< 1 - cosine of the angle up to which contacts of a body are one
 
   /// Calls the effects, and tells them what the mesh has given.
-  COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values,
+  COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values, S elapsed,
                               [[maybe_unused]] kicks_by_mesh<S, Effects>& kicks) const {
     integrated const before = p;
-    S const elapsed = what == meeting::in_step ? dt : dt * elapsed_between_steps<S>;
     bool const goes_on = effects.on_mesh_overlap(p, self, o, values, elapsed, dt);
     if (o.overlap > 0 || goes_on) mark_contact(p);
     if constexpr (has_moving_mesh<Triangles> && contains<typename integrated::list, slow_steps>) {
