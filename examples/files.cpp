@@ -7,11 +7,9 @@
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/sphere_contact.hpp>
+#include <collide/io/obj.hpp>
 #include <collide/io/vtk_simulation.hpp>
 #include <collide/sinks/contacts.hpp>
-
-#define TINYOBJLOADER_IMPLEMENTATION  // in one source file of a program
-#include <collide/io/obj.hpp>
 
 int main(int argc, char** argv) try {
   if (argc != 3) return 2;

@@ -137,6 +137,7 @@ law contact(std::string const& variant, bool is_soft = false) {
     by.tangential.damping = tangential_damping::of_normal;
     by.tangential.test = slip_test::spring_and_dashpot;
     by.tangential.keeps_length = true;
+    by.slip_shortening = 0;
   } else if (variant == "mercury") {
     by.tangential.damping = tangential_damping::none;
     by.tangential.stiffness_factor = 2.0 / 3;

@@ -1,13 +1,17 @@
 /// \file
-/// A triangle mesh from a file: OBJ, or what Assimp reads where the program is built with it.
+/// A triangle mesh from a file: OBJ, STL, PLY, OFF, and glTF where the program is built with Assimp.
 #pragma once
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <string>
 #include <string_view>
 
 #include <collide/error.hpp>
+#include <collide/io/off.hpp>
+#include <collide/io/ply.hpp>
+#include <collide/io/stl.hpp>
 #if defined(COLLIDE_HAS_ASSIMP)
 #include <collide/io/assimp.hpp>
 #endif
@@ -17,35 +21,47 @@
 
 namespace io {
 
-/// True for names of files that are Assimp's: all others are taken for OBJ.
-inline bool is_for_assimp(std::string const& path) {
+/// The ending of a name, in lower case: ".stl", say.
+inline std::string ending_of(std::string const& path) {
   std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  static constexpr std::string_view known[] = {".stl", ".ply", ".off", ".gltf", ".glb"};
-  return std::find(std::begin(known), std::end(known), ending) != std::end(known);
+  return ending;
+}
+
+/// Reads a file of glTF. Throws `error`.
+inline collide::mesh_data<double> read_gltf(std::string const& path) {
+#if defined(COLLIDE_HAS_ASSIMP)
+  return collide::read_mesh<double>(path);
+#else
+  throw data_error(path, "this program was built without Assimp, which reads glTF");
+#endif
 }
 
 /// Reads the mesh of the file `path`, which has this text. Throws `data_error`, which names the file.
 template <class S>
 mesh_data<S> read_mesh(std::string const& path, std::string_view text, bool strict) {
-  if (!is_for_assimp(path)) return read_obj<S>(path, text, strict);
-#if defined(COLLIDE_HAS_ASSIMP)
+  std::string const ending = ending_of(path);
+  bool const gltf = ending == ".gltf" || ending == ".glb";
+  if (ending != ".stl" && ending != ".ply" && ending != ".off" && !gltf) return read_obj<S>(path, text, strict);
   if (strict) throw data_error(path, "--strict is for OBJ files");
   mesh_data<S> mesh;
   try {
-    auto read = collide::read_mesh<S>(path);
-    mesh.vertices = std::move(read.vertices);
-    mesh.corners = std::move(read.corners);
-  } catch (collide::error const& e) {
-    std::string_view const what = e.what(), prefix = "collide: read_mesh: ";
-    throw data_error(path, one_line(what.substr(std::min(what.size(), prefix.size() + path.size() + 2))));
+    auto const read = ending == ".stl"   ? collide::read_stl<double>(path)
+                      : ending == ".ply" ? collide::read_ply<double>(path)
+                      : ending == ".off" ? collide::read_off<double>(path)
+                                         : read_gltf(path);
+    mesh.corners = read.corners;
+    for (double const x : read.vertices) {
+      mesh.vertices.push_back(static_cast<S>(x));
+      if (!std::isfinite(mesh.vertices.back())) throw data_error(path, "a coordinate is beyond the range of float");
+      mesh.tally.add(static_cast<double>(mesh.vertices.back()) == x, x, mesh.vertices.back());
+    }
+  } catch (collide::error const& e) {  // which names the file, too
+    std::string const what = e.what(), named = path + ": ";
+    throw data_error(path, one_line(what.substr(what.find(named) + named.size())));
   }
-  mesh.tally.numbers = mesh.vertices.size();
-  mesh.remarks.push_back(path + ": coordinates are floats, as Assimp reads them");
+  if (gltf) mesh.remarks.push_back(path + ": coordinates are floats, as Assimp reads them");
   return mesh;
-#else
-  throw data_error(path, "this program reads OBJ files only: it was built without Assimp");
-#endif
 }
 
 }  // namespace io

@@ -182,15 +182,27 @@ struct mesh_impulse {
   id body;              ///< number of the body whose surface it is; `no_id` of what rests
 };
 
-/// A surface of the mesh that a particle overlaps, as `on_mesh_overlap` gets it: a point of it that is nearest to the
+/// A contact of a particle with the surface of the mesh, as `on_mesh_overlap` gets it: a point that is nearest to the
 /// centre among all around.
+///
+/// Where the surface within the sphere leads from a contact to a deeper one, as in a shallow fold, the two are parts of
+/// one: the contact counts only from its own overlap down to that at the saddle between them. A force that is to be
+/// independent of how a surface is divided, and to make no energy, is that of the contact less what the same law gives
+/// at the saddle.
 template <class S>
 struct mesh_overlap {
+  static constexpr S apart = -std::numeric_limits<S>::max();  ///< `saddle_overlap` where there is no saddle
+
   vec3<S> normal;            ///< unit vector to the centre
   S overlap;                 ///< radius minus distance, above 0
   vec3<S> surface_velocity;  ///< of the surface at the point, in the world: 0 of what rests
   id triangle;               ///< number of the triangle
   id body;                   ///< number of the body whose surface it is; `no_id` of what rests
+  vec3<S> saddle_normal;     ///< unit vector from the saddle to the centre
+  S saddle_overlap;          ///< radius minus distance of the saddle: at most `overlap`
+
+  /// True if the contact joins a deeper one.
+  COLLIDE_HD_INLINE bool has_saddle() const { return saddle_overlap > apart; }
 };
 
 /// A particle's contact with the mesh, as `on_mesh_contact` gets it. `depth` is how deep the triangle still is in the

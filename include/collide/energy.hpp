@@ -210,6 +210,11 @@ struct spring_energies {
     tangential += other.tangential;
     return *this;
   }
+  COLLIDE_HD_INLINE spring_energies& operator-=(spring_energies const& other) {
+    elastic -= other.elastic;
+    tangential -= other.tangential;
+    return *this;
+  }
 };
 
 /// The energy of a law's springs between a particle and the mesh: for `sum_over_mesh_contacts`.
@@ -219,9 +224,18 @@ struct springs_at_mesh {
 
   template <class Seen, class S, class Values>
   COLLIDE_HD_INLINE spring_energies operator()(Seen const& self, mesh_overlap<S> const& wall, Values& values) const {
+    spring_energies found = at(self, wall, wall.overlap, values);
+    if (wall.has_saddle()) found -= at(self, wall, wall.saddle_overlap, values);
+    return found;
+  }
+
+ private:
+  template <class Seen, class S, class Values>
+  COLLIDE_HD_INLINE spring_energies at(Seen const& self, mesh_overlap<S> const& wall, S overlap, Values& values) const {
     granular_pair<S> p{};
-    p.overlap = wall.overlap;
+    p.overlap = detail::max(overlap, S(0));
     p.radius = self.the_radius;
+    p.is_wall = true;
     auto const& m = law.made_of.with_wall(self, wall.triangle, wall.body);
     normal_force<S> force = law.normal.force(p, m);
     spring_energies found;
@@ -254,8 +268,11 @@ struct mesh_contacts_of {
     sums.reserve(of.space_.resource(), found.size());
     using kernel = sum_over_mesh_contacts<S, typename simulated::effects_type, std::decay_t<decltype(triangles)>,
                                           std::decay_t<decltype(memory)>, F, Sum>;
-    of.space_.for_each(found.size(),
-                       kernel{{of.state_, of.effects_, triangles, memory, {}, S(0), meeting::of_all}, f, sums.data()});
+    of.clear_overlap_pool();
+    of.space_.for_each(
+        found.size(),
+        kernel{
+            {of.state_, of.effects_, triangles, memory, {}, of.overlap_pool(), S(0), meeting::of_all}, f, sums.data()});
     of.space_.copy_to_host(found.data(), sums.data(), found.size());
     return found;
   }

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <exception>
 #include <limits>
+#include <thread>
 
 #include <collide/detail/execution/atomic.hpp>
 #include <collide/detail/execution/block.hpp>
@@ -51,6 +53,10 @@ class host {
     return 1;
 #endif
   }
+
+  /// Has the thread that makes a call look around while it works, some thousands of times a second; null: not. If
+  /// `look` throws, all threads stop, and the call throws that. A simulation is then between two states: not for steps.
+  void watch(void (*look)()) { look_ = look; }
 
   /// The name of the space, for messages.
   static constexpr char const* name() { return "host"; }
@@ -152,7 +158,16 @@ class host {
   /// takes some `shares` ranges, as it gets free: enough that none waits long for the others, and few enough that
   /// memory is read in long stretches.
   template <class Work>
-  void run(std::size_t n, Work const& work) const {
+  void run(std::size_t n, Work const& whole) const {
+    std::atomic<bool> failed{false};
+    std::thread::id const caller = look_ != nullptr ? std::this_thread::get_id() : std::thread::id();
+    auto const work = [&](std::size_t first, std::size_t last) {
+      std::size_t const part = look_ != nullptr ? 2 : last - first;
+      for (; first < last && !failed; first += part) {
+        if (look_ != nullptr && std::this_thread::get_id() == caller) look_();
+        whole(first, std::min(last, first + part));
+      }
+    };
 #if defined(_OPENMP)
     if (threads() > 1 && n > 1) {
       std::size_t const done = threads_ == 0 ? begin_alone(n, work) : 0;
@@ -171,6 +186,7 @@ class host {
           auto const first = done + static_cast<std::size_t>(r) * range;
           work(first, std::min(n, first + range));
         } catch (...) {
+          failed = true;
 #pragma omp critical(collide_host_failure)
           if (!failure) failure = std::current_exception();
         }
@@ -188,6 +204,7 @@ class host {
 
   [[maybe_unused]] int threads_;
   std::pmr::memory_resource* resource_;
+  void (*look_)() = nullptr;
 };
 
 }  // namespace collide

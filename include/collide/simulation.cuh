@@ -139,7 +139,9 @@ class simulation {
     if constexpr (effects_type::overlaps) {
       surfaces_.reserve(resource, particles);
       pressing_.reserve(resource, particles);
-      pressing_count_.reserve(resource, 1);
+      pressing_counts_.reserve(resource, 3);
+      space_.fill(pressing_counts_.data(), 0, 3 * sizeof(std::uint32_t));
+      if constexpr (!execution_space::host_accessible) overlaps_.reserve(resource, particles);
     }
   }
 
@@ -206,7 +208,7 @@ class simulation {
   std::size_t bytes() const {
     std::size_t lists = 0;
     if constexpr (effects_type::any_pair_contact) lists = neighbours_.bytes();
-    if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes();
+    if constexpr (effects_type::overlaps) lists += surfaces_.bytes() + pressing_.bytes() + overlaps_.bytes();
     return memory_.bytes() + device_time_.bytes() + was_there_.bytes() + overflow_.bytes() + bodies_.bytes() + lists;
   }
 
@@ -432,12 +434,12 @@ class simulation {
       auto const triangles = mesh_ref<true>(dt);
       using mesh_type = std::decay_t<decltype(triangles)>;
       using memory_type = std::decay_t<decltype(memory)>;
-      detail::pressing_list const pressing{pressing_count_.data(), pressing_.data()};
-      space_.fill(pressing.count, 0, sizeof *pressing.count);
+      detail::pressing_list const pressing{pressing_counts_.data(), pressing_.data()};
+      clear_overlap_pool();
       space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
                                        state_, effects_, triangles, memory, pressing, what});
       space_.for_each(state_.size, detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
-                                       state_, effects_, triangles, memory, pressing, dt, what});
+                                       state_, effects_, triangles, memory, pressing, overlap_pool(), dt, what});
     }
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.
@@ -445,6 +447,12 @@ class simulation {
     forget_pair_kicks();
     neighbours_.interact_inside(space_, with_copies, effects_, dt);
   }
+  detail::overlap_pool overlap_pool() const {
+    return {overlaps_.data(), static_cast<std::uint32_t>(overlaps_.capacity()), pressing_counts_.data() + 1,
+            pressing_counts_.data() + 2};
+  }
+  /// And the list of those that press on the mesh.
+  void clear_overlap_pool() const { space_.fill(pressing_counts_.data(), 0, 2 * sizeof(std::uint32_t)); }
   /// Says which of those that a source has made overlap others, once the lists are renewed.
   void settle_births([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
     if constexpr (effects_type::makes) {
@@ -601,6 +609,12 @@ class simulation {
             "more than 16 neighbours: call reserve with several times as many particles before set, and begin "
             "anew");
     }
+    if constexpr (effects_type::overlaps && !execution_space::host_accessible) {
+      if (is_set_ && space_.read(pressing_counts_.data() + 2) != 0)
+        throw error(
+            "collide: simulation: particles that overlap more than 16 triangles each have found no room for all of "
+            "them: call reserve with several times as many particles before set, and begin anew");
+    }
   }
 
   /// Rounded to numbers of this type, the bounds of a box that repeats are bounds, too.
@@ -647,8 +661,9 @@ class simulation {
   neighbour_lists neighbours_;
   surface_memory surfaces_;
   buffer<id> overflow_;
-  buffer<id> pressing_;  ///< particles that may press on the mesh, and how many they are
-  buffer<std::uint32_t> pressing_count_;
+  buffer<id> pressing_;                    ///< particles that may press on the mesh, and how many they are
+  buffer<std::uint32_t> pressing_counts_;  ///< then how much of `overlaps_` is used, and whether it was too little
+  buffer<detail::overlap_item> overlaps_;  ///< of a device, for particles that overlap many triangles
   bodies_memory bodies_;
 };
 

@@ -36,6 +36,7 @@ inline std::string name_of(nb::dlpack::dtype const& type) {
 }
 
 inline constexpr std::size_t any_number = static_cast<std::size_t>(-1);  ///< of rows
+inline constexpr std::size_t most_rows = 0x7fffffff;
 
 /// A shape as Python shows it; a length that may be any has a name.
 inline std::string text_of(std::vector<std::size_t> const& shape, char const* any = "") {
@@ -92,7 +93,10 @@ Array import_array(nb::handle from, char const* name, place const& at) {
     nb::object capsule;
     try {
       nb::object const method = from.attr("__dlpack__");
-      auto const is_here = [&] { return is_on_host(nb::cast<int>(nb::int_(from.attr("__dlpack_device__")()[0]))); };
+      auto const is_here = [&] {
+        nb::object const type = from.attr("__dlpack_device__")()[0];
+        return is_on_host(nb::cast<int>(nb::int_(nb::getattr(type, "value", type))));  // Open3D's is no int
+      };
       try {
         capsule = is_on_host(at.device_type) ? method() : method(nb::arg("stream") = at.given);
       } catch (nb::python_error&) {
@@ -100,6 +104,7 @@ Array import_array(nb::handle from, char const* name, place const& at) {
         capsule = method();  // an array of the host knows no stream; that it is there is told below
       }
     } catch (nb::python_error& e) {
+      if (!e.matches(PyExc_Exception)) throw;  // Ctrl-C
       refuse<nb::type_error>(name, std::string("cannot be shared without a copy: ") + nb::str(e.value()).c_str());
     }
     if (!nb::try_cast(capsule, a, false)) refuse<nb::type_error>(name, "is read-only, or no array that can be shared");
@@ -112,6 +117,8 @@ Array import_array(nb::handle from, char const* name, place const& at) {
   if (!same)
     refuse(name, "is on " + name_of_device(a.device_type(), a.device_id()) + ", but the mesh is on " +
                      name_of_device(at.device_type, at.device));
+  if (reinterpret_cast<std::uintptr_t>(a.data()) % std::max<std::size_t>(1, a.dtype().bits / 8) != 0)
+    refuse(name, "lies at an address that is no multiple of the size of its numbers: make a copy");
   return a;
 }
 
@@ -137,22 +144,51 @@ collide::point_view<S> points_of(array const& a, char const* name, char const* t
   if (!has_shape(a, {any_number, 3})) refuse(name, "has shape " + shape_of(a) + ", expected (n, 3)");
   S const* const x = static_cast<S const*>(a.data());
   std::size_t const n = a.shape(0);
+  if (n > most_rows) refuse(name, "has more than 2,147,483,647 rows");
   if (n == 0) return {nullptr, nullptr, nullptr, 3, 0};
   return {x, x + a.stride(1), x + 2 * a.stride(1), row_stride(a, name, 3), n};
 }
 
-/// Triangles of shape (m, 3), int32 or uint32, of any strides that are not negative.
-template <class S>
-collide::mesh_view<S> mesh_of(collide::point_view<S> const& vertices, array const& a, char const* name) {
-  if (a.dtype() != nb::dtype<std::int32_t>() && a.dtype() != nb::dtype<std::uint32_t>())
-    refuse<nb::type_error>(name,
-                           "has dtype " + name_of(a.dtype()) + ", expected int32 or uint32: nothing is converted");
-  if (!has_shape(a, {any_number, 3})) refuse(name, "has shape " + shape_of(a) + ", expected (m, 3)");
-  std::size_t const m = a.shape(0);
-  if (m == 0) return {};
-  if (a.stride(1) < 0) refuse(name, "has columns in reverse order (a negative stride), which is not read: make a copy");
-  return {vertices, static_cast<collide::id const*>(a.data()), m, row_stride(a, name, 3),
-          static_cast<std::size_t>(a.stride(1))};
+/// Copies numbers of vertices, of which there are so many; one that does not exist becomes `other`.
+template <class From>
+struct copy_triangle {
+  From const* from;
+  std::int64_t row, column;
+  std::size_t vertices;
+  collide::id other;
+  collide::id* to;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    for (int k = 0; k < 3; ++k) {
+      auto const x = static_cast<std::uint64_t>(from[static_cast<std::int64_t>(i) * row + k * column]);
+      to[3 * i + static_cast<std::size_t>(k)] = x < vertices ? static_cast<collide::id>(x) : other;
+    }
+  }
+};
+
+/// Copies triangles of shape (m, 3), of any integers of 32 or 64 bits and any strides.
+template <class Space>
+void copy_triangles(Space const& space, array const& a, std::size_t vertices, collide::id other, collide::id* to) {
+  auto const copy = [&](auto type) {
+    using from = decltype(type);
+    if (a.dtype() != nb::dtype<from>()) return;
+    auto const* const data = static_cast<from const*>(a.data());
+    space.for_each(a.shape(0), copy_triangle<from>{data, a.stride(0), a.stride(1), vertices, other, to});
+  };
+  copy(std::int32_t{});
+  copy(std::uint32_t{});
+  copy(std::int64_t{});
+  copy(std::uint64_t{});
+}
+
+inline void check_triangles(array const& a, std::size_t vertices) {
+  auto const code = static_cast<nb::dlpack::dtype_code>(a.dtype().code);
+  bool const is_integer = code == nb::dlpack::dtype_code::Int || code == nb::dlpack::dtype_code::UInt;
+  if (!is_integer || (a.dtype().bits != 32 && a.dtype().bits != 64) || a.dtype().lanes != 1)
+    refuse<nb::type_error>("triangles", "has dtype " + name_of(a.dtype()) + ", expected integers of 32 or 64 bits");
+  if (!has_shape(a, {any_number, 3})) refuse("triangles", "has shape " + shape_of(a) + ", expected (m, 3)");
+  if (a.shape(0) > most_rows) refuse("triangles", "has more than 2,147,483,647 rows");
+  if (a.shape(0) != 0 && vertices == 0) refuse("triangles", "there are some, and no vertices");
 }
 
 /// Whether a Python object is one number that the host can read.
@@ -168,10 +204,13 @@ inline bool is_number(nb::handle from, place const& at) {
 template <class S>
 collide::sphere_view<S> spheres_of(collide::point_view<S> const& centres, nb::handle radius, array& keep,
                                    place const& at) {
-  if (centres.size() > 0x7fffffff) refuse("centres", "has more than 2,147,483,647 rows");
   if (is_number(radius, at)) {
     double const number = PyFloat_AsDouble(radius.ptr());
-    if (number == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();
+    if (number == -1 && PyErr_Occurred() != nullptr) {
+      nb::python_error const why;
+      if (!why.matches(PyExc_Exception)) throw why;
+      refuse("radius", nb::str(why.value()).c_str());
+    }
     return collide::spheres_at(centres, static_cast<S>(number));
   }
   keep = import_array(radius, "radius", at);

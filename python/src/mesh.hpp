@@ -46,27 +46,33 @@ class mesh : public called<Space> {
   void take(nb::object const& vertices, nb::object const& triangles, bool validate) {
     array const v = import_array(vertices, "vertices", runtime_.at());
     collide::point_view<S> const points = points_of<S>(v, "vertices", is_set_ ? " as before" : " or float64");
-    if (points.size() > 0x7fffffff) refuse("vertices", "has more than 2,147,483,647 rows");
-    array t = triangles_;
+    corners t = triangles_;
     if (!triangles.is_none()) {
-      t = import_array(triangles, "triangles", runtime_.at());
+      t = copied(runtime_.keep(import_array(triangles, "triangles", runtime_.at())), points, validate);
     } else if (is_set_ && points.size() != view_.vertices().size()) {
       refuse("vertices", "has shape " + shape_of(v) + ", expected " + text_of({view_.vertices().size(), 3}) +
                              " as before: the triangles are the same");
-    } else if (!t.is_valid() && points.size() % 3 != 0) {
+    } else if (t.memory == nullptr && points.size() % 3 != 0) {
       refuse("vertices", "has shape " + shape_of(v) + ", but without triangles there are three rows for each");
     }
-    collide::mesh_view<S> const view = t.is_valid() ? mesh_of(points, t, "triangles") : collide::triangle_soup(points);
-    if (validate) check(view);
+    view_ = t.memory != nullptr ? collide::indexed_mesh(points, t.data, t.size) : collide::triangle_soup(points);
     vertices_ = v;
     triangles_ = t;
-    view_ = view;
     is_set_ = true;
     is_built_ = {};
   }
 
   std::size_t size() const { return view_.size(); }
   collide::mesh_view<S> const& view() const { return view_; }
+  /// What keeps the memory of the view.
+  std::pair<array, std::shared_ptr<void>> memory() const { return {vertices_, triangles_.memory}; }
+  /// The triangles as they were given, or None: packed int32.
+  nb::object triangles(bool numpy) {
+    if (triangles_.memory == nullptr) return nb::none();
+    auto own = std::make_unique<kept<std::shared_ptr<void>>>(runtime_.memory());
+    own->sink = triangles_.memory;
+    return given<std::int32_t>(triangles_.data, {triangles_.size, 3}, owner_of(std::move(own)), numpy);
+  }
 
   /// What spheres touch. `what` is pairs, contacts, impacts, or closest or earliest, which are one for each sphere:
   /// records as rows of int32, how many there are, and how many in all; or count, a number; any, flags; csr, offsets
@@ -141,16 +147,33 @@ class mesh : public called<Space> {
     /// Room for so many records.
     template <class Record>
     Record* records(runtime<Space> const& of, std::size_t n) {
+      if (n > static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(Record)) throw std::bad_alloc();
       return reinterpret_cast<Record*>(room.reserve(of.space().resource(), n * sizeof(Record)));
     }
   };
   struct nothing {};
 
-  void check(collide::mesh_view<S> const& view) {
+  /// Triangles in memory of our own, so that they stay what they were when they were checked.
+  struct corners {
+    std::shared_ptr<void> memory;
+    collide::id const* data = nullptr;
+    std::size_t size = 0;
+  };
+  corners copied(array const& a, collide::point_view<S> const& points, bool validate) {
+    check_triangles(a, points.size());
+    auto const own = std::make_shared<kept<nothing>>(runtime_.memory());
+    std::size_t const n = a.shape(0);
     without_gil const others_run;
-    auto const report = collide::validate(view, runtime_.space());
-    if (report.count(collide::problem::corner_out_of_range) != 0)
-      throw std::invalid_argument("triangles: " + report.message());
+    auto const space = runtime_.space();
+    auto* const to = own->template records<collide::id>(runtime_, 3 * n);
+    auto const last = static_cast<collide::id>(points.size() - 1);
+    copy_triangles(space, a, points.size(), validate ? collide::no_id : last, to);
+    if (validate) {
+      auto const report = collide::validate(collide::indexed_mesh(points, to, n), space);
+      if (report.count(collide::problem::corner_out_of_range) != 0)
+        throw std::invalid_argument("triangles: " + report.message());
+    }
+    return {own, to, n};
   }
 
   template <class Record, class Sink>
@@ -277,7 +300,8 @@ class mesh : public called<Space> {
   template <class Sink>
   static constexpr bool needs_rest = std::is_same<Sink, collide::closest_contact<S>>::value;
 
-  array vertices_, triangles_;
+  array vertices_;
+  corners triangles_;
   collide::mesh_view<S> view_;
   std::tuple<at_rest<collide::exact>, at_rest<collide::single_precision>, at_rest<collide::double_precision>> at_rest_{
       at_rest<collide::exact>(runtime_.space()), at_rest<collide::single_precision>(runtime_.space()),

@@ -8,6 +8,8 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include <collide/version.hpp>
+
 #include "simulation.hpp"
 
 namespace collide_python {
@@ -26,8 +28,9 @@ inline void register_errors() {
 /// Binds a function that is given what is called, and arguments, which may be None. In Python a stream, two numbers,
 /// comes before them.
 template <class Type, class Result, class Of, class... Argument>
-void bind_call(nb::class_<Type>& c, char const* name, Result (Of::*function)(Argument...)) {
-  auto const call = [function](Type& of, stream_of_call stream, Argument... arguments) {
+void bind_call(nb::class_<held<Type>>& c, char const* name, Result (Of::*function)(Argument...)) {
+  auto const call = [function](held<Type>& object, stream_of_call stream, Argument... arguments) {
+    Type& of = *object.one;
     typename Type::call const now(of, stream);
     of.begin();
     if constexpr (std::is_same<Of, simulation_base>::value) {  // which knows nothing of Python
@@ -43,25 +46,26 @@ void bind_call(nb::class_<Type>& c, char const* name, Result (Of::*function)(Arg
 template <class Space, class S>
 void bind_mesh(nb::module_& m, char const* name) {
   using type = mesh<Space, S>;
-  nb::class_<type> c(m, name);
-  c.def(nb::init<int, int>()).def("__len__", &type::size);
+  nb::class_<held<type>> c(m, name);
+  c.def(nb::init<int, int>()).def("__len__", [](held<type> const& of) { return of.one->size(); });
   bind_call(c, "take", &type::take);
   bind_call(c, "query", &type::query);
   bind_call(c, "search", &type::search);
+  bind_call(c, "triangles", &type::triangles);
 }
 
 template <class Space, class S>
 void bind_simulation(nb::module_& m, char const* name) {
   using type = simulation<Space, S>;
-  nb::class_<type> c(m, name);
-  c.def(nb::init<std::string, int, int>()).def("is_shown", &type::is_shown);
+  nb::class_<held<type>> c(m, name);
+  c.def(nb::init<std::string, int, int>());
   bind_call(c, "set_parameter", &simulation_base::set_parameter);
   bind_call(c, "set_mesh", &type::set_mesh);
   bind_call(c, "set", &type::set);
   bind_call(c, "columns", &type::columns);
   bind_call(c, "column", &type::column_of);
   bind_call(c, "assign", &type::assign);
-  bind_call(c, "steps", &simulation_base::steps);
+  bind_call(c, "steps", &type::steps);
   bind_call(c, "size", &simulation_base::size);
   bind_call(c, "time", &simulation_base::time);
   bind_call(c, "largest_time_step", &simulation_base::largest_time_step);
@@ -69,11 +73,12 @@ void bind_simulation(nb::module_& m, char const* name) {
   bind_call(c, "sums", &simulation_base::sums);
   bind_call(c, "clear", &simulation_base::clear);
   bind_call(c, "save", &simulation_base::save);
-  bind_call(c, "load", &simulation_base::load);
+  bind_call(c, "load", &type::load);
 }
 
 template <class Space>
 void bind(nb::module_& m) {
+  m.attr("version") = nb::make_tuple(COLLIDE_VERSION_MAJOR, COLLIDE_VERSION_MINOR, COLLIDE_VERSION_PATCH);
   nb::set_leak_warnings(false);  // of what threads hold that the end of the interpreter stops
   register_errors();
   watch_forks();

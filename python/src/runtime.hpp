@@ -33,14 +33,20 @@ class runtime<collide::host> {
 
   place at() const { return {}; }
   /// The space of the next call. In a forked process one thread works: OpenMP's threads stayed in the parent.
-  collide::host space() const { return collide::host(is_forked ? 1 : threads_); }
+  collide::host space() const {
+    collide::host made(where().threads);
+    made.watch(look_for_signals);
+    return made;
+  }
+  void follow(runtime const&) {}  ///< work is done when a call returns
+  void settle() {}
 
   /// What a call is done in: on a GPU with its device current, on a stream of the caller.
   struct scope {
     scope(runtime&, stream_of_call) {}
   };
 
-  whereabouts where() const { return {is_forked ? 1 : threads_, nullptr, nullptr}; }
+  whereabouts where() const { return {is_forked() ? 1 : threads_, nullptr, nullptr}; }
 
   /// Keeps an array of the caller until the work of the call is done.
   array const& keep(array const& a) { return a; }
@@ -76,18 +82,35 @@ class called {
  public:
   called(int threads, int device) : runtime_(threads, device) {}
 
+  bool is_lost() { return turns_.is_lost(); }
+  runtime<Space> const& its_runtime() const { return runtime_; }
+
   struct call {
     call_under_way under_way;
     one_at_a_time alone;
     typename runtime<Space>::scope here;
-    call(called& of, stream_of_call const& stream) : alone(of.mutex_), here(of.runtime_, stream) {}
+    call(called& of, stream_of_call const& stream) : alone(of.turns_), here(of.runtime_, stream) {}
   };
 
  protected:
   runtime<Space> runtime_;
 
  private:
-  std::mutex mutex_;
+  turns turns_;
+};
+
+/// An object of Python. In a forked process it stays for ever where its destructor would free what is in use.
+template <class Called>
+struct held {
+  template <class... Argument>
+  explicit held(Argument const&... of) : one(std::make_unique<Called>(of...)) {}
+  ~held() {
+    if (one->is_lost()) static_cast<void>(one.release());
+  }
+  held(held const&) = delete;
+  held& operator=(held const&) = delete;
+
+  std::unique_ptr<Called> one;
 };
 
 }  // namespace collide_python

@@ -20,7 +20,7 @@ namespace collide_python {
 class on_device {
  public:
   explicit on_device(int device) {
-    if (is_forked)
+    if (is_forked())
       throw collide::error(
           "collide: this process was forked from one that may have used CUDA, which does not work in a child: start it "
           "with multiprocessing's 'spawn' or 'forkserver', or use arrays of the host");
@@ -113,7 +113,7 @@ class pool_memory final : public std::pmr::memory_resource {
   }
 
   void do_deallocate(void* p, std::size_t, std::size_t) override {
-    if (is_forked) return;
+    if (is_forked()) return;
     std::lock_guard<std::mutex> const one_at_a_time(mutex_);
     auto const found = taken_on_.find(p);
     cudaStream_t const stream = found != taken_on_.end() ? found->second : stream_;
@@ -153,6 +153,15 @@ class runtime<collide::cuda_shared> {
   collide::cuda_shared const& space() const { return *space_; }
   whereabouts where() const { return {0, space_->stream(), memory_.get()}; }
   std::shared_ptr<void> memory() const { return memory_; }
+
+  /// Later work begins after what is on the stream of another one by now.
+  void follow(runtime const& other) {
+    if (other.space_->stream() != space_->stream()) order(other.space_->stream(), space_->stream());
+  }
+  /// Waits for the work on the stream.
+  void settle() {
+    if (!is_forked()) cudaStreamSynchronize(space_->stream());
+  }
 
   /// Keeps an array of the caller until the work of the call is done, where its library does not order that by the
   /// stream that we work on.

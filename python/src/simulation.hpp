@@ -2,6 +2,7 @@
 /// collide.Simulation for one space and one type of coordinates: a list of effects that was compiled on its own.
 #pragma once
 
+#include <chrono>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -27,6 +28,10 @@ class simulation : public called<Space> {
     if (make_ == nullptr) throw collide::error("collide: " + library + " has no simulation");
   }
 
+  ~simulation() {
+    if (mesh_.second.use_count() == 1) runtime_.settle();  // what reads it
+  }
+
   /// What each call begins with.
   void begin() {
     if (one_ == nullptr) one_.reset(make_(runtime_.where()));
@@ -34,12 +39,8 @@ class simulation : public called<Space> {
   }
   simulation_base& one() { return *one_; }
 
-  /// Whether arrays of Python show its columns: after `set` they show the old ones, and so it must be another that is
-  /// set.
-  bool is_shown() const { return one_.use_count() > 1; }
-
   /// Each body is its first triangle, how many, and the numbers of its motion.
-  void set_mesh(mesh<Space, S>& of, std::vector<std::vector<double>> const& bodies) {
+  void set_mesh(held<mesh<Space, S>>& of, std::vector<std::vector<double>> const& bodies) {
     static_assert(sizeof(collide::body_motion) == 19 * sizeof(double));
     std::vector<collide::body> moving;
     for (std::vector<double> const& numbers : bodies) {
@@ -48,11 +49,20 @@ class simulation : public called<Space> {
       std::memcpy(static_cast<void*>(&b.motion), numbers.data() + 2, sizeof b.motion);
       moving.push_back(b);
     }
-    without_gil const others_run;
-    one().set_mesh(&of.view(), moving.data(), moving.size());
+    collide::mesh_view<S> const view = of.one->view();  // which other threads may change meanwhile
+    auto memory = of.one->memory();
+    runtime_.follow(of.one->its_runtime());
+    {
+      without_gil const others_run;
+      one().set_mesh(&view, moving.data(), moving.size());
+      if (mesh_.second.use_count() == 1) runtime_.settle();  // what reads it
+    }
+    std::swap(mesh_, memory);
   }
 
-  void set(nb::object const& centres, nb::object const& radius, nb::object const& velocities, std::size_t capacity) {
+  /// False, and nothing has changed, if arrays of Python show its columns: then it must be another that is set.
+  bool set(nb::object const& centres, nb::object const& radius, nb::object const& velocities, std::size_t capacity) {
+    if (is_shown()) return false;
     array radii, v;
     array const x = runtime_.keep(import_array(centres, "centres", runtime_.at()));
     auto const spheres = spheres_of(points_of<S>(x, "centres"), radius, radii, runtime_.at());
@@ -65,7 +75,28 @@ class simulation : public called<Space> {
     }
     if (radii.is_valid()) runtime_.keep(radii);
     without_gil const others_run;
+    auto const report = collide::validate(spheres, runtime_.space());
+    if (report.count(collide::problem::radius_nan) + report.count(collide::problem::radius_negative) != 0)
+      throw std::invalid_argument("radius: " + report.message());
     one().set(&spheres, v.is_valid() && v.size() != 0 ? v.data() : nullptr, capacity);
+    return true;
+  }
+
+  /// Steps for a tenth of a second, or one; returns how many, so that Ctrl-C comes between.
+  std::size_t steps(std::size_t n, double dt) {
+    using clock = std::chrono::steady_clock;
+    without_gil const others_run;
+    clock::time_point const end = clock::now() + std::chrono::milliseconds(100);
+    std::size_t done = 0;
+    for (; done < n && (done == 0 || clock::now() < end); ++done) one().steps(1, dt);
+    return done;
+  }
+
+  bool load(std::string const& path) {
+    if (is_shown()) return false;
+    without_gil const others_run;
+    one().load(path);
+    return true;
   }
 
   std::vector<std::string> columns() {
@@ -112,8 +143,12 @@ class simulation : public called<Space> {
   using called<Space>::runtime_;
   using dlpack = nb::dlpack::dtype_code;
 
+  /// Whether arrays of Python show its columns: after `set` they show the old ones.
+  bool is_shown() const { return one_.use_count() > 1; }
+
   make_simulation* make_ = nullptr;
   std::shared_ptr<simulation_base> one_;
+  std::pair<array, std::shared_ptr<void>> mesh_;  ///< the memory that it reads
 };
 
 }  // namespace collide_python

@@ -21,7 +21,8 @@ THREE = granular.materials([granular.Solid()] * 3, granular.SurfacePair())
 GRANULAR = [
     collide.granular_contact(granular.linear(), granular.dashpot(), granular.constant_torque(), granular.sjkr()),
     collide.granular_contact(granular.hertz(), granular.mindlin(), granular.epsd(), granular.jkr(), materials=THREE),
-    collide.granular_contact(granular.hertz(), granular.mindlin_rescale(), cohesion=granular.dmt()),
+    collide.granular_contact(granular.hertz(), granular.mindlin_rescale(), granular.epsd2(), granular.dmt()),
+    collide.granular_contact(granular.hertz(), granular.mindlin_force(), cohesion=granular.sjkr()),
 ]
 PROGRAM = """
 #include <cstdio>

@@ -75,7 +75,7 @@ def test_velocities_strides_and_errors():
         (lambda: sim.set(ABOVE, 0.25, ABOVE[:1]), ValueError, "velocities: has shape"),
         (lambda: sim.set(ABOVE, numpy.float32([1, 2])), collide.Error, "radii differ: name the effect polydisperse"),
         (lambda: sim.step(0), collide.Error, "dt of a step"),
-        (lambda: sim.steps(-1, 0.1), TypeError, "steps"),
+        (lambda: sim.steps(-1, 0.1), ValueError, "n: is -1, expected 0 to"),
         (lambda: sim["spin"], KeyError, "there is no column 'spin' in this simulation; there are position, velocity"),
         (lambda: sim.__setitem__("velocity", ABOVE[:1]), ValueError, "velocity: has shape"),
         (lambda: sim.__setitem__("velocity", ABOVE.astype(float)), TypeError, "velocity: has dtype float64"),

@@ -1,4 +1,4 @@
-// expect: collide: mindlin, jkr and dmt are made for spheres that touch as hertz says
+// expect: collide: mindlin, epsd2, jkr and dmt are made for spheres that touch as hertz says
 #include <collide/effects/granular_contact.hpp>
 
 collide::granular_contact<collide::linear, collide::mindlin> law;

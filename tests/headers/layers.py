@@ -36,7 +36,7 @@ LAYERS = {
     "effects": "effects/ energy.hpp",
     "streaming": "detail/streaming/ in_passes.hpp posed.hpp streamed.cuh",
     "ranks": "detail/ranks/ ranks/",
-    "files": "io/",
+    "files": "detail/io/ io/",
 }
 
 

@@ -1,12 +1,16 @@
-"""mutate.py names | table [FILE] | precompile FOLDER | judge NAME --rows FOLDER: the guards of `exact`, one by one.
+"""mutate.py names | table [FILE] | precompile FOLDER | judge NAME --rows FOLDER | guarded [--digest FILE]: the guards of
+`exact`, one by one.
 
 Every mutation takes a guard out of the library, or loosens it; a small program, compiled with that, must then find
 something wrong, or fail; and nothing with the library as it is. The rows that it judges are those of tests/data, those
 of hunted_*.csv, which were looked for because no others show the guards that they name, and cases next to contact: see
 make_rows.cpp. `precompile` compiles ../standard.hpp for all compilers, into the folder of the rows. `table` prints the
-lists of all mutations and of guards that no row shows, or writes them to a file.
+lists of all mutations and of guards that no row shows, or writes them to a file. `guarded` prints the files on which the
+verdict of a mutation depends, and writes their digest to a file; the one beside this script, `judged`, is of the files
+that all mutations were last seen to be found in.
 """
 import argparse
+import hashlib
 import pathlib
 import re
 import shutil
@@ -359,6 +363,30 @@ def mutated(name):
     return file, text
 
 
+def guarded():
+    """The headers that have a guard, those that they include, and what judges them."""
+    found, left = set(), [ROOT / "include" / DETAIL / file for file, text in headers().items() if "// guard: " in text]
+    while left:
+        header = left.pop()
+        if header not in found:
+            found.add(header)
+            left += [ROOT / "include" / name for name in re.findall(r'#include [<"](collide/[^>"]+)', header.read_text())]
+    tests = ROOT / "tests"
+    own = [p for p in HERE.iterdir() if p.suffix in (".cpp", ".hpp", ".csv", ".py")]
+    return sorted(found) + sorted([*own, *tests.glob("data/static_*.csv"), *tests.glob("oracle/scene.*"), *tests.glob("unit/narrow_phase/near_contact.*"),
+                                   tests / "flags" / "verdicts.cpp", tests / "flush_to_zero.hpp"])
+
+
+def digest():
+    """A number of what is guarded: another one if a file changes in more than its place, comments, includes and format."""
+    def essence(file):
+        text = file.read_text()
+        if file.suffix in (".hpp", ".cpp"):
+            text = "".join(re.sub(r"//[^\n]*|#include[^\n]*", "", text).split())
+        return hashlib.sha256(text.encode()).hexdigest()
+    return hashlib.sha256("".join(sorted(map(essence, guarded()))).encode()).hexdigest()
+
+
 def precompile(folder, eigen):
     """Compiles what the library includes of others, for each compiler that is here."""
     for compiler, command in COMPILERS.items():
@@ -420,6 +448,7 @@ def main():
     precompiled = commands.add_parser("precompile")
     precompiled.add_argument("folder")
     precompiled.add_argument("--eigen", default="/usr/include/eigen3")
+    commands.add_parser("guarded").add_argument("--digest", type=pathlib.Path)
     one = commands.add_parser("judge")
     one.add_argument("name", choices=SOUND | MUTATIONS)
     one.add_argument("--rows", required=True, help="the folder that make_rows has written to")
@@ -431,6 +460,11 @@ def main():
         return 0
     if args.command == "table":
         args.file.write("# Mutations\n\n" + "".join(tables()))
+        return 0
+    if args.command == "guarded":
+        print("\n".join(map(str, guarded())))
+        if args.digest:
+            args.digest.write_text(digest() + "\n")
         return 0
     if args.command == "precompile":
         precompile(args.folder, args.eigen)

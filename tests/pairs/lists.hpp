@@ -26,7 +26,7 @@ using list_8 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, float,
 using list_9 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
     collide::gravity, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::reaction, collide::polydisperse, collide::velocity_verlet, collide::lost, collide::pair_forces, collide::moving_bodies<>>;
 using list_10 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, double,
-    collide::sphere_contact, collide::sleep, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::mesh_forces, collide::lost, collide::absorbing_box, collide::lost_motion, collide::emit, collide::reaction, collide::moving_bodies<collide::driven>>;
+    collide::sphere_contact, collide::sleep, collide::granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>, collide::mesh_forces, collide::lost, collide::absorbing_box, collide::lost_motion, collide::emit, collide::reaction, collide::moving_bodies<collide::driven>>;
 using list_11 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
     collide::mass_flow<>, collide::box_walls, tests::pairs::stirs, collide::lost_motion, collide::wind<>, tests::pairs::warms, collide::bounce, collide::absorb, collide::drag, collide::pair_forces, collide::absorbing_box, collide::periodic_box, collide::moving_bodies<>>;
 using list_12 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, float,
@@ -58,7 +58,7 @@ using list_24 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
 using list_25 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, float,
     collide::lost_motion, collide::granular_contact<collide::linear, collide::dashpot>, collide::polydisperse, collide::pair_forces, collide::moving_bodies<collide::driven>>;
 using list_26 = scene_list<mesh_kind::moving, collide::karabassi_swept<>, double,
-    collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::drag, collide::periodic_box, collide::wind<>, collide::moving_bodies<>>;
+    collide::granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>, collide::drag, collide::periodic_box, collide::wind<>, collide::moving_bodies<>>;
 using list_27 = scene_list<mesh_kind::driven, collide::karabassi<>, double,
     collide::mass_flow<>, collide::emit, collide::mesh_forces, collide::moving_bodies<collide::driven>>;
 // clang-format on

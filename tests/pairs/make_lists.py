@@ -27,9 +27,11 @@ EFFECTS = """velocity_verlet gravity drag wind bounce friction spin adhesion sph
 BY_FORCES = "granular_contact"  # makes the mesh solid by forces
 ACTS_BY_IMPULSES = ["bounce", "friction", "spin", "adhesion", "absorb", "warms"]  # these do not compile beside it
 TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms", "external_forces": "tests::pairs::stirs", "mass_flow": "mass_flow<>"}
-LAWS = {  # of contact by forces: one that remembers nothing, and one that does
-    "float": "granular_contact<collide::linear, collide::dashpot>",
-    "double": "granular_contact<collide::hertz, collide::mindlin, collide::epsd>",
+LAWS = {  # of contact by forces: one that remembers nothing, and two that do
+    ("karabassi", "float"): "granular_contact<collide::linear, collide::dashpot>",
+    ("karabassi_swept", "float"): "granular_contact<collide::linear, collide::dashpot>",
+    ("karabassi", "double"): "granular_contact<collide::hertz, collide::mindlin, collide::epsd>",
+    ("karabassi_swept", "double"): "granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>",
 }
 BODIES = {"fixed": [], "moving": ["collide::moving_bodies<>"], "driven": ["collide::moving_bodies<collide::driven>"]}
 SURFACES = {  # of the kinds of mesh
@@ -182,8 +184,8 @@ def make_lists():
     return lists
 
 
-def type_of(effect, scalar):
-    name = LAWS[scalar] if effect == BY_FORCES else TYPES.get(effect, effect)
+def type_of(effect, narrow, scalar):
+    name = LAWS[narrow, scalar] if effect == BY_FORCES else TYPES.get(effect, effect)
     return name if name.startswith("tests::") else f"collide::{name}"
 
 
@@ -200,7 +202,7 @@ def header(lists):
         "// clang-format off",
     ]
     for number, (effects, kind, narrow, scalar) in enumerate(lists, 1):
-        types = [*(type_of(e, scalar) for e in effects), *BODIES[kind]]
+        types = [*(type_of(e, narrow, scalar) for e in effects), *BODIES[kind]]
         lines.append(f"using list_{number} = scene_list<mesh_kind::{kind}, collide::{narrow}<>, {scalar},")
         lines.append(f"    {', '.join(types)}>;")
     return "\n".join([*lines, "// clang-format on", "", "}  // namespace tests::pairs", ""])

@@ -42,21 +42,24 @@ inline constexpr bool needs_hertz<L, std::void_t<decltype(L::needs_hertz)>> = L:
 /// has two sides. A wall has no mass and no radius: 1/R* = 1/R.
 ///
 /// \tparam Normal      `linear` or `hertz`
-/// \tparam Tangential  `none`, `dashpot`, `mindlin` or `mindlin_rescale`
-/// \tparam Rolling     `none`, `constant_torque` or `epsd`
+/// \tparam Tangential  `none`, `dashpot`, `mindlin`, `mindlin_rescale` or `mindlin_force`
+/// \tparam Rolling     `none`, `constant_torque`, `epsd` or `epsd2`
 /// \tparam Cohesion    `none`, `sjkr`, `jkr` or `dmt`
 /// \tparam Materials   `one_material`, or `materials<N>` with a column `material`
 template <class Normal, class Tangential = none, class Rolling = none, class Cohesion = none,
           class Materials = one_material>
 struct granular_contact {
-  static_assert(Normal::is_hertzian || !(detail::needs_hertz<Tangential> || detail::needs_hertz<Cohesion>),
-                "collide: mindlin, jkr and dmt are made for spheres that touch as hertz says: name hertz as the normal "
-                "law, or dashpot and sjkr with linear");
+  static_assert(Normal::is_hertzian ||
+                    !(detail::needs_hertz<Tangential> || detail::needs_hertz<Rolling> || detail::needs_hertz<Cohesion>),
+                "collide: mindlin, epsd2, jkr and dmt are made for spheres that touch as hertz says: name hertz as the "
+                "normal law, or dashpot, epsd and sjkr with linear");
 
   /// Particles have an angular velocity.
   static constexpr bool turns = !std::is_same<Tangential, none>::value || !std::is_same<Rolling, none>::value;
   static constexpr bool repels = true;                             ///< the mesh is solid
   static constexpr double farther = detail::farther_of<Cohesion>;  ///< than its radius a sphere sees the mesh, in radii
+
+  static constexpr double farthest_saddle = detail::farthest_saddle_of<Cohesion>;  ///< from the centre, less the radius
 
   using reads = detail::union_of<columns<position>, typename Materials::reads>;
   using writes = std::conditional_t<turns, columns<velocity, angular_velocity>, columns<velocity>>;
@@ -75,11 +78,16 @@ struct granular_contact {
   /// Torques have the arm radius - arm_shortening overlap: 0.5 in LIGGGHTS and MercuryDPM, 0 in MUSEN, and in LAMMPS at
   /// walls.
   double arm_shortening = 0.5;
+  /// Slip is the velocity of the surface at radius - slip_shortening overlap from the centre: 0.5 in LIGGGHTS and
+  /// MercuryDPM, 0 in LAMMPS and MUSEN. If both are the same, friction takes from the motion what `tangential` gets.
+  double slip_shortening = 0.5;
 
   void check_parameters() const {
     made_of.check_parameters();
     detail::check_parameter(arm_shortening >= 0 && arm_shortening <= 1,
                             "granular_contact: arm_shortening is from 0 to 1");
+    detail::check_parameter(slip_shortening >= 0 && slip_shortening <= 1,
+                            "granular_contact: slip_shortening is from 0 to 1");
     detail::check_part(normal);
     detail::check_part(tangential);
     detail::check_part(rolling);
@@ -94,6 +102,7 @@ struct granular_contact {
     detail::for_each_part_of(rolling, f);
     detail::for_each_part_of(cohesion, f);
     f(arm_shortening);
+    f(slip_shortening);
   }
 
   /// The longest step that `simulation::step` takes, the shortest of all solids that particles are of. With `hertz` the
@@ -135,6 +144,7 @@ struct granular_contact {
   struct no_memory {
     S dt;
     COLLIDE_HD_INLINE S elapsed() const { return dt; }
+    COLLIDE_HD_INLINE no_memory const& values() const { return *this; }
   };
 
   /// Two spheres. True if the contact goes on.
@@ -157,7 +167,7 @@ struct granular_contact {
     c.rolling_inertia = 0;
     if constexpr (turns) {
       vec3<S> const &w = self[angular_velocity{}], &other_w = other[angular_velocity{}];
-      turned = w * r + other_w * other_r;
+      turned = w * slip_arm(r, c.overlap) + other_w * slip_arm(other_r, c.overlap);
       c.own_turning = along_surface(w, c.normal);
       c.turning = along_surface(vec3<S>(w - other_w), c.normal);
       S const inertia = m * r * r, other_inertia = other_m * other_r * other_r;
@@ -167,27 +177,56 @@ struct granular_contact {
     return apply(p, c, m, made_of.between(self, other), memory, dt);
   }
 
-  /// A sphere and a wall.
+  /// A sphere and a wall. Of a contact that joins a deeper one, all forces are less by those at the saddle, which has
+  /// the memory of the contact: where the two become the same, they vanish.
   template <class Particle, class Seen, class Memory, class S>
   COLLIDE_HD_INLINE bool press(Particle& p, Seen const& self, mesh_overlap<S> const& wall, Memory const& memory,
                                S dt) const {
     S const r = self.radius(), m = detail::sphere_mass(S(1), r) * made_of.template density_of<S>(self);
-    granular_pair<S> c;
-    c.normal = wall.normal;
-    c.overlap = wall.overlap;
-    c.radius = c.own_radius = r;
-    c.mass = m;
-    c.rolling_inertia = S(1.4) * m * r * r;
-    vec3<S> turned(S(0), S(0), S(0));
-    c.own_turning = c.turning = turned;
-    if constexpr (turns) {
-      turned = self[angular_velocity{}] * r;
-      c.own_turning = c.turning = along_surface(self[angular_velocity{}], c.normal);
+    auto const& of = made_of.with_wall(self, wall.triangle, wall.body);
+    vec3<S> const relative = self[velocity{}] - wall.surface_velocity;
+    auto const before = memory.values();
+    COLLIDE_NO_UNROLL
+    for (bool at_saddle = wall.has_saddle();; at_saddle = false) {
+      granular_pair<S> c;
+      c.normal = at_saddle ? wall.saddle_normal : wall.normal;
+      c.overlap = at_saddle ? wall.saddle_overlap : wall.overlap;
+      c.radius = c.own_radius = r;
+      S times = at_saddle ? S(-1) : S(1);
+      if constexpr (farthest_saddle > 0) {
+        if (at_saddle) times = -hold_saddle(c, of);
+      }
+      c.mass = m;
+      c.is_wall = true;
+      c.rolling_inertia = S(1.4) * m * r * r;
+      vec3<S> turned(S(0), S(0), S(0));
+      c.own_turning = c.turning = turned;
+      if constexpr (turns) {
+        turned = self[angular_velocity{}] * slip_arm(r, c.overlap);
+        c.own_turning = c.turning = along_surface(self[angular_velocity{}], c.normal);
+      }
+      set_velocity(c, relative, turned);
+      bool const goes_on = apply(p, c, m, of, memory, times * dt);
+      if (!at_saddle) return goes_on;
+      if constexpr (!is_memoryless) memory.values() = before;
     }
-    set_velocity(c, vec3<S>(self[velocity{}] - wall.surface_velocity), turned);
-    return apply(p, c, m, made_of.with_wall(self, wall.triangle, wall.body), memory, dt);
   }
 
+  /// How much of a saddle counts: less and less where it is farther from the sphere than what holds; there it is as if
+  /// it just held.
+  template <class S>
+  COLLIDE_HD_INLINE S hold_saddle(granular_pair<S>& c, detail::contact_material const& of) const {
+    S const least = cohesion.least_overlap(c, of);
+    if (c.overlap >= least) return 1;
+    S const part = 1 - (least - c.overlap) / (S(farthest_saddle - farther) * c.own_radius);
+    c.overlap = least;
+    return detail::max(part, S(0));
+  }
+
+  template <class S>
+  COLLIDE_HD_INLINE S slip_arm(S radius, S overlap) const {
+    return radius - S(slip_shortening) * overlap;
+  }
   template <class S>
   static COLLIDE_HD_INLINE vec3<S> along_surface(vec3<S> const& x, vec3<S> const& normal) {
     return x - normal * detail::dot(x, normal);
@@ -205,6 +244,7 @@ struct granular_contact {
     normal_force<S> n = normal.force(c, of);
     cohesion.pull(n, c, of, memory);
     if (!(c.overlap > 0) && !n.goes_on) return false;
+    n.secant = S(Normal::is_hertzian ? 2.0 / 3 : 1) * n.stiffness;
     n.damping = S(Normal::damping_factor * of.damping) * detail::sqrt_rn(n.stiffness * c.mass);
     vec3<S> force = c.normal * n.total(c);
     S const impulse = dt / m;

@@ -1,83 +1,92 @@
 /// \file
-/// A mesh from a Wavefront OBJ file, by tinyobjloader (Debian: libtinyobjloader-dev). One source file of a program
-/// defines TINYOBJLOADER_IMPLEMENTATION before it includes this.
+/// A mesh from a Wavefront OBJ file.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <type_traits>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include <tiny_obj_loader.h>
-
-#include <collide/detail/numeric/rounding.hpp>
+#include <collide/detail/io/bytes.hpp>
+#include <collide/detail/io/text.hpp>
 #include <collide/io/mesh_data.hpp>
 
 namespace collide {
 namespace detail {
 
-/// Cuts a polygon of `n` corners into n - 2 triangles around one of its corners, and adds them to `mesh`. False if
-/// there is no corner from which all of it is seen.
-template <class S>
-bool add_fan(mesh_data<S>& mesh, std::uint32_t const* polygon, std::size_t n) {
-  auto const at = [&](std::size_t i) -> vec3<double> {
-    S const* const p = &mesh.vertices[3 * std::size_t{polygon[i % n]}];
-    return vec3<S>(p[0], p[1], p[2]).template cast<double>();
-  };
-  auto const normal = [&](std::size_t a, std::size_t b, std::size_t c) -> vec3<double> {
-    return cross(vec3<double>(at(b) - at(a)), vec3<double>(at(c) - at(a)));
-  };
-  vec3<double> whole(0, 0, 0);
-  for (std::size_t i = 1; i + 1 < n; ++i) whole += normal(0, i, i + 1);
-  for (std::size_t first = 0; first < n; ++first) {
-    bool sees_all = true;
-    for (std::size_t i = 1; i + 1 < n; ++i) {
-      sees_all = sees_all && dot(normal(first, first + i, first + i + 1), whole) >= 0;
-    }
-    if (!sees_all) continue;
-    for (std::size_t i = 1; i + 1 < n; ++i) {
-      for (std::size_t const k : {first, first + i, first + i + 1}) mesh.corners.push_back(polygon[k % n]);
-    }
-    return true;
+/// True for words that begin a line which has no triangles.
+inline bool is_other_keyword_of_obj(std::string_view word) {
+  for (std::string_view const known :
+       {"vn", "vt",     "vp",   "vw",    "g",   "o",      "s",   "usemtl",   "mtllib",   "l",          "p",
+        "mg", "usemap", "call", "bevel", "lod", "maplib", "csh", "c_interp", "d_interp", "shadow_obj", "trace_obj"}) {
+    if (word == known) return true;
   }
   return false;
 }
 
+/// Calls f with each other word of the line, and of the next ones where a backslash at the end continues it.
+template <class F>
+void for_each_word(text_lines& text, F const& f) {
+  for (auto w = text.word(); !w.empty(); w = text.word()) {
+    bool const goes_on = w.back() == '\\';
+    if (goes_on) w.remove_suffix(1);
+    if (!w.empty()) f(w);
+    if (goes_on && (!text.word().empty() || !text.next())) text.fail("a backslash, but no line that it continues");
+  }
+}
+
+/// The number, from 0, of the vertex of a corner v, v/vt, v//vn or v/vt/vn, after `known` vertices.
+inline std::int64_t vertex_of_corner(text_lines const& text, std::string_view corner, std::size_t known) {
+  auto const v = corner.substr(0, corner.find('/'));
+  corner.remove_prefix(v.size());
+  int slashes = 0;
+  for (char const c : corner) slashes += c == '/' ? 1 : (c >= '0' && c <= '9') || c == '-' ? 0 : 3;
+  auto const number = text.number<std::int64_t>(v);
+  if (slashes > 2 || number == 0) text.fail("a corner is not v, v/vt, v//vn or v/vt/vn, whole numbers other than 0");
+  return number < 0 ? static_cast<std::int64_t>(known) + number : number - 1;
+}
+
 }  // namespace detail
 
-/// Reads the triangles of all faces of an OBJ file, in its order, whatever objects and groups they are in. Lines and
-/// points are left out; a polygon is cut into triangles around one of its corners. Numbers are as tinyobjloader reads
-/// them: for doubles, TINYOBJLOADER_USE_DOUBLE must be defined wherever it is included. O(size of the file).
+/// Reads the triangles of all faces of an OBJ file, in its order, whatever objects and groups they are in. Lines,
+/// points and curves are left out; a polygon is cut into triangles around one of its corners. O(size of the file).
 ///
-/// \throws error  names the file: if it cannot be read, has no triangle, a vertex number that does not exist, a
-///                coordinate that is not finite, or a polygon that cannot be seen from one of its corners
+/// \throws error  names the file, and the line: if the file cannot be read, has no triangle, a line that OBJ does not
+///                know, a vertex number that does not exist, a face of fewer than three corners, a coordinate that is
+///                not finite, or a polygon that cannot be seen from one of its corners
 template <class S = float>
 mesh_data<S> read_obj(std::string const& path) {
-  static_assert(std::is_same<S, float>::value || std::is_same<S, tinyobj::real_t>::value,
-                "collide: read_obj<double> needs TINYOBJLOADER_USE_DOUBLE, defined wherever tiny_obj_loader.h is "
-                "included");
   std::string const what = "collide: read_obj: " + path;
-  tinyobj::ObjReaderConfig config;
-  config.triangulate = false;
-  tinyobj::ObjReader reader;
-  if (!reader.ParseFromFile(path, config)) throw error(what + ": " + reader.Error());
+  std::string const content = detail::bytes_of_file(path, what);
+  detail::text_lines text(content, what, '#');
   mesh_data<S> mesh;
-  mesh.vertices.assign(reader.GetAttrib().vertices.begin(), reader.GetAttrib().vertices.end());
-  std::vector<std::uint32_t> polygon;
-  for (auto const& shape : reader.GetShapes()) {
-    std::size_t next = 0;
-    for (std::size_t const n : shape.mesh.num_face_vertices) {
-      polygon.clear();
-      for (std::size_t k = 0; k < n; ++k) {
-        polygon.push_back(static_cast<std::uint32_t>(shape.mesh.indices[next++].vertex_index));
-        if (polygon.back() >= mesh.vertices.size() / 3) throw error(what + ": a vertex does not exist");
-      }
-      if (n >= 3 && !detail::add_fan(mesh, polygon.data(), n))
-        throw error(what + ": a face of " + std::to_string(n) + " corners is too concave: triangulate the mesh");
+  std::vector<std::int64_t> all, face;  // of each face its line, its number of corners, and these
+  while (text.next()) {
+    auto const keyword = text.word();
+    std::size_t n = 0;
+    if (keyword == "v") {
+      detail::for_each_word(text, [&](std::string_view word) {
+        S const x = text.number<S>(word);
+        if (n++ < 3) mesh.vertices.push_back(x);  // a weight or a colour may follow
+      });
+      if (n < 3) text.fail("a vertex has three coordinates");
+    } else if (keyword == "f") {
+      auto const first = all.size();
+      all.insert(all.end(), {static_cast<std::int64_t>(text.line_number()), 0});
+      detail::for_each_word(text, [&](std::string_view corner) {
+        all.push_back(detail::vertex_of_corner(text, corner, mesh.vertices.size() / 3));
+      });
+      all[first + 1] = static_cast<std::int64_t>(all.size() - first - 2);
+    } else if (!detail::is_other_keyword_of_obj(keyword)) {
+      text.fail("OBJ has no keyword " + text.quoted(keyword));
     }
-    if (next != shape.mesh.indices.size()) throw error(what + ": a face has more corners than tinyobjloader counts");
+  }
+  for (auto at = all.begin(); at != all.end(); at += 2 + at[1]) {  // vertices may come after the faces
+    face.assign(at + 2, at + 2 + at[1]);
+    detail::add_face(mesh, face, 1,
+                     [&](std::string const& why) { throw error(what + ": line " + std::to_string(*at) + ": " + why); });
   }
   return detail::checked_mesh(std::move(mesh), what);
 }

@@ -12,6 +12,7 @@ argument. Results are arrays of the library that the call's centres are of, on t
 the same for all arguments. `Mesh` has the queries, `Simulation` particles that move.
 """
 
+from . import _host
 from ._errors import Error
 from ._mesh import Contacts, Csr, Impacts, Mesh, Nearest, Pairs, SignedDistance
 from ._simulation import Body, Flow, Impulses, Simulation
@@ -19,6 +20,8 @@ from . import effects, granular
 from .effects import *  # noqa: F403: collide.gravity() and all the others
 from .effects import Effect, Law
 from .granular import granular_contact
+
+__version__ = ".".join(map(str, _host.version))
 
 __all__ = ["Body", "Contacts", "Csr", "Effect", "Error", "Flow", "Impacts", "Impulses", "Law", "Mesh", "Nearest", "Pairs", "SignedDistance"]
 __all__ += ["Simulation", "effects", "granular", "granular_contact"]

@@ -22,8 +22,8 @@ def device_of(array, name):
     """(type, number) of the device that an array is on, as DLPack counts them."""
     try:
         kind, number = array.__dlpack_device__()
-        return int(kind), int(number)
-    except AttributeError:
+        return int(getattr(kind, "value", kind)), int(number)  # Open3D's kind is no int
+    except Exception:  # noqa: BLE001: whatever it is, it is no array
         if hasattr(array, "__array_interface__"):
             return 1, 0
         raise TypeError(
@@ -43,8 +43,11 @@ def module_for(device, name):
 class _Numpy:
     """Arrays of numpy, and of whatever else is on the host and has no class of its own here."""
 
-    def __init__(self, module=None):
-        self.module, self.is_numpy = module, type(self) is _Numpy
+    def __init__(self, root="numpy", module=None):
+        self.root, self.module, self.is_numpy = root, module, type(self) is _Numpy
+
+    def __reduce__(self):
+        return _library, (self.root,)
 
     def stream(self, device):
         """The stream that the library works on now, and what its arrays' __dlpack__ is given."""
@@ -96,6 +99,9 @@ class _Ordered:
 
     def __init__(self, result, stream):
         self.result, self.stream_of_result = result, stream
+
+    def __reduce__(self):
+        raise TypeError("collide: an array on a GPU for a library that is unknown here is not pickled: take an array of yours")
 
     def __dlpack_device__(self):
         return self.result.__dlpack_device__()
@@ -189,7 +195,11 @@ def library_of(array, device):
     root = type(array).__module__.partition(".")[0]
     if root not in _classes:
         root = "numpy" if device[0] in CPU_TYPES else "stranger"
+    return _library(root)
+
+
+def _library(root):
     if root not in _known:
         module = importlib.import_module(root.replace("jaxlib", "jax")) if root in _classes else None
-        _known[root] = _classes.get(root, _Stranger)(module)
+        _known[root] = _classes.get(root, _Stranger)(root, module)
     return _known[root]

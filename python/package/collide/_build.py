@@ -1,6 +1,7 @@
 """Compiles a simulation's list of effects with the machine's compiler, once, and keeps it."""
 
 import hashlib
+import itertools
 import os
 import pathlib
 import shlex
@@ -95,7 +96,13 @@ def _compile(text, command, path, names, space):
 
 
 def _what_matters(errors):
-    """The sentences of the library, where there are some, else the first lines."""
-    lines = errors.splitlines()
-    own = [line for line in lines if "collide:" in line and "error" in line]
-    return "\n".join(own or lines[:40])
+    """Errors in the code of the user, each with the line that it is in, and the sentences of the library; where there
+    are none, the first lines."""
+    lines, found = errors.splitlines(), []
+    for number, line in enumerate(lines):
+        if "error" in line and "collide:" in line:
+            found.append(line)
+        elif line.startswith(("effect ", "law ")) and ("error" in line or "required from" in line):
+            context = list(itertools.takewhile(lambda of: of.startswith(" "), lines[number + 1 : number + 4]))
+            found += [line, *context]
+    return "\n".join(dict.fromkeys(found[:40] or lines[:40]))

@@ -1,15 +1,17 @@
 """Meshes, and what their queries find."""
 
 import math
+import os
 import re
 from typing import Any, Literal, NamedTuple, Optional, Union
 
 from ._arrays import CUDA, device_of, library_of, module_for, stream_of
-from ._errors import refuse
+from ._errors import choice, real, refuse, whole
 
 Array = Any  #: an array of numpy, torch, cupy, jax or warp, or anything with __dlpack__
 Precision = Literal["exact", "double", "single"]
 Order = Literal["unspecified", "canonical"]
+PRECISIONS = ("exact", "double", "single")
 
 
 class _field:  # noqa: N801: it is used like property
@@ -20,8 +22,8 @@ class _field:  # noqa: N801: it is used like property
         self.integers, self.numbers, self.count = integers, numbers, count
 
     def __set_name__(self, owner, name):
-        found = re.search(rf"^    {name} +(.*(?:\n {{15,}}.*)*)", owner.__doc__, re.MULTILINE)
-        self.__doc__ = re.sub(r"\s+", " ", found[1])
+        found = re.search(rf"^ *{name}  +(.*(?:\n {{11,}}.*)*)", owner.__doc__ or "", re.MULTILINE)
+        self.__doc__ = re.sub(r"\s+", " ", found[1]) if found else None  # Python -OO has none
 
     def __get__(self, of, owner=None):
         if of is None:
@@ -142,20 +144,19 @@ class Csr(NamedTuple):
 class Mesh:
     """A triangle mesh, and the queries that spheres may ask of it. Where its vertices lie, it runs.
 
-    vertices   (n, 3) float32 or float64, of warp also (n,) vec3 or vec3d, in any unit of length. The arrays are read
-               where they are, not copied: keep them as they are while the mesh is used, or call `update` when they have
-               changed.
-    triangles  (m, 3) int32 or uint32: numbers of vertices, from 0. None: rows 3 i, 3 i + 1, 3 i + 2 of vertices are
-               triangle i.
-    validate   check that triangles name vertices that exist: reading others is undefined behaviour. O(m); on a GPU it
-               waits for the result.
-    threads    on the host: how many at most. 0: as many as there are cores where that pays.
+    vertices   (n, 3) float32 or float64, of warp also (n,) vec3 or vec3d, in any unit of length. They are read where they
+               are, not copied: keep them as they are while the mesh is used, or call `update` when they have changed.
+    triangles  (m, 3) integers of 32 or 64 bits, of any strides: numbers of vertices, from 0. They are copied. None: rows
+               3 i, 3 i + 1, 3 i + 2 of vertices are triangle i.
+    validate   refuse triangles of vertices that are not there. O(m); on a GPU it waits for the result. Without it such
+               a corner is the last vertex.
+    threads    on the host: how many at most, and no more than there are cores. 0: as many as that where it pays.
 
     Raises TypeError for another dtype, ValueError for another shape, device, or triangles of vertices that are not
     there. The first query of a kind (at rest, moving, and each precision) prepares what depends on the mesh, O(m).
 
     Other Python threads run while a call works; two meshes may be used by two threads at once, calls to one mesh wait
-    for each other. On a GPU work is put on the current stream of the library that the centres are of, and a call waits
+    for each other. Ctrl-C ends a call on the host within a second. Pickle and copy.deepcopy copy the arrays. On a GPU work is put on the current stream of the library that the centres are of, and a call waits
     only as far as it must read a number back: `any` with one radius does not, after a first call.
     """
 
@@ -164,9 +165,18 @@ class Mesh:
         self._library = library_of(vertices, self._device)
         module = module_for(self._device, "vertices")
         self._is_wide = _is_wide(vertices)
+        self._threads = how_many_threads(threads)
         make = module.MeshDouble if self._is_wide else module.MeshFloat
-        self._mesh = make(threads, self._device[1])
-        self._mesh.take(stream_of(self._library, self._device), vertices, triangles, validate)
+        self._mesh = make(self._threads, self._device[1])
+        self._mesh.take(stream_of(self._library, self._device), vertices, triangles, bool(validate))
+        self._vertices, self._version = vertices, 0
+
+    def __reduce__(self):
+        stream = stream_of(self._library, self._device)
+        triangles = self._mesh.triangles(stream, self._library.is_numpy)
+        if triangles is not None:
+            triangles = self._library.array(triangles, stream)
+        return _mesh_of, (self._vertices, triangles, self._threads)
 
     def __len__(self) -> int:
         """How many triangles there are."""
@@ -176,12 +186,14 @@ class Mesh:
         place = "host" if self._device[0] != CUDA else f"GPU {self._device[1]}"
         return f"<collide.Mesh: {len(self)} triangles, {'float64' if self._is_wide else 'float32'}, {place}>"
 
-    def update(self, vertices: Array, triangles: Optional[Array] = None) -> None:
+    def update(self, vertices: Array, triangles: Optional[Array] = None, *, validate: bool = True) -> None:
         """The mesh has moved: takes other vertices, or the same array with other contents, and triangles if they have
-        changed, too. What depends on them is prepared again by the next query; nothing is allocated if the mesh has not
-        grown. Raises as the constructor does; the mesh is then as it was. Triangles are not checked."""
+        changed, too, which are copied and checked as by the constructor. What depends on them is prepared again by the
+        next query, and by simulations in their next steps; without triangles nothing is allocated. Raises as the
+        constructor does; the mesh is then as it was."""
         stream = stream_of(library_of(vertices, self._device), self._device)
-        self._mesh.take(stream, vertices, triangles, False)
+        self._mesh.take(stream, vertices, triangles, bool(validate))
+        self._vertices, self._version = vertices, self._version + 1
 
     def count(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
@@ -222,10 +234,9 @@ class Mesh:
         Returns `Pairs`, or `Csr`. Results own their memory. Raises TypeError or ValueError for arguments that do not
         fit, `Error` if the library or CUDA fails, MemoryError without memory. O(n + candidates).
         """
-        if output == "csr":
+        if choice("output", output, ("pairs", "csr")) == "csr":
             refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
             refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
-        refuse(output not in ("pairs", "csr"), "output", f"is {output!r}, expected 'pairs' or 'csr'")
         kind, asked = Csr if output == "csr" else Pairs, (output, centres, radius, displacements, precision)
         return self._ask(self._mesh.query, kind, out, *asked, order=order, capacity=capacity)
 
@@ -279,7 +290,7 @@ class Mesh:
         arguments that do not fit, `Error` if the library or CUDA fails. It does not wait on a GPU. The first call prepares a
         tree, O(m log m) for m triangles; O(log m) for a point near the mesh.
         """
-        return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, max_distance)
+        return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, _reach(max_distance))
 
     def k_nearest(
         self, points: Array, k: int, *, max_distance: float = math.inf, out: Optional[Array] = None
@@ -292,7 +303,8 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        return self._ask(self._mesh.search, Nearest, out, "k_nearest", points, k, max_distance)
+        asked = points, whole("k", k, 1, 32), _reach(max_distance)
+        return self._ask(self._mesh.search, Nearest, out, "k_nearest", *asked)
 
     def signed_distance(
         self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None
@@ -305,7 +317,7 @@ class Mesh:
 
         Other arguments, errors and costs as for `nearest`.
         """
-        return self._ask(self._mesh.search, SignedDistance, out, "signed_distance", points, 1, max_distance)
+        return self._ask(self._mesh.search, SignedDistance, out, "signed_distance", points, 1, _reach(max_distance))
 
     def contains(self, points: Array, *, out: Optional[Array] = None) -> Array:
         """(n,) bool: whether each point is inside of a closed mesh or on its surface. Exact, however triangles are
@@ -324,7 +336,12 @@ class Mesh:
         library that the centres, or points, are of."""
         library = library_of(centres, self._device)
         stream = stream_of(library, self._device)
-        results = _is_canonical(order), capacity, out, library.is_numpy
+        if capacity is not None:
+            capacity = whole("capacity", capacity, 0, 2**63 - 1)
+        if function == self._mesh.query:
+            choice("precision", asked[2], PRECISIONS)
+        is_canonical = choice("order", order, ("unspecified", "canonical")) == "canonical"
+        results = is_canonical, capacity, out, library.is_numpy
         found = function(stream, what, centres, *asked, results)
         if kind is int:
             return found
@@ -340,6 +357,19 @@ class Mesh:
         return kind(library, records, self._is_wide, size, *total)
 
 
+def how_many_threads(threads):
+    return min(whole("threads", threads), os.cpu_count() or 1)
+
+
+def _mesh_of(vertices, triangles, threads):
+    """A mesh that was pickled."""
+    return Mesh(vertices, triangles, threads=threads)
+
+
+def _reach(max_distance):
+    return real("max_distance", max_distance)
+
+
 def _is_wide(array):
     if not hasattr(array, "dtype") and device_of(array, "vertices")[0] != CUDA:
         import numpy
@@ -347,9 +377,3 @@ def _is_wide(array):
         array = numpy.from_dlpack(array)
     dtype = getattr(array, "dtype", "")
     return "float64" in str(getattr(dtype, "_wp_scalar_type_", dtype))  # of warp's vectors, such as vec3
-
-
-def _is_canonical(order):
-    if order not in ("unspecified", "canonical"):
-        refuse(True, "order", f"is {order!r}, expected 'unspecified' or 'canonical'")
-    return order == "canonical"

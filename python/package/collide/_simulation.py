@@ -2,15 +2,16 @@
 
 import dataclasses
 import os
+import tempfile
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy
 
 from . import _build
 from ._arrays import CUDA, library_of, module_for, stream_of
-from ._mesh import Array, Mesh
-from ._errors import refuse
-from .effects import Effect, Vector
+from ._mesh import PRECISIONS, Array, Mesh, how_many_threads
+from ._errors import choice, real, refuse, shown, whole
+from .effects import Effect, Vector, _numbers
 
 
 @dataclasses.dataclass
@@ -34,11 +35,14 @@ class Body:
     phase: float = 0
     belt: Vector = (0, 0, 0)
 
+    def __post_init__(self):
+        self._numbers()
+
     def _numbers(self):
-        numbers = []
-        for value in dataclasses.astuple(self):
-            numbers += value if isinstance(value, tuple) else [value]
-        return [float(number) for number in numbers]
+        numbers = [float(whole(name, getattr(self, name))) for name in ("first", "size")]
+        for field in dataclasses.fields(self)[2:]:
+            numbers += _numbers(field.name, getattr(self, field.name), 3 if isinstance(field.default, tuple) else 1)
+        return numbers
 
 
 class Impulses(NamedTuple):
@@ -76,38 +80,39 @@ class Simulation:
     A list that is not in the package is compiled by g++, or nvcc, when it is first used, and kept in COLLIDE_CACHE or
     ~/.cache/collide: some ten seconds. Raises `Error` without a compiler, or where effects do not fit together. Units are
     those of the scene. The same steps give the same bits on every run, and on host and GPU.
+
+    Pickle and copy.deepcopy copy the mesh, particles and parameters, as `save` does; `sums` begin anew.
     """
 
     def __init__(
         self, mesh: Mesh, effects: Sequence[Effect], *, bodies: Sequence[Body] = (), swept: bool = False,
         precision: str = "exact", threads: int = 0,
     ):
-        for effect in effects:
-            wrong = not isinstance(effect, Effect)
-            refuse(wrong, "effects", f"expected effects such as collide.gravity(), got {effect!r}", TypeError)
-        wrong = precision not in ("exact", "double", "single")
-        refuse(wrong, "precision", f"is {precision!r}, expected 'exact', 'double' or 'single'")
-        self.effects = tuple(effects)
-        self._mesh, self._bodies = mesh, list(bodies)
-        self._device, self._library, self._threads = mesh._device, mesh._library, threads
+        refuse(not isinstance(mesh, Mesh), "mesh", f"expected a collide.Mesh, got {shown(mesh)}", TypeError)
+        self.effects = _listed("effects", effects, Effect, "collide.gravity()")
+        names = [effect.name for effect in self.effects]
+        twice = next((name for name in names if names.count(name) > 1), "")
+        refuse(twice, "effects", f"{twice} is in the list more than once")
+        self._mesh, self._bodies = mesh, _listed("bodies", bodies, Body, "collide.Body(0, 2)")
+        self._device, self._library, self._threads = mesh._device, mesh._library, how_many_threads(threads)
+        self._options = {"swept": bool(swept), "precision": choice("precision", precision, PRECISIONS)}
         module = module_for(self._device, "mesh")
         on_gpu = self._device[0] == CUDA
         self._path = _build.library(
-            effects,
+            self.effects,
             "cuda_shared" if on_gpu else "host",
             module.capability(self._device[1]) if on_gpu else None,
             scalar="double" if mesh._is_wide else "float",
-            precision=precision,
-            swept=swept,
+            **self._options,
         )
-        self._simulation = self._made()
+        self._simulation, self._is_set = self._made(), False
 
     def _made(self):
         """The compiled simulation, with mesh and parameters."""
         module = module_for(self._device, "mesh")
         kind = module.SimulationDouble if self._mesh._is_wide else module.SimulationFloat
         made = kind(self._path, self._threads, self._device[1])
-        made.set_mesh(self._stream(), self._mesh._mesh, [body._numbers() for body in self._bodies])
+        self._give_mesh(made)
         for number, effect in enumerate(self.effects):
             for name, values in effect.parameters.items():
                 self._set_parameter(made, number, name, values)
@@ -117,19 +122,42 @@ class Simulation:
         done = simulation.set_parameter(self._stream(), number, name, values)
         refuse(not done, name, "there is no such parameter of so many numbers")
 
-    def _unseen(self):
-        """The compiled simulation, or another where arrays show its columns, which then stay as they are."""
-        return self._made() if self._simulation.is_shown() else self._simulation
+    def _give_mesh(self, simulation):
+        self._version = self._mesh._version  # before its arrays are taken
+        simulation.set_mesh(self._stream(), self._mesh._mesh, [body._numbers() for body in self._bodies])
+
+    def _replace(self, function, *arguments):
+        """Calls a function of the compiled simulation that replaces all particles, or of another one where arrays show its
+        columns, which then stay as they are."""
+        simulation = self._simulation
+        while not getattr(simulation, function)(self._stream(), *arguments):
+            simulation = self._made()
+        self._simulation = simulation
+
+    def __reduce__(self):
+        state = None
+        if self._is_set:
+            with tempfile.TemporaryDirectory() as folder:
+                self.save(os.path.join(folder, "state"))
+                with open(os.path.join(folder, "state"), "rb") as file:
+                    state = file.read()
+        return _simulation_of, (self._mesh, self.effects, self._bodies, self._threads, self._options, state)
 
     def set_mesh(self, mesh: Optional[Mesh] = None, bodies: Optional[Sequence[Body]] = None) -> None:
-        """Call it when the mesh has moved, after `Mesh.update`; or gives another mesh, or other bodies. O(triangles)."""
+        """Gives another mesh, or other bodies. After `Mesh.update` the next step calls it. O(triangles)."""
         if mesh is not None:
+            refuse(not isinstance(mesh, Mesh), "mesh", f"expected a collide.Mesh, got {shown(mesh)}", TypeError)
             wrong = (mesh._device, mesh._is_wide) != (self._device, self._mesh._is_wide)
             refuse(wrong, "mesh", "has another device or dtype than the simulation's")
-            self._mesh = mesh
+        before = self._mesh, self._bodies
         if bodies is not None:
-            self._bodies = list(bodies)
-        self._simulation.set_mesh(self._stream(), self._mesh._mesh, [body._numbers() for body in self._bodies])
+            self._bodies = _listed("bodies", bodies, Body, "collide.Body(0, 2)")
+        self._mesh = mesh if mesh is not None else self._mesh
+        try:
+            self._give_mesh(self._simulation)
+        except BaseException:
+            self._mesh, self._bodies = before
+            raise
 
     def set(
         self, centres: Array, radius: Union[float, Array], velocities: Optional[Array] = None, *, capacity: int = 0
@@ -137,22 +165,25 @@ class Simulation:
         """Copies particles: those of before are gone, and the time is 0.
 
         centres     (n, 3) of the mesh's dtype and device
-        radius      a number, or with `polydisperse` in the list (n,)
+        radius      a number, or with `polydisperse` in the list (n,); not negative
         velocities  (n, 3), packed; None: at rest
         capacity    for how many there is room, if an effect makes some
         """
         self._library = library_of(centres, self._device)
-        simulation = self._unseen()
-        simulation.set(self._stream(), centres, radius, velocities, capacity)
-        self._simulation = simulation
+        self._replace("set", centres, radius, velocities, whole("capacity", capacity, 0, 2**32 - 2))
+        self._is_set = True
 
     def step(self, dt: float) -> None:
         """Advances by the time dt, above 0."""
-        self._simulation.steps(self._stream(), 1, dt)
+        self.steps(1, dt)
 
     def steps(self, n: int, dt: float) -> None:
-        """Advances n times by dt. On a GPU it does not wait."""
-        self._simulation.steps(self._stream(), n, dt)
+        """Advances n times by dt. On a GPU it does not wait. Ctrl-C ends it between two steps; `time` says which."""
+        n, dt = whole("n", n, 0, 2**63 - 1), real("dt", dt)
+        if self._version != self._mesh._version:
+            self._give_mesh(self._simulation)
+        while n > 0:  # each call takes a tenth of a second, or a step
+            n -= self._simulation.steps(self._stream(), n, dt)
 
     def __getitem__(self, name: str) -> Array:
         """A column of the particles: (n, 3) for ``position`` and ``velocity``, (n, 3) or (n,) for those of `columns`. It
@@ -164,6 +195,10 @@ class Simulation:
 
     def __setitem__(self, name: str, values: Array) -> None:
         """Gives all particles a column's values, packed and of its dtype."""
+        solids = next((e.parameters["materials"] for e in self.effects if "materials" in e.parameters), [])
+        if name == "material" and hasattr(values, "max") and len(values) != 0:
+            count = next((n for n in range(33) if 3 * n + 2 * n * (n + 1) == len(solids)), 256)
+            refuse(int(values.max()) >= count, "material", f"is {int(values.max())}, and there are {count}, from 0")
         self._simulation.assign(self._stream(), self._column(name), values)
 
     def change(self, effect: Union[int, str], **parameters: Union[float, Vector]) -> None:
@@ -195,7 +230,7 @@ class Simulation:
     def energy(self, density: float = 0) -> Dict[str, float]:
         """Kinetic, rotational, elastic and potential energy, and that of tangential springs. ``density`` is mass per
         volume, 0 that of the effect by which particles meet. Waits; O(n), O(n log n) where particles meet."""
-        of_all = self._simulation.energy(self._stream(), density)
+        of_all = self._simulation.energy(self._stream(), real("density", density))
         return dict(zip(("kinetic", "rotational", "elastic", "potential", "tangential"), of_all))
 
     def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow]:
@@ -215,28 +250,62 @@ class Simulation:
 
     def save(self, path: Union[str, os.PathLike]) -> None:
         """Writes particles and parameters to a file; not the mesh."""
-        self._simulation.save(self._stream(), os.fspath(path))
+        self._simulation.save(self._stream(), _path(path))
 
     def load(self, path: Union[str, os.PathLike]) -> None:
         """Goes on where `save` was called, by a simulation of the same list: the same bits as without a break."""
-        simulation = self._unseen()
-        simulation.load(self._stream(), os.fspath(path))
-        self._simulation = simulation
+        self._replace("load", _path(path))
+        self._is_set = True
 
     def __repr__(self):
         return f"<collide.Simulation: {len(self)} particles, {', '.join(e.name for e in self.effects)}>"
 
+    def __contains__(self, name: str) -> bool:
+        """Whether there is a column of a name."""
+        return name in self.columns
+
     def _column(self, name):
         names = self.columns
         if name not in names:
-            raise KeyError(f"there is no column {name!r} in this simulation; there are {', '.join(names)}")
+            raise KeyError(f"there is no column {shown(name)} in this simulation; there are {', '.join(names)}")
         return names.index(name)
 
     def _number(self, effect):
         names = [e.name for e in self.effects]
-        number = names.index(effect) if effect in names else effect
-        refuse(number not in range(len(names)), "effect", f"there is no {effect!r} in the list {', '.join(names)}")
-        return number
+        if isinstance(effect, str) and effect in names:
+            return names.index(effect)
+        wrong = not isinstance(effect, int) or effect not in range(len(names))
+        refuse(wrong, "effect", f"there is no {shown(effect)} in the list {', '.join(names)}")
+        return effect
 
     def _stream(self) -> Tuple[int, int]:
         return stream_of(self._library, self._device)
+
+
+def _listed(name, values, kind, example):
+    """A tuple of objects of a kind, from what may be iterated once."""
+    try:
+        listed = tuple(values)
+    except TypeError:
+        listed = (values,)
+    for value in listed:
+        refuse(not isinstance(value, kind), name, f"expected {name} such as {example}, got {shown(value)}", TypeError)
+    return listed
+
+
+def _path(path):
+    """The name of a file, as text."""
+    name = os.fsdecode(path)
+    refuse("\0" in name, "path", "has a null character")
+    return name
+
+
+def _simulation_of(mesh, effects, bodies, threads, options, state):
+    """A simulation that was pickled."""
+    made = Simulation(mesh, effects, bodies=bodies, threads=threads, **options)
+    if state is not None:
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "state"), "wb") as file:
+                file.write(state)
+            made.load(os.path.join(folder, "state"))
+    return made

@@ -8,6 +8,11 @@ import functools
 import inspect
 from typing import Callable, Dict, List, Optional, Tuple, TypeVar
 
+try:
+    from ._errors import real, refuse, shown
+except ImportError:  # CMake runs _source.py by itself
+    from _errors import real, refuse, shown
+
 Vector = Tuple[float, float, float]
 
 
@@ -23,14 +28,21 @@ class Effect:
     """
 
     def __init__(self, name: str, parameters: Optional[Dict[str, object]] = None, code: str = ""):
+        refuse(not isinstance(name, str) or not name.isidentifier(), "name", f"expected that of a struct, got {shown(name)}")
+        refuse(not isinstance(code, str), "code", f"expected C++, got {shown(code)}", TypeError)
         self.name, self.code = name, code
         self.parameters = {key: _numbers(key, value) for key, value in (parameters or {}).items()}
-        self._type = name  # in C++
+        self._type, self._is_own = name, True  # in C++
         self._members = {key: f"e.{key}" for key in self.parameters}  # what sets each of them
 
     def __repr__(self):
         values = ", ".join(f"{k}={v[0] if len(v) == 1 else tuple(v)}" for k, v in self.parameters.items())
         return f"collide.{self.name}({values})"
+
+    def _lines(self):
+        """The code; errors in that of a user say where."""
+        kind = type(self).__name__.lower()
+        return f'#line 1 "{kind} {self.name}"\n{self.code}\n#line 1 "simulation"' if self._is_own else self.code
 
     def _changed(self, parameters):
         """The same with other values of some parameters."""
@@ -48,24 +60,30 @@ class Law(Effect):
     """A law of `collide.granular_contact`: one of `collide.granular`, or one of your own, with name, parameters and code
     as for `Effect`."""
 
+    _part = ""  # which it may be; that of the user any
+
 
 def _numbers(name, value, size=None) -> List[float]:
     try:
-        numbers = [float(v) for v in value] if hasattr(value, "__len__") else [float(value)]
-    except (TypeError, ValueError):
-        raise TypeError(f"{name}: expected numbers, got {value!r}") from None
-    if size is not None and len(numbers) != size:
-        raise ValueError(f"{name}: expected {'a number' if size == 1 else f'{size} numbers'}, got {value!r}")
+        listed = [value] if isinstance(value, (str, bytes)) else list(value)
+    except Exception:  # noqa: BLE001: of a class of the user
+        listed = [value]
+    try:
+        numbers = [real(name, v) for v in listed]
+    except TypeError:
+        raise TypeError(f"{name}: expected numbers, got {shown(value)}") from None
+    wrong = size is not None and len(numbers) != size
+    refuse(wrong, name, f"expected {'a number' if size == 1 else f'{size} numbers'}, got {shown(value)}")
     return numbers
 
 
 Function = TypeVar("Function", bound=Callable)
 
 
-def _describes(kind, header="", type="", memory="", **members) -> Callable[[Function], Function]:
+def _describes(kind, header="", type="", memory="", part="", **members) -> Callable[[Function], Function]:
     """Makes a function that describes an effect: the name and the parameters are the function's own, and what it returns,
     if anything, are other values of some. ``type`` and ``members`` are names in C++, where they differ; ``memory`` is the
-    header of what the effect has beside its parameters."""
+    header of what the effect has beside its parameters, ``part`` which law it may be."""
 
     def decorate(function):
         name, arguments = function.__name__, inspect.signature(function)
@@ -79,7 +97,7 @@ def _describes(kind, header="", type="", memory="", **members) -> Callable[[Func
             made = kind(name, {}, f"#include <collide/{header or 'effects/' + name}.hpp>")
             made.code += f'\n#include "{memory}"' if memory else ""
             made.parameters = {key: _numbers(key, value, sizes[key]) for key, value in values.items()}
-            made._type = "collide::" + (type or name)
+            made._type, made._is_own, made._part = "collide::" + (type or name), False, part
             made._members = {key: "e." + members.get(key, key) for key in values}
             return made
 

@@ -8,15 +8,16 @@
 import dataclasses
 from typing import List, Mapping, Optional, Sequence, Tuple, Union
 
+from ._errors import refuse, shown
 from .effects import Effect, Law, _describes, _numbers
 
 
-@_describes(Law, "effects/granular/linear")
+@_describes(Law, "effects/granular/linear", part="normal")
 def linear(stiffness: float = 1000) -> Law:
     """Normal law: a spring of constant stiffness (force per overlap), and the dashpot that gives the restitution."""
 
 
-@_describes(Law, "effects/granular/hertz")
+@_describes(Law, "effects/granular/hertz", part="normal")
 def hertz() -> Law:
     """Normal law: Hertz' force of elastic spheres, and the dashpot that gives the restitution."""
 
@@ -26,7 +27,7 @@ def none() -> Law:
     """In place of a tangential or rolling law, or one of cohesion: there is none."""
 
 
-@_describes(Law, "effects/granular/dashpot")
+@_describes(Law, "effects/granular/dashpot", part="tangential")
 def dashpot(damping: float = 0) -> Law:
     """Tangential law: a dashpot (force per slip) up to Coulomb's limit. Remembers nothing; a pile creeps."""
 
@@ -43,7 +44,7 @@ def _mindlin(damping, test):
     return found
 
 
-@_describes(Law, "effects/granular/mindlin")
+@_describes(Law, "effects/granular/mindlin", part="tangential")
 def mindlin(
     stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False
 ) -> Law:
@@ -56,35 +57,55 @@ def mindlin(
     return _mindlin(damping, test)
 
 
-@_describes(Law, "effects/granular/mindlin")
+@_describes(Law, "effects/granular/mindlin", part="tangential")
 def mindlin_rescale(
     stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False
 ) -> Law:
-    """`mindlin`, whose spring also becomes shorter where the area of contact does: Thornton et al., 2013."""
+    """`mindlin`, whose spring also becomes shorter where the area of contact does, as LAMMPS' of that name. Cycles of load
+    and slip may make energy, as with `mindlin`."""
     return _mindlin(damping, test)
 
 
-@_describes(Law, "effects/granular/rolling")
+@_describes(Law, "effects/granular/mindlin", part="tangential")
+def mindlin_force(
+    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False,
+    rescales: bool = True,
+) -> Law:
+    """`mindlin`, whose force a growing load leaves as it is, and a falling one reduces: no cycle of load and slip makes
+    energy. Thornton, Cummins and Cleary, 2013; LAMMPS' mindlin_rescale/force.
+
+    rescales  False: a falling load leaves the force as it is, too, and may make energy: LAMMPS' mindlin/force
+    """
+    return _mindlin(damping, test)
+
+
+@_describes(Law, "effects/granular/rolling", part="rolling")
 def constant_torque() -> Law:
     """Rolling law: a torque of constant size against what turns. What is nearly at rest trembles."""
 
 
-@_describes(Law, "effects/granular/rolling")
+@_describes(Law, "effects/granular/rolling", part="rolling")
 def epsd(damping: float = 0.3) -> Law:
     """Rolling law: a spring that remembers, and a dashpot, a ratio to critical damping. Piles stand still."""
 
 
-@_describes(Law, "effects/granular/cohesion")
-def sjkr() -> Law:
-    """Cohesion: a pull of the surfaces' cohesion (energy per volume) times the area of overlap."""
+@_describes(Law, "effects/granular/rolling", part="rolling")
+def epsd2() -> Law:
+    """Rolling law, with `hertz`: `epsd` without the dashpot, and with the stiffness of `mindlin`'s spring."""
 
 
-@_describes(Law, "effects/granular/cohesion")
+@_describes(Law, "effects/granular/cohesion", part="cohesion")
+def sjkr(wall_factor: float = 0.5) -> Law:
+    """Cohesion: a pull of the surfaces' cohesion (energy per volume) times the area of overlap, 4 pi R* overlap; at walls
+    wall_factor of it. Friction has the limits that it has without the pull."""
+
+
+@_describes(Law, "effects/granular/cohesion", part="cohesion")
 def dmt() -> Law:
     """Cohesion, with `hertz`: a constant pull of hard grains; cohesion is energy per area."""
 
 
-@_describes(Law, "effects/granular/cohesion")
+@_describes(Law, "effects/granular/cohesion", part="cohesion")
 def jkr() -> Law:
     """Cohesion, with `hertz`: soft grains that stick, also a little apart; cohesion is energy per area."""
 
@@ -121,19 +142,20 @@ def materials(
     Raises ValueError for a pair that is missing.
     """
     solids = [solids] if isinstance(solids, Solid) else list(solids)
-    numbers = [number for solid in solids for number in dataclasses.astuple(solid)]
+    numbers = [number for solid in solids for number in _numbers("solids", dataclasses.astuple(solid), 3)]
     for i in range(len(solids)):
         for j in range(i + 1):
             pair = pairs if isinstance(pairs, SurfacePair) else pairs.get((i, j), pairs.get((j, i)))
             if pair is None:
                 raise ValueError(f"pairs: the pair ({j}, {i}) is missing")
-            numbers += dataclasses.astuple(pair)
+            numbers += _numbers("pairs", dataclasses.astuple(pair), 4)
     return numbers
 
 
 def granular_contact(
     normal: Law, tangential: Optional[Law] = None, rolling: Optional[Law] = None, cohesion: Optional[Law] = None, *,
     materials: Sequence[float] = materials(Solid(), SurfacePair()), wall_material: int = 0, arm_shortening: float = 0.5,
+    slip_shortening: float = 0.5,
 ) -> Effect:
     """Granular contact between particles, which are solid, and of particles with the mesh, which is solid then. Use float64
     and `velocity_verlet`; no `bounce`, `friction`, `adhesion` or `spin` beside it.
@@ -142,6 +164,7 @@ def granular_contact(
     materials       `granular.materials(...)`
     wall_material   the number of the mesh's solid, where there are several
     arm_shortening  torques have the arm radius - arm_shortening overlap
+    slip_shortening  slip is that of the surface at radius - slip_shortening overlap, from 0 to 1
 
     Parameters of a law are those of the effect with the word before them: ``sim.change('granular_contact',
     normal_stiffness=2000)``. `Simulation.largest_time_step` says how long a step may be.
@@ -150,11 +173,14 @@ def granular_contact(
     laws = {part: law if law is not None else none() for part, law in laws.items()}
     for part, law in laws.items():
         if not isinstance(law, Law):
-            raise TypeError(f"{part}: expected a law such as collide.granular.hertz(), got {law!r}")
+            raise TypeError(f"{part}: expected a law such as collide.granular.hertz(), got {shown(law)}")
+        wrong = law._part not in ("", part) or (law.name, part) == ("none", "normal")
+        refuse(wrong, part, f"{law.name} is no law of this part" + (f", but of {law._part}" if law._part else ""))
     count = next((n for n in range(1, 33) if 3 * n + 2 * n * (n + 1) == len(materials)), None)
     if count is None:
         raise ValueError("materials: expected what collide.granular.materials makes of 1 to 32 solids")
-    made = Effect("granular_contact", {"materials": materials, "arm_shortening": arm_shortening})
+    arms = {"arm_shortening": arm_shortening, "slip_shortening": slip_shortening}
+    made = Effect("granular_contact", {"materials": materials, **arms})
     solids = "collide::one_material" if count == 1 else f"collide::materials<{count}>"
     setter = "collide_python::set_materials(e.made_of, v)"
     made._members["materials"] = f"{len(materials)}, [&](double const* v) {{ {setter}; }}"
@@ -165,7 +191,8 @@ def granular_contact(
         for key, values in law.parameters.items():
             made.parameters[f"{part}_{key}"] = values
             made._members[f"{part}_{key}"] = law._members[key].replace("e.", f"e.{part}.", 1)
-    codes = ["#include <collide/effects/granular_contact.hpp>", *(law.code for law in laws.values())]
+    codes = ["#include <collide/effects/granular_contact.hpp>", *(law._lines() for law in laws.values())]
+    made._is_own = False
     made.code = "\n".join(dict.fromkeys([*codes, '#include "granular_materials.hpp"']))
     made._type = f"collide::granular_contact<{', '.join([*(law._type for law in laws.values()), solids])}>"
     return made

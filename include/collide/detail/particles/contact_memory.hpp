@@ -243,6 +243,8 @@ class contact_access {
   }
   /// The time since the contact was looked at before; 0 where forces are only asked for.
   COLLIDE_HD_INLINE S elapsed() const { return elapsed_; }
+  /// All that the contact remembers.
+  COLLIDE_HD_INLINE Values& values() const { return values_; }
 
  private:
   Values& values_;

@@ -2,6 +2,8 @@
 /// The effects of a simulation, the columns that they need, and how they are called.
 #pragma once
 
+#include <algorithm>
+
 #include <collide/detail/numeric/repeating_box.hpp>
 #include <collide/detail/particles/effect_traits.hpp>
 #include <collide/detail/particles/resistance.hpp>
@@ -55,7 +57,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   static constexpr bool any_mesh_impulse = (has_on_mesh_impulse<E, S>::value || ...);
   static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
   static constexpr bool remembers_surfaces = overlaps && remembered::size != 0;
-  static constexpr double farther = farthest_of<E...>();
+  static constexpr double farther = std::max({0.0, farther_of<E>...});
+  static constexpr double farthest_saddle = std::max({0.0, farthest_saddle_of<E>...});
   static constexpr bool any_mesh_contact =  ///< or by impulses
       (has_on_mesh_contact<E, S>::value || ...) || (has_after_mesh_contact<E, S>::value || ...) ||
       (any_mesh_impulse && !overlaps);

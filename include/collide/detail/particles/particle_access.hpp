@@ -64,12 +64,11 @@ template <class E, class = void>
 inline constexpr double farther_of = 0;
 template <class E>
 inline constexpr double farther_of<E, std::void_t<decltype(E::farther)>> = E::farther;
-template <class... E>
-constexpr double farthest_of() {
-  double most = 0;
-  ((most = farther_of<E> > most ? farther_of<E> : most), ...);
-  return most;
-}
+/// By how many of its radii more than its radius a saddle of the surface may be away for an effect or a law.
+template <class E, class = void>
+inline constexpr double farthest_saddle_of = farther_of<E>;
+template <class E>
+inline constexpr double farthest_saddle_of<E, std::void_t<decltype(E::farthest_saddle)>> = E::farthest_saddle;
 
 /// A particle as an effect sees it: with the columns that it names and no others.
 template <class Effect, class Particle>

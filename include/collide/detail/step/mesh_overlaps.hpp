@@ -8,106 +8,17 @@
 
 #include <collide/detail/bodies/bodies_ref.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
-#include <collide/detail/particles/contact_memory.hpp>
 #include <collide/detail/particles/effect_list.hpp>
 #include <collide/detail/step/mesh_kicks.hpp>
 #include <collide/detail/step/mesh_ledger.hpp>
 #include <collide/detail/step/overlap_list.hpp>
+#include <collide/detail/step/surface_memory.hpp>
 
 // the numbers of elements of small arrays are int
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wsign-conversion"
 
 namespace collide::detail {
-
-/// The memory of a contact with the mesh, and its key: a sphere that slides over a surface goes from
-/// triangle to triangle, and its contact goes on; that of another wall has another normal.
-template <class S, class List>
-struct surface_record {
-  contact_record<S, List> record;
-  S normal[3];
-  id body;
-};
-
-/// The memory of contacts with the mesh, by numbers of particles.
-template <class S, class List>
-struct surface_memory_ref {
-  static constexpr int room = 4;  ///< contacts of a particle that are remembered: the deepest
-
-  surface_record<S, List>* records;  ///< contact k of particle i is at k * capacity + i
-  std::uint8_t* counts;
-  std::size_t capacity;
-};
-template <class S, class List>
-class surface_memory {
- public:
-  void reserve(std::pmr::memory_resource* resource, std::size_t n) {
-    records_.reserve(resource, n * surface_memory_ref<S, List>::room);
-    counts_.reserve(resource, n);
-  }
-  template <class Space>
-  void clear(Space& space, std::size_t n) {
-    if (n != 0) space.fill(counts_.data(), 0, n);
-  }
-  std::size_t bytes() const { return records_.bytes() + counts_.bytes(); }
-  surface_memory_ref<S, List> ref(std::size_t n) const { return {records_.data(), counts_.data(), n}; }
-
-  /// For a checkpoint: the contacts of each of `n` particles; the others are bodies. Waits.
-  template <class Space>
-  saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
-    std::vector<surface_record<S, List>> records(room * n);
-    std::vector<std::uint8_t> counts(n);
-    if (n != 0) space.copy_to_host(records.data(), records_.data(), records.size());
-    if (n != 0) space.copy_to_host(counts.data(), counts_.data(), n);
-    saved_contacts<S> saved;
-    for (std::size_t i = 0; i < n; ++i) {
-      saved.counts.push_back(counts[i]);
-      for (std::size_t k = 0; k < counts[i]; ++k) {
-        auto const& r = records[k * n + i];
-        saved.others.push_back(r.body);
-        saved.values.insert(saved.values.end(), r.normal, r.normal + 3);
-        saved.values.insert(saved.values.end(), r.record.numbers, r.record.numbers + width);
-      }
-    }
-    return saved;
-  }
-  /// May wait.
-  template <class Space>
-  void restore_contacts(Space& space, saved_contacts<S> const& saved) {
-    std::size_t const n = saved.counts.size();
-    std::vector<surface_record<S, List>> records(room * n);
-    std::vector<std::uint8_t> counts;
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      counts.push_back(static_cast<std::uint8_t>(saved.counts[i]));
-      for (std::size_t k = 0; k < saved.counts[i]; ++k, ++at) {
-        auto& r = records[k * n + i];
-        S const* from = saved.values.data() + at * std::size_t(saved_width);
-        r.body = saved.others[at];
-        for (int c = 0; c < 3; ++c) r.normal[c] = *from++;
-        for (int c = 0; c < width; ++c) r.record.numbers[c] = *from++;
-      }
-    }
-    if (n == 0) return;
-    space.copy_from_host(records_.data(), records.data(), records.size());
-    space.copy_from_host(counts_.data(), counts.data(), n);
-  }
-  static constexpr int width = contact_values<S, List>::width, saved_width = width + 3;
-
- private:
-  static constexpr std::size_t room = surface_memory_ref<S, List>::room;
-  buffer<surface_record<S, List>> records_;
-  buffer<std::uint8_t> counts_;
-};
-template <class S>
-class surface_memory<S, columns<>> {
- public:
-  void reserve(std::pmr::memory_resource*, std::size_t) {}
-  template <class Space>
-  void clear(Space&, std::size_t) {}
-  std::size_t bytes() const { return 0; }
-  null_ref ref(std::size_t) const { return {}; }
-};
 
 /// Kernel functor of `for_each` over particles: what a source has just made has not touched the mesh, though the one
 /// whose place it takes may have. Takes the mark off where nothing else needs it.
@@ -183,6 +94,23 @@ struct list_pressing {
   }
 };
 
+/// Memory of a device for particles that overlap more triangles than a list has room for.
+struct overlap_pool {
+  overlap_item* items;
+  std::uint32_t capacity;
+  std::uint32_t* used;     ///< in this step
+  std::uint32_t* lacking;  ///< not 0: there was too little once
+};
+
+#if !defined(__CUDA_ARCH__)
+/// Memory of a thread of the host, until it asks again.
+inline overlap_item* overlap_items_of_thread(std::size_t n) {
+  static thread_local std::vector<overlap_item> items;
+  if (items.size() < n) items.resize(n);
+  return items.data();
+}
+#endif
+
 /// Kernel functor of `for_each` over as many as there are particles: those on the list press on the mesh.
 template <class S, class Effects, class Triangles, class Memory>
 struct press_on_mesh {
@@ -196,6 +124,7 @@ struct press_on_mesh {
   Triangles triangles;
   Memory memory;
   pressing_list pressing;
+  overlap_pool pool;
   S dt;
   meeting what;
 
@@ -210,10 +139,10 @@ struct press_on_mesh {
 
   COLLIDE_HD_INLINE void press_with(std::size_t i) const {
     S const* const x = state.at(position{}) + 3 * i;
-    vec3<S> const centre(x[0], x[1], x[2]);
+    sphere<S> const shape{{x[0], x[1], x[2]}, state.radius_at(i)};
     Triangles const open = triangles.without_overflown_grids();
-    overlap_list near;
-    find(open, sphere<S>{centre, reach_of<Effects>(state.radius_at(i))}, near);
+    overlap_list near(tolerance_of(shape));
+    find(open, shape, near);
     int before = 0;
     if constexpr (has_memory) before = memory.counts[i];
     if (near.size != 0) return press(open, i, near, before);
@@ -222,7 +151,39 @@ struct press_on_mesh {
     }
   }
 
+  /// Points of the surface that are so near to each other are one.
+  static COLLIDE_HD_INLINE double tolerance_of(sphere<S> const& shape) {
+    double const rounding = 4 * static_cast<double>(std::numeric_limits<S>::epsilon());
+    return 1e-6 * static_cast<double>(shape.radius) + rounding * static_cast<double>(max_norm(shape.centre));
+  }
+
+  /// Lists the triangles that a sphere overlaps, and finds its contacts among them.
   COLLIDE_HD void find(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
+    sphere<S> const wider{shape.centre, reach_of<Effects>(shape.radius)};
+    list_overlaps(open, wider, near);
+    if (near.is_full()) {
+      if (overlap_item* const items = items_for(near.added)) {
+        near.use(items);
+        list_overlaps(open, wider, near);
+        near.sort();
+      }
+    }
+    near.find_contacts(static_cast<double>(shape.radius) * (1 + Effects::farthest_saddle),
+                       [&](overlap_item const& item) { return corners_of(open, shape, item); });
+  }
+
+  COLLIDE_HD overlap_item* items_for(std::uint32_t n) const {
+#if defined(__CUDA_ARCH__)
+    std::uint32_t const first = fetch_add(pool.used, n);
+    if (first < pool.capacity && n <= pool.capacity - first) return pool.items + first;
+    store_relaxed(pool.lacking, 1u);
+    return nullptr;
+#else
+    return overlap_items_of_thread(n);
+#endif
+  }
+
+  COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
     auto cursor = open.begin(shape);
     candidate_range range{};
     while (next(open, shape, cursor, range)) {
@@ -255,59 +216,63 @@ struct press_on_mesh {
     // of triangles that are near in their boxes only, such as thin ones that meet in a point, there may be very many
     if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) return;
     nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
-    if (n.distance < static_cast<double>(seen.radius)) near.add({n.distance, triangle, frame, n.kind, n.index});
+    if (!(n.distance < static_cast<double>(seen.radius))) return;
+    vec3<double> const nearest = in_world(open, frame, scaled(n.normal, -n.distance));
+    near.add({nearest, n.distance, triangle, static_cast<std::uint8_t>(frame), n.kind, false, false, 0, 0, 0, 0, 0});
+  }
+
+  /// A triangle relative to the centre of a sphere, along the axes of the world.
+  static COLLIDE_HD_INLINE local_triangle<double> corners_of(Triangles const& open, sphere<S> const& shape,
+                                                             overlap_item const& item) {
+    local_triangle<double> t = to_local<double>(open.mesh[item.triangle], seen_from(open, item.frame, shape));
+    if constexpr (has_moving_mesh<Triangles>) {
+      if (item.frame != 0) {
+        auto const& now = open.mesh.frames[item.frame].now;
+        t.a = now.rotated(t.a), t.b = now.rotated(t.b), t.c = now.rotated(t.c);
+      }
+    }
+    return t;
   }
 
   COLLIDE_HD void press(Triangles const& open, std::size_t i, overlap_list const& near, int before) const {
     integrated p;
     state.load(p, i);
     integrated const self = p;
-    vec3<S> normals[overlap_list::room] = {};
-    id bodies[overlap_list::room] = {};
+    vec3<S> normals[most];
+    id bodies[most];
     values_type values[most] = {};
-    bool kept[most] = {};
     kicks_by_mesh<S, Effects> kicks;
     S const elapsed = what == meeting::in_step || before != 0 ? dt : S(0);
-    int const size = for_each_contact(open, i, self, near, before, normals, bodies,
-                                      [&](int n, mesh_overlap<S> const& o, values_type& own) {
-                                        bool const goes_on = meet(p, self, o, own, elapsed, kicks);
-                                        if (n < most) values[n] = own, kept[n] = goes_on;
-                                      });
+    int kept = 0;
+    for_each_contact(open, i, self, near, before, [&](mesh_overlap<S> const& o, values_type& own) {
+      if (!meet(p, self, o, own, elapsed, kicks) || kept == most) return;
+      normals[kept] = o.normal;
+      bodies[kept] = o.body;
+      values[kept++] = own;
+    });
     if constexpr (has_memory) {
-      if (what == meeting::in_step) keep(i, size, normals, bodies, values, kept);
+      if (what == meeting::in_step) keep(i, kept, normals, bodies, values);
     }
     kicks.store(state, i);
     store(i, p, self);
   }
 
-  /// f(n, overlap, what it remembers) for each contact n. Returns how many there are.
+  /// f(overlap, what it remembers) for each contact, the nearest first.
   template <class Seen, class F>
-  COLLIDE_HD_INLINE int for_each_contact(Triangles const& open, [[maybe_unused]] std::size_t i, Seen const& self,
-                                         overlap_list const& near, [[maybe_unused]] int before, vec3<S>* normals,
-                                         id* bodies, F const& f) const {
-    int size = 0;
+  COLLIDE_HD_INLINE void for_each_contact(Triangles const& open, [[maybe_unused]] std::size_t i, Seen const& self,
+                                          overlap_list const& near, [[maybe_unused]] int before, F const& f) const {
     [[maybe_unused]] unsigned used = 0;
     COLLIDE_NO_UNROLL
-    for (int k = 0; k < near.size; ++k) {
-      overlap_list::item const& item = near.items[k];
-      if (!near.is_contact(k, [&](int n) { return open.mesh[near.items[n].triangle]; })) continue;
-      mesh_overlap<S> const o = overlap_of(open, self, item);
-      bool merged = false;
-      for (int n = 0; n < size; ++n)
-        merged = merged || (bodies[n] == o.body && dot(normals[n], o.normal) > S(1 - same_normal));
-      if (merged) continue;
+    for (std::uint32_t k = 0; k < near.size; ++k) {
+      if (!near[k].is_minimum || near.is_hidden(k)) continue;
+      mesh_overlap<S> const o = overlap_of(open, self, near, k);
       values_type own;
       bool is_known = false;
       if constexpr (has_memory) is_known = remember(i, o, before, used, own);
       if (Effects::farther > 0 && !is_known && !(o.overlap > 0)) continue;
-      normals[size] = o.normal;
-      bodies[size] = o.body;
-      f(size++, o, own);
+      f(o, own);
     }
-    return size;
   }
-
-  static constexpr double same_normal = 5e-7;  ///< 1 - cosine of the angle up to which contacts of a body are one
 
   /// Calls the effects, and tells them what the mesh has given.
   COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values, S elapsed,
@@ -337,57 +302,66 @@ struct press_on_mesh {
   }
 
   template <class Seen>
-  COLLIDE_HD_INLINE mesh_overlap<S> overlap_of(Triangles const& open, Seen const& self,
-                                               overlap_list::item const& item) const {
+  COLLIDE_HD_INLINE mesh_overlap<S> overlap_of(Triangles const& open, Seen const& self, overlap_list const& near,
+                                               std::uint32_t k) const {
+    overlap_item const& item = near[k];
     sphere<S> const shape{self[position{}], self.the_radius};
     nearest_of_triangle const n = nearest_to(open.mesh[item.triangle], seen_from(open, item.frame, shape).centre);
-    vec3<double> normal = n.normal, still(0, 0, 0);
-    vec3<double> surface = still;
+    vec3<double> const normal = in_world(open, item.frame, n.normal);
+    vec3<double> surface(0, 0, 0);
     if constexpr (has_moving_mesh<Triangles>) {
       auto const& f = open.mesh.frames[item.frame];
-      vec3<double> const centre = self[position{}].template cast<double>();
-      if (item.frame != 0) normal = f.now.rotated(normal);
-      vec3<double> const point = centre - scaled(normal, n.distance);
+      vec3<double> const point = self[position{}].template cast<double>() - scaled(normal, n.distance);
       if (item.frame != 0) {
         surface = velocity_at(f.moving, f.now, point) + f.conveyor_velocity;
       } else if (open.mesh.vertex_velocities != nullptr) {
         surface = open.mesh.velocity_of(item.triangle, rounded_to<S>(point));
       }
     }
-    S const overlap = static_cast<S>(static_cast<double>(shape.radius) - n.distance);
-    return {rounded_to<S>(normal), overlap, rounded_to<S>(surface), item.triangle, body_of_frame(item.frame)};
+    double const radius = static_cast<double>(shape.radius);
+    mesh_overlap<S> o{rounded_to<S>(normal), static_cast<S>(radius - n.distance), rounded_to<S>(surface),
+                      item.triangle,         body_of_frame(item.frame),           rounded_to<S>(normal),
+                      mesh_overlap<S>::apart};
+    if (item.has_saddle) {
+      vec3<double> const p = near.saddle_of(item, [&](overlap_item const& of) { return corners_of(open, shape, of); });
+      double const distance = sqrt_rn(dot(p, p));
+      o.saddle_overlap = static_cast<S>(radius - max(distance, n.distance));
+      if (distance > n.distance) o.saddle_normal = rounded_to<S>(scaled(p, -div_rn(1.0, distance)));
+    }
+    return o;
   }
 
-  /// Finds what a contact remembers among what the particle's contacts were before; false if it is new.
+  /// Finds what a contact remembers among what the particle's contacts were before, that of the same body first; false
+  /// if it is new. One that appears in a surface that is touched already begins with what is remembered there.
   COLLIDE_HD_INLINE bool remember(std::size_t i, mesh_overlap<S> const& o, int before, unsigned& used,
                                   values_type& values) const {
-    int best = -1;
-    S best_cosine = S(0.5);
+    int best = -1, shared = -1;
+    S best_match = S(0.5), shared_match = S(0.5);
     COLLIDE_NO_UNROLL
     for (int k = 0; k < before; ++k) {
       auto const& r = memory.records[std::size_t(k) * memory.capacity + i];
-      if ((used >> k & 1) != 0 || r.body != o.body) continue;
       S const cosine = dot(vec3<S>(r.normal[0], r.normal[1], r.normal[2]), o.normal);
-      if (cosine > best_cosine) best_cosine = cosine, best = k;
+      S const match = r.body == o.body ? cosine + S(1e-3) : cosine;
+      if (match > shared_match) shared_match = match, shared = k;
+      if ((used >> k & 1) == 0 && match > best_match) best_match = match, best = k;
     }
+    if (best < 0 && o.has_saddle()) best = shared;
     if (best < 0) return false;
     used |= 1u << best;
     values = memory.records[std::size_t(best) * memory.capacity + i].record.values();
     return true;
   }
 
-  COLLIDE_HD_INLINE void keep(std::size_t i, int size, vec3<S> const* normals, id const* bodies,
-                              values_type const (&values)[most], bool const (&kept)[most]) const {
-    int n = 0;
+  COLLIDE_HD_INLINE void keep(std::size_t i, int kept, vec3<S> const* normals, id const* bodies,
+                              values_type const* values) const {
     COLLIDE_NO_UNROLL
-    for (int k = 0; k < size && k < most; ++k) {
-      if (!kept[k]) continue;
-      auto& r = memory.records[std::size_t(n++) * memory.capacity + i];
+    for (int k = 0; k < kept; ++k) {
+      auto& r = memory.records[std::size_t(k) * memory.capacity + i];
       r.record.set(values[k]);
       for (int c = 0; c < 3; ++c) r.normal[c] = normals[k][c];
       r.body = bodies[k];
     }
-    memory.counts[i] = static_cast<std::uint8_t>(n);
+    memory.counts[i] = static_cast<std::uint8_t>(kept);
   }
 
   COLLIDE_HD_INLINE void store(std::size_t i, integrated& p, integrated const& self) const {
@@ -403,6 +377,14 @@ struct press_on_mesh {
     }
   }
 
+  /// A direction in a body's frame, as it is in the world.
+  static COLLIDE_HD_INLINE vec3<double> in_world(Triangles const& open, int frame, vec3<double> const& x) {
+    if constexpr (has_moving_mesh<Triangles>) {
+      if (frame != 0) return open.mesh.frames[frame].now.rotated(x);
+    }
+    (void)open, (void)frame;
+    return x;
+  }
   static COLLIDE_HD_INLINE sphere<S> seen_from(Triangles const& open, int frame, sphere<S> const& s) {
     if constexpr (has_moving_mesh<Triangles>) {
       return open.mesh.seen_from(frame, s, 1);
@@ -434,16 +416,15 @@ struct sum_over_mesh_contacts : press_on_mesh<S, Effects, Triangles, Memory> {
     Triangles const open = this->triangles.without_overflown_grids();
     particle<S, typename Effects::overlap_reads> self;
     this->state.load(self, i);
-    sphere<S> const shape{self[position{}], reach_of<Effects>(self.the_radius)};
-    overlap_list near;
-    if (is_finite(shape.centre) && !open.empty(shape)) this->find(open, shape, near);
+    sphere<S> const shape{self[position{}], self.the_radius};
+    overlap_list near(this->tolerance_of(shape));
+    if (is_finite(shape.centre) && !open.empty(sphere<S>{shape.centre, reach_of<Effects>(shape.radius)}))
+      this->find(open, shape, near);
     int before = 0;
     if constexpr (Effects::remembered::size != 0) before = this->memory.counts[i];
-    vec3<S> normals[overlap_list::room] = {};
-    id bodies[overlap_list::room] = {};
     Sum sum{};
-    this->for_each_contact(open, i, self, near, before, normals, bodies,
-                           [&](int, mesh_overlap<S> const& o, auto& values) { sum += f(self, o, values); });
+    this->for_each_contact(open, i, self, near, before,
+                           [&](mesh_overlap<S> const& o, auto& values) { sum += f(self, o, values); });
     found[i] = sum;
   }
 };

@@ -2,24 +2,42 @@
 /// Cohesion: forces that pull grains together.
 #pragma once
 
+#include <limits>
+
 #include <collide/effects/granular/law.hpp>
 
 namespace collide {
 
 /// A pull of `cohesion` times the area in which two spheres overlap, 2 pi overlap 2 R*: the simplified JKR model of
-/// LIGGGHTS, second form.
+/// LIGGGHTS, second form (`sjkr2`). Friction has the limits that it has without the pull.
 struct sjkr {
+  double wall_factor = 0.5;  ///< of 4 pi R overlap at walls, not negative; LIGGGHTS: 0.5
+
+  void check_parameters() const {
+    detail::check_parameter(detail::is_amount(wall_factor), "sjkr: wall_factor is not negative, and finite");
+  }
+
   template <class S, class Memory>
   COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
                               Memory const&) const {
-    n.elastic -= S(m.cohesion) * S(12.566370614359172) * p.radius * detail::max(p.overlap, S(0));
+    S const factor = p.is_wall ? S(12.566370614359172 * wall_factor) : S(12.566370614359172);
+    S const pull = S(m.cohesion) * factor * p.radius * detail::max(p.overlap, S(0));
+    n.elastic -= pull;
+    n.pull_off = pull / 2;
   }
 };
 
 /// Hertz' force less a constant pull, 4 pi gamma R*, of hard grains: B. V. Derjaguin, V. M. Muller and Y. P. Toporov,
 /// Journal of Colloid and Interface Science 53, 1975.
 struct dmt {
-  static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
+  static constexpr bool needs_hertz = true;        ///< the normal law must be `hertz`
+  static constexpr double farthest_saddle = 1e-3;  ///< from a sphere, in its radii, so that a shallow fold is a plane
+
+  /// The least overlap that holds.
+  template <class S>
+  COLLIDE_HD_INLINE S least_overlap(granular_pair<S> const&, detail::contact_material const&) const {
+    return std::numeric_limits<S>::min();
+  }
 
   template <class S, class Memory>
   COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
@@ -32,15 +50,18 @@ struct dmt {
 /// Soft grains that stick: K. L. Johnson, K. Kendall and A. D. Roberts, Proceedings of the Royal Society A 324, 1971.
 /// With x^2 = a, the overlap is x^4 / R* - 2 x sqrt(pi gamma / E*), and the force 4 E* a^3 / (3 R*) - 4 sqrt(pi gamma
 /// E* a^3). They hold each other by up to 3 pi gamma R*, also a little apart, once they have touched: up to 1.19 R* (pi
-/// gamma / (E* R*))^(2/3). Farther apart than a twentieth of its radius a sphere loses a wall.
+/// gamma / (E* R*))^(2/3), where they jump apart if they are moved (fixed grips), as of C. Thornton and Z. Ning, Powder
+/// Technology 99, 1998. LAMMPS parts them where the pull is largest, 3 pi gamma R*, at about half that distance, so
+/// that slow impacts stick less there. Farther apart than a twentieth of its radius a sphere loses a wall.
 struct jkr {
-  using remembers = contact_columns<contact_radius>;
-  static constexpr double farther = 0.05;    ///< than its radius a sphere sees the mesh, in radii
-  static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
+  using remembers = contact_columns<contact_radius>;  ///< so that a contact goes on where the two are apart
+  static constexpr double farther = 0.05;             ///< than its radius a sphere sees the mesh, in radii
+  static constexpr double farthest_saddle = farther + dmt::farthest_saddle;  ///< from a sphere, in its radii
+  static constexpr bool needs_hertz = true;                                  ///< the normal law must be `hertz`
 
   template <class S, class Memory>
   COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
-                              Memory const& memory) const {
+                              Memory const&) const {
     S const gamma = S(m.cohesion), young = S(m.young);
     if (!(gamma > 0)) return;
     S const k = detail::sqrt_rn(S(3.141592653589793) * gamma / young);
@@ -55,7 +76,17 @@ struct jkr {
     n.elastic = S(4.0 / 3) * young * cube / p.radius - 4 * k * young * detail::sqrt_rn(cube);
     n.pull_off = S(9.42477796076938) * gamma * p.radius;
     n.goes_on = true;
-    memory[contact_radius{}] = a;
+  }
+
+  /// The least overlap that holds: -3/2 k x with x^3 = k R* / 2 and k^2 = pi gamma / E*, less what rounding takes.
+  template <class S>
+  COLLIDE_HD_INLINE S least_overlap(granular_pair<S> const& p, detail::contact_material const& m) const {
+    S const k = detail::sqrt_rn(S(3.141592653589793) * S(m.cohesion) / S(m.young)), cube = k * p.radius / 2;
+    if (!(cube > 0)) return 0;
+    S x = detail::max(detail::sqrt_rn(p.radius), k);  // above the root, to which Newton's method descends
+    COLLIDE_NO_UNROLL
+    for (S next; (next = (2 * x + cube / (x * x)) / 3) < x;) x = next;
+    return S(-1.5) * k * x * (1 - 16 * std::numeric_limits<S>::epsilon());
   }
 
  private:

@@ -33,20 +33,27 @@ struct granular_pair {
   S mass;               ///< effective: 1/m* = 1/m_i + 1/m_j; of a wall m
   S rolling_inertia;    ///< 1.4 (m_i R_i^2 m_j R_j^2) / (m_i R_i^2 + m_j R_j^2); of a wall 1.4 m R^2
   S own_radius;         ///< of the particle
+  bool is_wall = false;  ///< the other is a wall
 };
 
 /// The force along the normal.
 template <class S>
 struct normal_force {
-  S elastic;             ///< what is not of damping; below 0: it pulls
-  S stiffness;           ///< change of the elastic force with the overlap
-  S contact_radius;      ///< of the area of contact
-  S damping = 0;         ///< force per closing speed: damping_factor beta sqrt(stiffness m*), after cohesion
-  S pull_off = 0;        ///< the largest pull of cohesion, by which friction has a greater limit
+  S elastic;         ///< what is not of damping; below 0: it pulls
+  S stiffness;       ///< change of the elastic force with the overlap
+  S contact_radius;  ///< of the area of contact
+  S damping = 0;     ///< force per closing speed: damping_factor beta sqrt(stiffness m*), after cohesion
+  S pull_off = 0;    ///< the largest pull of cohesion (`sjkr`: half its pull), twice of which friction does not feel
+  S secant = 0;      ///< elastic force over overlap, as of the normal law without cohesion; of `jkr` as of its area
   bool goes_on = false;  ///< the two hold each other, though apart
 
   /// The force along the normal, with damping.
   COLLIDE_HD_INLINE S total(granular_pair<S> const& p) const { return elastic + damping * p.closing; }
+  /// The force by which sliding and rolling friction are limited: |total + 2 pull_off|.
+  COLLIDE_HD_INLINE S holding(granular_pair<S> const& p) const {
+    S const force = total(p) + 2 * pull_off;
+    return force < 0 ? -force : force;
+  }
 };
 
 /// The radius of the area of contact when the contact was looked at before.
@@ -82,8 +89,7 @@ COLLIDE_HD_INLINE S length_of(vec3<S> const& v) {
 /// Coulomb's limit of friction.
 template <class S>
 COLLIDE_HD_INLINE S friction_limit(granular_pair<S> const& p, contact_material const& m, normal_force<S> const& n) {
-  S const normal = n.total(p) + 2 * n.pull_off;
-  return S(m.friction) * (normal < 0 ? -normal : normal);
+  return S(m.friction) * n.holding(p);
 }
 
 }  // namespace detail

@@ -92,8 +92,9 @@ struct mindlin {
   }
 };
 
-/// `mindlin`, whose spring also becomes shorter where the area of contact does, so that a cyclic load makes no energy:
-/// C. Thornton, S. J. Cummins and P. W. Cleary, Powder Technology 233, 2013, equation 18b.
+/// `mindlin`, whose spring becomes shorter where the area of contact does: LAMMPS' `mindlin_rescale`. Where the area
+/// grows the spring keeps its length, so that the force grows: a cycle of load and slip may make energy, as of
+/// `mindlin`.
 struct mindlin_rescale : mindlin {
   using remembers = contact_columns<tangential_displacement, contact_radius>;
 
@@ -103,6 +104,32 @@ struct mindlin_rescale : mindlin {
     S& before = memory[contact_radius{}];
     if (n.contact_radius < before) memory[tangential_displacement{}] *= n.contact_radius / before;
     before = n.contact_radius;
+    return mindlin::force(p, m, n, memory);
+  }
+};
+
+/// `mindlin`, whose force grows by increments -8 G* a slip dt: a growing area of contact leaves it as it is, a
+/// shrinking one makes it smaller by as much: C. Thornton, S. J. Cummins and P. W. Cleary, Powder Technology 233, 2013,
+/// equation 18; LAMMPS' `mindlin_rescale/force`. Of all springs here only this one makes no energy in any cycle of load
+/// and slip, if `rescales` and with `slip_test::spring`. It is remembered as a length, force over stiffness.
+struct mindlin_force : mindlin {
+  using remembers = contact_columns<tangential_displacement, contact_radius>;
+
+  bool rescales = true;  ///< false: a shrinking area leaves the force as it is, too, and may make energy: LAMMPS'
+                         ///< `mindlin/force`
+
+  template <class F>
+  void for_each_part(F const& f) {
+    mindlin::for_each_part(f);
+    f(rescales);
+  }
+
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const& p, detail::contact_material const& m,
+                                  normal_force<S> const& n, Memory const& memory) const {
+    S const a = n.contact_radius, before = memory[contact_radius{}];
+    if (a > before || (a > 0 && !rescales)) memory[tangential_displacement{}] *= before / a;
+    memory[contact_radius{}] = a;
     return mindlin::force(p, m, n, memory);
   }
 };

@@ -13,20 +13,40 @@ struct rolling_torque {
 };
 
 /// A torque of constant size against what turns, model A of J. Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi, Powder
-/// Technology 206, 2011: rolling friction times R* times the elastic force. What is nearly at rest trembles.
+/// Technology 206, 2011: rolling friction times R* times the elastic force, without what cohesion takes from it. What
+/// is nearly at rest trembles. Twist, which is turning about the normal, does not change it; LIGGGHTS' `cdt` divides by
+/// the rate of rolling and twist together, so that what twists rolls more easily there.
 struct constant_torque {
   template <class S, class Memory>
   COLLIDE_HD_INLINE vec3<S> torque(granular_pair<S> const& p, detail::contact_material const& m,
                                    normal_force<S> const& n, Memory const&) const {
     S const rate = detail::length_of(p.turning);
     if (!(rate > 0)) return {S(0), S(0), S(0)};
-    return p.turning * (-S(m.rolling_friction) * p.radius * detail::max(n.elastic, S(0)) / rate);
+    S const force = detail::max(n.elastic + 2 * n.pull_off, S(0));
+    return p.turning * (-S(m.rolling_friction) * p.radius * force / rate);
   }
 };
 
+namespace detail {
+
+/// Turns a spring that resists rolling into the plane of contact, winds it up, and cuts it to its limit, rolling
+/// friction times R* times the normal force. True if it was longer.
+template <class S>
+COLLIDE_HD_INLINE bool wind_up(vec3<S>& spring, granular_pair<S> const& p, contact_material const& m,
+                               normal_force<S> const& n, S stiffness, S elapsed) {
+  spring -= p.normal * dot(spring, p.normal);
+  spring -= p.turning * (stiffness * elapsed);
+  S const limit = S(m.rolling_friction) * p.radius * n.holding(p), length = length_of(spring);
+  if (!(length > limit)) return false;
+  spring = spring * (limit / length);
+  return true;
+}
+
+}  // namespace detail
+
 /// A spring and dashpot against rolling, up to rolling friction times R* times the normal force: EPSD, model C of J.
-/// Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi, Powder Technology 206, 2011. The stiffness is 2.25 k_n (mu_r R*)^2, with
-/// k_n that of the secant. So piles stand still.
+/// Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi, Powder Technology 206, 2011; `epsd` of LIGGGHTS. The stiffness is 2.25
+/// k_n (mu_r R*)^2, with k_n the secant of the normal law. So piles stand still.
 struct epsd {
   using remembers = contact_columns<rolling_torque>;
 
@@ -39,18 +59,26 @@ struct epsd {
   template <class S, class Memory>
   COLLIDE_HD_INLINE vec3<S> torque(granular_pair<S> const& p, detail::contact_material const& m,
                                    normal_force<S> const& n, Memory const& memory) const {
-    S const arm = S(m.rolling_friction) * p.radius, normal = n.total(p);
-    S const secant = p.overlap > 0 ? detail::max(n.elastic, S(0)) / p.overlap : S(0);
-    S const stiffness = S(2.25) * secant * arm * arm, limit = arm * (normal < 0 ? -normal : normal);
+    S const arm = S(m.rolling_friction) * p.radius;
+    S const stiffness = S(2.25) * n.secant * arm * arm;
     vec3<S>& spring = memory[rolling_torque{}];
-    spring -= p.normal * detail::dot(spring, p.normal);
-    spring -= p.turning * (stiffness * memory.elapsed());
-    S const length = detail::length_of(spring);
-    if (length > limit) {
-      spring = spring * (limit / length);
-      return spring;
-    }
+    if (detail::wind_up(spring, p, m, n, stiffness, memory.elapsed())) return spring;
     return spring - p.turning * (S(2 * damping) * detail::sqrt_rn(p.rolling_inertia * stiffness));
+  }
+};
+
+/// `epsd` without the dashpot, and of stiffness k_t R*^2, with k_t = 8 G* a that of `mindlin`: EPSD2 of LIGGGHTS, after
+/// K. Iwashita and M. Oda, Journal of Engineering Mechanics 124, 1998.
+struct epsd2 {
+  using remembers = contact_columns<rolling_torque>;
+  static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
+
+  template <class S, class Memory>
+  COLLIDE_HD_INLINE vec3<S> torque(granular_pair<S> const& p, detail::contact_material const& m,
+                                   normal_force<S> const& n, Memory const& memory) const {
+    vec3<S>& spring = memory[rolling_torque{}];
+    detail::wind_up(spring, p, m, n, S(8 * m.shear) * n.contact_radius * p.radius * p.radius, memory.elapsed());
+    return spring;
   }
 };
 
