@@ -561,7 +561,7 @@ template <class NarrowPhase, class Space>
 void check_absorb(Space const& space) {
   using simulation =
       collide::simulation<meets_mesh<Space, NarrowPhase>, gravity, collide::absorb, collide::absorbing_box>;
-  static_assert(simulation::bytes_per_particle == 26, "two bytes more");
+  static_assert(simulation::bytes_per_particle == 25, "a byte more");
   world<float> w;
   add_floor(w, 4, 8);
   w.radius = 0.1f;
