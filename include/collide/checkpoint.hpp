@@ -39,7 +39,9 @@ struct saved_numbers {
   std::uint64_t triangles = 0, places = 0, placed = 0;
   S common_radius = 0, smallest_radius = 0, largest_radius = 0;
   double time = 0, clock[clock_size] = {};
-  std::uint8_t reverse_order = 0, knows_pair_forces = 0, bodies_are_placed = 0;
+  std::uint8_t reverse_order = 0, next_meeting = 0, bodies_are_placed = 0;
+
+  meeting meeting_between_steps() const { return static_cast<meeting>(min(int{next_meeting}, int(meeting::of_woken))); }
 
   /// Writes or reads all of them.
   template <class Archive>
@@ -57,7 +59,7 @@ struct saved_numbers {
     if (HasSource) archive.value("those that overlapped others", clock[clock_overlapping]);
     if (HasSource) archive.value("those that were not born", clock[clock_not_born]);
     archive.value("reverse order", reverse_order);
-    archive.value("pair forces are known", knows_pair_forces);
+    archive.value("next meeting", next_meeting);
     archive.value("bodies are placed", bodies_are_placed);
   }
 };
@@ -84,7 +86,7 @@ class checkpoint {
                          from.time_,
                          {},
                          from.reverse_order_,
-                         from.knows_pair_forces_,
+                         static_cast<std::uint8_t>(from.next_meeting_),
                          from.bodies_.are_placed()};
     if constexpr (simulated::has_begin_step) from.space_.copy_to_host(numbers.clock, from.state_.time, clock_size);
     begin(to, numbers, from.effects_);
@@ -187,7 +189,7 @@ class checkpoint {
     to.state_ = state;
     to.time_ = numbers_.time;
     to.reverse_order_ = numbers_.reverse_order != 0;
-    to.knows_pair_forces_ = numbers_.knows_pair_forces != 0;
+    to.next_meeting_ = numbers_.meeting_between_steps();
     to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius, S(0)};
     if constexpr (simulated::effects_type::any_pair_contact) to.neighbours_.clear(space, places, to.radii_);
     to.is_set_ = true;

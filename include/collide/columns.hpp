@@ -21,6 +21,12 @@ namespace detail {
 
 /// In `slow_steps` from here on: the particle touches, by way of so many others, what moves.
 inline constexpr int carried_by_moving = 128;
+/// In `adhered`: the particle is free, and came too fast to stick.
+inline constexpr std::uint8_t came_too_fast = 255;
+COLLIDE_HD_INLINE bool is_stuck(std::uint8_t adhered) { return adhered != 0 && adhered != came_too_fast; }
+
+/// In `in_contact`: the particle has been woken between steps, and forces on it are not known.
+inline constexpr std::uint8_t just_woken = 2;
 
 /// For how many steps a particle has been slow.
 COLLIDE_HD_INLINE int steps_slow(int slow_steps) { return slow_steps < carried_by_moving ? slow_steps : 0; }
@@ -32,6 +38,19 @@ COLLIDE_HD_INLINE int steps_in_mean(int slow_steps) {
   while (power > slow && power > 1) power /= 2;
   return slow == 0 ? 1 : slow - power + 1;
 }
+
+}  // namespace detail
+
+namespace detail {
+
+/// `N` numbers of a column.
+template <class T, int N>
+struct several {
+  T of[N];
+  COLLIDE_HD explicit several(T all = T(0)) {
+    for (T& one : of) one = all;
+  }
+};
 
 }  // namespace detail
 
@@ -95,7 +114,15 @@ struct slow_steps {
   using value = std::uint8_t;
 };
 
-/// 1 if the particle sticks to what rests of the mesh, 2 + k if to body number k, 0 if it is free; see `adhesion`.
+/// 1 if the particle has touched something in this step: only then does it come closer to sleep. 2 if it has been woken
+/// between steps and forces on it are not known yet. See `sleep`.
+struct in_contact {
+  template <class S>
+  using value = std::uint8_t;
+};
+
+/// 1 if the particle sticks to what rests of the mesh, 2 + k if to body number k, 0 if it is free; 255 if it is free
+/// and touched the mesh too fast to stick when it last came to it. See `adhesion`.
 struct adhered {
   template <class S>
   using value = std::uint8_t;
@@ -121,6 +148,28 @@ struct pair_acceleration {
 struct pair_angular_acceleration {
   template <class S>
   using value = vec3<S>;
+};
+
+/// Accelerations by the mesh and angular accelerations, of up to four contacts, six numbers each: what they were when
+/// particles last met, for the half kick with which the next step begins. The last one has those of all others with it.
+/// Scenes have it and the next two that name `velocity_verlet`, an effect with `on_mesh_overlap` and one with
+/// `on_mesh_impulse`.
+struct mesh_kicks {
+  static constexpr int contacts = 4;  ///< of a particle
+  template <class S>
+  using value = detail::several<S, 6 * contacts>;
+};
+
+/// Triangle and body of each of `mesh_kicks`.
+struct mesh_kicks_by {
+  template <class S>
+  using value = detail::several<id, 2 * mesh_kicks::contacts>;
+};
+
+/// How many `mesh_kicks` there are.
+struct mesh_kick_count {
+  template <class S>
+  using value = std::uint8_t;
 };
 
 /// Acceleration by the mesh, on the mean over the steps in which the particle has been slow: so it is known on what a

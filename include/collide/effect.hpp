@@ -20,8 +20,8 @@
 ///   effects.
 /// - `on_mesh_impulse(particle&, mesh_impulse const&, dt)`, for all that the mesh gives to a particle: of each contact
 ///   what all effects have changed, of what `adhesion` holds or what sleeps what the mesh holds it against.
-/// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it. Only with such an effect
-///   are neighbours listed.
+/// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it, with what effects before
+///   it in the list have changed of the particle. Only with such an effect are neighbours listed.
 /// - `on_mesh_overlap(particle&, self, mesh_overlap const&, dt)`, for each point of the mesh that a particle presses
 /// on,
 ///   when particles meet: forces that grow with the overlap, in place of the impulses of `on_mesh_contact`.
@@ -43,9 +43,10 @@
 /// with `static constexpr bool asks_forces = true` has `end_step(particle&, forces, dt)` instead: `forces.change(dt)`
 /// is by how much `accelerate` of all effects changes the velocity. One that makes the mesh solid says `static
 /// constexpr bool repels = true`. One that looks at what others do between particles says `static constexpr bool
-/// follows_pair_contacts = true`: in a list it comes behind them. `on_pair_contact` is called before the other members
-/// but `begin_step`, with `velocity_verlet` when all particles have moved: `self` and `other` are as they were then.
-/// What changes is `particle`, so that both of a pair see the same.
+/// follows_pair_contacts = true`: in a list it comes behind them, and is called for contacts that they keep up apart.
+/// `on_pair_contact` is called before the other members but `begin_step`, with `velocity_verlet` when all particles
+/// have moved: `self` and `other` are as they were then. What changes is `particle`, so that both of a pair see the
+/// same.
 ///
 /// `accelerate` of every effect is called once more for each contact with the mesh, on a copy of the particle, to learn
 /// `mesh_contact::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
@@ -78,6 +79,7 @@ struct smallest_radii {
 
   double of_all = 0;                 ///< of all particles
   double of_material[numbers] = {};  ///< of those of each material, the last also of greater numbers; infinite if none
+  int largest_material = -1;         ///< the greatest number of those that particles have; -1: not known
 
   smallest_radii() = default;
   /// Nothing is known about materials: there may be particles of each.

@@ -153,6 +153,7 @@ class simulation {
   /// `error` if there are more than 64 bodies, triangles not in the mesh or in two, or a motion is not finite.
   COLLIDE_COLD void set_mesh(mesh_view<S> mesh, std::vector<body> const& bodies = {}, S const* velocities = nullptr) {
     bodies_.check(bodies, mesh.size(), velocities);
+    (detail::check_walls_of<Effect>(effects_, space_, mesh.size(), bodies.size()), ...);
     mesh_ = {};
     has_mesh_ = false;
     detail::lookup_tuning<execution_space> there(space_);
@@ -184,7 +185,7 @@ class simulation {
   /// the host for neighbours beyond the room of `reserve`. O(n) for n particles, and their contacts.
   void step(S dt) {
     check_step(dt);
-    if (!knows_pair_forces_) meet(state_, dt);
+    if (!knows_pair_forces()) meet(state_, dt);
     time_ += static_cast<double>(dt);
     begin_step(dt);
     if (state_.size == 0) return;
@@ -236,8 +237,9 @@ class simulation {
 
   /// Gives all particles a column's values, from memory of the space, in the order of the stream. Waits if that is
   /// `radius` or `material`. If it says where particles are, how they move, what they are, or which there are, all that
-  /// sleeps is woken; what adhered and does not touch the mesh any more is free. What is written by way of `data` wakes
-  /// nothing. Throws `error` if a radius is 0 where particles touch a mesh.
+  /// sleeps is woken, as by what accelerates it; what adhered and does not touch the mesh any more is free. What is
+  /// written by way of `data` wakes nothing. Throws `error` if a radius is not finite, or 0 where particles touch a
+  /// mesh.
   template <class Column>
   void assign(detail::column_element<Column, S> const* values) {
     check<Column>();
@@ -247,20 +249,21 @@ class simulation {
       S const largest = radii_.largest;  // effects may let particles grow up to it
       radii_ = detail::radius_range_of(*this);
       radii_.largest = detail::max(radii_.largest, largest);
+      check_radii("assign");
       if constexpr (effects_type::any_pair_contact) {
         if (is_set_) neighbours_.fit(space_, state_.size, radii_);
       }
       prepare_index();
     }
     if constexpr (std::is_same<Column, radius>::value || std::is_same<Column, material>::value) know_smallest();
-    constexpr bool moves = detail::contains<collide::columns<velocity, angular_velocity>, Column>;
+    constexpr bool moves = detail::contains<collide::columns<velocity, angular_velocity>, Column> ||
+                           detail::contains<typename effects_type::acceleration_reads, Column>;
     constexpr bool meets_others = detail::contains<collide::columns<position, radius, material, alive>, Column>;
     if constexpr (moves || meets_others) wake_all();
     if constexpr (meets_others) {
-      knows_pair_forces_ = !effects_type::ends_after_meeting;
+      next_meeting_ = effects_type::ends_after_meeting ? detail::meeting::of_all : detail::meeting::in_step;
       if (has_mesh_) release_adhered();
     }
-    if constexpr (std::is_same<Column, radius>::value) check_radii("assign");
   }
 
   /// Gives all particles a column's values, from a container such as std::vector or thrust::device_vector, whose memory
@@ -366,7 +369,7 @@ class simulation {
       space_.fill(state_.time, 0, detail::clock_size * sizeof(double));
     }
     time_ = 0;
-    knows_pair_forces_ = !effects_type::ends_after_meeting;
+    next_meeting_ = effects_type::ends_after_meeting ? detail::meeting::of_all : detail::meeting::in_step;
     space_.for_each(detail::padded_size(room), detail::initial(state_, particles, velocities, effects_));
     is_set_ = true;
   }
@@ -380,6 +383,9 @@ class simulation {
                         detail::forget_surfaces<effects_type, state_type>{state_, surfaces_.ref(state_.size).counts});
     }
     effects_.prepare(dt);
+    if constexpr (effects_type::keeps_mesh_kicks)
+      space_.for_each(state_.size,
+                      detail::book_first_kicks<S, effects_type>{state_, effects_, dt, mesh_.size(), bodies_.size()});
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step)
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
@@ -407,17 +413,20 @@ class simulation {
 
   /// Particles meet, among them copies of other ranks' in `with_copies`.
   void meet([[maybe_unused]] state_type const& with_copies, [[maybe_unused]] S dt) {
-    [[maybe_unused]] bool const is_first = !knows_pair_forces_;
-    knows_pair_forces_ = true;
+    [[maybe_unused]] detail::meeting const what = next_meeting_;
+    next_meeting_ = detail::meeting::in_step;
     if (state_.size == 0) return;
-    if (is_first && !bodies_.are_placed())
+    if (what != detail::meeting::in_step && !bodies_.are_placed())
       advance_bodies(0, true);  // those that the caller drives, to where they begin
+    bool const keeps_kicks = what == detail::meeting::of_woken;
     if constexpr (effects_type::any_pair_contact) {
-      if (!neighbours_.inside_is_done()) forget_pair_kicks();
-      neighbours_.renew(space_, with_copies, effects_.space());
-      settle_births(with_copies, dt);
-      neighbours_.interact(space_, with_copies, effects_, dt, is_first);
-    } else {
+      if (!keeps_kicks && !neighbours_.inside_is_done()) forget_pair_kicks();
+      if (!keeps_kicks || !effects_type::keeps_support) {
+        neighbours_.renew(space_, with_copies, effects_.space());
+        settle_births(with_copies, dt);
+        neighbours_.interact(space_, with_copies, effects_, dt, what);
+      }
+    } else if (!keeps_kicks) {
       forget_pair_kicks();
     }
     if constexpr (effects_type::overlaps) {
@@ -428,9 +437,9 @@ class simulation {
       detail::pressing_list const pressing{pressing_counts_.data(), pressing_.data()};
       clear_overlap_pool();
       space_.for_each(state_.size, detail::list_pressing<S, effects_type, mesh_type, memory_type>{
-                                       state_, effects_, triangles, memory, pressing});
+                                       state_, effects_, triangles, memory, pressing, what});
       space_.for_each(state_.size, detail::press_on_mesh<S, effects_type, mesh_type, memory_type>{
-                                       state_, effects_, triangles, memory, pressing, overlap_pool(), dt, is_first});
+                                       state_, effects_, triangles, memory, pressing, overlap_pool(), dt, what});
     }
   }
   /// Before copies are there, if lists of neighbours are not to be made anew, particles meet that need none.
@@ -481,14 +490,21 @@ class simulation {
   }
 
   /// Sleepers wake. What others do to them is known where they press on what they lie on, but not what walls do by
-  /// forces.
+  /// forces. Those that are awake know all.
   void wake_all() {
     if constexpr (detail::contains<columns, slow_steps>) {
-      if (state_.size != 0) space_.fill(data<slow_steps>(), 0, state_.size);
-      if (effects_type::overlaps || !effects_type::keeps_support)
-        knows_pair_forces_ = !effects_type::ends_after_meeting;
+      if (state_.size == 0) return;
+      constexpr bool asks_forces =
+          effects_type::ends_after_meeting && (effects_type::overlaps || !effects_type::keeps_support);
+      if constexpr (asks_forces && detail::contains<columns, in_contact>) {
+        space_.for_each(state_.size, detail::wake_between_steps<S, effects_type>{state_, effects_});
+        if (knows_pair_forces()) next_meeting_ = detail::meeting::of_woken;
+      } else {
+        space_.fill(data<slow_steps>(), 0, state_.size);
+      }
     }
   }
+  bool knows_pair_forces() const { return next_meeting_ == detail::meeting::in_step; }
 
   /// Wakes particles that sleep where a body that moves may touch them: before ranks tell each other what is awake, and
   /// before lists of neighbours copy it.
@@ -546,6 +562,8 @@ class simulation {
   COLLIDE_COLD void check_radii(char const* member) const {
     if (asks_mesh && state_.placed != 0 && radii_.smallest == 0)
       throw error(std::string("collide: simulation: ") + member + ": radii of particles that touch a mesh are above 0");
+    if (detail::contains<columns, radius> && state_.placed != 0 && !detail::is_finite(radii_.largest))
+      throw error(std::string("collide: simulation: ") + member + ": radii are finite");
   }
 
   COLLIDE_COLD void prepare() {
@@ -571,7 +589,9 @@ class simulation {
       throw error("collide: simulation: an effect of the scene touches the mesh: call set_mesh before step");
     if (!(dt > 0) || !detail::is_finite(dt))
       throw error("collide: simulation: the time dt of a step is finite and above 0");
-    ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size())), ...);
+    ((detail::check_parameters_of<Effect>(effects_), detail::check_bodies_of<Effect>(effects_, bodies_.size()),
+      detail::check_materials_of<Effect>(effects_, smallest_)),
+     ...);
     (check_box_of<Effect>(), ...);
     if constexpr (effects_type::repeats) check_sides();
     ((detail::check_time_step_of<Effect>(effects_, dt, smallest_)), ...);
@@ -630,7 +650,7 @@ class simulation {
   detail::column_buffers<S, columns> memory_;
   state_type state_{};
   bool is_set_ = false, has_mesh_ = false, reverse_order_ = false;  ///< the last one is of the next step
-  bool knows_pair_forces_ = true;                                   ///< what the next step begins with
+  detail::meeting next_meeting_ = detail::meeting::in_step;  ///< between steps, if the next begins with unknown forces
   double time_ = 0;
   buffer<double> device_time_;      ///< for effects with a member begin_step
   buffer<std::uint8_t> was_there_;  ///< `alive` when a step begins, for effects that make particles

@@ -16,6 +16,7 @@
 #include <collide/effects/friction.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
+#include <collide/effects/polydisperse.hpp>
 #include <collide/effects/sleep.hpp>
 #include <collide/effects/sphere_contact.hpp>
 #include <collide/effects/spin.hpp>
@@ -148,10 +149,40 @@ TEST_CASE("misuse: materials and laws of granular contact") {
   grains.set_mesh({});
   grains.set(spheres());
   CHECK(said_by([&] { grains.step(1e-6f); }) == "collide: materials: the pair of 0 and 1 is missing: call set_pair");
+
+  two.set_pair(0, 1, {0.5, 0.3});
+  two.set(0, {1e8, 0.2, 2000});  // pairs know it, too
+  struct {
+    int operator[](collide::material) const { return 0; }
+  } const grain;
+  two.wall_material = 1;
+  auto const& pair_of_both = two.with_wall(grain, collide::no_id, collide::no_id);
+  CHECK(pair_of_both.young == doctest::Approx(1 / (0.96e-8 + 0.91e-7)).epsilon(1e-12));
+  CHECK(pair_of_both.shear == doctest::Approx(1 / (2 * 1.2 * 1.8e-8 + 2 * 1.3 * 1.7e-7)).epsilon(1e-12));
+  CHECK(pair_of_both.friction == 0.3);
+  grains.effect<law>().made_of = two;
+  CHECK(said_by([&] { grains.step(1e-6f); }) == "");
+  grains.assign<collide::material>(std::vector<std::uint8_t>{7});
+  CHECK(said_by([&] { grains.step(1e-6f); }) == "collide: materials: a particle is of solid 7, and there are 2");
+  grains.assign<collide::material>(std::vector<std::uint8_t>{1});
+  CHECK(said_by([&] { grains.step(1e-6f); }) == "");
+  std::uint8_t const of_triangle = 200, of_body = 2;
+  grains.effect<law>().made_of.triangle_materials = &of_triangle;
+  CHECK(said_by([&] { grains.set_mesh(mesh()); }) == "collide: materials: triangle 0 is of solid 200, and there are 2");
+  two.body_materials = &of_body;
+  simulation<detector<bucket>, law, collide::moving_bodies<>> with_body(collide::host(1), law{two},
+                                                                        collide::moving_bodies<>{});
+  CHECK(said_by([&] {
+          with_body.set_mesh(mesh(), {collide::body{0, 1, {}}});
+        }) == "collide: materials: body 0 is of solid 2, and there are 2");
   simulation<detector<bucket>, collide::granular_contact<collide::hertz>> pair;
   pair.set_mesh({});
   pair.set(spheres());
   CHECK(said_by([&] { pair.step(1.0f); }).find("is longer than an effect allows") != std::string::npos);
+  for (double const wrong : {-0.1, 1.1, not_a_number}) {
+    pair.effect<collide::granular_contact<collide::hertz>>().arm_shortening = wrong;
+    CHECK(said_by([&] { pair.step(1e-6f); }) == "collide: granular_contact: arm_shortening is from 0 to 1");
+  }
 }
 
 TEST_CASE("misuse: steps that are too long for springs, radii of 0, and values that do not fit a column") {
@@ -170,6 +201,17 @@ TEST_CASE("misuse: steps that are too long for springs, radii of 0, and values t
   simulation<detector<bucket>, bounce> touches;
   CHECK(said_by([&] { touches.set(collide::spheres_xyz(centre, 1, 0.0f)); }) ==
         "collide: simulation: set: radii of particles that touch a mesh are above 0");
+
+  simulation<detector<bucket>, collide::polydisperse, gravity> sizes;
+  for (float const wrong : {float(infinity), float(-infinity), float(not_a_number)}) {
+    float const two_centres[] = {0, 0, 0, 3, 0, 0}, radii[] = {wrong, 1}, right[] = {1, 1};
+    CHECK(said_by([&] { sizes.set(collide::spheres_xyz(two_centres, 2, radii)); }) ==
+          "collide: simulation: set: radii are finite");
+    sizes.set(collide::spheres_xyz(two_centres, 2, right));
+    CHECK(said_by([&] {
+            sizes.assign<collide::radius>(std::vector<float>{1, wrong});
+          }) == "collide: simulation: assign: radii are finite");
+  }
 
   free.set(collide::spheres_xyz(centre, 1, 1.0f));
   free.assign<collide::velocity>(std::vector<float>{1, 2, 3});

@@ -8,10 +8,11 @@
 
 namespace collide {
 
-/// Adhesion, as of snow and mud: a particle that touches the mesh no faster than `capture_speed` stays where it is,
-/// until forces of more than `max_acceleration`, per unit of mass, pull it off: those of all effects, and of other
-/// particles. What sticks to a body that moves (bodies.hpp) moves with it, and is shaken off by its acceleration. Where
-/// the mesh is set again, what it no longer touches is free.
+/// Adhesion, as of snow and mud: a particle that touches the mesh no faster than `capture_speed` stays where it is. One
+/// that came faster, and rests on it then, has to leave it and come again. It stays until forces of more than
+/// `max_acceleration`, per unit of mass, pull it off: those of all effects, and of other particles. What sticks to a
+/// body that moves (bodies.hpp) moves with it, and is shaken off by its acceleration. Where the mesh is set again, what
+/// it no longer touches is free.
 struct adhesion {
   using writes = columns<position, velocity, adhered>;
   using runs_after = effects<bounce>;
@@ -34,9 +35,14 @@ struct adhesion {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_contact(Particle& p, mesh_contact<S>& t, S dt) const {
     auto& v = p[velocity{}];
+    if (!(touching_speed(t) <= S(capture_speed))) {
+      p[adhered{}] = detail::came_too_fast;
+      return;
+    }
+    if (p[adhered{}] == detail::came_too_fast && !comes(p, t, dt)) return;
     S const pressed = detail::min(detail::dot(t.force_dv, t.normal), S(0)), most = S(max_acceleration) * dt;
     vec3<S> const pull = t.force_dv - t.normal * pressed;
-    if (!(touching_speed(t) <= S(capture_speed) && detail::dot(pull, pull) <= most * most)) return;
+    if (!(detail::dot(pull, pull) <= most * most)) return;
     if (t.is_resting) p[position{}] -= v * t.elapsed;  // it was held all the time
     v = vec3<S>(S(0), S(0), S(0));
     if (t.depth > 0) p[position{}] += t.normal * t.depth;
@@ -51,7 +57,15 @@ struct adhesion {
     S const force = detail::dot(t.force_dv, t.force_dv), with = detail::dot(t.velocity_before, t.force_dv);
     S const part = with > 0 ? detail::min(with / force, S(1)) : S(0);
     vec3<S> const own = t.velocity_before - t.force_dv * part;
-    return detail::sqrt_rn(detail::dot(own, own));
+    S const approach = t.approach_speed + detail::min(detail::dot(t.force_dv, t.normal), S(0));
+    return detail::max(detail::sqrt_rn(detail::dot(own, own)), approach);
+  }
+  /// True if a particle was off the surface when the step began.
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE static bool comes(Particle const& p, mesh_contact<S> const& t, S dt) {
+    S const depth = t.depth + detail::dot(t.normal, vec3<S>(p[position{}] - t.start));
+    S const way = -detail::dot(t.velocity_before, t.normal) * (dt - t.remaining - t.elapsed);
+    return way - depth > detail::contact_tolerance<S> * p.radius() + detail::rounding_at(t.start);
   }
 };
 

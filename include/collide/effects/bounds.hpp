@@ -17,6 +17,7 @@ namespace collide {
 struct box_walls {
   using optional_reads = columns<radius>;
   using writes = columns<position, velocity>;
+  using optional_writes = columns<in_contact>;
   static constexpr bool asks_forces = true;
 
   static constexpr double none = std::numeric_limits<double>::infinity();  ///< a bound that is no wall
@@ -38,6 +39,9 @@ struct box_walls {
     for (int k = 0; k < 3; ++k) {
       S& x = p[position{}][k];
       S const low = S(lower[k]) + p.radius(), high = S(upper[k]) - p.radius();
+      if constexpr (Particle::template has<in_contact>) {
+        if (x < low || x > high) p[in_contact{}] = 1;
+      }
       if (x < low) {
         x = detail::min(reflect(p, k, S(1), low - x, forces, dt) + low, detail::max(low, high));
       } else if (x > high) {

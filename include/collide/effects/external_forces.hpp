@@ -18,7 +18,7 @@ struct external_force {
 /// Accelerates each particle by its `external_force` over its mass. The force is the same all through a step; between
 /// steps a solver writes it: `assign<external_force>(values)`, or a kernel on the space's stream to
 /// `data<external_force>()`. Like `gravity` it is in `mesh_forces` and `reaction` where the mesh holds against it. It
-/// wakes nothing that sleeps: `effect<external_forces<>>()`, not const, does. What has a radius of 0 has no mass, and
+/// wakes what sleeps if it comes by `assign`, not if by `data`. What has a radius of 0 has no mass, and
 /// no force moves it. 3 scalars a particle.
 ///
 /// \tparam Materials  whose masses: `one_density`, or that of `granular_contact`

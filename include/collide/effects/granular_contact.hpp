@@ -84,6 +84,8 @@ struct granular_contact {
 
   void check_parameters() const {
     made_of.check_parameters();
+    detail::check_parameter(arm_shortening >= 0 && arm_shortening <= 1,
+                            "granular_contact: arm_shortening is from 0 to 1");
     detail::check_parameter(slip_shortening >= 0 && slip_shortening <= 1,
                             "granular_contact: slip_shortening is from 0 to 1");
     detail::check_part(normal);

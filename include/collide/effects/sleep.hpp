@@ -7,18 +7,19 @@
 
 namespace collide {
 
-/// A particle that has been slower than `speed` for `steps` steps (at most 127) sleeps: it is left out until another
-/// particle that is awake and faster than that overlaps it, or the mesh changes, and costs the byte that says so.
-/// Choose `steps` such that a particle at the top of its flight is not slow for so long: more than 2 speed / (g dt).
-/// `speed` must be below that at which particles sink in a medium, or they stop there. Name it behind `box_walls`,
-/// which stop particles only at the end of a step. One that vanishes in a sink while it is slow wakes nothing.
+/// A particle that has been slower than `speed`, and touched something, in `steps` steps (at most 127), and not been
+/// faster in between, sleeps: it is left out until another particle that is awake and faster than that overlaps it, or
+/// the mesh changes, and costs the byte that says so. What touches nothing does not fall asleep, however slow it is: a
+/// step in which nothing is touched does not count. The mesh, other particles and `box_walls` are touched; an effect of
+/// your own that holds particles in its `end_step` says so in the column `in_contact`. Name `sleep` behind those, which
+/// stop particles only at the end of a step. One that vanishes in a sink while it is slow wakes nothing.
 struct sleep {
   using reads = columns<velocity>;
-  using optional_reads = columns<angular_velocity>;
-  using writes = columns<slow_steps>;
+  using optional_reads = columns<angular_velocity, radius>;
+  using writes = columns<slow_steps, in_contact>;
 
   double speed = 0.01;  ///< length per time, not negative: what is slower is slow
-  int steps = 50;       ///< 1 to 127: for how many steps a particle is slow before it sleeps
+  int steps = 50;       ///< 1 to 127: in how many steps a particle is slow before it sleeps
   int unused = 0;       ///< in place of padding, which would be bytes of a checkpoint that no one sets
 
   void check_parameters() const {
@@ -33,7 +34,9 @@ struct sleep {
   template <class Particle, class S>
   COLLIDE_HD_INLINE void end_step(Particle& p, S) const {
     int const n = p[slow_steps{}];  // what lies on something that moves no longer is slow after all
-    p[slow_steps{}] = static_cast<std::uint8_t>(!is_slow(p) ? 0 : n == 255 ? 1 : n + 1);
+    bool const counts = n >= detail::carried_by_moving || p[in_contact{}] == 1;
+    p[slow_steps{}] = static_cast<std::uint8_t>(!is_slow(p) ? 0 : n == 255 ? 1 : counts ? n + 1 : n);
+    p[in_contact{}] = 0;
   }
   template <class Particle, class Other>
   COLLIDE_HD_INLINE void try_wake(Particle& p, Other const& other) const {

@@ -317,6 +317,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
       widest = largest < 0 ? -largest : largest;
       if (mine.one_radius() && largest >= 0) smallest = largest;
       for (S const r : each) {
+        if (!detail::is_finite(r)) throw error("collide: simulation: set: radii are finite");
         widest = std::max(widest, r < 0 ? -r : r);
         if (r >= 0) smallest = std::min(smallest, r);
       }

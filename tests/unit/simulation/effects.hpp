@@ -357,7 +357,7 @@ void check_meeting_determinism(Space const& space, Other const& other) {
 template <class Space>
 void check_sleep(Space const& space) {
   using simulation = collide::simulation<meets_mesh<Space>, collide::sleep, sphere_contact, gravity, drag, bounce>;
-  static_assert(simulation::bytes_per_particle == 25, "a byte more");
+  static_assert(simulation::bytes_per_particle == 26, "two bytes more");
   world<float> w;
   add_floor(w, 4, 8);
   w.radius = 0.1f;
@@ -422,6 +422,11 @@ void check_stick(Space const& space) {
       running<simulation> made(space, one, gravity{0, 0, 0}, bounce{restitution}, collide::adhesion{20, 1});
       made.simulation.steps(40, 1e-3f);
       CHECK((made.velocities()[0] == 0) == (speed <= 1));
+      CHECK((made.simulation.template to_host<adhered>()[0] == 1) == (speed <= 1));
+      one.velocities = {0, 0, float(-speed)};  // and stays down, if it does not rebound
+      made.place(one);
+      made.simulation.template effect<gravity>().z = -9.81;
+      made.simulation.steps(40, 1e-3f);
       CHECK((made.simulation.template to_host<adhered>()[0] == 1) == (speed <= 1));
     }
   }

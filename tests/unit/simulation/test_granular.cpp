@@ -1,6 +1,6 @@
 /// Granular contact, on the host and as blocks of threads go.
 #include "compositions.hpp"
-#include "simulation/granular.hpp"
+#include "simulation/granular_ledgers.hpp"
 
 using collide::host;
 using blocks = tests::lockstep<64, true>;
@@ -38,6 +38,21 @@ TEST_CASE("granular contact: grains sleep and press on") { tests::check_sleeping
 TEST_CASE("granular contact: what falls asleep, and is woken, presses with its weight") {
   tests::check_weight_of_naps<collide::velocity_verlet, double>(host(1));
   tests::check_weight_of_naps<collide::semi_implicit_euler, double>(blocks());
+}
+
+TEST_CASE("granular contact: what grains lose bodies get: asleep, where dt changes, and parameters between steps") {
+  tests::check_ledgers<collide::velocity_verlet, double>(host(1));
+  tests::check_ledgers<collide::semi_implicit_euler, double>(blocks());
+}
+
+TEST_CASE("granular contact: meetings between steps change nothing") {
+  tests::check_meetings_between_steps<collide::velocity_verlet, double>(host(1));
+  tests::check_meetings_between_steps<collide::semi_implicit_euler, double>(blocks());
+}
+
+TEST_CASE("granular contact: what touches nothing does not fall asleep") {
+  tests::check_sleep_needs_contact<collide::velocity_verlet, double>(host(1));
+  tests::check_sleep_needs_contact<collide::semi_implicit_euler, double>(blocks());
 }
 
 TEST_CASE("granular contact: a driven wall presses on nothing where it lies in memory") {

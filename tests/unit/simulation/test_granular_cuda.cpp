@@ -2,6 +2,7 @@
 #include <collide/cuda.cuh>
 
 #include "compositions.hpp"
+#include "simulation/granular_ledgers.hpp"
 #include "simulation/periodic_contacts.hpp"
 
 using collide::cuda_shared;
@@ -34,6 +35,12 @@ TEST_CASE("granular contact: grains sleep and press on, on a GPU") {
   tests::check_sleep_on_bodies<collide::velocity_verlet, double>(cuda_shared());
   tests::check_weight_of_naps<collide::velocity_verlet, double>(cuda_shared());
   tests::check_first_pose_of_walls<float>(cuda_shared());
+}
+
+TEST_CASE("granular contact: what grains lose bodies get, and meetings between steps change nothing, on a GPU") {
+  tests::check_ledgers<collide::velocity_verlet, double>(cuda_shared());
+  tests::check_meetings_between_steps<collide::velocity_verlet, double>(cuda_shared());
+  tests::check_sleep_needs_contact<collide::velocity_verlet, double>(cuda_shared());
 }
 
 TEST_CASE("granular contact: contacts find room for what they remember, or an error, on a GPU") {

@@ -18,7 +18,7 @@ struct pair_interaction {
   sorted_particles<S, Effects> order;
   Effects effects;
   S dt;
-  bool only_kicks;  ///< nothing else is written of what they do to each other
+  meeting what;
 
  protected:
   using interaction = typename sorted_particles<S, Effects>::interaction;
@@ -30,13 +30,18 @@ struct pair_interaction {
     COLLIDE_HD_INLINE explicit pair_state(interaction const& p) : self(p), changed(p) {}
   };
 
-  COLLIDE_HD_INLINE bool is_of_another(std::size_t place) const { return order.is_of_another(order.numbers[place]); }
+  /// True of the place of a particle that meets nothing: it is another rank's, or does not ask for forces.
+  COLLIDE_HD_INLINE bool is_left_out(std::size_t place) const {
+    std::size_t const number = order.numbers[place];
+    return order.is_of_another(number) || (what == meeting::of_woken && !is_just_woken(state, number));
+  }
 
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_other = !is_inactive(other);
     side_by_side(p, other, [&] {
       if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
+      mark_contact(p.changed);
       if (is_other && !p.woken) effects.try_wake(p.changed, other);
     });
     p.met = p.met || is_active || is_other;
@@ -60,10 +65,15 @@ struct pair_interaction {
       if (p.woken ? is_other : is_active) {
         contact_values<S, typename Effects::remembered> values;
         if (was) values = record.values();
-        bool const stays =
-            only_kicks || (!is_awake && is_inactive(p.self));  // of two that sleep the contact is as it was
-        goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, stays ? S(0) : dt, dt);
-        if (goes_on) record.set(values);
+        bool const stays = !is_awake && is_inactive(p.self);  // of two that sleep the contact is as it was
+        S const elapsed = stays || (what != meeting::in_step && !was) ? S(0) : dt;
+        goes_on = effects.on_pair_contact(p.changed, p.self, other, overlap, values, elapsed, dt);
+        if (overlap || goes_on) mark_contact(p.changed);
+        if (what != meeting::in_step) {
+          goes_on = was;
+        } else if (goes_on) {
+          record.set(values);
+        }
       }
       if (is_other && !p.woken) effects.try_wake(p.changed, other);
     });
@@ -76,7 +86,8 @@ struct pair_interaction {
     if (p.self[position{}].x() == std::numeric_limits<S>::max()) return;  // it is gone: what is known of it is old
     bool is_asleep = false;
     if constexpr (Effects::keeps_support) is_asleep = is_inactive(p.self) && is_inactive(p.changed);
-    if (!only_kicks && !is_asleep) state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
+    if (what == meeting::in_step && !is_asleep)
+      state.store(p.changed, p.self.number, typename Effects::interaction_writes{});
     if constexpr (Effects::keeps_pair_forces) {
       particle<S, typename Effects::interaction_kicks> kicks;
       kicks[pair_acceleration{}] = (p.changed[velocity{}] - p.self[velocity{}]) * (1 / dt);
@@ -128,7 +139,7 @@ struct interact_listed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
     if (i == 0) places.header->rebuild = 0;  // not read again in this step
-    if (i < places.header->count && !this->is_of_another(i)) meet_listed(i);
+    if (i < places.header->count && !this->is_left_out(i)) meet_listed(i);
   }
 
  protected:
@@ -208,7 +219,7 @@ template <class S, class Effects>
 struct interact_inside : interact_listed<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
-    if (i >= places.header->count || places.is_at_border[i] != 0 || this->is_of_another(i)) return;
+    if (i >= places.header->count || places.is_at_border[i] != 0 || this->is_left_out(i)) return;
     this->meet_listed(i);
   }
 };
@@ -228,7 +239,7 @@ struct interact_overflowed : pair_interaction<S, Effects> {
   COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
     if (i >= places.header->count || places.list(0, i) != places.overflow_mark) return;
-    if (this->is_of_another(i)) return;
+    if (this->is_left_out(i)) return;
     auto const self = static_cast<std::uint32_t>(i);
     typename pair_interaction<S, Effects>::pair_state p(places.load(i));
     do {

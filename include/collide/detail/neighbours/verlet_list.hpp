@@ -219,30 +219,30 @@ class verlet_list {
   template <class Space>
   void interact_inside(Space& space, state_type const& state, Effects const& effects, S dt) {
     if (!are_complete_ || at_border_ > border_.capacity()) return;
-    space.for_each(state.size, detail::interact_inside<S, Effects>{{{state, order_of(state), effects, dt, false}}});
+    space.for_each(state.size,
+                   detail::interact_inside<S, Effects>{{{state, order_of(state), effects, dt, meeting::in_step}}});
     inside_is_done_ = true;
   }
 
   bool inside_is_done() const { return inside_is_done_; }
 
-  /// After `renew`: one pass of `on_pair_contact` over all pairs; if `only_kicks`, to know what they do to each other's
-  /// velocities.
+  /// After `renew`: one pass of `on_pair_contact` over all pairs.
   template <class Space>
-  void interact(Space& space, state_type const& state, Effects const& effects, S dt, bool only_kicks) {
+  void interact(Space& space, state_type const& state, Effects const& effects, S dt, meeting what) {
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const overflowed = &o.header->overflowed;
     if constexpr (order::on_ranks) {
       if (inside_is_done_) {
         inside_is_done_ = false;
-        space.for_each(at_border_, interact_at_border<S, Effects>{{{state, o, effects, dt, only_kicks}}});
+        space.for_each(at_border_, interact_at_border<S, Effects>{{{state, o, effects, dt, what}}});
       } else {
-        space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, only_kicks}});
+        space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, what}});
       }
     } else {
-      space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, only_kicks}});
+      space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, what}});
     }
-    for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, only_kicks}});
+    for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, what}});
   }
 
  private:

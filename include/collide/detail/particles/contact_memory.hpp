@@ -241,7 +241,7 @@ class contact_access {
     static_assert(contains<Named, C>, "collide: a contact remembers for an effect what that names in `remembers`");
     return values_[C{}];
   }
-  /// The time since the contact was looked at before; 0 where forces are only asked for.
+  /// The time since the contact was looked at before; 0 where it is new and forces are only asked for.
   COLLIDE_HD_INLINE S elapsed() const { return elapsed_; }
   /// All that the contact remembers.
   COLLIDE_HD_INLINE Values& values() const { return values_; }

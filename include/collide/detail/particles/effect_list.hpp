@@ -14,6 +14,21 @@
 
 namespace collide::detail {
 
+/// Why particles meet: in a step, or between two, to know the forces with which the next begins. Then nothing else is
+/// written, and nothing that contacts remember changes: old ones are seen a step later, so what slid goes on sliding.
+enum class meeting : std::uint8_t {
+  in_step,
+  of_all,   ///< between steps
+  of_woken  ///< between steps: only those that slept ask, the others know
+};
+
+/// True of a particle that has been woken between steps, and not met others yet.
+template <class State>
+COLLIDE_HD_INLINE bool is_just_woken([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
+  if constexpr (contains<typename State::list, in_contact>) return state.at(in_contact{})[i] == just_woken;
+  return false;
+}
+
 /// An effect's parameters, in a base class that is found by the effect's type.
 template <class E>
 struct effect_slot {
@@ -67,8 +82,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       (any_pair_contact || overlaps) && (has_half_kicks || keeps_support) && contains<named, angular_velocity>;
   /// A step ends once particles have met where they then are.
   static constexpr bool ends_after_meeting = (any_pair_contact || overlaps) && has_half_kicks;
-  /// Forces on the mesh are given for a whole step when particles meet, in its middle; so is the pressure of sleepers.
-  static constexpr bool presses_when_meeting = overlaps && has_half_kicks;
+  /// The forces of the mesh are kept, each by itself: effects are told of each half kick when it is given.
+  static constexpr bool keeps_mesh_kicks = overlaps && has_half_kicks && any_mesh_impulse;
 
  private:
   template <bool Needed, class... C>
@@ -76,13 +91,14 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
                               columns_if<keeps_pair_torques, pair_angular_acceleration>>;
   using held_columns = columns_if<any_mesh_contact && has_half_kicks, held>;
+  using mesh_kick_columns = columns_if<keeps_mesh_kicks, mesh_kicks, mesh_kicks_by, mesh_kick_count>;
   using support_columns = union_of<columns_if<keeps_support, support, supported_by>,
                                    columns_if<keeps_support && (is_moving_bodies<E> || ...), second_support,
                                               second_supported_by, third_support, third_supported_by>>;
 
  public:
   /// All columns of the simulation.
-  using all = union_of<named, pair_kicks, held_columns, support_columns>;
+  using all = union_of<named, pair_kicks, held_columns, support_columns, mesh_kick_columns>;
 
  private:
   /// Columns that `E` reads or writes in a member, if it `Has` it.
@@ -109,6 +125,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       pairs_in<F, S> || has_try_wake<F, S>::value || has_is_inactive<F, S>::value;
   using own_radius = intersection_of<columns<radius>, all>;
   using own_number = intersection_of<columns<global_number>, all>;
+  using own_in_contact = intersection_of<columns<in_contact>, all>;
   using own_slow_steps = columns_if<(is_moving_bodies<E> || ...) && contains<all, slow_steps>, slow_steps>;
   template <bool Needed>
   using radius_if = std::conditional_t<Needed, own_radius, columns<>>;
@@ -118,8 +135,8 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   using inactive_reads = union_of<own_number, reads_if<E, has_is_inactive<E, S>::value>...>;
   /// Columns that are read and written for every particle,
   using integration_reads =
-      union_of<base, reads_if<E, is_integrated<E>>..., radius_if<any_mesh_contact>, own_number, pair_kicks,
-               columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
+      union_of<base, reads_if<E, is_integrated<E>>..., radius_if<any_mesh_contact || keeps_support>, own_number,
+               pair_kicks, columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
   using integration_writes = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
                                       columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns,
                                       writes_if<E, writes_while_integrated<E>>...>;
@@ -135,13 +152,16 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
       union_of<columns<>, writes_if<E, pairs_in<E, S> || has_try_wake<E, S>::value>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
   using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
+  /// Columns on which forces on a particle depend that is alone.
+  using acceleration_reads = union_of<columns<>, reads_if<E, changes_velocity<E, S>>...>;
   /// Columns that are read and written for particles that press on the mesh.
-  using overlap_reads = union_of<base, own_radius, own_number, pair_kicks,
-                                 columns_if<keeps_pair_torques, angular_velocity>, support_columns, own_slow_steps,
-                                 reads_if<E, overlaps_in<E, S> || has_is_inactive<E, S>::value ||
-                                                 (overlaps && has_on_mesh_impulse<E, S>::value)>...>;
+  using overlap_reads =
+      union_of<base, own_radius, own_number, pair_kicks, columns_if<keeps_pair_torques, angular_velocity>,
+               support_columns, own_slow_steps, own_in_contact,
+               reads_if<E, overlaps_in<E, S> || has_is_inactive<E, S>::value ||
+                               (overlaps && has_on_mesh_impulse<E, S>::value)>...>;
   using overlap_writes = difference_of<
-      union_of<pair_kicks, support_columns, own_slow_steps,
+      union_of<pair_kicks, support_columns, own_slow_steps, own_in_contact,
                writes_if<E, overlaps_in<E, S> || (overlaps && has_on_mesh_impulse<E, S>::value)>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
 
@@ -243,12 +263,12 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
     (on_pair_contact_of<E>(p, self, other, dt), ...);
   }
-  /// With what the contact remembers; `overlap` if the two do. True if the contact goes on.
+  /// With what the contact remembers; `overlap` if the two do: what remembers nothing is left out if not, unless it
+  /// looks at what others do. True if the contact goes on.
   template <class P, class Values>
   COLLIDE_HD_INLINE bool on_pair_contact(P& p, P& self, P& other, bool overlap, Values& values, S elapsed, S dt) const {
-    if (overlap) on_pair_contact(p, self, other, dt);
     bool goes_on = false;
-    ((goes_on = meet_with_memory_by<E>(p, self, other, values, elapsed, dt) || goes_on), ...);
+    ((goes_on = meet_with_memory_by<E>(p, self, other, overlap, values, elapsed, dt) || goes_on), ...);
     return goes_on;
   }
   /// True if the contact goes on.
@@ -388,14 +408,15 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   }
   template <class F, class P, class Values>
   COLLIDE_HD_INLINE bool meet_with_memory_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
-                                             [[maybe_unused]] Values& values, [[maybe_unused]] S elapsed,
-                                             [[maybe_unused]] S dt) const {
+                                             [[maybe_unused]] bool overlap, [[maybe_unused]] Values& values,
+                                             [[maybe_unused]] S elapsed, [[maybe_unused]] S dt) const {
     if constexpr (remembers_in<F, S>::value) {
       particle_access<F, P> seen(p);
       particle_access<F, P> const seen_self(self), seen_other(other);
       contact_access<typename remembers_of<F>::type, Values, S> const memory(values, elapsed);
       return of<F>().on_pair_contact(seen, seen_self, seen_other, memory, dt);
     } else {
+      if (overlap || follows_pair_contacts<F>) on_pair_contact_of<F>(p, self, other, dt);
       return false;
     }
   }

@@ -70,6 +70,20 @@ void check_bodies_of(Effects const& effects, std::size_t bodies) {
   if constexpr (keeps_bodies<E>::value) effects.template of<E>().check_bodies(bodies);
 }
 
+/// Calls `check_particles` and `check_walls` of the materials of an effect, if it has such.
+template <class E, class = void>
+struct has_materials : std::false_type {};
+template <class E>
+struct has_materials<E, std::void_t<decltype(std::declval<E const&>().made_of.check_particles(0))>> : std::true_type {};
+template <class E, class Effects>
+void check_materials_of(Effects const& effects, smallest_radii const& radii) {
+  if constexpr (has_materials<E>::value) effects.template of<E>().made_of.check_particles(radii.largest_material);
+}
+template <class E, class Effects, class Space>
+void check_walls_of(Effects const& effects, Space const& space, std::size_t triangles, std::size_t bodies) {
+  if constexpr (has_materials<E>::value) effects.template of<E>().made_of.check_walls(space, triangles, bodies);
+}
+
 template <class E, class Radius, class = void>
 struct limits_step : std::false_type {};
 template <class E, class Radius>
@@ -169,16 +183,18 @@ struct radius_range {
   }
 };
 
-/// The radii that particles have of their own. Waits.
+/// The radii that particles have of their own; the largest is infinite if one is not finite. Waits.
 template <class Simulation>
 auto radius_range_of(Simulation const& simulation) {
   using S = typename Simulation::scalar;
   radius_range<S> found{std::numeric_limits<S>::infinity(), S(0)};
   if constexpr (contains<typename Simulation::columns, radius>) {
     auto const radii = simulation.template to_host<radius>();
-    if (!radii.empty()) found.largest = *std::max_element(radii.begin(), radii.end());
-    for (S const r : radii) {
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+      S const r = radii[i];
+      found.largest = !is_finite(r) ? std::numeric_limits<S>::infinity() : i == 0 ? r : max(found.largest, r);
       if (r >= 0) found.smallest = min(found.smallest, r);
+      if (!is_finite(r)) break;
     }
     for (S const r : radii) {
       bool const is_small = r <= 2 * found.smallest;
@@ -202,6 +218,7 @@ smallest_radii smallest_radii_of(Simulation const& simulation, radius_range<S> c
     auto const numbers = simulation.template to_host<material>();
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       auto const own = radii.empty() ? found.of_all : static_cast<double>(radii[i]);
+      found.largest_material = std::max<int>(found.largest_material, numbers[i]);
       double& least = found.of_material[std::min<int>(numbers[i], smallest_radii::numbers - 1)];
       if (own >= 0) least = std::min(least, own);
     }

@@ -29,6 +29,14 @@ struct layout_of<vec3<S>> {
   static COLLIDE_HD_INLINE S const& at(vec3<S> const& v, int k) { return v[k]; }
 };
 
+template <class T, int N>
+struct layout_of<several<T, N>> {
+  using element = T;
+  static constexpr int width = N;
+  static COLLIDE_HD_INLINE T& at(several<T, N>& v, int k) { return v.of[k]; }
+  static COLLIDE_HD_INLINE T const& at(several<T, N> const& v, int k) { return v.of[k]; }
+};
+
 template <class C, class S>
 using column_value = typename C::template value<S>;
 template <class C, class S>
@@ -94,6 +102,12 @@ COLLIDE_HD_INLINE id number_of(particle<S, List> const& p) {
   } else {
     return p.number;
   }
+}
+
+/// Says that a particle has touched something, where it may fall asleep.
+template <class S, class List>
+COLLIDE_HD_INLINE void mark_contact([[maybe_unused]] particle<S, List>& p) {
+  if constexpr (contains<List, in_contact>) p[in_contact{}] = 1;
 }
 
 /// A particle with the initial values of all columns.

@@ -89,7 +89,7 @@ class part_of_simulation {
                     s.time_,
                     {},
                     reverse_order,
-                    s.knows_pair_forces_,
+                    static_cast<std::uint8_t>(s.next_meeting_),
                     s.bodies_.are_placed()};
     if constexpr (Simulation::has_begin_step) s.space_.copy_to_host(numbers.clock, s.state_.time, clock_size);
     return numbers;
@@ -124,7 +124,7 @@ class part_of_simulation {
     }
     saved.restore_parameters(simulation_.effects_);
     simulation_.time_ = numbers.time;
-    simulation_.knows_pair_forces_ = numbers.knows_pair_forces != 0;
+    simulation_.next_meeting_ = numbers.meeting_between_steps();
     simulation_.know_smallest();
     simulation_.prepare();
     saved.restore_bodies(simulation_);
@@ -209,7 +209,7 @@ class part_of_simulation {
     }
   }
   /// True if the next step knows what particles do to each other where it begins.
-  bool knows_pair_forces() const { return simulation_.knows_pair_forces_; }
+  bool knows_pair_forces() const { return simulation_.knows_pair_forces(); }
 
   /// The memory of contacts of the rank's own particles. Waits.
   contact_rows contacts() const {

@@ -154,6 +154,7 @@ struct contact_response {
       if constexpr (spins) given.spin_change = p[angular_velocity{}] - spin_before;
       book(context, p, given);
     }
+    mark_contact(p);
     if constexpr (contains<typename effects_type::all, slow_steps>) {
       if (surface.is_of_moving_body(mesh)) p[slow_steps{}] = carried_by_moving;
     }

@@ -42,7 +42,7 @@ COLLIDE_HD_INLINE auto begin_with_kick(Context const& context, Particle& p) {
   }
   S const kick = first_kick<Context>(p);
   if constexpr (Context::effects_type::adheres) {
-    if (p[adhered{}] != 0 && hold_adhered(context, p, kick)) return S(0);
+    if (is_stuck(p[adhered{}]) && hold_adhered(context, p, kick)) return S(0);
   }
   if constexpr (contains<typename Particle::list, held>) p[held{}] = 0;
   return kick;
@@ -68,7 +68,7 @@ COLLIDE_HD_INLINE void end_motion([[maybe_unused]] Context const& context, [[may
   }
   if constexpr (contains<typename Particle::list, held>) {
     if constexpr (Context::effects_type::adheres) {
-      if (p[held{}] == 2 && p[adhered{}] != 0) return;  // it stuck all the time
+      if (p[held{}] == 2 && is_stuck(p[adhered{}])) return;  // it stuck all the time
     }
     p[held{}] = holds;
   }
@@ -286,7 +286,6 @@ struct integration {
 
   /// A particle that sleeps presses on what it lies on.
   COLLIDE_HD_INLINE void press(std::size_t i) const {
-    if constexpr (effects_type::presses_when_meeting) return;
     integrated p;
     context.state.load(p, i);
     book_sleeping(context, p,

@@ -21,11 +21,11 @@ COLLIDE_HD_INLINE void for_each_support(Particle& p, F const& f) {
   }
 }
 
-/// Tells the effects what the mesh gives to a particle, and keeps a mean of it for when the particle sleeps.
+/// Keeps a mean of what the mesh gives to a particle in a step, for when the particle sleeps.
 template <class Context, class Particle>
-COLLIDE_HD_INLINE void book(Context const& context, Particle& p, mesh_impulse<typename Context::scalar> const& given) {
+COLLIDE_HD_INLINE void keep_support([[maybe_unused]] Context const& context, [[maybe_unused]] Particle& p,
+                                    [[maybe_unused]] mesh_impulse<typename Context::scalar> const& given) {
   using S = typename Context::scalar;
-  context.effects.on_mesh_impulse(p, given, context.dt);
   if constexpr (Context::effects_type::keeps_support) {
     if (dot(given.change, given.change) == 0) return;
     vec3<S> const change = given.change * (1 / (S(steps_in_mean(p[slow_steps{}])) * context.dt));
@@ -41,6 +41,13 @@ COLLIDE_HD_INLINE void book(Context const& context, Particle& p, mesh_impulse<ty
       if (!is_known) p[third_support{}] += change;
     }
   }
+}
+
+/// Tells the effects what the mesh gives to a particle, and keeps the mean.
+template <class Context, class Particle>
+COLLIDE_HD_INLINE void book(Context const& context, Particle& p, mesh_impulse<typename Context::scalar> const& given) {
+  context.effects.on_mesh_impulse(p, given, context.dt);
+  keep_support(context, p, given);
 }
 
 /// Tells the effects what holds a particle that sleeps against what would accelerate or turn it for a part of the step:
@@ -88,7 +95,7 @@ template <class Particle>
 COLLIDE_HD_INLINE int frame_ridden([[maybe_unused]] Particle const& p) {
   if constexpr (contains<typename Particle::list, adhered>) {
     int const held = p[adhered{}];
-    return held > 1 ? held - 1 : 0;
+    return held > 1 && is_stuck(p[adhered{}]) ? held - 1 : 0;
   } else {
     return 0;
   }
@@ -161,6 +168,7 @@ COLLIDE_HD_INLINE bool hold_adhered(Context const& context, Particle& p, typenam
     p[angular_velocity{}] += p[pair_angular_acceleration{}] * (first_part * context.dt);
   vec3<S> way(S(0), S(0), S(0));
   if constexpr (!Context::is_swept) way = rounded_to<S>(surface.to) - p[position{}];
+  mark_contact(p);
   if (p.number < context.state.size) book_held(context, p, rounded_to<S>(given), way);  // behind are places of none
   if constexpr (contains<typename Particle::list, held>) p[held{}] = 2;
   return true;

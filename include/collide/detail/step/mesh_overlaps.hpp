@@ -9,6 +9,7 @@
 #include <collide/detail/bodies/bodies_ref.hpp>
 #include <collide/detail/narrow_phase/intersects.hpp>
 #include <collide/detail/particles/effect_list.hpp>
+#include <collide/detail/step/mesh_kicks.hpp>
 #include <collide/detail/step/mesh_ledger.hpp>
 #include <collide/detail/step/overlap_list.hpp>
 #include <collide/detail/step/surface_memory.hpp>
@@ -72,8 +73,11 @@ struct list_pressing {
   Triangles triangles;
   Memory memory;
   pressing_list found;
+  meeting what;
 
   COLLIDE_HD void operator()(std::size_t i) const {
+    if (what == meeting::of_woken && !(is_just_woken(state, i) && has_no_mesh_kicks(state, i))) return;
+    forget_mesh_kicks(state, i);
     if constexpr (Effects::any_inactive) {
       particle<S, typename Effects::inactive_reads> p;
       state.load(p, i);
@@ -85,7 +89,7 @@ struct list_pressing {
     if (is_finite(shape.centre) && !triangles.without_overflown_grids().empty(shape)) {
       found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
     } else if constexpr (Effects::remembered::size != 0) {
-      if (memory.counts[i] != 0) memory.counts[i] = 0;
+      if (what == meeting::in_step && memory.counts[i] != 0) memory.counts[i] = 0;
     }
   }
 };
@@ -122,7 +126,7 @@ struct press_on_mesh {
   pressing_list pressing;
   overlap_pool pool;
   S dt;
-  bool only_kicks;  ///< nothing else is written
+  meeting what;
 
   COLLIDE_HD void operator()(std::size_t k) const {
     if (k < *pressing.count) press_with(pressing.numbers[k]);
@@ -143,7 +147,7 @@ struct press_on_mesh {
     if constexpr (has_memory) before = memory.counts[i];
     if (near.size != 0) return press(open, i, near, before);
     if constexpr (has_memory) {
-      if (before != 0) memory.counts[i] = 0;
+      if (what == meeting::in_step && before != 0) memory.counts[i] = 0;
     }
   }
 
@@ -237,14 +241,19 @@ struct press_on_mesh {
     vec3<S> normals[most];
     id bodies[most];
     values_type values[most] = {};
+    kicks_by_mesh<S, Effects> kicks;
+    S const elapsed = what == meeting::in_step || before != 0 ? dt : S(0);
     int kept = 0;
     for_each_contact(open, i, self, near, before, [&](mesh_overlap<S> const& o, values_type& own) {
-      if (!meet(p, self, o, own) || kept == most) return;
+      if (!meet(p, self, o, own, elapsed, kicks) || kept == most) return;
       normals[kept] = o.normal;
       bodies[kept] = o.body;
       values[kept++] = own;
     });
-    if constexpr (has_memory) keep(i, kept, normals, bodies, values);
+    if constexpr (has_memory) {
+      if (what == meeting::in_step) keep(i, kept, normals, bodies, values);
+    }
+    kicks.store(state, i);
     store(i, p, self);
   }
 
@@ -266,20 +275,28 @@ struct press_on_mesh {
   }
 
   /// Calls the effects, and tells them what the mesh has given.
-  COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values) const {
+  COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values, S elapsed,
+                              [[maybe_unused]] kicks_by_mesh<S, Effects>& kicks) const {
     integrated const before = p;
-    bool const goes_on = effects.on_mesh_overlap(p, self, o, values, only_kicks ? S(0) : dt, dt);
+    bool const goes_on = effects.on_mesh_overlap(p, self, o, values, elapsed, dt);
+    if (o.overlap > 0 || goes_on) mark_contact(p);
     if constexpr (has_moving_mesh<Triangles> && contains<typename integrated::list, slow_steps>) {
       if (o.body != no_id && triangles.mesh.frames[o.body + 1].moves) p[slow_steps{}] = carried_by_moving;
     }
     if constexpr (Effects::any_mesh_impulse) {
-      if (only_kicks) return goes_on;
       vec3<S> const none(S(0), S(0), S(0));
       vec3<S> turned = none;
       if constexpr (contains<typename integrated::list, angular_velocity>)
         turned = p[angular_velocity{}] - before[angular_velocity{}];
-      book(*this, p,
-           {p[velocity{}] - before[velocity{}], turned, self[position{}], none, p[velocity{}], o.triangle, o.body});
+      mesh_impulse<S> given{
+          p[velocity{}] - before[velocity{}], turned, self[position{}], none, p[velocity{}], o.triangle, o.body};
+      if constexpr (Effects::keeps_mesh_kicks) kicks.add(given, 1 / dt);
+      if (what != meeting::in_step) return goes_on;
+      keep_support(*this, p, given);
+      constexpr S part = Effects::keeps_mesh_kicks ? S(Effects::integrator::kick_after) : S(1);
+      given.change *= part;
+      given.spin_change *= part;
+      effects.on_mesh_impulse(p, given, dt);
     }
     return goes_on;
   }
@@ -353,7 +370,7 @@ struct press_on_mesh {
       if constexpr (Effects::keeps_pair_torques)
         p[pair_angular_acceleration{}] += (p[angular_velocity{}] - self[angular_velocity{}]) * (1 / dt);
     }
-    if (only_kicks) {
+    if (what != meeting::in_step) {
       state.store(p, i, typename Effects::interaction_kicks{});
     } else {
       state.store(p, i, typename Effects::overlap_writes{});

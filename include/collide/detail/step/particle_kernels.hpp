@@ -78,6 +78,27 @@ struct wake_where_others_went {
   }
 };
 
+/// Kernel functor of `for_each` over particles: wakes those that sleep, between steps. Forces on them are not known, or
+/// not those of the mesh where others' are passed on to what they lie on.
+template <class S, class Effects>
+struct wake_between_steps {
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    particle<S, union_of<typename Effects::inactive_reads, typename Effects::interaction_kicks>> p;
+    state.load(p, i);
+    if (effects.is_inactive(p) && effects.only_sleeps(p)) {
+      state.at(in_contact{})[i] = just_woken;
+      if constexpr (!Effects::keeps_support) {
+        set_initial_values(p);
+        state.store(p, i, typename Effects::interaction_kicks{});
+      }
+    }
+    state.at(slow_steps{})[i] = 0;
+  }
+};
+
 /// Kernel functor of `for_each` over particles: ends their step, where particles have met in between.
 template <class S, class Effects>
 struct end_particles {
@@ -106,7 +127,7 @@ struct end_particles {
   template <class Particle>
   COLLIDE_HD_INLINE void press(Particle& p) const {
     if (!effects.only_sleeps(p)) return;
-    book_sleeping(*this, p, Effects::presses_when_meeting ? S(1) : last_kick<end_particles>(p));
+    book_sleeping(*this, p, last_kick<end_particles>(p));
     state.store(p, p.number, typename Effects::integration_writes{});
   }
 };
@@ -121,13 +142,14 @@ struct release_adhered {
 
   COLLIDE_HD void operator()(std::size_t i) const {
     std::uint8_t& held = state.at(adhered{})[i];
-    if (are_driven && std::size_t{held} > bodies + 1) held = 0;  // there is no such body any more
+    if (are_driven && is_stuck(held) && std::size_t{held} > bodies + 1) held = 0;  // there is no such body any more
     if (held == 0 || (are_driven && held > 1)) return;
     auto const* const x = state.at(position{}) + 3 * i;
     using S = std::decay_t<decltype(*x)>;
     vec3<S> const centre(x[0], x[1], x[2]);
     S const r = state.radius_at(i);
-    held = find(sphere<S>{centre, r + 2 * (contact_tolerance<S> * r + rounding_at(centre))});
+    std::uint8_t const found = find(sphere<S>{centre, r + 2 * (contact_tolerance<S> * r + rounding_at(centre))});
+    if (held != came_too_fast || found == 0) held = found;
   }
 
  private:

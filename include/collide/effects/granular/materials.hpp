@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <collide/effect.hpp>
 
@@ -38,14 +39,16 @@ struct contact_material {
 
   contact_material() = default;
   contact_material(solid const& a, solid const& b, surface_pair const& p)
-      : young{1 / ((1 - a.poisson * a.poisson) / a.young + (1 - b.poisson * b.poisson) / b.young)},
-        shear{1 / (2 * (1 + a.poisson) * (2 - a.poisson) / a.young + 2 * (1 + b.poisson) * (2 - b.poisson) / b.young)},
-        friction{p.friction},
-        rolling_friction{p.rolling_friction},
-        cohesion{p.cohesion} {
+      : friction{p.friction}, rolling_friction{p.rolling_friction}, cohesion{p.cohesion} {
+    set_solids(a, b);
     constexpr double pi = 3.14159265358979323846;
     double const log_e = std::log(p.restitution);
     damping = p.restitution < 1 ? -log_e / std::sqrt(log_e * log_e + pi * pi) : 0;
+  }
+  /// The same surfaces of other solids.
+  void set_solids(solid const& a, solid const& b) {
+    young = 1 / ((1 - a.poisson * a.poisson) / a.young + (1 - b.poisson * b.poisson) / b.young);
+    shear = 1 / (2 * (1 + a.poisson) * (2 - a.poisson) / a.young + 2 * (1 + b.poisson) * (2 - b.poisson) / b.young);
   }
 };
 
@@ -117,7 +120,9 @@ class one_material {
 };
 
 /// `N` solids, 1 to 32, and what each pair of them does. Particles have a column `material`, 0 to N - 1: which solid.
-/// Walls are of `wall_material`, or of one each triangle or body.
+/// Walls are of `wall_material`, or of one each triangle or body. A particle of a number that is too large is an
+/// `error` in the next `step` after `set` or `assign<material>`, a triangle or a body in `set_mesh`; what is written in
+/// place later, or given by way of `effect`, is taken for N - 1.
 ///
 ///     materials<2> m;
 ///     m.set(0, {1e9, 0.2, 2500});
@@ -135,12 +140,16 @@ class materials {
   std::uint8_t const* body_materials = nullptr;      ///< of each body, in memory of the space; null: all the same
   static constexpr bool saves_parameters = false;    ///< they may have pointers
 
-  /// Says what solid number `i` is. Throws `error` if a number is out of its range.
+  /// Says what solid number `i` is, also in pairs that are set already. Throws `error` if a number is out of its range.
   void set(int i, solid const& s) {
     check_number(i);
     detail::check(s);
     solids_[i] = s;
     is_set_[i] = true;
+    for (int j = 0; j < N; ++j) {
+      detail::contact_material& pair = pairs_[place(i, j)];
+      if (pair.young > 0) pair.set_solids(solids_[i], solids_[j]);
+    }
   }
   /// Says what solids `i` and `j`, which are set, do where they touch. Throws `error` if a number is out of its range.
   void set_pair(int i, int j, surface_pair const& p) {
@@ -162,6 +171,18 @@ class materials {
                     " is missing: call set_pair");
       }
     }
+  }
+  /// Throws `error` if particles are of solids up to a number that there is not.
+  void check_particles(int largest) const {
+    if (largest >= N)
+      throw error("collide: materials: a particle is of solid " + std::to_string(largest) + ", and there are " +
+                  std::to_string(N));
+  }
+  /// Throws `error` if one of so many triangles and bodies is of a solid that there is not. Waits.
+  template <class Space>
+  void check_walls(Space const& space, std::size_t triangles, std::size_t bodies) const {
+    check_each(space, triangle_materials, triangles, "triangle ");
+    check_each(space, body_materials, bodies, "body ");
   }
   /// The least of f(solid, smallest radius of it) of all solids that particles are of; infinite if there are none.
   template <class F>
@@ -196,6 +217,16 @@ class materials {
   static COLLIDE_HD_INLINE int number_of(Particle const& p) {
     int const number = p[material{}];
     return number < N ? number : N - 1;
+  }
+  template <class Space>
+  static void check_each(Space const& space, std::uint8_t const* numbers, std::size_t n, char const* what) {
+    std::vector<std::uint8_t> each(numbers == nullptr ? 0 : n);
+    if (!each.empty()) space.copy_to_host(each.data(), numbers, each.size());
+    for (std::size_t i = 0; i < each.size(); ++i) {
+      if (each[i] < N) continue;
+      throw error("collide: materials: " + (what + std::to_string(i)) + " is of solid " + std::to_string(each[i]) +
+                  ", and there are " + std::to_string(N));
+    }
   }
   static void check_number(int i) {
     detail::check_parameter(i >= 0 && i < N, "materials: the number of a solid is from 0 to N - 1");
