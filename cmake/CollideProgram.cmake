@@ -69,8 +69,6 @@ function(collide_ptx name)
   set_source_files_properties(${ARGN} PROPERTIES LANGUAGE CUDA)
   add_library(${name} OBJECT ${ARGN})
   set_target_properties(${name} PROPERTIES CUDA_PTX_COMPILATION ON)
-  # of code for the host that is not compiled here nvcc says what it does not say where it compiles both
-  target_compile_options(${name} PRIVATE --diag-suppress=20011,20014)
   target_link_libraries(${name} PRIVATE collide_options)
 endfunction()
 
