@@ -1,6 +1,6 @@
-/// What grains lose bodies get, after each step: whether they sleep, whatever the integrator, where dt changes and
-/// where parameters do between steps; and meetings between steps change nothing. Instantiated by test_granular.cpp and
-/// test_granular_cuda.cpp.
+/// Momentum that grains lose is what bodies get, after each step: whether they sleep, whatever the integrator, where dt
+/// changes and where parameters do between steps; and meetings between steps change nothing. Instantiated by
+/// test_granular.cpp and test_granular_cuda.cpp.
 #pragma once
 
 #include <collide/effects/contact_forces.hpp>
@@ -10,7 +10,7 @@
 
 namespace tests {
 
-/// What happens between steps.
+/// Changes between steps.
 enum class between { nothing, parameters, forces, mesh, places };
 
 /// One type of simulation for all that grains do on a floor that is a body, and beside a wall.
@@ -91,7 +91,7 @@ class ledger_of_grains {
     return worst / (weight() * steps * dt);
   }
 
-  /// What has come to rest presses with its weight, and a column's grains on each other with theirs.
+  /// Checks that a grain at rest presses with its weight, and a column's grains on each other with theirs.
   void check_weights(double dt, bool dt_varies, bool sleeps) {
     sums_.clear(scene().space());
     double const began = time_;
@@ -183,8 +183,8 @@ void check_meetings_between_steps(Space const& space) {
   });
 }
 
-/// What touches nothing does not fall asleep, however short the step: at the top of its flight, and where what it lies
-/// on goes away slowly. What lies does.
+/// Checks that a grain which touches nothing does not fall asleep, however short the step: at the top of its flight,
+/// and where what it lies on goes away slowly. What lies does.
 template <class Integrator, class S, class Space>
 void check_sleep_needs_contact(Space const& space) {
   collide::one_material const soft({1e6, 0.25, 2500}, {0.1, 0.5, 0.1});

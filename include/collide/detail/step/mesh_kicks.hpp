@@ -1,6 +1,6 @@
 /// \file
-/// What each contact with the mesh gives to a particle by a force, from where particles meet until the first half kick
-/// of the next step: effects are told of each half when it is given, so it is that of the step's own time.
+/// The kicks that each contact with the mesh gives to a particle by a force, from where particles meet until the first
+/// half kick of the next step: effects are told of each half when it is given, so it is that of the step's own time.
 #pragma once
 
 #include <collide/detail/particles/effect_list.hpp>

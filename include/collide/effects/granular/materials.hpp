@@ -45,7 +45,7 @@ struct contact_material {
     double const log_e = std::log(p.restitution);
     damping = p.restitution < 1 ? -log_e / std::sqrt(log_e * log_e + pi * pi) : 0;
   }
-  /// The same surfaces of other solids.
+  /// Takes other solids, with the same surfaces.
   void set_solids(solid const& a, solid const& b) {
     young = 1 / ((1 - a.poisson * a.poisson) / a.young + (1 - b.poisson * b.poisson) / b.young);
     shear = 1 / (2 * (1 + a.poisson) * (2 - a.poisson) / a.young + 2 * (1 + b.poisson) * (2 - b.poisson) / b.young);
