@@ -28,6 +28,7 @@ inline char const* name_of(collide::material) { return "material"; }
 inline char const* name_of(collide::angular_velocity) { return "angular_velocity"; }
 inline char const* name_of(collide::adhered) { return "stuck"; }
 inline char const* name_of(collide::slow_steps) { return "slow_steps"; }
+inline char const* name_of(collide::in_contact) { return "in_contact"; }
 inline char const* name_of(collide::pair_acceleration) { return "pair_acceleration"; }
 inline char const* name_of(collide::pair_angular_acceleration) { return "pair_angular_acceleration"; }
 

@@ -44,7 +44,7 @@ COLLIDE_HD_INLINE int steps_in_mean(int slow_steps) {
 namespace detail {
 
 /// `N` numbers of a column.
-template <class T, int N>
+template <class T, std::size_t N>
 struct several {
   T of[N];
   COLLIDE_HD explicit several(T all = T(0)) {

@@ -238,6 +238,8 @@ void check_momentum_of_waking(Space const& space) {
   w.particle(0.4, 0.05, 0, -1, 0, 0);
   running<simulation> made(space, w, Integrator{}, collide::sleep{},
                            sphere_contact::from_restitution(0.6, 0.03, 0.1, density_of_grains, 0.3));
+  placed<std::uint8_t> const asleep(made.simulation.space(), {50, 50, 0});  // they touch nothing
+  made.simulation.template assign<slow_steps>(asleep.data());
   made.simulation.steps(150, S(1e-3));
   CHECK(made.simulation.template to_host<slow_steps>()[0] >= 50);
   made.simulation.steps(350, S(1e-3));

@@ -29,10 +29,10 @@ struct layout_of<vec3<S>> {
   static COLLIDE_HD_INLINE S const& at(vec3<S> const& v, int k) { return v[k]; }
 };
 
-template <class T, int N>
+template <class T, std::size_t N>
 struct layout_of<several<T, N>> {
   using element = T;
-  static constexpr int width = N;
+  static constexpr int width = int(N);
   static COLLIDE_HD_INLINE T& at(several<T, N>& v, int k) { return v.of[k]; }
   static COLLIDE_HD_INLINE T const& at(several<T, N> const& v, int k) { return v.of[k]; }
 };
