@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <collide/detail/predicates/exact_triangles.hpp>
@@ -37,20 +38,44 @@ seen_triangle seen_in(mesh_view<S> const& mesh, std::vector<std::uint32_t> const
   return {widened(mesh[i]), {merged[mesh.corner(i, 0)], merged[mesh.corner(i, 1)], merged[mesh.corner(i, 2)]}};
 }
 
-/// Adds the triangles behind number `i` that meet it.
+/// Throws `error` of a function for a mesh that it cannot look through in pairs.
 template <class S>
-void add_met_by(tree_ref<S> const& tree, std::vector<std::uint32_t> const& merged, std::size_t i,
-                std::vector<triangle_pair>& to) {
-  triangle<S> const t = tree.mesh[i];
-  if (!is_finite(t)) return;
-  seen_triangle const shape = seen_in(tree.mesh, merged, i);
-  if (!shape.has_area()) return;
-  tree.for_each_overlapping(tree_point(tree_box_of(t, tree_origin(tree.mesh))), [&](id other) {
-    if (other <= i) return true;
-    seen_triangle const second = seen_in(tree.mesh, merged, other);
-    if (second.has_area() && seen_triangle::meet(shape, second)) to.push_back({static_cast<id>(i), other});
-    return true;
+void check_for_pairs(mesh_view<S> const& mesh, std::string const& function) {
+  check_memory<host>(mesh, (function + ": the mesh is").c_str(), "copy it to the host");
+  if (mesh.size() >= std::size_t{1} << 29)
+    throw error("collide: " + function + ": a mesh has fewer than 2^29 triangles");
+  check_corners(mesh, function.c_str());
+}
+
+/// Calls f(i)(other, to) for all triangles i whose box, wider by `room` on all sides, meets that of a triangle of a
+/// larger number, and returns all that was added to the vectors `to`, sorted. Triangles that are not finite are left
+/// out.
+template <class Found, class S, class F>
+std::vector<Found> found_in_pairs(mesh_view<S> const& mesh, S room, host const& space, F const& f) {
+  std::vector<Found> found;
+  sah_tree<S> tree;
+  buffer<tree_node> nodes;
+  if (mesh.size() == 0 || !tree.build(space, mesh, nodes)) return found;
+  tree_ref<S> const ref{mesh, nodes.data(), tree.before()};
+  vec3<S> const wider(room, room, room);
+  constexpr std::size_t share = 256;
+  std::vector<std::vector<Found>> parts((mesh.size() + share - 1) / share);
+  for_each_block(space, parts.size(), [&](std::size_t p) {
+    for (std::size_t i = share * p; i < std::min(mesh.size(), share * (p + 1)); ++i) {
+      triangle<S> const t = mesh[i];
+      if (!is_finite(t)) continue;
+      auto const add = f(static_cast<id>(i));
+      vec3<S> const lower = min(min(t.a, t.b), t.c) - wider, upper = max(max(t.a, t.b), t.c) + wider;
+      ref.for_each_overlapping(tree_point(tree_box_of(triangle<S>{lower, upper, upper}, tree_origin(mesh))),
+                               [&](id other) {
+                                 if (other > i && is_finite(mesh[other])) add(other, parts[p]);
+                                 return true;
+                               });
+    }
   });
+  for (auto const& part : parts) found.insert(found.end(), part.begin(), part.end());
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 }  // namespace detail
@@ -70,25 +95,15 @@ void add_met_by(tree_ref<S> const& tree, std::vector<std::uint32_t> const& merge
 ///             with `bvh`, and 32 bytes for each vertex.
 template <class S>
 std::vector<triangle_pair> self_intersections(mesh_view<S> const& mesh, host const& space = host()) {
-  detail::check_memory<host>(mesh, "self_intersections: the mesh is", "copy it to the host");
-  if (mesh.size() >= std::size_t{1} << 29)
-    throw error("collide: self_intersections: a mesh has fewer than 2^29 triangles");
-  detail::check_corners(mesh, "self_intersections");
-  std::vector<triangle_pair> found;
-  detail::sah_tree<S> tree;
-  buffer<detail::tree_node> nodes;
-  if (mesh.size() == 0 || !tree.build(space, mesh, nodes)) return found;
+  detail::check_for_pairs(mesh, "self_intersections");
   auto const merged = detail::merged_vertices(mesh.vertices());
-  detail::tree_ref<S> const ref{mesh, nodes.data(), tree.before()};
-  constexpr std::size_t share = 256;
-  std::vector<std::vector<triangle_pair>> parts((mesh.size() + share - 1) / share);
-  detail::for_each_block(space, parts.size(), [&](std::size_t p) {
-    for (std::size_t i = share * p; i < std::min(mesh.size(), share * (p + 1)); ++i)
-      detail::add_met_by(ref, merged, i, parts[p]);
+  return detail::found_in_pairs<triangle_pair>(mesh, S(0), space, [&](id i) {
+    return [&, i, first = detail::seen_in(mesh, merged, i)](id other, std::vector<triangle_pair>& to) {
+      if (!first.has_area()) return;
+      detail::seen_triangle const second = detail::seen_in(mesh, merged, other);
+      if (second.has_area() && detail::seen_triangle::meet(first, second)) to.push_back({i, other});
+    };
   });
-  for (auto const& part : parts) found.insert(found.end(), part.begin(), part.end());
-  std::sort(found.begin(), found.end());
-  return found;
 }
 
 }  // namespace collide

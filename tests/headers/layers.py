@@ -25,7 +25,7 @@ LAYERS = {
     "grid": "detail/grid/ detail/tree/",
     "query": "detail/query/ concepts.hpp hit.hpp",
     "sinks": "detail/sinks/ sinks/",
-    "detector": "compiled.hpp detector.hpp self_intersections.hpp validate.hpp validate_closed.hpp",
+    "detector": "compiled.hpp detector.hpp self_intersections.hpp validate.hpp validate_closed.hpp validate_surface.hpp",
     "broad phases": "all_pairs.cuh automatic.cuh bucket.cuh bvh.cuh extend.hpp",
     "effect interface": "bodies.hpp columns.hpp effect.hpp integrators.hpp",
     "particles": "detail/particles/",
