@@ -63,6 +63,9 @@ class simulation {
   static constexpr bool asks_mesh = effects_type::any_mesh_contact || effects_type::overlaps;
 
   static_assert(detail::check_effects<execution_space, S, Effect...>());
+  static_assert(!effects_type::overlaps || detail::is_discrete<narrow_phase, S>,
+                "collide: granular_contact, and other effects that press on the mesh by forces, see it where a step "
+                "ends: take karabassi, and steps in which nothing moves farther than its radius");
   static_assert(
       !asks_mesh || detail::has_triangle_ref<index>::value,
       "collide: effects that touch the mesh need a broad phase whose index has a member triangle_ref(), such as "

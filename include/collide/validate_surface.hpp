@@ -18,7 +18,7 @@ namespace collide {
 enum class surface_problem : int {
   hanging_node,  ///< a corner of one lies in an edge of the other, where that has no corner: a T-junction
   crack,         ///< a corner of each lie next to each other, but not in the same point
-  overlap,       ///< both lie on each other in one plane
+  overlap,       ///< the two lie on each other in one plane
 };
 
 /// Number of kinds of problems.
@@ -84,7 +84,7 @@ class triangles_side_by_side {
     return false;
   }
   bool have_hanging_node() const { return hangs(first_, second_) || hangs(second_, first_); }
-  /// They are in one plane, and their shares of it have more than an edge in common.
+  /// True if the two are in one plane, and have more than an edge of it in common.
   bool overlap() const {
     vec3<double> const normal = normal_of(first_);
     double const length = std::sqrt(dot(normal, normal));
