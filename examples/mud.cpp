@@ -39,7 +39,7 @@ constexpr auto make = [](auto space, io::film const& film) {
   return mud<decltype(space)>(
       space, emit_from<shovel>{film.rate(), {static_cast<double>(film.particles) / 6, 0.1}}, gravity{},
       sphere_contact::from_restitution(0.15, duration, size, 1800, 0.1), cohesion{20}, bounce{0}, friction{0.3, 0.2},
-      adhesion{60, 2},
+      adhesion{60, 8},
       box_walls{{-box_walls::none, -half, -box_walls::none}, {box_walls::none, half, box_walls::none}, 0});
 };
 

@@ -196,8 +196,9 @@ inline bool is_number(nb::handle from, place const& at) {
   if (PyFloat_Check(from.ptr())) return true;
   if (!nb::hasattr(from, "__float__")) return false;
   if (!nb::hasattr(from, "ndim")) return true;
-  bool const is_scalar = nb::cast<int>(from.attr("ndim")) == 0;
-  return is_scalar && (is_on_host(at.device_type) || !nb::hasattr(from, "__dlpack__"));
+  int dimensions = 1;  // of a class such as numpy.ndarray it is no number
+  nb::try_cast(from.attr("ndim"), dimensions);
+  return dimensions == 0 && (is_on_host(at.device_type) || !nb::hasattr(from, "__dlpack__"));
 }
 
 /// A radius for all, or an array of shape (n,). `keep` holds the array.

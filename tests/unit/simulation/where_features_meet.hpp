@@ -349,7 +349,7 @@ void check_angular_momentum_of_riders(Space const& space) {
   collide::reaction_sums sums(space, 1, 1e-11);
   running_bodies<simulation> made(space, w, one_body(w, turns), Integrator{}, gravity{},
                                   sphere_contact::from_restitution(0.5, 0.02, 0.1, density_of_grains, 0.3), bounce{0.3},
-                                  friction{0.5, 0.5}, spin{0.02}, adhesion{30, 0.3}, sums.effect(density_of_grains),
+                                  friction{0.5, 0.5}, spin{0.02}, adhesion{30, 1}, sums.effect(density_of_grains),
                                   moving_bodies<>{});
   made.simulation.steps(600, S(1e-3));
   auto const stuck = made.simulation.template to_host<collide::adhered>();

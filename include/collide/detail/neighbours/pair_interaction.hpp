@@ -8,6 +8,7 @@
 
 #include <collide/detail/neighbours/first_neighbours.hpp>
 #include <collide/detail/neighbours/particle_order.hpp>
+#include <collide/detail/particles/effect_list.hpp>
 
 namespace collide::detail {
 
