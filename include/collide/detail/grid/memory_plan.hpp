@@ -48,7 +48,7 @@ struct memory_plan {
     std::uint32_t most_bits = 12;
     std::size_t const cells =
         std::max({serves_steps ? triangles : std::min(triangles, spheres),
-                  std::min(4 * triangles, std::size_t{1} << 18), std::min(spheres / 16, 16 * triangles)});
+                  std::min(4 * triangles, std::size_t{1} << 18), std::min(spheres / 16, std::max(16 * triangles, std::size_t{1} << 17))});
     while (most_bits < 28 && (std::size_t{1} << most_bits) < cells) ++most_bits;
     for (int g = wanted; g > 0; --g) {
       auto const grids = static_cast<std::size_t>(g);

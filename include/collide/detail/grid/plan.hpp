@@ -53,11 +53,21 @@ struct level_cost {
   float reach;
   float path;  ///< how far a sphere moves
   share_of_pairs const& share;
+  float sides[3];     ///< of the grid
+  float entry_limit;  ///< as `grid_request` has it
+  float most_cells;   ///< without wrapping
+
+  /// True if the memory for a part of the entries and cells suffices. Long triangles that go more than once around what
+  /// wraps are not cut (triangle_cells.hpp), and so in all cells.
+  COLLIDE_HD_INLINE bool fits(triangle_sums const& t, float width, float part) const {
+    float const cells = (sides[0] / width + 1) * (sides[1] / width + 1) * (sides[2] / width + 1);
+    return t.entries(width, reach) <= part * entry_limit && (share.full() > 0.5f || cells <= part * most_cells);
+  }
 
   COLLIDE_HD_INLINE float operator()(triangle_sums const& t, float width) const {
     float const pairs = spheres * t.count * share(reach + 0.5f * width, t.mean_extent()), cells = path / width;
     return costs.entry_ns * t.entries(width, reach) + costs.serial_ns * t.largest().entries(width, reach) +
-           costs.candidate_ns * pairs * (1 + cells) + costs.step_ns * spheres * cells;
+           (costs.candidate_ns + costs.thin_ns * (1 - share.full())) * pairs * (1 + cells) + costs.step_ns * spheres * cells;
   }
 };
 
@@ -120,6 +130,7 @@ struct plan_grid {
   struct scratch {
     pair_distances distances;
     triangle_aabb<S> boxes[pair_distances::triangles];
+    thin_part<S> parts[pair_distances::triangles];
     triangle_sums classes[size_classes];  ///< of triangles of rising sizes
     float class_end[size_classes];
     typename Block::template reduce_storage<cell_choice> reduction;
@@ -138,9 +149,9 @@ struct plan_grid {
         s.distances.counts[b] = 0;
       }
       for (auto i = static_cast<std::uint32_t>(thread_rank); i < pair_distances::triangles; i += Block::num_threads) {
-        s.boxes[i] = sampled_box(i);
+        sample(s, i);
       }
-      if (thread_rank == 0) s.distances.sampled = s.distances.path = 0;
+      if (thread_rank == 0) s.distances.sampled = s.distances.path = s.distances.thin = 0;
     });
     if (block.broadcast(s.planned.levels) == 0) {
       return block.for_each_thread([&](int thread_rank) {
@@ -203,9 +214,11 @@ struct plan_grid {
     return g;
   }
 
-  COLLIDE_HD triangle_aabb<S> sampled_box(std::uint32_t i) const {
-    std::size_t const t = mesh.size() * i / pair_distances::triangles;
-    return boxes != nullptr ? boxes[t] : triangle_aabb_of(mesh[t]);
+  template <class Scratch>
+  COLLIDE_HD_INLINE void sample(Scratch& s, std::uint32_t i) const {
+    triangle<S> const t = mesh[mesh.size() * i / pair_distances::triangles];
+    s.boxes[i] = triangle_aabb_of(t);
+    s.parts[i] = thin_part<S>::of(t);
   }
 
   template <class Block, class Scratch>
@@ -233,12 +246,16 @@ struct plan_grid {
         for (std::uint32_t k = 0; k < pairs_of_sphere; ++k) {
           triangle_aabb<S> const& b = s.boxes[j % parts * pairs_of_sphere + k];
           if (b.is_empty()) continue;
-          S const distance = max(b.axis_distance(0, here.centre.x()),
-                                 max(b.axis_distance(1, here.centre.y()), b.axis_distance(2, here.centre.z())));
+          S const outside = max(b.axis_distance(0, here.centre.x()),
+                                max(b.axis_distance(1, here.centre.y()), b.axis_distance(2, here.centre.z())));
+          S const distance = max(outside, s.parts[j % parts * pairs_of_sphere + k].distance(here.centre));
           block.add(s.distances.counts[pair_distances::bin_of(static_cast<float>(distance * scale))], 1);
         }
       }
       for (int c = thread_rank; c < size_classes; c += Block::num_threads) sum_class(s, c);
+      for (auto k = static_cast<std::uint32_t>(thread_rank); k < pair_distances::triangles; k += Block::num_threads) {
+        if (s.parts[k].is_thin()) block.add(s.distances.thin, 1);
+      }
     });
   }
 
@@ -275,8 +292,11 @@ struct plan_grid {
       triangle_sums all{};
       for (int c = 0; c < size_classes; ++c) all += s.classes[c];
       share_of_pairs const share(s.distances);
-      level_cost const cost{request.costs, spheres_served(s), static_cast<float>(s.planned.dilation / s.extent),
-                            s.distances.mean_path(), share};
+      level_cost cost{request.costs, spheres_served(s), static_cast<float>(s.planned.dilation / s.extent),
+                      s.distances.mean_path(), share, {}, request.entry_limit,
+                      static_cast<float>(std::uint64_t{1} << request.table_bits)};
+      for (int k = 0; k < 3; ++k)
+        cost.sides[k] = static_cast<float>((s.planned.upper[k] - s.planned.lower[k]) / s.extent);
       best[thread_rank] = {unlimited, width_at(0), 0, 0};
       if (request.cell_width > 0) {
         float const asked = max(narrowest, static_cast<float>(request.cell_width / s.extent));
@@ -285,7 +305,7 @@ struct plan_grid {
       }
       for (int i = thread_rank; i < widths + size_classes; i += Block::num_threads) {
         cell_choice const next =
-            i < widths ? of_width(all, width_at(i), request.entry_limit, cost) : of_split(s, i - widths, cost);
+            i < widths ? of_width(all, width_at(i), 1, cost) : of_split(s, i - widths, cost);
         best[thread_rank] = cell_choice::cheaper{}(best[thread_rank], next);
       }
     });
@@ -295,9 +315,9 @@ struct plan_grid {
     });
   }
 
-  static COLLIDE_HD_INLINE cell_choice of_width(triangle_sums const& all, float width, float entry_limit,
+  static COLLIDE_HD_INLINE cell_choice of_width(triangle_sums const& all, float width, float part,
                                                 level_cost const& cost) {
-    bool const allowed = width >= narrowest && all.entries(width, cost.reach) <= entry_limit;
+    bool const allowed = width >= narrowest && cost.fits(all, width, part);
     return {allowed ? cost(all, width) : unlimited, width, 0, 0};
   }
 
@@ -325,7 +345,7 @@ struct plan_grid {
     for (int step = 4; step > 0; step -= 3) {
       COLLIDE_NO_UNROLL
       for (int i = begin; i < end; i += step) {
-        cell_choice const next = of_width(some, width_at(i), request.entry_limit / 2, cost);
+        cell_choice const next = of_width(some, width_at(i), 0.5f, cost);
         if (next.cost < best.cost) best = next, around = i;
       }
       begin = max(around - 3, 0), end = min(around + 4, widths);
