@@ -19,7 +19,7 @@
 #include <vector>
 
 #include <collide/automatic.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "stopwatch.hpp"
 
@@ -225,9 +225,9 @@ void run(Space const& space, std::size_t scale, int begin, int end) {
     family const f = family_of(i, scale);
     scene const s = make(f, static_cast<std::uint64_t>(i));
     auto const mesh = collide::upload(space, collide::triangle_soup(s.corners.data(), s.corners.size() / 9));
-    auto const spheres = collide::upload(
-        space, f.ratio > 1 ? collide::spheres_xyz(s.centres.data(), s.radii.size(), s.radii.data())
-                           : collide::spheres_xyz(s.centres.data(), s.radii.size(), s.radii[0]));
+    auto const spheres =
+        collide::upload(space, f.ratio > 1 ? collide::spheres_xyz(s.centres.data(), s.radii.size(), s.radii.data())
+                                           : collide::spheres_xyz(s.centres.data(), s.radii.size(), s.radii[0]));
     std::uint64_t pairs[3];
     int const runs = Space::host_accessible ? 2 : 6;
     taken const by_bucket = time<collide::bucket>(space, mesh.view(), spheres.view(), runs, pairs[0]);
