@@ -19,11 +19,11 @@ DOCS = ROOT / "docs"
 # The navigation: parts, and their pages in this order. `*` is all pages of a folder. Pages that are in no part are for
 # developers: they are below "contributing".
 NAV = {
-    "Use": ["install", "guide", "python", "choosing", "programs", "gallery"],
+    "Use": ["install", "guide", "python", "from_open3d", "programs", "gallery"],
     "Tutorials": ["tutorials/*"],
-    "Simulations": ["simulation", "bodies", "granular", "checkpoints", "effects", "ranks"],
-    "Reference": ["api/index", "accuracy", "verification", "performance", "glossary"],
-    "Project": ["changelog", "contributing"],
+    "Simulations": ["simulation", "units", "bodies", "granular", "ranks"],
+    "Reference": ["api/index", "accuracy", "verification", "performance", "trouble", "glossary"],
+    "Project": ["versions", "changelog", "contributing"],
 }
 # Pages that stand elsewhere in the repository.
 ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHANGELOG.md", "index": ROOT / "README.md",
@@ -143,7 +143,7 @@ class Site:
 
     def for_developers(self):
         users = {"index", *(n for entries in NAV.values() for n in self.part(entries))}
-        return toctree(["design", *sorted(n for n in set(self.pages) - users - {"design"} if not n.startswith("api/"))])
+        return toctree(sorted(n for n in set(self.pages) - users if not n.startswith("api/")))
 
     def reference(self):
         """Each public header is in one page of docs/api/."""

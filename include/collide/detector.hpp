@@ -36,7 +36,7 @@ namespace collide {
 /// \tparam Scalar          type of the coordinates: float or double; nothing is ever narrowed silently
 ///
 /// Memory is taken from the space's resource and kept: once everything has run with the same sizes nothing is allocated
-/// (on the host that takes two queries, as the second may go another way; see docs/design.md). `reserve` takes it
+/// (on the host that takes two queries, as the second may go another way; see docs/development/design.md). `reserve` takes it
 /// ahead, so that nothing is allocated as hits grow.
 /// A detector can be moved, but not copied.
 ///

@@ -11,7 +11,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = ROOT / "include" / "collide"
-PAGE = ROOT / "docs" / "design.md"
+PAGE = ROOT / "docs" / "development" / "design.md"
 
 # From the lowest to the highest: the headers of a layer, and the folders of which all headers are its own.
 LAYERS = {
@@ -41,7 +41,7 @@ LAYERS = {
 
 
 def pictured_layers():
-    """The layers of the picture in docs/design.md, from the lowest to the highest."""
+    """The layers of the picture in docs/development/design.md, from the lowest to the highest."""
     picture = PAGE.read_text().split("## Layers", 1)[1].split("\n## ", 1)[0]
     return re.findall(r"^    (\w+(?: \w+)*)  ", picture, re.MULTILINE)[::-1]
 
@@ -123,7 +123,7 @@ def self_test():
 def check():
     yield from problems(read_headers())
     if pictured_layers() != list(LAYERS):
-        yield f"docs/design.md shows other layers: {', '.join(pictured_layers())}"
+        yield f"docs/development/design.md shows other layers: {', '.join(pictured_layers())}"
 
 
 if __name__ == "__main__":
