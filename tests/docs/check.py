@@ -7,8 +7,8 @@ examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md and docs/development/words.md is in the code of the file, or folder, that it is said to be in;
           words are in order. So is each name of the table of headers in docs/install.md; each effect of docs/simulation.md has a header
           of its own name, or is in the page's table of other headers.
-members   The tables of members in docs/guide.md have all that the headers have, and nothing else; those of docs/api/results.md
-          are what scripts/members writes.
+members   The tables of members in docs/guide.md have all that the headers have, and nothing else; the pages of docs/api/
+          are as scripts/members writes them.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; the README is short; no docstring of include/ begins with
           a word of FOREIGN_BEGINNINGS, which name nothing.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
