@@ -1,8 +1,8 @@
 """pages.py HTML: the site in this folder is whole.
 
 Every link and picture of a page is there; pictures have a size, and all but the first of the landing page are loaded when they
-come into view; the landing page has three doors, an icon and tags for other sites; nothing refers to a path of Debian; dark mode
-is in the theme, if it is PyPI's; all together is at most 15 MB.
+come into view; the landing page has three doors, an icon and tags for other sites; PyPI's theme refers to
+no path of one machine (Debian's does); all together is at most 15 MB.
 """
 import pathlib
 import re
@@ -48,7 +48,7 @@ def problems(root):
         if len(re.findall(pattern, index)) < least:
             yield f"index.html: there is no {what}"
     for sheet in root.rglob("*.css"):
-        if "url(/" in sheet.read_text() and (root / "_static" / "skeleton.css").exists():  # PyPI's theme
+        if "url(/" in sheet.read_text() and "prefers-color-scheme" in sheet.read_text():  # PyPI's theme
             yield f"{sheet.relative_to(root)}: a path of one machine"
     size = sum(path.stat().st_size for path in root.rglob("*") if path.is_file())
     if size > MOST:
