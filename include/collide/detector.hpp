@@ -5,12 +5,12 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/concepts.hpp>
-#include <collide/detail/query/query_pass.hpp>
-#include <collide/error.hpp>
+#include <collide/core/error.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/mesh.hpp>
+#include <collide/query/concepts.hpp>
+#include <collide/query/detail/query_pass.hpp>
 #include <collide/sinks/any_hit.hpp>
 #include <collide/sinks/closest.hpp>
 #include <collide/sinks/contacts.hpp>
@@ -21,7 +21,7 @@
 #if defined(__CUDACC__)
 #include <collide/cuda.cuh>
 #else
-#include <collide/detail/execution/cuda_without_nvcc.hpp>
+#include <collide/spaces/detail/cuda_without_nvcc.hpp>
 #endif
 
 namespace collide {
@@ -36,9 +36,8 @@ namespace collide {
 /// \tparam Scalar          type of the coordinates: float or double; nothing is ever narrowed silently
 ///
 /// Memory is taken from the space's resource and kept: once everything has run with the same sizes nothing is allocated
-/// (on the host that takes two queries, as the second may go another way; see docs/development/design.md). `reserve` takes it
-/// ahead, so that nothing is allocated as hits grow.
-/// A detector can be moved, but not copied.
+/// (on the host that takes two queries, as the second may go another way; see docs/development/design.md). `reserve`
+/// takes it ahead, so that nothing is allocated as hits grow. A detector can be moved, but not copied.
 ///
 /// In the CUDA spaces work is put on the space's stream, and the host waits only to read a size back: each sink says
 /// when. What a call reads must stay valid and unchanged until that work is done; on the host, until the call returns.
