@@ -2,6 +2,10 @@
 /// every division into triangles, and makes no energy. Instantiated by test_surfaces.cpp and test_surfaces_cuda.cpp.
 #pragma once
 
+#include <string>
+
+#include <collide/effects/bounds.hpp>
+
 #include "simulation/granular.hpp"
 
 namespace tests {
@@ -222,7 +226,7 @@ class random_division {
 /// One flat wall, |x|, |y| < 0.1, in pieces.
 template <class S>
 struct wall_in_pieces {
-  char const* name;
+  std::string name;
   world<S> w;
   std::vector<body> bodies;
   double steps = 0;     ///< of its triangles out of the plane
@@ -420,6 +424,49 @@ void check_energy_in_troughs(Space const& space, double seconds) {
       CHECK(energy() == doctest::Approx(start).epsilon(0.01).scale(0));
     }
     CHECK(std::abs(balls.made.positions()[0] - w.centres[0]) > 1e-3);
+  }
+}
+
+/// Grains of two sizes, some across the sides of a box that repeats, come to rest, and to sleep, on bodies in pieces as
+/// they do on one wall, and press with their weight.
+template <class Space>
+void check_features_on_pieces(Space const& space) {
+  using law = granular_contact<hertz, mindlin, collide::epsd>;
+  using simulation =
+      collide::simulation<meets_mesh<Space, collide::karabassi<>, double>, collide::polydisperse, collide::periodic_box,
+                          collide::sleep, gravity, law, collide::reaction, velocity_verlet, moving_bodies<>>;
+  double const radius = 0.01, small = 0.006, half = 0.08, dt = 1e-4, mass = ball_and_wall{}.mass();
+  int const n = 12;
+  std::vector<double> of_one;
+  for (auto& wall : walls_in_pieces<double>(small)) {
+    bool const is_plain = wall.bodies.empty() && wall.steps == 0;
+    if (wall.velocity != 0 || (is_plain && !of_one.empty())) continue;
+    CAPTURE(wall.name);
+    double all = 0;
+    for (int k = 0; k < n; ++k) {
+      double const r = k % 2 == 0 ? radius : small, x = k % 4 == 0 ? half - 0.001 : 0.022 * (k % 4) - 0.04;
+      wall.w.particle(x, 0.03 * (k / 4) - 0.03, r, 0.1, 0.02 * k - 0.1, 0);
+      wall.w.radii.push_back(r);
+      all += mass * std::pow(r / radius, 3);
+    }
+    if (wall.bodies.empty()) wall.bodies = one_body(wall.w, {});
+    collide::reaction_sums sums(space, wall.bodies.size(), mass * 1e-12);
+    running_bodies<simulation> made(
+        space, wall.w, wall.bodies, collide::polydisperse{}, collide::periodic_box{{-half, -half, -1}, {half, half, 1}},
+        collide::sleep{1e-3, 100}, gravity{}, law{collide::one_material({1e7, 0.2, 2500}, {0.2, 0.5, 0.1})},
+        sums.effect(2500), velocity_verlet{}, moving_bodies<>{});
+    made.simulation.steps(2500, dt);
+    for (auto const slow : made.simulation.template to_host<collide::slow_steps>()) CHECK(int(slow) >= 100);
+    auto const x = made.positions();
+    if (of_one.empty()) of_one = x;
+    double off = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) off = std::max(off, std::abs(x[k] - of_one[k]));
+    CHECK(off < (wall.steps > 0 ? 1e-4 : 1e-7));
+    sums.clear(space);
+    made.simulation.steps(200, dt);
+    double given = 0;
+    for (auto const& of : sums.read(space)) given += of.linear[2];
+    CHECK(given == doctest::Approx(-all * 9.81 * 200 * dt).epsilon(0.02).scale(0));
   }
 }
 

@@ -24,7 +24,12 @@ TEST_CASE("surfaces: impacts in folds make no energy") { tests::check_energy_in_
 
 TEST_CASE("surfaces: a trough makes no energy") { tests::check_energy_in_troughs(host(1), 0.4); }
 
+TEST_CASE("surfaces: grains of two sizes in a box that repeats come to rest and sleep on bodies in pieces") {
+  tests::check_features_on_pieces(host(1));
+}
+
 TEST_CASE("surfaces: the same bits as blocks of threads go") {
   tests::check_same_surfaces<double>(blocks(), 16, 200, 300);
   tests::check_same_surfaces<float>(blocks(), 16, 200, 300);
+  tests::check_same_surfaces<double>(host(2), 16, 200, 300);
 }
