@@ -483,7 +483,7 @@ world<S> grains_on_pieces(int n, int triangles) {
   return w;
 }
 
-/// What a wall of pieces does has the same bits in every space.
+/// Grains on a wall of pieces have the same bits in every space.
 template <class S, class Space>
 void check_same_surfaces(Space const& space, int n, int triangles, std::size_t steps) {
   ball_and_wall of;
