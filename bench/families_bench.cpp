@@ -2,12 +2,12 @@
 /// Whether `automatic` is as fast as the faster of `bucket` and `bvh`, in scenes that nothing was tuned for:
 /// families_bench [host|device] [SCALE] [FIRST] [END]
 ///
-/// There are 40 families of random scenes: triangles compact, long, giants among small ones, of two sizes, few, many;
-/// spheres few, many, clustered, far; radii from 1:1 to 1:1000. Prints a line of JSON for each: milliseconds of build
-/// and query (`first`), and of the same query again (`again`), of each broad phase, and how `automatic` compares with
-/// the faster one. Even families are to tune on, odd ones to judge by. SCALE divides the numbers of triangles and
-/// spheres. On the host, time is that of one processor; on a device, between events. Built by hand with nvcc
-/// (docs/development/benchmarks.md), or as a target without it.
+/// There are 40 families of random scenes: triangles compact, long, in bundles, giants among small ones, of two sizes,
+/// few, many; spheres few, many, clustered, far; radii from 1:1 to 1:1000. Prints a line of JSON for each: milliseconds
+/// of build and query (`first`), and of the same query again (`again`), of each broad phase, and how `automatic`
+/// compares with the faster one. Even families are to tune on, odd ones to judge by. SCALE divides the numbers of
+/// triangles and spheres. On the host, time is that of one processor; on a device, between events. Built by hand with
+/// nvcc (docs/development/benchmarks.md), or as a target without it.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -125,6 +125,11 @@ scene make(family const& f, std::uint64_t seed) {
       point const at = in_cube(random, half);
       if (kind == "soup") add_triangle(s, random, at, apart * random.between(0.3, 1), 1);
       if (kind == "long" || kind == "rods") add_triangle(s, random, at, long_edge, 0.002);
+      if (kind == "bundle") {  // side by side, across the axes
+        point const along = half * point{{0.8, 0.5, 0.4}} + 0.02 * in_cube(random, half),
+                    from = 0.2 * at + -0.5 * along;
+        add_triangle(s, from, from + along, from + 0.01 * in_cube(random, half));
+      }
       if (kind == "bars") {  // along the axes
         point along{}, across{};
         along.x[i % 3] = long_edge, across.x[(i + 1) % 3] = long_edge * 0.01;
@@ -173,7 +178,7 @@ family family_of(int i, std::size_t scale) {
   double const least = std::string(f.triangles) == "giants" ? 3000 : 12;
   f.triangle_count = static_cast<std::size_t>(std::max(least, triangles / static_cast<double>(scale)));
   f.sphere_count = static_cast<std::size_t>(std::max(100.0, spheres / static_cast<double>(scale)));
-  if (std::string(f.triangles) == "long" || std::string(f.triangles) == "rods")
+  if (std::strchr("lrb", f.triangles[0]) != nullptr)
     f.triangle_count = std::min<std::size_t>(f.triangle_count, 100000 / scale);
   f.ratio = random.unit() < 0.5 ? 1 : random.spread(3, 1000);
   f.radius = random.spread(0.05, f.ratio > 1 ? 2 : 0.6);
@@ -191,7 +196,7 @@ struct watch_of<collide::host> : bench::processor_stopwatch {
 };
 
 struct taken {
-  double first_ms, again_ms;
+  double first_ms, again_ms, cell;  ///< the width of cells in the end
 };
 
 /// Least memory is allocated: the detector has seen the scene once.
@@ -213,10 +218,10 @@ taken time(Space const& space, collide::mesh_view<float> mesh, collide::sphere_v
     if (k == 0 && spent < 1) continue;
     first.push_back(one);
     again.push_back(two);
-    for (int more = 0; more < 2; ++more) again.push_back(watch([&] { detector.query(spheres, found); }));
+    for (int more = 0; more < 3; ++more) again.push_back(watch([&] { detector.query(spheres, found); }));
   }
   pairs = found.total();
-  return {1e3 * bench::median(first), 1e3 * bench::median(again)};
+  return {1e3 * bench::median(first), 1e3 * bench::median(again), detector.cell_width()};
 }
 
 template <class Space>
@@ -237,12 +242,12 @@ void run(Space const& space, std::size_t scale, int begin, int end) {
     std::printf(
         "{\"family\": %d, \"triangles\": \"%s\", \"spheres\": \"%s\", \"triangle_count\": %zu, \"sphere_count\": %zu, "
         "\"ratio\": %.3g, \"radius\": %.3g, \"pairs\": %llu, \"same\": %s, \"bucket\": [%.4g, %.4g], \"bvh\": [%.4g, "
-        "%.4g], \"automatic\": [%.4g, %.4g], \"over_best\": [%.3f, %.3f]}\n",
+        "%.4g], \"automatic\": [%.4g, %.4g], \"over_best\": [%.3f, %.3f], \"cells\": [%.3g, %.3g]}\n",
         i, f.triangles, f.spheres, mesh.view().size(), spheres.view().size(), f.ratio, f.radius,
         static_cast<unsigned long long>(pairs[0]), same ? "true" : "false", by_bucket.first_ms, by_bucket.again_ms,
         by_bvh.first_ms, by_bvh.again_ms, by_automatic.first_ms, by_automatic.again_ms,
         by_automatic.first_ms / std::min(by_bucket.first_ms, by_bvh.first_ms),
-        by_automatic.again_ms / std::min(by_bucket.again_ms, by_bvh.again_ms));
+        by_automatic.again_ms / std::min(by_bucket.again_ms, by_bvh.again_ms), by_bucket.cell, by_automatic.cell);
     std::fflush(stdout);
   }
 }

@@ -124,6 +124,7 @@ template <class S>
 struct query_plan {
   grid_request_radii<S> grids;  ///< that it needs
   bool makes_grids = false;     ///< those that are there do not serve
+  std::size_t spheres = 0;      ///< of all queries to come, at least; more pay for narrower cells
   query_order order = query_order::sphere_major;
 };
 
@@ -236,6 +237,9 @@ class bucket::index {
   static constexpr std::size_t fixed_bytes =
       sizeof(detail::mesh_statistics<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
 
+  /// So many queries of few spheres go through all triangles; then these are entered.
+  static constexpr std::size_t few_queries = 2;
+
   /// Up to so many triangles entries have memory for as many as there may be; the device is asked how many there are if
   /// there are more triangles, or several grids.
   static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
@@ -260,12 +264,16 @@ class bucket::index {
   template <class Space>
   detail::query_plan<S> plan_query(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     detail::query_plan<S> plan = plan_grids(space, spheres, grids_.asked.whole_boxes);
-    // entering the triangles pays where few spheres come again and again (docs/development/design.md)
-    bool const pays = queries_ == 0 || spheres.size() >= mesh_.size() / 8;
     bool const has_grids = plan.makes_grids || grids_.count != 0;
-    if (pays && has_grids && can_bin<Space>(options, spheres.size())) {
-      plan.order = detail::query_order::triangle_major;
-      plan.makes_grids = plan.makes_grids || spheres.size() / 8 > grids_.spheres;
+    if (has_grids && can_bin<Space>(options, spheres.size())) {
+      // entering the triangles pays where few spheres come again and again (docs/development/design.md)
+      if (queries_ < few_queries || spheres.size() >= mesh_.size() / 8) {
+        plan.order = detail::query_order::triangle_major;
+        plan.makes_grids = plan.makes_grids || spheres.size() / 8 > grids_.spheres;
+      } else {
+        plan.spheres = mesh_.size();
+        plan.makes_grids = plan.makes_grids || grids_.spheres < plan.spheres;
+      }
     }
     return plan;
   }
@@ -324,7 +332,7 @@ class bucket::index {
   /// Makes what a plan needs of the mesh.
   template <class Space, class Spheres>
   void carry_out(Space& space, bucket const& options, Spheres const& spheres, detail::query_plan<S> const& plan) {
-    if (plan.makes_grids) make_grids(space, options, plan.grids, spheres);
+    if (plan.makes_grids) make_grids(space, options, plan, spheres);
     grids_.asked.whole_boxes = plan.grids.whole_boxes;
     ++queries_;
     order_ = plan.order;
@@ -347,13 +355,14 @@ class bucket::index {
 
   /// Chooses the cells of grids up to these radii, as many as the budget allows, for these spheres.
   template <class Space, class Spheres>
-  void make_grids(Space& space, bucket const& options, detail::grid_request_radii<S> const& asked,
-                  Spheres const& spheres) {
+  void make_grids(Space& space, bucket const& options, detail::query_plan<S> const& wanted, Spheres const& spheres) {
     forget_grids();  // until all is done: an exception leaves no half-made grid behind
+    detail::grid_request_radii<S> const& asked = wanted.grids;
+    std::size_t const sphere_count = std::max(spheres.size(), wanted.spheres);
     auto const* const boxes = measures_.boxes();
     std::size_t const taken = fixed_bytes + (boxes != nullptr ? mesh_.size() * sizeof *boxes : 0);
-    auto const plan = detail::memory_plan::make(mesh_.size(), spheres.size(), asked.count, options.cell_width > 0,
-                                                taken, options.memory_budget, detail::serves_steps<Space>);
+    auto const plan = detail::memory_plan::make(mesh_.size(), sphere_count, asked.count, options.cell_width > 0, taken,
+                                                options.memory_budget, detail::serves_steps<Space>);
     if (plan.grids != 0) {
       auto const count = static_cast<std::size_t>(plan.grids);
       // what is held for another number of cells would come on top of what the budget was planned for
@@ -368,6 +377,7 @@ class bucket::index {
                                       asked.whole_boxes,
                                       0.5f * static_cast<float>(plan.entries) / static_cast<float>(plan.grids),
                                       plan.table_bits,
+                                      static_cast<float>(sphere_count),
                                       bucket_tuning<Space>::costs};
       std::copy(asked.reaches, asked.reaches + detail::max_grids, request.reaches);
       detail::plan_grid<S, Spheres> kernel{mesh_, boxes,   spheres, measures_.statistics.data(),
@@ -387,7 +397,7 @@ class bucket::index {
       ref_.grid_count = plan.grids;
     }
     grids_.asked = asked;
-    grids_.spheres = spheres.size();
+    grids_.spheres = sphere_count;
   }
 
   /// Enters the triangles into the cells, unless they are there, or there are no grids.

@@ -9,17 +9,18 @@ namespace collide {
 
 /// Costs of the cells of `bucket`, in nanoseconds; only the ratios count.
 struct bucket_costs {
-  float entry_ns;      ///< to enter a triangle into a cell
-  float candidate_ns;  ///< to look at a triangle that is in a sphere's cell
-  float level_ns;      ///< to look into another cell, of another level, for each sphere
-  float step_ns;       ///< to go on by the width of a cell on the way of a sphere that moves
-  float serial_ns;     ///< to enter the largest triangle into another cell, which one block does while others are done
-  float thin_ns;       ///< to look closer at a triangle that fills a small part of its box
+  float entry_ns;       ///< to enter a triangle into a cell
+  float candidate_ns;   ///< to look at a triangle that is in a sphere's cell
+  float level_ns;       ///< to look into another cell, of another level, for each sphere
+  float step_ns;        ///< to go on by the width of a cell on the way of a sphere that moves
+  float serial_ns;      ///< to enter the largest triangle into another cell, which one block does while others are done
+  float thin_ns;        ///< to look closer at a triangle that fills a small part of its box
+  float thin_entry_ns;  ///< to enter such a triangle, more than another
 };
 
 /// How `bucket` works on a host: one core after the other waits for the memory.
 struct host_bucket_tuning {
-  static constexpr bucket_costs costs{30, 0.3f, 10, 3, 0, 9};
+  static constexpr bucket_costs costs{30, 0.3f, 10, 3, 0, 6, 120};
   /// True if many spheres are sorted into the cells, and triangles look for them, rather than the other way round.
   /// Needs memory that the host can access, and blocks of one thread with 64 items.
   static constexpr bool bins_spheres = true;
@@ -27,7 +28,7 @@ struct host_bucket_tuning {
 
 /// How `bucket` works on a device, with many threads.
 struct device_bucket_tuning {
-  static constexpr bucket_costs costs{0.12f, 0.004f, 0.06f, 0.04f, 7, 0};
+  static constexpr bucket_costs costs{0.12f, 0.004f, 0.06f, 0.04f, 7, 0, 0};
   static constexpr bool bins_spheres = false;
 };
 

@@ -53,22 +53,24 @@ struct level_cost {
   float reach;
   float path;  ///< how far a sphere moves
   share_of_pairs const& share;
-  float sides[3];     ///< of the grid
-  float entry_limit;  ///< as `grid_request` has it
-  float most_cells;   ///< without wrapping
-
-  /// True if the memory for a part of the entries and cells suffices. Long triangles that go more than once around what
-  /// wraps are not cut (triangle_cells.hpp), and so in all cells.
-  COLLIDE_HD_INLINE bool fits(triangle_sums const& t, float width, float part) const {
-    float const cells = (sides[0] / width + 1) * (sides[1] / width + 1) * (sides[2] / width + 1);
-    return t.entries(width, reach) <= part * entry_limit && (share.full() > 0.5f || cells <= part * most_cells);
-  }
+  float sides[3];    ///< of the grid
+  float most_cells;  ///< of two levels; where there are more they wrap
 
   COLLIDE_HD_INLINE float operator()(triangle_sums const& t, float width) const {
     float const pairs = spheres * t.count * share(reach + 0.5f * width, t.mean_extent()), cells = path / width;
-    return costs.entry_ns * t.entries(width, reach) + costs.serial_ns * t.largest().entries(width, reach) +
-           (costs.candidate_ns + costs.thin_ns * (1 - share.full())) * pairs * (1 + cells) +
-           costs.step_ns * spheres * cells;
+    float const thin = 1 - share.full();
+    return (costs.entry_ns + costs.thin_entry_ns * thin) * t.entries(width, reach) +
+           costs.serial_ns * t.largest().entries(width, reach) +
+           (costs.candidate_ns + costs.thin_ns * thin) * pairs * (1 + cells) + costs.step_ns * spheres * cells;
+  }
+
+  /// False if long thin triangles go around what wraps more than once: they are not cut then (triangle_cells.hpp), and
+  /// in nearly all cells.
+  COLLIDE_HD_INLINE bool cuts(triangle_sums const& t, float width) const {
+    float cells = 1;
+    for (float const side : sides) cells *= side / width + 1;
+    float const box = (t.widest + 2 * reach) / width;
+    return share.full() > 0.5f || cells <= most_cells || box * box * box < most_cells;
   }
 };
 
@@ -81,6 +83,7 @@ struct grid_request {
   bool whole_boxes;          ///< as `grid` has it
   float entry_limit;         ///< how many entries a grid may have, about
   std::uint32_t table_bits;  ///< log2 of the number of cells per grid
+  float spheres;             ///< of all queries to come
   bucket_costs costs;
 };
 
@@ -299,8 +302,7 @@ struct plan_grid {
                       s.distances.mean_path(),
                       share,
                       {},
-                      request.entry_limit,
-                      static_cast<float>(std::uint64_t{1} << request.table_bits)};
+                      0.5f * exp2f(static_cast<float>(request.table_bits))};
       for (int k = 0; k < 3; ++k)
         cost.sides[k] = static_cast<float>((s.planned.upper[k] - s.planned.lower[k]) / s.extent);
       best[thread_rank] = {unlimited, width_at(0), 0, 0};
@@ -310,7 +312,8 @@ struct plan_grid {
         return;
       }
       for (int i = thread_rank; i < widths + size_classes; i += Block::num_threads) {
-        cell_choice const next = i < widths ? of_width(all, width_at(i), 1, cost) : of_split(s, i - widths, cost);
+        cell_choice const next =
+            i < widths ? of_width(all, width_at(i), request.entry_limit, cost) : of_split(s, i - widths, cost);
         best[thread_rank] = cell_choice::cheaper{}(best[thread_rank], next);
       }
     });
@@ -320,9 +323,9 @@ struct plan_grid {
     });
   }
 
-  static COLLIDE_HD_INLINE cell_choice of_width(triangle_sums const& all, float width, float part,
+  static COLLIDE_HD_INLINE cell_choice of_width(triangle_sums const& all, float width, float entry_limit,
                                                 level_cost const& cost) {
-    bool const allowed = width >= narrowest && cost.fits(all, width, part);
+    bool const allowed = width >= narrowest && all.entries(width, cost.reach) <= entry_limit && cost.cuts(all, width);
     return {allowed ? cost(all, width) : unlimited, width, 0, 0};
   }
 
@@ -350,7 +353,7 @@ struct plan_grid {
     for (int step = 4; step > 0; step -= 3) {
       COLLIDE_NO_UNROLL
       for (int i = begin; i < end; i += step) {
-        cell_choice const next = of_width(some, width_at(i), 0.5f, cost);
+        cell_choice const next = of_width(some, width_at(i), request.entry_limit / 2, cost);
         if (next.cost < best.cost) best = next, around = i;
       }
       begin = max(around - 3, 0), end = min(around + 4, widths);
@@ -369,8 +372,7 @@ struct plan_grid {
   /// About how many spheres the grid serves.
   template <class Scratch>
   COLLIDE_HD_INLINE float spheres_served(Scratch const& s) const {
-    return static_cast<float>(spheres.size()) * static_cast<float>(max(s.distances.sampled, 1u)) /
-           pair_distances::spheres;
+    return request.spheres * static_cast<float>(max(s.distances.sampled, 1u)) / pair_distances::spheres;
   }
 
   COLLIDE_HD void set_levels(grid<S>& g, grid_header<S> planned, cell_choice const& chosen, S extent,
