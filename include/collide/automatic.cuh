@@ -2,6 +2,9 @@
 /// Broad phase: `all_pairs`, `bucket` or `bvh`, whichever the scene makes the fastest.
 #pragma once
 
+#include <cmath>
+#include <type_traits>
+
 #include <collide/all_pairs.cuh>
 #include <collide/broad/detail/grid_or_tree_ref.hpp>
 #include <collide/broad/detail/tree/box_waste.hpp>
@@ -14,11 +17,11 @@ namespace collide {
 /// long as no index has been made; that follows from the numbers of triangles and spheres alone, by the measured costs
 /// of the space (bench/results/README.md). `bucket` wins for all else, but on the host for some meshes of long thin
 /// triangles, where `bvh` does: if most of the boxes of 128 triangles is empty, it counts how many of these triangles,
-/// and how many boxes, up to 128 of the spheres touch. `build` with a radius assumes a sphere at each triangle. On a
-/// device it is never `bvh`.
+/// and how many would be candidates in the cells that `bucket` plans, up to 128 of the spheres touch. After `build`
+/// with a radius it is one of these two. On a device it is never `bvh`.
 ///
-/// The same calls always go the same way, and the pairs are the same either way. It is chosen by `build` with a
-/// radius, and else by the first query for which it pays, counting what the queries before it would have saved.
+/// The same calls always go the same way, and the pairs are the same either way. It is chosen by the
+/// first query for which it pays, counting what the queries before it would have saved.
 /// Complexity and memory are those of the chosen one; with a memory budget `bvh` is not chosen.
 ///
 /// A simulation chooses between `bucket` and `bvh` once for a mesh, as soon as it has that and particles: for many
@@ -37,11 +40,10 @@ struct automatic {
       spent_ = spent_on_boxes_ = 0;
     }
 
-    /// Chooses grid or tree, which serves until the next build; no grid that cannot be.
+    /// Makes a grid, unless it cannot be: there is an index for the first query.
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
-      detail::middles_as_spheres<S> const spheres{mesh_, radius};
-      way_ = prefers_tree<Space>(options, spheres) ? way::tree : best_without_tree(options);
+      way_ = best_without_tree(options);
       is_given_ = true;
       make_index(space, options, radius);
     }
@@ -49,15 +51,14 @@ struct automatic {
     /// Chooses for spheres; in a simulation once, for all until the next build, as if they were at the mesh.
     template <class Space, class Spheres>
     void prepare(Space& space, automatic const& options, Spheres const& spheres) {
-      if (!is_given_) {
-        if constexpr (detail::serves_steps<Space>) {
-          way_ = prefers_tree_in_steps<Space>(options, spheres) ? way::tree : best_without_tree(options);
-          is_given_ = true;
-        } else {
-          way_ = choose<Space>(options, spheres);
-        }
+      is_prepared_ = false;
+      if constexpr (detail::serves_steps<Space>) {
+        if (!is_given_) way_ = prefers_tree_in_steps<Space>(options, spheres) ? way::tree : best_without_tree(options);
+        is_given_ = true;
+      } else {
+        way_ = choose(space, options, spheres);
       }
-      make_index(space, options, spheres);
+      if (!is_prepared_) make_index(space, options, spheres);
     }
 
     /// Makes room for queries of up to so many spheres.
@@ -95,7 +96,7 @@ struct automatic {
     /// Width of the finest cells in use; 0 if there is no grid.
     template <class Space>
     double cell_width(Space& space) const {
-      return has_grid_ ? grid_.cell_width(space) : 0.0;
+      return has_grid_ && way_ != way::tree ? grid_.cell_width(space) : 0.0;
     }
 
    private:
@@ -106,11 +107,11 @@ struct automatic {
     }
 
     template <class Space, class Spheres>
-    way choose(automatic const& options, Spheres const& spheres) {
+    way choose(Space& space, automatic const& options, Spheres const& spheres) {
       bool const wants_index =
           has_grid_ || has_tree_ || (best_without_tree(options) == way::grid && wants_grid<Space>(spheres.size()));
       if (!wants_index) return way::all_pairs;
-      return prefers_tree<Space>(options, spheres) ? way::tree : way::grid;
+      return prefers_tree(space, options, spheres) ? way::tree : way::grid;
     }
 
     template <class Space>
@@ -122,19 +123,33 @@ struct automatic {
       return pays(c.build_ns + c.per_triangle_ns * triangles, saved, spent_);
     }
 
-    /// True if long thin triangles keep a grid so busy that a tree is faster, the build included.
+    /// True if long thin triangles keep a grid so busy that a tree is faster, the build included. The grid is planned
+    /// for that, but holds no triangles yet.
     template <class Space, class Spheres>
-    bool prefers_tree([[maybe_unused]] automatic const& options, [[maybe_unused]] Spheres const& spheres) {
+    bool prefers_tree([[maybe_unused]] Space& space, [[maybe_unused]] automatic const& options,
+                      [[maybe_unused]] Spheres const& spheres) {
       if constexpr (bvh_tuning<Space>::divides_by_area) {
         if (options.grid.memory_budget != 0 || (is_sampled_ && !is_slender_)) return false;
         detail::sampled_triangles<S> const sample(mesh_);
         is_sampled_ = true;
         is_slender_ = sample.are_slender();
         if (!is_slender_) return false;
+        detail::planned_candidates<S> candidates;
+        if constexpr (std::is_same<Spheres, sphere_view<S>>::value) {
+          way_ = way::grid;
+          make_index(space, options, spheres);
+          is_prepared_ = true;
+          auto const made = grid_.mesh_lookup();
+          candidates = {made.grids, made.grid_count};
+        }
         double const build = has_tree_ ? 0 : slender_costs.per_triangle_ns * static_cast<double>(mesh_.size());
-        double saved = saved_by_tree(slender_costs, sample, spheres, 8);  // mostly these tell
-        if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by_tree(slender_costs, sample, spheres, 128);
-        return pays(build, saved, spent_on_boxes_);
+        double saved = saved_by_tree(slender_costs, sample, spheres, 8, candidates);  // mostly these tell
+        if (build < 4 * (saved + spent_on_boxes_)) {
+          saved = saved_by_tree(slender_costs, sample, spheres, 128, candidates);
+        }
+        bool const wanted = pays(build, saved, spent_on_boxes_);
+        if (wanted) is_prepared_ = false;
+        return wanted;
       } else {
         return false;
       }
@@ -158,10 +173,15 @@ struct automatic {
     /// Nanoseconds by which queries by a tree are faster than by a grid, from at most so many spheres.
     template <class Spheres>
     static double saved_by_tree(slender_cost_model const& c, detail::sampled_triangles<S> const& sample,
-                                Spheres const& spheres, std::size_t most) {
-      detail::reached_by_sphere const mean = sample.reached(spheres, most);
+                                Spheres const& spheres, std::size_t most,
+                                detail::planned_candidates<S> const& candidates = {}) {
+      // as triangle_pieces.hpp has it
+      double const around = sample.reached(spheres, 8, 1).boxes,
+                   pieces = detail::min(detail::max(std::sqrt(around / 2), 2.0), 16.0);
+      detail::reached_by_sphere const mean = sample.reached(spheres, most, pieces, candidates);
       return static_cast<double>(spheres.size()) *
-             (c.per_box_ns * mean.boxes - c.per_sphere_ns - c.per_touched_ns * mean.triangles);
+             (c.per_box_ns * mean.candidates - c.per_sphere_ns - c.per_touched_ns * mean.triangles -
+              c.per_piece_ns * (mean.pieces - mean.triangles));
     }
 
     /// True if what is saved pays for a build, with what queries have lost so far; else this one adds to that.
@@ -194,7 +214,8 @@ struct automatic {
     all_pairs::index<S> bounds_;
     bvh::index<S> tree_;
     bool has_grid_ = false, has_bounds_ = false, has_tree_ = false;
-    bool is_given_ = false;                         ///< made for a radius, until the next build
+    bool is_given_ = false;                         ///< made for a radius, or for steps, until the next build
+    bool is_prepared_ = false;                      ///< for the spheres of this query
     bool is_sampled_ = false, is_slender_ = false;  ///< the mesh
     way way_ = way::all_pairs;                      ///< of this query
     double spent_ = 0;                              ///< nanoseconds that a grid would have saved so far

@@ -237,6 +237,10 @@ class bucket::index {
   static constexpr std::size_t fixed_bytes =
       sizeof(detail::mesh_statistics<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
 
+  /// What long triangles pass through.
+  template <class Space>
+  static constexpr std::size_t cells_of_few = bucket_tuning<Space>::bins_spheres ? std::size_t{1} << 17 : 0;
+
   /// So many queries of few spheres go through all triangles; then these are entered.
   static constexpr std::size_t few_queries = 2;
 
@@ -266,8 +270,8 @@ class bucket::index {
     detail::query_plan<S> plan = plan_grids(space, spheres, grids_.asked.whole_boxes);
     bool const has_grids = plan.makes_grids || grids_.count != 0;
     if (has_grids && can_bin<Space>(options, spheres.size())) {
-      // entering the triangles pays where few spheres come again and again (docs/development/design.md)
-      if (queries_ < few_queries || spheres.size() >= mesh_.size() / 8) {
+      // entering the triangles pays where very few spheres come again and again (docs/development/design.md)
+      if (queries_ < few_queries || spheres.size() >= mesh_.size() / 128) {
         plan.order = detail::query_order::triangle_major;
         plan.makes_grids = plan.makes_grids || spheres.size() / 8 > grids_.spheres;
       } else {

@@ -122,3 +122,38 @@ TEST_CASE("plan: a triangle that one block would enter for long has cells of its
     CHECK(*made.total < 8 * 30000);
   }
 }
+
+TEST_CASE(
+    "plan: cells among few long thin triangles are narrow, as their boxes hold much that they do not, on the host") {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  std::vector<float> corners, centres;
+  for (int i = 0; i < 100; ++i) {  // side by side along a diagonal
+    float const x = uniform(engine), y = uniform(engine);
+    for (float const along : {-100.f, 100.f, 100.f}) {
+      float const aside = corners.size() % 9 == 6 ? 0.01f : 0.f;
+      corners.insert(corners.end(), {along + 30 * x, along + 30 * y + aside, along - 30 * (x + y)});
+    }
+  }
+  for (int i = 0; i < 3 * 100000; ++i) centres.push_back(100 * uniform(engine));
+  collide::host const space(1);
+  collide::bucket::index<float> index;
+  index.build(space, {}, collide::triangle_soup(corners.data(), corners.size() / 9));
+  index.prepare(space, {}, collide::spheres_xyz(centres.data(), centres.size() / 3, 0.5f));
+  CHECK(index.cell_width(space) < 20);
+}
+
+TEST_CASE_TEMPLATE("plan: what a thin triangle fills of its box", S, float, double) {
+  using collide::detail::thin_part;
+  auto const part = thin_part<S>::of({{0, 0, 0}, {10, 10, 10}, {5, 5, S(5.01)}});
+  CHECK(part.is_thin);
+  CHECK(part.distance({3, 3, 3}) < S(0.02));
+  CHECK(part.distance({0, 0, 10}) > 5);
+  auto const segment = thin_part<S>::of({{0, 0, 0}, {10, 10, 10}, {10, 10, 10}});
+  CHECK(segment.is_thin);
+  CHECK(segment.distance({0, 0, 10}) > 5);
+  CHECK(segment.distance({4, 4, 4}) < S(0.01));
+  CHECK(!thin_part<S>::of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).is_thin);
+  CHECK(!thin_part<S>::of({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}).is_thin);
+  CHECK(thin_part<S>::of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).distance({9, 9, 9}) == 0);
+}

@@ -83,17 +83,18 @@ struct broad_phase_cost_model {
 
 /// Costs of queries of long thin triangles, in nanoseconds, on one core of an AMD EPYC; only the ratios count.
 struct slender_cost_model {
-  double per_box_ns;       ///< a sphere and a triangle whose box it reaches: what `bucket` takes more than `bvh`
+  double per_box_ns;       ///< `bucket`: a sphere and a triangle whose box it reaches, and which is in its cell
   double per_sphere_ns;    ///< `bvh`: a sphere
   double per_touched_ns;   ///< `bvh`: a sphere and a triangle that it touches
+  double per_piece_ns;     ///< `bvh`: a sphere and a triangle of which it reaches but the box of a piece
   double per_triangle_ns;  ///< `bvh`: a triangle of the build
 };
 
 /// By what `automatic` chooses between `bucket` and `bvh` where triangles are long and thin. It does so in spaces where
 /// `bvh` divides by area.
-inline constexpr slender_cost_model slender_costs{19, 250, 200, 5000};
+inline constexpr slender_cost_model slender_costs{12, 250, 200, 40, 5000};
 /// By what it chooses in a simulation, for its steps, however long the build takes.
-inline constexpr slender_cost_model slender_costs_of_steps{50, 500, 400, 0};
+inline constexpr slender_cost_model slender_costs_of_steps{50, 500, 400, 0, 0};
 
 /// By what `automatic` chooses in a space. The default is one thread of an AMD EPYC, or `cuda_shared` on an H100.
 template <class Space>

@@ -36,45 +36,57 @@ COLLIDE_HD_INLINE S path_of(moving_sphere<S> const& s) {
 }
 
 /// What a triangle fills of its box if it is long and thin and lies across the axes: the space near its longest edge.
+/// Memory of a block, not constructed.
 template <class S>
 struct thin_part {
-  vec3<S> end, across, normal;  ///< of the longest edge, and two directions across it; 0 if the triangle is not such
-  S height;                     ///< of the triangle, along `across`
+  S across[3], normal[3];  ///< directions across the edge, in the triangle's plane and out of it
+  S on_across, on_normal;  ///< where the edge is on these
+  S height;                ///< of the triangle, along `across`
+  bool is_thin;            ///< false if the triangle fills its box: of what else there is nothing set then
 
   static COLLIDE_HD_INLINE thin_part of(triangle<S> const& t) {
-    vec3<S> ends[3] = {t.a, t.b, t.c}, along{0, 0, 0}, aside{0, 0, 0};
-    thin_part part{t.a, {0, 0, 0}, {0, 0, 0}, 0};
-    S length = 0;
+    vec3<S> const ends[3] = {t.a, t.b, t.c};
+    int first = 0;
+    S squares[3];
     for (int k = 0; k < 3; ++k) {
       vec3<S> const edge = ends[(k + 1) % 3] - ends[k];
-      S const square = dot<S>(edge, edge);
-      if (!(square > length)) continue;
-      length = square;
-      along = edge, aside = ends[(k + 2) % 3] - ends[k], part.end = ends[k];
+      squares[k] = dot<S>(edge, edge);
+      first = squares[k] > squares[first] ? k : first;
     }
-    aabb<S> const b = triangle_aabb_of(t);
-    S const x = b.upper[0] - b.lower[0], y = b.upper[1] - b.lower[1], z = b.upper[2] - b.lower[2];
+    vec3<S> const along = ends[(first + 1) % 3] - ends[first], aside = ends[(first + 2) % 3] - ends[first];
     vec3<S> normal = cross<S>(along, aside);
-    S const twice_area = sqrt_rn(dot<S>(normal, normal));
-    if (!(length > 0) || !is_finite(length) || !(x * y + (y * z + z * x) > 8 * twice_area)) return part;
+    aabb<S> const b = triangle_aabb_of(t);
+    S const twice_area = sqrt_rn(dot<S>(normal, normal)), x = b.upper[0] - b.lower[0], y = b.upper[1] - b.lower[1],
+            z = b.upper[2] - b.lower[2];
+    thin_part part{};
+    if (!(squares[first] > 0) || !is_finite(squares[first]) || !(x * y + (y * z + z * x) > 8 * twice_area)) return part;
     if (!(twice_area > 0)) {  // any direction across: by the axis along which the edge is the shortest
       int axis = 0;
       for (int k = 1; k < 3; ++k) axis = along[k] * along[k] < along[axis] * along[axis] ? k : axis;
       normal = cross<S>(along, vec3<S>(S(axis == 0), S(axis == 1), S(axis == 2)));
     }
     vec3<S> const across = cross<S>(normal, along);
-    part.normal = normal / sqrt_rn(dot<S>(normal, normal));
-    part.across = across / sqrt_rn(dot<S>(across, across));
-    part.height = twice_area / sqrt_rn(length);
+    S const to_unit_normal = S(1) / sqrt_rn(dot<S>(normal, normal)),
+            to_unit_across = S(1) / sqrt_rn(dot<S>(across, across));
+    part.is_thin = is_finite(to_unit_normal) && is_finite(to_unit_across);
+    for (int k = 0; k < 3; ++k) {
+      part.normal[k] = normal[k] * to_unit_normal;
+      part.across[k] = across[k] * to_unit_across;
+      part.on_normal += ends[first][k] * part.normal[k];
+      part.on_across += ends[first][k] * part.across[k];
+    }
+    part.height = twice_area / sqrt_rn(squares[first]);
     return part;
   }
 
-  COLLIDE_HD_INLINE bool is_thin() const { return dot<S>(normal, normal) > 0; }
-
   /// How far a point is from it, on the direction on which it is farther; 0 if the triangle fills its box.
   COLLIDE_HD_INLINE S distance(vec3<S> const& p) const {
-    vec3<S> const d = p - end;
-    S const h = dot<S>(d, across), n = dot<S>(d, normal);
+    if (!is_thin) return 0;
+    S h = -on_across, n = -on_normal;
+    for (int k = 0; k < 3; ++k) {
+      h += p[k] * across[k];
+      n += p[k] * normal[k];
+    }
     return max(max(n, -n), max(-h, h - height));
   }
 };

@@ -127,6 +127,10 @@ struct plan_grid {
     return static_cast<std::size_t>(request.count) + (listed + share - 1) / share;
   }
 
+  /// On a device it would take longer than narrower cells gain.
+  template <class Block>
+  static constexpr bool knows_thin = Block::num_threads == 1;
+
   static constexpr int size_classes = 32, widths = 64;
   static constexpr float width_step = 0.45f;  ///< of the logarithm of the width, to the base of 2
 
@@ -134,7 +138,7 @@ struct plan_grid {
   struct scratch {
     pair_distances distances;
     triangle_aabb<S> boxes[pair_distances::triangles];
-    thin_part<S> parts[pair_distances::triangles];
+    thin_part<S> parts[knows_thin<Block> ? pair_distances::triangles : 1];
     triangle_sums classes[size_classes];  ///< of triangles of rising sizes
     float class_end[size_classes];
     typename Block::template reduce_storage<cell_choice> reduction;
@@ -153,7 +157,7 @@ struct plan_grid {
         s.distances.counts[b] = 0;
       }
       for (auto i = static_cast<std::uint32_t>(thread_rank); i < pair_distances::triangles; i += Block::num_threads) {
-        sample(s, i);
+        sample<Block>(s, i);
       }
       if (thread_rank == 0) s.distances.sampled = s.distances.path = s.distances.thin = 0;
     });
@@ -218,11 +222,11 @@ struct plan_grid {
     return g;
   }
 
-  template <class Scratch>
+  template <class Block, class Scratch>
   COLLIDE_HD_INLINE void sample(Scratch& s, std::uint32_t i) const {
-    triangle<S> const t = mesh[mesh.size() * i / pair_distances::triangles];
-    s.boxes[i] = triangle_aabb_of(t);
-    s.parts[i] = thin_part<S>::of(t);
+    std::size_t const t = mesh.size() * i / pair_distances::triangles;
+    s.boxes[i] = boxes != nullptr ? boxes[t] : triangle_aabb_of(mesh[t]);
+    if constexpr (knows_thin<Block>) s.parts[i] = thin_part<S>::of(mesh[t]);
   }
 
   template <class Block, class Scratch>
@@ -250,15 +254,15 @@ struct plan_grid {
         for (std::uint32_t k = 0; k < pairs_of_sphere; ++k) {
           triangle_aabb<S> const& b = s.boxes[j % parts * pairs_of_sphere + k];
           if (b.is_empty()) continue;
-          S const outside = max(b.axis_distance(0, here.centre.x()),
-                                max(b.axis_distance(1, here.centre.y()), b.axis_distance(2, here.centre.z())));
-          S const distance = max(outside, s.parts[j % parts * pairs_of_sphere + k].distance(here.centre));
+          S distance = max(b.axis_distance(0, here.centre.x()),
+                           max(b.axis_distance(1, here.centre.y()), b.axis_distance(2, here.centre.z())));
+          if constexpr (knows_thin<Block>) distance = max(distance, s.parts[k].distance(here.centre));
           block.add(s.distances.counts[pair_distances::bin_of(static_cast<float>(distance * scale))], 1);
         }
       }
       for (int c = thread_rank; c < size_classes; c += Block::num_threads) sum_class(s, c);
-      for (auto k = static_cast<std::uint32_t>(thread_rank); k < pair_distances::triangles; k += Block::num_threads) {
-        if (s.parts[k].is_thin()) block.add(s.distances.thin, 1);
+      if constexpr (knows_thin<Block>) {
+        for (auto const& part : s.parts) s.distances.thin += part.is_thin;
       }
     });
   }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <collide/broad/detail/grid/grid.hpp>
 #include <collide/broad/detail/tree/triangle_pieces.hpp>
 #include <collide/exact/detail/geometry/closest_point.hpp>
 #include <collide/exact/detail/geometry/local_triangle.hpp>
@@ -13,9 +14,31 @@
 
 namespace collide::detail {
 
-/// The mean numbers, for a sphere, of triangles whose box it reaches, and of those that it reaches itself.
+/// The mean numbers, for a sphere, of triangles whose box it reaches, of those of them that are candidates in a grid,
+/// of those of which it reaches the box of a piece, as trees have them, and of those that it reaches itself.
 struct reached_by_sphere {
-  double boxes, triangles;
+  double boxes, candidates, pieces, triangles;
+};
+
+/// Which pairs grids would make candidates of, before triangles are entered; all if there are no grids.
+template <class S>
+struct planned_candidates {
+  grid<S> const* grids = nullptr;  ///< in memory of the host
+  int count = 0;
+
+  /// For a triangle's box, a sphere's radius, and the square of their distance.
+  bool operator()(aabb<S> const& box, S radius, S distance_squared) const {
+    int g = count - 1;  // the tightest that serves it
+    while (g >= 0 && !grids[g].serves(radius)) --g;
+    if (g < 0 || grids[g].levels == 0) return true;
+    grid_level<S> const& l = grids[g].level_of(box);
+    cell_box const r = grids[g].range_of(l, box);
+    for (int k = 0; k < 3; ++k) {
+      if (r.upper[k] - r.lower[k] > l.mask[k]) return true;  // it goes around: see triangle_cells.hpp
+    }
+    S const far = grids[g].padded_reach + S(0.6) * l.width;  // a place in a cell from the middle of it
+    return distance_squared <= far * far;
+  }
 };
 
 /// In place of spheres, if none are known yet: one in the middle of each triangle. A sample of them lies between the
@@ -55,23 +78,31 @@ class sampled_triangles {
   /// True if their boxes are mostly empty.
   bool are_slender() const { return are_slender_; }
 
-  /// The mean of what spheres reach, at rest or in motion, from at most so many of them.
+  /// The mean of what spheres reach, at rest or in motion, from at most so many of them. A triangle is in `pieces`.
   template <class Spheres>
-  reached_by_sphere reached(Spheres const& spheres, std::size_t most_spheres) const {
+  reached_by_sphere reached(Spheres const& spheres, std::size_t most_spheres, double pieces,
+                            planned_candidates<S> const& is_candidate = {}) const {
     std::size_t const n = min(spheres.size(), most_spheres);
-    std::size_t boxes = 0, triangles = 0;
+    reached_by_sphere sum{0, 0, 0, 0};
     for (std::size_t i = 0; i < n; ++i) {
       sphere<S> const s = swept_bounding_sphere(spheres[spheres.size() / n * i + spheres.size() % n * i / n]);
       if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(s.radius)) continue;
       for (int k = 0; k < count_; ++k) {
-        if (!triangle_aabb_of(triangles_[k]).overlaps(s.centre, s.radius)) continue;
-        ++boxes;
-        if (distance_squared(triangles_[k], s) <= s.radius * s.radius) ++triangles;
+        triangle_aabb<S> const box = triangle_aabb_of(triangles_[k]);
+        if (!box.overlaps(s.centre, s.radius)) continue;
+        S const square = distance_squared(triangles_[k], s);
+        S const x = box.upper[0] - box.lower[0], y = box.upper[1] - box.lower[1], z = box.upper[2] - box.lower[2];
+        S const aside = max(min(x, y), min(max(x, y), z));  // the longer side of the box that is not its longest
+        S const near_piece = s.radius + aside / static_cast<S>(2 * pieces);
+        sum.boxes += 1;
+        sum.candidates += is_candidate(box, s.radius, square);
+        sum.pieces += square <= near_piece * near_piece;
+        sum.triangles += square <= s.radius * s.radius;
       }
     }
-    if (n == 0 || count_ == 0) return {0, 0};
+    if (n == 0 || count_ == 0) return sum;
     double const scale = static_cast<double>(all_) / (static_cast<double>(n) * count_);
-    return {static_cast<double>(boxes) * scale, static_cast<double>(triangles) * scale};
+    return {sum.boxes * scale, sum.candidates * scale, sum.pieces * scale, sum.triangles * scale};
   }
 
  private:

@@ -33,8 +33,12 @@ struct bucket_tuning<detail::lookup_space<Space>> : bucket_tuning<Space> {
   static constexpr bool bins_spheres = false;
   /// The grid serves many steps. On a device narrower cells gain nothing: their bits take more memory.
   static constexpr bucket_costs costs{bucket_tuning<Space>::costs.entry_ns / (Space::host_accessible ? 16 : 1),
-                                      bucket_tuning<Space>::costs.candidate_ns, bucket_tuning<Space>::costs.level_ns,
-                                      bucket_tuning<Space>::costs.step_ns, bucket_tuning<Space>::costs.serial_ns};
+                                      bucket_tuning<Space>::costs.candidate_ns,
+                                      bucket_tuning<Space>::costs.level_ns,
+                                      bucket_tuning<Space>::costs.step_ns,
+                                      bucket_tuning<Space>::costs.serial_ns,
+                                      0,
+                                      0};
 };
 
 template <class Space>
