@@ -170,9 +170,8 @@ def words_of(page, least):
 
 
 def members_of(name):
-    """The functions without arguments and the data of a public class, those of its bases in detail/sinks/ included."""
-    folders = ["", "sinks", "ranks", "detail/sinks"]
-    for header in [h for folder in folders for h in (ROOT / "include" / "collide" / folder).glob("*.hpp")]:
+    """The functions without arguments and the data of a public class, those of its bases in sinks/detail/ included."""
+    for header in sorted((ROOT / "include" / "collide").rglob("*.hpp")):
         found = re.search(rf"^(class|struct) {name}\b(?: : public ([^{{]*))?\s*\{{(.*?)^\}};|^class {name}\s*: public ([^{{]*)\{{",
                           header.read_text(), flags=re.M | re.S)
         if not found:
