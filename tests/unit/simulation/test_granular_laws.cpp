@@ -353,7 +353,7 @@ TEST_CASE("granular laws: two bodies to the digits of LIGGGHTS, each law of roll
         {0.2648343073082548, 0.09302927776736523, 72.94735701534835, 72.98301192463708});
 }
 
-TEST_CASE("granular laws: linear springs with memory to the digits of LAMMPS") {
+TEST_CASE("granular laws: two bodies to the digits of LAMMPS, linear springs with memory") {
   // as of check_oblique_pair: `granular hooke 1e5 0.5 tangential linear_history <2/7 of 1e5> 0 0.3` and 1 0.3, `damping
   // coeff_restitution`; `gran/hooke/history 1e5 NULL <gamma> NULL 0.3 1`, gamma that of a restitution of 0.5
   std::vector<grain> const spheres{{0.001, {0, 0, 0.00101}, {0.5, 0, -1}}, {0.001, {0, 0, -0.001}, {0, 0, 0}}};
@@ -373,7 +373,7 @@ TEST_CASE("granular laws: linear springs with memory to the digits of LAMMPS") {
   check(0, {0.4065779611621012, -0.2512984547218519, 241.3286537312479});
 }
 
-TEST_CASE("granular laws: torsion to the digits of LAMMPS") {
+TEST_CASE("granular laws: two bodies to the digits of LAMMPS, torsion") {
   // `twisting marshall`, `twisting sds 1e-2 1e-8` with 1e-5 and 1e-6 (which slides), of spheres that turn about all
   // axes
   std::vector<grain> const spheres{{0.001, {0, 0, 0.00101}, {0.5, 0.2, -1}, {100, -30, 500}},
