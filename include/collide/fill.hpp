@@ -144,11 +144,12 @@ filling fill_once(Region const& region, size_distribution const& sizes, double l
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
   std::uint64_t number = seed << 40, drawn = (seed << 40) + (std::uint64_t{1} << 39);
   std::vector<double> returned, centres, radii;  // radii of spheres that were not kept are those of the next ones
+  std::size_t next = 0;
   filling kept;
   while (!open.empty()) {
     centres.clear(), radii.clear();
     for (std::size_t n = 0; n < batch && !open.empty(); ++n) {
-      std::size_t const which = static_cast<std::size_t>(random_part(number++) * static_cast<double>(open.size()));
+      std::size_t const which = next++ % open.size();  // side by side: what is near is in the cache
       std::size_t const column = open[which];
       double r;
       if (returned.empty()) {
