@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <collide/detail/numeric/random.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
+#include <collide/exact/detail/numeric/random.hpp>
 
 namespace collide {
 

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <vector>
 
-#include <collide/detail/numeric/rounding.hpp>
-#include <collide/geometry.hpp>
+#include <collide/core/geometry.hpp>
+#include <collide/exact/detail/numeric/rounding.hpp>
 
 namespace collide::detail {
 

@@ -16,7 +16,7 @@
 /// looked at before.
 #pragma once
 
-#include <collide/detail/particles/particle_access.hpp>
+#include <collide/effects/detail/particle_access.hpp>
 #include <collide/effects/granular/materials.hpp>
 
 namespace collide {
