@@ -40,7 +40,8 @@ class dropped_spheres {
     }
   }
 
-  /// Where a sphere comes to rest that is dropped above a point. False if that is above the box, or it finds no rest.
+  /// Finds where a sphere comes to rest that is dropped above a point. False if that is above the box, or it finds no
+  /// rest.
   bool drop(double x, double y, double radius, vector& at) {
     radius_ = radius;
     at_ = {x, y, upper_.z() + 4 * largest_};
@@ -94,7 +95,7 @@ class dropped_spheres {
   double reach(ball const& b) const { return b.radius + radius_; }
   vector normal(int i) const { return (at_ - holds_[i].centre) / reach(holds_[i]); }
 
-  /// f(ball) for those of the columns within a distance from a place, from the top down, until it says false.
+  /// f(ball) for balls of the columns within a distance from a place, from the top down, until it says false.
   template <class F>
   void for_each_near(vector const& from, double distance, F const& f) const {
     int const i1 = cell_of(from.x() + distance, 0), k1 = cell_of(from.y() + distance, 1);
@@ -104,7 +105,7 @@ class dropped_spheres {
         for (auto b = column.rbegin(); b != column.rend() && f(*b);) ++b;
       }
   }
-  /// Those that the sphere may touch while it goes no farther than `range`.
+  /// Finds what the sphere may touch while it goes no farther than `range`.
   void gather() {
     double const range = 1.6 * radius_;
     if ((at_ - gathered_at_).squaredNorm() < 0.8 * 0.8 * radius_ * radius_) return;

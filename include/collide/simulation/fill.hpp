@@ -12,13 +12,13 @@
 #include <vector>
 
 #include <collide/bvh.cuh>
-#include <collide/detail/packing/drop_and_roll.hpp>
 #include <collide/detector.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/mesh.hpp>
+#include <collide/simulation/detail/drop_and_roll.hpp>
+#include <collide/simulation/size_distribution.hpp>
 #include <collide/sinks/signed_distance.hpp>
-#include <collide/size_distribution.hpp>
 
 namespace collide {
 
@@ -102,7 +102,7 @@ class mesh_region {
   mutable detector<bvh, karabassi<>, host, double> tree_;
 };
 
-/// What is inside of a region and outside of another, which is inside of that.
+/// The space inside of a region and outside of another, which is inside of that.
 template <class Outer, class Inner>
 struct region_between {
   Outer const& outer;  ///< must outlive it
@@ -117,6 +117,7 @@ struct region_between {
     return found;
   }
 };
+/// The region between two surfaces: `region_between`.
 template <class Outer, class Inner>
 region_between<Outer, Inner> between(Outer const& outer, Inner const& inner) {
   return {outer, inner};
