@@ -40,7 +40,7 @@ struct pair_interaction {
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_other = !is_inactive(other);
-    side_by_side(p, other, [&] {
+    side_by_side(p, other, [&]() COLLIDE_HOT {
       if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
       mark_contact(p.changed);
       if (is_other && !p.woken) effects.try_wake(p.changed, other);
@@ -62,7 +62,7 @@ struct pair_interaction {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_awake = !is_inactive(other), is_other = overlap && is_awake;
     bool goes_on = was;
-    side_by_side(p, other, [&] {
+    side_by_side(p, other, [&]() COLLIDE_HOT {
       if (p.woken ? is_other : is_active) {
         contact_values<S, typename Effects::remembered> values;
         if (was) values = record.values();
