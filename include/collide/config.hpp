@@ -72,6 +72,15 @@
 #define COLLIDE_UNROLL
 #endif
 
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__) && defined(__OPTIMIZE__) && \
+    !defined(__OPTIMIZE_SIZE__) && !defined(COLLIDE_PLAIN_INLINE)
+/// Marks a function with the loops of a kernel, which g++ compiles with -O2 as with -O3; clang++ does nearly so by itself.
+#define COLLIDE_AS_O3 __attribute__((optimize("O3")))
+#else
+/// Marks a function with the loops of a kernel.
+#define COLLIDE_AS_O3
+#endif
+
 #if defined(__CUDA_ARCH__)
 /// Before a loop that the device does not unroll.
 #define COLLIDE_NO_UNROLL _Pragma("unroll 1")

@@ -4,18 +4,12 @@
 
 #include <collide/config.hpp>
 
-#if defined(__OPTIMIZE__) && !defined(__OPTIMIZE_SIZE__) && !defined(__clang__)
-#define COLLIDE_LOOPS flatten, noinline, optimize("O3")
-#else
-#define COLLIDE_LOOPS flatten
-#endif
-
 namespace collide::detail {
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__) && !defined(__CUDA_ARCH__)
 
 template <class F>
-__attribute__((target("avx2"), COLLIDE_LOOPS)) void run_with_avx2(F const& f) {
+COLLIDE_AS_O3 __attribute__((target("avx2"), flatten, noinline)) void run_with_avx2(F const& f) {
   f();
 }
 
