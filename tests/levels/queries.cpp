@@ -4,9 +4,9 @@
 
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
+#include <collide/detectors/sphere_pairs.cuh>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/nearest.hpp>
-#include <collide/sphere_pairs.cuh>
 
 #include "../../bench/scene.hpp"
 #include "io/scenes.hpp"
@@ -23,15 +23,16 @@ template <class Broad, class S, class Sink>
 void query(std::string const& name, bench::scene<S> const& scene, Sink sink) {
   collide::detector<Broad, collide::karabassi<>, collide::host, S> detector(collide::host(1));
   detector.build(scene.mesh());
-  timed(name, [&] { detector.query(scene.spheres(), sink); }, [&] { return sink.to_host(); });
+  timed(
+      name, [&] { detector.query(scene.spheres(), sink); }, [&] { return sink.to_host(); });
 }
 
 template <class Broad, class S>
 void build(std::string const& name, bench::scene<S> const& scene) {
   collide::detector<Broad, collide::karabassi<>, collide::host, S> detector(collide::host(1));
   collide::pairs found(collide::order::canonical);
-  timed(name, [&] { detector.build(scene.mesh()); },
-        [&] { return detector.query(scene.spheres(), found).to_host(); });
+  timed(
+      name, [&] { detector.build(scene.mesh()); }, [&] { return detector.query(scene.spheres(), found).to_host(); });
 }
 
 }  // namespace
@@ -57,26 +58,30 @@ int main() {
     tree.build(study.mesh());
     collide::nearest sink;
     auto const places = collide::points(study.centres.data(), 20000);
-    timed("study/bvh/nearest", [&] { tree.query(places, sink); }, [&] {
-      std::vector<float> distances;
-      for (auto const& found : sink.to_host()) distances.push_back(found.distance);
-      return distances;
-    });
+    timed(
+        "study/bvh/nearest", [&] { tree.query(places, sink); },
+        [&] {
+          std::vector<float> distances;
+          for (auto const& found : sink.to_host()) distances.push_back(found.distance);
+          return distances;
+        });
   }
   {
     collide::detector<bucket, collide::karabassi_swept<>, collide::host> detector(collide::host(1));
     detector.build(study.mesh());
     std::vector<float> displacements(study.centres.size());
     for (std::size_t i = 0; i < displacements.size(); ++i) displacements[i] = static_cast<float>(i % 7) - 3.f;
-    auto const moving = collide::with_displacements(collide::spheres_xyz(study.centres.data(), 100000, 3.f), displacements.data());
+    auto const moving =
+        collide::with_displacements(collide::spheres_xyz(study.centres.data(), 100000, 3.f), displacements.data());
     collide::pairs sink;
-    timed("study/bucket/swept", [&] { detector.query(moving, sink); },
-          [&] { return sink.to_host(); });
+    timed(
+        "study/bucket/swept", [&] { detector.query(moving, sink); }, [&] { return sink.to_host(); });
   }
   {
     collide::sphere_pairs<collide::host> finder(collide::host(1));
     collide::pairs sink;
     auto const soup = scene_of<float>("crowd", 3000, 1000);
-    timed("clustered/sphere_pairs/pairs", [&] { finder.query(soup.spheres(), sink); }, [&] { return sink.to_host(); });
+    timed(
+        "clustered/sphere_pairs/pairs", [&] { finder.query(soup.spheres(), sink); }, [&] { return sink.to_host(); });
   }
 }
