@@ -1,7 +1,5 @@
 /// \file
-/// Times of queries on the host: SCENE/DETECTOR/SINK SECONDS HASH
-#include <cstring>
-
+/// Times queries on the host. Prints a line for each scene: its name, seconds, hash of the results.
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
 #include <collide/detectors/sphere_pairs.cuh>
@@ -40,7 +38,6 @@ void build(std::string const& name, bench::scene<S> const& scene) {
 int main() {
   using collide::bucket;
   using collide::bvh;
-  collide::pairs const pairs(collide::order::canonical);
   auto const study = scene_of<float>("study", 400000, io::study_triangles);
   query<bucket>("study/bucket/pairs", study, collide::pairs());
   query<bucket>("study/bucket/pairs_double", scene_of<double>("study", 200000, io::study_triangles), collide::pairs());
