@@ -1,8 +1,8 @@
 /// \file
 /// A mill as an input deck of LIGGGHTS describes it (docs/granular.md): mill DRUM.stl FOLDER. The drum is in
 /// millimetres, its axis is y. It prints the torque of its motor, and writes a film and a checkpoint.
+#include <cmath>
 #include <cstdio>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -48,13 +48,12 @@ int main(int argc, char** argv) try {
              velocity_verlet{});
   scene.set_mesh(drum.view(), {turning});
 
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> size(0.004, 0.006);
   std::vector<double> centres, radii;
-  for (int i = 0; i < 500; ++i) {  // on a lattice inside of the drum
-    for (double const x : {0.0125 * (i % 10 - 4.5), 0.0125 * (i / 10 % 4 - 1.5), 0.0125 * (i / 40 - 5.5)})
-      centres.push_back(x);
-    radii.push_back(size(random));
+  for (int i = 0; radii.size() < 500; ++i) {  // on a lattice inside of the drum
+    double const x = 0.0125 * (i % 16 - 7.5), y = 0.0125 * (i / 16 % 4 - 1.5), z = 0.0125 * (i / 64 - 7.5);
+    if (std::hypot(x, z) > 0.088) continue;
+    centres.insert(centres.end(), {x, y, z});
+    radii.push_back(0.004 + 0.001 * (i % 3));
   }
   scene.set(spheres_xyz(centres.data(), radii.size(), radii.data()));
 
