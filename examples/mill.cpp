@@ -1,7 +1,6 @@
 /// \file
 /// A mill as an input deck of LIGGGHTS describes it (docs/granular.md): mill DRUM.stl FOLDER. The drum is in
 /// millimetres, its axis is y. It prints the torque of its motor, and writes a film and a checkpoint.
-#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -17,6 +16,7 @@
 #include <collide/simulation.cuh>
 #include <collide/simulation/checkpoint.hpp>
 #include <collide/simulation/energy.hpp>
+#include <collide/simulation/fill.hpp>
 
 using namespace collide;
 
@@ -48,14 +48,9 @@ int main(int argc, char** argv) try {
              velocity_verlet{});
   scene.set_mesh(drum.view(), {turning});
 
-  std::vector<double> centres, radii;
-  for (int i = 0; radii.size() < 500; ++i) {  // on a lattice inside of the drum
-    double const x = 0.0125 * (i % 16 - 7.5), y = 0.0125 * (i / 16 % 4 - 1.5), z = 0.0125 * (i / 64 - 7.5);
-    if (std::hypot(x, z) > 0.088) continue;
-    centres.insert(centres.end(), {x, y, z});
-    radii.push_back(0.004 + 0.001 * (i % 3));
-  }
-  scene.set(spheres_xyz(centres.data(), radii.size(), radii.data()));
+  auto const sizes = size_distribution::uniform(0.004, 0.006);
+  auto const grains = fill_number(cylinder_region({0, -0.024, 0}, {0, 0.024, 0}, 0.075), sizes, 500);
+  scene.set(spheres_xyz(grains.centres.data(), grains.radii.size(), grains.radii.data()));
 
   double const dt = largest_time_step(scene);
   auto const steps_in = [&](double seconds) { return static_cast<std::size_t>(seconds / dt); };
