@@ -6,11 +6,11 @@
 /// all_pairs x cuda_shared = `brute_force_shamem`.
 #pragma once
 
-#include <collide/broad/detail/all_pairs_ref.hpp>
+#include <collide/broad/detail/mesh_lookup.hpp>
 #include <collide/detector.hpp>
 #include <collide/exact/detail/geometry/lifted_bounds.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 #if defined(COLLIDE_COMPILED)
 #include <collide/detectors/compiled.hpp>

@@ -3,12 +3,48 @@
 #pragma once
 
 #include <collide/all_pairs.cuh>
-#include <collide/broad/detail/grid_or_tree_ref.hpp>
-#include <collide/broad/detail/tree/box_waste.hpp>
+#include <collide/broad/detail/grid/grid_ref.hpp>
+#include <collide/broad/detail/per_sphere.hpp>
+#include <collide/broad/detail/tree/triangle_pieces.hpp>
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
 
 namespace collide {
+
+namespace detail {
+
+/// The lookup of `automatic`. Which of the two is asked is the same for all spheres.
+template <class S, class Tree>
+struct grid_or_tree_ref : bucket_ref<S> {
+  per_sphere_ref<S, Tree> tree;  ///< of a mesh without triangles if the cells are asked
+
+  COLLIDE_HD_INLINE bool asks_tree() const {
+#if defined(__CUDA_ARCH__)
+    return false;  // `automatic` makes none on a device
+#else
+    return tree.mesh.size() != 0;
+#endif
+  }
+
+  COLLIDE_HD grid_or_tree_ref opened() const { return {bucket_ref<S>::opened(), tree}; }
+  COLLIDE_HD_INLINE bool has_single_cell_lookup(S radius) const {
+    return !asks_tree() && bucket_ref<S>::has_single_cell_lookup(radius);
+  }
+  template <class Sphere>
+  COLLIDE_HD bool empty(Sphere const& s) const {
+    return asks_tree() ? tree.empty(s) : bucket_ref<S>::empty(s);
+  }
+  template <class Sphere>
+  COLLIDE_HD candidate_cursor begin(Sphere const& s) const {
+    return asks_tree() ? tree.begin(s) : bucket_ref<S>::begin(s);
+  }
+  template <class Sphere>
+  COLLIDE_HD bool next(Sphere const& s, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    return asks_tree() ? tree.next(s, c, most, range) : bucket_ref<S>::next(s, c, most, range);
+  }
+};
+
+}  // namespace detail
 
 /// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
 /// long as no index has been made; that follows from the numbers of triangles and spheres alone, by the measured costs

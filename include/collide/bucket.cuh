@@ -22,7 +22,7 @@
 #include <collide/broad/detail/grid/plan.hpp>
 #include <collide/detector.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #if defined(COLLIDE_COMPILED)
 #include <collide/detectors/compiled.hpp>
 #endif

@@ -15,7 +15,6 @@
 #include <collide/spaces/atomic_add.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 #include <collide/spaces/detail/block.hpp>
-#include <collide/spaces/detail/launch.hpp>
 #include <collide/spaces/detail/tuning.hpp>
 
 namespace collide {

@@ -3,7 +3,7 @@
 /// Below, velocities are relative to the medium, and the step is the unit of time.
 #pragma once
 
-#include <collide/exact/detail/numeric/decay.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
 // the numbers of elements of small arrays are int

@@ -7,8 +7,8 @@
 
 #include <collide/core/nearest_triangle.hpp>
 #include <collide/core/precision.hpp>
-#include <collide/narrow/detail/compare_distances.hpp>
 #include <collide/narrow/detail/contact_in_precision.hpp>
+#include <collide/narrow/detail/distance_bounds.hpp>
 #include <collide/narrow/detail/intersects.hpp>
 #include <collide/narrow/detail/measure_nearest.hpp>
 

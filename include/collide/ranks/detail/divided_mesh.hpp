@@ -11,7 +11,7 @@
 #include <collide/core/memory.hpp>
 #include <collide/detectors/detail/numbered_triangle.hpp>
 #include <collide/mesh.hpp>
-#include <collide/ranks/detail/exchange_buffer.hpp>
+#include <collide/ranks/detail/device_exchange_buffer.hpp>
 #include <collide/ranks/detail/rank_map.hpp>
 #include <collide/spaces/detail/host_array.hpp>
 

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include <collide/core/config.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 
 namespace collide::detail {
 

@@ -13,7 +13,7 @@
 #include <collide/broad/detail/grid/mesh_statistics.hpp>
 #include <collide/core/memory.hpp>
 #include <collide/mesh.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 #include <collide/spaces/detail/tuning.hpp>
 #include <collide/spheres.hpp>

@@ -30,7 +30,7 @@
 #include <collide/exact/detail/geometry/sphere_pack.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/atomic.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
 namespace collide::detail {

@@ -15,7 +15,7 @@
 #include <collide/mesh.hpp>
 #include <collide/spaces/detail/aggregated_count.hpp>
 #include <collide/spaces/detail/atomic.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 
 // the numbers of elements of small arrays are int
 #pragma GCC diagnostic push

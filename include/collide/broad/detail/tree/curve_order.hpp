@@ -8,7 +8,7 @@
 
 #include <collide/broad/detail/grid/mesh_statistics.hpp>
 #include <collide/core/memory.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #if defined(__CUDACC__)
 #include <collide/broad/detail/tree/sort_ids_cuda.cuh>
 #endif
