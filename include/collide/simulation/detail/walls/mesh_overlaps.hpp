@@ -96,6 +96,8 @@ struct list_pressing {
 
 /// Memory of a device for particles that overlap more triangles than a list has room for.
 struct overlap_pool {
+  static constexpr std::size_t least = 65536;  ///< items, of a scene of few particles
+
   overlap_item* items;
   std::uint32_t capacity;
   std::uint32_t* used;     ///< in this step
