@@ -10,15 +10,6 @@
 
 namespace collide::detail {
 
-/// Kernel functor of `for_each` over pairs of a part of a mesh that begins with triangle `first`: as pairs of the
-/// whole.
-struct shift_triangles {
-  pair const* from;
-  id first;
-  pair* to;
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {from[i].sphere, from[i].triangle + first}; }
-};
-
 /// An array of pairs in memory of a space, to which more are appended.
 class pair_list {
  public:
@@ -32,7 +23,7 @@ class pair_list {
     if (before + n > memory_.capacity()) {
       buffer<pair> larger;
       pair* const to = make_room(larger, space.resource(), before + n);
-      space.for_each(before, copy_pairs{memory_.data(), to});
+      space.for_each(before, copy_values<pair>{memory_.data(), to});
       space.synchronize();  // the old memory goes
       memory_ = std::move(larger);
     }

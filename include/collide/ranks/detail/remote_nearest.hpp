@@ -102,7 +102,7 @@ class remote_nearest {
       search_part<F> own{f};
       own.f.to = found_.reserve(space.resource(), n);
       detector.query(spheres, own);
-      space.for_each(n, typename F::join{so_far, {mesh.view(), 0, mesh.numbers()}, own.f.to, true});
+      space.for_each(n, typename F::join{so_far, {mesh.view(), {0, mesh.numbers()}}, own.f.to, true});
       S* const reaches = reaches_.reserve(space.resource(), n);
       space.for_each(n, find_reaches<S>{f.max_distance, spheres, f.to, reaches});
       wanted = view(spheres.centres(), reaches, 1, S(0));

@@ -55,16 +55,6 @@ void pack_round(int ranks, Space const& space, Spheres const& spheres, sphere_se
   }
 }
 
-/// Kernel functor of `for_each` over pairs of spheres that were received from a rank, and triangles of this one: as
-/// they are sent back, with the sphere's place in the message and the triangle's number among those of all ranks.
-struct pack_answers {
-  pair const* hits;
-  id first;  ///< the sphere that the message begins with
-  id const* numbers;
-  pair* to;
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {hits[i].sphere - first, numbers[hits[i].triangle]}; }
-};
-
 /// Kernel functor of `for_each` over what has come back of some routes: pairs of this rank's spheres.
 struct unpack_answers {
   pair const* answers;
@@ -127,7 +117,7 @@ class remote_pairs {
     detector.query(spheres, hits_);
     found_.clear();
     pair* const to = found_.append(space, hits_.size());
-    space.for_each(hits_.size(), pack_answers{hits_.data(), 0, mesh.numbers(), to});
+    space.for_each(hits_.size(), renumber_pairs{hits_.data(), {0, nullptr}, {0, mesh.numbers()}, to});
   }
 
   /// Finds the pairs of what was received, and which of them are of which rank.
@@ -154,9 +144,9 @@ class remote_pairs {
     for (std::size_t r = 0; r < ranks; ++r) answers_.counts[r] = ends_[r + 1] - ends_[r];
     pair* const to = answers_.resize(space);
     for (std::size_t r = 0; r < ranks; ++r) {
-      space.for_each(
-          static_cast<std::size_t>(answers_.counts[r]),
-          pack_answers{received_hits_.data() + ends_[r], static_cast<id>(starts_[r]), mesh.numbers(), to + ends_[r]});
+      numbering const in_message{0 - static_cast<id>(starts_[r]), nullptr};  // from 0 on, modulo 2^32
+      space.for_each(static_cast<std::size_t>(answers_.counts[r]),
+                     renumber_pairs{received_hits_.data() + ends_[r], in_message, {0, mesh.numbers()}, to + ends_[r]});
     }
   }
 

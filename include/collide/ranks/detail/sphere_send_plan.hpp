@@ -13,10 +13,6 @@
 #include <collide/ranks/detail/send_plan.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Passes every sphere that a `rank_lookup` says goes to another rank, and few more: a plain value that a kernel takes.
@@ -36,11 +32,11 @@ class halo_filter {
   }
 
   /// Says which pass: bit k is of sphere k. Without branches, for the CPU's vector unit.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE std::uint32_t mark(sphere_pack<S, N> const& b) const {
     static_assert(N <= 32, "collide: a word has a bit for each");
     std::uint32_t rows[N], columns[N], inside[N], wide[N];
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       S const r = b.radius[k], x = place(0, b.x[k], r), y = place(1, b.y[k], r), z = place(2, b.z[k], r);
       wide[k] = to_bits(2 * r) < most_ ? 0u : 1u;
       inside[k] = is_inside(x) & is_inside(y) & is_inside(z);
@@ -49,7 +45,7 @@ class halo_filter {
       rows[k] = cell(select(so, y, S(0))) + across_ * cell(select(so, z, S(0)));
     }
     std::uint32_t near = 0;
-    for (int k = 0; k < N; ++k) near |= (wide[k] | (inside[k] & rows_[rows[k]] >> columns[k])) << k;
+    for (unsigned k = 0; k < N; ++k) near |= (wide[k] | (inside[k] & rows_[rows[k]] >> columns[k])) << k;
     return near;
   }
 
@@ -108,7 +104,7 @@ COLLIDE_HD aabb<double> reach_of(moving_sphere_view<S> const& spheres, std::size
 
 /// Kernel functor of `for_each` over so many spheres at a time: puts out a pair of each other rank that a sphere goes
 /// to, and the sphere.
-template <class Spheres, int Items>
+template <class Spheres, unsigned Items>
 struct find_sends {
   using S = typename Spheres::scalar;
   Spheres spheres;
@@ -145,7 +141,7 @@ class sphere_send_plan : public send_plan {
   /// Finds the routes of spheres to ranks other than `self`.
   template <class Space, class Spheres>
   void find(Space& space, rank_lookup const& map, Spheres const& spheres, int self, int ranks) {
-    constexpr int items = Space::host_accessible ? 32 : 4;
+    constexpr unsigned items = Space::host_accessible ? 32 : 4;
     double const extent = map.grid.meets(map.grid.frame()) ? map.grid.frame().max_extent() : 0;
     halo_filter<typename Spheres::scalar> const quick(map, extent, spheres.common_radius());
     send_plan::find(space, find_sends<Spheres, items>{spheres, map, quick, extent, self, {}},
@@ -154,5 +150,3 @@ class sphere_send_plan : public send_plan {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

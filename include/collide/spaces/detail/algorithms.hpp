@@ -12,6 +12,14 @@
 
 namespace collide::detail {
 
+/// Kernel functor of `for_each` over values.
+template <class T>
+struct copy_values {
+  T const* from;
+  T* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
+};
+
 /// Kernel functor: calls f(i) for all i < n if *condition is not 0, each thread for several i.
 template <class F>
 struct for_each_if_nonzero_kernel {

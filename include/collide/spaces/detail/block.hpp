@@ -28,10 +28,6 @@
 
 #include <collide/core/config.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Number of blocks that cover `n` items of a kernel functor on the space.
@@ -53,9 +49,9 @@ class serial_block {
     T value;
     COLLIDE_HD_INLINE T& operator[](int) { return value; }
   };
-  template <class T, int N>
+  template <class T, unsigned N>
   struct staging {};
-  template <class T, int N>
+  template <class T, unsigned N>
   struct warp_exchange_storage {};
   struct scan_storage {};
   struct balance_storage {};
@@ -82,22 +78,22 @@ class serial_block {
     return before;
   }
 
-  template <class T, int N>
+  template <class T, unsigned N>
   COLLIDE_HD_INLINE T const* stage(staging<T, N>&, T const* from, int) {
     return from;
   }
 
-  template <class T, int N>
+  template <class T, unsigned N>
   COLLIDE_HD_INLINE void load_striped(T const* from, std::uint32_t row, T (&to)[N]) {
-    for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
+    for (unsigned k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
   }
 
-  template <class Scratch, class T, int N>
+  template <class Scratch, class T, unsigned N>
   COLLIDE_HD_INLINE void striped_to_blocked(Scratch&, T (&)[N]) {}
 
-  template <class Scratch, class T, int N>
+  template <class Scratch, class T, unsigned N>
   COLLIDE_HD_INLINE void store_transposed(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
-    for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
+    for (unsigned k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
   }
 
   COLLIDE_HD_INLINE std::uint32_t scan(scan_storage&, std::uint32_t* values, std::uint32_t) {
@@ -130,5 +126,3 @@ class serial_block {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

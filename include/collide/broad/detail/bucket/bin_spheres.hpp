@@ -15,10 +15,6 @@
 #include <collide/spaces/detail/atomic.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Bit k is flags[k], for k < n <= 64; flags are 0 or 1.
@@ -45,17 +41,17 @@ struct swept_bounding_spheres {
 };
 
 /// The centres and radii of consecutive spheres.
-template <class S, int Items>
+template <class S, unsigned Items>
 void load(sphere_pack<S, Items>& batch, sphere_view<S> const& spheres, std::size_t first) {
   batch.load(spheres, first);
 }
 
 /// The bounding spheres of consecutive moving spheres. A centre that is not finite is in no cell.
-template <class S, int Items>
+template <class S, unsigned Items>
 void load(sphere_pack<S, Items>& batch, swept_bounding_spheres<S> const& bounds, std::size_t first) {
   moving_pack<S, Items> ways;
   ways.load(bounds.spheres, first);
-  for (int k = 0; k < Items; ++k) {
+  for (unsigned k = 0; k < Items; ++k) {
     batch.x[k] = ways.x[k] + S(0.5) * ways.dx[k];
     batch.y[k] = ways.y[k] + S(0.5) * ways.dy[k];
     batch.z[k] = ways.z[k] + S(0.5) * ways.dz[k];
@@ -105,7 +101,7 @@ struct place_spheres {
  private:
   template <class Block>
   void place(Block& block, scratch<Block>& s) const {
-    constexpr int n = Block::items;
+    constexpr unsigned n = Block::items;
     std::size_t const begin = block.index() * stride * batches * n;
     bool const one_radius = spheres.one_radius();
     s.count = 0;
@@ -119,7 +115,7 @@ struct place_spheres {
       };
       // where all radii are equal, one comparison stands for all
       auto const of_radii = [&](auto const& holds) {
-        if (!one_radius) return mask_of<n>([&](int k) { return holds(batch.radius[k]); });
+        if (!one_radius) return mask_of<n>([&](unsigned k) { return holds(batch.radius[k]); });
         return holds(spheres.common_radius()) ? first_bits(spheres.size() - first) : 0;
       };
       std::uint64_t open = of_radii([](S r) { return is_valid_radius(r); });
@@ -127,7 +123,7 @@ struct place_spheres {
         grid<S> const& box = grids[g];
         std::uint64_t const served = open & of_radii([&](S r) { return box.serves(r); });
         std::uint64_t const inside =
-            served & mask_of<n>([&](int k) { return box.contains(batch.x[k], batch.y[k], batch.z[k]); });
+            served & mask_of<n>([&](unsigned k) { return box.contains(batch.x[k], batch.y[k], batch.z[k]); });
         open &= ~served;
         for (int l = 0; l < box.levels && inside != 0; ++l) {
           make_room(s);
@@ -146,10 +142,10 @@ struct place_spheres {
 
   static std::uint64_t first_bits(std::size_t n) { return n < 64 ? (std::uint64_t{1} << n) - 1 : ~std::uint64_t{0}; }
 
-  template <int n, class Holds>
+  template <unsigned n, class Holds>
   static std::uint64_t mask_of(Holds const& holds) {
     unsigned char flags[n];
-    for (int k = 0; k < n; ++k) flags[k] = static_cast<unsigned char>(holds(k));
+    for (unsigned k = 0; k < n; ++k) flags[k] = static_cast<unsigned char>(holds(k));
     return bits_of_flags<n>(flags);
   }
 
@@ -285,5 +281,3 @@ struct scatter_spheres {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

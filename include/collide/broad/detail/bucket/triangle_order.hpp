@@ -13,10 +13,6 @@
 #include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// A triangle, and where it is on a curve through space.
@@ -224,5 +220,3 @@ class group_triangles {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

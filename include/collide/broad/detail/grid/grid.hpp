@@ -32,10 +32,6 @@
 #include <collide/broad/detail/grid/size_histogram.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 inline constexpr int max_levels = 2;
@@ -180,5 +176,3 @@ struct alignas(8) item_range {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -13,10 +13,6 @@
 #include <collide/broad/detail/tree/tree_node.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Places along the curve, in order.
@@ -317,5 +313,3 @@ class radix_tree {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop
