@@ -77,7 +77,7 @@ struct automatic {
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
       detail::middles_as_spheres<S> const spheres{mesh_, radius};
-      way_ = prefers_tree<Space>(options, spheres) ? way::tree : best_without_tree(options);
+      strategy_ = prefers_tree<Space>(options, spheres) ? strategy::tree : best_without_tree(options);
       is_given_ = true;
       make_index(space, options, radius);
     }
@@ -87,10 +87,10 @@ struct automatic {
     void prepare(Space& space, automatic const& options, Spheres const& spheres) {
       if (!is_given_) {
         if constexpr (detail::serves_steps<Space>) {
-          way_ = prefers_tree_in_steps<Space>(options, spheres) ? way::tree : best_without_tree(options);
+          strategy_ = prefers_tree_in_steps<Space>(options, spheres) ? strategy::tree : best_without_tree(options);
           is_given_ = true;
         } else {
-          way_ = choose<Space>(options, spheres);
+          strategy_ = choose<Space>(options, spheres);
         }
       }
       make_index(space, options, spheres);
@@ -105,15 +105,15 @@ struct automatic {
     /// About how many hits the query has, if the grid can tell; else 0.
     template <class NarrowPhase, class Space>
     std::uint64_t expected_hits(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres) {
-      return way_ == way::grid ? grid_.template expected_hits<NarrowPhase>(space, spheres) : 0;
+      return strategy_ == strategy::grid ? grid_.template expected_hits<NarrowPhase>(space, spheres) : 0;
     }
 
     template <class NarrowPhase, class Space, class Output>
     void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
       if constexpr (bvh_tuning<Space>::divides_by_area) {
-        if (way_ == way::tree) return tree_.template query<NarrowPhase>(space, spheres, output);
+        if (strategy_ == strategy::tree) return tree_.template query<NarrowPhase>(space, spheres, output);
       }
-      if (way_ == way::grid) {
+      if (strategy_ == strategy::grid) {
         grid_.template query<NarrowPhase>(space, spheres, output);
       } else {
         bounds_.template query<NarrowPhase>(space, spheres, output);
@@ -123,9 +123,9 @@ struct automatic {
     /// The triangles near a single sphere, for a kernel of a simulation; valid until the next build or prepare.
     auto mesh_lookup() const {
       using ref = detail::grid_or_tree_ref<S, decltype(tree_.ref())>;
-      if (way_ == way::grid) return ref{grid_.mesh_lookup(), {}};
+      if (strategy_ == strategy::grid) return ref{grid_.mesh_lookup(), {}};
       detail::bucket_ref<S> const all{{mesh_, nullptr}, nullptr, 0, nullptr, nullptr, nullptr, nullptr, 0};
-      return way_ == way::tree ? ref{all, tree_.mesh_lookup()} : ref{all, {}};
+      return strategy_ == strategy::tree ? ref{all, tree_.mesh_lookup()} : ref{all, {}};
     }
 
     /// Width of the finest cells in use; 0 if there is no grid.
@@ -135,18 +135,18 @@ struct automatic {
     }
 
    private:
-    enum class way { all_pairs, grid, tree };
+    enum class strategy { all_pairs, grid, tree };
 
-    way best_without_tree(automatic const& options) const {
-      return detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? way::grid : way::all_pairs;
+    strategy best_without_tree(automatic const& options) const {
+      return detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? strategy::grid : strategy::all_pairs;
     }
 
     template <class Space, class Spheres>
-    way choose(automatic const& options, Spheres const& spheres) {
+    strategy choose(automatic const& options, Spheres const& spheres) {
       bool const wants_index =
-          has_grid_ || has_tree_ || (best_without_tree(options) == way::grid && wants_grid<Space>(spheres.size()));
-      if (!wants_index) return way::all_pairs;
-      return prefers_tree<Space>(options, spheres) ? way::tree : way::grid;
+          has_grid_ || has_tree_ || (best_without_tree(options) == strategy::grid && wants_grid<Space>(spheres.size()));
+      if (!wants_index) return strategy::all_pairs;
+      return prefers_tree<Space>(options, spheres) ? strategy::tree : strategy::grid;
     }
 
     template <class Space>
@@ -207,15 +207,15 @@ struct automatic {
       return false;
     }
 
-    /// Makes what the way of this query needs, for a radius or for spheres.
+    /// Makes what the strategy of this query needs, for a radius or for spheres.
     template <class Space, class RadiusOrSpheres>
     void make_index(Space& space, automatic const& options, RadiusOrSpheres const& what) {
-      if (way_ == way::tree) {
+      if (strategy_ == strategy::tree) {
         if constexpr (bvh_tuning<Space>::divides_by_area) {
           if (!has_tree_) tree_.build(space, bvh(), mesh_);
           has_tree_ = true;
         }
-      } else if (way_ == way::grid) {
+      } else if (strategy_ == strategy::grid) {
         if (!has_grid_) grid_.build(space, options.grid, mesh_);
         has_grid_ = true;
         grid_.prepare(space, options.grid, what);
@@ -232,7 +232,7 @@ struct automatic {
     bool has_grid_ = false, has_bounds_ = false, has_tree_ = false;
     bool is_given_ = false;                         ///< made for a radius, until the next build
     bool is_sampled_ = false, is_slender_ = false;  ///< the mesh
-    way way_ = way::all_pairs;                      ///< of this query
+    strategy strategy_ = strategy::all_pairs;       ///< of this query
     double spent_ = 0;                              ///< nanoseconds that a grid would have saved so far
     double spent_on_boxes_ = 0;                     ///< nanoseconds that a tree would have saved so far
   };

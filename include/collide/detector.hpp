@@ -28,8 +28,8 @@ namespace collide {
 
 /// Finds all colliding (sphere, triangle) pairs of a scene.
 ///
-/// \tparam BroadPhase      which triangles a sphere could touch: `bucket` (bucket.cuh), `all_pairs` (all_pairs.cuh) or
-///                         `automatic` (automatic.cuh)
+/// \tparam BroadPhase      which triangles a sphere could touch: `bucket` (bucket.cuh), `bvh` (bvh.cuh), `all_pairs`
+///                         (all_pairs.cuh) or `automatic` (automatic.cuh)
 /// \tparam NarrowPhase     whether a sphere touches a triangle: `karabassi<Precision>`, or `karabassi_swept<Precision>`
 ///                         for spheres that move
 /// \tparam ExecutionSpace  where and how it runs: `host`, `cuda`, `cuda_shared`
@@ -120,8 +120,7 @@ class detector {
   /// host in a sixth to an eighth of the time. Queries give the same; the farther triangles have moved from each other
   /// the longer they take, until the next `build`. For `bvh`.
   ///
-  /// \param mesh  triangles in memory of the space, not copied, as for `build`: as many as that of the last build, in
-  /// the
+  /// \param mesh  triangles in memory of the space, not copied, as for `build`: as many as the last build had, in the
   ///              same order, at the same or another place
   /// \throws error  if there was no `build`, the last one failed, or it was of another number of triangles
   /// \throws cuda_error  if a CUDA call fails
@@ -165,7 +164,8 @@ class detector {
   /// \param spheres  n spheres in memory of the space: valid and unchanged until the work is done, at the latest when
   ///                 the sink is read. There may be none.
   /// \param sink     where pairs go: `count`, `any_hit`, `pairs`, `csr`, `contacts`, `impacts`, `closest`, `earliest`,
-  ///                 `visit`, or one of your own
+  ///                 `visit`, or one of your own; or a search of the mesh for each sphere: `nearest`, `k_nearest`,
+  ///                 `contains`, `signed_distance`, `winding_number`
   /// \return the sink: by reference if it was given as an lvalue (its memory is then used again), else by value
   /// \throws error  if there was no `build`, or the last one failed
   /// \throws cuda_error  if a CUDA call fails

@@ -136,8 +136,7 @@ COLLIDE_HD conservative_box<S> conservative(triangle<S> const& t) {
 ///     squared distance from the point is at most `bound`, and for others as it likes. The bound only falls: to begin
 ///     with what is near saves most;
 ///   - `for_each_on_ray(vec3<S> point, F f) const`, which calls f(triangle) for all triangles whose box the ray from
-///   the
-///     point along +z meets, each once, and for others as it likes, as long as that returns true.
+///     the point along +z meets, each once, and for others as it likes, as long as that returns true.
 template <class Policy>
 struct per_sphere {
   Policy policy{};  ///< its options

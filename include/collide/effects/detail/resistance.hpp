@@ -254,7 +254,7 @@ class media {
     sum_.flow = m.flow;
     ++count_;
   }
-  /// How it flows; it is as strong as all are together.
+  /// The velocity of the one medium that resists as all of them do together.
   COLLIDE_HD_INLINE vec3<double> flow() const {
     if (count_ == 1) return sum_.flow;
     double const force = length_of(resisting_),

@@ -191,8 +191,7 @@ class plain_nearest_search {
 ///
 ///     nearest_search(point, max_distance)    triangles count up to that distance, inclusive; none if it is below 0
 ///     consider(corners, number)              looks at a triangle, which may come again; one that is not finite is
-///     never
-///                                            nearest
+///                                            never nearest
 ///     squared_bound()                        a box whose squared distance, rounded down, is above this holds no nearer
 ///                                            triangle; below 0 if no triangle counts
 ///     result()                               the nearest triangle, of equally near ones the one of the lowest number

@@ -51,26 +51,26 @@ class coarse_grid {
     }
     ranks.reduce(bits, largest, 6, reduction::max);
     for (int k = 0; k < 3; ++k) {
-      frame_.lower[k] = -from_ordered_bits<double>(largest[k]);
-      frame_.upper[k] = from_ordered_bits<double>(largest[3 + k]);
-      double const half = frame_.upper[k] / 2 - frame_.lower[k] / 2, scale = half > 0 ? cells_across / half : 0;
+      bounds_.lower[k] = -from_ordered_bits<double>(largest[k]);
+      bounds_.upper[k] = from_ordered_bits<double>(largest[3 + k]);
+      double const half = bounds_.upper[k] / 2 - bounds_.lower[k] / 2, scale = half > 0 ? cells_across / half : 0;
       scale_[k] = is_finite(scale) ? scale : 0;
     }
   }
 
-  COLLIDE_HD aabb<double> const& frame() const { return frame_; }
+  COLLIDE_HD aabb<double> const& bounds() const { return bounds_; }
 
   /// How many cells of a level one unit is on an axis; 0 if all is in the first.
   double cells_on(int axis, int level) const { return scale_[axis] / (2 << (finest - level)); }
 
-  /// True if the box reaches into the frame.
+  /// True if the box reaches into the bounds.
   COLLIDE_HD bool meets(aabb<double> const& box) const {
-    bool so = !frame_.is_empty() && !box.is_empty();
-    for (int k = 0; k < 3; ++k) so = so && box.lower[k] <= frame_.upper[k] && frame_.lower[k] <= box.upper[k];
+    bool so = !bounds_.is_empty() && !box.is_empty();
+    for (int k = 0; k < 3; ++k) so = so && box.lower[k] <= bounds_.upper[k] && bounds_.lower[k] <= box.upper[k];
     return so;
   }
 
-  /// Calls f(cell) for up to 8 cells that cover what the box has of the frame: those of the finest level of which it
+  /// Calls f(cell) for up to 8 cells that cover what the box has of the bounds: those of the finest level of which it
   /// meets two along an axis. Two boxes that share a point have cells of which one is, or is part of, the other.
   template <class F>
   COLLIDE_HD void for_each_cell(aabb<double> const& box, F const& f) const {
@@ -112,8 +112,8 @@ class coarse_grid {
  private:
   /// Rises with x.
   COLLIDE_HD int cell(int axis, double x) const {
-    double const inside = min(max(x, frame_.lower[axis]), frame_.upper[axis]);
-    double const at = (inside / 2 - frame_.lower[axis] / 2) * scale_[axis];
+    double const inside = min(max(x, bounds_.lower[axis]), bounds_.upper[axis]);
+    double const at = (inside / 2 - bounds_.lower[axis] / 2) * scale_[axis];
     return at < cells_across - 1 ? static_cast<int>(at) : cells_across - 1;
   }
 
@@ -129,7 +129,7 @@ class coarse_grid {
     return (bits | bits << 2) & 0x249249u;
   }
 
-  aabb<double> frame_ = aabb<double>::empty();
+  aabb<double> bounds_ = aabb<double>::empty();
   double scale_[3] = {};  ///< cells in half a unit
 };
 

@@ -53,16 +53,16 @@ class halo_filter {
   /// For the cells of a level. False if numbers may overflow; all spheres pass then.
   bool set(rank_lookup const& map, double extent, int level) {
     using limits = std::numeric_limits<S>;
-    auto const& frame = map.grid.frame();
+    auto const& bounds = map.grid.bounds();
     double const u = static_cast<double>(ieee_traits<S>::unit_roundoff), across = 1 << level;
     double const tiny = static_cast<double>(limits::min()), huge = static_cast<double>(limits::max());
     double most = extent;
     for (int k = 0; k < 3; ++k) {
-      double const size = max(max(-frame.lower[k], frame.lower[k]), max(-frame.upper[k], frame.upper[k]));
+      double const size = max(max(-bounds.lower[k], bounds.lower[k]), max(-bounds.upper[k], bounds.upper[k]));
       double const cells = map.grid.cells_on(k, level), width = cells > 0 ? 1 / cells : extent / across;
       if (!(size < huge / 8 && 1 / width < huge)) return false;
       double const room = 0x1p-12 * width + 0x1p-19 * extent + (8 * u + 0x1p-46) * size + 4 * sqrt_rn(tiny);
-      lower_[k] = static_cast<S>(frame.lower[k] + room - width);
+      lower_[k] = static_cast<S>(bounds.lower[k] + room - width);
       scale_[k] = static_cast<S>(1 / width);
       most = min(most, width - 2 * room);
     }
@@ -73,10 +73,10 @@ class halo_filter {
     return true;
   }
 
-  /// The first cell of a box, in cells, one more than from the frame on.
+  /// The first cell of a box, in cells, one more than from the bounds on.
   COLLIDE_HD_INLINE S place(int axis, S x, S radius) const { return mul_rn(x - lower_[axis] - radius, scale_[axis]); }
 
-  /// 1 if a box that begins there may reach into the frame; on bits, which negative numbers and NaN have more of.
+  /// 1 if a box that begins there may reach into the bounds; on bits, which negative numbers and NaN have more of.
   COLLIDE_HD_INLINE std::uint32_t is_inside(S place) const { return to_bits(place) < end_ ? 1u : 0u; }
 
   /// The cell of a place; the first for one before it.
@@ -142,7 +142,7 @@ class sphere_send_plan : public send_plan {
   template <class Space, class Spheres>
   void find(Space& space, rank_lookup const& map, Spheres const& spheres, int self, int ranks) {
     constexpr unsigned items = Space::host_accessible ? 32 : 4;
-    double const extent = map.grid.meets(map.grid.frame()) ? map.grid.frame().max_extent() : 0;
+    double const extent = map.grid.meets(map.grid.bounds()) ? map.grid.bounds().max_extent() : 0;
     halo_filter<typename Spheres::scalar> const quick(map, extent, spheres.common_radius());
     send_plan::find(space, find_sends<Spheres, items>{spheres, map, quick, extent, self, {}},
                     (spheres.size() + items - 1) / items, spheres.size(), ranks);

@@ -12,10 +12,9 @@
 ///     read and write what lies side by side together, so all of these rows must exist; what a thread has read is its
 ///     own row after the exchange, and not before;
 ///   - `block.for_each_balanced<ItemsPerThread>(...)` spreads work evenly over the threads. For all k < counts[i],
-///   where
-///     counts are at least 1: x = load(item(i), k), and if filter(item(i), x), then consume(item(i), x). `load` and
-///     `filter` only read, and a thread calls them for up to `ItemsPerThread` work items before it consumes, so that
-///     the loads overlap if they do not branch. After each round the whole block calls `end_round(is_last)`;
+///     where counts are at least 1: x = load(item(i), k), and if filter(item(i), x), then consume(item(i), x). `load`
+///     and `filter` only read, and a thread calls them for up to `ItemsPerThread` work items before it consumes, so
+///     that the loads overlap if they do not branch. After each round the whole block calls `end_round(is_last)`;
 ///   - `block.scan(...)` makes of at most as many values as threads the sums of those before each;
 ///   - `block.reduce(...)` combines a value per thread.
 /// `scratch` is the kernel's scratch memory of the block (shared memory on CUDA); it is not initialised.

@@ -1,6 +1,6 @@
 /// \file
-/// Kernel kernels that sort spheres into the cells of grids, for the CPU: those near triangles are listed, counted by
-/// cells, numbered and copied in the order of the cells.
+/// Kernels that sort spheres into the cells of grids, on the CPU: spheres near triangles are listed, counted by cells,
+/// numbered and copied in the order of the cells.
 #pragma once
 
 #include <algorithm>

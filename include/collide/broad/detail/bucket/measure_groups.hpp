@@ -1,6 +1,5 @@
 /// \file
-/// Kernel kernels of one pass over a mesh or over radii, for the CPU: eight at a time, and histograms that are kept
-/// close.
+/// Kernels of one pass over a mesh or over radii, on the CPU: eight at a time, with histograms that stay in cache.
 #pragma once
 
 #include <cmath>

@@ -11,8 +11,7 @@
 ///   - Two levels, where that costs less: triangles much larger than the rest go to wider cells; a sphere looks into
 ///     one cell per level.
 ///   - Wrapping. A level has a fixed number of cells; where the scene has more, cell coordinates wrap around (modulo a
-///   power
-///     of two). Triangles from far away then share a cell: more candidates, no wrong answer.
+///     power of two). Triangles from far away then share a cell: more candidates, no wrong answer.
 ///   - Several grids, where radii differ much: each serves the spheres of one range of radii.
 ///
 /// An entry is the number of a triangle. Beside it is which part of the cell the triangle's box covers, to a fifteenth

@@ -133,7 +133,7 @@ struct plan_grid {
     if (block.index() >= static_cast<std::size_t>(request.count)) return empty_cells(block);
     auto& g = grids[block.index()];
     block.for_each_thread([&](int thread_rank) {
-      if (thread_rank == 0) s.planned = frame(block.index(), s.extent);
+      if (thread_rank == 0) s.planned = header_of(block.index(), s.extent);
       for (auto b = static_cast<std::uint32_t>(thread_rank); b < pair_distances::bins; b += Block::num_threads) {
         s.distances.counts[b] = 0;
       }
@@ -176,7 +176,7 @@ struct plan_grid {
   }
 
   /// The grid but for its levels: of these there are none if it can hold no triangle, or serve no sphere.
-  COLLIDE_HD grid_header<S> frame(std::size_t i, S& extent) const {
+  COLLIDE_HD grid_header<S> header_of(std::size_t i, S& extent) const {
     grid_header<S> g{};
     extent = 0;
     g.reach = request.reaches[i];

@@ -50,7 +50,8 @@ struct curve_groups {
 
   std::size_t nodes() const { return std::size_t{3} * count + triangles / tree_node::width; }
   COLLIDE_HD_INLINE std::uint32_t node_of(id group) const { return count == 1 ? 0 : count + group; }
-  /// The first node of triangles of a group that begins with `first`: there is room for one more than full ones.
+  /// The first of the nodes with the triangles of a group, whose first triangle is at place `first`: each group has
+  /// room for one node more than it fills.
   COLLIDE_HD_INLINE std::uint32_t first_part_of(id group, id first) const {
     return 2 * count + group + first / tree_node::width;
   }

@@ -35,7 +35,7 @@ struct bodies_ref {
 
   COLLIDE_HD_INLINE bodies_ref opened() const { return {whole.opened(), mesh, quick}; }
 
-  /// True if `mark` can tell of spheres of this radius whether they may touch a triangle.
+  /// True if `test_occupied` can tell of spheres of this radius whether they may touch a triangle.
   COLLIDE_HD_INLINE bool has_single_cell_lookup(S radius) const {
     return whole.has_single_cell_lookup(radius + quick.room) && quick.serve(radius);
   }
