@@ -10,7 +10,6 @@
 #include <collide/narrow/detail/contact_in_precision.hpp>
 #include <collide/narrow/detail/intersects_swept.hpp>
 #include <collide/narrow/detail/karabassi_test.hpp>
-#include <collide/narrow/detail/time_of_impact.hpp>
 
 namespace collide {
 

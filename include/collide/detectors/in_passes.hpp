@@ -13,7 +13,6 @@
 #include <collide/core/nearest_triangle.hpp>
 #include <collide/detector.hpp>
 #include <collide/detectors/detail/found_query.hpp>
-#include <collide/detectors/detail/pair_list.hpp>
 #include <collide/sinks/detail/search_mesh.hpp>
 #include <collide/spaces/detail/check_memory.hpp>
 #include <collide/spaces/detail/host_array.hpp>

@@ -14,7 +14,6 @@
 
 #include <collide/detector.hpp>
 #include <collide/detectors/detail/found_query.hpp>
-#include <collide/detectors/detail/pair_list.hpp>
 #include <collide/detectors/detail/posed_hit.hpp>
 #include <collide/effects/bodies.hpp>
 #include <collide/simulation/detail/bodies/body_memory.hpp>

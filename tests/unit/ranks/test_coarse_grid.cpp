@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/ranks/detail/coarse_grid.hpp>
+#include <collide/ranks/detail/rank_map.hpp>
 
 #include "ranks/boxes.hpp"
 

@@ -1,11 +1,12 @@
 /// \file
-/// Pairs that are known, as a query that a sink runs.
+/// Pairs that were found by several queries, and the query of them that a sink runs.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <collide/query/concepts.hpp>
@@ -13,9 +14,39 @@
 #include <collide/query/hit.hpp>
 #include <collide/sinks/detail/mesh_subset.hpp>
 #include <collide/sinks/detail/output.hpp>
+#include <collide/sinks/pairs.hpp>
 #include <collide/spaces/detail/host_array.hpp>
 
 namespace collide::detail {
+
+/// An array of pairs in memory of a space, to which more are appended.
+class pair_list {
+ public:
+  /// Forgets the pairs.
+  void clear() { size_ = 0; }
+
+  /// Room for `n` more pairs; returns where.
+  template <class Space>
+  pair* append(Space const& space, std::size_t n) {
+    std::size_t const before = size_;
+    if (before + n > memory_.capacity()) {
+      buffer<pair> larger;
+      pair* const to = make_room(larger, space.resource(), before + n);
+      space.for_each(before, copy_values<pair>{memory_.data(), to});
+      space.synchronize();  // the old memory goes
+      memory_ = std::move(larger);
+    }
+    size_ += n;
+    return memory_.data() + before;
+  }
+
+  pair const* data() const { return memory_.data(); }
+  std::size_t size() const { return size_; }
+
+ private:
+  buffer<pair> memory_;
+  std::size_t size_ = 0;
+};
 
 /// A mesh of which some triangles are here, some of its own and others that were hit: a plain value.
 template <class S>

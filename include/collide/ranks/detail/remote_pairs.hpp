@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <collide/detector.hpp>
-#include <collide/detectors/detail/pair_list.hpp>
+#include <collide/detectors/detail/found_query.hpp>
 #include <collide/ranks/detail/device_exchange_buffer.hpp>
 #include <collide/ranks/detail/divided_mesh.hpp>
 #include <collide/ranks/detail/sphere_send_plan.hpp>

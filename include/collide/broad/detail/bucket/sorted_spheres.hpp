@@ -20,7 +20,6 @@
 
 #include <collide/broad/detail/bucket/bin_spheres.hpp>
 #include <collide/broad/detail/bucket/expected_hits.hpp>
-#include <collide/broad/detail/bucket/mark_cells.hpp>
 #include <collide/broad/detail/bucket/measure_groups.hpp>
 #include <collide/broad/detail/bucket/triangle_group.hpp>
 #include <collide/broad/detail/bucket/triangle_major.hpp>

@@ -10,7 +10,7 @@
 #include <collide/core/memory.hpp>
 #include <collide/spaces/detail/block.hpp>
 #if defined(__CUDACC__)
-#include <collide/broad/detail/tree/sort_ids_cuda.cuh>
+#include <collide/spaces/detail/sort_cuda.cuh>
 #endif
 
 namespace collide::detail {
