@@ -1,5 +1,5 @@
 """Includes go one way: a header includes headers of its own layer and of those below, and never, through others, itself.
-A layer is a folder of include/collide; the picture in docs/design.md has their order. The few headers in no folder are
+A layer is a folder of include/collide; the picture in docs/development/design.md has their order. The few headers in no folder are
 those that users name first, and belong to the highest layer that they include.
 
 Usage: layers.py check | self-test | including HEADER
@@ -13,11 +13,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = ROOT / "include" / "collide"
-PAGE = ROOT / "docs" / "design.md"
+PAGE = ROOT / "docs" / "development" / "design.md"
 MOST_WITHOUT_FOLDER = 12
 
 def pictured_layers():
-    """The folders of the picture in docs/design.md, from the lowest to the highest: each is a layer."""
+    """The folders of the picture in docs/development/design.md, from the lowest to the highest: each is a layer."""
     picture = PAGE.read_text().split("## Layers", 1)[1].split("\n## ", 1)[0]
     return re.findall(r"^    ([\w/]+/)  ", picture, re.MULTILINE)[::-1]
 
@@ -70,7 +70,7 @@ def problems(headers, layers):
     for header, includes in headers.items():
         layer = layer_of(header, headers, layers)
         if layer is None:
-            yield f"{header} is in no layer: docs/design.md does not show its folder"
+            yield f"{header} is in no layer: docs/development/design.md does not show its folder"
             continue
         for included in includes:
             if included not in headers:
@@ -107,7 +107,7 @@ def check():
     yield from problems(headers, layers)
     for layer in layers:
         if not any(header.startswith(layer) for header in headers):
-            yield f"docs/design.md shows {layer}, where there is no header"
+            yield f"docs/development/design.md shows {layer}, where there is no header"
 
 
 if __name__ == "__main__":
