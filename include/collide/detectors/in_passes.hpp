@@ -197,9 +197,7 @@ class in_passes {
     for (pair const& p : hits_.to_host()) is_hit[p.triangle] = true;
     for (std::size_t t = 0; t < size; ++t) {
       if (!is_hit[t]) continue;
-      hit_.emplace_back();
-      hit_.back().number = static_cast<id>(first + t);
-      detail::pack_triangles<scalar>{mesh_.subview(first + t, 1), hit_.back().corners}(0);
+      hit_.push_back(detail::numbered_triangle<scalar>::of(static_cast<id>(first + t), mesh_[first + t]));
     }
   }
 

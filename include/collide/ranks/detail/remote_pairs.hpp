@@ -86,9 +86,7 @@ class remote_pairs {
       sends_.find(space, mesh.lookup(), spheres, ranks.rank(), ranks.size());
       query_own(detector, mesh, spheres);
     });
-    std::uint64_t const mine = (sends_.size() + chunk - 1) / chunk;
-    std::uint64_t rounds = 0;
-    ranks.reduce(&mine, &rounds, 1, reduction::max);
+    std::uint64_t const rounds = sends_.rounds(ranks, chunk);
     for (std::uint64_t round = 0; round < rounds; ++round) {
       together(ranks, [&] { pack_round(ranks.size(), space, spheres, sends_, round, rounds, sent_); });
       deliver(ranks, space, sent_, received_);

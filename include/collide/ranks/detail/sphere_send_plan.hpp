@@ -147,6 +147,15 @@ class sphere_send_plan : public send_plan {
     send_plan::find(space, find_sends<Spheres, items>{spheres, map, quick, extent, self, {}},
                     (spheres.size() + items - 1) / items, spheres.size(), ranks);
   }
+
+  /// How many rounds it takes on all ranks to send about `chunk` spheres of each at a time. All ranks call it.
+  template <class Ranks>
+  std::uint64_t rounds(Ranks const& ranks, std::size_t chunk) const {
+    std::uint64_t const mine = (size() + chunk - 1) / chunk;
+    std::uint64_t most = 0;
+    ranks.reduce(&mine, &most, 1, reduction::max);
+    return most;
+  }
 };
 
 }  // namespace collide::detail

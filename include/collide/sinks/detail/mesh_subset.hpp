@@ -51,7 +51,10 @@ struct numbered_triangle {
   id number;
   S corners[9];
 
-  triangle<S> shape() const {
+  COLLIDE_HD static numbered_triangle of(id number, triangle<S> const& t) {
+    return {number, {t.a[0], t.a[1], t.a[2], t.b[0], t.b[1], t.b[2], t.c[0], t.c[1], t.c[2]}};
+  }
+  COLLIDE_HD triangle<S> shape() const {
     return {{corners[0], corners[1], corners[2]},
             {corners[3], corners[4], corners[5]},
             {corners[6], corners[7], corners[8]}};
