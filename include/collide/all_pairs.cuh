@@ -102,14 +102,14 @@ struct all_pairs_query {
   template <class Block>
   COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, std::uint32_t n, std::size_t first,
                               std::size_t base) const {
-    constexpr std::uint32_t items = Block::items;
-    for (std::uint32_t i = 0; i < n * items; i += Block::num_threads) {
+    constexpr std::uint32_t per_thread = Block::items;
+    for (std::uint32_t i = 0; i < n * per_thread; i += Block::num_threads) {
       block.for_each_thread([&](int thread_rank) {
         if (thread_rank == 0) s.count = 0;
         std::uint32_t const own = i + static_cast<std::uint32_t>(thread_rank);
-        if (own >= n * items) return;
-        encounter const e = s.encounters[own / items];
-        test_one(block, s, first + std::size_t{e.thread_rank} * items + own % items, base + e.triangle);
+        if (own >= n * per_thread) return;
+        encounter const e = s.encounters[own / per_thread];
+        test_one(block, s, first + std::size_t{e.thread_rank} * per_thread + own % per_thread, base + e.triangle);
       });
       pipeline.drain_if_full(block, s.pipeline);
     }
