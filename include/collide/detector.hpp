@@ -134,7 +134,7 @@ class detector {
     if (mesh.size() != 0) detail::prepare_index(index_, space_, options_, radius);
   }
 
-  /// As `build`, for a mesh that has deformed since: what the broad phase knows of it stays and is moved along, on the
+  /// As `build`, for a mesh that has deformed since: the index of the broad phase stays and its boxes follow, on the
   /// host in a sixth to an eighth of the time. Queries give the same; the farther triangles have moved from each other
   /// the longer they take, until the next `build`. For `bvh`.
   ///

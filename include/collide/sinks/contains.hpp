@@ -80,10 +80,10 @@ struct find_inside {
 /// A flag per point: 1 if it is inside the mesh or on its surface, else 0. Of spheres it is that of the centre. A point
 /// that is not finite is outside.
 ///
-/// It is inside if a ray from it crosses the mesh an odd number of times: exactly, whatever the precision of the narrow
-/// phase, and with no special case for rays through edges and corners. Of a closed mesh that is the inside, however its
-/// triangles are oriented, and triangle soups are meshes whose corners are one where their coordinates are equal. Where
-/// a mesh is not closed the result depends on which way the ray goes, along +z: see `validate_closed`, and
+/// A point is inside if a ray from it crosses the mesh an odd number of times: exactly, whatever the precision of the
+/// narrow phase, and with no special case for rays through edges and corners. Of a closed mesh that is the inside,
+/// however its triangles are oriented, and triangle soups are meshes whose corners are one where their coordinates are
+/// equal. Where a mesh is not closed the result depends on which way the ray goes, along +z: see `validate_closed`, and
 /// `winding_number`.
 ///
 /// Needs a broad phase that finds what is above a point: `bvh`, or `all_pairs`. O(triangles above or below the point)

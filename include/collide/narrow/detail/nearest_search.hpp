@@ -33,8 +33,8 @@ COLLIDE_HD nearest_triangle<S> no_nearest_triangle() {
 /// A search that is exact: which triangle is nearest, whether it is within reach, and the feature; the distance is
 /// within one unit in the last place.
 ///
-/// Of the nearest triangle so far bounds of its distance are kept. What they leave open, two features that are one
-/// settle first, where triangles share a corner or an edge, and then integers.
+/// Bounds of the distance of the nearest triangle so far are kept. Where they leave a comparison open, it is first
+/// asked whether both closest features are one, where triangles share a corner or an edge; then integers decide.
 template <class S>
 class exact_nearest_search {
  public:

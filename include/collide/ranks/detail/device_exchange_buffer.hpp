@@ -30,8 +30,8 @@ struct exchange_buffer {
   }
 };
 
-/// Fills the mail for `ranks`: sort(put) calls put(rank, item) for all items, any number of times each time the same.
-/// It is called twice, to count and to place, so nothing is kept but the mail.
+/// Fills a buffer for `ranks`: sort(put) calls put(rank, item) for all items. `sort` is called twice, to count and to
+/// place, and gives the same both times; so no item is kept but in the buffer.
 template <class T, class Sort>
 void fill_exchange_buffer(exchange_buffer<T>& to, int ranks, Sort const& sort) {
   to.clear(ranks);

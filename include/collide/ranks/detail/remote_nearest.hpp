@@ -67,8 +67,8 @@ struct take_nearest {
   }
 };
 
-/// Finds them. A rank searches its own triangles first. Spheres go to those others that may have a triangle as near,
-/// and the nearest of each comes back; about `chunk` spheres of a rank at a time.
+/// The search for these triangles. A rank searches its own first. Spheres go to those others that may have a triangle
+/// as near, and the nearest of each comes back; about `chunk` spheres of a rank at a time.
 template <class Detector>
 class remote_nearest {
   using S = typename Detector::scalar;

@@ -63,9 +63,9 @@ struct unpack_answers {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = {routes[answers[i].sphere].triangle, answers[i].triangle}; }
 };
 
-/// Finds them. A rank queries its own triangles with its spheres where they are. Those that others may have triangles
-/// for are sent, and pairs come back. So many go at a time that no rank needs more memory than for about a `chunk` from
-/// each. Everything is in memory of the space, but for the triangles that come back.
+/// The search for these pairs. A rank queries its own triangles with its spheres where they are. Spheres near triangles
+/// of other ranks are sent there, and pairs come back. So many go at a time that no rank needs more memory than for
+/// about a `chunk` from each. Everything is in memory of the space, but for the triangles that come back.
 template <class Detector>
 class remote_pairs {
   using S = typename Detector::scalar;

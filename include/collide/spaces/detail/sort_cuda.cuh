@@ -26,7 +26,7 @@ struct canonical_less {
   }
 };
 
-/// Up to so many pairs it is faster to merge (docs/development/experiments.md).
+/// The number of pairs up to which merging is faster than sorting by radix (docs/development/experiments.md).
 inline constexpr std::size_t merge_sort_limit = std::size_t{1} << 18;
 
 /// Bits that ids below `n` take; at least one.
@@ -36,7 +36,7 @@ inline int bits_for(std::size_t n) {
   return b;
 }
 
-/// Temporary memory, in bytes, to sort up to `n` pairs by merging,
+/// Temporary memory, in bytes, to sort up to `n` pairs by merging.
 inline std::size_t merge_sort_bytes(cudaStream_t stream, std::size_t n) {
   std::size_t bytes = 0;
   std::uint64_t* const none = nullptr;
@@ -44,7 +44,7 @@ inline std::size_t merge_sort_bytes(cudaStream_t stream, std::size_t n) {
              "cub::DeviceMergeSort::SortKeys");
   return bytes;
 }
-/// and by radix.
+/// Temporary memory, in bytes, to sort `n` pairs by radix.
 inline std::size_t radix_sort_bytes(cudaStream_t stream, std::size_t n) {
   std::size_t bytes = 0;
   std::uint64_t* const none = nullptr;

@@ -206,8 +206,8 @@ struct expand_cells {
 template <class S, class NarrowPhase, class Output>
 struct bucket_query {
   static constexpr int items = 4;
-  /// So many threads of a block take spheres next to each other, where it has them: many more would get all of what is
-  /// crowded in one place, and fewer would not read whole lines of memory.
+  /// The number of threads of a block that take neighbouring spheres. Many more would get all spheres of one crowded
+  /// place, and fewer would not read whole lines of memory.
   template <class Block>
   static constexpr std::size_t run_length = Block::num_threads % 4 == 0 ? 4 : 1;
   template <class Block>

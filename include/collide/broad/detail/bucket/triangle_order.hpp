@@ -156,7 +156,8 @@ struct grouped_mesh {
 template <class S>
 class group_triangles {
  public:
-  /// Finds them. O(triangles); memory only if the triangles of the mesh have no such order: about 35 bytes for each.
+  /// Finds the order. O(triangles); memory only if the triangles of the mesh have no such order: about 35 bytes for
+  /// each.
   template <class Space>
   grouped_mesh<S> operator()(Space& space, mesh_view<S> const& mesh) {
     std::size_t const n = mesh.size();
