@@ -97,7 +97,7 @@ class curve_sort {
 #endif
   }
 
-  /// Where the keys and ids go that are sorted.
+  /// The keys and ids to be sorted.
   std::uint64_t* places() { return places_.data(); }
   id* ids() { return ids_.data(); }
   /// The keys and ids in order; of equal keys the lowest id comes first.
