@@ -1,5 +1,5 @@
 /// \file
-/// Whether `automatic` is as fast as the faster of `bucket` and `bvh`, in scenes that nothing was tuned for:
+/// Compares `automatic` with the faster of `bucket` and `bvh`, in scenes that nothing was tuned for:
 /// families_bench [host|device] [SCALE] [FIRST] [END]
 ///
 /// There are 40 families of random scenes: triangles compact, long, in bundles, giants among small ones, of two sizes,

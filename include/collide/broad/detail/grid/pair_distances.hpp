@@ -35,8 +35,8 @@ COLLIDE_HD_INLINE S path_of(moving_sphere<S> const& s) {
   return most;
 }
 
-/// What a triangle fills of its box if it is long and thin and lies across the axes: the space near its longest edge.
-/// Memory of a block, not constructed.
+/// The space near the longest edge of a triangle that is long and thin and lies across the axes: it fills no more of
+/// its box. Memory of a block, not constructed.
 template <class S>
 struct thin_part {
   S across[3], normal[3];  ///< directions across the edge, in the triangle's plane and out of it

@@ -75,7 +75,7 @@ struct list_pressing {
   pressing_list found;
   meeting what;
 
-  COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
     if (what == meeting::of_woken && !(is_just_woken(state, i) && has_no_mesh_kicks(state, i))) return;
     forget_mesh_kicks(state, i);
     if constexpr (Effects::any_inactive) {
@@ -130,7 +130,7 @@ struct press_on_mesh {
   S dt;
   meeting what;
 
-  COLLIDE_HD void operator()(std::size_t k) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const {
     if (k < *pressing.count) press_with(pressing.numbers[k]);
   }
 
@@ -324,6 +324,9 @@ struct press_on_mesh {
     mesh_overlap<S> o{rounded_to<S>(normal), static_cast<S>(radius - n.distance), rounded_to<S>(surface),
                       item.triangle,         body_of_frame(item.frame),           rounded_to<S>(normal),
                       mesh_overlap<S>::apart};
+    if constexpr (has_moving_mesh<Triangles>) {
+      if (item.frame != 0) o.surface_turning = rounded_to<S>(vector_of(open.mesh.frames[item.frame].moving.angular));
+    }
     if (item.has_saddle) {
       vec3<double> const p = near.saddle_of(item, [&](overlap_item const& of) { return corners_of(open, shape, of); });
       double const distance = sqrt_rn(dot(p, p));
