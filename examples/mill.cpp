@@ -77,10 +77,10 @@ int main(int argc, char** argv) {
   made_of.set_pair(steel, steel, {0.6, 0.3, 0.01});
   made_of.wall_material = steel;
 
-  auto const sizes = size_distribution::sieve({0.008, 0.012, 0.02}, {0, 0.6, 1});  // diameters; parts by mass
+  auto const sizes = size_distribution::sieve({0.012, 0.016, 0.024}, {0, 0.6, 1});  // diameters; parts by mass
   auto const grains = fill(mesh_region(walls.view()), sizes, filling, 1);
   std::vector<std::uint8_t> solids;
-  for (double const r : grains.radii) solids.push_back(r > 0.007 ? steel : ore);
+  for (double const r : grains.radii) solids.push_back(r > 0.009 ? steel : ore);
 
   host const cpu;
   body_motion turning;
@@ -90,19 +90,19 @@ int main(int argc, char** argv) {
   reaction_sums forces(cpu, 1, 1e-12);
   wear_sums worn(cpu, walls.size(), 1e-12, 1e-12);
   using law = granular_contact<hertz, mindlin, epsd, none, materials<2>>;
-  simulation<detector<bucket, karabassi<>, host, double>, gravity, polydisperse, law, wear<materials<2>>, reaction,
-             moving_bodies<>, velocity_verlet>
-      mill(cpu, gravity{}, polydisperse{}, law{made_of}, worn.effect(made_of), forces.effect(1), moving_bodies<>{},
-           velocity_verlet{});
+  simulation<detector<bucket, karabassi<>, host, double>, gravity, polydisperse, law, wear<materials<2>>,
+             reaction_of<materials<2>>, moving_bodies<>, velocity_verlet>
+      mill(cpu, gravity{}, polydisperse{}, law{made_of}, worn.effect(made_of), forces.effect(made_of),
+           moving_bodies<>{}, velocity_verlet{});
   mill.set_mesh(walls.view(), {body{0, walls.size(), turning}});
   mill.set(spheres_xyz(grains.centres.data(), grains.radii.size(), grains.radii.data()));
   mill.assign<material>(solids);
 
-  double const dt = largest_time_step(mill) / 2, quarter = 60 / rpm / 4;
+  double const dt = largest_time_step(mill), quarter = 60 / rpm / 4;
   auto const steps = static_cast<std::size_t>(quarter / dt);
   std::printf("%zu grains, a fraction of %.3f; dt %.3g s\n", grains.radii.size(), grains.fraction, dt);
   double torque = 0;
-  for (int k = 1; k <= 6; ++k) {
+  for (int k = 1; k <= 4; ++k) {
     forces.clear(cpu);
     worn.clear(cpu);
     mill.steps(steps, dt);

@@ -173,3 +173,29 @@ TEST_CASE("wear: a sphere that slides until it rolls gives the mesh its weight, 
     CHECK(sums.read(space)[0].normal_impulse == 0);
   }
 }
+
+TEST_CASE("reaction: spheres of several materials press with their weights") {
+  using law =
+      collide::granular_contact<collide::hertz, collide::none, collide::none, collide::none, collide::materials<2>>;
+  using scene = simulation<gravity, law, collide::reaction_of<collide::materials<2>>, collide::velocity_verlet>;
+  collide::materials<2> m;
+  m.set(0, {1e6, 0.3, 1000});
+  m.set(1, {1e6, 0.3, 7000});
+  m.set_pair(0, 0, {0.2});
+  m.set_pair(0, 1, {0.2});
+  m.set_pair(1, 1, {0.2});
+  world<double> w;
+  double const r = w.radius = 0.01;
+  tests::add_divided_floor(w, 1, 4);
+  w.particle(0.1, 0.2, r);
+  w.particle(0.3, 0.2, r);
+  collide::host const space(1);
+  collide::reaction_sums sums(space, 0, 1e-12);
+  running<scene> made(space, w, gravity{}, law{m}, sums.effect(m), collide::velocity_verlet{});
+  made.simulation.assign<collide::material>(std::vector<std::uint8_t>{0, 1});
+  made.simulation.steps(10000, 1e-4);
+  sums.clear(space);
+  made.simulation.steps(1000, 1e-4);
+  CHECK(sums.read(space)[0].linear[2] ==
+        doctest::Approx(-8000 * 4 * pi / 3 * r * r * r * 9.81 * 0.1).epsilon(1e-4).scale(0));
+}
