@@ -109,7 +109,7 @@ struct particles_on_host {
   /// As materials see a particle.
   struct made_of {
     std::uint8_t number;
-    std::uint8_t operator[](material) const { return number; }
+    COLLIDE_HD std::uint8_t operator[](material) const { return number; }
   };
   made_of solid_of(std::size_t i) const { return {solid[i]}; }
 
