@@ -63,9 +63,12 @@ inline bool is_keyword(std::string_view word, std::string_view keyword) {
 /// A text, line by line. Words are what blanks are between. Errors name the file and the line.
 class text_lines {
  public:
-  /// \param comment  begins what is left out of a line; 0: nothing does
+  /// \param comment  begins what is left out of a line; 0: nothing does. A byte order mark of UTF-8 is left out, too
   text_lines(std::string_view text, std::string const& what, char comment = '\0')
-      : left_{text}, what_{what}, comment_{comment} {}
+      : left_{text}, what_{what}, comment_{comment} {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    if (left_.substr(0, mark.size()) == mark) left_.remove_prefix(mark.size());
+  }
 
   /// Goes on to the next line that has a word. False at the end of the text.
   bool next() {
