@@ -23,7 +23,7 @@ HERE = pathlib.Path(collide.__file__).parent
 
 
 def test_the_wheel_is_small():
-    wheels = glob.glob(os.environ.get("COLLIDE_WHEELS", "") + "/collide-*.whl")
+    wheels = glob.glob(os.environ.get("COLLIDE_WHEELS", "") + "/collide_spheres-*.whl")
     if not wheels:
         pytest.skip("COLLIDE_WHEELS does not name the folder of the wheel")
     assert os.path.getsize(wheels[0]) < 5e6
@@ -63,7 +63,7 @@ def test_without_a_gpu():
     """Arrays of the host work with either package, and one on a GPU is an error that says what is missing."""
     assert collide.Mesh(numpy.eye(3)).count(numpy.zeros((1, 3)), 1) == 1
     if _arrays._cuda is None:
-        error, text = ValueError, "vertices: is on a GPU, which needs the package collide-cu13"
+        error, text = ValueError, "vertices: is on a GPU, which needs the package collide-spheres-cu13"
     else:
         error, text = collide.Error, "CUDA finds no GPU here, or no driver for CUDA"
     with pytest.raises(error, match=text):

@@ -8,7 +8,7 @@ from ._errors import refuse
 
 _why_no_cuda = ""
 try:
-    from . import _cuda  # in the package collide-cu13 only
+    from . import _cuda  # in the package collide-spheres-cu13 only
 except ImportError as reason:
     _cuda = None
     _why_no_cuda = str(reason)
@@ -36,7 +36,7 @@ def module_for(device, name):
     if device[0] in CPU_TYPES:
         return _host
     refuse(device[0] != CUDA, name, f"is on a device of DLPack's type {device[0]}; there are the host and NVIDIA GPUs")
-    refuse(_cuda is None, name, f"is on a GPU, which needs the package collide-cu13 ({_why_no_cuda})")
+    refuse(_cuda is None, name, f"is on a GPU, which needs the package collide-spheres-cu13 ({_why_no_cuda})")
     return _cuda
 
 
