@@ -17,10 +17,10 @@ PROGRAM = pathlib.Path(__file__).parent / "typed_program.py"
 WRONG = {
     "collide.Mesh(vertices).query(points, 0.5).offsets": "offsets",
     "collide.Mesh(vertices).query(points, 0.5, order='sorted')": "order|overload",
-    "collide.bounce(restitution='high')": "str",
+    "collide.bounce(restitution='high')": "str|high|first",
     "collide.no_such_effect()": "no_such_effect",
     "sim.sums('mass_flow').linear": "linear",
-    "collide.Body('first', 2)": "str",
+    "collide.Body('first', 2)": "str|high|first",
 }
 
 
