@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <collide/detail/geometry/aabb.hpp>
-#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/exact/detail/geometry/aabb.hpp>
+#include <collide/exact/detail/numeric/float_bits.hpp>
 #include <collide/mesh.hpp>
 
 namespace collide_python {

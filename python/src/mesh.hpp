@@ -12,17 +12,17 @@
 
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
+#include <collide/checks/validate.hpp>
+#include <collide/checks/validate_surface.hpp>
+#include <collide/detectors/posed.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/posed.hpp>
 #include <collide/sinks/csr.hpp>
 #include <collide/sinks/earliest.hpp>
 #include <collide/sinks/impacts.hpp>
 #include <collide/sinks/k_nearest.hpp>
 #include <collide/sinks/signed_distance.hpp>
 #include <collide/sinks/winding_number.hpp>
-#include <collide/validate.hpp>
-#include <collide/validate_surface.hpp>
 
 #include "closed.hpp"
 #include "runtime.hpp"

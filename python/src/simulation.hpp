@@ -10,8 +10,8 @@
 
 #include <dlfcn.h>
 
-#include <collide/bodies.hpp>
-#include <collide/sphere_pairs.cuh>
+#include <collide/detectors/sphere_pairs.cuh>
+#include <collide/effects/bodies.hpp>
 
 #include "mesh.hpp"
 #include "simulation_base.hpp"

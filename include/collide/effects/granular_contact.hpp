@@ -6,7 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/detail/particles/particle_access.hpp>
+#include <collide/effects/detail/particle_access.hpp>
 #include <collide/effects/granular/cohesion.hpp>
 #include <collide/effects/granular/dashpot.hpp>
 #include <collide/effects/granular/hertz.hpp>
