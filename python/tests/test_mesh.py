@@ -387,7 +387,7 @@ def test_read_only_out():
     [
         (VERTICES.astype(numpy.float16), TRIANGLES, TypeError, "vertices: has dtype float16"),
         (VERTICES, TRIANGLES.astype(numpy.int16), TypeError, "triangles: has dtype int16, expected integers of 32 or 64 bits"),
-        (VERTICES, TRIANGLES + 2**32, ValueError, "triangles: 4 triangle.* not a vertex"),
+        (VERTICES, TRIANGLES.astype(numpy.int64) + 2**32, ValueError, "triangles: 4 triangle.* not a vertex"),
         (VERTICES, TRIANGLES.astype(float), TypeError, "triangles: has dtype float64"),
         (VERTICES, TRIANGLES[:, :2], ValueError, r"triangles: has shape \(4, 2\)"),
         (VERTICES, TRIANGLES + 1, ValueError, "triangles: 3 triangle.* not a vertex"),

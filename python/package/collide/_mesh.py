@@ -491,7 +491,7 @@ class Mesh:
             centres = of_list(centres, "centres" if len(asked) == 3 else "points", self._dtype)
         if len(asked) == 3:  # of spheres
             choice("precision", asked[2], PRECISIONS)
-            if any(isinstance(one, (list, tuple)) for one in asked):
+            if isinstance(asked[0], (list, tuple)) or isinstance(asked[1], (list, tuple)):
                 names = "radius", "displacements", "precision"
                 asked = [of_list(one, name, self._dtype) for name, one in zip(names, asked)]
         library = library_of(centres, self._device)
