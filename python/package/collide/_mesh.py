@@ -498,9 +498,9 @@ class Mesh:
         stream = stream_of(library, self._device)
         if capacity is not None:
             capacity = whole("capacity", capacity, 0, 2**63 - 1)
-        is_canonical = choice("order", order, ("unspecified", "canonical")) == "canonical"
-        results = is_canonical, capacity, out, library.is_numpy
-        found = function(stream, what, centres, *asked, _rows(poses), results)
+        is_sorted = choice("order", order, ("unspecified", "canonical")) == "canonical"
+        results = is_sorted, capacity, out, library.is_numpy
+        found = function(stream, what, centres, *asked, [] if poses is None else _rows(poses), results)
         if kind is int:
             return found
         if kind is bool or kind is float:
@@ -537,8 +537,6 @@ def _parts(bodies):
 
 def _rows(poses):
     """Poses as lists of numbers."""
-    if poses is None:
-        return []
     try:
         return numpy.asarray(poses, "float64").reshape(-1, 7).tolist()
     except Exception:  # noqa: BLE001
