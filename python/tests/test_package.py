@@ -111,6 +111,13 @@ def test_headers_and_types_are_there():
         assert (HERE / name).exists()
 
 
+def test_the_example_in_jax():
+    pytest.importorskip("jax")
+    path = pathlib.Path(__file__).parents[2] / "examples" / "python" / "jax_distance.py"
+    done = subprocess.run([sys.executable, path], capture_output=True, text=True)
+    assert done.stdout.split("]")[0].split() == ["[", "1.", "-0.10000002"], done.stderr
+
+
 @pytest.mark.parametrize("name", EXPECTED)
 def test_examples(name):
     path = pathlib.Path(__file__).parents[2] / "examples" / "python" / name
