@@ -130,5 +130,5 @@ def test_effects_and_bodies_from_any_iterable_and_lists_of_numbers():
 
 @compiles
 def test_a_wrong_order_is_an_error_in_a_sentence():
-    with pytest.raises(ValueError, match=r"^effects: gravity, friction, bounce: an effect comes after those whose result it uses[^\n]*$"):
+    with pytest.raises(collide.Error, match=r"^collide: the effects gravity, friction, bounce: an effect comes after those whose result it uses[^\n]*$"):
         collide.Simulation(floor(), [collide.gravity(), collide.friction(), collide.bounce()])

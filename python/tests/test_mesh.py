@@ -328,7 +328,7 @@ UNALIGNED = numpy.frombuffer(bytes(61), numpy.uint8)[1:].view(numpy.float32).res
 
 
 BAD = [
-    (dict(centres=[[0, 0, 0]]), TypeError, "centres: expected an array"),
+    (dict(centres={}), TypeError, "centres: expected an array"),
     (dict(centres=None), TypeError, "centres: expected an array"),
     (dict(centres=NoArray()), TypeError, "centres: expected an array"),
     (dict(centres=Liar()), TypeError, "centres: "),

@@ -92,7 +92,7 @@ def _compile(text, command, path, names, space):
         if done.returncode != 0:
             print(" failed", file=sys.stderr)
             if sentence := re.search(r"static assertion failed: collide: ([^\n]*)", done.stderr):
-                raise ValueError(f"effects: {names}: {sentence[1]}")
+                raise Error(f"collide: the effects {names}: {sentence[1]}")
             raise Error(f"collide: {tool} does not compile this simulation:\n{_what_matters(done.stderr, text)}")
         os.replace(made, path)  # another process may have been as fast: the same file
     print(f" {time.monotonic() - began:.0f} s, kept in {path.parent}", file=sys.stderr)
