@@ -32,7 +32,7 @@ struct sphere_size {
   double size = -1;
 
   template <class S>
-  COLLIDE_HD explicit sphere_size(sphere<S> const& s) {
+  COLLIDE_HD_INLINE explicit sphere_size(sphere<S> const& s) {
     if (!is_valid_radius(s.radius) || !is_finite(s.centre)) return;
     double const far = static_cast<double>(max_component<S>(absolute(s.centre)));
     size = max(max(static_cast<double>(s.radius), mul_rn(far, 0x1p-24)), 0x1p-100);

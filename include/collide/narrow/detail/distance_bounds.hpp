@@ -28,6 +28,7 @@ struct distance_bounds {
 template <class S>
 COLLIDE_HD_INLINE vec3<double> difference_in_double(vec3<S> const& to, vec3<S> const& from) {
   vec3<double> d;
+  COLLIDE_UNROLL
   for (int k = 0; k < 3; ++k) d[k] = opaque_value(static_cast<double>(to[k]) - static_cast<double>(from[k]));
   return d;
 }
@@ -42,6 +43,7 @@ COLLIDE_HD_INLINE vec3<S> corner_of(triangle<S> const& t, int i) {
 template <class S>
 COLLIDE_HD_INLINE bool is_same_point(vec3<S> const& p, vec3<S> const& q) {
   bool same = true;
+  COLLIDE_UNROLL
   for (int k = 0; k < 3; ++k) {
     auto const x = to_bits(p[k]), y = to_bits(q[k]);
     same = same & ((x == y) | (((x | y) & ~ieee_traits<S>::sign_mask) == 0));

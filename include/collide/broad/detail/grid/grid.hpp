@@ -77,6 +77,7 @@ struct grid_level {
   /// The cell that holds a point inside the grid, whose lower end this is, and the place of the point in it.
   COLLIDE_HD_INLINE cell_ref cell_at(vec3<S> const& p, S const (&lower)[3]) const {
     std::uint32_t cell[3], place = 0;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       std::uint32_t step;
       cell[k] = coordinate(p[k] - lower[k], step);
@@ -132,6 +133,7 @@ struct grid_header {
   COLLIDE_HD_INLINE cell_box cells_of(grid_level<S> const& l, aabb<S> const& b, std::uint32_t (&from)[3],
                                       std::uint32_t (&to)[3]) const {
     cell_box r;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       r.lower[k] = l.coordinate(b.lower[k] - dilation - lower[k], from[k]);
       r.upper[k] = l.coordinate(b.upper[k] + dilation - lower[k], to[k]);
@@ -160,6 +162,7 @@ struct grid : grid_header<S> {
   /// The cells that a triangle's dilated box touches.
   COLLIDE_HD_INLINE cell_box range_of(grid_level<S> const& l, aabb<S> const& b) const {
     cell_box r;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       r.lower[k] = coordinate(l, b.lower[k] - dilation, k);
       r.upper[k] = coordinate(l, b.upper[k] + dilation, k);

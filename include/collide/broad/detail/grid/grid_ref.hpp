@@ -131,6 +131,7 @@ struct bucket_ref : mesh_lookup<S> {
   static COLLIDE_HD_INLINE bool serves(grid<S> const& g, moving_sphere<S> const& shape) {
     S const inverse_width = g.levels > 0 ? g.level[0].inverse_width : S(0);
     bool served = g.serves(shape.radius);
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       served = served && swept_cells<S>::is_traversable(g.lower[k], g.upper[k], inverse_width, shape.centre[k],
                                                         shape.displacement[k]);
@@ -139,6 +140,7 @@ struct bucket_ref : mesh_lookup<S> {
   }
   static COLLIDE_HD_INLINE bool meets(grid<S> const& g, moving_sphere<S> const& shape) {
     bool inside = true;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       inside = inside && swept_cells<S>::overlaps_slab(g.lower[k], g.upper[k], shape.centre[k], shape.displacement[k]);
     }

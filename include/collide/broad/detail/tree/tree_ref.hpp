@@ -103,6 +103,7 @@ struct tree_ref {
         radius = triangle_aabb<float>::padded_radius(float_above(s.radius));
       }
       squared = radius * radius;
+      COLLIDE_UNROLL
       for (int k = 0; k < 3; ++k) {
         around.lower[k] = below(centre.lower[k] - radius);
         around.upper[k] = above(centre.upper[k] + radius);

@@ -34,7 +34,7 @@ COLLIDE_HD_INLINE closest_approach<T> approach(local_sweep<T> const& l) {
   vec3<T> edge = best.normal;
   // Two lines, after C. Ericson, Real-Time Collision Detection, 5.1.9: the time that is the best on the whole line of
   // the edge, the best place on the edge for that time, and the best time for that place.
-  auto const along = [&](vec3<T> const& from, vec3<T> const& to, T d_from, T d_to, auto const& weights) {
+  auto const along = [&](vec3<T> const& from, vec3<T> const& to, T d_from, T d_to, auto const& weights) COLLIDE_HOT {
     vec3<T> const e = to - from;
     T const ee = dot(e, e), de = d_to - d_from, ev = dot(e, from);
     T const first = saturate(mul_rn(mul_rn(d_from, ee) - mul_rn(de, ev), inverse(mul_rn(dd, ee) - mul_rn(de, de))));

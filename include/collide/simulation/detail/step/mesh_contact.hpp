@@ -47,6 +47,7 @@ COLLIDE_HD_INLINE verdict try_contact_double(triangle<S> const& t, sphere<S> con
 template <class S>
 COLLIDE_HD_INLINE sphere<S> sphere_at(moving_sphere<S> const& s, S time) {
   vec3<S> at;
+  COLLIDE_UNROLL
   for (int k = 0; k < 3; ++k) at[k] = fma_rn(s.displacement[k], time, s.centre[k]);
   return {at, s.radius};
 }
