@@ -22,6 +22,21 @@ struct search_part {
   }
 };
 
+/// The query of a sink that searches a mesh in parts, as it sees it. `Search` is a function search(spheres, f).
+template <class Detector, class Search>
+struct search_query {
+  using narrow_phase = typename Detector::narrow_phase;
+  using scalar = typename Detector::scalar;
+
+  typename Detector::spheres_type const& spheres;
+  Search const& search_parts;
+
+  template <class F>
+  void search(F const& f) const {
+    search_parts(spheres, f);
+  }
+};
+
 /// Puts the search on the space's stream.
 template <class Query, class F>
 void search_mesh(Query const& query, F const& f) {

@@ -20,7 +20,6 @@
 
 #include <collide/broad/detail/bucket/bin_spheres.hpp>
 #include <collide/broad/detail/bucket/expected_hits.hpp>
-#include <collide/broad/detail/bucket/mark_cells.hpp>
 #include <collide/broad/detail/bucket/measure_groups.hpp>
 #include <collide/broad/detail/bucket/triangle_group.hpp>
 #include <collide/broad/detail/bucket/triangle_major.hpp>
@@ -30,7 +29,7 @@
 #include <collide/exact/detail/geometry/sphere_pack.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/atomic.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
 namespace collide::detail {

@@ -11,10 +11,6 @@
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/mesh.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Eight triangles that follow each other in a mesh, their boxes, number by number in arrays of their own, and the box
@@ -187,5 +183,3 @@ void each_range_of_group(grid<S> const& g, aabb<S> const& group, F const& f) {
 }
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

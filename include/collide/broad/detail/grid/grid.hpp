@@ -11,8 +11,7 @@
 ///   - Two levels, where that costs less: triangles much larger than the rest go to wider cells; a sphere looks into
 ///     one cell per level.
 ///   - Wrapping. A level has a fixed number of cells; where the scene has more, cell coordinates wrap around (modulo a
-///   power
-///     of two). Triangles from far away then share a cell: more candidates, no wrong answer.
+///     power of two). Triangles from far away then share a cell: more candidates, no wrong answer.
 ///   - Several grids, where radii differ much: each serves the spheres of one range of radii.
 ///
 /// An entry is the number of a triangle. Beside it is which part of the cell the triangle's box covers, to a fifteenth
@@ -31,10 +30,6 @@
 #include <collide/broad/detail/grid/cell_coverage.hpp>
 #include <collide/broad/detail/grid/size_histogram.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
-
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
 
 namespace collide::detail {
 
@@ -183,5 +178,3 @@ struct alignas(8) item_range {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -156,8 +156,8 @@ class swept_cells {
     return segment_extent_[0] * segment_extent_[1] * segment_extent_[2];
   }
 
-  COLLIDE_HD S position(std::uint32_t subdivide, int k) const {
-    return from_[k] + mul_rn(begin_ + mul_rn(static_cast<S>(subdivide), segment_dt_), along_[k]);
+  COLLIDE_HD S position(std::uint32_t segment, int k) const {
+    return from_[k] + mul_rn(begin_ + mul_rn(static_cast<S>(segment), segment_dt_), along_[k]);
   }
 
   /// Cuts a path through many cells into pieces.

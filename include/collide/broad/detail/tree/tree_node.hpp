@@ -12,10 +12,6 @@
 #include <collide/exact/detail/geometry/lifted_bounds.hpp>
 #include <collide/mesh.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// The next float above, or below; infinities stay.
@@ -234,5 +230,3 @@ struct boxes_before {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -9,10 +9,6 @@
 #include <collide/broad/detail/tree/tree_node.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// The most levels of nodes that a tree has. On a device each is of three bits of a place on a curve and a number, but
@@ -246,5 +242,3 @@ struct tree_ref {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

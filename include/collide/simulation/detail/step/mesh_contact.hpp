@@ -5,7 +5,7 @@
 
 #include <collide/exact/detail/geometry/local_sweep.hpp>
 #include <collide/narrow/detail/contact.hpp>
-#include <collide/narrow/detail/time_of_impact.hpp>
+#include <collide/narrow/detail/intersects_swept.hpp>
 
 namespace collide {
 

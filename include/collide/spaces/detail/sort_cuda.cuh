@@ -1,9 +1,9 @@
 /// \file
-/// Sorts pairs into canonical order on an NVIDIA GPU. Needs nvcc.
+/// Sorts pairs into canonical order, and numbers by keys, on an NVIDIA GPU. Needs nvcc.
 #pragma once
 
 #if !defined(__CUDACC__)
-#error "collide/sinks/detail/sort_pairs_cuda.cuh needs nvcc; without CUDA include the headers of the host space alone"
+#error "collide/spaces/detail/sort_cuda.cuh needs nvcc; without CUDA include the headers of the host space alone"
 #endif
 
 #include <cstddef>
@@ -26,7 +26,7 @@ struct canonical_less {
   }
 };
 
-/// Up to so many pairs it is faster to merge (docs/development/experiments.md).
+/// The number of pairs up to which merging is faster than sorting by radix (docs/development/experiments.md).
 inline constexpr std::size_t merge_sort_limit = std::size_t{1} << 18;
 
 /// Bits that ids below `n` take; at least one.
@@ -36,7 +36,7 @@ inline int bits_for(std::size_t n) {
   return b;
 }
 
-/// Temporary memory, in bytes, to sort up to `n` pairs by merging,
+/// Temporary memory, in bytes, to sort up to `n` pairs by merging.
 inline std::size_t merge_sort_bytes(cudaStream_t stream, std::size_t n) {
   std::size_t bytes = 0;
   std::uint64_t* const none = nullptr;
@@ -44,7 +44,7 @@ inline std::size_t merge_sort_bytes(cudaStream_t stream, std::size_t n) {
              "cub::DeviceMergeSort::SortKeys");
   return bytes;
 }
-/// and by radix.
+/// Temporary memory, in bytes, to sort `n` pairs by radix.
 inline std::size_t radix_sort_bytes(cudaStream_t stream, std::size_t n) {
   std::size_t bytes = 0;
   std::uint64_t* const none = nullptr;
@@ -95,6 +95,25 @@ inline void sort_pairs_on_device(cudaStream_t stream, std::pmr::memory_resource*
       "cub::DeviceRadixSort::SortKeys");
   cuda_check(cub::DeviceRadixSort::SortKeys(temporary, radix_bytes, sorted, keys, n, 0, bits_for(spheres), stream),
              "cub::DeviceRadixSort::SortKeys");
+}
+
+/// How many bytes of scratch it takes to sort `n` numbers.
+inline std::size_t bytes_to_sort_on_device(std::size_t n) {
+  std::size_t bytes = 0;
+  std::uint64_t* const keys = nullptr;
+  id* const ids = nullptr;
+  cuda_check(cub::DeviceRadixSort::SortPairs(nullptr, bytes, keys, keys, ids, ids, n),
+             "cub::DeviceRadixSort::SortPairs");
+  return bytes;
+}
+
+/// Sorts `n` numbers by the lowest `bits` bits of their keys; those of equal keys keep their order. Results are in the
+/// `sorted` arrays.
+inline void sort_ids_on_device(cudaStream_t stream, std::uint64_t const* keys, std::uint64_t* sorted_keys,
+                               id const* ids, id* sorted_ids, std::size_t n, int bits, unsigned char* scratch) {
+  std::size_t bytes = bytes_to_sort_on_device(n);
+  cuda_check(cub::DeviceRadixSort::SortPairs(scratch, bytes, keys, sorted_keys, ids, sorted_ids, n, 0, bits, stream),
+             "cub::DeviceRadixSort::SortPairs");
 }
 
 }  // namespace collide::detail
