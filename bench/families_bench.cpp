@@ -6,8 +6,8 @@
 /// few, many; spheres few, many, clustered, far; radii from 1:1 to 1:1000. Prints a line of JSON for each: milliseconds
 /// of build and query (`first`), and of the same query again (`again`), of each broad phase, and how `automatic`
 /// compares with the faster one. Even families are to tune on, odd ones to judge by. SCALE divides the numbers of
-/// triangles and spheres. On the host, time is that of one processor; on a device, between events. Built by hand with
-/// nvcc (docs/development/benchmarks.md), or as a target without it.
+/// triangles and spheres. On the host, time is that of one processor; on a device, between events. Built by hand:
+/// nvcc -x cu -std=c++17 -O3 -arch=sm_90 --extended-lambda -Iinclude -Iexamples -Ibench, or with g++ for the host.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
