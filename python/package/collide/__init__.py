@@ -15,7 +15,7 @@ the same for all arguments. `Mesh` has the queries, `Simulation` particles that 
 from . import _host
 from ._errors import Error
 from ._mesh import Contacts, Csr, Impacts, Mesh, Nearest, Pairs, Seams, SignedDistance, Surface, Winding
-from ._simulation import Births, Body, ContactReport, Flow, Impulses, Simulation
+from ._simulation import Births, Body, ContactReport, Flow, Impulses, Loads, Simulation
 from . import effects, granular
 from .effects import *  # noqa: F403: collide.gravity() and all the others
 from .effects import Effect, Law
@@ -25,7 +25,7 @@ __version__: str = ".".join(map(str, _host.version))
 
 __all__ = [
     "Births", "Body", "ContactReport", "Contacts", "Csr", "Effect", "Error", "Flow", "Impacts", "Impulses", "Law",
-    "Mesh", "Nearest", "Pairs", "Seams", "SignedDistance", "Simulation", "Surface", "Winding", "effects", "granular",
+    "Loads", "Mesh", "Nearest", "Pairs", "Seams", "SignedDistance", "Simulation", "Surface", "Winding", "effects", "granular",
     "granular_contact",
 ]
 __all__ += effects.__all__
