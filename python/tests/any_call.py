@@ -159,7 +159,7 @@ class Calls:
         n = len(x) if isinstance(x, numpy.ndarray) and x.ndim else 5
         precision, order = self.word("exact", "double", "single"), self.word("unspecified", "canonical")
         moves = often(self.data, st.none(), st.just(self.points(n)))
-        what = self.data.draw(st.sampled_from("query csr any count contacts closest impacts first nearest k_nearest contains signed_distance".split()))
+        what = self.data.draw(st.sampled_from("query csr any count contacts closest impacts first nearest k_nearest contains signed_distance distance".split()))
         capacity = often(self.data, st.none(), st.just(self.whole(0, 5, 1000)))
         if what in ("query", "csr", "contacts"):
             more = {"output": self.word(what if what == "csr" else "pairs")} if what != "contacts" else {}
@@ -177,7 +177,7 @@ class Calls:
         else:
             k = (self.whole(1, 3, 32),) if what == "k_nearest" else ()
             found = self.call(getattr(mesh, what), x, *k, max_distance=self.number(float("inf"), 1.0), out=self.out(n))
-        if found is not None and what in ("any", "closest", "first", "nearest", "k_nearest", "contains", "signed_distance"):
+        if found is not None and what in ("any", "closest", "first", "nearest", "k_nearest", "contains", "signed_distance", "distance"):
             assert len(found) == (n if isinstance(x, numpy.ndarray) else len(x.array))
         if found is not None and what not in ("count",) and self.data.draw(st.integers(0, 5)) == 0:
             self.call(pickle.dumps, found)
