@@ -6,10 +6,10 @@
 #include <collide/core/precision.hpp>
 #include <collide/exact/detail/geometry/local_sweep.hpp>
 #include <collide/exact/detail/predicates/filter_swept.hpp>
+#include <collide/karabassi.hpp>
 #include <collide/narrow/detail/contact.hpp>
 #include <collide/narrow/detail/contact_in_precision.hpp>
 #include <collide/narrow/detail/intersects_swept.hpp>
-#include <collide/narrow/detail/karabassi_test.hpp>
 
 namespace collide {
 

@@ -10,7 +10,6 @@
 #include <collide/karabassi.hpp>
 #include <collide/narrow/detail/nearest_search.hpp>
 #include <collide/sinks/detail/array_in_space.hpp>
-#include <collide/sinks/detail/mesh_subset.hpp>
 #include <collide/sinks/detail/search_mesh.hpp>
 
 namespace collide {

@@ -15,7 +15,7 @@ the same for all arguments. `Mesh` has the queries, `Simulation` particles that 
 from . import _host
 from ._errors import Error
 from ._mesh import Contacts, Csr, Impacts, Mesh, Nearest, Pairs, SignedDistance
-from ._simulation import Body, Flow, Impulses, Simulation
+from ._simulation import Body, Flow, Impulses, Loads, Simulation
 from . import effects, granular
 from .effects import *  # noqa: F403: collide.gravity() and all the others
 from .effects import Effect, Law
@@ -23,6 +23,6 @@ from .granular import granular_contact
 
 __version__ = ".".join(map(str, _host.version))
 
-__all__ = ["Body", "Contacts", "Csr", "Effect", "Error", "Flow", "Impacts", "Impulses", "Law", "Mesh", "Nearest", "Pairs", "SignedDistance"]
+__all__ = ["Body", "Contacts", "Csr", "Effect", "Error", "Flow", "Impacts", "Impulses", "Law", "Loads", "Mesh", "Nearest", "Pairs", "SignedDistance"]
 __all__ += ["Simulation", "effects", "granular", "granular_contact"]
 __all__ += effects.__all__

@@ -62,6 +62,13 @@ class Flow(NamedTuple):
     mass: float
 
 
+class Loads(NamedTuple):
+    """What `wear` has summed up of each triangle, on the host."""
+
+    normal_impulse: numpy.ndarray  #: (triangles,) float64: over area and time the mean pressure
+    sliding_work: numpy.ndarray  #: (triangles,): work of friction
+
+
 class Simulation:
     """Particles that do what a list of effects says, in its order.
 
@@ -233,19 +240,22 @@ class Simulation:
         of_all = self._simulation.energy(self._stream(), real("density", density))
         return dict(zip(("kinetic", "rotational", "elastic", "potential", "tangential"), of_all))
 
-    def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow]:
-        """What `reaction` or `mass_flow`, by its name or its place in the list, has summed up since `set`, `load`, `clear`,
+    def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow, Loads]:
+        """What `reaction`, `mass_flow` or `wear`, by its name or its place in the list, has summed up since `set`, `load`, `clear`,
         a change of its parameters, or of the numbers of bodies and triangles. Waits."""
         number = self._number(effect)
         found = self._simulation.sums(self._stream(), number)
-        refuse(not found, "effect", f"{self.effects[number].name} has no sums; reaction and mass_flow have")
+        name = self.effects[number].name
+        if name == "wear":
+            return Loads(*numpy.reshape(found, (-1, 2)).T)
+        refuse(not found, "effect", f"{name} has no sums; reaction, mass_flow and wear have")
         if len(found) == 2:
             return Flow(int(found[0]), found[1])
         parts = numpy.reshape(found[:-1], (-1, 2, 3))
         return Impulses(*numpy.swapaxes(parts, 0, 1), bodies=len(self._bodies), refused=int(found[-1]))
 
     def clear(self, effect: Union[int, str]) -> None:
-        """Begins the sums of `reaction` or `mass_flow` anew. Does not wait."""
+        """Begins the sums of `reaction`, `mass_flow` or `wear` anew. Does not wait."""
         self._simulation.clear(self._stream(), self._number(effect))
 
     def save(self, path: Union[str, os.PathLike]) -> None:

@@ -226,6 +226,12 @@ def mass_flow(
     minus backwards: `Simulation.sums`. ``unit``: mass that each particle's is rounded to; ``density``: mass per volume."""
 
 
+@_describes(Effect, "effects/wear", type="wear<>", density="made_of.density", memory="sums.hpp")
+def wear(unit_of_impulse: float, unit_of_work: float, density: float = 1) -> Effect:
+    """Sums up the impulse along normals that `granular_contact`, before it in the list, gives to each triangle, and the
+    work of friction there: `Simulation.sums`. Each contact is rounded to the units; ``density``: mass per volume."""
+
+
 @_describes(Effect, memory="sums.hpp")
 def reaction(unit: float, density: float = 1, triangles: bool = False) -> Effect:
     """Sums up what particles give to bodies and to what rests, and to each triangle if asked, last in the list:

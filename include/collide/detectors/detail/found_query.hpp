@@ -12,8 +12,8 @@
 #include <collide/query/concepts.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
 #include <collide/query/hit.hpp>
-#include <collide/sinks/detail/mesh_subset.hpp>
 #include <collide/sinks/detail/output.hpp>
+#include <collide/sinks/detail/search_mesh.hpp>
 #include <collide/sinks/pairs.hpp>
 #include <collide/spaces/detail/host_array.hpp>
 

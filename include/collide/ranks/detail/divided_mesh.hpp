@@ -12,7 +12,7 @@
 #include <collide/mesh.hpp>
 #include <collide/ranks/detail/device_exchange_buffer.hpp>
 #include <collide/ranks/detail/rank_map.hpp>
-#include <collide/sinks/detail/mesh_subset.hpp>
+#include <collide/sinks/detail/search_mesh.hpp>
 #include <collide/spaces/detail/host_array.hpp>
 
 namespace collide::detail {
