@@ -119,7 +119,8 @@ class Site:
             lines = (f"- [{p.name}]({self.link(p.name, path / 'x', name)})\n" for p in inside)
             self.write(name, head + "".join(lines))
         else:
-            self.write(name, f"{head}``````{{code-block}} {language(path)}\n:force:\n{path.read_text()}\n``````\n")
+            shown_as = language(path) if path.stat().st_size < 15_000 else "text"  # colours make a page four times as large
+            self.write(name, f"{head}``````{{code-block}} {shown_as}\n:force:\n{path.read_text()}\n``````\n")
         return name
 
     def page(self, name, path):

@@ -21,7 +21,7 @@ class Effect:
 
     name        the name of the struct in C++
     parameters  its members of type double, or double[3]: numbers, or three of them
-    code        C++ that defines the struct (docs/effects.md): ``Effect('spring', {'stiffness': 10.0}, code='struct spring
+    code        C++ that defines the struct (docs/development/extending.md): ``Effect('spring', {'stiffness': 10.0}, code='struct spring
                 {...};')``
 
     Raises TypeError or ValueError, which name the parameter, for what is no number.
