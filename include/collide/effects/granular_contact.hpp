@@ -92,14 +92,16 @@ struct granular_contact {
 
   /// The longest step that `simulation::step` takes, the shortest of all solids that particles are of. With `hertz` the
   /// time in which a wave crosses the smallest sphere (Lord Rayleigh): pi r sqrt(density / G) / (0.1631 nu + 0.8766);
-  /// with `linear` a fifth of a collision of two such.
+  /// with `linear` a fifth of a collision of two such; with `cundall_strack` that over the root of its
+  /// `stiffness_ratio` if that is above 1.
   double longest_step(smallest_radii const& radii) const {
+    double const stiffer = std::sqrt(std::max(1.0, detail::stiffness_ratio_of(tangential)));
     return made_of.least(radii, [&](solid const& s, double r) {
       if constexpr (Normal::is_hertzian) {
         double const shear = s.young / (2 * (1 + s.poisson));
-        return 3.14159265358979323846 * r * std::sqrt(s.density / shear) / (0.1631 * s.poisson + 0.8766);
+        return 3.14159265358979323846 * r * std::sqrt(s.density / shear) / (0.1631 * s.poisson + 0.8766) / stiffer;
       } else {
-        return 0.628318530717959 * std::sqrt(detail::sphere_mass(s.density, r) / (2 * normal.stiffness));
+        return 0.628318530717959 * std::sqrt(detail::sphere_mass(s.density, r) / (2 * normal.stiffness)) / stiffer;
       }
     });
   }

@@ -81,7 +81,8 @@ class mesh_region {
     for (int k = 0; k < 3; ++k) lower[k] = std::numeric_limits<double>::infinity(), upper[k] = -lower[k];
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       triangle<double> const t = mesh[i];
-      volume_ += detail::dot(t.a, detail::cross(t.b, t.c)) / 6;
+      vec3<double> const apex = mesh[0].a;  // not the origin, beside which a mesh that is far away has no volume
+      volume_ += detail::dot(t.a - apex, detail::cross(t.b - apex, t.c - apex)) / 6;
       for (vec3<double> const& corner : {t.a, t.b, t.c})
         for (int k = 0; k < 3; ++k) lower[k] = std::min(lower[k], corner[k]), upper[k] = std::max(upper[k], corner[k]);
     }
@@ -122,6 +123,12 @@ template <class Outer, class Inner>
 region_between<Outer, Inner> between(Outer const& outer, Inner const& inner) {
   return {outer, inner};
 }
+template <class Outer, class Inner>
+void between(Outer const&&, Inner const&) = delete;  // it would not outlive the expression
+template <class Outer, class Inner>
+void between(Outer const&, Inner const&&) = delete;
+template <class Outer, class Inner>
+void between(Outer const&&, Inner const&&) = delete;
 
 /// Spheres in a region.
 struct filling {
@@ -189,6 +196,16 @@ filling fill_once(Region const& region, size_distribution const& sizes, double l
   return kept;
 }
 
+/// The volume of a region, or `error` if it is none.
+template <class Region>
+double volume_of(Region const& region) {
+  double const volume = region.volume();
+  check_parameter(is_positive(volume), "fill: the volume of the region is above 0, and finite");
+  for (int k = 0; k < 3; ++k)
+    check_parameter(region.lower[k] < region.upper[k], "fill: the region has lower below upper, along each axis");
+  return volume;
+}
+
 /// Keeps the first `n` of a random order.
 inline void keep_at_random(filling& all, std::size_t n, std::uint64_t seed) {
   std::vector<std::size_t> order(all.radii.size());
@@ -212,7 +229,7 @@ inline void keep_at_random(filling& all, std::size_t n, std::uint64_t seed) {
 template <class Region>
 filling fill_number(Region const& region, size_distribution const& sizes, std::size_t n, std::uint64_t seed = 0) {
   detail::check_parameter(seed < (1u << 24), "fill: seed is below 2^24");
-  double const wanted = static_cast<double>(n) * sizes.mean_volume() / region.volume();
+  double const volume = detail::volume_of(region), wanted = static_cast<double>(n) * sizes.mean_volume() / volume;
   double narrowest = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) narrowest = std::min(narrowest, region.upper[k] - region.lower[k]);
   double larger = std::min(std::cbrt(0.56 / wanted), 0.3 * narrowest / sizes.most());
@@ -222,11 +239,12 @@ filling fill_number(Region const& region, size_distribution const& sizes, std::s
     found = detail::fill_once(region, sizes, larger * (1 + 1e-6), seed);
     if (found.radii.size() >= n) {
       detail::keep_at_random(found, n, seed);
-      for (double const r : found.radii) found.fraction += detail::sphere_mass(1.0, r) / region.volume();
+      for (double const r : found.radii) found.fraction += detail::sphere_mass(1.0, r) / volume;
       return found;
     }
-    if (larger == 1) break;
+    if (larger <= 1) break;
     larger *= 0.997 * std::cbrt(static_cast<double>(found.radii.size()) / static_cast<double>(n));
+    if (i == 4) larger = 1;
   }
   throw error("collide: fill: there is room for " + std::to_string(found.radii.size()) + " spheres of " +
               std::to_string(n));
@@ -241,7 +259,7 @@ filling fill_number(Region const& region, size_distribution const& sizes, std::s
 template <class Region>
 filling fill(Region const& region, size_distribution const& sizes, double fraction, std::uint64_t seed = 0) {
   detail::check_parameter(fraction > 0 && fraction < 1, "fill: fraction is above 0 and below 1");
-  auto const n = static_cast<std::size_t>(std::llround(fraction * region.volume() / sizes.mean_volume()));
+  auto const n = static_cast<std::size_t>(std::llround(fraction * detail::volume_of(region) / sizes.mean_volume()));
   return fill_number(region, sizes, n, seed);
 }
 

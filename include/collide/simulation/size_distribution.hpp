@@ -30,13 +30,16 @@ class size_distribution {
   /// The normal distribution, without what is outside of `least` to `most`.
   static size_distribution normal(double mean, double deviation, double least, double most) {
     detail::check_parameter(detail::is_positive(deviation), "size_distribution: a deviation is above 0, and finite");
-    return of(least, most, [&](double r) { return std::erf((r - mean) / (deviation * std::sqrt(2.0))); });
+    return of(std::max(least, mean - 6 * deviation), std::min(most, mean + 6 * deviation),
+              [&](double r) { return std::erf((r - mean) / (deviation * std::sqrt(2.0))); });
   }
   /// Logarithms of radii have the normal distribution, about that of `median`, without what is outside.
   static size_distribution lognormal(double median, double log_deviation, double least, double most) {
     detail::check_parameter(detail::is_positive(log_deviation) && detail::is_positive(median),
                             "size_distribution: median and deviation are above 0, and finite");
-    return of(least, most, [&](double r) { return std::erf(std::log(r / median) / (log_deviation * std::sqrt(2.0))); });
+    double const wide = std::exp(6 * log_deviation);
+    return of(std::max(least, median / wide), std::min(most, median * wide),
+              [&](double r) { return std::erf(std::log(r / median) / (log_deviation * std::sqrt(2.0))); });
   }
   /// A sieve curve: what part of the mass passes sieves of these openings, which are diameters; both rise, and the
   /// parts go from 0 to 1. Between two sieves the curve is straight. 2 to 33 sieves.
@@ -74,15 +77,21 @@ class size_distribution {
     double const width = below_[k + 1] - below_[k];
     return width > 0 ? radius_[k] + (radius_[k + 1] - radius_[k]) * ((part - below_[k]) / width) : radius_[k];
   }
-  /// Radii of `n` spheres at random, always the same for a seed: of the places of a source, by `assign<radius>`.
+  /// Radii of `n` spheres at random, always the same for a seed, which is below 2^24: of the places of a source, by
+  /// `assign<radius>`.
   template <class S = double>
   std::vector<S> sample(std::size_t n, std::uint64_t seed) const {
+    detail::check_parameter(seed < (1u << 24), "size_distribution: seed is below 2^24");
     std::vector<S> radii(n);
     for (std::size_t i = 0; i < n; ++i) radii[i] = static_cast<S>(radius_below(detail::random_part((seed << 40) + i)));
     return radii;
   }
   /// Spheres per time of a flow of mass per time: the `rate` of a source.
-  double rate_of(double mass_flow, double density) const { return mass_flow / (density * mean_volume()); }
+  double rate_of(double mass_flow, double density) const {
+    detail::check_parameter(detail::is_amount(mass_flow) && detail::is_positive(density),
+                            "size_distribution: a flow of mass is not negative, and density is above 0");
+    return mass_flow / (density * mean_volume());
+  }
 
  private:
   static constexpr int most_classes = 64;

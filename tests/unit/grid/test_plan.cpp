@@ -123,8 +123,7 @@ TEST_CASE("plan: a triangle that one block would enter for long has cells of its
   }
 }
 
-TEST_CASE(
-    "plan: cells among few long thin triangles are narrow, as their boxes hold much that they do not, on the host") {
+TEST_CASE("plan: cells among few long thin triangles are narrow, on the host") {
   std::mt19937 engine(3);
   std::uniform_real_distribution<float> uniform(-1, 1);
   std::vector<float> corners, centres;

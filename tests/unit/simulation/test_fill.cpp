@@ -86,6 +86,36 @@ TEST_CASE("fill: boxes, cylinders, meshes, and what is between two surfaces") {
   CHECK_THROWS_AS(collide::mesh_region(collide::triangle_soup(turned.data(), 12)), collide::error);
 }
 
+TEST_CASE("fill: a region without a volume is refused, and one far from the origin is filled as one near") {
+  auto const sizes = size_distribution::one(0.1);
+  double const nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  for (auto const& region : {collide::box_region{{0, 0, 0}, {1, 1, 0}}, collide::box_region{{0, 1, 0}, {1, 0, 1}},
+                             collide::box_region{{0, 1, 1}, {1, 0, 0}}, collide::box_region{{0, 0, 0}, {1, 1, nan}},
+                             collide::box_region{{0, 0, 0}, {1, 1, infinity}}}) {
+    CHECK_THROWS_AS(collide::fill(region, sizes, 0.3, 1), collide::error);
+    CHECK_THROWS_AS(collide::fill_number(region, sizes, 3, 1), collide::error);
+  }
+  CHECK_THROWS_AS(collide::fill(collide::cylinder_region({0, 0, 0}, {0, 0, 0}, 1), sizes, 0.3, 1), collide::error);
+  double const far = 1e6;
+  double corners[24];
+  for (int k = 0; k < 8; ++k)
+    for (int c = 0; c < 3; ++c) corners[3 * k + c] = far + (k >> c & 1);
+  unsigned const faces[] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                            2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  collide::mesh_region const cube(collide::indexed_mesh(corners, 8, faces, 12));
+  CHECK(cube.volume() == doctest::Approx(1).epsilon(1e-9));
+  CHECK(collide::fill_number(cube, sizes, 40, 1).radii.size() == 40);
+}
+
+TEST_CASE("fill: a narrow normal distribution is as narrow in wide limits") {
+  auto const radii = size_distribution::normal(1, 0.001, 0.5, 1.5).sample(10000, 2);
+  double sum = 0;
+  for (double const r : radii) sum += (r - 1) * (r - 1);
+  CHECK(std::sqrt(sum / 10000) == doctest::Approx(0.001).epsilon(0.03));
+  CHECK_THROWS_AS(size_distribution::one(1).sample(1, 1u << 24), collide::error);
+  CHECK_THROWS_AS(size_distribution::one(1).rate_of(1, 0), collide::error);
+}
+
 TEST_CASE("fill: equal spheres reach loose random packing, and each rests on three") {
   box_region const box{{0, 0, 0}, {30, 30, 30}};
   filling const all = collide::detail::fill_once(box, size_distribution::one(0.5), 1 + 1e-6, 1);

@@ -92,10 +92,22 @@ struct contact_columns_of<columns<C...>> {
 };
 
 template <class L, class = void>
+inline constexpr bool has_stiffness_ratio = false;
+template <class L>
+inline constexpr bool has_stiffness_ratio<L, std::void_t<decltype(L::stiffness_ratio)>> = true;
+template <class L, class = void>
 inline constexpr bool needs_hertz = false;
 template <class L>
 inline constexpr bool needs_hertz<L, std::void_t<decltype(L::needs_hertz)>> = L::needs_hertz;
 
+/// The stiffness of a tangential spring over that of the normal one; 0 of laws without such a member.
+template <class L>
+double stiffness_ratio_of([[maybe_unused]] L const& law) {
+  if constexpr (has_stiffness_ratio<L>)
+    return law.stiffness_ratio;
+  else
+    return 0;
+}
 template <class S>
 COLLIDE_HD_INLINE S length_of(vec3<S> const& v) {
   return sqrt_rn(dot(v, v));

@@ -14,9 +14,15 @@ struct twist_angle {
 
 namespace detail {
 
+template <class Columns>
+inline constexpr bool has_twist_angle = false;
+template <class... C>
+inline constexpr bool has_twist_angle<columns<C...>> = (std::is_same_v<C, twist_angle> || ...);
+
 /// A law of rolling, and a spring, a dashpot and a slider about the normal.
 template <class Rolling>
 struct with_torsion {
+  static_assert(!has_twist_angle<typename remembers_of<Rolling>::type>, "one law of torsion: the other is one, too");
   using remembers =
       typename contact_columns_of<union_of<columns<twist_angle>, typename remembers_of<Rolling>::type>>::type;
   static constexpr bool needs_hertz = detail::needs_hertz<Rolling>;  ///< the normal law must be `hertz`
