@@ -31,6 +31,7 @@
 #include <collide/detail/execution/host_array.hpp>
 #include <collide/detail/neighbours/births.hpp>
 #include <collide/detail/neighbours/build_lists.hpp>
+#include <collide/detail/neighbours/pair_actions.hpp>
 #include <collide/detail/neighbours/pair_interaction.hpp>
 #include <collide/detail/neighbours/particle_order.hpp>
 #include <collide/detail/numeric/rounding.hpp>
@@ -41,8 +42,11 @@
 namespace collide::detail {
 
 /// The lists, the grid and their memory.
-template <class S, class Effects>
+///
+/// \tparam Once  particles meet once a pair; see pair_actions.hpp
+template <class S, class Scene, bool Once = false>
 class verlet_list {
+  using Effects = std::conditional_t<Once, without_memory<Scene>, Scene>;
   using state_type = particle_state<S, typename Effects::all>;
 
  public:
@@ -59,6 +63,7 @@ class verlet_list {
     lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
     contacts_.reserve(resource, n, order::listed, runs_.capacity());
+    if constexpr (Once) pairs_.reserve(resource, n);
   }
 
   /// For `n` particles, for which there is room, the last `copies` of them other ranks', which at most `border` meet:
@@ -73,6 +78,7 @@ class verlet_list {
     fit(space, n, radii);
     if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
     contacts_.clear(space, n);
+    if constexpr (Once) pairs_.clear();
   }
 
   /// For the same `n` particles with such radii: lists are made anew. The smallest keep the skin so thin that small
@@ -103,51 +109,27 @@ class verlet_list {
   /// Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
-    saved_contacts<S> saved;
-    saved.counts.assign(n, 0);
-    list_state const header = copied(space, header_.data(), 1)[0];
-    if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
-
-    std::size_t const all = listed_;  // copies of other ranks' particles are behind
-    auto const numbers = copied(space, numbers_.data(), header.count);
-    auto others = numbers;
-    if constexpr (contains<typename Effects::interaction_copies, global_number>)
-      others = copied(space, memory_.state(all, all, S(0)).at(global_number{}), header.count);
-    auto const lists = copied(space, lists_.data(), order::listed * all),
-               runs = copied(space, runs_.data(), runs_.capacity());
-    auto const memory = contacts_.template copied<order::listed>(space, all, header.count, runs.size());
-    std::vector<std::uint32_t> place_of(all, order::overflow_mark);
-    for (std::uint32_t i = 0; i < header.count; ++i) place_of[numbers[i]] = i;
-    for (std::size_t number = 0; number < n; ++number) {
-      std::uint32_t const i = place_of[number];
-      if (i == order::overflow_mark) continue;
-      auto const add = [&](std::uint32_t place, std::size_t item) {
-        saved.others.push_back(others[place]);
-        memory.append(saved.values, item);
-        ++saved.counts[number];
-      };
-      if (lists[i] != order::overflow_mark) {
-        for (std::uint32_t k = 0; k < order::listed; ++k)
-          if ((memory.touching[i] >> k & 1) != 0) add(lists[k * all + i], k * all + i);
-      } else if (lists[all + i] != order::overflow_mark) {
-        std::size_t const first = lists[all + i], size = lists[2 * all + i];
-        for (std::size_t k = first; k < first + size; ++k)
-          if (memory.run_touching[k] != 0) add(runs[k], order::listed * all + k);
-      }
+    if constexpr (Once) {
+      return pairs_.saved(*header_.data(), numbers_.data(), n);
+    } else {
+      return save_listed(space, n);
     }
-    return saved;
   }
   /// After `clear`: lists that are made have what was saved. May wait.
   template <class Space>
   void restore_contacts(Space& space, saved_contacts<S> const& saved) {
-    contacts_.restore(space, saved);
+    if constexpr (Once) {
+      pairs_.restore(space.resource(), saved);
+    } else {
+      contacts_.restore(space, saved);
+    }
   }
 
   /// Memory taken from the resource.
   std::size_t bytes() const {
     return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
            references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + places_of_copies_.bytes() +
-           is_at_border_.bytes() + border_.bytes() + contacts_.bytes();
+           is_at_border_.bytes() + border_.bytes() + contacts_.bytes() + pairs_.bytes();
   }
 
   /// The first part of `renew`: finds out whether lists are to be made anew for particles where they now are, but for
@@ -188,14 +170,20 @@ class verlet_list {
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
     if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
+    if constexpr (Once) {
+      if (*rebuild != 0) pairs_.keep(o);
+    }
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
     for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
-    if constexpr (order::has_memory && Space::host_accessible) {
+    if constexpr (Once || (order::has_memory && Space::host_accessible)) {
       if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
+    }
+    if constexpr (Once) {
+      if (*rebuild != 0) pairs_.build(space, order_of(state));
     }
   }
 
@@ -228,11 +216,17 @@ class verlet_list {
 
   /// After `renew`: one pass of `on_pair_contact` over all pairs.
   template <class Space>
-  void interact(Space& space, state_type const& state, Effects const& effects, S dt, meeting what) {
+  void interact(Space& space, state_type const& state, Scene const& effects, S dt, meeting what) {
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const overflowed = &o.header->overflowed;
-    if constexpr (order::on_ranks) {
+    if constexpr (Once) {
+      using meet_type = meet_once<S, Scene>;
+      for_each_block(space, (n + meet_type::places - 1) / meet_type::places,
+                     meet_type{o, pairs_.items(), effects, dt, what});
+      space.for_each(n, sum_actions<S, Scene>{{state, o, Effects(effects), dt, what}, pairs_.items()});
+      return;
+    } else if constexpr (order::on_ranks) {
       if (inside_is_done_) {
         inside_is_done_ = false;
         space.for_each(at_border_, interact_at_border<S, Effects>{{{state, o, effects, dt, what}}});
@@ -242,7 +236,8 @@ class verlet_list {
     } else {
       space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, what}});
     }
-    for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, what}});
+    if constexpr (!Once)
+      for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, what}});
   }
 
  private:
@@ -259,15 +254,52 @@ class verlet_list {
     return max((2 * radius + skin) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
   }
 
+  template <class Space>
+  saved_contacts<S> save_listed(Space const& space, std::size_t n) const {
+    saved_contacts<S> saved;
+    saved.counts.assign(n, 0);
+    list_state const header = copied(space, header_.data(), 1)[0];
+    if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
+
+    std::size_t const all = listed_;  // copies of other ranks' particles are behind
+    auto const numbers = copied(space, numbers_.data(), header.count);
+    auto others = numbers;
+    if constexpr (contains<typename Effects::interaction_copies, global_number>)
+      others = copied(space, memory_.state(all, all, S(0)).at(global_number{}), header.count);
+    auto const lists = copied(space, lists_.data(), order::listed * all),
+               runs = copied(space, runs_.data(), runs_.capacity());
+    auto const memory = contacts_.template copied<order::listed>(space, all, header.count, runs.size());
+    std::vector<std::uint32_t> place_of(all, order::overflow_mark);
+    for (std::uint32_t i = 0; i < header.count; ++i) place_of[numbers[i]] = i;
+    for (std::size_t number = 0; number < n; ++number) {
+      std::uint32_t const i = place_of[number];
+      if (i == order::overflow_mark) continue;
+      auto const add = [&](std::uint32_t place, std::size_t item) {
+        saved.others.push_back(others[place]);
+        memory.append(saved.values, item);
+        ++saved.counts[number];
+      };
+      if (lists[i] != order::overflow_mark) {
+        for (std::uint32_t k = 0; k < order::listed; ++k)
+          if ((memory.touching[i] >> k & 1) != 0) add(lists[k * all + i], k * all + i);
+      } else if (lists[all + i] != order::overflow_mark) {
+        std::size_t const first = lists[all + i], size = lists[2 * all + i];
+        for (std::size_t k = first; k < first + size; ++k)
+          if (memory.run_touching[k] != 0) add(runs[k], order::listed * all + k);
+      }
+    }
+    return saved;
+  }
+
   /// Makes room for all runs, and then those for which there was none. Allocates, but only where a step waits anyhow.
   template <class Space>
   COLLIDE_COLD void grow_runs(Space& space, state_type const& state) {
     std::size_t const before = runs_.capacity(), in_runs = header_.data()->in_runs,
                       more = in_runs + in_runs / 4 - before;
     runs_ = grown(space, runs_, before, more);
-    contacts_.grow(space, order::listed * state.size, before, more);
+    if constexpr (order::has_memory) contacts_.grow(space, order::listed * state.size, before, more);
     space.for_each(state.size, build_missing_runs<S, Effects>{{order_of(state), skin_}});
-    contacts_.grow_kept(space, more);
+    if constexpr (order::has_memory) contacts_.grow_kept(space, more);
   }
 
   template <class Space, class T>
@@ -322,6 +354,7 @@ class verlet_list {
   buffer<column_element<alive, S>> known_;
   column_buffers<S, typename Effects::interaction_copies> memory_;
   contact_memory<S, typename Effects::remembered> contacts_;
+  std::conditional_t<Once, pair_actions<S, Scene>, no_pair_actions> pairs_;
 };
 
 }  // namespace collide::detail

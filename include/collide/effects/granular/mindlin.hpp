@@ -30,6 +30,7 @@ enum class slip_test {
 /// Mindlin, Journal of Applied Mechanics 16, 1949; A. Di Renzo and F. P. Di Maio, Chemical Engineering Science 59,
 /// 2004. As it is by default, it is that of LIGGGHTS; the members are where other codes differ.
 struct mindlin {
+  static constexpr bool is_mutual = true;  ///< see law.hpp
   using remembers = contact_columns<tangential_displacement>;
   static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
 
@@ -66,10 +67,12 @@ struct mindlin {
     bool const with_dashpot = test == slip_test::spring_and_dashpot;
     vec3<S> const tested = with_dashpot ? pull : vec3<S>(spring * stiffness);
     S const tested_length = detail::length_of(tested);
-    if (!(tested_length > limit)) return -pull;
+    auto const slides = tested_length > limit;
+    if (!detail::any(slides)) return -pull;
     vec3<S> const sliding = tested * (limit / tested_length);
-    if (stiffness > 0) spring = (with_dashpot ? vec3<S>(sliding - damped) : sliding) * (1 / stiffness);
-    return -sliding;
+    vec3<S> const left = (with_dashpot ? vec3<S>(sliding - damped) : sliding) * (1 / stiffness);
+    spring = detail::either(slides && stiffness > 0, left, spring);
+    return detail::either(slides, vec3<S>(-sliding), vec3<S>(-pull));
   }
 
   /// The energy of the spring: stiffness times the square of its length, over 2.
@@ -88,7 +91,7 @@ struct mindlin {
     spring -= normal * detail::dot(spring, normal);
     if (!keeps_length) return;
     S const after = detail::dot(spring, spring);
-    if (after > 0) spring = spring * detail::sqrt_rn(before / after);
+    spring = detail::either(after > 0, vec3<S>(spring * detail::sqrt_rn(before / after)), spring);
   }
 };
 
@@ -102,7 +105,8 @@ struct mindlin_rescale : mindlin {
   COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const& p, detail::contact_material const& m,
                                   normal_force<S> const& n, Memory const& memory) const {
     S& before = memory[contact_radius{}];
-    if (n.contact_radius < before) memory[tangential_displacement{}] *= n.contact_radius / before;
+    vec3<S>& spring = memory[tangential_displacement{}];
+    spring = detail::either(n.contact_radius < before, vec3<S>(spring * (n.contact_radius / before)), spring);
     before = n.contact_radius;
     return mindlin::force(p, m, n, memory);
   }
@@ -128,7 +132,8 @@ struct mindlin_force : mindlin {
   COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const& p, detail::contact_material const& m,
                                   normal_force<S> const& n, Memory const& memory) const {
     S const a = n.contact_radius, before = memory[contact_radius{}];
-    if (a > before || (a > 0 && !rescales)) memory[tangential_displacement{}] *= before / a;
+    vec3<S>& spring = memory[tangential_displacement{}];
+    spring = detail::either(a > before || (a > 0 && !rescales), vec3<S>(spring * (before / a)), spring);
     memory[contact_radius{}] = a;
     return mindlin::force(p, m, n, memory);
   }
