@@ -133,17 +133,20 @@ struct granular_contact {
   /// Numbers that are kept of what two spheres do to each other.
   static constexpr int action_width = !turns ? 3 : std::is_same<Rolling, none>::value ? 7 : 10;
 
-  /// Number k of some pairs of spheres, as one of its two is.
-  template <class P, class Seen>
-  COLLIDE_HD_INLINE void see(detail::meeting_sphere<P>& s, int k, Seen const& seen) const {
-    using S = typename Seen::scalar;
+  /// One of two spheres, or one each of some pairs; seen(k) is that of pair k.
+  template <class P, class F>
+  COLLIDE_HD_INLINE detail::meeting_sphere<P> see(F const& seen) const {
+    using lanes = detail::from_lanes<P>;
+    using S = typename std::decay_t<decltype(seen(0))>::scalar;
+    detail::meeting_sphere<P> s;
     for (int c = 0; c < 3; ++c) {
-      detail::set_lane(s.position[c], k, seen[position{}][c]);
-      detail::set_lane(s.velocity[c], k, seen[velocity{}][c]);
-      if constexpr (turns) detail::set_lane(s.spin[c], k, seen[angular_velocity{}][c]);
+      s.position[c] = lanes::of([&](int k) { return seen(k)[position{}][c]; });
+      s.velocity[c] = lanes::of([&](int k) { return seen(k)[velocity{}][c]; });
+      if constexpr (turns) s.spin[c] = lanes::of([&](int k) { return seen(k)[angular_velocity{}][c]; });
     }
-    detail::set_lane(s.radius, k, seen.radius());
-    detail::set_lane(s.density, k, made_of.template density_of<S>(seen));
+    s.radius = lanes::of([&](int k) { return seen(k).radius(); });
+    s.density = lanes::of([&](int k) { return made_of.template density_of<S>(seen(k)); });
+    return s;
   }
   template <class P>
   static COLLIDE_HD_INLINE P mass_of(detail::meeting_sphere<P> const& s) {
@@ -163,15 +166,16 @@ struct granular_contact {
     action.is_there = goes_on;
     return action;
   }
-  /// What such an action does to a particle; `impulse` is the time over its mass.
-  template <class Particle, class S>
-  COLLIDE_HD_INLINE void give(Particle& p, detail::sphere_action<S> const& by, S radius, S impulse) const {
+  /// What such an action does to a particle's velocity and spin; `impulse` is the time over its mass.
+  template <class S>
+  COLLIDE_HD_INLINE void give(vec3<S>& v, [[maybe_unused]] vec3<S>& spin, detail::sphere_action<S> const& by,
+                              [[maybe_unused]] S radius, S impulse) const {
     if constexpr (turns) {
       S const arm = radius - S(arm_shortening) * by.overlap;
       vec3<S> const torque = by.twist * arm + by.torque;
-      p[angular_velocity{}] += torque * (S(2.5) * impulse / (radius * radius));
+      spin += torque * (S(2.5) * impulse / (radius * radius));
     }
-    p[velocity{}] += by.force * impulse;
+    v += by.force * impulse;
   }
 
   template <class Particle, class Seen, class S, std::enable_if_t<is_memoryless && sizeof(S) != 0, int> = 0>
@@ -205,9 +209,7 @@ struct granular_contact {
   /// Two spheres. True if the contact goes on.
   template <class Particle, class Seen, class Memory, class S>
   COLLIDE_HD_INLINE bool meet(Particle& p, Seen const& self, Seen const& other, Memory const& memory, S dt) const {
-    detail::meeting_sphere<S> a, b;
-    see(a, 0, self);
-    see(b, 0, other);
+    auto const a = see<S>([&](int) { return self; }), b = see<S>([&](int) { return other; });
     granular_pair<S> const c = pair_of(a, b, self.number() < other.number() ? S(-1) : S(1));
     return apply(p, c, mass_of(a), made_of.of_pair(made_of.pair_of(self, other)), memory, dt);
   }
@@ -305,7 +307,12 @@ struct granular_contact {
     normal_force<S> n = normal.force(c, of);
     cohesion.pull(n, c, of, memory);
     if (!(c.overlap > 0) && !n.goes_on) return false;
-    give(p, act_with(n, c, of, memory), c.own_radius, dt / m);
+    auto const action = act_with(n, c, of, memory);
+    if constexpr (turns) {
+      give(p[velocity{}], p[angular_velocity{}], action, c.own_radius, dt / m);
+    } else {
+      give(p[velocity{}], p[velocity{}], action, c.own_radius, dt / m);
+    }
     return true;
   }
   template <class P, class Memory>

@@ -54,7 +54,7 @@ inline constexpr std::uint32_t no_entry = 0xfffffffeu;
 
 /// Calls f(entry) for all entries of the list of the particle at a place.
 template <class Order, class F>
-void for_each_entry(Order const& order, std::size_t i, F const& f) {
+COLLIDE_HD_INLINE void for_each_entry(Order const& order, std::size_t i, F const& f) {
   if (order.list(0, i) != order.overflow_mark) {
     for (std::uint32_t k = 0; k < Order::listed && order.list(k, i) != no_entry; ++k) f(order.list(k, i));
   } else {
@@ -63,29 +63,28 @@ void for_each_entry(Order const& order, std::size_t i, F const& f) {
   }
 }
 
-/// Functor over blocks of places: finds what touches, and asks the effect.
+/// Functor over ranges of places: finds what touches, and asks the effect.
 template <class S, class Effects>
 struct meet_once {
   using listed = without_memory<Effects>;
   using ordered = sorted_particles<S, listed>;
   using remembered = typename Effects::remembered;
-  static constexpr std::size_t places = 256;  ///< of a block
-
   ordered order;
   pair_items<S, Effects> items;
   Effects effects;
   S dt;
   meeting what;
 
-  void operator()(std::size_t block) const {
-    std::size_t const begin = block * places, end = std::min<std::size_t>(begin + places, order.header->count);
+  void operator()(std::size_t begin, std::size_t end) const {
     touching_pair found[room];
     std::uint32_t size = 0;
+    std::uint32_t const most = items.firsts[order.header->count] - 1;
     for (std::size_t i = begin; i < end; ++i) {
       packed_sphere<S> const own = order.spheres[i];
       std::uint32_t const last = items.firsts[i + 1];
       for (std::uint32_t k = items.firsts[i]; k < last; ++k) {
         std::uint32_t const other = items.others[k];
+        __builtin_prefetch(order.spheres + items.others[min(k + 16, most)]);
         bool const overlap = order.within_skin(own, order.spheres[other], S(0));
         auto const was = static_cast<std::uint8_t>(items.marks[k] & items.remembers);
         found[size] = {static_cast<std::uint32_t>(i), other, k};
@@ -103,7 +102,7 @@ struct meet_once {
  private:
   using interaction = typename ordered::interaction;
   using P = pack_of<S>;
-  static constexpr std::uint32_t room = 1024, together = 64;  ///< pairs that are looked at
+  static constexpr std::uint32_t room = 1024;  ///< for pairs that touch
 
   struct touching_pair {
     std::uint32_t place, other, item;
@@ -142,49 +141,49 @@ struct meet_once {
 
   template <class Effect>
   void meet_alike(Effect const& effect, touching_pair const* found, std::uint32_t size, int kind) const {
-    multiversioned([&, this] {
-      for (std::uint32_t first = 0; first < size; first += together)
-        meet_together(effect, found + first, min(size - first, together), effect.made_of.of_pair(kind));
-    });
+    multiversioned([&, this] { meet_together(effect, found, size, effect.made_of.of_pair(kind)); });
   }
 
   template <class Effect, class Material>
   COLLIDE_HD_INLINE void meet_together(Effect const& effect, touching_pair const* found, std::uint32_t size,
                                        Material const& of) const {
     constexpr int lanes = lanes_of<P>;
-    constexpr std::uint32_t packs = together / lanes;
-    meeting_sphere<P> a[packs], b[packs];
-    contact_values<P, remembered> values[packs];
-    P upwards[packs], elapsed[packs];
-    for (std::uint32_t n = 0; n < (size + lanes - 1) / lanes * lanes; ++n) {  // the last fill their pack
-      touching_pair const& pair = found[min(n, size - 1)];
-      std::uint32_t const k = n / lanes;
-      int const l = static_cast<int>(n % lanes);
-      interaction self = order.load(pair.place), other = order.load(pair.other);
-      if constexpr (Effects::repeats) order.space.bring_together(self[position{}], other[position{}]);
-      effect.see(a[k], l, seen(effect, self));
-      effect.see(b[k], l, seen(effect, other));
-      bool const was = (items.marks[pair.item] & items.remembers) != 0;
-      set_lane(upwards[k], l, self.number < other.number ? S(-1) : S(1));
-      set_lane(elapsed[k], l, what != meeting::in_step && !was ? S(0) : dt);
-      if constexpr (remembered::size != 0) {
-        contact_values<S, remembered> initial;
-        S numbers[contact_values<S, remembered>::width];
-        initial.for_each_number([&](S& x, int c, int) { numbers[c] = x; });
-        S const* const from = was ? items.records[pair.item].numbers : numbers;
-        values[k].for_each_number([&](P& x, int c, int) { set_lane(x, l, from[c]); });
-      }
-    }
+    contact_values<S, remembered> initial;
+    S at_first[contact_values<S, remembered>::width + 1];
+    initial.for_each_number([&](S& x, int c, int) { at_first[c] = x; });
     for (std::uint32_t first = 0; first < size; first += lanes) {
-      std::uint32_t const k = first / lanes;
-      contact_access<remembered, contact_values<P, remembered>, P> const memory(values[k], elapsed[k]);
-      sphere_action<P> const action = effect.act(a[k], b[k], upwards[k], of, memory);
-      for (std::uint32_t n = first; n < min(size, first + lanes); ++n)
-        keep(found[n].item, action, values[k], static_cast<int>(n - first));
+      std::uint32_t const last = size - 1;
+      touching_pair pairs[lanes];
+      S const* remembers[lanes];
+      S upward[lanes], since[lanes];
+      interaction self[lanes], other[lanes];
+      for (std::uint32_t l = 0; l < lanes; ++l) {
+        touching_pair const& pair = pairs[l] = found[min(first + l, last)];  // the last fill their pack
+        touching_pair const& soon = found[min(first + 3 * lanes + l, last)];
+        order.fetch(soon.other);
+        __builtin_prefetch(items.actions + soon.item, 1);
+        if constexpr (remembered::size != 0) __builtin_prefetch(items.records + soon.item, 1);
+        self[l] = order.load(pair.place), other[l] = order.load(pair.other);
+        if constexpr (Effects::repeats) order.space.bring_together(self[l][position{}], other[l][position{}]);
+        bool const was = (items.marks[pair.item] & items.remembers) != 0;
+        remembers[l] = was ? items.records[pair.item].numbers : at_first;
+        upward[l] = self[l].number < other[l].number ? S(-1) : S(1);
+        since[l] = what != meeting::in_step && !was ? S(0) : dt;
+      }
+      using from = from_lanes<P>;
+      auto const a = effect.template see<P>([&](int l) { return seen(effect, self[l]); });
+      auto const b = effect.template see<P>([&](int l) { return seen(effect, other[l]); });
+      contact_values<P, remembered> values;
+      values.for_each_number([&](P& x, int c, int) { x = from::of([&](int l) { return remembers[l][c]; }); });
+      contact_access<remembered, contact_values<P, remembered>, P> const memory(
+          values, from::of([&](int l) { return since[l]; }));
+      sphere_action<P> action = effect.act(a, b, from::of([&](int l) { return upward[l]; }), of, memory);
+      for (std::uint32_t l = 0; l < lanes && first + l < size; ++l)
+        keep(pairs[l].item, action, values, static_cast<int>(l));
     }
   }
 
-  COLLIDE_HD_INLINE void keep(std::uint32_t item, sphere_action<P> const& action,
+  COLLIDE_HD_INLINE void keep(std::uint32_t item, sphere_action<P>& action,
                               contact_values<P, remembered>& values, int l) const {
     bool const acts = lane_of_mask(action.is_there, l);
     std::uint8_t& mark = items.marks[item];
@@ -204,24 +203,32 @@ template <class S, class Effects>
 struct sum_actions : pair_interaction<S, without_memory<Effects>> {
   pair_items<S, Effects> items;
 
+  /// True if all items of the particle at place i are from number `first` on.
+  COLLIDE_HD_INLINE bool is_alone(std::size_t i, std::uint32_t first) const {
+    bool alone = true;
+    for_each_entry(this->order, i, [&](std::uint32_t entry) { alone = alone && entry >> 1 >= first; });
+    return alone;
+  }
+
   void operator()(std::size_t i) const {
     auto const& places = this->order;
-    if (i == 0) places.header->rebuild = 0;  // not read again in this step
-    if (i >= places.header->count) return;
-    fetch(i + ahead);
+    fetch_kicks(min(i + 24, std::size_t{places.header->count} - 1), typename Effects::interaction_kicks{});
+    std::size_t const soon = min(i + 6, std::size_t{places.header->count} - 1);
+    if (places.list(0, soon) != places.overflow_mark)
+      for_each_entry(places, soon, [&](std::uint32_t entry) { __builtin_prefetch(items.actions + (entry >> 1)); });
     pair_state p(places.load(i));
     std::uint32_t entries[64], size = 0;
     this->effects.for_mutual([&](auto const& effect) {
       using effect_type = std::decay_t<decltype(effect)>;
-      meeting_sphere<S> own;
-      particle_access<effect_type, interaction> changed(p.changed);
-      effect.see(own, 0, particle_access<effect_type, interaction>(p.self));
+      auto const own =
+          effect.template see<S>([&](int) { return particle_access<effect_type, interaction>(p.self); });
+      vec3<S> v = own.velocity, spin = own.spin;
       S const impulse = this->dt / effect_type::mass_of(own);
       auto const take = [&] {
         for (std::uint32_t k = 0; k < size; ++k) {
           std::uint32_t const item = entries[k] >> 1;
           if ((items.marks[item] & items.acts) == 0) continue;
-          effect.give(changed, items.actions[item].on((entries[k] & 1) != 0), own.radius, impulse);
+          effect.give(v, spin, items.actions[item].on((entries[k] & 1) != 0), own.radius, impulse);
         }
         p.met = p.met || size != 0;
         size = 0;
@@ -232,6 +239,8 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
         if (size == 64) take();
       });
       take();
+      p.changed[velocity{}] = v;
+      if constexpr (effect_type::turns) p.changed[angular_velocity{}] = spin;
     });
     if (p.met) mark_contact(p.changed);
     this->store(p);
@@ -241,12 +250,11 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
   using base = pair_interaction<S, without_memory<Effects>>;
   using interaction = typename base::interaction;
   using pair_state = typename base::pair_state;
-  static constexpr std::size_t ahead = 8;
 
-  /// What a particle sums up soon is on its way.
-  void fetch(std::size_t i) const {
-    if (i >= this->order.header->count || this->order.list(0, i) == this->order.overflow_mark) return;
-    for_each_entry(this->order, i, [&](std::uint32_t entry) { __builtin_prefetch(items.actions + (entry >> 1)); });
+  /// What is written soon is on its way.
+  template <class... Kick>
+  void fetch_kicks([[maybe_unused]] std::size_t i, columns<Kick...>) const {
+    (__builtin_prefetch(this->state.at(Kick{}) + 3 * std::size_t{this->order.numbers[i]}, 1), ...);
   }
 };
 
@@ -316,6 +324,31 @@ class pair_actions {
       if (size < order::listed && o.list(0, i) != order::overflow_mark) o.list(size, i) = no_entry;
     });
     was_saved_ = has_before_ = false;
+  }
+
+  /// Particles meet, and sum up. All items of a particle are known once those of the places before it are: so it sums
+  /// up while they are in the cache, but for what other threads know.
+  template <class Space>
+  void interact(Space const& space, meet_once<S, Effects> const& meet, sum_actions<S, Effects> const& sum) const {
+    constexpr std::size_t places = 256;  // that meet before they sum up
+    std::size_t const count = meet.order.header->count, parts = space.saturating_blocks();
+    std::size_t const share = (count + parts - 1) / parts;
+    auto const is_alone = [&](std::size_t i) {
+      return parts == 1 || sum.is_alone(i, now_.firsts.data()[i / share * share]);
+    };
+    for_each_block(space, parts, [&](std::size_t part) {
+      std::size_t const end = std::min(count, (part + 1) * share);
+      for (std::size_t first = part * share; first < end; first += places) {
+        std::size_t const last = std::min(first + places, end);
+        meet(first, last);
+        for (std::size_t i = first; i < last; ++i)
+          if (is_alone(i)) sum(i);
+      }
+    });
+    if (parts == 1) return;
+    space.for_each(count, [&](std::size_t i) {
+      if (!is_alone(i)) sum(i);
+    });
   }
 
   /// What contacts of the first `n` particles remember, by numbers.
@@ -406,8 +439,9 @@ class pair_actions {
   }
 
   /// A contact's memory, as the first or the second of the two has it.
-  static record seen_from(bool second, record r) {
-    if (second) {
+  static record seen_from(bool second, record const& from) {
+    record r = from;
+    if (has_memory && second) {
       auto values = r.values();
       values.for_each_number([&](S& x, int, int sign) { x = sign < 0 ? 0 - x : x; });
       r.set(values);

@@ -22,6 +22,7 @@
 /// when the lists were made.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -73,6 +74,7 @@ class verlet_list {
              std::size_t border = 0) {
     make_room(places_of_copies_, space.resource(), copies);
     make_room(border_, space.resource(), border);
+    if constexpr (works_alone<Space>) curve_.reserve(space.resource(), cells::blocks_for(numbers_.capacity()));
     space.fill(header_.data(), 0, sizeof(state_of_lists));
     inside_is_done_ = false;
     fit(space, n, radii);
@@ -127,7 +129,7 @@ class verlet_list {
 
   /// Memory taken from the resource.
   std::size_t bytes() const {
-    return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
+    return header_.bytes() + curve_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
            references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + places_of_copies_.bytes() +
            is_at_border_.bytes() + border_.bytes() + contacts_.bytes() + pairs_.bytes();
   }
@@ -175,7 +177,11 @@ class verlet_list {
     }
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
-    for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
+    if constexpr (works_alone<Space>) {
+      if (*rebuild != 0) scan_along_curve(o);
+    } else {
+      for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
+    }
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
@@ -221,11 +227,9 @@ class verlet_list {
     std::size_t const n = state.size;
     std::uint32_t const* const overflowed = &o.header->overflowed;
     if constexpr (Once) {
-      using meet_type = meet_once<S, Scene>;
-      for_each_block(space, (n + meet_type::places - 1) / meet_type::places,
-                     meet_type{o, pairs_.items(), effects, dt, what});
-      space.for_each(n, sum_actions<S, Scene>{{state, o, Effects(effects), dt, what}, pairs_.items()});
-      return;
+      pairs_.interact(space, meet_once<S, Scene>{o, pairs_.items(), effects, dt, what},
+                      sum_actions<S, Scene>{{state, o, Effects(effects), dt, what}, pairs_.items()});
+      o.header->rebuild = 0;  // not read again in this step
     } else if constexpr (order::on_ranks) {
       if (inside_is_done_) {
         inside_is_done_ = false;
@@ -313,6 +317,7 @@ class verlet_list {
     return {around_,
             cells_,
             small_,
+            curve_.data(),
             ends_.data(),
             header_.data(),
             numbers_.data(),
@@ -335,6 +340,18 @@ class verlet_list {
     if constexpr (order::on_ranks) return state.own;
     return state.size;
   }
+  /// As `scan_cells`, for blocks one after the other along the curve.
+  void scan_along_curve(order const& o) {
+    auto const has_any = [&](std::uint32_t b) {
+      std::uint32_t const* const counts = o.ends + b * cells::stride + 1;
+      return std::any_of(counts, counts + cells::cells_per_brick, [](std::uint32_t n) { return n != 0; });
+    };
+    along_.clear();
+    for (std::uint32_t b = 0; b < blocks_; ++b)
+      if (has_any(b)) along_.push_back(b);
+    std::sort(along_.begin(), along_.end(), [&](auto a, auto b) { return o.curve[a] < o.curve[b]; });
+    for (std::uint32_t const b : along_) scan_cells{o.ends, &o.header->count}(b);
+  }
   S most_moved() const { return S(0.495) * skin_; }  ///< half of the skin, but for rounding
 
   typename Effects::space_type around_{};
@@ -346,7 +363,8 @@ class verlet_list {
   buffer<state_of_lists> header_;
   std::size_t at_border_ = 0;    ///< particles that copies of other ranks' may meet, while lists are complete
   bool inside_is_done_ = false;  ///< all others have met
-  buffer<std::uint32_t> ends_, lists_, runs_, places_of_copies_, border_;
+  std::vector<std::uint32_t> along_;  ///< blocks that have particles
+  buffer<std::uint32_t> curve_, ends_, lists_, runs_, places_of_copies_, border_;
   buffer<std::uint8_t> is_at_border_;
   buffer<id> numbers_;
   buffer<packed_sphere<S>> spheres_;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <type_traits>
+#include <utility>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -35,10 +36,14 @@ template <class S>
 COLLIDE_HD_INLINE S lane(S const& x, int) {
   return x;
 }
-template <class S>
-COLLIDE_HD_INLINE void set_lane(S& x, int, S to) {
-  x = to;
-}
+template <class P>
+struct from_lanes {
+  /// f(k) in lane k.
+  template <class F>
+  static COLLIDE_HD_INLINE P of(F const& f) {
+    return f(0);
+  }
+};
 COLLIDE_HD_INLINE bool lane_of_mask(bool mask, int) { return mask; }
 
 #if defined(__GNUC__) && !defined(__CUDACC__)
@@ -102,9 +107,19 @@ COLLIDE_HD_INLINE T lane(pack<T, N> const& x, int k) {
   return x.v[k];
 }
 template <class T, int N>
-COLLIDE_HD_INLINE void set_lane(pack<T, N>& x, int k, T to) {
-  reinterpret_cast<T*>(&x)[k] = to;
-}
+struct from_lanes<pack<T, N>> {
+  template <class F>
+  static COLLIDE_HD_INLINE pack<T, N> of(F const& f) {
+    return of(f, std::make_integer_sequence<int, N>());
+  }
+
+ private:
+  template <class F, int... K>
+  static COLLIDE_HD_INLINE pack<T, N> of(F const& f, std::integer_sequence<int, K...>) {
+    typename pack<T, N>::vector const v = {f(K)...};
+    return pack<T, N>(v);
+  }
+};
 template <class T, int N>
 COLLIDE_HD_INLINE bool lane_of_mask(mask<T, N> const& m, int k) {
   return m.v[k] != 0;
@@ -173,9 +188,7 @@ using pack_of = S;
 /// f(numbers of one lane) in each lane, where that takes a branch of its own.
 template <class P, class F, class... Q>
 COLLIDE_HD_INLINE P in_each_lane(F const& f, P const& x, Q const&... more) {
-  P found;
-  for (int k = 0; k < lanes_of<P>; ++k) set_lane(found, k, f(lane(x, k), lane(more, k)...));
-  return found;
+  return from_lanes<P>::of([&](int k) { return f(lane(x, k), lane(more, k)...); });
 }
 
 }  // namespace collide::detail

@@ -37,8 +37,8 @@ struct contact_values<S, columns<C...>> : contact_value<C, S>... {
   /// f(number, k, sign) for all numbers of all columns, number k; the sign is -1 of what has the opposite sign for the
   /// other particle, where both remember the same.
   template <class F>
-  COLLIDE_HD_INLINE void for_each_number(F const& f) {
-    int n = 0;
+  COLLIDE_HD_INLINE void for_each_number([[maybe_unused]] F const& f) {
+    [[maybe_unused]] int n = 0;
     (for_each_of<C>(n, f), ...);
   }
 

@@ -2,6 +2,7 @@
 /// What spheres do to each other, for effects that are asked once a pair; see pair_actions.hpp.
 #pragma once
 
+#include <collide/detail/numeric/float_bits.hpp>
 #include <collide/detail/numeric/pack.hpp>
 
 namespace collide::detail {
@@ -38,16 +39,17 @@ struct alignas(Width == 7 ? 8 * sizeof(S) : sizeof(S)) stored_action {
   S numbers[Width];
 
   template <class P>
-  COLLIDE_HD_INLINE void set(sphere_action<P> action, int k) {
+  COLLIDE_HD_INLINE void set(sphere_action<P>& action, int k) {
     action.template for_each_number<Width>([&](P& x, int n) { numbers[n] = lane(x, k); });
   }
   /// As it acts on the first or the `second` of the two. Of what is 0 the sign stays.
   COLLIDE_HD_INLINE sphere_action<S> on(bool second) const {
     sphere_action<S> action;
     action.torque = vec3<S>(S(0), S(0), S(0));
-    action.template for_each_number<Width>([&](S& x, int n) { x = numbers[n]; });
-    if (second) action.force = action.torque - action.force;
-    if (second && Width > 7) action.torque = vec3<S>(S(0), S(0), S(0)) - action.torque;
+    action.template for_each_number<Width>([&](S& x, int n) {
+      bool const turns_round = second && (n < 3 || n > 6);
+      x = select(turns_round, S(0 - numbers[n]), numbers[n]);
+    });
     return action;
   }
 };
