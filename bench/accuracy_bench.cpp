@@ -27,9 +27,9 @@
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
-#include <collide/detail/nearest/compare_distances.hpp>
+#include <collide/narrow/detail/compare_distances.hpp>
 #include <collide/sinks/nearest.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "accuracy_scenes.hpp"
 #include "program.hpp"

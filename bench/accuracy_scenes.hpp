@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <collide/bucket.cuh>
-#include <collide/detail/narrow_phase/intersects.hpp>
+#include <collide/narrow/detail/intersects.hpp>
 
 #include "io/scenes.hpp"
 #include "scene.hpp"

@@ -16,7 +16,7 @@
 #include <benchmark/benchmark.h>
 
 #include <collide/automatic.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/scenes.hpp"
 #include "program.hpp"

@@ -14,9 +14,9 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
-#include <collide/memory.hpp>
+#include <collide/core/memory.hpp>
 #include <collide/sinks/csr.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/scenes.hpp"
 #include "program.hpp"

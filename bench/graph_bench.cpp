@@ -20,7 +20,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/scenes.hpp"
 #include "program.hpp"

@@ -17,7 +17,7 @@
 #include <benchmark/benchmark.h>
 
 #include <collide/bucket.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/scenes.hpp"
 #include "program.hpp"

@@ -27,7 +27,7 @@
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
 #include <collide/sinks/impacts.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "motion_scenes.hpp"
 #include "program.hpp"

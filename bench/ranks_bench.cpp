@@ -27,7 +27,7 @@
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/sphere_contact.hpp>
 #include <collide/ranks/distributed_simulation.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/on_ranks.hpp"
 #include "io/scenes.hpp"

@@ -20,7 +20,7 @@
 #include <collide/automatic.cuh>
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/scenes.hpp"
 #include "program.hpp"

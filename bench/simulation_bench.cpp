@@ -20,10 +20,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
 #include <collide/effects/absorb.hpp>
 #include <collide/effects/adhesion.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/drag.hpp>
@@ -38,7 +38,7 @@
 #include <collide/effects/wind.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/counting.hpp"
 #include "io/scenes.hpp"

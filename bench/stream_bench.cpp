@@ -20,8 +20,8 @@
 #include <benchmark/benchmark.h>
 
 #include <collide/bucket.cuh>
-#include <collide/streamed.cuh>
-#include <collide/upload.hpp>
+#include <collide/detectors/streamed.cuh>
+#include <collide/spaces/upload.hpp>
 
 #include "io/scenes.hpp"
 #include "program.hpp"

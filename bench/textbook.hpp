@@ -2,8 +2,8 @@
 /// The test of a sphere and a triangle as textbooks have it, to be compared with.
 #pragma once
 
-#include <collide/config.hpp>
-#include <collide/geometry.hpp>
+#include <collide/core/config.hpp>
+#include <collide/core/geometry.hpp>
 
 namespace bench {
 

@@ -1,5 +1,5 @@
 # collide::compiled: queries, and what simulations do without their effects, compiled once, for programs that link it; see
-# include/collide/compiled.hpp. With COLLIDE_CUDA there is collide::compiled_cuda, which has those of the CUDA spaces, too.
+# include/collide/detectors/compiled.hpp. With COLLIDE_CUDA there is collide::compiled_cuda, which has those of the CUDA spaces, too.
 # Both are built where something links them, and collide::compiled by default if this is the project that is built.
 
 # compiled_source(RESULT TEMPLATE NAME): a source made of src/TEMPLATE.cpp.in, appended to the list RESULT

@@ -4,9 +4,9 @@
 #include <cstdio>
 
 #include <collide/bucket.cuh>
-#include <collide/checkpoint.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
+#include <collide/simulation/checkpoint.hpp>
 
 using balls = collide::simulation<collide::detector<collide::bucket>, collide::gravity, collide::bounce>;
 

@@ -1,7 +1,7 @@
 /// \file
 /// A belt lifts grains, throws them onto another one, and that heaps them up on a table that turns.
 
-#include <collide/bodies.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/friction.hpp>
 #include <collide/effects/gravity.hpp>

@@ -7,7 +7,7 @@
 
 #include <cstdio>
 
-#include <collide/extend.hpp>
+#include <collide/broad/extend.hpp>
 
 int main() {
   float const vertices[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};

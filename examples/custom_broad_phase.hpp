@@ -2,7 +2,7 @@
 /// The broad phase of custom_broad_phase.cpp, which the tests run in all spaces.
 #pragma once
 
-#include <collide/extend.hpp>
+#include <collide/broad/extend.hpp>
 
 /// The policy has no options.
 struct bounding_spheres {

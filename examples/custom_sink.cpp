@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include <collide/atomic_add.hpp>
 #include <collide/bucket.cuh>
+#include <collide/spaces/atomic_add.hpp>
 
 /// The part of the sink that goes into the query: it is copied to where the query runs, and called there from many
 /// threads at once.

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include <collide/extend.hpp>
+#include <collide/broad/extend.hpp>
 
 /// Threads that wait for work. What the work throws ends the program.
 class thread_pool {

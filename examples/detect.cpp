@@ -10,8 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <collide/self_intersections.hpp>
-#include <collide/validate_closed.hpp>
+#include <collide/checks/self_intersections.hpp>
+#include <collide/checks/validate_closed.hpp>
 
 #include "detect/detection.hpp"
 #include "io/mesh.hpp"

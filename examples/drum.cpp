@@ -1,7 +1,7 @@
 /// \file
 /// Grains of two colours are poured into a drum with lifters, which turns on two rollers and mixes them.
 
-#include <collide/bodies.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/friction.hpp>

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <vector>
 
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/reaction.hpp>

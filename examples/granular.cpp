@@ -7,7 +7,7 @@
 #include <collide/bucket.cuh>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
-#include <collide/integrators.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/simulation.cuh>
 
 int main() {

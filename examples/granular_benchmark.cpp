@@ -30,17 +30,17 @@
 #include <string>
 #include <vector>
 
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
 #include <collide/effects/absorb.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/lost_motion.hpp>
 #include <collide/effects/polydisperse.hpp>
-#include <collide/energy.hpp>
-#include <collide/integrators.hpp>
 #include <collide/simulation.cuh>
-#include <collide/upload.hpp>
+#include <collide/simulation/energy.hpp>
+#include <collide/spaces/upload.hpp>
 
 #if defined(__CUDACC__)
 #include <thrust/device_vector.h>

@@ -7,14 +7,14 @@
 
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
+#include <collide/checks/validate.hpp>
+#include <collide/checks/validate_closed.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/contains.hpp>
 #include <collide/sinks/csr.hpp>
 #include <collide/sinks/earliest.hpp>
 #include <collide/sinks/nearest.hpp>
 #include <collide/sinks/signed_distance.hpp>
-#include <collide/validate.hpp>
-#include <collide/validate_closed.hpp>
 
 namespace {
 

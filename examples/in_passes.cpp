@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <collide/bucket.cuh>
-#include <collide/in_passes.hpp>
-#include <collide/upload.hpp>
+#include <collide/detectors/in_passes.hpp>
+#include <collide/spaces/upload.hpp>
 
 template <class Space>
 void run(Space space) {

@@ -4,8 +4,8 @@
 
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/polydisperse.hpp>
-#include <collide/integrators.hpp>
 
 #include "io/film_program.hpp"
 #include "io/scenes/solids.hpp"

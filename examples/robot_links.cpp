@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <collide/bvh.cuh>
-#include <collide/posed.hpp>
+#include <collide/detectors/posed.hpp>
 #include <collide/sinks/signed_distance.hpp>
 
 namespace {

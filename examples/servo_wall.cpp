@@ -7,12 +7,12 @@
 #include <cstdio>
 #include <vector>
 
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/reaction.hpp>
-#include <collide/integrators.hpp>
 #include <collide/simulation.cuh>
 
 using namespace collide;

@@ -3,11 +3,11 @@
 /// common benchmark of granular codes, with the large orifice: M. Dosta et al., Computer Physics Communications 296,
 /// 2024. The grains are twice as large, fewer and softer.
 
-#include <collide/bodies.hpp>
 #include <collide/effects/absorb.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
-#include <collide/integrators.hpp>
+#include <collide/effects/integrators.hpp>
 
 #include "io/film_program.hpp"
 #include "io/scenes/solids.hpp"

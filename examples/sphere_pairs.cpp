@@ -2,7 +2,7 @@
 /// Which spheres touch each other: as pairs, and as a list of neighbours for each.
 #include <cstdio>
 
-#include <collide/sphere_pairs.cuh>
+#include <collide/detectors/sphere_pairs.cuh>
 
 int main() {
   float const xyzr[] = {0, 0,    0, 1,    2, 0, 0, 1,

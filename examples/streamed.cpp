@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <collide/bucket.cuh>
-#include <collide/streamed.cuh>
-#include <collide/upload.hpp>
+#include <collide/detectors/streamed.cuh>
+#include <collide/spaces/upload.hpp>
 
 template <class Space>
 void run(Space space, std::pmr::memory_resource* memory) {

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <vector>
 
-#include <collide/atomic_add.hpp>
 #include <collide/bucket.cuh>
+#include <collide/spaces/atomic_add.hpp>
 
 int main() {
   float const vertices[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};

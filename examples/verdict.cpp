@@ -7,7 +7,7 @@
 
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/cases.hpp"
 #include "io/device.hpp"

@@ -9,7 +9,7 @@
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
-#include <collide/in_passes.hpp>
+#include <collide/detectors/in_passes.hpp>
 #include <collide/sinks/contains.hpp>
 #include <collide/sinks/nearest.hpp>
 #include <collide/sinks/signed_distance.hpp>

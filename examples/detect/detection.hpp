@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <collide/contact.hpp>
-#include <collide/nearest_triangle.hpp>
+#include <collide/core/contact.hpp>
+#include <collide/core/nearest_triangle.hpp>
 
 #include "../io/csv.hpp"
 #include "../io/obj.hpp"

@@ -2,7 +2,7 @@
 /// An effect of our own, for what is wet: spheres that touch hold on to each other.
 #pragma once
 
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
 
 namespace io {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <collide/bodies.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/io/vtk.hpp>
 
 #include "ranks.hpp"

@@ -12,7 +12,7 @@
 #include <collide/effects/emit.hpp>
 #include <collide/ranks/distributed_checkpoint.hpp>
 #include <collide/simulation.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "device.hpp"
 #include "film.hpp"

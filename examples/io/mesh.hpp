@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include <collide/error.hpp>
+#include <collide/core/error.hpp>
 #include <collide/io/off.hpp>
 #include <collide/io/ply.hpp>
 #include <collide/io/stl.hpp>

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <collide/contact.hpp>
+#include <collide/core/contact.hpp>
 
 #include "csv.hpp"
 #include "obj.hpp"

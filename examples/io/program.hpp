@@ -12,7 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <collide/version.hpp>
+#include <collide/core/version.hpp>
 
 #include "error.hpp"
 

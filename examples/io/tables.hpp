@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include <collide/contact.hpp>
-#include <collide/nearest_triangle.hpp>
+#include <collide/core/contact.hpp>
+#include <collide/core/nearest_triangle.hpp>
 
 #include "output.hpp"
 #include "progress.hpp"

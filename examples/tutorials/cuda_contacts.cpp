@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <vector>
 
-#include <collide/atomic_add.hpp>
 #include <collide/bucket.cuh>
+#include <collide/spaces/atomic_add.hpp>
 
 namespace {
 

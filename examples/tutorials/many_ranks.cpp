@@ -11,7 +11,7 @@
 #include <collide/bucket.cuh>
 #include <collide/ranks/distributed.hpp>
 #include <collide/ranks/thread_ranks.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 #if defined(COLLIDE_HAS_MPI)
 #include <collide/ranks/mpi.hpp>
 #endif

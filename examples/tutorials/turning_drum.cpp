@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <vector>
 
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/friction.hpp>

@@ -6,14 +6,14 @@
 /// all_pairs x cuda_shared = `brute_force_shamem`.
 #pragma once
 
-#include <collide/detail/execution/launch.hpp>
-#include <collide/detail/execution/multiversion.hpp>
-#include <collide/detail/geometry/lifted_bounds.hpp>
-#include <collide/detail/grid/all_pairs_ref.hpp>
-#include <collide/detail/query/candidate_pipeline.hpp>
+#include <collide/broad/detail/all_pairs_ref.hpp>
 #include <collide/detector.hpp>
+#include <collide/exact/detail/geometry/lifted_bounds.hpp>
+#include <collide/query/detail/candidate_pipeline.hpp>
+#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/multiversion.hpp>
 #if defined(COLLIDE_COMPILED)
-#include <collide/compiled.hpp>
+#include <collide/detectors/compiled.hpp>
 #endif
 
 namespace collide {
@@ -169,10 +169,10 @@ struct all_pairs {
     }
 
     /// The triangles near a single sphere, for a kernel; valid until the next build.
-    detail::all_pairs_ref<S> triangle_ref() const { return {{mesh_, nullptr}}; }
+    detail::all_pairs_ref<S> mesh_lookup() const { return {{mesh_, nullptr}}; }
 
     /// A reference for kernels to the triangles near a point; valid until the next build.
-    detail::all_pairs_ref<S> ref() const { return triangle_ref(); }
+    detail::all_pairs_ref<S> ref() const { return mesh_lookup(); }
 
     template <class Space>
     double cell_width(Space&) const {

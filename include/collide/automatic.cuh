@@ -3,10 +3,10 @@
 #pragma once
 
 #include <collide/all_pairs.cuh>
+#include <collide/broad/detail/grid_or_tree_ref.hpp>
+#include <collide/broad/detail/tree/box_waste.hpp>
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
-#include <collide/detail/query/grid_or_tree_ref.hpp>
-#include <collide/detail/tree/box_waste.hpp>
 
 namespace collide {
 
@@ -85,11 +85,11 @@ struct automatic {
     }
 
     /// The triangles near a single sphere, for a kernel of a simulation; valid until the next build or prepare.
-    auto triangle_ref() const {
+    auto mesh_lookup() const {
       using ref = detail::grid_or_tree_ref<S, decltype(tree_.ref())>;
-      if (way_ == way::grid) return ref{grid_.triangle_ref(), {}};
+      if (way_ == way::grid) return ref{grid_.mesh_lookup(), {}};
       detail::bucket_ref<S> const all{{mesh_, nullptr}, nullptr, 0, nullptr, nullptr, nullptr, nullptr, 0};
-      return way_ == way::tree ? ref{all, tree_.triangle_ref()} : ref{all, {}};
+      return way_ == way::tree ? ref{all, tree_.mesh_lookup()} : ref{all, {}};
     }
 
     /// Width of the finest cells in use; 0 if there is no grid.

@@ -11,32 +11,32 @@
 #include <optional>
 #include <type_traits>
 
-#include <collide/detail/execution/launch.hpp>
-#include <collide/detail/grid/cell_lists.hpp>
-#include <collide/detail/grid/grid.hpp>
-#include <collide/detail/grid/grid_ref.hpp>
-#include <collide/detail/grid/memory_plan.hpp>
-#include <collide/detail/grid/mesh_statistics.hpp>
-#include <collide/detail/grid/plan.hpp>
-#include <collide/detail/query/candidate_pipeline.hpp>
-#include <collide/detail/query/measure_groups.hpp>
-#include <collide/detail/query/sorted_spheres.hpp>
-#include <collide/detail/query/sphere_major.hpp>
+#include <collide/broad/detail/bucket/measure_groups.hpp>
+#include <collide/broad/detail/bucket/sorted_spheres.hpp>
+#include <collide/broad/detail/bucket/sphere_major.hpp>
+#include <collide/broad/detail/grid/cell_lists.hpp>
+#include <collide/broad/detail/grid/grid.hpp>
+#include <collide/broad/detail/grid/grid_ref.hpp>
+#include <collide/broad/detail/grid/memory_plan.hpp>
+#include <collide/broad/detail/grid/mesh_statistics.hpp>
+#include <collide/broad/detail/grid/plan.hpp>
 #include <collide/detector.hpp>
+#include <collide/query/detail/candidate_pipeline.hpp>
+#include <collide/spaces/detail/launch.hpp>
 #if defined(COLLIDE_COMPILED)
-#include <collide/compiled.hpp>
+#include <collide/detectors/compiled.hpp>
 #endif
 
 namespace collide {
 
-/// Broad phase: uniform grids of buckets, with cells chosen from the scene; detail/grid/grid.hpp explains how.
+/// Broad phase: uniform grids of buckets, with cells chosen from the scene; broad/detail/grid/grid.hpp explains how.
 /// Build O(triangles + entries), query O(spheres + candidates). Memory: 8 scalars for each triangle, but in
 /// `cuda_shared` for simulations only; for each grid entries of 8 bytes, at most 16 for each triangle (48 where there
 /// are fewer spheres) and one for each four spheres, and cells of 8 bytes, at most 32 for each triangle; several grids
 /// only where radii differ by more than a factor of 4, on a device each but the first for more than two spheres a
-/// triangle. The host sorts the spheres instead where there are many (detail/query/sorted_spheres.hpp): that takes
-/// O(triangles + spheres) for a query, 1 scalar per triangle, about 36 bytes more where triangles that follow each
-/// other are far apart, 4 bytes per cell, and about 12 scalars for each sphere in a cell with triangles, 19 if it
+/// triangle. The host sorts the spheres instead where there are many (broad/detail/bucket/sorted_spheres.hpp): that
+/// takes O(triangles + spheres) for a query, 1 scalar per triangle, about 36 bytes more where triangles that follow
+/// each other are far apart, 4 bytes per cell, and about 12 scalars for each sphere in a cell with triangles, 19 if it
 /// moves; no entries.
 struct bucket {
   /// Width of the cells, in the units of the coordinates; 0 lets the library choose, which is nearly always right. The
@@ -224,7 +224,7 @@ class bucket::index {
   }
 
   /// The triangles near a single sphere, for a kernel; valid until the next build or prepare.
-  detail::bucket_ref<S> const& triangle_ref() const { return ref_; }
+  detail::bucket_ref<S> const& mesh_lookup() const { return ref_; }
 
   /// Width of the finest cells in use; 0 if there is no grid.
   template <class Space>

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <collide/detail/tree/radix_tree.hpp>
-#include <collide/detail/tree/sah_tree.hpp>
-#include <collide/detail/tree/tree_ref.hpp>
-#include <collide/detail/tree/winding_tree.hpp>
-#include <collide/extend.hpp>
+#include <collide/broad/detail/tree/radix_tree.hpp>
+#include <collide/broad/detail/tree/sah_tree.hpp>
+#include <collide/broad/detail/tree/tree_ref.hpp>
+#include <collide/broad/detail/tree/winding_tree.hpp>
+#include <collide/broad/extend.hpp>
 
 namespace collide {
 

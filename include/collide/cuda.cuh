@@ -18,10 +18,10 @@
 
 #include <cuda_runtime.h>
 
-#include <collide/cuda_memory.cuh>
-#include <collide/detail/execution/block.hpp>
-#include <collide/detail/execution/cuda_block.cuh>
-#include <collide/detail/execution/tuning.hpp>
+#include <collide/spaces/cuda_memory.cuh>
+#include <collide/spaces/detail/block.hpp>
+#include <collide/spaces/detail/cuda_block.cuh>
+#include <collide/spaces/detail/tuning.hpp>
 
 namespace collide {
 

@@ -5,12 +5,12 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/concepts.hpp>
-#include <collide/detail/query/query_pass.hpp>
-#include <collide/error.hpp>
+#include <collide/core/error.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/mesh.hpp>
+#include <collide/query/concepts.hpp>
+#include <collide/query/detail/query_pass.hpp>
 #include <collide/sinks/any_hit.hpp>
 #include <collide/sinks/closest.hpp>
 #include <collide/sinks/contacts.hpp>
@@ -21,7 +21,7 @@
 #if defined(__CUDACC__)
 #include <collide/cuda.cuh>
 #else
-#include <collide/detail/execution/cuda_without_nvcc.hpp>
+#include <collide/spaces/detail/cuda_without_nvcc.hpp>
 #endif
 
 namespace collide {

@@ -10,11 +10,11 @@
 #include <limits>
 #include <thread>
 
-#include <collide/detail/execution/atomic.hpp>
-#include <collide/detail/execution/block.hpp>
-#include <collide/detail/execution/tuning.hpp>
-#include <collide/error.hpp>
-#include <collide/memory.hpp>
+#include <collide/core/error.hpp>
+#include <collide/core/memory.hpp>
+#include <collide/spaces/detail/atomic.hpp>
+#include <collide/spaces/detail/block.hpp>
+#include <collide/spaces/detail/tuning.hpp>
 
 #if defined(_OPENMP)
 #include <omp.h>

@@ -2,12 +2,12 @@
 /// Karabassi's sphere/triangle intersection test.
 #pragma once
 
-#include <collide/contact.hpp>
-#include <collide/detail/narrow_phase/contact.hpp>
-#include <collide/detail/narrow_phase/contact_in_precision.hpp>
-#include <collide/detail/narrow_phase/intersects.hpp>
-#include <collide/detail/narrow_phase/karabassi_test.hpp>
-#include <collide/precision.hpp>
+#include <collide/core/contact.hpp>
+#include <collide/core/precision.hpp>
+#include <collide/narrow/detail/contact.hpp>
+#include <collide/narrow/detail/contact_in_precision.hpp>
+#include <collide/narrow/detail/intersects.hpp>
+#include <collide/narrow/detail/karabassi_test.hpp>
 
 namespace collide {
 

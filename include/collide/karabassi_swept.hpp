@@ -2,13 +2,13 @@
 /// Karabassi's intersection test for moving spheres: continuous collision detection.
 #pragma once
 
-#include <collide/detail/narrow_phase/contact_in_precision.hpp>
-#include <collide/detail/narrow_phase/contact_swept.hpp>
-#include <collide/detail/narrow_phase/intersects_swept.hpp>
-#include <collide/detail/narrow_phase/karabassi_swept_test.hpp>
-#include <collide/detail/narrow_phase/time_of_impact.hpp>
-#include <collide/impact.hpp>
-#include <collide/precision.hpp>
+#include <collide/core/impact.hpp>
+#include <collide/core/precision.hpp>
+#include <collide/narrow/detail/contact_in_precision.hpp>
+#include <collide/narrow/detail/contact_swept.hpp>
+#include <collide/narrow/detail/intersects_swept.hpp>
+#include <collide/narrow/detail/karabassi_swept_test.hpp>
+#include <collide/narrow/detail/time_of_impact.hpp>
 
 namespace collide {
 

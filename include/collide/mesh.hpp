@@ -6,8 +6,8 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/error.hpp>
-#include <collide/points.hpp>
+#include <collide/core/error.hpp>
+#include <collide/core/points.hpp>
 
 namespace collide {
 

@@ -7,19 +7,19 @@
 #include <utility>
 #include <vector>
 
-#include <collide/detail/bodies/body_memory.hpp>
-#include <collide/detail/grid/mesh_statistics.hpp>
-#include <collide/detail/neighbours/verlet_list.hpp>
-#include <collide/detail/particles/arguments.hpp>
-#include <collide/detail/particles/check_effect.hpp>
-#include <collide/detail/particles/host_members.hpp>
-#include <collide/detail/step/lookup_tuning.hpp>
-#include <collide/detail/step/mesh_overlaps.hpp>
-#include <collide/detail/step/particle_kernels.hpp>
-#include <collide/detail/step/step.hpp>
+#include <collide/broad/detail/grid/mesh_statistics.hpp>
 #include <collide/detector.hpp>
+#include <collide/effects/detail/check_effect.hpp>
+#include <collide/effects/detail/host_members.hpp>
+#include <collide/simulation/detail/arguments.hpp>
+#include <collide/simulation/detail/bodies/body_memory.hpp>
+#include <collide/simulation/detail/neighbours/verlet_list.hpp>
+#include <collide/simulation/detail/step/lookup_space.hpp>
+#include <collide/simulation/detail/step/particle_kernels.hpp>
+#include <collide/simulation/detail/step/step.hpp>
+#include <collide/simulation/detail/walls/mesh_overlaps.hpp>
 #if defined(COLLIDE_COMPILED)
-#include <collide/detail/step/compiled_search.hpp>
+#include <collide/simulation/detail/step/compiled_search.hpp>
 #endif
 
 namespace collide {
@@ -68,7 +68,7 @@ class simulation {
                 "ends: take karabassi, and steps in which nothing moves farther than its radius");
   static_assert(
       !asks_mesh || detail::has_triangle_ref<index>::value,
-      "collide: effects that touch the mesh need a broad phase whose index has a member triangle_ref(), such as "
+      "collide: effects that touch the mesh need a broad phase whose index has a member mesh_lookup(), such as "
       "bucket or all_pairs");
 
  public:
@@ -76,7 +76,7 @@ class simulation {
   using columns = typename effects_type::all;
   /// Bytes of state of each particle: its columns; `bytes()` is what all takes.
   static constexpr std::size_t bytes_per_particle = detail::column_buffers<S, columns>::bytes_per_particle;
-  /// Pointers to all columns, for kernels; see detail/particles/particle.hpp.
+  /// Pointers to all columns, for kernels; see effects/detail/particle.hpp.
   using state_type = detail::particle_state<S, columns>;
 
   /// Without particles, with effects as they are by default. Stream and resource of the space must outlive it.
@@ -159,7 +159,7 @@ class simulation {
     (detail::check_walls_of<Effect>(effects_, space_, mesh.size(), bodies.size()), ...);
     mesh_ = {};
     has_mesh_ = false;
-    detail::lookup_tuning<execution_space> there(space_);
+    detail::lookup_space<execution_space> there(space_);
     if (mesh.size() != 0) detail::build_index(index_, there, options_, mesh);
     bodies_.build(space_, mesh, bodies, velocities);
     mesh_ = mesh;
@@ -341,20 +341,19 @@ class simulation {
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
   /// Where a thread is alone in its block, as on a CPU.
   static constexpr bool meets_once = effects_type::meets_once && detail::works_alone<execution_space>;
-  using neighbour_lists =
-      std::conditional_t<effects_type::any_pair_contact, detail::verlet_list<S, effects_type, meets_once>,
-                         detail::null_ref>;
+  using neighbour_lists = std::conditional_t<effects_type::any_pair_contact,
+                                             detail::verlet_list<S, effects_type, meets_once>, detail::absent>;
   using surface_memory =
       std::conditional_t<effects_type::overlaps, detail::surface_memory<S, typename effects_type::remembered>,
-                         detail::null_ref>;
+                         detail::absent>;
   /// The triangles near a particle, for a step that `Asks` for them.
   template <bool Asks = effects_type::any_mesh_contact>
   auto mesh_ref([[maybe_unused]] S dt) const {
     if constexpr (Asks) {
-      auto const whole = mesh_.size() != 0 ? index_.triangle_ref() : std::decay_t<decltype(index_.triangle_ref())>{};
+      auto const whole = mesh_.size() != 0 ? index_.mesh_lookup() : std::decay_t<decltype(index_.mesh_lookup())>{};
       return bodies_.ref(whole, mesh_, dt);
     } else {
-      return detail::null_ref{};
+      return detail::absent{};
     }
   }
 
@@ -391,7 +390,7 @@ class simulation {
     effects_.prepare(dt);
     if constexpr (effects_type::keeps_mesh_kicks)
       space_.for_each(state_.size,
-                      detail::book_first_kicks<S, effects_type>{state_, effects_, dt, mesh_.size(), bodies_.size()});
+                      detail::record_first_kicks<S, effects_type>{state_, effects_, dt, mesh_.size(), bodies_.size()});
     advance_bodies(static_cast<double>(dt), false);
     if constexpr (has_begin_step)
       space_.for_each(1, detail::advance_time{state_.time, double(dt), effects_.due(static_cast<double>(dt))});
@@ -581,7 +580,7 @@ class simulation {
       constexpr bool is_part = detail::contains<columns, global_number>;  // others come from other ranks
       std::size_t const n = detail::max(state_.size, std::size_t{is_part});
       if (mesh_.size() == 0 || n == 0 || !is_set_) return;
-      detail::lookup_tuning<execution_space> there(space_);
+      detail::lookup_space<execution_space> there(space_);
       S const room = sweeps || detail::contains<columns, radius> ? S(0) : S(bodies_.room());
       S const most = detail::reach_of<effects_type>(detail::max(radii_.largest, least_radius_)) + room;
       bool const wider = is_part || (radii_.largest >= 0 && radii_.largest < most);

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <type_traits>
 
-#include <collide/error.hpp>
-#include <collide/points.hpp>
+#include <collide/core/error.hpp>
+#include <collide/core/points.hpp>
 
 namespace collide {
 

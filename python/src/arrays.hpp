@@ -14,8 +14,8 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <collide/core/moving_spheres.hpp>
 #include <collide/mesh.hpp>
-#include <collide/moving_spheres.hpp>
 
 namespace collide_python {
 

@@ -17,7 +17,7 @@
 #include <pthread.h>
 #include <time.h>
 
-#include <collide/error.hpp>
+#include <collide/core/error.hpp>
 
 namespace collide_python {
 

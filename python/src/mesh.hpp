@@ -12,6 +12,7 @@
 
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
+#include <collide/checks/validate.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/csr.hpp>
@@ -19,7 +20,6 @@
 #include <collide/sinks/impacts.hpp>
 #include <collide/sinks/k_nearest.hpp>
 #include <collide/sinks/signed_distance.hpp>
-#include <collide/validate.hpp>
 
 #include "runtime.hpp"
 

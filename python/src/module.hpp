@@ -8,7 +8,7 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
-#include <collide/version.hpp>
+#include <collide/core/version.hpp>
 
 #include "simulation.hpp"
 

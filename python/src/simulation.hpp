@@ -10,7 +10,7 @@
 
 #include <dlfcn.h>
 
-#include <collide/bodies.hpp>
+#include <collide/effects/bodies.hpp>
 
 #include "mesh.hpp"
 #include "simulation_base.hpp"

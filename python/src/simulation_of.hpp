@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
-#include <collide/checkpoint.hpp>
-#include <collide/energy.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/simulation.cuh>
+#include <collide/simulation/checkpoint.hpp>
+#include <collide/simulation/energy.hpp>
 
 #include "simulation_base.hpp"
 

@@ -1,6 +1,6 @@
 // expect: collide: particles, their velocities and the mesh must have the scalar type
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/simulation.cuh>
 

@@ -1,6 +1,6 @@
 // expect: collide: k_nearest, contains, signed_distance and winding_number are of a whole mesh: not of one in passes
 #include <collide/bvh.cuh>
-#include <collide/in_passes.hpp>
+#include <collide/detectors/in_passes.hpp>
 #include <collide/sinks/k_nearest.hpp>
 
 int main() {

@@ -1,6 +1,6 @@
 // expect: collide: a motion of moving_bodies is called as motion(body, time) const
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/simulation.cuh>
 

@@ -1,6 +1,6 @@
 // expect: collide: this per_sphere policy is host_only: its index reads the mesh on the host, which in this space
 // cannot be read there
-#include <collide/extend.hpp>
+#include <collide/broad/extend.hpp>
 
 struct remote : collide::host {
   using host::host;

@@ -1,6 +1,6 @@
 // expect: collide: what ref() of a per_sphere policy returns is a trivially copyable value, and has a default
 // constructor
-#include <collide/extend.hpp>
+#include <collide/broad/extend.hpp>
 
 struct fussy {
   struct ref_type {

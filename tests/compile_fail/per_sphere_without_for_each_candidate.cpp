@@ -1,5 +1,5 @@
 // expect: collide: what ref() of a per_sphere policy returns has a const member for_each_candidate(sphere<S>, f)
-#include <collide/extend.hpp>
+#include <collide/broad/extend.hpp>
 
 struct blind {
   struct ref_type {};

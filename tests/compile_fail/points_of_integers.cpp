@@ -1,4 +1,4 @@
 // expect: collide: points have coordinates of type float or double
-#include <collide/points.hpp>
+#include <collide/core/points.hpp>
 
 collide::point_view<int> none;

@@ -1,6 +1,6 @@
 // expect: collide: an effect comes after those whose result it uses
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/simulation.cuh>

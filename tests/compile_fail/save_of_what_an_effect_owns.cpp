@@ -2,7 +2,7 @@
 #include <vector>
 
 #include <collide/bucket.cuh>
-#include <collide/checkpoint.hpp>
+#include <collide/simulation/checkpoint.hpp>
 
 struct schedule {
   std::vector<double> times;

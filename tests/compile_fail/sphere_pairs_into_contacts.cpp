@@ -1,5 +1,5 @@
 // expect: collide: sphere_pairs gives ids alone: its sinks are count, pairs, csr and any_hit
-#include <collide/sphere_pairs.cuh>
+#include <collide/detectors/sphere_pairs.cuh>
 
 int main() {
   collide::sphere_pairs<> finder;

@@ -1,5 +1,5 @@
 // expect: collide: sphere_pairs: query gives each pair once, and any_hit would mark one of the two: use neighbours
-#include <collide/sphere_pairs.cuh>
+#include <collide/detectors/sphere_pairs.cuh>
 
 int main() {
   collide::sphere_pairs<> finder;

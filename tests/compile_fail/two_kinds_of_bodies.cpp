@@ -1,6 +1,6 @@
 // expect: collide: a simulation has one effect moving_bodies
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/simulation.cuh>
 

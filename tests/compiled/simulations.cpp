@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <collide/all_pairs.cuh>
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/karabassi_swept.hpp>

@@ -16,7 +16,7 @@
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
 #include <collide/sinks/pairs.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "../flush_to_zero.hpp"
 

@@ -1,8 +1,12 @@
 /// \file
 /// Uses what there is, so that its templates are made and a compiler can warn of them: nothing is run.
-#include <collide/atomic_add.hpp>
 #include <collide/automatic.cuh>
-#include <collide/checkpoint.hpp>
+#include <collide/broad/extend.hpp>
+#include <collide/checks/self_intersections.hpp>
+#include <collide/checks/validate.hpp>
+#include <collide/core/moving_spheres.hpp>
+#include <collide/detectors/in_passes.hpp>
+#include <collide/detectors/streamed.cuh>
 #include <collide/effects/absorb.hpp>
 #include <collide/effects/adhesion.hpp>
 #include <collide/effects/bounce.hpp>
@@ -11,27 +15,23 @@
 #include <collide/effects/emit.hpp>
 #include <collide/effects/friction.hpp>
 #include <collide/effects/gravity.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/lost_motion.hpp>
 #include <collide/effects/polydisperse.hpp>
 #include <collide/effects/sleep.hpp>
 #include <collide/effects/sphere_contact.hpp>
 #include <collide/effects/spin.hpp>
 #include <collide/effects/wind.hpp>
-#include <collide/extend.hpp>
-#include <collide/in_passes.hpp>
-#include <collide/integrators.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/moving_spheres.hpp>
 #include <collide/ranks/distributed.hpp>
 #include <collide/ranks/distributed_checkpoint.hpp>
 #include <collide/ranks/thread_ranks.hpp>
-#include <collide/self_intersections.hpp>
 #include <collide/simulation.cuh>
+#include <collide/simulation/checkpoint.hpp>
 #include <collide/sinks/earliest.hpp>
 #include <collide/sinks/impacts.hpp>
-#include <collide/streamed.cuh>
-#include <collide/upload.hpp>
-#include <collide/validate.hpp>
+#include <collide/spaces/atomic_add.hpp>
+#include <collide/spaces/upload.hpp>
 
 using namespace collide;
 

@@ -18,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <collide/error.hpp>
+#include <collide/core/error.hpp>
 #include <collide/io/assimp.hpp>
 
 namespace {

@@ -14,7 +14,7 @@
 #include <limits>
 #include <random>
 
-#include <collide/contact.hpp>
+#include <collide/core/contact.hpp>
 
 #include "../oracle/exact.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include <collide/detail/narrow_phase/contact.hpp>
+#include <collide/narrow/detail/contact.hpp>
 
 #include "rows.hpp"
 

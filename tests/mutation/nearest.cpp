@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include <collide/detail/nearest/nearest_search.hpp>
-#include <collide/detail/nearest/ray_parity.hpp>
+#include <collide/narrow/detail/nearest_search.hpp>
+#include <collide/narrow/detail/ray_parity.hpp>
 
 #include "../flush_to_zero.hpp"
 #include "rows.hpp"

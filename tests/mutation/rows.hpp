@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <collide/geometry.hpp>
+#include <collide/core/geometry.hpp>
 
 namespace tests {
 

@@ -1,8 +1,8 @@
 /// stages FOLDER: fails at a row that some stage of a verdict gets wrong, or the ball of the broad phase drops;
 /// subnormal numbers as they are and flushed to zero.
-#include <collide/detail/geometry/bounding_sphere.hpp>
-#include <collide/detail/geometry/lifted_bounds.hpp>
-#include <collide/detail/narrow_phase/intersects.hpp>
+#include <collide/exact/detail/geometry/bounding_sphere.hpp>
+#include <collide/exact/detail/geometry/lifted_bounds.hpp>
+#include <collide/narrow/detail/intersects.hpp>
 
 #include "../flush_to_zero.hpp"
 #include "rows.hpp"

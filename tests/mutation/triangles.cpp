@@ -1,5 +1,5 @@
 /// triangles FOLDER: fails at a row whose two triangles meet where they should not, or do not where they should.
-#include <collide/detail/predicates/exact_triangles.hpp>
+#include <collide/exact/detail/predicates/exact_triangles.hpp>
 
 #include "rows.hpp"
 

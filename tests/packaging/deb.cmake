@@ -31,7 +31,7 @@ foreach(field IN ITEMS "Package: libcollide-dev\n" "Version: ${version}\n" "Arch
 endforeach()
 
 run(said dpkg-deb --extract ${package} ${FOLDER}/root)
-foreach(file IN ITEMS include/collide/version.hpp lib/libcollide_compiled.a share/doc/libcollide-dev/copyright share/doc/libcollide-dev/changelog.gz)
+foreach(file IN ITEMS include/collide/core/version.hpp lib/libcollide_compiled.a share/doc/libcollide-dev/copyright share/doc/libcollide-dev/changelog.gz)
   if(NOT EXISTS ${FOLDER}/root/usr/${file})
     message(FATAL_ERROR "the package has no ${file}")
   endif()

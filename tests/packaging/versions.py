@@ -1,4 +1,4 @@
-"""All files that name a version name that of include/collide/version.hpp."""
+"""All files that name a version name that of include/collide/core/version.hpp."""
 import json
 import pathlib
 import re
@@ -18,5 +18,5 @@ for other in re.findall(r"libcollide-dev_([0-9.]+)_all", (ROOT / "README.md").re
         said["README.md"] = other
 wrong = {name: other for name, other in said.items() if other != version}
 for name, other in wrong.items():
-    print(f"{name} says {other}, include/collide/version.hpp {version}")
+    print(f"{name} says {other}, include/collide/core/version.hpp {version}")
 sys.exit(bool(wrong))

@@ -8,9 +8,9 @@
 #include <limits>
 #include <sstream>
 
-#include <collide/checkpoint.hpp>
-#include <collide/energy.hpp>
 #include <collide/ranks/thread_ranks.hpp>
+#include <collide/simulation/checkpoint.hpp>
+#include <collide/simulation/energy.hpp>
 
 #include "execution/lockstep.hpp"
 #include "scene.hpp"

@@ -14,7 +14,7 @@
 #include <collide/effects/lost.hpp>
 #include <collide/effects/lost_motion.hpp>
 #include <collide/effects/mass_flow.hpp>
-#include <collide/energy.hpp>
+#include <collide/simulation/energy.hpp>
 
 #include "ranks/simulations.hpp"
 

@@ -15,10 +15,10 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/checks/validate.hpp>
+#include <collide/core/memory.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/memory.hpp>
-#include <collide/upload.hpp>
-#include <collide/validate.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "type_erased_detector.hpp"
 

@@ -6,12 +6,12 @@
 #include <doctest/doctest.h>
 
 #include <collide/automatic.cuh>
-#include <collide/bodies.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
 #include <collide/sinks/pairs.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/scenes.hpp"
 

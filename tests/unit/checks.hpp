@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <collide/contact.hpp>
+#include <collide/core/contact.hpp>
 
 #include "type_erased_detector.hpp"
 

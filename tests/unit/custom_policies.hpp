@@ -9,13 +9,13 @@
 #include <doctest/doctest.h>
 
 #include <collide/all_pairs.cuh>
+#include <collide/broad/extend.hpp>
 #include <collide/bvh.cuh>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
-#include <collide/extend.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/simulation.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "custom_broad_phase.hpp"
 

@@ -10,10 +10,10 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/core/moving_spheres.hpp>
 #include <collide/karabassi_swept.hpp>
-#include <collide/moving_spheres.hpp>
 #include <collide/sinks/impacts.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "compositions.hpp"
 #include "scenes.hpp"

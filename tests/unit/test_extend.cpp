@@ -3,8 +3,8 @@
 #include <limits>
 #include <random>
 
+#include <collide/broad/extend.hpp>
 #include <collide/bucket.cuh>
-#include <collide/extend.hpp>
 
 #include "custom_policies.hpp"
 #include "custom_space.hpp"

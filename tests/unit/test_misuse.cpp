@@ -6,6 +6,8 @@
 #include <doctest/doctest.h>
 
 #include <collide/bucket.cuh>
+#include <collide/checks/validate.hpp>
+#include <collide/core/moving_spheres.hpp>
 #include <collide/effects/absorb.hpp>
 #include <collide/effects/adhesion.hpp>
 #include <collide/effects/bounce.hpp>
@@ -21,9 +23,7 @@
 #include <collide/effects/sphere_contact.hpp>
 #include <collide/effects/spin.hpp>
 #include <collide/effects/wind.hpp>
-#include <collide/moving_spheres.hpp>
 #include <collide/simulation.cuh>
-#include <collide/validate.hpp>
 
 using namespace collide;
 

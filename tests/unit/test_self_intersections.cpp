@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/self_intersections.hpp>
+#include <collide/checks/self_intersections.hpp>
 
 #include "nearest/point_cases.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/validate_closed.hpp>
+#include <collide/checks/validate_closed.hpp>
 
 #include "nearest/point_cases.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/validate_surface.hpp>
+#include <collide/checks/validate_surface.hpp>
 
 #include "nearest/point_cases.hpp"
 

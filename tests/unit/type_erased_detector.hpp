@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <collide/contact.hpp>
+#include <collide/core/contact.hpp>
 
 #include "io/counting.hpp"
 #include "scenes.hpp"

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/atomic_add.hpp>
+#include <collide/spaces/atomic_add.hpp>
 
 #include "compositions.hpp"
 #include "scenes.hpp"

@@ -2,7 +2,7 @@
 /// Effects: sinks, in which particles vanish.
 #pragma once
 
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
 
 namespace collide {
 

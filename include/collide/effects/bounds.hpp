@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include <collide/detail/numeric/float_bits.hpp>
-#include <collide/detail/numeric/repeating_box.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
+#include <collide/exact/detail/numeric/float_bits.hpp>
+#include <collide/exact/detail/numeric/repeating_box.hpp>
 
 namespace collide {
 

@@ -2,7 +2,7 @@
 /// Effects: the forces of contacts on each particle, as columns.
 #pragma once
 
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
 
 namespace collide {
 

@@ -2,8 +2,8 @@
 /// Effect: the resistance of a medium at rest.
 #pragma once
 
-#include <collide/detail/particles/resistance.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/detail/resistance.hpp>
+#include <collide/effects/effect.hpp>
 
 namespace collide {
 

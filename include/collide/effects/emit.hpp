@@ -5,9 +5,9 @@
 #include <cmath>
 #include <type_traits>
 
-#include <collide/detail/execution/atomic.hpp>
-#include <collide/detail/particles/particle.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/detail/particle.hpp>
+#include <collide/effects/effect.hpp>
+#include <collide/spaces/detail/atomic.hpp>
 
 namespace collide {
 

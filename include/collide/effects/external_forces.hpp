@@ -2,8 +2,8 @@
 /// Effect: forces that another program computes, such as a solver of the fluid around the particles.
 #pragma once
 
-#include <collide/detail/particles/attributes.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/detail/column_list.hpp>
+#include <collide/effects/effect.hpp>
 #include <collide/effects/granular/materials.hpp>
 
 namespace collide {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/detail/particles/particle_access.hpp>
-#include <collide/detail/particles/sphere_action.hpp>
+#include <collide/effects/detail/particle_access.hpp>
+#include <collide/effects/detail/sphere_action.hpp>
 #include <collide/effects/granular/cohesion.hpp>
 #include <collide/effects/granular/dashpot.hpp>
 #include <collide/effects/granular/hertz.hpp>
@@ -126,9 +126,8 @@ struct granular_contact {
   }
 
   /// True if what it does to one of two spheres is the opposite of what it does to the other.
-  static constexpr bool is_mutual =
-      detail::is_mutual_law<Normal> && detail::is_mutual_law<Tangential> && detail::is_mutual_law<Rolling> &&
-      detail::is_mutual_law<Cohesion>;
+  static constexpr bool is_mutual = detail::is_mutual_law<Normal> && detail::is_mutual_law<Tangential> &&
+                                    detail::is_mutual_law<Rolling> && detail::is_mutual_law<Cohesion>;
 
   /// Numbers that are kept of what two spheres do to each other.
   static constexpr int action_width = !turns ? 3 : std::is_same<Rolling, none>::value ? 7 : 10;
@@ -155,9 +154,9 @@ struct granular_contact {
   /// What some pairs of spheres of two solids do to the first of each; `upwards` is 1 or -1, the direction of what has
   /// none.
   template <class P, class Memory>
-  COLLIDE_HD_INLINE detail::sphere_action<P> act(detail::meeting_sphere<P> const& a,
-                                                   detail::meeting_sphere<P> const& b, P const& upwards,
-                                                   detail::contact_material const& of, Memory const& memory) const {
+  COLLIDE_HD_INLINE detail::sphere_action<P> act(detail::meeting_sphere<P> const& a, detail::meeting_sphere<P> const& b,
+                                                 P const& upwards, detail::contact_material const& of,
+                                                 Memory const& memory) const {
     granular_pair<P> const c = pair_of(a, b, upwards);
     normal_force<P> n = normal.force(c, of);
     cohesion.pull(n, c, of, memory);
@@ -317,8 +316,7 @@ struct granular_contact {
   }
   template <class P, class Memory>
   COLLIDE_HD_INLINE detail::sphere_action<P> act_with(normal_force<P>& n, granular_pair<P> const& c,
-                                                        detail::contact_material const& of,
-                                                        Memory const& memory) const {
+                                                      detail::contact_material const& of, Memory const& memory) const {
     n.secant = P(Normal::is_hertzian ? 2.0 / 3 : 1) * n.stiffness;
     n.damping = P(Normal::damping_factor * of.damping) * detail::sqrt_rn(P(n.stiffness * c.mass));
     detail::sphere_action<P> a;

@@ -2,8 +2,8 @@
 /// Effect: counts particles that are nowhere.
 #pragma once
 
-#include <collide/detail/numeric/float_bits.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
+#include <collide/exact/detail/numeric/float_bits.hpp>
 
 namespace collide {
 

@@ -2,8 +2,8 @@
 /// Effect: counts steps in which rounding swallows a particle's motion.
 #pragma once
 
-#include <collide/detail/numeric/rounding.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
+#include <collide/exact/detail/numeric/rounding.hpp>
 
 namespace collide {
 

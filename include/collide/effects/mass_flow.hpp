@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <limits>
 
-#include <collide/atomic_add.hpp>
-#include <collide/detail/particles/attributes.hpp>
-#include <collide/effect.hpp>
+#include <collide/core/memory.hpp>
+#include <collide/effects/detail/column_list.hpp>
+#include <collide/effects/effect.hpp>
 #include <collide/effects/granular/materials.hpp>
-#include <collide/memory.hpp>
+#include <collide/spaces/atomic_add.hpp>
 
 namespace collide {
 

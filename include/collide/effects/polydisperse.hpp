@@ -2,7 +2,7 @@
 /// Effect: each particle has its own radius.
 #pragma once
 
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
 
 namespace collide {
 

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include <collide/atomic_add.hpp>
-#include <collide/effect.hpp>
-#include <collide/error.hpp>
-#include <collide/memory.hpp>
+#include <collide/core/error.hpp>
+#include <collide/core/memory.hpp>
+#include <collide/effects/effect.hpp>
+#include <collide/spaces/atomic_add.hpp>
 
 namespace collide {
 

@@ -2,8 +2,8 @@
 /// Effect: what rests costs nothing.
 #pragma once
 
-#include <collide/detail/numeric/rounding.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
+#include <collide/exact/detail/numeric/rounding.hpp>
 
 namespace collide {
 

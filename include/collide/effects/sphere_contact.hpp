@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include <collide/detail/numeric/rounding.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
+#include <collide/exact/detail/numeric/rounding.hpp>
 
 namespace collide {
 

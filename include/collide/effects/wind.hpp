@@ -4,8 +4,8 @@
 
 #include <type_traits>
 
-#include <collide/detail/particles/resistance.hpp>
-#include <collide/effect.hpp>
+#include <collide/effects/detail/resistance.hpp>
+#include <collide/effects/effect.hpp>
 
 namespace collide {
 

@@ -15,14 +15,14 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <collide/detail/io/text.hpp>
+#include <collide/io/detail/text.hpp>
 #include <collide/io/mesh_data.hpp>
 #include <collide/io/obj.hpp>
 #include <collide/io/off.hpp>
 #include <collide/io/ply.hpp>
 #include <collide/io/stl.hpp>
 #if __has_include(<nlohmann/json.hpp>)
-#include <collide/detail/io/gltf.hpp>
+#include <collide/io/detail/gltf.hpp>
 #endif
 
 namespace collide {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <collide/detail/numeric/rounding.hpp>
+#include <collide/exact/detail/numeric/rounding.hpp>
 #include <collide/mesh.hpp>
 
 namespace collide {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include <collide/detail/io/bytes.hpp>
-#include <collide/detail/io/text.hpp>
+#include <collide/io/detail/bytes.hpp>
+#include <collide/io/detail/text.hpp>
 #include <collide/io/mesh_data.hpp>
 
 namespace collide {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <collide/contact.hpp>
+#include <collide/core/contact.hpp>
 #include <collide/mesh.hpp>
 
 namespace collide {

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include <collide/columns.hpp>
+#include <collide/effects/columns.hpp>
 #include <collide/effects/sphere_contact.hpp>
-#include <collide/energy.hpp>
 #include <collide/io/vtk.hpp>
 #include <collide/simulation.cuh>
+#include <collide/simulation/energy.hpp>
 
 namespace collide {
 namespace detail {

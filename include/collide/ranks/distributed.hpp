@@ -9,10 +9,10 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/detail/ranks/remote_nearest.hpp>
-#include <collide/detail/ranks/remote_pairs.hpp>
-#include <collide/detail/streaming/found_query.hpp>
 #include <collide/detector.hpp>
+#include <collide/detectors/detail/found_query.hpp>
+#include <collide/ranks/detail/remote_nearest.hpp>
+#include <collide/ranks/detail/remote_pairs.hpp>
 #include <collide/ranks/ranks.hpp>
 
 namespace collide {

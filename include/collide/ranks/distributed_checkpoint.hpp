@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <collide/checkpoint.hpp>
 #include <collide/ranks/distributed_simulation.cuh>
+#include <collide/simulation/checkpoint.hpp>
 
 namespace collide {
 

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include <collide/detail/ranks/particle_exchange.hpp>
-#include <collide/detail/ranks/rank_reduction.hpp>
 #include <collide/effects/reaction.hpp>
+#include <collide/ranks/detail/particle_exchange.hpp>
+#include <collide/ranks/detail/rank_reduction.hpp>
 #include <collide/ranks/distributed.hpp>
 #include <collide/simulation.cuh>
 
@@ -32,10 +32,11 @@ class distributed_checkpoint;
 /// ranks call all members, in the same order, with the same parameters of effects and the same `dt`. What one throws
 /// makes all throw: see `together`; then `set` begins anew.
 ///
-/// If particles meet each other, each rank has the particles of a brick of space, and copies of those that are near
+/// If particles meet each other, each rank has the particles of a subdomain of space, and copies of those that are near
 /// it. All tell each other in each step where copies are, and whether a particle has moved so far that some may be
-/// missing: then particles change ranks, and where many more are on one rank than on others, new bricks are cut. So a
-/// step waits for the other ranks, and with CUDA for the device. Where particles do not meet, they stay where they are.
+/// missing: then particles change ranks, and where many more are on one rank than on others, new subdomains are cut. So
+/// a step waits for the other ranks, and with CUDA for the device. Where particles do not meet, they stay where they
+/// are.
 ///
 /// \tparam Detector  that of the simulation
 /// \tparam Effect    those of the simulation. An effect of your own with a member `begin_step` sees the places of one
@@ -46,10 +47,10 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   static_assert(detail::check_ranks<Ranks>());
 
  public:
-  using scalar = typename Detector::scalar;                                   ///< type of all numbers: float or double
-  using execution_space = typename Detector::execution_space;                 ///< that of the detector
-  using simulation_type = simulation<Detector, Effect..., detail::on_ranks>;  ///< what each rank runs
-  using columns = typename simulation<Detector, Effect...>::columns;          ///< the state that a particle has
+  using scalar = typename Detector::scalar;                    ///< type of all numbers: float or double
+  using execution_space = typename Detector::execution_space;  ///< that of the detector
+  using simulation_type = simulation<Detector, Effect..., detail::with_global_numbers>;  ///< what each rank runs
+  using columns = typename simulation<Detector, Effect...>::columns;  ///< the state that a particle has
   static constexpr std::size_t bytes_per_particle = simulation_type::bytes_per_particle;  ///< of state, on its rank
 
  private:
@@ -67,7 +68,7 @@ class distributed<simulation<Detector, Effect...>, Ranks> {
   /// With parameters of all effects, in the order of the list.
   template <class... E, class = std::enable_if_t<detail::are_all_of<std::tuple<Effect...>, E...>>>
   distributed(Ranks ranks, execution_space space, E... effects)
-      : ranks_(std::move(ranks)), part_(std::move(space), std::move(effects)..., detail::on_ranks()) {}
+      : ranks_(std::move(ranks)), part_(std::move(space), std::move(effects)..., detail::with_global_numbers()) {}
 
   /// Copies this rank's particles, perhaps none, as `simulation::set`. One after the other, the ranks' particles have
   /// the numbers of all. `capacity` is for how many particles there is room on all ranks together: the same number on

@@ -2,7 +2,7 @@
 /// Sink: one flag per sphere.
 #pragma once
 
-#include <collide/detail/sinks/array_in_space.hpp>
+#include <collide/sinks/detail/array_in_space.hpp>
 
 namespace collide {
 

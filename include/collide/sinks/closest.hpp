@@ -2,7 +2,7 @@
 /// Sinks: the closest colliding triangle of each sphere, and the contact with it.
 #pragma once
 
-#include <collide/detail/sinks/per_sphere_min.hpp>
+#include <collide/sinks/detail/per_sphere_min.hpp>
 
 namespace collide {
 

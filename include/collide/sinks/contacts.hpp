@@ -2,7 +2,7 @@
 /// Sink: all colliding pairs with their contacts.
 #pragma once
 
-#include <collide/detail/sinks/pair_records.hpp>
+#include <collide/sinks/detail/pair_records.hpp>
 
 namespace collide {
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <collide/detail/nearest/ray_parity.hpp>
-#include <collide/detail/sinks/array_in_space.hpp>
-#include <collide/detail/sinks/search_mesh.hpp>
+#include <collide/narrow/detail/ray_parity.hpp>
+#include <collide/sinks/detail/array_in_space.hpp>
+#include <collide/sinks/detail/search_mesh.hpp>
 
 namespace collide {
 

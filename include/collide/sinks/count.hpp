@@ -2,7 +2,7 @@
 /// Sink: how many pairs collide.
 #pragma once
 
-#include <collide/detail/sinks/output.hpp>
+#include <collide/sinks/detail/output.hpp>
 
 namespace collide {
 

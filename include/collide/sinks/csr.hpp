@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include <collide/detail/sinks/exclusive_sum.hpp>
-#include <collide/detail/sinks/output.hpp>
+#include <collide/sinks/detail/exclusive_sum.hpp>
+#include <collide/sinks/detail/output.hpp>
 
 namespace collide {
 

@@ -2,7 +2,7 @@
 /// Sinks: the first triangle that each moving sphere hits, and the impact.
 #pragma once
 
-#include <collide/detail/sinks/per_sphere_min.hpp>
+#include <collide/sinks/detail/per_sphere_min.hpp>
 
 namespace collide {
 

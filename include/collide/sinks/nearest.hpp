@@ -6,11 +6,11 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/detail/nearest/nearest_search.hpp>
-#include <collide/detail/sinks/array_in_space.hpp>
-#include <collide/detail/sinks/search_mesh.hpp>
+#include <collide/core/nearest_triangle.hpp>
 #include <collide/karabassi.hpp>
-#include <collide/nearest_triangle.hpp>
+#include <collide/narrow/detail/nearest_search.hpp>
+#include <collide/sinks/detail/array_in_space.hpp>
+#include <collide/sinks/detail/search_mesh.hpp>
 
 namespace collide {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <collide/detail/geometry/local_triangle.hpp>
+#include <collide/exact/detail/geometry/local_triangle.hpp>
 #include <collide/sinks/contains.hpp>
 #include <collide/sinks/nearest.hpp>
 

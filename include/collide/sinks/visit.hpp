@@ -4,9 +4,9 @@
 
 #include <type_traits>
 
-#include <collide/concepts.hpp>
-#include <collide/detail/sinks/output.hpp>
-#include <collide/hit.hpp>
+#include <collide/query/concepts.hpp>
+#include <collide/query/hit.hpp>
+#include <collide/sinks/detail/output.hpp>
 
 namespace collide {
 

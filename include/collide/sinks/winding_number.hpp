@@ -7,11 +7,11 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/detail/sinks/array_in_space.hpp>
-#include <collide/detail/sinks/search_mesh.hpp>
-#include <collide/detail/tree/winding_tree.hpp>
-#include <collide/error.hpp>
+#include <collide/broad/detail/tree/winding_tree.hpp>
+#include <collide/core/error.hpp>
 #include <collide/mesh.hpp>
+#include <collide/sinks/detail/array_in_space.hpp>
+#include <collide/sinks/detail/search_mesh.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide {

@@ -27,7 +27,7 @@ _PRECISIONS = {"exact": "exact", "double": "double_precision", "single": "single
 
 def parameters_of(effects):
     """C++ that defines the effects, and ``parameters(effect, f)``, which calls f with the name and the member of each."""
-    lines = ["#include <collide/effect.hpp>", *dict.fromkeys(e._lines() for e in effects), "namespace collide_python {"]
+    lines = ["#include <collide/effects/effect.hpp>", *dict.fromkeys(e._lines() for e in effects), "namespace collide_python {"]
     for e in {e._type: e for e in effects}.values():
         calls = " ".join(f'f("{name}", {member});' for name, member in e._members.items())
         unused = "" if calls else "[[maybe_unused]] "

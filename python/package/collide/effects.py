@@ -232,12 +232,12 @@ def reaction(unit: float, density: float = 1, triangles: bool = False) -> Effect
     `Simulation.sums`. ``unit``: impulse (force times time) that each contact is rounded to; ``density``: mass per volume."""
 
 
-@_describes(Effect, "bodies", type="moving_bodies<>")
+@_describes(Effect, "effects/bodies", type="moving_bodies<>")
 def moving_bodies() -> Effect:
     """Parts of the mesh move: see `Body`."""
 
 
-@_describes(Effect, "integrators")
+@_describes(Effect, "effects/integrators")
 def velocity_verlet() -> Effect:
     """The integrator of second order; without it semi-implicit Euler, of first."""
 

@@ -2,7 +2,7 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/sinks/count.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #if defined(__CUDACC__)
 using space = collide::cuda_shared;

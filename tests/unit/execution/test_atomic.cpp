@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/atomic.hpp>
+#include <collide/spaces/detail/atomic.hpp>
 
 using namespace collide::detail;
 

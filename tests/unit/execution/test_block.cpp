@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/block.hpp>
+#include <collide/spaces/detail/block.hpp>
 
 #include "execution/lockstep.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/check_memory.hpp>
-#include <collide/points.hpp>
+#include <collide/core/points.hpp>
+#include <collide/spaces/detail/check_memory.hpp>
 
 namespace {
 

@@ -7,8 +7,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/algorithms.hpp>
 #include <collide/host.hpp>
+#include <collide/spaces/detail/algorithms.hpp>
 
 #if defined(_OPENMP)
 

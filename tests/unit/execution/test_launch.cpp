@@ -4,10 +4,10 @@
 #include <doctest/doctest.h>
 
 #include <collide/all_pairs.cuh>
-#include <collide/detail/execution/launch.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/simulation.cuh>
+#include <collide/spaces/detail/launch.hpp>
 
 #include "execution/lockstep.hpp"
 

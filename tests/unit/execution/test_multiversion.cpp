@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/multiversion.hpp>
+#include <collide/spaces/detail/multiversion.hpp>
 
 TEST_CASE_TEMPLATE("multiversion: runs a loop once, with the bits of a plain one", T, float, double) {
   std::mt19937 engine(1);

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/geometry/aabb.hpp>
+#include <collide/exact/detail/geometry/aabb.hpp>
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/geometry/lifted_bounds.hpp>
+#include <collide/exact/detail/geometry/lifted_bounds.hpp>
 
 namespace {
 

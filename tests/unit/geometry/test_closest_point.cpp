@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/geometry/closest_point.hpp>
+#include <collide/exact/detail/geometry/closest_point.hpp>
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/geometry/local_sweep.hpp>
+#include <collide/exact/detail/geometry/local_sweep.hpp>
 
 using namespace collide::detail;
 

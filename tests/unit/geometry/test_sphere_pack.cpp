@@ -4,8 +4,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/geometry/sphere_pack.hpp>
-#include <collide/points.hpp>
+#include <collide/core/points.hpp>
+#include <collide/exact/detail/geometry/sphere_pack.hpp>
 
 using namespace collide::detail;
 

@@ -9,8 +9,8 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/broad/detail/grid/triangle_cells.hpp>
 #include <collide/bucket.cuh>
-#include <collide/detail/grid/triangle_cells.hpp>
 
 #include "execution/lockstep.hpp"
 #include "random_triangles.hpp"
@@ -65,7 +65,7 @@ void check(Space space, std::vector<S> const& vertices, std::vector<S> const& ra
   collide::bucket::index<S> index;
   index.build(space, options, mesh);
   index.prepare(space, options, collide::spheres_xyz(centres.data(), radii.size(), radii.data()));
-  auto const made = index.triangle_ref();
+  auto const made = index.mesh_lookup();
   REQUIRE(made.grid_count > 0);
   std::uint64_t total = 0;
   std::vector<bool> taken(made.capacity);

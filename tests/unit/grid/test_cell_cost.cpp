@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/grid/plan.hpp>
+#include <collide/broad/detail/grid/plan.hpp>
 
 using collide::detail::triangle_sums;
 

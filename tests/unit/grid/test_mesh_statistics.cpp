@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/grid/mesh_statistics.hpp>
+#include <collide/broad/detail/grid/mesh_statistics.hpp>
 #include <collide/host.hpp>
 
 #include "execution/lockstep.hpp"

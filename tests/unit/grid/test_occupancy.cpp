@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/grid/occupancy.hpp>
+#include <collide/broad/detail/grid/occupancy.hpp>
 
 using namespace collide::detail;
 

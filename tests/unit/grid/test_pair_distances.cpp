@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/grid/pair_distances.hpp>
+#include <collide/broad/detail/grid/pair_distances.hpp>
 
 using collide::detail::pair_distances;
 using collide::detail::share_of_pairs;

@@ -38,7 +38,7 @@ void check(Space space, std::vector<S> const& vertices, S radius, double width, 
   collide::bucket::index<S> index;
   index.build(space, options, mesh);
   index.prepare(space, options, collide::spheres_xyz(vertices.data(), vertices.size() / 3, radius));
-  auto const made = index.triangle_ref();
+  auto const made = index.mesh_lookup();
   if (made.grid_count == 0) {
     CHECK(budget != 0);
     return;
@@ -116,7 +116,7 @@ TEST_CASE("plan: a triangle that one block would enter for long has cells of its
     index.build(space, {}, collide::triangle_soup(corners.data(), corners.size() / 9));
     index.prepare(space, {},
                   collide::spheres_xyz(centres.data(), centres.size() / 3, static_cast<float>(scene.radius)));
-    auto const made = index.triangle_ref();
+    auto const made = index.mesh_lookup();
     REQUIRE(made.grid_count == 1);
     CHECK(made.grids[0].levels == (giants == 0 ? 1 : 2));
     CHECK(*made.total < 8 * 30000);

@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/block.hpp>
-#include <collide/detail/grid/size_histogram.hpp>
+#include <collide/broad/detail/grid/size_histogram.hpp>
+#include <collide/spaces/detail/block.hpp>
 
 using namespace collide::detail;
 

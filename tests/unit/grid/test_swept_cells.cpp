@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/grid/grid_ref.hpp>
-#include <collide/detail/grid/swept_cells.hpp>
+#include <collide/broad/detail/grid/grid_ref.hpp>
+#include <collide/broad/detail/grid/swept_cells.hpp>
 
 #include "scenes.hpp"
 

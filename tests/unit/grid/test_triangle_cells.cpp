@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/broad/detail/grid/triangle_cells.hpp>
 #include <collide/bucket.cuh>
-#include <collide/detail/grid/triangle_cells.hpp>
 
 /// The host, where spheres look for triangles as on a GPU.
 struct wide_cells : collide::host {};
@@ -80,7 +80,7 @@ TEST_CASE_TEMPLATE("triangle cells: a triangle is in the cells of all centres wi
       index.build(space, options, mesh);
       S const radius = S(0.25);
       index.prepare(space, options, collide::spheres_xyz(corners.data(), 3 * n, radius));
-      auto const& grid = index.triangle_ref().grids[0];
+      auto const& grid = index.mesh_lookup().grids[0];
       REQUIRE(grid.levels > 0);
       std::size_t within = 0, missing = 0, twice = 0, far = 0, listed = 0, covered_wrongly = 0;
       for (std::size_t i = 0; i < n; ++i) {

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/grid/triangle_ref.hpp>
+#include <collide/broad/detail/mesh_lookup.hpp>
 
 using namespace collide::detail;
 
@@ -16,7 +16,7 @@ auto const mesh = collide::triangle_soup(row.data(), 3);
 }  // namespace
 
 TEST_CASE("triangle ref: all triangles, once each and in order, in pieces of any length") {
-  triangle_ref<float> const ref{mesh, nullptr};
+  mesh_lookup<float> const ref{mesh, nullptr};
   for (std::uint32_t most : {1u, 2u, 3u, 100u}) {
     candidate_cursor cursor{0, 0, 0, 0};
     candidate_range range;
@@ -36,7 +36,7 @@ TEST_CASE("triangle ref: all triangles, once each and in order, in pieces of any
 TEST_CASE("triangle ref: boxes rule out what is far, if there are any") {
   std::vector<triangle_aabb<float>> boxes;
   for (std::size_t i = 0; i < mesh.size(); ++i) boxes.push_back(triangle_aabb_of(mesh[i]));
-  triangle_ref<float> const without{mesh, nullptr}, with{mesh, boxes.data()};
+  mesh_lookup<float> const without{mesh, nullptr}, with{mesh, boxes.data()};
   collide::sphere<float> const s{{10.5f, 0.5f, 2}, 3};
   for (collide::id t : {0u, 1u, 2u}) {
     CHECK(without.near(s, t));

@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include <collide/core/memory.hpp>
 #include <collide/karabassi.hpp>
-#include <collide/memory.hpp>
 
 #include "compared.hpp"
 #include "narrow_phase/near_contact.hpp"

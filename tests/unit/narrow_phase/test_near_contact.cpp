@@ -4,8 +4,8 @@
 #include <cstring>
 #include <limits>
 
-#include <collide/detail/step/mesh_contact.hpp>
 #include <collide/host.hpp>
+#include <collide/simulation/detail/step/mesh_contact.hpp>
 
 #include "checks.hpp"
 #include "narrow_phase/narrow_phase.hpp"

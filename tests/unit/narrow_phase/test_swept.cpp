@@ -8,9 +8,9 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/step/mesh_contact.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/simulation/detail/step/mesh_contact.hpp>
 
 #include "../oracle/scene.hpp"
 #include "narrow_phase/near_contact.hpp"

@@ -13,10 +13,10 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bvh.cuh>
-#include <collide/in_passes.hpp>
+#include <collide/detectors/in_passes.hpp>
 #include <collide/sinks/k_nearest.hpp>
 #include <collide/sinks/nearest.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "hard_meshes.hpp"
 #include "type_erased_detector.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <collide/geometry.hpp>
+#include <collide/core/geometry.hpp>
 
 #include "../oracle/exact.hpp"
 #include "scenes.hpp"

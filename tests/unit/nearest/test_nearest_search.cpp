@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/nearest/nearest_search.hpp>
+#include <collide/narrow/detail/nearest_search.hpp>
 
 #include "../../flush_to_zero.hpp"
 #include "narrow_phase/near_contact.hpp"

@@ -1,5 +1,5 @@
 /// Inside and signed distance: queries of the host, and the kernels of devices in lockstep.
-#include <collide/error.hpp>
+#include <collide/core/error.hpp>
 
 #include "execution/lockstep.hpp"
 #include "nearest/signed_queries.hpp"

@@ -3,8 +3,8 @@
 #include <limits>
 #include <vector>
 
-#include <collide/detail/numeric/angle.hpp>
-#include <collide/error.hpp>
+#include <collide/core/error.hpp>
+#include <collide/exact/detail/numeric/angle.hpp>
 
 #include "compared.hpp"
 #include "execution/lockstep.hpp"

@@ -12,7 +12,7 @@
 #include <collide/all_pairs.cuh>
 #include <collide/bvh.cuh>
 #include <collide/sinks/winding_number.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "nearest/point_cases.hpp"
 

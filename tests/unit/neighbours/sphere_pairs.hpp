@@ -12,8 +12,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/sphere_pairs.cuh>
-#include <collide/upload.hpp>
+#include <collide/detectors/sphere_pairs.cuh>
+#include <collide/spaces/upload.hpp>
 
 #include "../oracle/exact.hpp"
 #include "type_erased_detector.hpp"

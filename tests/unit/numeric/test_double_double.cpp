@@ -4,7 +4,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <doctest/doctest.h>
 
-#include <collide/detail/numeric/double_double.hpp>
+#include <collide/exact/detail/numeric/double_double.hpp>
 
 namespace {
 

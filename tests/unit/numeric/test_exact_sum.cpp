@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/numeric/exact_sum.hpp>
+#include <collide/exact/detail/numeric/exact_sum.hpp>
 
 namespace {
 

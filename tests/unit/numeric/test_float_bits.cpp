@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/numeric/float_bits.hpp>
+#include <collide/exact/detail/numeric/float_bits.hpp>
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/numeric/rounding.hpp>
+#include <collide/exact/detail/numeric/rounding.hpp>
 
 using namespace collide::detail;
 

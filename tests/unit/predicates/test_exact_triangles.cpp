@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/predicates/exact_triangles.hpp>
+#include <collide/exact/detail/predicates/exact_triangles.hpp>
 
 #include "compared.hpp"
 #include "nearest/point_cases.hpp"

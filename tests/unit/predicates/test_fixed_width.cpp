@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/predicates/exact.hpp>
-#include <collide/detail/predicates/fixed_width.hpp>
+#include <collide/exact/detail/predicates/exact.hpp>
+#include <collide/exact/detail/predicates/fixed_width.hpp>
 
 #include "../oracle/scene.hpp"
 #include "narrow_phase/narrow_phase.hpp"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <collide/contact.hpp>
+#include <collide/core/contact.hpp>
 
 namespace tests {
 

@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/block.hpp>
-#include <collide/detail/query/candidate_batch.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
+#include <collide/query/detail/candidate_batch.hpp>
+#include <collide/spaces/detail/block.hpp>
 
 #include "query/pair_output.hpp"
 

@@ -7,9 +7,9 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/block.hpp>
-#include <collide/detail/query/candidate_pipeline.hpp>
 #include <collide/karabassi.hpp>
+#include <collide/query/detail/candidate_pipeline.hpp>
+#include <collide/spaces/detail/block.hpp>
 
 #include "execution/lockstep.hpp"
 

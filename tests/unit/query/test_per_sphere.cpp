@@ -5,9 +5,9 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/launch.hpp>
-#include <collide/detail/query/per_sphere.hpp>
+#include <collide/broad/detail/per_sphere.hpp>
 #include <collide/karabassi.hpp>
+#include <collide/spaces/detail/launch.hpp>
 
 #include "execution/lockstep.hpp"
 #include "query/pair_output.hpp"

@@ -2,7 +2,7 @@
 /// Boxes, for the tests of where triangles and spheres go.
 #pragma once
 
-#include <collide/detail/geometry/aabb.hpp>
+#include <collide/exact/detail/geometry/aabb.hpp>
 
 namespace tests {
 

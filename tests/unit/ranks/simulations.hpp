@@ -5,9 +5,9 @@
 
 #include <tuple>
 
-#include <collide/bodies.hpp>
 #include <collide/effects/absorb.hpp>
 #include <collide/effects/adhesion.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/contact_forces.hpp>
@@ -217,7 +217,7 @@ auto clumps() {
                                                                        sphere_contact{5, 0.01, 0.2, 0.01, 1}, greets{});
 }
 
-/// Particles that cross all bricks in a step, and meet others there.
+/// Particles that cross all subdomains in a step, and meet others there.
 template <class Space = collide::host>
 auto leaps() {
   using namespace collide;

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/ranks/coarse_grid.hpp>
+#include <collide/ranks/detail/coarse_grid.hpp>
 
 #include "ranks/boxes.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/ranks/device_exchange_buffer.hpp>
+#include <collide/ranks/detail/device_exchange_buffer.hpp>
 #include <collide/ranks/thread_ranks.hpp>
 
 namespace {

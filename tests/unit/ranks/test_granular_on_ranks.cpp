@@ -2,7 +2,7 @@
 #include <atomic>
 
 #include <collide/effects/granular_contact.hpp>
-#include <collide/energy.hpp>
+#include <collide/simulation/energy.hpp>
 
 #include "ranks/on_threads.hpp"
 

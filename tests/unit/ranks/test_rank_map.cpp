@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/ranks/rank_map.hpp>
+#include <collide/ranks/detail/rank_map.hpp>
 #include <collide/ranks/thread_ranks.hpp>
 
 #include "ranks/boxes.hpp"

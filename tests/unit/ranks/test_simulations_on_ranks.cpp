@@ -13,7 +13,7 @@ TEST_CASE("simulations on ranks: grains that are swept") {
   tests::check_on_threads(tests::grains_in_a_box<float, collide::karabassi_swept<>>());
 }
 
-TEST_CASE("simulations on ranks: many sizes, and ways across several bricks") {
+TEST_CASE("simulations on ranks: many sizes, and ways across several subdomains") {
   tests::check_on_threads(tests::sizes_that_repeat());
   tests::check_on_threads(tests::leaps());
 }
@@ -73,7 +73,7 @@ TEST_CASE("simulations on ranks: short memory, what makes no sense, and what bod
   }
 }
 
-TEST_CASE("simulations on ranks: bricks have as many particles, and know who is near") {
+TEST_CASE("simulations on ranks: subdomains have as many particles, and know who is near") {
   for (int const n : {1, 2, 5, 8, 13}) {
     collide::thread_ranks::run(n, [&](collide::thread_ranks const& ranks) {
       std::mt19937 engine(static_cast<unsigned>(ranks.rank()));
@@ -82,9 +82,9 @@ TEST_CASE("simulations on ranks: bricks have as many particles, and know who is 
       for (int i = 0; i < 300 * (1 + ranks.rank() % 3); ++i) {
         x.insert(x.end(), {normal(engine), 7 * normal(engine), normal(engine)});
       }
-      collide::detail::bisection bricks;
-      bricks.build(ranks, x);
-      auto const lookup = bricks.lookup();
+      collide::detail::bisection subdomains;
+      subdomains.build(ranks, x);
+      auto const lookup = subdomains.lookup();
       std::vector<std::uint64_t> mine(static_cast<std::size_t>(n)), all(mine.size());
       std::size_t missing = 0;
       for (std::size_t i = 0; i < x.size(); i += 3) {
@@ -120,7 +120,7 @@ TEST_CASE("simulations on ranks: a step takes one reduction, and steps one more"
       auto const x = static_cast<float>(threads.rank());
       float const centre[] = {x, 0, 0};
       parts.set(collide::spheres_xyz(centre, 1, 0.1f));
-      parts.step(1e-4f);  // makes bricks
+      parts.step(1e-4f);  // makes subdomains
       mine = {};
       parts.steps(10, 1e-4f);
     });
@@ -148,7 +148,7 @@ std::vector<int> migrations(float small) {
     float const centres[] = {x, 0, 0, x, 0.5f, 0}, velocities[] = {0, 0, 10, 0, 0, 10}, radii[] = {0.1f, small};
     parts.set(small < 0.1f ? collide::spheres_xyz(centres, 2, radii) : collide::spheres_xyz(centres, 2, 0.1f),
               velocities);
-    parts.step(1e-5f);  // makes bricks
+    parts.step(1e-5f);  // makes subdomains
     for (int k = 0; k < 1000; ++k) {
       auto const before = sent.reductions;
       parts.step(1e-5f);

@@ -13,9 +13,9 @@
 #include <collide/effects/emit.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/polydisperse.hpp>
 #include <collide/effects/sphere_contact.hpp>
-#include <collide/integrators.hpp>
 
 #include "simulation/simulation.hpp"
 

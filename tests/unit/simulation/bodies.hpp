@@ -1,8 +1,8 @@
 /// Bodies that move in a space, against closed forms; instantiated by test_bodies.cpp and test_bodies_cuda.cpp.
 #pragma once
 
-#include <collide/bodies.hpp>
 #include <collide/effects/adhesion.hpp>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/friction.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/effects/sleep.hpp>

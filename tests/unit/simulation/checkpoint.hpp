@@ -5,7 +5,6 @@
 #include <sstream>
 #include <string>
 
-#include <collide/checkpoint.hpp>
 #include <collide/effects/absorb.hpp>
 #include <collide/effects/adhesion.hpp>
 #include <collide/effects/bounds.hpp>
@@ -17,6 +16,7 @@
 #include <collide/effects/sleep.hpp>
 #include <collide/effects/spin.hpp>
 #include <collide/effects/wind.hpp>
+#include <collide/simulation/checkpoint.hpp>
 
 #include "simulation/bodies.hpp"
 #include "simulation/simulation.hpp"

@@ -4,8 +4,8 @@
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/contact_forces.hpp>
 #include <collide/effects/external_forces.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/sleep.hpp>
-#include <collide/integrators.hpp>
 
 #include "simulation/simulation.hpp"
 

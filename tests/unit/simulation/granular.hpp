@@ -4,12 +4,12 @@
 
 #include <sstream>
 
-#include <collide/checkpoint.hpp>
 #include <collide/effects/granular_contact.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/reaction.hpp>
 #include <collide/effects/sleep.hpp>
-#include <collide/energy.hpp>
-#include <collide/integrators.hpp>
+#include <collide/simulation/checkpoint.hpp>
+#include <collide/simulation/energy.hpp>
 
 #include "simulation/bodies.hpp"
 

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <collide/effects/friction.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/lost_motion.hpp>
 #include <collide/effects/spin.hpp>
-#include <collide/integrators.hpp>
 
 #include "simulation/simulation.hpp"
 

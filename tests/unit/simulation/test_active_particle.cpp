@@ -3,11 +3,11 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/step/contact_key.hpp>
-#include <collide/detail/step/contact_scratch.hpp>
-#include <collide/detail/step/mesh_contact.hpp>
-#include <collide/detail/step/surface_at_rest.hpp>
-#include <collide/detail/step/wedge.hpp>
+#include <collide/simulation/detail/step/contact_key.hpp>
+#include <collide/simulation/detail/step/contact_scratch.hpp>
+#include <collide/simulation/detail/step/mesh_contact.hpp>
+#include <collide/simulation/detail/step/surface_at_rest.hpp>
+#include <collide/simulation/detail/step/wedge.hpp>
 
 namespace {
 

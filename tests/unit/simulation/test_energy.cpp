@@ -2,7 +2,7 @@
 #include <collide/effects/absorb.hpp>
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/spin.hpp>
-#include <collide/energy.hpp>
+#include <collide/simulation/energy.hpp>
 
 #include "simulation/simulation.hpp"
 

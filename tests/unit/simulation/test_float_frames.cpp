@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/bodies.hpp>
 #include <collide/bucket.cuh>
+#include <collide/effects/bodies.hpp>
 #include <collide/effects/bounce.hpp>
 #include <collide/effects/gravity.hpp>
 #include <collide/effects/polydisperse.hpp>

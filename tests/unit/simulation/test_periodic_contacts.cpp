@@ -1,5 +1,5 @@
 /// Particles that meet across the sides of a box that repeats.
-#include <collide/energy.hpp>
+#include <collide/simulation/energy.hpp>
 
 #include "compositions.hpp"
 #include "simulation/periodic_contacts.hpp"

@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/execution/multiversion.hpp>
-#include <collide/detail/particles/resistance.hpp>
+#include <collide/effects/detail/resistance.hpp>
+#include <collide/spaces/detail/multiversion.hpp>
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/neighbours/spatial_hash.hpp>
+#include <collide/simulation/detail/neighbours/spatial_hash.hpp>
 
 TEST_CASE_TEMPLATE("spatial hash: coordinates are rounded down, and what is too far away is somewhere", S, float,
                    double) {
@@ -32,6 +32,6 @@ TEST_CASE("spatial hash: cells of a block have places of their own, one after th
         }
       }
     }
-    CHECK(places.size() == table::cells_per_brick);
+    CHECK(places.size() == table::cells_per_block);
   }
 }

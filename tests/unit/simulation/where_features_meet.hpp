@@ -10,11 +10,11 @@
 #include <collide/effects/bounds.hpp>
 #include <collide/effects/contact_forces.hpp>
 #include <collide/effects/emit.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/lost.hpp>
 #include <collide/effects/polydisperse.hpp>
 #include <collide/effects/sleep.hpp>
-#include <collide/energy.hpp>
-#include <collide/integrators.hpp>
+#include <collide/simulation/energy.hpp>
 
 #include "simulation/bodies.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/sinks/exclusive_sum.hpp>
 #include <collide/host.hpp>
+#include <collide/sinks/detail/exclusive_sum.hpp>
 
 TEST_CASE("exclusive sum: as a loop has it, whatever the number of values and of threads") {
   std::mt19937_64 engine(1);

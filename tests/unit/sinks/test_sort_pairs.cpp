@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/sinks/sort_pairs.hpp>
 #include <collide/host.hpp>
+#include <collide/sinks/detail/sort_pairs.hpp>
 
 TEST_CASE("sort pairs: few and many, of one sphere and of many") {
   collide::detail::sort_memory memory;

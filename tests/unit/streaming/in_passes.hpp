@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/in_passes.hpp>
+#include <collide/detectors/in_passes.hpp>
 
 #include "ranks/ranks.hpp"
 #include "type_erased_detector.hpp"

@@ -13,9 +13,9 @@
 #include <doctest/doctest.h>
 
 #include <collide/all_pairs.cuh>
-#include <collide/posed.hpp>
+#include <collide/detectors/posed.hpp>
 #include <collide/sinks/csr.hpp>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "nearest/point_cases.hpp"
 #include "type_erased_detector.hpp"

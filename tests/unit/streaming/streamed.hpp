@@ -11,10 +11,10 @@
 
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
+#include <collide/detectors/streamed.cuh>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/impacts.hpp>
-#include <collide/streamed.cuh>
-#include <collide/upload.hpp>
+#include <collide/spaces/upload.hpp>
 
 #include "io/scenes.hpp"
 #include "type_erased_detector.hpp"

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/streaming/contiguous_ranges.hpp>
+#include <collide/detectors/detail/contiguous_ranges.hpp>
 #include <collide/spheres.hpp>
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/detail/tree/triangle_pieces.hpp>
+#include <collide/broad/detail/tree/triangle_pieces.hpp>
 #include <collide/host.hpp>
 
 #include "hard_meshes.hpp"

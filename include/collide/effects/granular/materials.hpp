@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <collide/effect.hpp>
+#include <collide/effects/effect.hpp>
 
 namespace collide {
 

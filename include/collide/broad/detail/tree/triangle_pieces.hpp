@@ -1,0 +1,221 @@
+/// \file
+/// Long thin triangles that lie across the axes, cut into pieces with a box each, which hold far less space than one
+/// around all (M. Stich, H. Friedrich, A. Dietrich, "Spatial splits in bounding volume hierarchies", 2009; here before
+/// the tree is made). For the host.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <collide/broad/detail/tree/tree_node.hpp>
+#include <collide/core/memory.hpp>
+#include <collide/spaces/detail/algorithms.hpp>
+
+namespace collide::detail {
+
+/// A box of some of a triangle.
+struct triangle_piece {
+  aabb<float> box;
+  id triangle;
+  std::uint32_t before;  ///< how many pieces of the triangle there are before this one
+};
+
+/// Makes boxes wider such that from piece to piece they go one way on each axis: those that overlap any box then
+/// follow each other.
+inline void make_monotone(triangle_piece* of, std::uint32_t n) {
+  for (int j = 0; j < 3; ++j) {
+    aabb<float> const &first = of[0].box, &last = of[n - 1].box;
+    bool const rises = first.lower[j] + first.upper[j] <= last.lower[j] + last.upper[j];
+    for (std::uint32_t k = 1; k < n; ++k) {
+      std::uint32_t const up = rises ? k : n - 1 - k, down = rises ? n - 1 - k : k;  // where it comes from is done
+      of[up].box.upper[j] = max(of[up].box.upper[j], of[rises ? up - 1 : up + 1].box.upper[j]);
+      of[down].box.lower[j] = min(of[down].box.lower[j], of[rises ? down + 1 : down - 1].box.lower[j]);
+    }
+  }
+}
+
+/// A triangle, as far as that decides into how many pieces it is cut.
+struct triangle_shape {
+  double half_surface = 0;  ///< of its box
+  double area = 0;
+  double length = 0;  ///< of its longest edge
+
+  template <class S>
+  explicit triangle_shape(triangle<S> const& t) {
+    if (!is_finite(t)) return;
+    vec3<double> const a = t.a.template cast<double>(), u = t.b.template cast<double>() - a,
+                       v = t.c.template cast<double>() - a;
+    vec3<double> const least = min(min<double>(u, v), vec3<double>(0, 0, 0)),
+                       sides = max(max<double>(u, v), vec3<double>(0, 0, 0)) - least;
+    half_surface = sides.x() * sides.y() + (sides.y() * sides.z() + sides.z() * sides.x());
+    area = std::sqrt(cross(u, v).squaredNorm()) / 2;
+    length = std::sqrt(std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
+  }
+
+  /// The surface that its box has more than that of a triangle of its area that is not long and thin.
+  double wasted() const {
+    double const w = half_surface - 8 * area;
+    return w > 0 ? w : 0;
+  }
+};
+
+/// Cuts the triangles of a mesh for which that pays.
+template <class S>
+class triangle_pieces {
+ public:
+  /// Returns how many pieces there are, those of a triangle next to each other; 0 if nothing is cut. There are as many
+  /// as leave a place in a few boxes of others; at most 16 for each triangle, and not more than 4 where these are more
+  /// than 2^18 more.
+  template <class Space>
+  std::size_t build(Space& space, mesh_view<S> const& mesh) {
+    std::size_t const n = mesh.size();
+    struct sum {
+      double wasted, roots, all;
+    };
+    sum const total = sum_of_parts<sum>(
+        space, mesh, {},
+        [](sum& to, triangle<S> const& t) {
+          triangle_shape const s(t);
+          double const w = s.wasted();
+          to = {to.wasted + w, to.roots + std::sqrt(w), to.all + s.half_surface};
+        },
+        [](sum& to, sum const& s) {
+          to = {to.wasted + s.wasted, to.roots + s.roots, to.all + s.all};
+        });
+    if (!(total.wasted > total.all / 2) || !std::isfinite(total.all)) return 0;
+    std::uint32_t* const first = first_.reserve(space.resource(), n + 1);
+    std::size_t const most_extra = min(15 * n, max(3 * n, std::size_t{1} << 18));
+    std::size_t const extra = min(most_extra, static_cast<std::size_t>(wanted_pieces(space, mesh) - 1) * n);
+    space.for_each(n, [&](std::size_t i) {
+      first[i] = pieces_of(triangle_shape(mesh[i]), static_cast<double>(extra) / total.roots);
+    });
+    first[n] = 0;
+    exclusive_scan(space, first, n + 1);
+    size_ = first[n];
+    triangle_piece* const to = pieces_.reserve(space.resource(), n + extra);
+    space.for_each(n, [&](std::size_t i) { cut(mesh, i, to + first[i], first[i + 1] - first[i]); });
+    return size_;
+  }
+
+  /// Moves the boxes to where the triangles of a mesh are now, as many as the last build had.
+  template <class Space>
+  void refit(Space& space, mesh_view<S> const& mesh) {
+    std::uint32_t const* const first = first_.data();
+    space.for_each(mesh.size(),
+                   [&](std::size_t i) { cut(mesh, i, pieces_.data() + first[i], first[i + 1] - first[i]); });
+  }
+
+  triangle_piece const* data() const { return pieces_.data(); }
+
+ private:
+  static constexpr int most = 64;  ///< pieces of a triangle
+
+  /// A sum over the triangles of a mesh, the same however many threads there are.
+  template <class Sum, class Space, class Add, class Join>
+  static Sum sum_of_parts(Space& space, mesh_view<S> const& mesh, Sum const& nothing, Add const& add,
+                          Join const& join) {
+    constexpr std::size_t parts = 64;
+    Sum sums[parts];
+    std::size_t const n = mesh.size(), share = (n + parts - 1) / parts;
+    for_each_block(space, parts, [&](std::size_t p) {
+      sums[p] = nothing;
+      for (std::size_t i = p * share; i < n && i < (p + 1) * share; ++i) add(sums[p], mesh[i]);
+    });
+    Sum all = nothing;
+    for (Sum const& s : sums) join(all, s);
+    return all;
+  }
+
+  /// Into how many pieces triangles are cut in the mean: a place in the box of the mesh is in so many boxes of
+  /// triangles, and of k pieces of each in that by k^2, as each has a part of 1 / k^3 of the volume.
+  template <class Space>
+  static int wanted_pieces(Space& space, mesh_view<S> const& mesh) {
+    using box = aabb<double>;
+    auto const box_of = [](triangle<S> const& t) {
+      aabb<S> const b = triangle_aabb_of(t);
+      box wide;
+      for (int k = 0; k < 3; ++k) {
+        wide.lower[k] = static_cast<double>(b.lower[k]);
+        wide.upper[k] = static_cast<double>(b.upper[k]);
+      }
+      return b.is_empty() ? box::empty() : wide;
+    };
+    auto const join = [](box& to, box const& b) { to = typename box::merge{}(to, b); };
+    box const all = sum_of_parts<box>(
+        space, mesh, box::empty(), [&](box& to, triangle<S> const& t) { join(to, box_of(t)); }, join);
+    double const least = all.max_extent() / 1024;  // so that what is flat has a volume
+    double const around = sum_of_parts<double>(
+        space, mesh, 0.0,
+        [&](double& to, triangle<S> const& t) {
+          box const b = box_of(t);
+          double part = b.is_empty() ? 0 : 1;
+          for (int k = 0; k < 3; ++k) part *= (b.upper[k] - b.lower[k] + least) / (all.upper[k] - all.lower[k] + least);
+          to += part;
+        },
+        [](double& to, double part) { to += part; });
+    constexpr double few = 2;  // boxes; docs/development/experiments.md
+    double const pieces = std::sqrt(around / few);
+    return pieces < 16 ? static_cast<int>(max(pieces, 2.0)) : 16;
+  }
+
+  /// In proportion to what makes the sum of the boxes least, but none shorter than wide.
+  static std::uint32_t pieces_of(triangle_shape const& s, double for_root) {
+    double const wanted = 1 + std::sqrt(s.wasted()) * for_root;
+    double const slender = s.area > 0 ? s.length * s.length / (2 * s.area) : most;
+    return static_cast<std::uint32_t>(min(min(wanted, max(slender, 1.0)), static_cast<double>(most)));
+  }
+
+  /// Cuts a triangle by planes at equal distances across the longest side of its box.
+  static void cut(mesh_view<S> const& mesh, std::size_t i, triangle_piece* to, std::uint32_t n) {
+    triangle<S> const t = mesh[i];
+    vec3<S> const origin = tree_origin(mesh);
+    aabb<float> const whole = tree_box_of(t, origin);
+    for (std::uint32_t k = 0; k < n; ++k) to[k] = {whole, static_cast<id>(i), k};
+    if (n == 1 || whole.is_empty()) return;
+    vec3<double> corners[3];
+    int c = 0;
+    for (auto const* p : {&t.a, &t.b, &t.c}) corners[c++] = p->template cast<double>() - origin.template cast<double>();
+    vec3<double> const lower = min(min(corners[0], corners[1]), corners[2]);
+    vec3<double> const sides = max(max(corners[0], corners[1]), corners[2]) - lower;
+    int const axis = sides[0] >= sides[1] && sides[0] >= sides[2] ? 0 : (sides[1] >= sides[2] ? 1 : 2);
+    float const padding = float_above(triangle_aabb_of(t).padding);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      double const from = lower[axis] + sides[axis] * k / n, until = lower[axis] + sides[axis] * (k + 1) / n;
+      aabb<double> const box = box_between(corners, axis, from, until);
+      if (box.is_empty()) continue;
+      for (int j = 0; j < 3; ++j) {
+        to[k].box.lower[j] = max(whole.lower[j], below(float_below(box.lower[j]) - padding));
+        to[k].box.upper[j] = min(whole.upper[j], above(float_above(box.upper[j]) + padding));
+      }
+    }
+    make_monotone(to, n);
+  }
+
+  /// The box around what of a triangle is between two planes.
+  static aabb<double> box_between(vec3<double> const (&corners)[3], int axis, double from, double until) {
+    aabb<double> box = aabb<double>::empty();
+    for (int c = 0; c < 3; ++c) {
+      vec3<double> const &a = corners[c], &b = corners[(c + 1) % 3];
+      double const begin = a[axis], way = b[axis] - begin;
+      if (min(begin, b[axis]) > until || max(begin, b[axis]) < from) continue;
+      for (double const plane : {from, until}) {
+        // of an edge along the planes both ends
+        double const part = way != 0 ? saturate((plane - begin) / way) : (plane == from ? 0.0 : 1.0);
+        for (int j = 0; j < 3; ++j) {
+          double const x = a[j] + part * (b[j] - a[j]);
+          box.lower[j] = min(box.lower[j], x);
+          box.upper[j] = max(box.upper[j], x);
+        }
+      }
+    }
+    return box;
+  }
+
+  buffer<std::uint32_t> first_;
+  buffer<triangle_piece> pieces_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,64 @@
+/// \file
+/// Markers of functions and loops for host and device: the only macros of the library, but for those of version.hpp,
+/// compiled.hpp and simulation/detail/step/compiled_search.hpp.
+#pragma once
+
+#include <collide/core/version.hpp>
+
+#if defined(__CUDACC__)
+/// Marks a function that runs on the host and on the device.
+#define COLLIDE_HD __host__ __device__
+/// Marks a function that runs on the host and on the device and must be inlined where it is called.
+#define COLLIDE_HD_INLINE __host__ __device__ __forceinline__
+/// Marks a function that runs on the host and on the device and must not be inlined: it is called rarely.
+#define COLLIDE_HD_NOINLINE __host__ __device__ __noinline__
+#else
+#define COLLIDE_HD
+// What a sanitizer adds is too much to be inlined. Tests define COLLIDE_PLAIN_INLINE: they compile in two thirds of the
+// time.
+#if defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(COLLIDE_PLAIN_INLINE)
+#define COLLIDE_HD_INLINE __attribute__((always_inline)) inline
+#else
+#define COLLIDE_HD_INLINE inline
+#endif
+#if defined(__GNUC__)
+#define COLLIDE_HD_NOINLINE __attribute__((noinline))
+#else
+#define COLLIDE_HD_NOINLINE
+#endif
+#endif
+
+#if defined(__CUDA_ARCH__)
+/// Marks a function that is called rarely: small on the host, and inlined on the device, where its loops become
+/// registers.
+#define COLLIDE_HD_RARE COLLIDE_HD_INLINE
+#else
+/// Marks a function that is called rarely.
+#define COLLIDE_HD_RARE COLLIDE_HD_NOINLINE inline
+#endif
+
+#if defined(__CUDA_ARCH__)
+/// Marks a template that a program for the host may link instead of compiling it (compiled.hpp): it is not inline
+/// there.
+#define COLLIDE_HD_LINKED COLLIDE_HD_INLINE
+#else
+/// Marks a template that a program for the host may link instead of compiling it (compiled.hpp): it is not inline
+/// there.
+#define COLLIDE_HD_LINKED COLLIDE_HD
+#endif
+
+#if defined(__GNUC__) && !defined(__CUDACC__)
+/// Marks a function that is called once in a while: small, and quick to compile.
+#define COLLIDE_COLD __attribute__((cold))
+#else
+/// Marks a function that is called once in a while: small, and quick to compile.
+#define COLLIDE_COLD
+#endif
+
+#if defined(__CUDA_ARCH__)
+/// Before a loop that the device does not unroll.
+#define COLLIDE_NO_UNROLL _Pragma("unroll 1")
+#else
+/// Before a loop that the device does not unroll.
+#define COLLIDE_NO_UNROLL
+#endif

@@ -1,0 +1,144 @@
+/// \file
+/// Pairs that are known, as a query that a sink runs.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include <collide/detectors/detail/numbered_triangle.hpp>
+#include <collide/query/concepts.hpp>
+#include <collide/query/detail/candidate_pipeline.hpp>
+#include <collide/query/hit.hpp>
+#include <collide/sinks/detail/output.hpp>
+#include <collide/spaces/detail/host_array.hpp>
+
+namespace collide::detail {
+
+/// Some triangles of a mesh, with the numbers that they have in the whole: a plain value.
+template <class S>
+struct mesh_part {
+  mesh_view<S> triangles;
+  id const* numbers;  ///< of its triangles; they rise
+
+  /// The last place whose triangle has a number up to `t`; 0 if there is none.
+  COLLIDE_HD id find(id t) const {
+    std::size_t low = 0, high = triangles.size();
+    while (high - low > 1) {
+      std::size_t const middle = (low + high) / 2;
+      (numbers[middle] <= t ? low : high) = middle;
+    }
+    return static_cast<id>(low);
+  }
+  COLLIDE_HD bool has_at(id place, id t) const { return place < triangles.size() && numbers[place] == t; }
+};
+
+/// A mesh of which some triangles are here, some of its own and others that were hit: a plain value.
+template <class S>
+struct partial_mesh {
+  mesh_part<S> own, others;
+  std::size_t all;  ///< how many the whole mesh has
+
+  COLLIDE_HD std::size_t size() const { return all; }
+
+  /// Triangle number `t`, which is here.
+  COLLIDE_HD triangle<S> operator[](std::size_t t) const {
+    id const number = static_cast<id>(t), at = own.find(number);
+    return own.has_at(at, number) ? own.triangles[at] : others.triangles[others.find(number)];
+  }
+};
+
+/// A pair with its geometry.
+template <class NarrowPhase, class S>
+COLLIDE_HD hit<NarrowPhase, S> hit_of(pair p, partial_mesh<S> const& mesh,
+                                      sphere_view_for<NarrowPhase, S> const& spheres) {
+  id const at = mesh.own.find(p.triangle);
+  if (mesh.own.has_at(at, p.triangle)) return {p, mesh.own.triangles, spheres, at};
+  return {p, mesh.others.triangles, spheres, mesh.others.find(p.triangle)};
+}
+
+/// Kernel functor of `for_each` over pairs: hands them to a sink's output. `Mesh` is `partial_mesh` or `mesh_view`.
+template <class NarrowPhase, class S, class Mesh, class Output>
+struct hand_over {
+  pair const* pairs;
+  Mesh mesh;
+  sphere_view_for<NarrowPhase, S> spheres;
+  Output output;
+#if defined(__CUDACC__)
+#pragma nv_exec_check_disable
+#endif
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::uint64_t const slot = output.allocate(1);
+    if constexpr (stores_ids<Output>) {  // nothing need be looked up
+      output.store(slot, pairs[i]);
+    } else {
+      output.store(slot, hit_of<NarrowPhase, S>(pairs[i], mesh, spheres));
+    }
+  }
+};
+
+/// One pass over the pairs, as a sink sees it; see concepts.hpp.
+template <class NarrowPhase, class Space, class Mesh, class S>
+struct found_query {
+  using narrow_phase = NarrowPhase;
+  using scalar = S;
+
+  Space& space;
+  Mesh mesh;
+  sphere_view_for<NarrowPhase, S> spheres;
+  pair const* pairs;
+  std::size_t size;
+
+  /// How many hits there are.
+  std::uint64_t expected_hits() const { return size; }
+
+  template <class Output>
+  void operator()(Output const& output) const {
+    space.for_each(size, hand_over<NarrowPhase, S, Mesh, Output>{pairs, mesh, spheres, output});
+    if constexpr (has_end_pass<Output>::value) {
+      if (wants_end_pass(output)) space.for_each(1, end_pass_kernel<Output>{output});
+    }
+  }
+};
+
+/// Pairs that were found, with the triangles in them, in memory of a space.
+template <class S>
+class found_pairs {
+ public:
+  /// The pairs are in memory of the space, `others` on the host. `all`: how many triangles the whole mesh has.
+  template <class Space>
+  void keep(Space const& space, pair const* pairs, std::size_t size, mesh_part<S> const& own,
+            std::vector<numbered_triangle<S>> const& others, std::size_t all) {
+    numbers_.resize(others.size());
+    corners_.resize(9 * others.size());
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      numbers_[i] = others[i].number;
+      std::copy_n(others[i].corners, 9, corners_.data() + 9 * i);
+    }
+    pairs_ = pairs;
+    size_ = size;
+    mesh_ = {own, {{}, in_space(space, numbers_, number_memory_)}, all};
+    if (!others.empty()) {
+      mesh_.others.triangles = triangle_soup(in_space(space, corners_, corner_memory_), others.size());
+    }
+  }
+
+  template <class NarrowPhase, class Space>
+  found_query<NarrowPhase, Space, partial_mesh<S>, S> query(Space& space,
+                                                            sphere_view_for<NarrowPhase, S> const& spheres) const {
+    return {space, mesh_, spheres, pairs_, size_};
+  }
+
+ private:
+  std::vector<S> corners_;
+  std::vector<id> numbers_;
+  buffer<S> corner_memory_;
+  buffer<id> number_memory_;
+  pair const* pairs_ = nullptr;
+  std::size_t size_ = 0;
+  partial_mesh<S> mesh_{};
+};
+
+}  // namespace collide::detail

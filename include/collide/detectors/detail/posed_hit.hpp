@@ -1,0 +1,224 @@
+/// \file
+/// Hits of a mesh of which parts have poses, what of the spheres is near a part, and which part is nearest, or around a
+/// point.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include <collide/query/hit.hpp>
+#include <collide/simulation/detail/bodies/moving_mesh.hpp>
+#include <collide/sinks/detail/search_mesh.hpp>
+#include <collide/sinks/signed_distance.hpp>
+#include <collide/spaces/detail/atomic.hpp>
+#include <collide/spheres.hpp>
+
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
+namespace collide {
+
+namespace detail {
+
+/// A narrow phase that judges triangles in the frames of their bodies: it names the kind of a hit.
+template <class NarrowPhase>
+struct in_frames : NarrowPhase {};
+
+}  // namespace detail
+
+/// A hit of a triangle of a body: its contact is in the world.
+template <class NarrowPhase, class S>
+class hit<detail::in_frames<NarrowPhase>, S> {
+ public:
+  id sphere;    ///< number of the sphere
+  id triangle;  ///< number of the triangle
+
+  /// A hit of `p`, whose geometry is in `mesh` and `spheres`: both must outlive it.
+  COLLIDE_HD hit(pair p, detail::moving_mesh<S> const& mesh, sphere_view<S> const& spheres)
+      : sphere{p.sphere}, triangle{p.triangle}, mesh_{mesh}, spheres_{spheres} {}
+
+  /// Contact of the pair, computed by this call in the frame of the body.
+  COLLIDE_HD collide::contact<S> contact() const {
+    static_assert(
+        detail::has_contact<NarrowPhase, S>::value,
+        "collide: contacts need a narrow phase with a static member contact_of(triangle, sphere) that returns a "
+        "contact");
+    int const frame = mesh_.frame_of(triangle);
+    collide::contact<S> c = NarrowPhase::contact_of(mesh_[triangle], mesh_.seen_from(frame, spheres_[sphere], 1));
+    c.sphere = sphere;
+    c.triangle = triangle;
+    mesh_.to_world(c, frame, 1);
+    return c;
+  }
+
+ private:
+  detail::moving_mesh<S> const& mesh_;
+  sphere_view<S> const& spheres_;
+};
+
+namespace detail {
+
+/// A pair with its geometry.
+template <class NarrowPhase, class S>
+COLLIDE_HD hit<NarrowPhase, S> hit_of(pair p, moving_mesh<S> const& mesh, sphere_view<S> const& spheres) {
+  return {p, mesh, spheres};
+}
+
+/// Kernel functor of `for_each` over groups of spheres: lists those that may touch something. A host tries a group at a
+/// time in the lanes of its vector unit.
+template <class S, int Group>
+struct list_near_bodies {
+  moving_mesh<S> mesh;
+  S room;  ///< how far rounding may move what a body sees
+  sphere_view<S> spheres;
+  std::uint32_t* count;
+  id* numbers;
+
+  COLLIDE_HD void operator()(std::size_t group) const {
+    std::size_t const first = group * Group, left = spheres.size() - first;
+    int const n = left < Group ? static_cast<int>(left) : Group;
+    S x[Group] = {}, y[Group] = {}, z[Group] = {}, reach[Group] = {};
+    std::uint32_t near[Group] = {};
+    for (int k = 0; k < n; ++k) {
+      sphere<S> const own = spheres[first + static_cast<std::size_t>(k)];
+      x[k] = own.centre.x(), y[k] = own.centre.y(), z[k] = own.centre.z(), reach[k] = own.radius;
+    }
+    for (int frame = mesh.first_frame; frame < mesh.frame_count; ++frame) {
+      body_frame<S> const& f = mesh.frames[frame];
+      for (int k = 0; k < Group; ++k) near[k] |= f.is_far(vec3<S>(x[k], y[k], z[k]), reach[k], room) ? 0u : 1u;
+    }
+    for (int k = 0; k < n; ++k) {
+      if (near[k] != 0) numbers[fetch_add(count, 1u)] = static_cast<id>(first + static_cast<std::size_t>(k));
+    }
+  }
+};
+
+/// Kernel functor of `for_each` over spheres that are listed: lists those that may touch a body, as the body sees them.
+template <class S>
+struct list_near_body {
+  moving_mesh<S> mesh;
+  int frame;
+  S room;
+  sphere_view<S> spheres;
+  id const* from;
+  std::uint32_t* count;
+  id* numbers;
+  S* centres;
+  S* radii;  ///< null if all have one
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    id const number = from[i];
+    sphere<S> const own = spheres[number];
+    if (mesh.frames[frame].is_far(own.centre, own.radius, room)) return;
+    sphere<S> const seen = mesh.seen_from(frame, own, 1);
+    std::size_t const slot = fetch_add(count, 1u);
+    numbers[slot] = number;
+    for (unsigned k = 0; k < 3; ++k) centres[3 * slot + k] = seen.centre[k];
+    if (radii != nullptr) radii[slot] = own.radius;
+  }
+};
+
+/// Kernel functor of `for_each` over pairs of listed spheres and a part of a mesh that begins with triangle `first`: as
+/// pairs of the whole.
+struct number_pairs {
+  pair const* from;
+  id const* spheres;
+  id first;
+  pair* to;
+
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {spheres[from[i].sphere], from[i].triangle + first}; }
+};
+
+/// Kernel functor of `for_each` over spheres: how a body sees them.
+template <class S>
+struct see_from_body {
+  moving_mesh<S> mesh;
+  int frame;
+  sphere_view<S> spheres;
+  S* centres;
+  S* radii;  ///< null if all have one
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    sphere<S> const seen = mesh.seen_from(frame, spheres[i], 1);
+    for (unsigned k = 0; k < 3; ++k) centres[3 * i + k] = seen.centre[k];
+    if (radii != nullptr) radii[i] = seen.radius;
+  }
+};
+
+/// True if what is found in a body counts more than what was found before.
+template <class S>
+COLLIDE_HD bool comes_before(nearest_triangle<S> const& a, nearest_triangle<S> const& b) {
+  return a.distance < b.distance || (a.distance == b.distance && b.triangle > a.triangle);
+}
+COLLIDE_HD_INLINE bool comes_before(std::uint8_t a, std::uint8_t b) { return a > b; }
+
+/// Kernel functor of `for_each` over spheres: what counts most so far, or of a body which begins with triangle `first`.
+template <class S, class Found>
+struct take_first {
+  moving_mesh<S> mesh;
+  int frame;
+  id first;
+  Found const* of_body;
+  Found* to;
+  bool is_first_body;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    Found found = of_body[i];
+    if constexpr (!std::is_same<Found, std::uint8_t>::value) to_whole(found);
+    if (is_first_body || comes_before(found, to[i])) to[i] = found;
+  }
+
+ private:
+  COLLIDE_HD void to_whole(Found& n) const {
+    if (n.triangle == no_id) return;
+    n.triangle += first;
+    contact<S> c{};
+    c.point = n.point;
+    if constexpr (std::is_same<Found, signed_nearest_triangle<S>>::value) c.normal = n.gradient;
+    mesh.to_world(c, frame, 1);
+    n.point = c.point;
+    if constexpr (std::is_same<Found, signed_nearest_triangle<S>>::value) n.gradient = c.normal;
+  }
+};
+
+/// True for sinks that search the bodies one after the other.
+template <class Sink>
+inline constexpr bool searches_bodies = std::is_same<Sink, collide::contains>::value;
+template <class S>
+inline constexpr bool searches_bodies<nearest<S>> = true;
+template <class S>
+inline constexpr bool searches_bodies<signed_distance<S>> = true;
+
+/// Sink: runs a search, and keeps nothing.
+template <class F>
+struct run_search {
+  F f;
+
+  template <class Space, class Query>
+  void run(Space&, Query const& query) {
+    search_mesh(query, f);
+  }
+};
+
+/// The query of `nearest` and its like over bodies, as the sink sees it. `Bodies` is a function bodies(spheres, f).
+template <class NarrowPhase, class S, class Bodies>
+struct search_over_bodies {
+  using narrow_phase = NarrowPhase;
+  using scalar = S;
+
+  sphere_view<S> spheres;
+  Bodies const& bodies;
+
+  template <class F>
+  void search(F const& f) const {
+    bodies(spheres, f);
+  }
+};
+
+}  // namespace detail
+
+}  // namespace collide
+
+#pragma GCC diagnostic pop

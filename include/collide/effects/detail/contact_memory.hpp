@@ -1,0 +1,253 @@
+/// \file
+/// The memory of contacts between particles from step to step, beside the lists of neighbours.
+///
+/// Both particles of a contact have it, each in its own sign. Values lie where the neighbour is in the list, so a step
+/// reads and writes those of particles that touch, and nothing else. When lists are made anew, values are kept by the
+/// numbers of the two particles, and put into the new lists. See `contact_columns` in columns.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <collide/core/memory.hpp>
+#include <collide/effects/detail/particle.hpp>
+
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
+namespace collide::detail {
+
+template <class C, class S>
+struct contact_value {
+  static_assert(std::is_same<column_element<C, S>, S>::value, "collide: a contact remembers vec3<S> or S");
+  column_value<C, S> value = initial_of<C, S>::value();
+};
+
+/// The memory of a contact, by columns.
+template <class S, class List>
+struct contact_values;
+template <class S, class... C>
+struct contact_values<S, columns<C...>> : contact_value<C, S>... {
+  using list = columns<C...>;
+  static constexpr int width = (column_layout<C, S>::width + ... + 0);
+
+  /// f(number, k, sign) for all numbers of all columns, number k; the sign is -1 of what has the opposite sign for the
+  /// other particle, where both remember the same.
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_number([[maybe_unused]] F const& f) {
+    [[maybe_unused]] int n = 0;
+    (for_each_of<C>(n, f), ...);
+  }
+
+  template <class D>
+  COLLIDE_HD_INLINE column_value<D, S>& operator[](D) {
+    return static_cast<contact_value<D, S>&>(*this).value;
+  }
+  template <class D>
+  COLLIDE_HD_INLINE column_value<D, S> const& operator[](D) const {
+    return static_cast<contact_value<D, S> const&>(*this).value;
+  }
+
+ private:
+  template <class D, class F>
+  COLLIDE_HD_INLINE void for_each_of(int& n, F const& f) {
+    using layout = column_layout<D, S>;
+    for (int k = 0; k < layout::width; ++k) f(layout::at((*this)[D{}], k), n++, layout::width == 3 ? -1 : 1);
+  }
+};
+
+/// The memory of a contact as it is stored: to be read at once.
+template <class S, class List>
+struct alignas(contact_values<S, List>::width > 2 ? 4 * sizeof(S) : sizeof(S)) contact_record {
+  S numbers[contact_values<S, List>::width];
+
+  COLLIDE_HD_INLINE contact_values<S, List> values() const {
+    contact_values<S, List> v;
+    v.for_each_number([&](S& x, int k, int) { x = numbers[k]; });
+    return v;
+  }
+  COLLIDE_HD_INLINE void set(contact_values<S, List> v) {
+    v.for_each_number([&](S& x, int k, int) { numbers[k] = x; });
+  }
+};
+
+/// A contact that was kept while lists are made anew.
+template <class S, class List>
+struct kept_contact {
+  contact_record<S, List> record;
+  id other;  ///< number of the other particle
+};
+
+/// The kept contacts of a particle, in the order of the numbers of the others.
+struct kept_range {
+  std::uint32_t first, count;
+};
+
+/// The memory of contacts, for kernels. Item k of the list of the particle at place i is `k * capacity + i`; those of
+/// runs are behind.
+template <class S, class List>
+struct contact_memory_ref {
+  contact_record<S, List>* records;
+  std::uint32_t* touching;      ///< of the particle at each place, a bit for each item of its list
+  std::uint8_t* run_touching;   ///< of each item of runs
+  kept_contact<S, List>* kept;  ///< while lists are made anew
+  kept_range* kept_of;          ///< of each particle, by its number
+};
+template <class S>
+struct contact_memory_ref<S, columns<>> {};
+
+/// The memory of contacts, for a checkpoint: how many contacts each particle has, the numbers of the others, by rising
+/// numbers, and the values of each contact.
+template <class S>
+struct saved_contacts {
+  std::vector<std::uint32_t> counts;
+  std::vector<id> others;
+  std::vector<S> values;
+};
+
+/// An array with room for more than another, and the first `n` values of that, on the host.
+template <class Space, class T>
+buffer<T> grown(Space const& space, buffer<T> const& from, std::size_t n, std::size_t more) {
+  buffer<T> longer;
+  std::copy_n(from.data(), n, longer.reserve(space.resource(), from.capacity() + more));
+  return longer;
+}
+
+/// The memory of contacts.
+template <class S, class List>
+class contact_memory {
+ public:
+  using record = contact_record<S, List>;
+  static constexpr int width = contact_values<S, List>::width;
+
+  /// All of it on the host.
+  struct on_host {
+    std::vector<record> records;
+    std::vector<std::uint32_t> touching;
+    std::vector<std::uint8_t> run_touching;
+
+    void append(std::vector<S>& to, std::size_t item) const {
+      to.insert(to.end(), records[item].numbers, records[item].numbers + width);
+    }
+  };
+  template <std::size_t Listed, class Space>
+  on_host copied(Space const& space, std::size_t particles, std::size_t places, std::size_t in_runs) const {
+    on_host all{std::vector<record>(Listed * particles + in_runs), std::vector<std::uint32_t>(places),
+                std::vector<std::uint8_t>(in_runs)};
+    space.copy_to_host(all.records.data(), records_.data(), all.records.size());
+    space.copy_to_host(all.touching.data(), touching_.data(), places);
+    if (in_runs != 0) space.copy_to_host(all.run_touching.data(), run_touching_.data(), in_runs);
+    return all;
+  }
+  /// Contacts that wait for lists to be made.
+  template <class Space>
+  saved_contacts<S> saved_for_lists(Space const& space, std::size_t n) const {
+    std::vector<kept_range> ranges(n);
+    if (n != 0) space.copy_to_host(ranges.data(), kept_of_.data(), n);
+    std::size_t all = 0;
+    for (auto const& r : ranges) all = r.first + r.count > all ? r.first + r.count : all;
+    std::vector<kept_contact<S, List>> kept(all);
+    if (all != 0) space.copy_to_host(kept.data(), kept_.data(), all);
+    saved_contacts<S> saved;
+    for (auto const& r : ranges) {
+      saved.counts.push_back(r.count);
+      for (std::size_t k = r.first; k < std::size_t{r.first} + r.count; ++k) {
+        saved.others.push_back(kept[k].other);
+        saved.values.insert(saved.values.end(), kept[k].record.numbers, kept[k].record.numbers + width);
+      }
+    }
+    return saved;
+  }
+  template <class Space>
+  void restore(Space& space, saved_contacts<S> const& saved) {
+    std::vector<kept_range> ranges;
+    std::vector<kept_contact<S, List>> kept(saved.others.size());
+    std::uint32_t first = 0;
+    for (std::uint32_t const count : saved.counts) {
+      ranges.push_back({first, count});
+      first += count;
+    }
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      kept[k].other = saved.others[k];
+      for (std::size_t w = 0; w < std::size_t(width); ++w)
+        kept[k].record.numbers[w] = saved.values[k * std::size_t(width) + w];
+    }
+    if (!ranges.empty()) space.copy_from_host(kept_of_.data(), ranges.data(), ranges.size());
+    kept_.reserve(space.resource(), kept.size());
+    if (!kept.empty()) space.copy_from_host(kept_.data(), kept.data(), kept.size());
+  }
+
+  void reserve(std::pmr::memory_resource* resource, std::size_t particles, std::size_t listed, std::size_t in_runs) {
+    std::size_t const items = listed * particles + in_runs;
+    records_.reserve(resource, items);
+    kept_.reserve(resource, items);
+    touching_.reserve(resource, particles);
+    kept_of_.reserve(resource, particles);
+    run_touching_.reserve(resource, in_runs);
+  }
+  /// Makes room for more items of runs than were there `before`, behind so many of lists, on the host: those stay.
+  template <class Space>
+  void grow(Space const& space, std::size_t in_lists, std::size_t before, std::size_t more) {
+    records_ = grown(space, records_, in_lists + before, more);
+    run_touching_ = grown(space, run_touching_, before, more);
+  }
+  /// Makes room to keep more, once nothing is kept.
+  template <class Space>
+  void grow_kept(Space const& space, std::size_t more) {
+    kept_.reserve(space.resource(), kept_.capacity() + more);
+  }
+  template <class Space>
+  void clear(Space& space, std::size_t n) {
+    space.fill(kept_of_.data(), 0, n * sizeof(kept_range));
+  }
+  std::size_t bytes() const {
+    return records_.bytes() + kept_.bytes() + touching_.bytes() + kept_of_.bytes() + run_touching_.bytes();
+  }
+  contact_memory_ref<S, List> ref() const {
+    return {records_.data(), touching_.data(), run_touching_.data(), kept_.data(), kept_of_.data()};
+  }
+
+ private:
+  buffer<contact_record<S, List>> records_;
+  buffer<kept_contact<S, List>> kept_;
+  buffer<std::uint32_t> touching_;
+  buffer<kept_range> kept_of_;
+  buffer<std::uint8_t> run_touching_;
+};
+template <class S>
+class contact_memory<S, columns<>> {
+ public:
+  void reserve(std::pmr::memory_resource*, std::size_t, std::size_t, std::size_t) {}
+  template <class Space>
+  void clear(Space&, std::size_t) {}
+  std::size_t bytes() const { return 0; }
+  contact_memory_ref<S, columns<>> ref() const { return {}; }
+};
+
+/// The memory of a contact as an effect sees it: the columns that it names.
+template <class Named, class Values, class S>
+class contact_access {
+ public:
+  COLLIDE_HD_INLINE contact_access(Values& values, S elapsed) : values_{values}, elapsed_{elapsed} {}
+
+  template <class C>
+  COLLIDE_HD_INLINE auto& operator[](C) const {
+    static_assert(contains<Named, C>, "collide: a contact remembers for an effect what that names in `remembers`");
+    return values_[C{}];
+  }
+  /// The time since the contact was looked at before; 0 where it is new and forces are only asked for.
+  COLLIDE_HD_INLINE S elapsed() const { return elapsed_; }
+  /// All that the contact remembers.
+  COLLIDE_HD_INLINE Values& values() const { return values_; }
+
+ private:
+  Values& values_;
+  S elapsed_;
+};
+
+}  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -1,0 +1,481 @@
+/// \file
+/// The effects of a simulation, the columns that they need, and how they are called.
+#pragma once
+
+#include <algorithm>
+
+#include <collide/effects/detail/effect_traits.hpp>
+#include <collide/effects/detail/resistance.hpp>
+#include <collide/exact/detail/numeric/repeating_box.hpp>
+
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
+namespace collide::detail {
+
+/// Why particles meet: in a step, or between two, to know the forces with which the next begins. Then nothing else is
+/// written, and nothing that contacts remember changes: old ones are seen a step later, so what slid goes on sliding.
+enum class meeting : std::uint8_t {
+  in_step,
+  of_all,   ///< between steps
+  of_woken  ///< between steps: only those that slept ask, the others know
+};
+
+/// True of a particle that has been woken between steps, and not met others yet.
+template <class State>
+COLLIDE_HD_INLINE bool is_just_woken([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t i) {
+  if constexpr (contains<typename State::list, in_contact>) return state.at(in_contact{})[i] == just_woken;
+  return false;
+}
+
+/// An effect's parameters, in a base class that is found by the effect's type.
+template <class E>
+struct effect_slot {
+  E effect;
+};
+
+/// The resistance of drag and wind in a step, if there are any; known before it.
+template <bool Resists>
+struct resistance_slot {};
+template <>
+struct resistance_slot<true> {
+  resistance_in_step resistance;
+};
+
+/// The effects of a simulation and what follows from their list at compile time.
+template <class S, class... E>
+struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::value || ...)> {
+  using integrator = typename integrator_of<E...>::type;
+
+  static constexpr bool any_inactive = (has_is_inactive<E, S>::value || ...);
+  static constexpr bool any_pair_contact = (pairs_in<E, S> || ...);
+  static constexpr bool repeats = any_pair_contact && (repeats_space<E> || ...);  ///< particles meet across a box
+  using space_type = std::conditional_t<repeats, repeating_box<S>, open_space>;
+  using remembered = union_of<columns<>, typename remembers_of<E>::type...>;  ///< by contacts between particles
+  static constexpr bool any_end_step = (has_end_step<E, S>::value || ...);
+  static constexpr bool any_mesh_impulse = (has_on_mesh_impulse<E, S>::value || ...);
+  static constexpr bool overlaps = (overlaps_in<E, S> || ...);  ///< particles press on the mesh by forces,
+  static constexpr bool remembers_surfaces = overlaps && remembered::size != 0;
+  static constexpr double farther = std::max({0.0, farther_of<E>...});
+  static constexpr double farthest_saddle = std::max({0.0, farthest_saddle_of<E>...});
+  static constexpr bool any_mesh_contact =  ///< or by impulses
+      (has_on_mesh_contact<E, S>::value || ...) || (has_after_mesh_contact<E, S>::value || ...) ||
+      (any_mesh_impulse && !overlaps);
+  static constexpr bool any_resistance = (has_resistance<E, S>::value || ...);
+  static constexpr bool flows = (flows_in<E, S>::value || ...);
+
+  using base = columns<position, velocity>;
+  using named = union_of<base, typename reads_of<E>::type..., typename writes_of<E>::type...>;
+  static constexpr bool adheres = any_mesh_contact && contains<named, adhered>;
+  static constexpr bool has_half_kicks = integrator::kick_after != 0;
+  /// Particles that sleep still press on what they lie on.
+  static constexpr bool keeps_support = any_mesh_impulse && contains<named, slow_steps>;
+  /// Effects that know no mesh may hold particles where they are.
+  static constexpr bool holds_without_mesh =
+      ((has_end_step<E, S>::value && contains<typename writes_of<E>::type, velocity>) || ...);
+  /// The effect of particles on each other is kept as an acceleration, for each half kick, for adhesion and for
+  /// sleepers.
+  static constexpr bool keeps_pair_forces =
+      (any_pair_contact || overlaps) && (adheres || has_half_kicks || keeps_support);
+  static constexpr bool keeps_pair_torques =
+      (any_pair_contact || overlaps) && (has_half_kicks || keeps_support) && contains<named, angular_velocity>;
+  /// A step ends once particles have met where they then are.
+  static constexpr bool ends_after_meeting = (any_pair_contact || overlaps) && has_half_kicks;
+  /// The forces of the mesh are kept, each by itself: effects are told of each half kick when it is given.
+  static constexpr bool keeps_mesh_kicks = overlaps && has_half_kicks && any_mesh_impulse;
+
+ private:
+  template <bool Needed, class... C>
+  using columns_if = std::conditional_t<Needed, columns<C...>, columns<>>;
+  using pair_kicks = union_of<columns_if<keeps_pair_forces, pair_acceleration>,
+                              columns_if<keeps_pair_torques, pair_angular_acceleration>>;
+  using held_columns = columns_if<any_mesh_contact && has_half_kicks, held>;
+  using mesh_kick_columns = columns_if<keeps_mesh_kicks, mesh_kicks, mesh_kicks_by, mesh_kick_count>;
+  using support_columns = union_of<columns_if<keeps_support, support, supported_by>,
+                                   columns_if<keeps_support && (is_moving_bodies<E> || ...), second_support,
+                                              second_supported_by, third_support, third_supported_by>>;
+
+ public:
+  /// All columns of the simulation.
+  using all = union_of<named, pair_kicks, held_columns, support_columns, mesh_kick_columns>;
+
+ private:
+  /// Columns that `E` reads or writes in a member, if it `Has` it.
+  template <class F, bool Has>
+  using reads_if = std::conditional_t<Has,
+                                      union_of<typename reads_of<F>::type, typename writes_of<F>::type,
+                                               intersection_of<typename optional_writes_of<F>::type, all>,
+                                               intersection_of<typename optional_reads_of<F>::type, all>>,
+                                      columns<>>;
+  template <class F, bool Has>
+  using writes_if = std::conditional_t<
+      Has, union_of<typename writes_of<F>::type, intersection_of<typename optional_writes_of<F>::type, all>>,
+      columns<>>;
+  template <class F>
+  static constexpr bool is_integrated = changes_velocity<F, S> || has_end_step<F, S>::value ||
+                                        has_is_inactive<F, S>::value || has_holds<F, S>::value ||
+                                        (has_on_mesh_impulse<F, S>::value && (adheres || keeps_support));
+  template <class F>
+  static constexpr bool writes_while_integrated = changes_velocity<F, S> || has_end_step<F, S>::value ||
+                                                  has_holds<F, S>::value ||
+                                                  (has_on_mesh_impulse<F, S>::value && (adheres || keeps_support));
+  template <class F>
+  static constexpr bool interacts_or_skips =
+      pairs_in<F, S> || has_try_wake<F, S>::value || has_is_inactive<F, S>::value;
+  using own_radius = intersection_of<columns<radius>, all>;
+  using own_number = intersection_of<columns<global_number>, all>;
+  using own_in_contact = intersection_of<columns<in_contact>, all>;
+  using own_slow_steps = columns_if<(is_moving_bodies<E> || ...) && contains<all, slow_steps>, slow_steps>;
+  template <bool Needed>
+  using radius_if = std::conditional_t<Needed, own_radius, columns<>>;
+
+ public:
+  /// Columns that are read to find out which particles are inactive.
+  using inactive_reads = union_of<own_number, reads_if<E, has_is_inactive<E, S>::value>...>;
+  /// Columns that are read and written for every particle,
+  using integration_reads =
+      union_of<base, reads_if<E, is_integrated<E>>..., radius_if<any_mesh_contact || keeps_support>, own_number,
+               pair_kicks, columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns>;
+  using integration_writes = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
+                                      columns_if<keeps_pair_torques, angular_velocity>, held_columns, support_columns,
+                                      writes_if<E, writes_while_integrated<E>>...>;
+  /// and for those that may touch the mesh.
+  using contact = union_of<integration_reads, reads_if<E, has_mesh_contact<E, S>>...>;
+  using contact_writes = union_of<integration_writes, writes_if<E, has_mesh_contact<E, S>>...>;
+  /// Columns that are read and written for particles that meet others; those that are read are also copied.
+  using interaction = union_of<columns<position>, columns_if<keeps_pair_forces, velocity>,
+                               columns_if<keeps_pair_torques, angular_velocity>, reads_if<E, interacts_or_skips<E>>...,
+                               radius_if<any_pair_contact>, own_number>;
+  using interaction_copies = difference_of<interaction, columns<position, radius>>;  ///< these two are kept together
+  using interaction_writes = difference_of<
+      union_of<columns<>, writes_if<E, pairs_in<E, S> || has_try_wake<E, S>::value>...>,
+      union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
+  using interaction_kicks = pair_kicks;  ///< what is kept of them in place of velocities
+  /// Columns on which forces on a particle depend that is alone.
+  using acceleration_reads = union_of<columns<>, reads_if<E, changes_velocity<E, S>>...>;
+  /// Columns that are read and written for particles that press on the mesh.
+  using overlap_reads =
+      union_of<base, own_radius, own_number, pair_kicks, columns_if<keeps_pair_torques, angular_velocity>,
+               support_columns, own_slow_steps, own_in_contact,
+               reads_if<E, overlaps_in<E, S> || has_is_inactive<E, S>::value ||
+                               (overlaps && has_on_mesh_impulse<E, S>::value)>...>;
+  using overlap_writes = difference_of<
+      union_of<pair_kicks, support_columns, own_slow_steps, own_in_contact,
+               writes_if<E, overlaps_in<E, S> || (overlaps && has_on_mesh_impulse<E, S>::value)>...>,
+      union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
+
+  /// On a CPU particles meet once a pair, for the one effect that is between them; see pair_actions.hpp.
+  static constexpr bool meets_once = (int(pairs_in<E, S>) + ... + 0) == 1 && (is_mutual_effect<E> || ...) &&
+                                     !any_inactive && !contains<all, global_number> &&
+                                     !(has_try_wake<E, S>::value || ...);
+  template <class F>
+  static constexpr int action_width_of() {
+    if constexpr (is_mutual_effect<F>) return F::action_width;
+    return 0;
+  }
+  static constexpr int action_width = (action_width_of<E>() + ... + 0);
+  /// Calls f(effect) for the one.
+  template <class F>
+  COLLIDE_HD_INLINE void for_mutual(F const& f) const {
+    (for_mutual_of<E>(f), ...);
+  }
+
+  explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
+
+  /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
+  double due(double dt) const { return (due_of<E>(dt) + ... + 0.0); }
+  static constexpr bool makes = (is_source<E> || ...);
+  /// True if particles of a source are not born where something is already.
+  bool makes_only_where_free() const { return (is_careful<E>() || ...); }
+  S source_radius() const { return makes ? (source_radius_of<E>() + ... + S(0)) : S(-1); }
+
+  /// The space in which particles meet.
+  space_type space() const {
+    space_type found{};
+    (find_box_of<E>(found), ...);
+    return found;
+  }
+
+  /// True of a particle that is left out, if that is because it sleeps.
+  template <class P>
+  COLLIDE_HD_INLINE bool only_sleeps(P p) const {
+    p[slow_steps{}] = 0;
+    return !is_inactive(p);
+  }
+
+  template <class F>
+  COLLIDE_HD_INLINE F const& of() const {
+    return static_cast<effect_slot<F> const&>(*this).effect;
+  }
+  template <class F>
+  F& of() {
+    return static_cast<effect_slot<F>&>(*this).effect;
+  }
+
+  /// True if any effect says that the particle is inactive.
+  template <class P>
+  COLLIDE_HD_INLINE bool is_inactive([[maybe_unused]] P& p) const {
+    return (is_inactive_of<E>(p) || ...);
+  }
+
+  /// Makes ready for steps of the time `dt`.
+  void prepare([[maybe_unused]] S dt) {
+    if constexpr (any_resistance) this->resistance = resistance_over(S(integrator::kick_before) * dt);
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void accelerate([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (any_resistance) {
+      vec3<S> const before = p[velocity{}];
+      vec3<double> const flow = flow_around(p);
+      accelerate_without_resistance(p, dt);
+      bool const is_ready = this->resistance.time == static_cast<double>(dt);
+      p[velocity{}] = velocity_in(is_ready ? this->resistance : resistance_over(dt), flow, before, p[velocity{}]);
+    } else {
+      accelerate_without_resistance(p, dt);
+    }
+  }
+  /// Accelerates some particles, each for its own time, on a CPU; those for 0 are left out.
+  template <class P, int N>
+  COLLIDE_HD_INLINE void accelerate_together(P (&p)[N], S const (&dt)[N]) const {
+    auto const& r = this->resistance;
+    S const time = S(r.time);
+    bool ready = !r.is_none();
+    for (int k = 0; k < N; ++k) ready = ready && (dt[k] == time || dt[k] == 0);
+    if (!ready) {
+      for (int k = 0; k < N; ++k) {
+        if (dt[k] != 0) accelerate(p[k], dt[k]);
+      }
+      return;
+    }
+    velocities_in<S, N, flows> velocities;
+    for (int k = 0; k < N; ++k) {
+      velocities.set_before(k, flow_around(p[k]), p[k][velocity{}]);
+      if (dt[k] != 0) accelerate_without_resistance(p[k], time);
+      velocities.set_pushed(k, p[k][velocity{}]);
+    }
+    multiversioned([&] { r.quadratic == 0 ? velocities.ease(r) : velocities.find(r); });
+    velocities.keep();
+    for (int k = 0; k < N; ++k) {
+      if (dt[k] != 0) velocities.get(k, p[k][velocity{}], r);
+    }
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void on_mesh_contact(P& p, mesh_contact<S>& t, S dt) const {
+    (on_mesh_contact_of<E>(p, t, dt), ...);
+    (after_mesh_contact_of<E>(p, t, dt), ...);
+  }
+  /// Tells effects of what the mesh gives to a particle.
+  template <class P>
+  COLLIDE_HD_INLINE void on_mesh_impulse(P& p, mesh_impulse<S> const& given, S dt) const {
+    (on_mesh_impulse_of<E>(p, given, dt), ...);
+  }
+  /// True if an effect holds a particle that is adhered.
+  template <class P>
+  COLLIDE_HD_INLINE bool holds(P& p, vec3<S> const& pull, S dt) const {
+    return (holds_of<E>(p, pull, dt) || ...);
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void on_pair_contact(P& p, P& self, P& other, S dt) const {
+    (on_pair_contact_of<E>(p, self, other, dt), ...);
+  }
+  /// With what the contact remembers; `overlap` if the two do: what remembers nothing is left out if not, unless it
+  /// looks at what others do. True if the contact goes on.
+  template <class P, class Values>
+  COLLIDE_HD_INLINE bool on_pair_contact(P& p, P& self, P& other, bool overlap, Values& values, S elapsed, S dt) const {
+    bool goes_on = false;
+    ((goes_on = meet_with_memory_by<E>(p, self, other, overlap, values, elapsed, dt) || goes_on), ...);
+    return goes_on;
+  }
+  /// True if the contact goes on.
+  template <class P, class Values>
+  COLLIDE_HD_INLINE bool on_mesh_overlap(P& p, P& self, mesh_overlap<S> const& o, Values& values, S elapsed,
+                                         S dt) const {
+    bool goes_on = false;
+    ((goes_on = overlap_by<E>(p, self, o, values, elapsed, dt) || goes_on), ...);
+    return goes_on;
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void try_wake(P& p, P& other) const {
+    (try_wake_of<E>(p, other), ...);
+  }
+  template <class P>
+  COLLIDE_HD_INLINE void end_step([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    (end_step_of<E>(p, dt), ...);
+  }
+
+ private:
+  template <class F, class G>
+  COLLIDE_HD_INLINE void for_mutual_of([[maybe_unused]] G const& f) const {
+    if constexpr (is_mutual_effect<F>) f(of<F>());
+  }
+  template <class F>
+  void find_box_of([[maybe_unused]] space_type& found) const {
+    if constexpr (repeats && repeats_space<F>) {
+      for (int k = 0; k < 3; ++k) {
+        found.lower[k] = static_cast<S>(of<F>().lower[k]);
+        found.upper[k] = static_cast<S>(of<F>().upper[k]);
+      }
+    }
+  }
+  template <class F>
+  double due_of([[maybe_unused]] double dt) const {
+    if constexpr (is_source<F>) return of<F>().rate * dt;
+    return 0;
+  }
+  template <class F>
+  bool is_careful() const {
+    if constexpr (is_source<F>) return of<F>().only_where_free;
+    return false;
+  }
+  template <class F>
+  S source_radius_of() const {
+    if constexpr (is_source<F>) return static_cast<S>(of<F>().radius);
+    return 0;
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE bool is_inactive_of([[maybe_unused]] P& p) const {
+    if constexpr (has_is_inactive<F, S>::value) {
+      particle_access<F, P> const seen(p);
+      return of<F>().is_inactive(seen);
+    } else {
+      return false;
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void resistance_of([[maybe_unused]] P& p, [[maybe_unused]] media& around) const {
+    if constexpr (has_resistance<F, S>::value) {
+      particle_access<F, P> const seen(p);
+      around.add(of<F>().resistance(seen));
+    }
+  }
+  /// The velocity of the medium around a particle.
+  template <class P>
+  COLLIDE_HD_INLINE vec3<double> flow_around(P& p) const {
+    if constexpr (!flows) return {0, 0, 0};
+    media around(p[velocity{}].template cast<double>());
+    (resistance_of<E>(p, around), ...);
+    return around.flow();
+  }
+  template <class F>
+  COLLIDE_HD_INLINE void add_resistance([[maybe_unused]] double& linear, [[maybe_unused]] double& quadratic) const {
+    if constexpr (has_resistance<F, S>::value) {
+      linear += of<F>().linear;
+      quadratic += of<F>().quadratic;
+    }
+  }
+  COLLIDE_HD_INLINE resistance_in_step resistance_over(S time) const {
+    double linear = 0, quadratic = 0;
+    (add_resistance<E>(linear, quadratic), ...);
+    return {linear, quadratic, static_cast<double>(time)};
+  }
+  /// Lets all effects accelerate a particle but those with a resistance.
+  template <class P>
+  COLLIDE_HD_INLINE void accelerate_without_resistance([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (keeps_pair_forces) p[velocity{}] += p[pair_acceleration{}] * dt;
+    if constexpr (keeps_pair_torques) p[angular_velocity{}] += p[pair_angular_acceleration{}] * dt;
+    (accelerate_of<E>(p, dt), ...);
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void accelerate_of([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (has_accelerate<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().accelerate(seen, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void on_mesh_contact_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
+                                            [[maybe_unused]] S dt) const {
+    if constexpr (has_on_mesh_contact<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().on_mesh_contact(seen, t, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void after_mesh_contact_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_contact<S>& t,
+                                               [[maybe_unused]] S dt) const {
+    if constexpr (has_after_mesh_contact<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().after_mesh_contact(seen, t, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void on_mesh_impulse_of([[maybe_unused]] P& p, [[maybe_unused]] mesh_impulse<S> const& given,
+                                            [[maybe_unused]] S dt) const {
+    if constexpr (has_on_mesh_impulse<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().on_mesh_impulse(seen, given, dt);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE bool holds_of([[maybe_unused]] P& p, [[maybe_unused]] vec3<S> const& pull,
+                                  [[maybe_unused]] S dt) const {
+    if constexpr (has_holds<F, S>::value) {
+      particle_access<F, P> const seen(p);
+      return of<F>().holds(seen, pull, dt);
+    } else {
+      return false;
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void on_pair_contact_of([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
+                                            [[maybe_unused]] S dt) const {
+    if constexpr (has_on_pair_contact<F, S>::value) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_self(self), seen_other(other);
+      of<F>().on_pair_contact(seen, seen_self, seen_other, dt);
+    }
+  }
+  template <class F, class P, class Values>
+  COLLIDE_HD_INLINE bool meet_with_memory_by([[maybe_unused]] P& p, [[maybe_unused]] P& self, [[maybe_unused]] P& other,
+                                             [[maybe_unused]] bool overlap, [[maybe_unused]] Values& values,
+                                             [[maybe_unused]] S elapsed, [[maybe_unused]] S dt) const {
+    if constexpr (remembers_in<F, S>::value) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_self(self), seen_other(other);
+      contact_access<typename remembers_of<F>::type, Values, S> const memory(values, elapsed);
+      return of<F>().on_pair_contact(seen, seen_self, seen_other, memory, dt);
+    } else {
+      if (overlap || follows_pair_contacts<F>) on_pair_contact_of<F>(p, self, other, dt);
+      return false;
+    }
+  }
+  template <class F, class P, class Values>
+  COLLIDE_HD_INLINE bool overlap_by([[maybe_unused]] P& p, [[maybe_unused]] P& self,
+                                    [[maybe_unused]] mesh_overlap<S> const& o, [[maybe_unused]] Values& values,
+                                    [[maybe_unused]] S elapsed, [[maybe_unused]] S dt) const {
+    if constexpr (overlaps_in<F, S>) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_self(self);
+      if constexpr (overlaps_with_memory<F, S>::value) {
+        contact_access<typename remembers_of<F>::type, Values, S> const memory(values, elapsed);
+        return of<F>().on_mesh_overlap(seen, seen_self, o, memory, dt);
+      } else {
+        of<F>().on_mesh_overlap(seen, seen_self, o, dt);
+      }
+    }
+    return false;
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void try_wake_of([[maybe_unused]] P& p, [[maybe_unused]] P& other) const {
+    if constexpr (has_try_wake<F, S>::value) {
+      particle_access<F, P> seen(p);
+      particle_access<F, P> const seen_other(other);
+      of<F>().try_wake(seen, seen_other);
+    }
+  }
+  template <class F, class P>
+  COLLIDE_HD_INLINE void end_step_of([[maybe_unused]] P& p, [[maybe_unused]] S dt) const {
+    if constexpr (has_end_step_alone<F, S>::value) {
+      particle_access<F, P> seen(p);
+      of<F>().end_step(seen, dt);
+    } else if constexpr (asks_forces<F>) {
+      particle_access<F, P> seen(p);
+      of<F>().end_step(seen, forces_on<effect_list, P, S>{*this, p}, dt);
+    }
+  }
+};
+
+}  // namespace collide::detail
+
+#pragma GCC diagnostic pop

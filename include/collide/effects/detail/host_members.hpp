@@ -1,0 +1,230 @@
+/// \file
+/// The work of a simulation on the host with effects and columns.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <collide/effects/bodies.hpp>
+#include <collide/effects/detail/effect_list.hpp>
+#include <collide/spheres.hpp>
+
+namespace collide {
+
+/// Counts of a source since `set`.
+struct birth_counts {
+  std::uint64_t due = 0;          ///< particles that have come due: time times rate
+  std::uint64_t overlapping = 0;  ///< of these, in scenes in which particles meet: those that overlapped one that was
+                                  ///< there before, or one of the same step whose place is before theirs
+  std::uint64_t not_born = 0;     ///< with `only_where_free`: those, and those whose place in memory was taken
+};
+
+namespace detail {
+
+inline birth_counts births_of(double const (&clock)[clock_size]) {
+  auto const whole = [&](std::size_t k) { return static_cast<std::uint64_t>(clock[k]); };
+  return {whole(clock_made), whole(clock_overlapping), whole(clock_not_born)};
+}
+
+/// Throws `error` if these are more places than a simulation may have.
+inline void check_places(std::uint64_t places) {
+  if (places >= no_id) throw error("collide: simulation: a simulation has at most 2^32 - 2 particles");
+}
+
+/// Throws `error` unless a simulation with these columns can have such particles, and places for them. `own` is the
+/// radius of what a source makes: 0 for the common radius of all, -1 if there is none.
+template <class Columns, class S>
+void check_particles(bool one_radius, std::uint64_t particles, std::uint64_t places, S own, S common) {
+  if (!one_radius && !contains<Columns, radius>) {
+    throw error("collide: simulation: the radii differ: name the effect polydisperse in the scene");
+  }
+  if (own > 0 && !contains<Columns, radius>) {
+    throw error("collide: emit: a source with a radius of its own needs polydisperse in the scene");
+  }
+  if (places > particles && !contains<Columns, alive>) {
+    throw error("collide: simulation: there is room for more particles, but no effect in the scene that makes any");
+  }
+  if (places > particles && contains<Columns, radius> && own == 0 && !(common > 0)) {
+    throw error("collide: emit: the radii differ: give the source a radius, before set");
+  }
+  check_places(places);
+}
+
+/// Calls an effect's `check_parameters`, if it has one.
+template <class E, class Effects>
+void check_parameters_of(Effects const& effects) {
+  check_part(effects.template of<E>());
+}
+
+/// Calls `check_bodies` of an effect that keeps something for each body.
+template <class E, class = void>
+struct keeps_bodies : std::false_type {};
+template <class E>
+struct keeps_bodies<E, std::void_t<decltype(std::declval<E const&>().check_bodies(std::size_t{}))>> : std::true_type {};
+template <class E, class Effects>
+void check_bodies_of(Effects const& effects, std::size_t bodies) {
+  if constexpr (keeps_bodies<E>::value) effects.template of<E>().check_bodies(bodies);
+}
+
+/// Calls `check_particles` and `check_walls` of the materials of an effect, if it has such.
+template <class E, class = void>
+struct has_materials : std::false_type {};
+template <class E>
+struct has_materials<E, std::void_t<decltype(std::declval<E const&>().made_of.check_particles(0))>> : std::true_type {};
+template <class E, class Effects>
+void check_materials_of(Effects const& effects, smallest_radii const& radii) {
+  if constexpr (has_materials<E>::value) effects.template of<E>().made_of.check_particles(radii.largest_material);
+}
+template <class E, class Effects, class Space>
+void check_walls_of(Effects const& effects, Space const& space, std::size_t triangles, std::size_t bodies) {
+  if constexpr (has_materials<E>::value) effects.template of<E>().made_of.check_walls(space, triangles, bodies);
+}
+
+template <class E, class Radius, class = void>
+struct limits_step : std::false_type {};
+template <class E, class Radius>
+struct limits_step<E, Radius, std::void_t<decltype(std::declval<E const&>().longest_step(std::declval<Radius>()))>>
+    : std::true_type {};
+template <class T>
+std::string text_of(T x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
+}
+/// The longest step that an effect allows, by the radii of each material, or by the smallest of all.
+template <class E, class Effects>
+double longest_step_of(Effects const& effects, smallest_radii const& radii) {
+  if constexpr (limits_step<E, smallest_radii const&>::value) {
+    return effects.template of<E>().longest_step(radii);
+  } else if constexpr (limits_step<E, double>::value) {
+    return effects.template of<E>().longest_step(radii.of_all);
+  } else {
+    return std::numeric_limits<double>::infinity();
+  }
+}
+/// Throws `error` if a step is too long for an effect.
+template <class E, class Effects, class S>
+void check_time_step_of(Effects const& effects, S dt, smallest_radii const& radii) {
+  double const most = longest_step_of<E>(effects, radii);
+  if (!(radii.of_all > 0 && static_cast<double>(dt) > most)) return;
+  throw error("collide: simulation: the time dt of a step, " + text_of(dt) +
+              ", is longer than an effect allows with the smallest particles, " + text_of(most) +
+              ": take largest_time_step(simulation)");
+}
+
+/// In a scene without `moving_bodies`: nothing.
+struct no_bodies {
+  static constexpr bool exist = false;
+
+  static std::size_t bytes() { return 0; }
+  static std::size_t size() { return 0; }
+  static int room() { return 0; }
+  static constexpr bool are_driven() { return false; }
+  static constexpr bool are_placed() { return false; }
+  static void place(bool) {}
+  static void check(std::vector<body> const& bodies, std::size_t, void const* velocities) {
+    if (!bodies.empty() || velocities != nullptr)
+      throw error("collide: set_mesh: a scene with bodies names the effect moving_bodies");
+  }
+  template <class Space, class Mesh>
+  void build(Space&, Mesh const&, std::vector<body> const&, void const*) {}
+  template <class Triangles, class Mesh, class S>
+  Triangles const& ref(Triangles const& whole, Mesh const&, S) const {
+    return whole;
+  }
+};
+
+/// The address of a container's elements.
+template <class T>
+T const* raw_pointer(T const* p) {
+  return p;
+}
+template <class Pointer>
+auto raw_pointer(Pointer const& p) -> decltype(p.get()) {
+  return p.get();
+}
+
+/// Calls an effect's `begin_step`, if it has one. What a source makes is marked where particles meet, or contacts with
+/// the mesh remember something.
+template <class E, class Effects, class Space, class State, class S>
+void begin_step_of(Effects& effects, Space& space, State const& state, S dt) {
+  if constexpr (is_source<E>) {
+    constexpr bool marks = Effects::any_pair_contact || Effects::remembers_surfaces;
+    effects.template of<E>().begin_step(space, state, dt, marks ? newborn : std::uint8_t{1});
+  } else if constexpr (has_begin_step<E, Space, State, S>::value) {
+    effects.template of<E>().begin_step(space, state, dt);
+  }
+}
+
+/// The radii of a simulation's particles.
+template <class S>
+struct radius_range {
+  S smallest = 0;  ///< of those that are not negative; infinite if there are none
+  S largest = 0;
+  S small = 0;             ///< the largest of those up to twice the smallest; 0: not known
+  std::size_t larger = 0;  ///< how many are larger than those, if these are known
+
+  /// True if of `n` particles the small ones should have cells of their own: larger ones, which look into all that they
+  /// reach, or at all particles, must be few.
+  bool has_small_apart(std::size_t n, S skin) const {
+    if (!(small > 0 && largest > 2 * small)) return false;
+    double const across = static_cast<double>((largest + small + skin) / small) + 2, all = static_cast<double>(n);
+    return static_cast<double>(larger) * min(all, across * across * across) <= 64 * all;
+  }
+  /// With those of what a source makes, if they have one of their own: of how many it makes nothing is known.
+  radius_range with(S own) const {
+    if (!(own > 0)) return *this;
+    bool const is_small = small > 0 && own >= smallest && own <= 2 * smallest;
+    return {min(smallest, own), max(largest, own), is_small ? max(small, own) : S(0), larger};
+  }
+};
+
+/// The radii that particles have of their own; the largest is infinite if one is not finite. Waits.
+template <class Simulation>
+auto radius_range_of(Simulation const& simulation) {
+  using S = typename Simulation::scalar;
+  radius_range<S> found{std::numeric_limits<S>::infinity(), S(0)};
+  if constexpr (contains<typename Simulation::columns, radius>) {
+    auto const radii = simulation.template to_host<radius>();
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+      S const r = radii[i];
+      found.largest = !is_finite(r) ? std::numeric_limits<S>::infinity() : i == 0 ? r : max(found.largest, r);
+      if (r >= 0) found.smallest = min(found.smallest, r);
+      if (!is_finite(r)) break;
+    }
+    for (S const r : radii) {
+      bool const is_small = r <= 2 * found.smallest;
+      if (is_small) found.small = max(found.small, r);
+      found.larger += !is_small;
+    }
+  }
+  return found;
+}
+
+/// The smallest radii that particles have, of each material too if the scene has materials; of all places, as a source
+/// fills them. Waits then. `is_known`: no effect changes materials.
+template <class Simulation, class S>
+smallest_radii smallest_radii_of(Simulation const& simulation, radius_range<S> const& range, bool is_known) {
+  smallest_radii found(static_cast<double>(range.smallest));
+  if constexpr (contains<typename Simulation::columns, material>) {
+    if (!is_known) return found;
+    for (double& r : found.of_material) r = std::numeric_limits<double>::infinity();
+    std::vector<S> radii;
+    if constexpr (contains<typename Simulation::columns, radius>) radii = simulation.template to_host<radius>();
+    auto const numbers = simulation.template to_host<material>();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      auto const own = radii.empty() ? found.of_all : static_cast<double>(radii[i]);
+      found.largest_material = std::max<int>(found.largest_material, numbers[i]);
+      double& least = found.of_material[std::min<int>(numbers[i], smallest_radii::numbers - 1)];
+      if (own >= 0) least = std::min(least, own);
+    }
+  }
+  return found;
+}
+
+}  // namespace detail
+}  // namespace collide

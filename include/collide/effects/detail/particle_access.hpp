@@ -1,0 +1,108 @@
+/// \file
+/// The columns that an effect names, and a particle as the effect sees it.
+#pragma once
+
+#include <type_traits>
+
+#include <collide/effects/detail/particle.hpp>
+#include <collide/effects/effect.hpp>
+
+namespace collide::detail {
+
+template <class E, class = void>
+struct reads_of {
+  using type = columns<>;
+};
+template <class E>
+struct reads_of<E, std::void_t<typename E::reads>> {
+  using type = typename E::reads;
+};
+template <class E, class = void>
+struct writes_of {
+  using type = columns<>;
+};
+template <class E>
+struct writes_of<E, std::void_t<typename E::writes>> {
+  using type = typename E::writes;
+};
+template <class E, class = void>
+struct optional_writes_of {
+  using type = columns<>;
+};
+template <class E>
+struct optional_writes_of<E, std::void_t<typename E::optional_writes>> {
+  using type = typename E::optional_writes;
+};
+template <class E, class = void>
+struct optional_reads_of {
+  using type = columns<>;
+};
+template <class E>
+struct optional_reads_of<E, std::void_t<typename E::optional_reads>> {
+  using type = typename E::optional_reads;
+};
+template <class E, class = void>
+struct runs_after_of {
+  using type = effects<>;
+};
+template <class E>
+struct runs_after_of<E, std::void_t<typename E::runs_after>> {
+  using type = typename E::runs_after;
+};
+
+template <class E, class = void>
+struct remembers_of {
+  using type = columns<>;
+};
+template <class E>
+struct remembers_of<E, std::void_t<typename E::remembers>> {
+  using type = typename E::remembers::list;
+};
+
+/// By how many of its radii more than its radius a particle sees the mesh for an effect, or for a law of cohesion.
+template <class E, class = void>
+inline constexpr double farther_of = 0;
+template <class E>
+inline constexpr double farther_of<E, std::void_t<decltype(E::farther)>> = E::farther;
+/// By how many of its radii more than its radius a saddle of the surface may be away for an effect or a law.
+template <class E, class = void>
+inline constexpr double farthest_saddle_of = farther_of<E>;
+template <class E>
+inline constexpr double farthest_saddle_of<E, std::void_t<decltype(E::farthest_saddle)>> = E::farthest_saddle;
+
+/// A particle as an effect sees it: with the columns that it names and no others.
+template <class Effect, class Particle>
+class particle_access {
+ public:
+  using scalar = typename Particle::scalar;
+
+  COLLIDE_HD_INLINE explicit particle_access(Particle& p) : p_{p} {}
+
+  /// True if the scene has the column.
+  template <class C>
+  static constexpr bool has = contains<typename Particle::list, C>;
+
+  template <class C>
+  COLLIDE_HD_INLINE decltype(auto) operator[](C) const {
+    constexpr bool writes = contains<typename writes_of<Effect>::type, C> ||
+                            (contains<typename optional_writes_of<Effect>::type, C> && has<C>);
+    static_assert(
+        writes || contains<typename reads_of<Effect>::type, C> ||
+            (contains<typename optional_reads_of<Effect>::type, C> && has<C>),
+        "collide: an effect may use a column only if it names it in its reads or writes, or in its optional_writes "
+        "or optional_reads and the scene has it");
+    if constexpr (writes) {
+      return static_cast<column_value<C, scalar>&>(p_[C{}]);
+    } else {
+      return static_cast<column_value<C, scalar> const&>(p_[C{}]);
+    }
+  }
+
+  COLLIDE_HD_INLINE scalar radius() const { return p_.the_radius; }
+  COLLIDE_HD_INLINE id number() const { return number_of(p_); }
+
+ private:
+  Particle& p_;
+};
+
+}  // namespace collide::detail

@@ -1,0 +1,256 @@
+/// \file
+/// The interface of effects: what happens to a particle in a step of a simulation.
+///
+/// An effect is a small copyable struct with its parameters. It names the columns that it works on,
+///
+///     using reads = columns<...>;            // optional: columns that it looks at
+///     using writes = columns<...>;           // optional: columns that it changes (and may look at)
+///     using optional_writes = columns<...>;  // optional: columns that it changes where other effects name them
+///     using optional_reads = columns<...>;   // optional: columns that it looks at where other effects name them
+///     using runs_after = effects<...>;       // optional: effects that must come before it in the scene's list
+///     using remembers = contact_columns<...>;  // optional: what each contact keeps from step to step
+///
+/// and has one or more of these members, each `COLLIDE_HD`, const, and a template over the type of the particle:
+///
+/// - `is_inactive(particle)`, called first: true if nothing happens to the particle in this step.
+/// - `accelerate(particle&, dt)`, before positions move: changes the velocity.
+/// - `on_mesh_contact(particle&, mesh_contact&, dt)`, for each contact with the mesh: the deepest first, of swept
+///   particles the earliest.
+/// - `after_mesh_contact(particle&, mesh_contact&, dt)`, for the same contact, after the `on_mesh_contact` of all
+///   effects.
+/// - `on_mesh_impulse(particle&, mesh_impulse const&, dt)`, for all that the mesh gives to a particle: of each contact
+///   what all effects have changed, of what `adhesion` holds or what sleeps what the mesh holds it against.
+/// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it, with what effects before
+///   it in the list have changed of the particle. Only with such an effect are neighbours listed.
+/// - `on_mesh_overlap(particle&, self, mesh_overlap const&, dt)`, for each point of the mesh that a particle presses
+/// on,
+///   when particles meet: forces that grow with the overlap, in place of the impulses of `on_mesh_contact`.
+/// - With `remembers`, these two get what the contact remembers before `dt`, and return true if the contact goes on:
+///   `memory[column{}]` is a value, which begins as a particle's would, and `memory.elapsed()` the time since the
+///   contact was looked at before. `on_pair_contact` is then called as long as the contact goes on, also of particles
+///   that no longer overlap.
+/// - `try_wake(particle&, other)`, for each other particle that is active and overlaps it, also if it is not.
+/// - `holds(particle const&, pull, dt)`: true if the mesh holds a particle that is `adhered` against a change of its
+///   velocity by `pull`, relative to the surface, in a step.
+/// - `end_step(particle&, dt)`, at the end of the step.
+///
+/// and on the host `begin_step(space, state, dt)`, which may launch work on the space and must not wait, and
+/// `check_parameters() const`, called first in each step: throws `error` if parameters make no sense;
+/// `longest_step(smallest_radii const&) const`, or of a number, the smallest radius of all: `error` beyond it. One
+/// whose parameters have pointers says `static constexpr bool saves_parameters = false`; one with padding between them
+/// has `for_each_part(f)`, which calls f with each of them; see checkpoint.hpp. One whose `begin_step` does the same to
+/// particles wherever they are says `static constexpr bool begins_on_ranks = true`; see distributed_simulation.cuh. One
+/// with `static constexpr bool asks_forces = true` has `end_step(particle&, forces, dt)` instead: `forces.change(dt)`
+/// is by how much `accelerate` of all effects changes the velocity. One that makes the mesh solid says `static
+/// constexpr bool repels = true`. One that looks at what others do between particles says `static constexpr bool
+/// follows_pair_contacts = true`: in a list it comes behind them, and is called for contacts that they keep up apart.
+/// `on_pair_contact` is called before the other members but `begin_step`, with `velocity_verlet` when all particles
+/// have moved: `self` and `other` are as they were then. What changes is `particle`, so that both of a pair see the
+/// same.
+///
+/// `accelerate` of every effect is called once more for each contact with the mesh, on a copy of the particle, to learn
+/// `mesh_contact::force_dv`: it must depend on nothing but the particle and `dt`, and change nothing but the particle.
+///
+/// A particle is a value in registers: `p[velocity{}]` is a reference to its velocity, `p.radius()` and `p.number()`
+/// are its radius and its number, and `Particle::template has<C>` tells whether the scene has the column C. An effect
+/// that asks for the radius where nothing is touched, in `accelerate` or `end_step`, says
+/// `optional_reads = columns<radius>`. Members are called in the order of the scene's list. What a scene does not name
+/// costs nothing: neither memory nor instructions.
+#pragma once
+
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include <collide/core/contact.hpp>
+#include <collide/core/error.hpp>
+#include <collide/effects/columns.hpp>
+#include <collide/exact/detail/numeric/float_bits.hpp>
+
+namespace collide {
+
+/// A list of effects.
+template <class... Effect>
+struct effects {};
+
+/// The smallest radii of a simulation's particles, by which effects know how long a step may be.
+struct smallest_radii {
+  static constexpr int numbers = 32;  ///< of materials
+
+  double of_all = 0;                 ///< of all particles
+  double of_material[numbers] = {};  ///< of those of each material, the last also of greater numbers; infinite if none
+  int largest_material = -1;         ///< the greatest number of those that particles have; -1: not known
+
+  smallest_radii() = default;
+  /// Nothing is known about materials: there may be particles of each.
+  explicit smallest_radii(double radius) : of_all{radius} {
+    for (double& r : of_material) r = radius;
+  }
+};
+
+namespace detail {
+
+/// Differences in height, in radii, and in slope that are put down to rounding.
+template <class S>
+inline constexpr S contact_tolerance = sizeof(S) == sizeof(float) ? S(1e-5) : S(1e-9);
+
+/// The rounding of a position: at least 1 unit in the last place of its largest coordinate.
+template <class S>
+COLLIDE_HD_INLINE S rounding_at(vec3<S> const& position) {
+  return std::numeric_limits<S>::epsilon() * max_component<S>(detail::absolute(position));
+}
+
+/// The mass of a sphere.
+template <class S>
+COLLIDE_HD_INLINE S sphere_mass(double density, S radius) {
+  return S(4.188790204786391) * S(density) * radius * radius * radius;  // 4 pi / 3
+}
+
+/// Throws `error`, which says what a parameter must be, unless it is that.
+inline void check_parameter(bool is_right, char const* must) {
+  if (!is_right) throw error(std::string("collide: ") + must);
+}
+
+/// True of a finite number that is not negative, and of one above 0.
+inline bool is_amount(double x) { return x >= 0 && is_finite(x); }
+inline bool is_positive(double x) { return x > 0 && is_finite(x); }
+inline bool is_finite(double const (&x)[3]) { return is_finite(x[0]) && is_finite(x[1]) && is_finite(x[2]); }
+
+template <class E, class = void>
+struct checks_parameters : std::false_type {};
+template <class E>
+struct checks_parameters<E, std::void_t<decltype(std::declval<E const&>().check_parameters())>> : std::true_type {};
+
+/// Calls `check_parameters` of an effect, or of a part of one, if it has it.
+template <class E>
+void check_part(E const& effect) {
+  if constexpr (checks_parameters<E>::value) effect.check_parameters();
+}
+
+/// True for an effect whose `end_step` asks what the forces are.
+template <class E, class = void>
+inline constexpr bool asks_forces = false;
+template <class E>
+inline constexpr bool asks_forces<E, std::void_t<decltype(E::asks_forces)>> = E::asks_forces;
+
+/// True for an effect by which space repeats, from its `lower` to its `upper`.
+template <class E, class = void>
+inline constexpr bool repeats_space = false;
+template <class E>
+inline constexpr bool repeats_space<E, std::void_t<decltype(E::repeats_space)>> = E::repeats_space;
+
+/// True for a source of particles.
+template <class E, class = void>
+inline constexpr bool is_source = false;
+template <class E>
+inline constexpr bool is_source<E, std::void_t<decltype(E::makes_particles)>> = E::makes_particles;
+
+/// True if what an effect, or a part of it, has in memory means the same in another process.
+template <class E, class = void>
+inline constexpr bool saves_parameters = true;
+template <class E>
+inline constexpr bool saves_parameters<E, std::void_t<decltype(E::saves_parameters)>> = E::saves_parameters;
+
+/// f(part) for each part of an effect's parameters that has no padding, for checkpoints: what its `for_each_part(f)`
+/// gives, or all of it. Nothing of what is empty, or of what says that it is not saved.
+template <class E, class F, class = void>
+struct gives_parts : std::false_type {};
+template <class E, class F>
+struct gives_parts<E, F, std::void_t<decltype(std::declval<E&>().for_each_part(std::declval<F const&>()))>>
+    : std::true_type {};
+template <class E, class F>
+void for_each_part_of(E& of, F const& f) {
+  if constexpr (std::is_class<E>::value && !saves_parameters<E>) {
+    return;
+  } else if constexpr (gives_parts<E, F>::value) {
+    of.for_each_part(f);
+  } else if constexpr (!std::is_empty<E>::value) {
+    f(of);
+  }
+}
+
+}  // namespace detail
+
+/// The impulse from the mesh to a particle, as `on_mesh_impulse` gets it: changes per mass, in the world.
+template <class S>
+struct mesh_impulse {
+  vec3<S> change;       ///< of the velocity
+  vec3<S> spin_change;  ///< of the angular velocity; 0 without `spin` in the scene
+  vec3<S> centre;       ///< of the particle, before
+  vec3<S> shift;        ///< of the centre, out of the surface, or with a body to which it sticks
+  vec3<S> velocity;     ///< of the particle, after
+  id triangle;          ///< number of the triangle; `no_id` of what is held or sleeps
+  id body;              ///< number of the body whose surface it is; `no_id` of what rests
+};
+
+/// A contact of a particle with the surface of the mesh, as `on_mesh_overlap` gets it: a point that is nearest to the
+/// centre among all around.
+///
+/// Where the surface within the sphere leads from a contact to a deeper one, as in a shallow fold, the two are parts of
+/// one: the contact counts only from its own overlap down to that at the saddle between them. A force that is to be
+/// independent of how a surface is divided, and to make no energy, is that of the contact less what the same law gives
+/// at the saddle.
+template <class S>
+struct mesh_overlap {
+  static constexpr S apart = -std::numeric_limits<S>::max();  ///< `saddle_overlap` where there is no saddle
+
+  vec3<S> normal;                              ///< unit vector to the centre
+  S overlap;                                   ///< radius minus distance, above 0
+  vec3<S> surface_velocity;                    ///< of the surface at the point, in the world: 0 of what rests
+  id triangle;                                 ///< number of the triangle
+  id body;                                     ///< number of the body whose surface it is; `no_id` of what rests
+  vec3<S> saddle_normal = {S(0), S(0), S(0)};  ///< unit vector from the saddle to the centre
+  S saddle_overlap = apart;                    ///< radius minus distance of the saddle: at most `overlap`
+
+  /// True if the contact joins a deeper one.
+  COLLIDE_HD_INLINE bool has_saddle() const { return saddle_overlap > apart; }
+};
+
+/// A particle's contact with the mesh, as `on_mesh_contact` gets it. `depth` is how deep the triangle still is in the
+/// sphere, where the particle is now: an effect that pushes the particle out takes off what it pushed.
+///
+/// If a particle touches several triangles at the same place, each contact knows of those before it. In a groove
+/// the surface of the second can only be left along the first: `push_out` and `repel` do so.
+template <class S>
+struct mesh_contact : contact<S> {
+  vec3<S> force_dv;         ///< what a step's acceleration adds to the velocity
+  vec3<S> start;            ///< the centre when the step began; of a swept particle where it was stopped
+  S elapsed;                ///< for how long the particle has moved from there, in the units of `dt`
+  S remaining;              ///< what is left of the step for a swept particle, in the units of `dt`; else 0
+  vec3<S> velocity_before;  ///< the particle's velocity before this contact
+  S approach_speed;         ///< speed towards the surface, before the contacts at this place changed it
+  vec3<S>
+      wedge_direction;  ///< displacement that raises the particle above the surface by 1, and leaves it on those before
+  S unconstrained_dv;   ///< change of speed along the normal up to which no contact before is pressed on
+  S normal_impulse;     ///< what the effects have added to the velocity along the normal: 0, or what repels
+  S friction_reserve;   ///< impulse along the surface that static friction has in reserve; 0 where the particle slides
+  bool is_resting;      ///< an effect has found that the particle rests on the surface, or slides on it
+  vec3<S> surface_velocity;  ///< of the surface at the point, in the world: 0 of what rests; see bodies.hpp
+  id body;                   ///< number of the body whose surface it is; `no_id` of what rests
+
+  /// Raises a particle above the surface by `height`.
+  COLLIDE_HD_INLINE void push_out(vec3<S>& position, S height) {
+    position += wedge_direction * height;
+    this->depth -= height;
+  }
+
+  /// Makes a particle leave the surface faster by `change` > 0.
+  COLLIDE_HD_INLINE void repel(vec3<S>& velocity, S change) {
+    S const direct = detail::min(change, unconstrained_dv), wedged = change - direct;
+    velocity += this->normal * direct + wedge_direction * wedged;
+    normal_impulse += direct + wedged * detail::dot(wedge_direction, wedge_direction);
+  }
+
+  /// Stops a particle that something holds: its velocity is 0, and it is where it was when the step began, raised or
+  /// lowered to the surface if it was not there to rounding. So what is held does not creep.
+  template <class Particle>
+  COLLIDE_HD_INLINE void hold(Particle& p) {
+    p[velocity{}] = vec3<S>(S(0), S(0), S(0));
+    this->depth += detail::dot(this->normal, vec3<S>(p[position{}] - start));
+    p[position{}] = start;
+    S const rounding = detail::contact_tolerance<S> * p.radius() + detail::rounding_at(start);
+    if (this->depth > rounding || this->depth < -rounding) push_out(p[position{}], this->depth);
+  }
+};
+
+}  // namespace collide

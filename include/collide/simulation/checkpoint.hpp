@@ -1,0 +1,406 @@
+/// \file
+/// Saves a simulation to a file, and goes on from it in another process.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <istream>
+#include <ostream>
+#include <string>
+#include <tuple>
+#include <typeinfo>
+#include <utility>
+#include <vector>
+
+#include <cxxabi.h>
+
+#include <collide/simulation.cuh>
+#include <collide/simulation/detail/checkpoint_format.hpp>
+
+namespace collide {
+
+namespace detail {
+
+/// The name of a type, such as "collide::gravity".
+template <class T>
+std::string type_name() {
+  int status = 0;
+  char* const readable = abi::__cxa_demangle(typeid(T).name(), nullptr, nullptr, &status);
+  std::string const name = status == 0 ? readable : typeid(T).name();
+  std::free(readable);
+  return name;
+}
+
+/// The numbers of a simulation besides its columns and the parameters of its effects.
+template <class S, bool HasSource>
+struct saved_numbers {
+  std::uint64_t triangles = 0, places = 0, placed = 0;
+  S common_radius = 0, smallest_radius = 0, largest_radius = 0;
+  double time = 0, clock[clock_size] = {};
+  std::uint8_t reverse_order = 0, next_meeting = 0, bodies_are_placed = 0;
+
+  meeting meeting_between_steps() const { return static_cast<meeting>(min(int{next_meeting}, int(meeting::of_woken))); }
+
+  /// Writes or reads all of them.
+  template <class Archive>
+  void pass(Archive& archive) {
+    archive.value("triangles", triangles);
+    archive.value("places", places);
+    archive.value("placed", placed);
+    archive.value("common radius", common_radius);
+    archive.value("smallest radius", smallest_radius);
+    archive.value("largest radius", largest_radius);
+    archive.value("time", time);
+    archive.value("time on the device", clock[0]);
+    if (HasSource) archive.value("particles of the source", clock[clock_made]);
+    if (HasSource) archive.value("part of its next one", clock[clock_part]);
+    if (HasSource) archive.value("those that overlapped others", clock[clock_overlapping]);
+    if (HasSource) archive.value("those that were not born", clock[clock_not_born]);
+    archive.value("reverse order", reverse_order);
+    archive.value("next meeting", next_meeting);
+    archive.value("bodies are placed", bodies_are_placed);
+  }
+};
+
+/// A simulation's state: how it becomes blocks of a checkpoint, and is made of them.
+template <class Detector, class... Effect>
+class checkpoint {
+  using simulated = simulation<Detector, Effect...>;
+  using S = typename simulated::scalar;
+  using column_list = typename simulated::columns;
+
+ public:
+  using numbers_type = saved_numbers<S, (is_source<Effect> || ...)>;
+  /// Writes all blocks. A column is on the host while it is written.
+  static void write(simulated const& from, std::ostream& stream, std::string const& name = "the stream") {
+    if (!from.is_set_) throw error("collide: save: the simulation has no particles: call set before it");
+    checkpoint_writer to(stream, name);
+    numbers_type numbers{from.mesh_.size(),
+                         from.state_.size,
+                         from.state_.placed,
+                         from.state_.common_radius,
+                         from.radii_.smallest,
+                         from.radii_.largest,
+                         from.time_,
+                         {},
+                         from.reverse_order_,
+                         static_cast<std::uint8_t>(from.next_meeting_),
+                         from.bodies_.are_placed()};
+    if constexpr (simulated::has_begin_step) from.space_.copy_to_host(numbers.clock, from.state_.time, clock_size);
+    begin(to, numbers, from.effects_);
+    for_each_column(
+        [&](auto column) { write_column<decltype(column)>(to, from.template to_host<decltype(column)>()); });
+    end(to, from);
+    saved_contacts<S> pairs, surfaces;
+    if constexpr (remembers_pairs) pairs = contacts_between_particles(from);
+    if constexpr (remembers_surfaces) surfaces = from.surfaces_.save_contacts(from.space_, from.state_.size);
+    write_contacts(to, pairs, surfaces);
+    to.finish();
+  }
+
+  /// The memory of contacts between particles. Waits.
+  static saved_contacts<S> contacts_between_particles(simulated const& from) {
+    from.check_contacts();
+    return from.neighbours_.save_contacts(from.space_, from.state_.size);
+  }
+
+  /// Writes what is before the columns; then each column follows, and `end`.
+  template <class Effects>
+  static void begin(checkpoint_writer& to, numbers_type& numbers, Effects const& effects) {
+    pass_types(to);
+    numbers.pass(to);
+    (write_parameters<Effect>(to, effects), ...);
+  }
+  template <class F>
+  static void for_each_column(F const& f) {
+    for_each_in(column_list(), f);
+  }
+  template <class C>
+  static void write_column(checkpoint_writer& to, std::vector<column_element<C, S>> const& values) {
+    to.block(column_name<C>(), values.data(), values.size());
+  }
+  template <class Simulation>
+  static void end(checkpoint_writer& to, Simulation const& from) {
+    if constexpr (simulated::has_bodies) {
+      from.bodies().for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
+        std::vector<unsigned char> copy(n * sizeof(*elements));
+        from.space().copy_to_host(copy.data(), reinterpret_cast<unsigned char const*>(elements), copy.size());
+        to.block(name, copy.data(), copy.size());
+      });
+    }
+  }
+
+  /// Writes what contacts remember, behind all else.
+  static void write_contacts(checkpoint_writer& to, saved_contacts<S> const& pairs, saved_contacts<S> const& surfaces) {
+    if constexpr (remembers_pairs) write_contacts(to, "contacts between particles", pairs);
+    if constexpr (remembers_surfaces) write_contacts(to, "contacts with the mesh", surfaces);
+  }
+
+  checkpoint(simulated const& into, std::istream& stream) : checkpoint(into.mesh_.size(), into, stream) {}
+  /// Reads and checks all blocks, for a simulation with so many triangles and such bodies. Changes nothing.
+  template <class Simulation>
+  checkpoint(std::size_t triangles, Simulation const& into, std::istream& stream) {
+    checkpoint_reader from(stream);
+    pass_types(from);
+    numbers_.pass(from);
+    if (simulated::asks_mesh && numbers_.triangles != triangles) {
+      from.refuse("triangles", "the file has " + std::to_string(numbers_.triangles) + ", the mesh of the simulation " +
+                                   std::to_string(triangles));
+    }
+    if (numbers_.places >= no_id) from.refuse("places", "a simulation has at most 2^32 - 2 particles");
+    if (numbers_.placed > numbers_.places) from.refuse("placed", "more than there are places");
+    (read_parameters<Effect>(from), ...);
+    read_columns(from, column_list());
+    if constexpr (simulated::has_bodies) {
+      into.bodies().for_each_saved([&](std::string const& name, auto const* elements, std::size_t n) {
+        bodies_.push_back(from.block<unsigned char>(name, n * sizeof(*elements)));
+      });
+    }
+    if constexpr (remembers_pairs) read_contacts(from, "contacts between particles", contact_width, pair_contacts_);
+    if constexpr (remembers_surfaces)
+      read_contacts(from, "contacts with the mesh", contact_width + 3, surface_contacts_);
+    from.finish();
+  }
+
+  numbers_type const& numbers() const { return numbers_; }
+  saved_contacts<S> const& pair_contacts() const { return pair_contacts_; }
+  saved_contacts<S> const& surface_contacts() const { return surface_contacts_; }
+  template <class C>
+  std::vector<column_element<C, S>> const& column() const {
+    return std::get<column_of<C>>(columns_).values;
+  }
+
+  /// Gives the simulation this state.
+  void restore(simulated& to) const {
+    auto& space = to.space_;
+    auto const places = static_cast<std::size_t>(numbers_.places);
+    to.reserve(places);
+    auto state = to.memory_.state(places, static_cast<std::size_t>(numbers_.placed), numbers_.common_radius);
+    if constexpr (simulated::has_begin_step) {
+      state.time = to.device_time_.data();
+      space.copy_from_host(state.time, numbers_.clock, clock_size);
+    }
+    space.for_each(padded_size(places), init_particles<S, column_list>{
+                                            state, spheres_xyz<S>(nullptr, 0, numbers_.common_radius), nullptr, S(0)});
+    restore_columns(space, state, 0, 0, places);
+    restore_parameters(to.effects_);
+    to.state_ = state;
+    to.time_ = numbers_.time;
+    to.reverse_order_ = numbers_.reverse_order != 0;
+    to.next_meeting_ = numbers_.meeting_between_steps();
+    to.radii_ = {numbers_.smallest_radius, numbers_.largest_radius, S(0)};
+    if constexpr (simulated::effects_type::any_pair_contact) to.neighbours_.clear(space, places, to.radii_);
+    to.is_set_ = true;
+    to.know_smallest();
+    to.prepare();
+    restore_bodies(to);
+    to.bodies_.place(numbers_.bodies_are_placed != 0);
+    if constexpr (remembers_pairs) to.neighbours_.restore_contacts(space, pair_contacts_);
+    if constexpr (remembers_surfaces) to.surfaces_.restore_contacts(space, surface_contacts_);
+  }
+
+  /// Gives places from `place` on the columns of `n` particles from number `first` on.
+  template <class Space, class State>
+  void restore_columns(Space const& space, State const& state, std::size_t place, std::size_t first,
+                       std::size_t n) const {
+    for_each_column([&](auto c) {
+      constexpr auto width = std::size_t(column_layout<decltype(c), S>::width);
+      space.copy_from_host(state.at(c) + width * place, column<decltype(c)>().data() + width * first, width * n);
+    });
+  }
+  template <class Effects>
+  void restore_parameters(Effects& to) const {
+    (restore_parameters_of<Effect>(to), ...);
+  }
+  template <class Simulation>
+  void restore_bodies(Simulation& to) const {
+    if constexpr (simulated::has_bodies) {
+      std::size_t next = 0;
+      to.bodies().for_each_saved([&](std::string const&, auto* elements, std::size_t) {
+        auto const& saved = bodies_[next++];
+        to.space().copy_from_host(reinterpret_cast<unsigned char*>(elements), saved.data(), saved.size());
+      });
+    }
+  }
+
+ private:
+  /// The type of the simulation: written, or compared with what was.
+  template <class Archive>
+  static void pass_types(Archive& archive) {
+    archive.text("scalar", type_name<S>());
+    archive.text("narrow phase", type_name<typename simulated::narrow_phase>());
+    std::string list;
+    ((list += (list.empty() ? "" : ", ") + type_name<Effect>()), ...);
+    archive.text("effects", list);
+  }
+
+  template <class E>
+  static std::string parameters_name() {
+    return "parameters of " + type_name<E>();
+  }
+  template <class C>
+  static std::string column_name() {
+    return "column " + type_name<C>();
+  }
+
+  /// An effect's parameters are bytes in a checkpoint if it has some, and does not say otherwise.
+  template <class E>
+  static constexpr bool has_bytes = [] {
+    static_assert(std::is_trivially_destructible<E>::value || !saves_parameters<E>,
+                  "collide: save and load: the parameters of this effect are no plain values: what they own cannot be "
+                  "saved; give it a member static constexpr bool saves_parameters = false, and set them after load");
+    return saves_parameters<E> && !std::is_empty<E>::value;
+  }();
+
+  /// The bytes of an effect's parameters, or of their parts if there is padding between them.
+  template <class E>
+  static std::vector<unsigned char> bytes_of_parameters(E const& effect) {
+    std::vector<unsigned char> bytes;
+    for_each_part_of(const_cast<E&>(effect), [&](auto const& part) {  // reads them only
+      std::size_t const before = bytes.size();
+      bytes.resize(before + sizeof part);
+      std::memcpy(bytes.data() + before, &part, sizeof part);
+    });
+    return bytes;
+  }
+  template <class E>
+  static std::size_t size_of_parameters() {
+    if constexpr (gives_parts<E, no_part>::value) {
+      return bytes_of_parameters(E()).size();
+    } else {
+      return sizeof(E);
+    }
+  }
+  struct no_part {
+    template <class Part>
+    void operator()(Part&) const {}
+  };
+
+  template <class E, class Effects>
+  static void write_parameters(checkpoint_writer& to, Effects const& effects) {
+    if constexpr (has_bytes<E>) {
+      auto const bytes = bytes_of_parameters(effects.template of<E>());
+      to.block(parameters_name<E>(), bytes.data(), bytes.size());
+    }
+  }
+  template <class E>
+  void read_parameters(checkpoint_reader& from) {
+    if constexpr (has_bytes<E>) {
+      std::get<bytes_of<E>>(parameters_).values =
+          from.block<unsigned char>(parameters_name<E>(), size_of_parameters<E>());
+    }
+  }
+  template <class E, class Effects>
+  void restore_parameters_of(Effects& to) const {
+    if constexpr (has_bytes<E>) {
+      unsigned char const* from = std::get<bytes_of<E>>(parameters_).values.data();
+      for_each_part_of(to.template of<E>(), [&](auto& part) {
+        std::memcpy(static_cast<void*>(&part), from, sizeof part);
+        from += sizeof part;
+      });
+    }
+  }
+
+  using remembered = typename simulated::effects_type::remembered;
+  static constexpr bool remembers_pairs = remembered::size != 0 && simulated::effects_type::any_pair_contact;
+  static constexpr bool remembers_surfaces = simulated::effects_type::remembers_surfaces;
+  static constexpr std::uint64_t contact_width = std::uint64_t(contact_values<S, remembered>::width);
+
+  static void write_contacts(checkpoint_writer& to, std::string const& name, saved_contacts<S> const& saved) {
+    to.block(name, saved.counts.data(), saved.counts.size());
+    to.block("others of " + name, saved.others.data(), saved.others.size());
+    to.block("values of " + name, saved.values.data(), saved.values.size());
+  }
+  void read_contacts(checkpoint_reader& from, std::string const& name, std::uint64_t width,
+                     saved_contacts<S>& saved) const {
+    saved.counts = from.block<std::uint32_t>(name, numbers_.places);
+    std::uint64_t all = 0;
+    for (std::uint32_t const count : saved.counts) all += count;
+    saved.others = from.block<id>("others of " + name, all);
+    saved.values = from.block<S>("values of " + name, all * width);
+  }
+
+  template <class... C, class F>
+  static void for_each_in(columns<C...>, F const& f) {
+    (f(C{}), ...);
+  }
+  template <class... C>
+  void read_columns(checkpoint_reader& from, columns<C...>) {
+    ((std::get<column_of<C>>(columns_).values = from.block<column_element<C, S>>(
+          column_name<C>(), numbers_.places * std::uint64_t{column_layout<C, S>::width})),
+     ...);
+  }
+  template <class E>
+  struct bytes_of {
+    std::vector<unsigned char> values;
+  };
+  template <class C>
+  struct column_of {
+    std::vector<column_element<C, S>> values;
+  };
+  template <class List>
+  struct table_of;
+  template <class... C>
+  struct table_of<columns<C...>> {
+    using type = std::tuple<column_of<C>...>;
+  };
+
+  numbers_type numbers_;
+  saved_contacts<S> pair_contacts_, surface_contacts_;
+  std::tuple<bytes_of<Effect>...> parameters_;
+  std::vector<std::vector<unsigned char>> bodies_;  ///< poses, and what else is known of them
+  typename table_of<column_list>::type columns_;
+};
+
+}  // namespace detail
+
+/// Writes all that the next steps of a simulation depend on: columns, time, poses of bodies, and the parameters of the
+/// effects. The mesh is not in it, nor the space: what was saved on the host can be loaded on a GPU. A stream must be
+/// binary.
+///
+/// An effect's parameters are saved as the bytes that they are. One with pointers, which mean nothing in another
+/// process, has a member `static constexpr bool saves_parameters = false`, and is left out; so has a source of
+/// `emit_from` and a field of `wind`.
+///
+/// Throws `error` if there are no particles yet, or the stream or the file does not take it. Waits. O(particles); takes
+/// memory of the host for a copy of the largest column.
+template <class Detector, class... Effect>
+void save(simulation<Detector, Effect...> const& from, std::ostream& to) {
+  detail::checkpoint<Detector, Effect...>::write(from, to);
+}
+
+/// Writes a checkpoint to a file, first under the name `path` + ".part": an older file stays until the new one is
+/// complete, which has its permissions. If `path` is a link, that is the file that it leads to.
+template <class Detector, class... Effect>
+void save(simulation<Detector, Effect...> const& from, std::string const& path) {
+  detail::checkpoint_file file(path);
+  detail::checkpoint<Detector, Effect...>::write(from, file.stream(), path);
+  file.complete();
+}
+
+/// Gives a simulation the state that `save` has written: the particles that it had are gone, the parameters of its
+/// effects are those of the file. Steps from here on give the bits that they would have given there. Comes after
+/// `set_mesh` where an effect touches the mesh, with the mesh that the steps had there, of which only the number of
+/// triangles is compared. A graph that was captured before is good no longer.
+///
+/// Throws `error`, which names what is wrong, if the file is cut off or damaged, or of another version of the format,
+/// another scalar, narrow phase or list of effects, or another number of triangles: the simulation is as it was. If the
+/// space has no memory for it, it has no particles, as after a `set` that finds none. Reads no farther than the
+/// checkpoint goes. Waits. O(particles); takes memory of the host for a copy of all columns.
+template <class Detector, class... Effect>
+void load(simulation<Detector, Effect...>& into, std::istream& from) {
+  detail::checkpoint<Detector, Effect...>(into, from).restore(into);
+}
+
+/// Reads a checkpoint from a file, which has nothing else in it. Throws `error` if it cannot be read, and what `load`
+/// of a stream throws.
+template <class Detector, class... Effect>
+void load(simulation<Detector, Effect...>& into, std::string const& path) {
+  detail::read_checkpoint_file(path, [&](std::istream& file) {
+    return detail::checkpoint<Detector, Effect...>(into, file);
+  }).restore(into);
+}
+
+}  // namespace collide

@@ -1,0 +1,179 @@
+/// \file
+/// A quick test of several particles that rest whether they may touch a body: in the coordinates' own precision, with a
+/// bound on how far the place that it finds in a body's frame is from the one that contacts are computed with.
+///
+/// Proof of the bound. Let u be the unit roundoff of the scalar and d = 2^-53 that of double, A the linear map of
+/// a body's unit quaternion, P its position, c the centre of its bounding sphere as `body_frame` has it, x a particle's
+/// centre, v = x - c, and m = A (c - P). Contacts are computed at p, which is A (x - P) in double, rounded. A's formula
+/// has fewer than 32 roundings that matter, so |p - A (x - P)| <= 32 d (|v| + |m|) + u (|v| + |m|). The quick place is
+/// q = R (x - c) + s in the scalar: R is A's matrix, whose elements have errors below 5 d before they are rounded, and
+/// s is m, computed as p is. With |R|, the matrix of absolute values, at most sqrt(3) long:
+///   - rounding x - c, R and s costs u |v|, (sqrt(3) u + 12 d) |v| and (u + 32 d) |m|;
+///   - three products and three sums, fused or not, cost 4 u (sqrt(3) |v| + |m|).
+/// In all |q - p| <= u (11 |v| + 6 |m|) + d (44 |v| + 64 |m|), to first order, and that is below
+/// `float_frame_error` (|v| + |m|). The position of the body is not in it: only its place in its own frame is.
+///
+/// If a sphere of radius r touches a triangle at p, one of radius r + |q - p| does at q. So it is in a cell that has
+/// triangles if the grid serves spheres of that radius: grids of scenes with bodies have that much `room`. Of particles
+/// that are not far, |v| <= (1 + 2e-5) (reach + r). That, what is above the first order, and the rounding of the radius
+/// that the grid is made for take less than the 5 u by which `float_frame_error` exceeds 11 u.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include <collide/broad/detail/grid/occupancy.hpp>
+#include <collide/simulation/detail/bodies/moving_mesh.hpp>
+
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
+namespace collide::detail {
+
+template <class S>
+inline constexpr S float_frame_error = 16 * ieee_traits<S>::unit_roundoff + S(128 * 0x1p-53);
+
+/// How much larger than the particles' the radius is that the grid of a mesh with bodies is made for. `extent` is the
+/// largest distance of what a body has from the origin of its frame.
+template <class S>
+S float_frame_margin(double extent) {
+  return static_cast<S>(16 * static_cast<double>(float_frame_error<S>) * extent);
+}
+
+/// A body's frame at the end of a step.
+template <class S>
+struct alignas(16) float_frame {
+  S centre[3], reach;  ///< no particle of radius r whose distance is above 1 + 2e-5 times reach + r touches the body
+  S turn[3][3];
+  S shift[3];  ///< where `centre` is in the frame
+  S slack;  ///< how far places may be off, beside `float_frame_error` times the radius, of particles that are not far
+
+  /// The frame of what rests: all places are exact, and none is far.
+  static float_frame at_rest() {
+    return {{0, 0, 0}, std::numeric_limits<S>::infinity(), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}, 0};
+  }
+
+  /// The frame of a discrete step, in which `f` has the bounding sphere as it is at the end.
+  static COLLIDE_HD_INLINE float_frame of(body_frame<S> const& f) {
+    float_frame q;
+    double const w = f.now.w, a[3] = {f.now.axis.x(), f.now.axis.y(), f.now.axis.z()};
+    double const twist[3][3] = {{0, a[2], -a[1]}, {-a[2], 0, a[0]}, {a[1], -a[0], 0}};
+    vec3<double> const local = f.now.to_local(f.centre.template cast<double>());
+    for (int i = 0; i < 3; ++i) {
+      int const j = (i + 1) % 3, k = (i + 2) % 3;
+      q.turn[i][i] = static_cast<S>(1 - 2 * (mul_rn(a[j], a[j]) + mul_rn(a[k], a[k])));
+      q.turn[i][j] = static_cast<S>(2 * (mul_rn(a[i], a[j]) + mul_rn(w, twist[i][j])));
+      q.turn[i][k] = static_cast<S>(2 * (mul_rn(a[i], a[k]) + mul_rn(w, twist[i][k])));
+      q.centre[i] = f.centre[i];
+      q.shift[i] = static_cast<S>(local[i]);
+    }
+    q.reach = f.reach;
+    // where squares vanish a particle may seem not to be far
+    constexpr S least = std::numeric_limits<S>::min(), most = std::numeric_limits<S>::max();
+    double const tiny = 4 * sqrt_rn(static_cast<double>(least)), far = sqrt_rn(dot(local, local));
+    double const slack = mul_rn(static_cast<double>(float_frame_error<S>), static_cast<double>(f.reach) + far + tiny);
+    bool const has_squares = static_cast<double>(f.reach) + far < sqrt_rn(static_cast<double>(most)) / 4;
+    q.slack =
+        has_squares ? static_cast<S>(slack + 32 * static_cast<double>(least)) : std::numeric_limits<S>::infinity();
+    return q;
+  }
+
+  /// Which of some particles of one radius are not far, and how many. Without branches, for the CPU's vector unit.
+  template <int N>
+  COLLIDE_HD_INLINE std::uint32_t find_close(S const (&x)[N], S const (&y)[N], S const (&z)[N], S radius,
+                                             std::uint32_t (&close)[N]) const {
+    S const at_least = mul_rn(reach + radius, S(1 + 2e-5)), limit = mul_rn(at_least, at_least);
+    std::uint32_t count = 0;
+    for (int k = 0; k < N; ++k) {
+      S const dx = x[k] - centre[0], dy = y[k] - centre[1], dz = z[k] - centre[2];
+      close[k] = mul_add(dx, dx, mul_add(dy, dy, mul_rn(dz, dz))) > limit ? 0u : 1u;
+      count += close[k];
+    }
+    return count;
+  }
+
+  /// The places of some particles in the frame.
+  template <int N>
+  COLLIDE_HD_INLINE void to_local(S const (&x)[N], S const (&y)[N], S const (&z)[N], S (&at)[3][N]) const {
+    for (int k = 0; k < N; ++k) {
+      S const dx = x[k] - centre[0], dy = y[k] - centre[1], dz = z[k] - centre[2];
+      at[0][k] = place(0, dx, dy, dz), at[1][k] = place(1, dx, dy, dz), at[2][k] = place(2, dx, dy, dz);
+    }
+  }
+
+ private:
+  COLLIDE_HD_INLINE S place(int i, S dx, S dy, S dz) const {
+    return mul_add(turn[i][0], dx, mul_add(turn[i][1], dy, mul_add(turn[i][2], dz, shift[i])));
+  }
+};
+
+/// The frames of a mesh with bodies, for spheres at rest.
+template <class S>
+struct float_frames {
+  float_frame<S> const* frames;
+  S room;  ///< how much larger than the particles' the radius is that the grid has to serve
+
+  /// True if a particle's place may be off by no more than there is room for, but for how far bodies are.
+  COLLIDE_HD_INLINE bool serve(S radius) const {
+    return mul_rn(float_frame_error<S>, radius) <= room && is_finite(mul_rn(4 * radius, radius));
+  }
+
+  /// Sets near[k] for those of some particles that may touch a triangle of the frames from `first` to before `end`:
+  /// those in cells with triangles (`occupancy`). False if that is not known, as a place may be too far off.
+  template <int N>
+  COLLIDE_HD_INLINE bool test_occupied(occupancy_view<S> const& occupancy, int first, int end, S const (&x)[N],
+                                       S const (&y)[N], S const (&z)[N], S radius, bool (&near)[N]) const {
+    S const most = room - mul_rn(float_frame_error<S>, radius);
+    for (int k = 0; k < N; ++k) near[k] = false;
+    COLLIDE_NO_UNROLL
+    for (int i = first; i < end; ++i) {
+      float_frame<S> const& f = frames[i];
+      if (!(f.slack <= most)) return false;
+      std::uint32_t close[N];
+      std::uint32_t const count = f.find_close(x, y, z, radius, close);
+      if (count == 0) continue;
+      if constexpr (N >= 64) {
+        if (count <= N / 4) {
+          test_few<N / 4>(f, occupancy, x, y, z, close, near);
+          continue;
+        }
+      }
+      S at[3][N];
+      f.to_local(x, y, z, at);
+      auto const places = occupancy.places_of(at[0], at[1], at[2]);
+      for (int k = 0; k < N; ++k) close[k] &= places.inside[k];
+      for (int k = 0; k < N; ++k) {
+        if (close[k] != 0 && occupancy.is_occupied(places.cells[k])) near[k] = true;
+      }
+    }
+    return true;
+  }
+
+ private:
+  /// Marks those that are close, of which there are at most `M`: they are gathered first.
+  template <int M, int N>
+  COLLIDE_HD_INLINE static void test_few(float_frame<S> const& f, occupancy_view<S> const& occupancy, S const (&x)[N],
+                                         S const (&y)[N], S const (&z)[N], std::uint32_t const (&close)[N],
+                                         bool (&near)[N]) {
+    int numbers[M + 1], n = 0;  // one more: each is written, and kept if it is close
+    for (int k = 0; k < N; ++k) {
+      numbers[n] = k;
+      n += static_cast<int>(close[k]);
+    }
+    S few[3][M], at[3][M];
+    for (int j = 0; j < M; ++j) {
+      int const k = numbers[j < n ? j : 0];
+      few[0][j] = x[k], few[1][j] = y[k], few[2][j] = z[k];
+    }
+    f.to_local(few[0], few[1], few[2], at);
+    auto const places = occupancy.places_of(at[0], at[1], at[2]);
+    for (int j = 0; j < n; ++j) {
+      if (places.inside[j] != 0 && occupancy.is_occupied(places.cells[j])) near[numbers[j]] = true;
+    }
+  }
+};
+
+}  // namespace collide::detail
+
+#pragma GCC diagnostic pop

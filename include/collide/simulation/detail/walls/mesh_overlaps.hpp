@@ -1,0 +1,434 @@
+/// \file
+/// Kernel bodies in which particles press on the mesh that they overlap: contacts with forces, and with memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <collide/effects/detail/effect_list.hpp>
+#include <collide/narrow/detail/intersects.hpp>
+#include <collide/simulation/detail/bodies/bodies_ref.hpp>
+#include <collide/simulation/detail/step/mesh_ledger.hpp>
+#include <collide/simulation/detail/walls/mesh_kicks.hpp>
+#include <collide/simulation/detail/walls/overlap_list.hpp>
+#include <collide/simulation/detail/walls/surface_memory.hpp>
+
+// the numbers of elements of small arrays are int
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+
+namespace collide::detail {
+
+/// Kernel functor of `for_each` over particles: what a source has just made has not touched the mesh, though the one
+/// whose place it takes may have. Takes the mark off where nothing else needs it.
+template <class Effects, class State>
+struct forget_surfaces {
+  State state;
+  std::uint8_t* counts;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    std::uint8_t& mark = state.at(alive{})[i];
+    if (mark < newborn) return;
+    counts[i] = 0;
+    if constexpr (!Effects::any_pair_contact) mark = 1;
+  }
+};
+
+/// How far from its centre a particle sees the mesh.
+template <class Effects, class S>
+COLLIDE_HD_INLINE S reach_of(S radius) {
+  if constexpr (Effects::farther > 0) return radius * S(1 + Effects::farther);
+  return radius;
+}
+
+/// Kernel functor of `for_each` over particles: wakes those that sleep where a body that moves may touch them.
+template <class S, class Effects, class Triangles>
+struct wake_by_bodies {
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+  Triangles triangles;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    particle<S, typename Effects::inactive_reads> p;
+    state.load(p, i);
+    if (!effects.is_inactive(p) || !effects.only_sleeps(p)) return;
+    S const* const x = state.at(position{}) + 3 * i;
+    sphere<S> const here{{x[0], x[1], x[2]}, reach_of<Effects>(state.radius_at(i))};
+    if (!triangles.opened().misses_moving_bodies(here)) state.at(slow_steps{})[i] = 0;
+  }
+};
+
+/// Which particles may press on the mesh, in any order.
+struct pressing_list {
+  std::uint32_t* count;
+  id* numbers;
+};
+
+/// Kernel functor of `for_each` over particles: lists those that may press on the mesh. These are few, and much work.
+template <class S, class Effects, class Triangles, class Memory>
+struct list_pressing {
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+  Triangles triangles;
+  Memory memory;
+  pressing_list found;
+  meeting what;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    if (what == meeting::of_woken && !(is_just_woken(state, i) && has_no_mesh_kicks(state, i))) return;
+    forget_mesh_kicks(state, i);
+    if constexpr (Effects::any_inactive) {
+      particle<S, typename Effects::inactive_reads> p;
+      state.load(p, i);
+      if (effects.is_inactive(p)) return;
+    }
+    particle<S, union_of<columns<position>, intersection_of<columns<radius>, typename Effects::all>>> p;
+    state.load(p, i);
+    sphere<S> const shape{p[position{}], reach_of<Effects>(p.the_radius)};
+    if (is_finite(shape.centre) && !triangles.opened().empty(shape)) {
+      found.numbers[fetch_add(found.count, 1u)] = static_cast<id>(i);
+    } else if constexpr (Effects::remembered::size != 0) {
+      if (what == meeting::in_step && memory.counts[i] != 0) memory.counts[i] = 0;
+    }
+  }
+};
+
+/// Memory of a device for particles that overlap more triangles than a list has room for.
+struct overlap_pool {
+  overlap_item* items;
+  std::uint32_t capacity;
+  std::uint32_t* used;     ///< in this step
+  std::uint32_t* lacking;  ///< not 0: there was too little once
+};
+
+#if !defined(__CUDA_ARCH__)
+/// Memory of a thread of the host, until it asks again.
+inline overlap_item* overlap_items_of_thread(std::size_t n) {
+  static thread_local std::vector<overlap_item> items;
+  if (items.size() < n) items.resize(n);
+  return items.data();
+}
+#endif
+
+/// Kernel functor of `for_each` over as many as there are particles: those on the list press on the mesh.
+template <class S, class Effects, class Triangles, class Memory>
+struct press_on_mesh {
+  using effects_type = Effects;
+  using scalar = S;
+  using remembered = typename Effects::remembered;
+  static constexpr bool has_memory = remembered::size != 0;
+
+  particle_state<S, typename Effects::all> state;
+  Effects effects;
+  Triangles triangles;
+  Memory memory;
+  pressing_list pressing;
+  overlap_pool pool;
+  S dt;
+  meeting what;
+
+  COLLIDE_HD void operator()(std::size_t k) const {
+    if (k < *pressing.count) press_with(pressing.numbers[k]);
+  }
+
+ protected:
+  using integrated = particle<S, typename Effects::overlap_reads>;
+  using values_type = contact_values<S, remembered>;
+  static constexpr int most = surface_memory_ref<S, remembered>::room;
+
+  COLLIDE_HD_INLINE void press_with(std::size_t i) const {
+    S const* const x = state.at(position{}) + 3 * i;
+    sphere<S> const shape{{x[0], x[1], x[2]}, state.radius_at(i)};
+    Triangles const open = triangles.opened();
+    overlap_list near(tolerance_of(shape));
+    find(open, shape, near);
+    int before = 0;
+    if constexpr (has_memory) before = memory.counts[i];
+    if (near.size != 0) return press(open, i, near, before);
+    if constexpr (has_memory) {
+      if (what == meeting::in_step && before != 0) memory.counts[i] = 0;
+    }
+  }
+
+  /// Points of the surface that are so near to each other are one.
+  static COLLIDE_HD_INLINE double tolerance_of(sphere<S> const& shape) {
+    double const rounding = 4 * static_cast<double>(std::numeric_limits<S>::epsilon());
+    return 1e-6 * static_cast<double>(shape.radius) + rounding * static_cast<double>(max_norm(shape.centre));
+  }
+
+  /// Lists the triangles that a sphere overlaps, and finds its contacts among them.
+  COLLIDE_HD void find(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
+    sphere<S> const wider{shape.centre, reach_of<Effects>(shape.radius)};
+    list_overlaps(open, wider, near);
+    if (near.is_full()) {
+      if (overlap_item* const items = items_for(near.added)) {
+        near.use(items);
+        list_overlaps(open, wider, near);
+        near.sort();
+      }
+    }
+    near.find_contacts(static_cast<double>(shape.radius) * (1 + Effects::farthest_saddle),
+                       [&](overlap_item const& item) { return corners_of(open, shape, item); });
+  }
+
+  COLLIDE_HD overlap_item* items_for(std::uint32_t n) const {
+#if defined(__CUDA_ARCH__)
+    std::uint32_t const first = fetch_add(pool.used, n);
+    if (first < pool.capacity && n <= pool.capacity - first) return pool.items + first;
+    store_relaxed(pool.lacking, 1u);
+    return nullptr;
+#else
+    return overlap_items_of_thread(n);
+#endif
+  }
+
+  COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
+    auto cursor = open.begin(shape);
+    candidate_range range{};
+    while (next(open, shape, cursor, range)) {
+      int frame = 0;
+      if constexpr (has_moving_mesh<Triangles>) frame = cursor.frame_of_last;
+      sphere<S> const seen = seen_from(open, frame, shape);
+      COLLIDE_NO_UNROLL
+      for (std::uint32_t k = 0; k < range.count; k += together) {
+        id triangles_near[together];
+        bool overlaps[together];
+        for (std::uint32_t j = 0; j < together; ++j) {  // all are on their way at once
+          cell_item const e = range.at(min(k + j, range.count - 1));
+          triangles_near[j] = e.triangle;
+          overlaps[j] = k + j < range.count && range.passes_coverage(e) &&
+                        triangle_aabb_of(open.mesh[e.triangle]).overlaps(seen.centre, seen.radius);
+        }
+        COLLIDE_NO_UNROLL
+        for (std::uint32_t j = 0; j < together; ++j)
+          if (overlaps[j]) add(open, triangles_near[j], frame, seen, near);
+      }
+    }
+  }
+  static constexpr std::uint32_t together = 4;
+
+  COLLIDE_HD_INLINE void add(Triangles const& open, id triangle, int frame, sphere<S> const& seen,
+                             overlap_list& near) const {
+    if constexpr (has_moving_mesh<Triangles>) {
+      if (open.mesh.frame_of(triangle) != frame) return;
+    }
+    // of triangles that are near in their boxes only, such as thin ones that meet in a point, there may be very many
+    if (filter_exact(open.mesh[triangle], seen).verdict == verdict::miss) return;
+    nearest_of_triangle const n = nearest_to(open.mesh[triangle], seen.centre);
+    if (!(n.distance < static_cast<double>(seen.radius))) return;
+    vec3<double> const nearest = in_world(open, frame, scaled(n.normal, -n.distance));
+    near.add({nearest, n.distance, triangle, static_cast<std::uint8_t>(frame), n.kind, false, false, 0, 0, 0, 0, 0});
+  }
+
+  /// A triangle relative to the centre of a sphere, along the axes of the world.
+  static COLLIDE_HD_INLINE local_triangle<double> corners_of(Triangles const& open, sphere<S> const& shape,
+                                                             overlap_item const& item) {
+    local_triangle<double> t = to_local<double>(open.mesh[item.triangle], seen_from(open, item.frame, shape));
+    if constexpr (has_moving_mesh<Triangles>) {
+      if (item.frame != 0) {
+        auto const& now = open.mesh.frames[item.frame].now;
+        t.a = now.rotated(t.a), t.b = now.rotated(t.b), t.c = now.rotated(t.c);
+      }
+    }
+    return t;
+  }
+
+  COLLIDE_HD void press(Triangles const& open, std::size_t i, overlap_list const& near, int before) const {
+    integrated p;
+    state.load(p, i);
+    integrated const self = p;
+    vec3<S> normals[most];
+    id bodies[most];
+    values_type values[most] = {};
+    kicks_by_mesh<S, Effects> kicks;
+    S const elapsed = what == meeting::in_step || before != 0 ? dt : S(0);
+    int kept = 0;
+    for_each_contact(open, i, self, near, before, [&](mesh_overlap<S> const& o, values_type& own) {
+      if (!meet(p, self, o, own, elapsed, kicks) || kept == most) return;
+      normals[kept] = o.normal;
+      bodies[kept] = o.body;
+      values[kept++] = own;
+    });
+    if constexpr (has_memory) {
+      if (what == meeting::in_step) keep(i, kept, normals, bodies, values);
+    }
+    kicks.store(state, i);
+    store(i, p, self);
+  }
+
+  /// f(overlap, what it remembers) for each contact, the nearest first.
+  template <class Seen, class F>
+  COLLIDE_HD_INLINE void for_each_contact(Triangles const& open, [[maybe_unused]] std::size_t i, Seen const& self,
+                                          overlap_list const& near, [[maybe_unused]] int before, F const& f) const {
+    [[maybe_unused]] unsigned used = 0;
+    COLLIDE_NO_UNROLL
+    for (std::uint32_t k = 0; k < near.size; ++k) {
+      if (!near[k].is_minimum || near.is_hidden(k)) continue;
+      mesh_overlap<S> const o = overlap_of(open, self, near, k);
+      values_type own;
+      bool is_known = false;
+      if constexpr (has_memory) is_known = remember(i, o, before, used, own);
+      if (Effects::farther > 0 && !is_known && !(o.overlap > 0)) continue;
+      f(o, own);
+    }
+  }
+
+  /// Calls the effects, and tells them what the mesh has given.
+  COLLIDE_HD_INLINE bool meet(integrated& p, integrated self, mesh_overlap<S> const& o, values_type& values, S elapsed,
+                              [[maybe_unused]] kicks_by_mesh<S, Effects>& kicks) const {
+    integrated const before = p;
+    bool const goes_on = effects.on_mesh_overlap(p, self, o, values, elapsed, dt);
+    if (o.overlap > 0 || goes_on) mark_contact(p);
+    if constexpr (has_moving_mesh<Triangles> && contains<typename integrated::list, slow_steps>) {
+      if (o.body != no_id && triangles.mesh.frames[o.body + 1].moves) p[slow_steps{}] = carried_by_moving;
+    }
+    if constexpr (Effects::any_mesh_impulse) {
+      vec3<S> const none(S(0), S(0), S(0));
+      vec3<S> turned = none;
+      if constexpr (contains<typename integrated::list, angular_velocity>)
+        turned = p[angular_velocity{}] - before[angular_velocity{}];
+      mesh_impulse<S> given{
+          p[velocity{}] - before[velocity{}], turned, self[position{}], none, p[velocity{}], o.triangle, o.body};
+      if constexpr (Effects::keeps_mesh_kicks) kicks.add(given, 1 / dt);
+      if (what != meeting::in_step) return goes_on;
+      keep_support(*this, p, given);
+      constexpr S part = Effects::keeps_mesh_kicks ? S(Effects::integrator::kick_after) : S(1);
+      given.change *= part;
+      given.spin_change *= part;
+      effects.on_mesh_impulse(p, given, dt);
+    }
+    return goes_on;
+  }
+
+  template <class Seen>
+  COLLIDE_HD_INLINE mesh_overlap<S> overlap_of(Triangles const& open, Seen const& self, overlap_list const& near,
+                                               std::uint32_t k) const {
+    overlap_item const& item = near[k];
+    sphere<S> const shape{self[position{}], self.the_radius};
+    nearest_of_triangle const n = nearest_to(open.mesh[item.triangle], seen_from(open, item.frame, shape).centre);
+    vec3<double> const normal = in_world(open, item.frame, n.normal);
+    vec3<double> surface(0, 0, 0);
+    if constexpr (has_moving_mesh<Triangles>) {
+      auto const& f = open.mesh.frames[item.frame];
+      vec3<double> const point = self[position{}].template cast<double>() - scaled(normal, n.distance);
+      if (item.frame != 0) {
+        surface = velocity_at(f.moving, f.now, point) + f.conveyor_velocity;
+      } else if (open.mesh.vertex_velocities != nullptr) {
+        surface = open.mesh.velocity_of(item.triangle, rounded_to<S>(point));
+      }
+    }
+    double const radius = static_cast<double>(shape.radius);
+    mesh_overlap<S> o{rounded_to<S>(normal), static_cast<S>(radius - n.distance), rounded_to<S>(surface),
+                      item.triangle,         body_of_frame(item.frame),           rounded_to<S>(normal),
+                      mesh_overlap<S>::apart};
+    if (item.has_saddle) {
+      vec3<double> const p = near.saddle_of(item, [&](overlap_item const& of) { return corners_of(open, shape, of); });
+      double const distance = sqrt_rn(dot(p, p));
+      o.saddle_overlap = static_cast<S>(radius - max(distance, n.distance));
+      if (distance > n.distance) o.saddle_normal = rounded_to<S>(scaled(p, -div_rn(1.0, distance)));
+    }
+    return o;
+  }
+
+  /// Finds what a contact remembers among what the particle's contacts were before, that of the same body first; false
+  /// if it is new. One that appears in a surface that is touched already begins with what is remembered there.
+  COLLIDE_HD_INLINE bool remember(std::size_t i, mesh_overlap<S> const& o, int before, unsigned& used,
+                                  values_type& values) const {
+    int best = -1, shared = -1;
+    S best_match = S(0.5), shared_match = S(0.5);
+    COLLIDE_NO_UNROLL
+    for (int k = 0; k < before; ++k) {
+      auto const& r = memory.records[std::size_t(k) * memory.capacity + i];
+      S const cosine = dot(vec3<S>(r.normal[0], r.normal[1], r.normal[2]), o.normal);
+      S const match = r.body == o.body ? cosine + S(1e-3) : cosine;
+      if (match > shared_match) shared_match = match, shared = k;
+      if ((used >> k & 1) == 0 && match > best_match) best_match = match, best = k;
+    }
+    if (best < 0 && o.has_saddle()) best = shared;
+    if (best < 0) return false;
+    used |= 1u << best;
+    values = memory.records[std::size_t(best) * memory.capacity + i].record.values();
+    return true;
+  }
+
+  COLLIDE_HD_INLINE void keep(std::size_t i, int kept, vec3<S> const* normals, id const* bodies,
+                              values_type const* values) const {
+    COLLIDE_NO_UNROLL
+    for (int k = 0; k < kept; ++k) {
+      auto& r = memory.records[std::size_t(k) * memory.capacity + i];
+      r.record.set(values[k]);
+      for (int c = 0; c < 3; ++c) r.normal[c] = normals[k][c];
+      r.body = bodies[k];
+    }
+    memory.counts[i] = static_cast<std::uint8_t>(kept);
+  }
+
+  COLLIDE_HD_INLINE void store(std::size_t i, integrated& p, integrated const& self) const {
+    if constexpr (Effects::keeps_pair_forces) {
+      p[pair_acceleration{}] += (p[velocity{}] - self[velocity{}]) * (1 / dt);
+      if constexpr (Effects::keeps_pair_torques)
+        p[pair_angular_acceleration{}] += (p[angular_velocity{}] - self[angular_velocity{}]) * (1 / dt);
+    }
+    if (what != meeting::in_step) {
+      state.store(p, i, typename Effects::interaction_kicks{});
+    } else {
+      state.store(p, i, typename Effects::overlap_writes{});
+    }
+  }
+
+  /// A direction in a body's frame, as it is in the world.
+  static COLLIDE_HD_INLINE vec3<double> in_world(Triangles const& open, int frame, vec3<double> const& x) {
+    if constexpr (has_moving_mesh<Triangles>) {
+      if (frame != 0) return open.mesh.frames[frame].now.rotated(x);
+    }
+    (void)open, (void)frame;
+    return x;
+  }
+  static COLLIDE_HD_INLINE sphere<S> seen_from(Triangles const& open, int frame, sphere<S> const& s) {
+    if constexpr (has_moving_mesh<Triangles>) {
+      return open.mesh.seen_from(frame, s, 1);
+    } else {
+      (void)open, (void)frame;
+      return s;
+    }
+  }
+  template <class Cursor>
+  static COLLIDE_HD_INLINE bool next(Triangles const& open, sphere<S> const& s, Cursor& cursor,
+                                     candidate_range& range) {
+    constexpr std::uint32_t all = 1u << 30;
+    if constexpr (has_moving_mesh<Triangles>) {
+      return open.next(s, 1, cursor, all, range);
+    } else {
+      return open.next(s, cursor, all, range);
+    }
+  }
+};
+
+/// Kernel functor of `for_each` over particles: found[i] = f(particle, overlap, what it remembers), summed over the
+/// contacts of particle i with the mesh where it is now. Nothing is changed.
+template <class S, class Effects, class Triangles, class Memory, class F, class Sum>
+struct sum_over_mesh_contacts : press_on_mesh<S, Effects, Triangles, Memory> {
+  F f;
+  Sum* found;
+
+  COLLIDE_HD void operator()(std::size_t i) const {
+    Triangles const open = this->triangles.opened();
+    particle<S, typename Effects::overlap_reads> self;
+    this->state.load(self, i);
+    sphere<S> const shape{self[position{}], self.the_radius};
+    overlap_list near(this->tolerance_of(shape));
+    if (is_finite(shape.centre) && !open.empty(sphere<S>{shape.centre, reach_of<Effects>(shape.radius)}))
+      this->find(open, shape, near);
+    int before = 0;
+    if constexpr (Effects::remembered::size != 0) before = this->memory.counts[i];
+    Sum sum{};
+    this->for_each_contact(open, i, self, near, before,
+                           [&](mesh_overlap<S> const& o, auto& values) { sum += f(self, o, values); });
+    found[i] = sum;
+  }
+};
+
+}  // namespace collide::detail
+
+#pragma GCC diagnostic pop

@@ -1,0 +1,122 @@
+/// \file
+/// Atomic operations on plain memory, alike on host and device.
+#pragma once
+
+#include <cstdint>
+
+#include <collide/core/config.hpp>
+
+namespace collide::detail {
+
+/// True while this thread is the only one that works for a space. A locked instruction costs several times as much as a
+/// plain one.
+inline thread_local bool single_threaded = false;
+
+/// Sets `single_threaded` of this thread for a scope.
+class single_threaded_scope {
+ public:
+  explicit single_threaded_scope(bool alone) { single_threaded = alone; }
+  single_threaded_scope(single_threaded_scope const&) = delete;
+  single_threaded_scope& operator=(single_threaded_scope const&) = delete;
+  ~single_threaded_scope() { single_threaded = before_; }
+
+ private:
+  bool before_ = single_threaded;
+};
+
+#if defined(__CUDA_ARCH__)
+/// The type that CUDA's atomic functions take for an unsigned integer.
+__device__ __forceinline__ unsigned int* as_cuda(std::uint32_t* p) { return p; }
+__device__ __forceinline__ unsigned long long* as_cuda(std::uint64_t* p) {
+  return reinterpret_cast<unsigned long long*>(p);
+}
+#endif
+
+/// Adds and returns the value before. `U` is std::uint32_t or std::uint64_t.
+template <class U>
+COLLIDE_HD_INLINE U fetch_add(U* target, U n) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(as_cuda(target), n);
+#else
+  if (!single_threaded) return __atomic_fetch_add(target, n, __ATOMIC_RELAXED);
+  U const before = *target;
+  *target += n;
+  return before;
+#endif
+}
+
+/// Adds. In whatever order threads do so: the sum of whole numbers is exact.
+COLLIDE_HD_INLINE void fetch_add(double* target, double n) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(target, n);
+#else
+  double seen = *target, sum;
+  do {
+    sum = seen + n;
+  } while (!__atomic_compare_exchange(target, &seen, &sum, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED));
+#endif
+}
+
+/// Sets the bits of `mask`.
+COLLIDE_HD_INLINE void fetch_or(std::uint32_t* target, std::uint32_t mask) {
+#if defined(__CUDA_ARCH__)
+  atomicOr(target, mask);
+#else
+  __atomic_fetch_or(target, mask, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Makes `*target` the smaller of itself and `value`.
+template <class U>
+COLLIDE_HD_INLINE void fetch_min(U* target, U value) {
+#if defined(__CUDA_ARCH__)
+  atomicMin(as_cuda(target), value);
+#else
+  U seen = __atomic_load_n(target, __ATOMIC_RELAXED);
+  while (value < seen && !__atomic_compare_exchange_n(target, &seen, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+#endif
+}
+
+/// Makes `*target` the larger of itself and `value`.
+template <class U>
+COLLIDE_HD_INLINE void fetch_max(U* target, U value) {
+#if defined(__CUDA_ARCH__)
+  atomicMax(as_cuda(target), value);
+#else
+  U seen = __atomic_load_n(target, __ATOMIC_RELAXED);
+  while (value > seen && !__atomic_compare_exchange_n(target, &seen, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+#endif
+}
+
+/// Orders memory: who sees what this thread writes, or adds atomically, afterwards, sees what it wrote before.
+COLLIDE_HD_INLINE void thread_fence() {
+#if defined(__CUDA_ARCH__)
+  __threadfence();
+#else
+  __atomic_thread_fence(__ATOMIC_ACQ_REL);
+#endif
+}
+
+/// A load of what other threads may change meanwhile.
+template <class T>
+COLLIDE_HD_INLINE T load_relaxed(T const* from) {
+#if defined(__CUDA_ARCH__)
+  return *from;
+#else
+  return __atomic_load_n(from, __ATOMIC_RELAXED);
+#endif
+}
+
+/// A store that other threads may make too.
+template <class T>
+COLLIDE_HD_INLINE void store_relaxed(T* target, T value) {
+#if defined(__CUDA_ARCH__)
+  *target = value;
+#else
+  __atomic_store_n(target, value, __ATOMIC_RELAXED);
+#endif
+}
+
+}  // namespace collide::detail
