@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include <collide/broad/extend.hpp>
+#include <collide/detector.hpp>
 
 int main() {
   float const vertices[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};

@@ -54,15 +54,13 @@ install_missing() {
   fi
 }
 
-# install_site_tools: what scripts/site needs.
+# install_site_tools: what scripts/site needs where PyPI cannot be reached.
 install_site_tools() {
   local modules=/usr/lib/python3/dist-packages
   install_missing \
     python3 python3 \
-    doxygen doxygen \
     python3-sphinx sphinx-build \
     python3-myst-parser $modules/myst_parser/__init__.py \
-    python3-breathe $modules/breathe/__init__.py \
     furo $modules/furo/__init__.py
 }
 

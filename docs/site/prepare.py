@@ -1,4 +1,4 @@
-"""prepare.py XML OUT: puts together in the folder OUT what Sphinx makes the site of. XML is the folder of Doxygen's result.
+"""prepare.py OUT: puts together in the folder OUT what Sphinx makes the site of.
 
 The pages of docs/ are those that one reads in the repository. Here their links are changed: one to a source file leads to a
 page that shows it, one to a folder to a page that lists it, one to data to a download. The pages are arranged as NAV says.
@@ -11,19 +11,17 @@ import re
 import shutil
 import sys
 
-from regroup import regroup
-
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 
 # The navigation: parts, and their pages in this order. `*` is all pages of a folder. Pages that are in no part are for
 # developers: they are below "contributing".
 NAV = {
-    "Use": ["install", "guide", "python", "choosing", "programs", "gallery"],
+    "Use": ["install", "guide", "python", "from_open3d", "programs", "gallery"],
     "Tutorials": ["tutorials/*"],
-    "Simulations": ["simulation", "bodies", "granular", "checkpoints", "effects", "ranks"],
-    "Reference": ["api/index", "accuracy", "verification", "performance", "glossary"],
-    "Project": ["changelog", "contributing"],
+    "Simulations": ["simulation", "units", "bodies", "granular", "ranks"],
+    "Reference": ["api/index", "accuracy", "verification", "performance", "trouble", "glossary"],
+    "Project": ["versions", "changelog", "contributing"],
 }
 # Pages that stand elsewhere in the repository.
 ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHANGELOG.md", "index": ROOT / "README.md",
@@ -31,6 +29,13 @@ ELSEWHERE = {"contributing": ROOT / "CONTRIBUTING.md", "changelog": ROOT / "CHAN
              "tutorials/8-python": ROOT / "examples" / "python" / "tutorial.ipynb"}
 LISTS = {DOCS / "README.md", DOCS / "index.md"}  # the navigation takes their place
 CODE = {".hpp": "cpp", ".cuh": "cuda", ".cpp": "cpp", ".cu": "cuda", ".py": "python", ".cmake": "cmake", ".md": "markdown"}
+
+
+def identity():
+    """The project's names and addresses, and its version."""
+    header = next((ROOT / "include" / "collide").rglob("version.hpp")).read_text()
+    version = ".".join(re.findall(r"^#define COLLIDE_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)$", header, re.M))
+    return {**json.loads((ROOT / "packaging" / "identity.json").read_text()), "version": version}
 
 
 def language(path):
@@ -125,12 +130,15 @@ class Site:
             self.write(name, notebook(path, self.out, name))
             return
         text = path.read_text().replace("```mermaid", "```text")  # which Sphinx does not draw
+        text = self.doors(text) if name == "index" else text
         parts = re.split(r"(^```.*?^```$|`[^`\n]+`)", text, flags=re.M | re.S)
         text = "".join(part if i % 2 else outside_code(part) for i, part in enumerate(parts))
         if name == "index":
             text += self.navigation()
         elif name == "contributing":
             text += self.for_developers()
+        elif name == "api/index":
+            text += toctree(re.findall(r"^\| \[.*?\]\((\w+)\.md\)", text, flags=re.M))
         self.write(name, text)
 
     def part(self, entries):
@@ -143,27 +151,33 @@ class Site:
 
     def for_developers(self):
         users = {"index", *(n for entries in NAV.values() for n in self.part(entries))}
-        return toctree(["design", *sorted(n for n in set(self.pages) - users - {"design"} if not n.startswith("api/"))])
+        return toctree(sorted(n for n in set(self.pages) - users if not n.startswith("api/")))
 
-    def reference(self):
-        """Each public header is in one page of docs/api/."""
-        listed = re.findall(r"^```\{doxygenfile\} (\S+)", "".join((DOCS / "api" / p).read_text() for p in os.listdir(DOCS / "api")), re.M)
-        headers = {p.name for p in (ROOT / "include" / "collide").rglob("*.*") if "detail" not in p.parts}
-        if headers != set(listed) or len(listed) != len(headers):
-            wrong = headers ^ set(listed) or {n for n in listed if listed.count(n) > 1}
-            sys.exit(f"docs/site/prepare.py: not in exactly one page of docs/api/: {', '.join(sorted(wrong))}")
+    def doors(self, text):
+        """The list after the first picture of the README, an entry for each kind of user, as doors of the landing page."""
+        entries = re.search(r"(?:^- \*\*.*\n(?:  .*\n)*)+", text, re.M)
+        doors = ""
+        for title, words, link, target in re.findall(r"- \*\*(.*?):\*\* (.*?)\s+Start with\s+\[(.*?)\]\((.*?)\)\.\n", entries[0], re.S):
+            words = re.sub(r"\[(.*?)\]\(.*?\)", r"\1", " ".join(words.split()))
+            words, link = (text[0].upper() + text[1:] for text in (words, " ".join(link.split())))
+            doors += (f'<a class="door" href="{target.removeprefix("docs/").removesuffix(".md")}.html"><strong>{title}</strong>{words}'
+                      f"<em>{link} →</em></a>\n")
+        if doors.count("door") != 3:
+            sys.exit("docs/site/prepare.py: the README has not three entries that say where to start")
+        return text[:entries.start()] + f'<div class="doors">\n{doors}</div>\n\n' + text[entries.end():]
 
     def make(self):
-        self.reference()
         for name, path in self.pages.items():
             self.page(name, path)
         for folder in (DOCS / "images", DOCS / "site" / "_static"):
             shutil.copytree(folder, self.out / folder.name, dirs_exist_ok=True)
-        shutil.copy(DOCS / "site" / "conf.py", self.out)
+        shutil.copytree(DOCS / "site" / "_templates", self.out / "_templates", dirs_exist_ok=True)
+        for file in ("conf.py", "pictures.py"):
+            shutil.copy(DOCS / "site" / file, self.out)
+        (self.out / "identity.json").write_text(json.dumps(identity()))
         if self.broken:
             sys.exit("\n".join(self.broken))
 
 
 if __name__ == "__main__":
-    regroup(pathlib.Path(sys.argv[1]))
-    Site(pathlib.Path(sys.argv[2]).resolve()).make()
+    Site(pathlib.Path(sys.argv[1]).resolve()).make()

@@ -260,7 +260,7 @@ class bucket::index {
   template <class Space>
   detail::query_plan<S> plan_query(Space& space, bucket const& options, sphere_view<S> const& spheres) {
     detail::query_plan<S> plan = plan_grids(space, spheres, grids_.asked.whole_boxes);
-    // entering the triangles pays where few spheres come again and again (docs/design.md)
+    // entering the triangles pays where few spheres come again and again (docs/development/design.md)
     bool const pays = queries_ == 0 || spheres.size() >= mesh_.size() / 8;
     bool const has_grids = plan.makes_grids || grids_.count != 0;
     if (pays && has_grids && can_bin<Space>(options, spheres.size())) {

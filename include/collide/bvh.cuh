@@ -10,6 +10,7 @@
 #include <collide/broad/detail/tree/tree_ref.hpp>
 #include <collide/broad/detail/tree/winding_tree.hpp>
 #include <collide/broad/extend.hpp>
+#include <collide/detector.hpp>
 
 namespace collide {
 

@@ -36,9 +36,8 @@ namespace collide {
 /// \tparam Scalar          type of the coordinates: float or double; nothing is ever narrowed silently
 ///
 /// Memory is taken from the space's resource and kept: once everything has run with the same sizes nothing is allocated
-/// (on the host that takes two queries, as the second may go another way; see docs/design.md). `reserve` takes it
-/// ahead, so that nothing is allocated as hits grow.
-/// A detector can be moved, but not copied.
+/// (on the host that takes two queries, as the second may go another way; see docs/development/design.md). `reserve`
+/// takes it ahead, so that nothing is allocated as hits grow. A detector can be moved, but not copied.
 ///
 /// In the CUDA spaces work is put on the space's stream, and the host waits only to read a size back: each sink says
 /// when. What a call reads must stay valid and unchanged until that work is done; on the host, until the call returns.

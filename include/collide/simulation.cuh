@@ -144,7 +144,8 @@ class simulation {
       pressing_.reserve(resource, particles);
       pressing_counts_.reserve(resource, 3);
       space_.fill(pressing_counts_.data(), 0, 3 * sizeof(std::uint32_t));
-      if constexpr (!execution_space::host_accessible) overlaps_.reserve(resource, particles);
+      if constexpr (!execution_space::host_accessible)
+        overlaps_.reserve(resource, detail::max(particles, detail::overlap_pool::least));
     }
   }
 

@@ -1,6 +1,7 @@
 // expect: collide: this per_sphere policy is host_only: its index reads the mesh on the host, which in this space
 // cannot be read there
 #include <collide/broad/extend.hpp>
+#include <collide/detector.hpp>
 
 struct remote : collide::host {
   using host::host;

@@ -1,6 +1,7 @@
 // expect: collide: what ref() of a per_sphere policy returns is a trivially copyable value, and has a default
 // constructor
 #include <collide/broad/extend.hpp>
+#include <collide/detector.hpp>
 
 struct fussy {
   struct ref_type {

@@ -1,5 +1,6 @@
 // expect: collide: what ref() of a per_sphere policy returns has a const member for_each_candidate(sphere<S>, f)
 #include <collide/broad/extend.hpp>
+#include <collide/detector.hpp>
 
 struct blind {
   struct ref_type {};

@@ -6,9 +6,9 @@ links     Every link to a file or a heading of this repository leads somewhere.
 examples  Every program of examples/ is mentioned in some page.
 glossary  Each name in docs/glossary.md and docs/development/words.md is in the code of the file, or folder, that it is said to be in;
           words are in order. So is each name of the table of headers in docs/install.md; each effect of docs/simulation.md has a header
-          of its own name, or the page says which one it is in.
-members   The tables of members in docs/guide.md have all that the headers have, and nothing else; those of docs/api/results.md
-          are what scripts/members writes.
+          of its own name, or is in the page's table of other headers.
+members   The tables of members in docs/guide.md have all that the headers have, and nothing else; the pages of docs/api/
+          are as scripts/members writes them.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; the README is short; no docstring of include/ begins with
           a word of FOREIGN_BEGINNINGS, which name nothing.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
@@ -23,12 +23,12 @@ PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"
 
 
 # Pages in which every piece of C++ is from a program that tests run.
-TAUGHT = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("guide", "simulation", "bodies", "checkpoints")),
+TAUGHT = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("guide", "simulation", "bodies")),
           *(ROOT / "docs" / "tutorials").glob("*.md")]
 
 # Pages in which no one writes measured numbers by hand.
-MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "choosing", "accuracy", "verification", "simulation", "bodies",
-            "checkpoints", "granular", "guide", "ranks", "gallery", "install", "effects", "python", "design"))]
+MEASURED = [ROOT / "README.md", *(ROOT / "docs" / f"{name}.md" for name in ("performance", "accuracy", "verification", "simulation", "bodies",
+            "granular", "guide", "ranks", "gallery", "install", "python"))]
 
 # Words that readers of English do not use for what is meant, and what to write instead. Patterns, in any case.
 FOREIGN = {
@@ -122,7 +122,7 @@ def examples():
 
 
 def glossary():
-    for page, least in (("glossary.md", 30), ("development/words.md", 15)):
+    for page, least in (("glossary.md", 15), ("development/words.md", 15)):
         yield from words_of(ROOT / "docs" / page, least)
     yield from headers_of(ROOT / "docs" / "install.md", 15)
     yield from effects_of(ROOT / "docs" / "simulation.md", 20)
@@ -146,13 +146,12 @@ def effects_of(page, least):
     text = page.read_text()
     table = re.search(r"^\| effect \|.*?\n\n", text, flags=re.M | re.S)[0]
     effects = [name for cell in re.findall(r"^\| (`.+?) \|", table, flags=re.M) for name in re.findall(r"`(\w+)", cell)]
-    elsewhere = {name: header for names, header in re.findall(r"((?:`\w+`(?:\s+and\s+|,?\s+))+)\((?:in )?`([\w/]+\.hpp)`\)", text)
+    elsewhere = {name: header for names, header in re.findall(r"^\| (`\w+`(?:, `\w+`)*) \| `collide/([\w/]+\.\w+)` \|$", text, flags=re.M)
                  for name in re.findall(r"`(\w+)`", names)}
     if len(effects) < least:
         yield f"{page}: only {len(effects)} effects"
     for name in effects:
-        header = elsewhere.get(name, name + ".hpp").replace("collide/", "../")
-        if not declares(ROOT / "include" / "collide" / "effects" / header, name):
+        if not declares(ROOT / "include" / "collide" / elsewhere.get(name, f"effects/{name}.hpp"), name):
             yield f"{page}: the page does not say which header has {name}"
 
 
@@ -170,9 +169,8 @@ def words_of(page, least):
 
 
 def members_of(name):
-    """The functions without arguments and the data of a public class, those of its bases in detail/sinks/ included."""
-    folders = ["", "sinks", "ranks", "detail/sinks"]
-    for header in [h for folder in folders for h in (ROOT / "include" / "collide" / folder).glob("*.hpp")]:
+    """The functions without arguments and the data of a public class, those of its bases in sinks/detail/ included."""
+    for header in sorted((ROOT / "include" / "collide").rglob("*.hpp")):
         found = re.search(rf"^(class|struct) {name}\b(?: : public ([^{{]*))?\s*\{{(.*?)^\}};|^class {name}\s*: public ([^{{]*)\{{",
                           header.read_text(), flags=re.M | re.S)
         if not found:

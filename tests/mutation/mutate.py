@@ -20,7 +20,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-DETAIL = pathlib.Path("collide") / "detail"
+LIBRARY = pathlib.Path("collide")
 SKIPPED = 77
 
 COMPILERS = {
@@ -334,7 +334,7 @@ def pattern_of(text):
 
 
 def headers():
-    return {p.relative_to(ROOT / "include" / DETAIL).as_posix(): p.read_text() for p in sorted((ROOT / "include" / DETAIL).rglob("*.hpp"))}
+    return {p.relative_to(ROOT / "include" / LIBRARY).as_posix(): p.read_text() for p in sorted((ROOT / "include" / LIBRARY).rglob("*.hpp"))}
 
 
 def place_of(guard, texts):
@@ -365,7 +365,7 @@ def mutated(name):
 
 def guarded():
     """The headers that have a guard, those that they include, and what judges them."""
-    found, left = set(), [ROOT / "include" / DETAIL / file for file, text in headers().items() if "// guard: " in text]
+    found, left = set(), [ROOT / "include" / LIBRARY / file for file, text in headers().items() if "// guard: " in text]
     while left:
         header = left.pop()
         if header not in found:
@@ -411,8 +411,8 @@ def judge(name, rows, eigen):
         place = pathlib.Path(folder)
         if edits:
             file, text = mutated(name)
-            (place / DETAIL / file).parent.mkdir(parents=True)
-            (place / DETAIL / file).write_text(text)
+            (place / LIBRARY / file).parent.mkdir(parents=True)
+            (place / LIBRARY / file).write_text(text)
         source = ROOT / "tests" / ("flags" if program == "verdicts" else "mutation") / f"{program}.cpp"
         standard = pathlib.Path(rows) / compiler / "standard.hpp"
         included = ["-include", standard] if standard.exists() else []

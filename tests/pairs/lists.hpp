@@ -34,13 +34,13 @@ using list_12 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
 using list_13 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, float,
     collide::wind<>, collide::lost, collide::absorb, collide::bounce, collide::friction, collide::gravity, collide::absorbing_box, collide::spin, collide::periodic_box, collide::box_walls, collide::drag, collide::sleep, collide::moving_bodies<collide::driven>>;
 using list_14 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
-    collide::mass_flow<>, collide::wind<>, collide::periodic_box, collide::drag, collide::sphere_contact, collide::box_walls, tests::pairs::stirs, collide::sleep, collide::lost, collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::reaction, collide::pair_forces, collide::moving_bodies<>>;
+    collide::mass_flow<>, collide::wind<>, collide::periodic_box, collide::drag, collide::sphere_contact, collide::box_walls, tests::pairs::stirs, collide::sleep, collide::lost, collide::granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>, collide::reaction, collide::pair_forces, collide::moving_bodies<>>;
 using list_15 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, float,
     collide::lost_motion, tests::pairs::warms, tests::pairs::stirs, collide::polydisperse, collide::mass_flow<>, collide::bounce, collide::emit, collide::gravity, collide::spin, collide::adhesion, collide::friction, collide::mesh_forces, collide::moving_bodies<collide::driven>>;
 using list_16 = scene_list<mesh_kind::moving, collide::karabassi_swept<>, float,
     collide::emit, collide::lost, collide::mesh_forces, collide::sphere_contact, collide::absorb, tests::pairs::warms, collide::wind<>, collide::reaction, collide::sleep, collide::pair_forces, collide::lost_motion, collide::absorbing_box, collide::moving_bodies<>>;
 using list_17 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
-    collide::granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>, collide::mass_flow<>, collide::emit, tests::pairs::stirs, collide::polydisperse, collide::wind<>, collide::periodic_box, collide::gravity, collide::velocity_verlet, collide::lost_motion, collide::box_walls, collide::drag, collide::moving_bodies<>>;
+    collide::granular_contact<collide::hertz, collide::mindlin, collide::epsd>, collide::mass_flow<>, collide::emit, tests::pairs::stirs, collide::polydisperse, collide::wind<>, collide::periodic_box, collide::gravity, collide::velocity_verlet, collide::lost_motion, collide::box_walls, collide::drag, collide::moving_bodies<>>;
 using list_18 = scene_list<mesh_kind::moving, collide::karabassi<>, float,
     collide::lost_motion, collide::velocity_verlet, collide::lost, collide::emit, tests::pairs::warms, collide::pair_forces, collide::wind<>, collide::absorb, collide::bounce, collide::adhesion, collide::spin, collide::friction, collide::moving_bodies<>>;
 using list_19 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, float,
@@ -50,7 +50,7 @@ using list_20 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, double
 using list_21 = scene_list<mesh_kind::moving, collide::karabassi_swept<>, double,
     tests::pairs::stirs, collide::mass_flow<>, collide::gravity, collide::periodic_box, tests::pairs::warms, collide::absorbing_box, collide::drag, collide::velocity_verlet, collide::bounce, collide::spin, collide::friction, collide::mesh_forces, collide::moving_bodies<>>;
 using list_22 = scene_list<mesh_kind::driven, collide::karabassi<>, float,
-    collide::absorbing_box, collide::mass_flow<>, collide::box_walls, collide::sphere_contact, tests::pairs::stirs, collide::periodic_box, collide::wind<>, collide::polydisperse, collide::drag, collide::granular_contact<collide::linear, collide::dashpot>, collide::pair_forces, collide::mesh_forces, collide::moving_bodies<collide::driven>>;
+    collide::absorbing_box, collide::mass_flow<>, collide::box_walls, collide::sphere_contact, tests::pairs::stirs, collide::periodic_box, collide::wind<>, collide::polydisperse, collide::drag, collide::granular_contact<collide::linear, collide::cundall_strack, collide::marshall<collide::epsd>>, collide::pair_forces, collide::mesh_forces, collide::moving_bodies<collide::driven>>;
 using list_23 = scene_list<mesh_kind::driven, collide::karabassi_swept<>, double,
     collide::lost, collide::sleep, collide::bounce, collide::emit, collide::lost_motion, collide::adhesion, collide::spin, tests::pairs::warms, collide::friction, collide::absorb, collide::pair_forces, collide::absorbing_box, collide::moving_bodies<collide::driven>>;
 using list_24 = scene_list<mesh_kind::driven, collide::karabassi<>, float,

@@ -27,10 +27,11 @@ EFFECTS = """velocity_verlet gravity drag wind bounce friction spin adhesion sph
 BY_FORCES = "granular_contact"  # makes the mesh solid by forces
 ACTS_BY_IMPULSES = ["bounce", "friction", "spin", "adhesion", "absorb", "warms"]  # these do not compile beside it
 TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms", "external_forces": "tests::pairs::stirs", "mass_flow": "mass_flow<>"}
-LAWS = {  # of contact by forces, of which the lists of a scalar take turns: one that remembers nothing, and two that do
-    "float": ["granular_contact<collide::linear, collide::dashpot>"],
-    "double": ["granular_contact<collide::hertz, collide::mindlin, collide::epsd>",
-               "granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>"],
+LAWS = {  # of contact by forces, of which the lists of a scalar take turns: one that remembers nothing, and those that do
+    "float": ["granular_contact<collide::linear, collide::dashpot>",
+              "granular_contact<collide::linear, collide::cundall_strack, collide::marshall<collide::epsd>>"],
+    "double": ["granular_contact<collide::hertz, collide::mindlin_force, collide::epsd2, collide::sjkr>",
+               "granular_contact<collide::hertz, collide::mindlin, collide::epsd>"],
 }
 BODIES = {"fixed": [], "moving": ["collide::moving_bodies<>"], "driven": ["collide::moving_bodies<collide::driven>"]}
 SURFACES = {  # of the kinds of mesh
@@ -192,8 +193,8 @@ def make_lists():
     return lists
 
 
-def type_of(effect, number, scalar):
-    name = LAWS[scalar][number % len(LAWS[scalar])] if effect == BY_FORCES else TYPES.get(effect, effect)
+def type_of(effect, turn, scalar):
+    name = LAWS[scalar][turn % len(LAWS[scalar])] if effect == BY_FORCES else TYPES.get(effect, effect)
     return name if name.startswith("tests::") else f"collide::{name}"
 
 
@@ -209,8 +210,10 @@ def header(lists):
         "",
         "// clang-format off",
     ]
+    turns = collections.Counter()
     for number, (effects, kind, narrow, scalar) in enumerate(lists, 1):
-        types = [*(type_of(e, number, scalar) for e in effects), *BODIES[kind]]
+        types = [*(type_of(e, turns[scalar], scalar) for e in effects), *BODIES[kind]]
+        turns[scalar] += BY_FORCES in effects
         lines.append(f"using list_{number} = scene_list<mesh_kind::{kind}, collide::{narrow}<>, {scalar},")
         lines.append(f"    {', '.join(types)}>;")
     return "\n".join([*lines, "// clang-format on", "", "}  // namespace tests::pairs", ""])

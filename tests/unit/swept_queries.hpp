@@ -154,6 +154,19 @@ void check_motion(Space const& space, BroadPhase const& broad, moving_scene<S> c
                    [](auto const& x, auto const& y) { return x.triangle == y.triangle && x.time == y.time; }));
 }
 
+/// A few spheres, for tools that are slow.
+template <class S, class Space>
+void check_few_motions(Space const& space) {
+  using narrow_phase = collide::karabassi_swept<collide::exact>;
+  motion few;
+  few.triangles = few.spheres = 40;
+  few.size = 4;
+  auto const made = random_motion<S>(1, few);
+  auto const expected = pairs_that_touch<narrow_phase>(made);
+  CHECK(expected.size() > 20);
+  check_motion<narrow_phase>(space, collide::bucket(), made, expected);
+}
+
 /// Each broad phase in a space, on scenes of many kinds.
 template <class S, class Space, class Precision = collide::exact>
 void check_motions(Space const& space) {

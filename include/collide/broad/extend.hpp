@@ -9,7 +9,6 @@
 
 #include <collide/broad/detail/grid/mesh_statistics.hpp>
 #include <collide/broad/detail/per_sphere.hpp>
-#include <collide/detector.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>

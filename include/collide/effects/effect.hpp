@@ -194,13 +194,14 @@ template <class S>
 struct mesh_overlap {
   static constexpr S apart = -std::numeric_limits<S>::max();  ///< `saddle_overlap` where there is no saddle
 
-  vec3<S> normal;                              ///< unit vector to the centre
-  S overlap;                                   ///< radius minus distance, above 0
-  vec3<S> surface_velocity;                    ///< of the surface at the point, in the world: 0 of what rests
-  id triangle;                                 ///< number of the triangle
-  id body;                                     ///< number of the body whose surface it is; `no_id` of what rests
-  vec3<S> saddle_normal = {S(0), S(0), S(0)};  ///< unit vector from the saddle to the centre
-  S saddle_overlap = apart;                    ///< radius minus distance of the saddle: at most `overlap`
+  vec3<S> normal;                                ///< unit vector to the centre
+  S overlap;                                     ///< radius minus distance, above 0
+  vec3<S> surface_velocity;                      ///< of the surface at the point, in the world: 0 of what rests
+  id triangle;                                   ///< number of the triangle
+  id body;                                       ///< number of the body whose surface it is; `no_id` of what rests
+  vec3<S> saddle_normal = {S(0), S(0), S(0)};    ///< unit vector from the saddle to the centre
+  S saddle_overlap = apart;                      ///< radius minus distance of the saddle: at most `overlap`
+  vec3<S> surface_turning = {S(0), S(0), S(0)};  ///< angular velocity of the body; 0 of what rests or deforms
 
   /// True if the contact joins a deeper one.
   COLLIDE_HD_INLINE bool has_saddle() const { return saddle_overlap > apart; }

@@ -7,6 +7,7 @@
 
 #include <collide/effects/detail/particle.hpp>
 #include <collide/effects/effect.hpp>
+#include <collide/exact/detail/numeric/random.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 
 namespace collide {
@@ -35,13 +36,8 @@ struct nozzle {
   }
 
  private:
-  /// Between -1 and 1, always the same for a number: splitmix64 by S. Vigna.
-  static COLLIDE_HD double random(std::uint64_t number) {
-    std::uint64_t z = (number + 1) * 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-52 - 1;
-  }
+  /// Between -1 and 1, always the same for a number.
+  static COLLIDE_HD double random(std::uint64_t number) { return 2 * detail::random_part(number) - 1; }
 };
 
 namespace detail {

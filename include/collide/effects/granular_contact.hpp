@@ -9,34 +9,15 @@
 #include <collide/effects/detail/particle_access.hpp>
 #include <collide/effects/detail/sphere_action.hpp>
 #include <collide/effects/granular/cohesion.hpp>
+#include <collide/effects/granular/cundall_strack.hpp>
 #include <collide/effects/granular/dashpot.hpp>
 #include <collide/effects/granular/hertz.hpp>
 #include <collide/effects/granular/linear.hpp>
 #include <collide/effects/granular/mindlin.hpp>
 #include <collide/effects/granular/rolling.hpp>
+#include <collide/effects/granular/torsion.hpp>
 
 namespace collide {
-
-namespace detail {
-
-template <class... List>
-struct contact_columns_of;
-template <class... C>
-struct contact_columns_of<columns<C...>> {
-  using type = contact_columns<C...>;
-};
-
-template <class L, class = void>
-inline constexpr bool needs_hertz = false;
-template <class L>
-inline constexpr bool needs_hertz<L, std::void_t<decltype(L::needs_hertz)>> = L::needs_hertz;
-
-template <class L, class = void>
-inline constexpr bool is_mutual_law = false;
-template <class L>
-inline constexpr bool is_mutual_law<L, std::void_t<decltype(L::is_mutual)>> = L::is_mutual;
-
-}  // namespace detail
 
 /// The discrete element method's contact: of spheres with each other, and with the mesh, which is solid then. Laws are
 /// in effects/granular/; one of your own has the members of law.hpp.
@@ -48,8 +29,8 @@ inline constexpr bool is_mutual_law<L, std::void_t<decltype(L::is_mutual)>> = L:
 /// has two sides. A wall has no mass and no radius: 1/R* = 1/R.
 ///
 /// \tparam Normal      `linear` or `hertz`
-/// \tparam Tangential  `none`, `dashpot`, `mindlin`, `mindlin_rescale` or `mindlin_force`
-/// \tparam Rolling     `none`, `constant_torque`, `epsd` or `epsd2`
+/// \tparam Tangential  `none`, `dashpot`, `cundall_strack`, `mindlin`, `mindlin_rescale` or `mindlin_force`
+/// \tparam Rolling     `none`, `constant_torque`, `epsd` or `epsd2`, or one of them within `marshall` or `torsion`
 /// \tparam Cohesion    `none`, `sjkr`, `jkr` or `dmt`
 /// \tparam Materials   `one_material`, or `materials<N>` with a column `material`
 template <class Normal, class Tangential = none, class Rolling = none, class Cohesion = none,
@@ -58,7 +39,7 @@ struct granular_contact {
   static_assert(Normal::is_hertzian ||
                     !(detail::needs_hertz<Tangential> || detail::needs_hertz<Rolling> || detail::needs_hertz<Cohesion>),
                 "collide: mindlin, epsd2, jkr and dmt are made for spheres that touch as hertz says: name hertz as the "
-                "normal law, or dashpot, epsd and sjkr with linear");
+                "normal law, or cundall_strack, dashpot, epsd and sjkr with linear");
 
   /// Particles have an angular velocity.
   static constexpr bool turns = !std::is_same<Tangential, none>::value || !std::is_same<Rolling, none>::value;
@@ -233,12 +214,14 @@ struct granular_contact {
       turned = w * slip_arm(a.radius, c.overlap) + other_w * slip_arm(b.radius, c.overlap);
       c.own_turning = along_surface(w, c.normal);
       c.turning = along_surface(vec3<P>(w - other_w), c.normal);
+      set_spins(c, w, other_w);
       P const inertia = m * a.radius * a.radius, other_inertia = other_m * b.radius * b.radius;
       c.rolling_inertia = P(1.4) * (inertia * other_inertia / (inertia + other_inertia));
     }
     set_velocity(c, vec3<P>(a.velocity - b.velocity), turned);
     return c;
   }
+
   /// A sphere and a wall. Of a contact that joins a deeper one, all forces are less by those at the saddle, which has
   /// the memory of the contact: where the two become the same, they vanish.
   template <class Particle, class Seen, class Memory, class S>
@@ -266,6 +249,7 @@ struct granular_contact {
       if constexpr (turns) {
         turned = self[angular_velocity{}] * slip_arm(r, c.overlap);
         c.own_turning = c.turning = along_surface(self[angular_velocity{}], c.normal);
+        set_spins(c, self[angular_velocity{}], wall.surface_turning);
       }
       set_velocity(c, relative, turned);
       bool const goes_on = apply(p, c, m, of, memory, times * dt);
@@ -292,6 +276,12 @@ struct granular_contact {
   template <class S>
   static COLLIDE_HD_INLINE vec3<S> along_surface(vec3<S> const& x, vec3<S> const& normal) {
     return x - normal * detail::dot(x, normal);
+  }
+  template <class S>
+  static COLLIDE_HD_INLINE void set_spins(granular_pair<S>& c, vec3<S> const& w, vec3<S> const& other_w) {
+    S const own = detail::dot(w, c.normal), other = detail::dot(other_w, c.normal);
+    c.twist = own - other;
+    c.spin = (own + other) / 2;
   }
   template <class S>
   static COLLIDE_HD_INLINE void set_velocity(granular_pair<S>& c, vec3<S> const& relative, vec3<S> const& turned) {

@@ -86,7 +86,7 @@ def _describes(kind, header="", type="", memory="", part="", **members) -> Calla
     header of what the effect has beside its parameters, ``part`` which law it may be."""
 
     def decorate(function):
-        name, arguments = function.__name__, inspect.signature(function)
+        name, arguments = function.__name__.lstrip('_'), inspect.signature(function)
         sizes = {key: 3 if p.annotation is Vector else 1 for key, p in arguments.parameters.items()}
 
         @functools.wraps(function)

@@ -44,22 +44,39 @@ def _mindlin(damping, test):
     return found
 
 
+def _slip_test(test):
+    return _mindlin("none", test)["test"]
+
+
+@_describes(Law, "effects/granular/cundall_strack", part="tangential")
+def cundall_strack(
+    stiffness_ratio: float = 2 / 7, damping_ratio: float = 0.5, test: str = "spring_and_dashpot", keeps_length: bool = False,
+    turns_about_normal: bool = False,
+) -> Law:
+    """Tangential law: a spring that remembers slip and a dashpot, parts of the normal ones, up to Coulomb's limit: with
+    `linear` LAMMPS' gran/hooke/history. The other arguments are those of `mindlin`."""
+    return {"test": _slip_test(test)}
+
+
 @_describes(Law, "effects/granular/mindlin", part="tangential")
 def mindlin(
-    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False
+    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False,
+    turns_about_normal: bool = False,
 ) -> Law:
     """Tangential law, with `hertz`: a spring that remembers slip, after Mindlin, up to Coulomb's limit.
 
     damping  of which spring the dashpot is: 'of_tangent', 'of_normal', or 'none'
     test     what is compared with the limit: 'spring' or 'spring_and_dashpot'
     keeps_length  the spring keeps its length where it turns with the contact
+    turns_about_normal  the spring turns with the spins of the two about the normal, too
     """
     return _mindlin(damping, test)
 
 
 @_describes(Law, "effects/granular/mindlin", part="tangential")
 def mindlin_rescale(
-    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False
+    stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False,
+    turns_about_normal: bool = False,
 ) -> Law:
     """`mindlin`, whose spring also becomes shorter where the area of contact does, as LAMMPS' of that name. Cycles of load
     and slip may make energy, as with `mindlin`."""
@@ -69,7 +86,7 @@ def mindlin_rescale(
 @_describes(Law, "effects/granular/mindlin", part="tangential")
 def mindlin_force(
     stiffness_factor: float = 1, damping: str = "of_tangent", test: str = "spring", keeps_length: bool = False,
-    rescales: bool = True,
+    turns_about_normal: bool = False, rescales: bool = True,
 ) -> Law:
     """`mindlin`, whose force a growing load leaves as it is, and a falling one reduces: no cycle of load and slip makes
     energy. Thornton, Cummins and Cleary, 2013; LAMMPS' mindlin_rescale/force.
@@ -85,13 +102,52 @@ def constant_torque() -> Law:
 
 
 @_describes(Law, "effects/granular/rolling", part="rolling")
-def epsd(damping: float = 0.3) -> Law:
+def epsd(damping: float = 0.3, turns_about_normal: bool = False) -> Law:
     """Rolling law: a spring that remembers, and a dashpot, a ratio to critical damping. Piles stand still."""
 
 
 @_describes(Law, "effects/granular/rolling", part="rolling")
-def epsd2() -> Law:
+def epsd2(turns_about_normal: bool = False) -> Law:
     """Rolling law, with `hertz`: `epsd` without the dashpot, and with the stiffness of `mindlin`'s spring."""
+
+
+def _beside(rolling, law):
+    """A law of torsion, beside one of rolling."""
+    rolling = none() if rolling is None else rolling
+    if not isinstance(rolling, Law):
+        raise TypeError(f"rolling: expected a law such as collide.granular.epsd(), got {shown(rolling)}")
+    refuse(rolling._part not in ("", "rolling"), "rolling", f"{rolling.name} is no law of rolling")
+    law.code = "\n".join([rolling._lines(), law.code])
+    law._type = f"collide::{law.name}<{rolling._type}>"
+    for key, values in rolling.parameters.items():
+        law.parameters[f"rolling_{key}"] = values
+        law._members[f"rolling_{key}"] = rolling._members[key].replace("e.", "e.rolling.", 1)
+    return law
+
+
+@_describes(Law, "effects/granular/torsion", part="rolling")
+def _marshall(stiffness_ratio: float, damping_ratio: float) -> Law: ...
+
+
+@_describes(Law, "effects/granular/torsion", part="rolling")
+def _torsion(stiffness: float, damping: float, friction: float) -> Law: ...
+
+
+def marshall(rolling: Optional[Law] = None, stiffness_ratio: float = 0, damping_ratio: float = 1) -> Law:
+    """Rolling law: torsion, which is turning about the normal, beside a law of rolling. The surfaces stick by springs and
+    dashpots, parts of the normal ones, up to 2/3 of the contact's radius times friction: Marshall 2009.
+
+    rolling          a law of rolling, or None
+    stiffness_ratio  of the tangential spring, over the normal one; 0: as of `mindlin`
+    damping_ratio    of the tangential dashpot, over the normal one
+    """
+    return _beside(rolling, _marshall(stiffness_ratio, damping_ratio))
+
+
+def torsion(rolling: Optional[Law] = None, stiffness: float = 0, damping: float = 0, friction: float = 0) -> Law:
+    """Rolling law: torsion beside a law of rolling: a spring (torque per angle), a dashpot (torque per angular velocity),
+    and a limit (a length times the normal force)."""
+    return _beside(rolling, _torsion(stiffness, damping, friction))
 
 
 @_describes(Law, "effects/granular/cohesion", part="cohesion")

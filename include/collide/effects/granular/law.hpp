@@ -19,6 +19,7 @@
 /// contact remembers, `memory.elapsed()` for how long the contact has moved since it was looked at before.
 #pragma once
 
+#include <collide/effects/detail/particle_access.hpp>
 #include <collide/effects/granular/materials.hpp>
 #include <collide/exact/detail/numeric/pack.hpp>
 
@@ -38,6 +39,8 @@ struct granular_pair {
   S rolling_inertia;    ///< 1.4 (m_i R_i^2 m_j R_j^2) / (m_i R_i^2 + m_j R_j^2); of a wall 1.4 m R^2
   S own_radius;         ///< of the particle
   bool is_wall = false;  ///< the other is a wall
+  S twist = 0;           ///< angular velocity of the particle minus that of the other, along the normal
+  S spin = 0;            ///< the mean of both angular velocities along the normal: by which the contact turns
 };
 
 /// The force along the normal.
@@ -87,9 +90,34 @@ struct none {
 
 namespace detail {
 
+template <class List>
+struct contact_columns_of;
+template <class... C>
+struct contact_columns_of<columns<C...>> {
+  using type = contact_columns<C...>;
+};
+
+template <class L, class = void>
+inline constexpr bool needs_hertz = false;
+template <class L>
+inline constexpr bool needs_hertz<L, std::void_t<decltype(L::needs_hertz)>> = L::needs_hertz;
+
+template <class L, class = void>
+inline constexpr bool is_mutual_law = false;
+template <class L>
+inline constexpr bool is_mutual_law<L, std::void_t<decltype(L::is_mutual)>> = L::is_mutual;
+
 template <class S>
 COLLIDE_HD_INLINE S length_of(vec3<S> const& v) {
   return sqrt_rn(dot(v, v));
+}
+
+/// Turns a vector of the plane of contact about the normal, by the mean spin of the two, by the tangent of half the
+/// angle: it keeps its length.
+template <class S>
+COLLIDE_HD_INLINE void turn_about_normal(vec3<S>& v, granular_pair<S> const& p, S elapsed) {
+  S const half = p.spin * elapsed / 2, by = 2 / (1 + half * half);
+  v += (cross(p.normal, v) - v * half) * (by * half);
 }
 
 /// Coulomb's limit of friction.

@@ -16,6 +16,13 @@ struct linear {
 
   double stiffness = 1000;  ///< force per overlap, above 0
 
+  /// The spring of a time of contact: m* (pi^2 + ln^2 e) / time^2, of spheres of the effective mass `mass` that rebound
+  /// with `restitution`. All are above 0.
+  static linear of_contact_time(double time, double restitution, double mass) {
+    double const log_e = std::log(restitution);
+    return {mass * (9.869604401089358 + log_e * log_e) / (time * time)};
+  }
+
   void check_parameters() const {
     detail::check_parameter(detail::is_positive(stiffness), "linear: stiffness is above 0, and finite");
   }

@@ -26,6 +26,42 @@ enum class slip_test {
   spring_and_dashpot  ///< S. Luding, Granular Matter 10, 2008, equation 20: LAMMPS
 };
 
+namespace detail {
+
+/// Turns a spring into the plane of contact, and, if it `turns_about_normal`, about the normal by the mean spin of the
+/// two, by half the angle's tangent, so that it keeps its length.
+template <class Law, class S>
+COLLIDE_HD_INLINE void turn_spring(Law const& law, vec3<S>& spring, granular_pair<S> const& p, S elapsed) {
+  S const before = law.keeps_length ? dot(spring, spring) : S(0);
+  spring -= p.normal * dot(spring, p.normal);
+  if (law.turns_about_normal) turn_about_normal(spring, p, elapsed);
+  if (!law.keeps_length) return;
+  S const after = dot(spring, spring);
+  spring = either(after > 0, vec3<S>(spring * sqrt_rn(before / after)), spring);
+}
+
+/// The force of a spring that grows with slip and slides at Coulomb's limit, and of its dashpot.
+template <class Law, class S, class Memory>
+COLLIDE_HD_INLINE vec3<S> spring_force(Law const& law, granular_pair<S> const& p, contact_material const& m,
+                                       normal_force<S> const& n, Memory const& memory, S stiffness, S dash) {
+  vec3<S>& spring = memory[tangential_displacement{}];
+  turn_spring(law, spring, p, memory.elapsed());
+  spring += p.slip * memory.elapsed();
+  S const limit = friction_limit(p, m, n);
+  vec3<S> const damped = p.slip * dash, pull = spring * stiffness + damped;
+  bool const with_dashpot = law.test == slip_test::spring_and_dashpot;
+  vec3<S> const tested = with_dashpot ? pull : vec3<S>(spring * stiffness);
+  S const tested_length = length_of(tested);
+  auto const slides = tested_length > limit;
+  if (!any(slides)) return -pull;
+  vec3<S> const sliding = tested * (limit / tested_length);
+  vec3<S> const left = (with_dashpot ? vec3<S>(sliding - damped) : sliding) * (1 / stiffness);
+  spring = either(slides && stiffness > 0, left, spring);
+  return either(slides, vec3<S>(-sliding), vec3<S>(-pull));
+}
+
+}  // namespace detail
+
 /// A spring of stiffness 8 G* a that grows with slip, turns with the contact, and slides at Coulomb's limit: R. D.
 /// Mindlin, Journal of Applied Mechanics 16, 1949; A. Di Renzo and F. P. Di Maio, Chemical Engineering Science 59,
 /// 2004. As it is by default, it is that of LIGGGHTS; the members are where other codes differ.
@@ -38,6 +74,8 @@ struct mindlin {
   tangential_damping damping = tangential_damping::of_tangent;  ///< the dashpot
   slip_test test = slip_test::spring;                           ///< what slides
   bool keeps_length = false;  ///< the spring does not become shorter where it turns with the contact: LAMMPS, MUSEN
+  bool turns_about_normal = false;  ///< the spring turns with the spins of the two about the normal, too, as no code
+                                    ///< above does: grains that turn as one keep their forces
 
   void check_parameters() const {
     detail::check_parameter(detail::is_positive(stiffness_factor), "mindlin: stiffness_factor is above 0, and finite");
@@ -50,29 +88,18 @@ struct mindlin {
     f(damping);
     f(test);
     f(keeps_length);
+    f(turns_about_normal);
   }
 
   template <class S, class Memory>
   COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const& p, detail::contact_material const& m,
                                   normal_force<S> const& n, Memory const& memory) const {
-    vec3<S>& spring = memory[tangential_displacement{}];
-    turn(spring, p.normal);
-    spring += p.slip * memory.elapsed();
-    S const stiffness = S(8 * stiffness_factor * m.shear) * n.contact_radius, limit = detail::friction_limit(p, m, n);
+    S const stiffness = S(8 * stiffness_factor * m.shear) * n.contact_radius;
     S dash = 0;
     if (damping == tangential_damping::of_tangent)
       dash = S(1.8257418583505538 * m.damping) * detail::sqrt_rn(stiffness * p.mass);
     if (damping == tangential_damping::of_normal) dash = n.damping;
-    vec3<S> const damped = p.slip * dash, pull = spring * stiffness + damped;
-    bool const with_dashpot = test == slip_test::spring_and_dashpot;
-    vec3<S> const tested = with_dashpot ? pull : vec3<S>(spring * stiffness);
-    S const tested_length = detail::length_of(tested);
-    auto const slides = tested_length > limit;
-    if (!detail::any(slides)) return -pull;
-    vec3<S> const sliding = tested * (limit / tested_length);
-    vec3<S> const left = (with_dashpot ? vec3<S>(sliding - damped) : sliding) * (1 / stiffness);
-    spring = detail::either(slides && stiffness > 0, left, spring);
-    return detail::either(slides, vec3<S>(-sliding), vec3<S>(-pull));
+    return detail::spring_force(*this, p, m, n, memory, stiffness, dash);
   }
 
   /// The energy of the spring: stiffness times the square of its length, over 2.
@@ -81,17 +108,6 @@ struct mindlin {
                              Memory const& memory) const {
     vec3<S> const& spring = memory[tangential_displacement{}];
     return S(4 * stiffness_factor * m.shear) * n.contact_radius * detail::dot(spring, spring);
-  }
-
- private:
-  /// Turns the spring into the plane of contact.
-  template <class S>
-  COLLIDE_HD_INLINE void turn(vec3<S>& spring, vec3<S> const& normal) const {
-    S const before = keeps_length ? detail::dot(spring, spring) : S(0);
-    spring -= normal * detail::dot(spring, normal);
-    if (!keeps_length) return;
-    S const after = detail::dot(spring, spring);
-    spring = detail::either(after > 0, vec3<S>(spring * detail::sqrt_rn(before / after)), spring);
   }
 };
 

@@ -30,12 +30,13 @@ struct constant_torque {
 
 namespace detail {
 
-/// Turns a spring that resists rolling into the plane of contact, winds it up, and cuts it to its limit, rolling
-/// friction times R* times the normal force. True if it was longer.
+/// Turns a spring that resists rolling into the plane of contact, and about the normal if it is to, winds it up, and
+/// cuts it to its limit, rolling friction times R* times the normal force. True if it was longer.
 template <class S>
 COLLIDE_HD_INLINE mask_of<S> wind_up(vec3<S>& spring, granular_pair<S> const& p, contact_material const& m,
-                               normal_force<S> const& n, S stiffness, S elapsed) {
+                                     normal_force<S> const& n, S stiffness, S elapsed, bool turns_about_normal) {
   spring -= p.normal * dot(spring, p.normal);
+  if (turns_about_normal) turn_about_normal(spring, p, elapsed);
   spring -= p.turning * (stiffness * elapsed);
   S const limit = S(m.rolling_friction) * p.radius * n.holding(p), length = length_of(spring);
   mask_of<S> const was_longer = length > limit;
@@ -52,10 +53,16 @@ struct epsd {
   static constexpr bool is_mutual = true;  ///< see law.hpp
   using remembers = contact_columns<rolling_torque>;
 
-  double damping = 0.3;  ///< ratio to critical damping, not negative
+  double damping = 0.3;             ///< ratio to critical damping, not negative
+  bool turns_about_normal = false;  ///< the spring turns with the spins of the two about the normal, too
 
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(damping), "epsd: damping is not negative, and finite");
+  }
+  template <class F>
+  void for_each_part(F const& f) {
+    f(damping);
+    f(turns_about_normal);
   }
 
   template <class S, class Memory>
@@ -64,7 +71,7 @@ struct epsd {
     S const arm = S(m.rolling_friction) * p.radius;
     S const stiffness = S(2.25) * n.secant * arm * arm;
     vec3<S>& spring = memory[rolling_torque{}];
-    auto const was_longer = detail::wind_up(spring, p, m, n, stiffness, memory.elapsed());
+    auto const was_longer = detail::wind_up(spring, p, m, n, stiffness, memory.elapsed(), turns_about_normal);
     vec3<S> const damped = spring - p.turning * (S(2 * damping) * detail::sqrt_rn(p.rolling_inertia * stiffness));
     return detail::either(was_longer, spring, damped);
   }
@@ -77,11 +84,14 @@ struct epsd2 {
   using remembers = contact_columns<rolling_torque>;
   static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
 
+  bool turns_about_normal = false;  ///< the spring turns with the spins of the two about the normal, too
+
   template <class S, class Memory>
   COLLIDE_HD_INLINE vec3<S> torque(granular_pair<S> const& p, detail::contact_material const& m,
                                    normal_force<S> const& n, Memory const& memory) const {
     vec3<S>& spring = memory[rolling_torque{}];
-    detail::wind_up(spring, p, m, n, S(8 * m.shear) * n.contact_radius * p.radius * p.radius, memory.elapsed());
+    detail::wind_up(spring, p, m, n, S(8 * m.shear) * n.contact_radius * p.radius * p.radius, memory.elapsed(),
+                    turns_about_normal);
     return spring;
   }
 };

@@ -96,6 +96,8 @@ struct list_pressing {
 
 /// Memory of a device for particles that overlap more triangles than a list has room for.
 struct overlap_pool {
+  static constexpr std::size_t least = 65536;  ///< items, of a scene of few particles
+
   overlap_item* items;
   std::uint32_t capacity;
   std::uint32_t* used;     ///< in this step
@@ -322,6 +324,9 @@ struct press_on_mesh {
     mesh_overlap<S> o{rounded_to<S>(normal), static_cast<S>(radius - n.distance), rounded_to<S>(surface),
                       item.triangle,         body_of_frame(item.frame),           rounded_to<S>(normal),
                       mesh_overlap<S>::apart};
+    if constexpr (has_moving_mesh<Triangles>) {
+      if (item.frame != 0) o.surface_turning = rounded_to<S>(vector_of(open.mesh.frames[item.frame].moving.angular));
+    }
     if (item.has_saddle) {
       vec3<double> const p = near.saddle_of(item, [&](overlap_item const& of) { return corners_of(open, shape, of); });
       double const distance = sqrt_rn(dot(p, p));
