@@ -117,7 +117,7 @@ struct granular_contact {
   template <class P, class F>
   COLLIDE_HD_INLINE detail::meeting_sphere<P> see(F const& seen) const {
     using lanes = detail::from_lanes<P>;
-    using S = typename std::decay_t<decltype(seen(0))>::scalar;
+    using S = decltype(seen(0).radius());
     detail::meeting_sphere<P> s;
     for (int c = 0; c < 3; ++c) {
       s.position[c] = lanes::of([&](int k) { return seen(k)[position{}][c]; });
@@ -191,7 +191,7 @@ struct granular_contact {
   COLLIDE_HD_INLINE bool meet(Particle& p, Seen const& self, Seen const& other, Memory const& memory, S dt) const {
     auto const a = see<S>([&](int) { return self; }), b = see<S>([&](int) { return other; });
     granular_pair<S> const c = pair_of(a, b, self.number() < other.number() ? S(-1) : S(1));
-    return apply(p, c, mass_of(a), made_of.of_pair(made_of.pair_of(self, other)), memory, dt);
+    return apply(p, c, mass_of(a), made_of.between(self, other), memory, dt);
   }
 
   template <class P>

@@ -62,7 +62,7 @@ struct contact_values<S, columns<C...>> : contact_value<C, S>... {
 /// The memory of a contact as it is stored: to be read at once.
 template <class S, class List>
 struct alignas(contact_values<S, List>::width > 2 ? 4 * sizeof(S) : sizeof(S)) contact_record {
-  S numbers[contact_values<S, List>::width];
+  S numbers[contact_values<S, List>::width > 0 ? contact_values<S, List>::width : 1];
 
   COLLIDE_HD_INLINE contact_values<S, List> values() const {
     contact_values<S, List> v;

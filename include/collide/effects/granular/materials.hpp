@@ -113,6 +113,10 @@ class one_material {
   }
   COLLIDE_HD_INLINE detail::contact_material const& of_pair(int) const { return pair_; }
   template <class Particle>
+  COLLIDE_HD_INLINE detail::contact_material const& between(Particle const&, Particle const&) const {
+    return pair_;
+  }
+  template <class Particle>
   COLLIDE_HD_INLINE detail::contact_material const& with_wall(Particle const&, id, id) const {
     return pair_;
   }
@@ -209,6 +213,10 @@ class materials {
     return place(number_of(p), number_of(other));
   }
   COLLIDE_HD_INLINE detail::contact_material const& of_pair(int number) const { return pairs_[number]; }
+  template <class Particle>
+  COLLIDE_HD_INLINE detail::contact_material const& between(Particle const& p, Particle const& other) const {
+    return of_pair(pair_of(p, other));
+  }
   template <class Particle>
   COLLIDE_HD_INLINE detail::contact_material const& with_wall(Particle const& p, id triangle, id body) const {
     int wall = wall_material;
