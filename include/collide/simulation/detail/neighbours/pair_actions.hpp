@@ -270,10 +270,15 @@ class pair_actions {
   using order = sorted_particles<S, without_memory<Effects>>;
   static constexpr bool has_memory = remembered::size != 0;
   static constexpr std::uint32_t none = order::overflow_mark;
+  static constexpr std::size_t usual = 4;  ///< items a particle: in a packed bed there are fewer
 
  public:
   void reserve(std::pmr::memory_resource* resource, std::size_t n) {
-    for (kept* k : {&now_, &before_}) k->firsts.reserve(resource, n + 1);
+    for (kept* k : {&now_, &before_}) {
+      k->firsts.reserve(resource, n + 1);
+      k->reserve(resource, usual * n);
+    }
+    actions_.reserve(resource, usual * n);
     place_before_.reserve(resource, n);
   }
   /// There are no contacts.
