@@ -132,8 +132,8 @@ struct granular_contact {
   static COLLIDE_HD_INLINE P mass_of(detail::meeting_sphere<P> const& s) {
     return detail::sphere_mass(1.0, s.radius) * s.density;
   }
-  /// What some pairs of spheres of two solids do to the first of each; `upwards` is 1 or -1, the direction of what has
-  /// none.
+  /// The action of the second spheres of some pairs of two solids on the first; `upwards` is 1 or -1, the direction
+  /// where two centres coincide.
   template <class P, class Memory>
   COLLIDE_HD_INLINE detail::sphere_action<P> act(detail::meeting_sphere<P> const& a, detail::meeting_sphere<P> const& b,
                                                  P const& upwards, detail::contact_material const& of,
@@ -146,7 +146,7 @@ struct granular_contact {
     action.is_there = goes_on;
     return action;
   }
-  /// What such an action does to a particle's velocity and spin; `impulse` is the time over its mass.
+  /// Adds an action to a particle's velocity and spin; `impulse` is the time over its mass.
   template <class S>
   COLLIDE_HD_INLINE void give(vec3<S>& v, [[maybe_unused]] vec3<S>& spin, detail::sphere_action<S> const& by,
                               [[maybe_unused]] S radius, S impulse) const {

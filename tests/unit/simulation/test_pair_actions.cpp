@@ -5,14 +5,15 @@
 #include <string>
 #include <vector>
 
+#include <doctest/doctest.h>
+
 #include <collide/bucket.cuh>
-#include <collide/checkpoint.hpp>
 #include <collide/effects/granular_contact.hpp>
 #include <collide/effects/gravity.hpp>
+#include <collide/effects/integrators.hpp>
 #include <collide/effects/polydisperse.hpp>
-#include <collide/integrators.hpp>
 #include <collide/simulation.cuh>
-#include <doctest/doctest.h>
+#include <collide/simulation/checkpoint.hpp>
 
 #include "execution/lockstep.hpp"
 
@@ -52,8 +53,7 @@ materials<2> two_solids() {
 /// All that a simulation is after some steps, with a restart in between.
 template <class S, class Law, class Space>
 std::string played(Space const& space, Law const& law, heap const& of) {
-  using made_type =
-      simulation<detector<bucket, karabassi<>, Space, S>, polydisperse, gravity, Law, velocity_verlet>;
+  using made_type = simulation<detector<bucket, karabassi<>, Space, S>, polydisperse, gravity, Law, velocity_verlet>;
   made_type made(space, polydisperse{}, gravity{0, 0, -9.81}, law, velocity_verlet{});
   std::vector<S> const floor{-1, -1, -S(0.001), 2, -1, -S(0.001), -1, 2, -S(0.001)};
   std::vector<S> const x(of.centres.begin(), of.centres.end()), v(of.velocities.begin(), of.velocities.end()),

@@ -1,5 +1,5 @@
 /// \file
-/// What spheres do to each other, for effects that are asked once a pair; see pair_actions.hpp.
+/// Actions of spheres on each other, for effects that are asked once a pair; see pair_actions.hpp.
 #pragma once
 
 #include <collide/exact/detail/numeric/float_bits.hpp>
@@ -14,7 +14,7 @@ struct meeting_sphere {
   P radius, density;
 };
 
-/// What the other does to a sphere: a force, the torque of its tangential part for an arm of 1, and another torque.
+/// The action of another sphere on a sphere: a force, the torque of its tangential part for an arm of 1, and another torque.
 template <class P>
 struct sphere_action {
   vec3<P> force, twist, torque;
@@ -33,7 +33,7 @@ struct sphere_action {
   }
 };
 
-/// It as it is stored.
+/// An action in memory.
 template <class S, int Width>
 struct alignas(Width == 7 ? 8 * sizeof(S) : sizeof(S)) stored_action {
   S numbers[Width];

@@ -9,7 +9,7 @@ namespace collide {
 /// A dashpot up to Coulomb's limit. Nothing is remembered: a pile creeps.
 struct dashpot {
   static constexpr bool is_mutual = true;  ///< see law.hpp
-  double damping = 0;  ///< force per slip, not negative
+  double damping = 0;                      ///< force per slip, not negative
 
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(damping), "dashpot: damping is not negative, and finite");

@@ -193,7 +193,7 @@ COLLIDE_HD_INLINE P in_each_lane(F const& f, P const& x, Q const&... more) {
 }  // namespace collide::detail
 
 #if defined(__GNUC__) && !defined(__CUDACC__)
-/// What Eigen asks of a scalar type.
+/// Traits by which Eigen knows a scalar type.
 template <class T, int N>
 struct Eigen::NumTraits<collide::detail::pack<T, N>> : Eigen::GenericNumTraits<T> {
   using Real = collide::detail::pack<T, N>;

@@ -250,7 +250,7 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
   using interaction = typename base::interaction;
   using pair_state = typename base::pair_state;
 
-  /// What is written soon is on its way.
+  /// Asks for memory that is written soon.
   template <class... Kick>
   void fetch_kicks([[maybe_unused]] std::size_t i, columns<Kick...>) const {
     (__builtin_prefetch(this->state.at(Kick{}) + 3 * std::size_t{this->order.numbers[i]}, 1), ...);
@@ -355,7 +355,7 @@ class pair_actions {
     });
   }
 
-  /// What contacts of the first `n` particles remember, by numbers.
+  /// The memory of contacts of the first `n` particles, by numbers.
   saved_contacts<S> saved(list_state const& header, id const* numbers, std::size_t n) const {
     struct contact {
       id other;

@@ -40,7 +40,7 @@ struct spatial_hash {
     return ((mixed ^ mixed >> 13) & mask) * stride + ((u(c.z) & 1) << 5 | (u(c.y) & 1) << 4 | (u(c.x) & 15));
   }
 
-  /// Where the block of a cell is along a curve, on which near blocks are near: G. M. Morton, "A computer oriented
+  /// The place of the block of a cell along a curve, on which near blocks are near: G. M. Morton, "A computer oriented
   /// geodetic data base", 1966.
   static COLLIDE_HD_INLINE std::uint32_t on_curve(cell c) {
     std::uint32_t along = 0;
