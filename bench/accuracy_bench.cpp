@@ -27,7 +27,7 @@
 #include <collide/all_pairs.cuh>
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
-#include <collide/narrow/detail/compare_distances.hpp>
+#include <collide/narrow/detail/distance_bounds.hpp>
 #include <collide/sinks/nearest.hpp>
 #include <collide/spaces/upload.hpp>
 

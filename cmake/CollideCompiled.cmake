@@ -43,8 +43,13 @@ else()
 endif()
 add_library(collide::compiled ALIAS collide_compiled)
 target_compile_definitions(collide_compiled INTERFACE COLLIDE_COMPILED)
-if(COLLIDE_QUICK_BUILD AND NOT COLLIDE_COMPILED_LIBRARY)
-  target_compile_options(collide_compiled PRIVATE -O2)  # two thirds of the time that -O3 takes
+# Optimised, it takes the best level, whatever the project's own is; quick builds take two thirds of the time with -O2.
+set(level $<$<AND:$<CXX_COMPILER_ID:GNU,Clang,AppleClang>,$<CONFIG:Release,RelWithDebInfo>>:-O3>)
+if(COLLIDE_QUICK_BUILD)
+  set(level -O2)
+endif()
+if(NOT COLLIDE_COMPILED_LIBRARY)
+  target_compile_options(collide_compiled PRIVATE ${level})
 endif()
 
 if(COLLIDE_CUDA)

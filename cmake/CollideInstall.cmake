@@ -4,6 +4,7 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/collide)
 install(DIRECTORY include/collide DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT headers)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/collide COMPONENT headers)
 install(TARGETS collide collide_cuda EXPORT collide-targets COMPONENT headers)
 install(EXPORT collide-targets NAMESPACE collide:: DESTINATION ${package_dir} COMPONENT headers)
 set(collide_with_openmp OFF)

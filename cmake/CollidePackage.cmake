@@ -2,8 +2,13 @@
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME libcollide-dev)
-set(CPACK_PACKAGE_VENDOR "the collide authors")
-set(CPACK_PACKAGE_CONTACT "the collide authors <maintainers@collide.example>")
+file(READ packaging/identity.json identity)
+foreach(part IN ITEMS authors contact documentation)
+  string(JSON identity_${part} GET "${identity}" ${part})
+endforeach()
+set(CPACK_PACKAGE_VENDOR "${identity_authors}")
+set(CPACK_PACKAGE_CONTACT "${identity_authors} <${identity_contact}>")
+set(CPACK_PACKAGE_HOMEPAGE_URL "${identity_documentation}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "collision detection between a triangle mesh and very many spheres")
 set(CPACK_PACKAGE_DESCRIPTION
     "A C++17 library of headers, and some of it compiled. It finds every pair of a sphere and a

@@ -6,11 +6,11 @@
 /// all_pairs x cuda_shared = `brute_force_shamem`.
 #pragma once
 
-#include <collide/broad/detail/all_pairs_ref.hpp>
+#include <collide/broad/detail/mesh_lookup.hpp>
 #include <collide/detector.hpp>
 #include <collide/exact/detail/geometry/lifted_bounds.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 #if defined(COLLIDE_COMPILED)
 #include <collide/detectors/compiled.hpp>
@@ -102,15 +102,14 @@ struct all_pairs_query {
   template <class Block>
   COLLIDE_HD_INLINE void test(Block& block, scratch<Block>& s, std::uint32_t n, std::size_t first,
                               std::size_t base) const {
-    constexpr std::uint32_t thread_private = Block::items;
-    for (std::uint32_t i = 0; i < n * thread_private; i += Block::num_threads) {
+    constexpr std::uint32_t per_thread = Block::items;
+    for (std::uint32_t i = 0; i < n * per_thread; i += Block::num_threads) {
       block.for_each_thread([&](int thread_rank) {
         if (thread_rank == 0) s.count = 0;
         std::uint32_t const own = i + static_cast<std::uint32_t>(thread_rank);
-        if (own >= n * thread_private) return;
-        encounter const e = s.encounters[own / thread_private];
-        test_one(block, s, first + std::size_t{e.thread_rank} * thread_private + own % thread_private,
-                 base + e.triangle);
+        if (own >= n * per_thread) return;
+        encounter const e = s.encounters[own / per_thread];
+        test_one(block, s, first + std::size_t{e.thread_rank} * per_thread + own % per_thread, base + e.triangle);
       });
       pipeline.drain_if_full(block, s.pipeline);
     }

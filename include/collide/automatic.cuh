@@ -3,12 +3,48 @@
 #pragma once
 
 #include <collide/all_pairs.cuh>
-#include <collide/broad/detail/grid_or_tree_ref.hpp>
-#include <collide/broad/detail/tree/box_waste.hpp>
+#include <collide/broad/detail/grid/grid_ref.hpp>
+#include <collide/broad/detail/per_sphere.hpp>
+#include <collide/broad/detail/tree/triangle_pieces.hpp>
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
 
 namespace collide {
+
+namespace detail {
+
+/// The lookup of `automatic`. Which of the two is asked is the same for all spheres.
+template <class S, class Tree>
+struct grid_or_tree_ref : bucket_ref<S> {
+  per_sphere_ref<S, Tree> tree;  ///< of a mesh without triangles if the cells are asked
+
+  COLLIDE_HD_INLINE bool asks_tree() const {
+#if defined(__CUDA_ARCH__)
+    return false;  // `automatic` makes none on a device
+#else
+    return tree.mesh.size() != 0;
+#endif
+  }
+
+  COLLIDE_HD grid_or_tree_ref opened() const { return {bucket_ref<S>::opened(), tree}; }
+  COLLIDE_HD_INLINE bool has_single_cell_lookup(S radius) const {
+    return !asks_tree() && bucket_ref<S>::has_single_cell_lookup(radius);
+  }
+  template <class Sphere>
+  COLLIDE_HD bool empty(Sphere const& s) const {
+    return asks_tree() ? tree.empty(s) : bucket_ref<S>::empty(s);
+  }
+  template <class Sphere>
+  COLLIDE_HD candidate_cursor begin(Sphere const& s) const {
+    return asks_tree() ? tree.begin(s) : bucket_ref<S>::begin(s);
+  }
+  template <class Sphere>
+  COLLIDE_HD bool next(Sphere const& s, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
+    return asks_tree() ? tree.next(s, c, most, range) : bucket_ref<S>::next(s, c, most, range);
+  }
+};
+
+}  // namespace detail
 
 /// Broad phase: chooses for each query. Testing all pairs has next to nothing to build, and wins for few spheres as
 /// long as no index has been made; that follows from the numbers of triangles and spheres alone, by the measured costs
@@ -41,7 +77,7 @@ struct automatic {
     template <class Space>
     void prepare(Space& space, automatic const& options, S radius) {
       detail::middles_as_spheres<S> const spheres{mesh_, radius};
-      way_ = prefers_tree<Space>(options, spheres) ? way::tree : best_without_tree(options);
+      strategy_ = prefers_tree<Space>(options, spheres) ? strategy::tree : best_without_tree(options);
       is_given_ = true;
       make_index(space, options, radius);
     }
@@ -51,10 +87,10 @@ struct automatic {
     void prepare(Space& space, automatic const& options, Spheres const& spheres) {
       if (!is_given_) {
         if constexpr (detail::serves_steps<Space>) {
-          way_ = prefers_tree_in_steps<Space>(options, spheres) ? way::tree : best_without_tree(options);
+          strategy_ = prefers_tree_in_steps<Space>(options, spheres) ? strategy::tree : best_without_tree(options);
           is_given_ = true;
         } else {
-          way_ = choose<Space>(options, spheres);
+          strategy_ = choose<Space>(options, spheres);
         }
       }
       make_index(space, options, spheres);
@@ -69,15 +105,15 @@ struct automatic {
     /// About how many hits the query has, if the grid can tell; else 0.
     template <class NarrowPhase, class Space>
     std::uint64_t expected_hits(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres) {
-      return way_ == way::grid ? grid_.template expected_hits<NarrowPhase>(space, spheres) : 0;
+      return strategy_ == strategy::grid ? grid_.template expected_hits<NarrowPhase>(space, spheres) : 0;
     }
 
     template <class NarrowPhase, class Space, class Output>
     void query(Space& space, detail::sphere_view_for<NarrowPhase, S> const& spheres, Output const& output) {
       if constexpr (bvh_tuning<Space>::divides_by_area) {
-        if (way_ == way::tree) return tree_.template query<NarrowPhase>(space, spheres, output);
+        if (strategy_ == strategy::tree) return tree_.template query<NarrowPhase>(space, spheres, output);
       }
-      if (way_ == way::grid) {
+      if (strategy_ == strategy::grid) {
         grid_.template query<NarrowPhase>(space, spheres, output);
       } else {
         bounds_.template query<NarrowPhase>(space, spheres, output);
@@ -87,9 +123,9 @@ struct automatic {
     /// The triangles near a single sphere, for a kernel of a simulation; valid until the next build or prepare.
     auto mesh_lookup() const {
       using ref = detail::grid_or_tree_ref<S, decltype(tree_.ref())>;
-      if (way_ == way::grid) return ref{grid_.mesh_lookup(), {}};
+      if (strategy_ == strategy::grid) return ref{grid_.mesh_lookup(), {}};
       detail::bucket_ref<S> const all{{mesh_, nullptr}, nullptr, 0, nullptr, nullptr, nullptr, nullptr, 0};
-      return way_ == way::tree ? ref{all, tree_.mesh_lookup()} : ref{all, {}};
+      return strategy_ == strategy::tree ? ref{all, tree_.mesh_lookup()} : ref{all, {}};
     }
 
     /// Width of the finest cells in use; 0 if there is no grid.
@@ -99,18 +135,18 @@ struct automatic {
     }
 
    private:
-    enum class way { all_pairs, grid, tree };
+    enum class strategy { all_pairs, grid, tree };
 
-    way best_without_tree(automatic const& options) const {
-      return detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? way::grid : way::all_pairs;
+    strategy best_without_tree(automatic const& options) const {
+      return detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? strategy::grid : strategy::all_pairs;
     }
 
     template <class Space, class Spheres>
-    way choose(automatic const& options, Spheres const& spheres) {
+    strategy choose(automatic const& options, Spheres const& spheres) {
       bool const wants_index =
-          has_grid_ || has_tree_ || (best_without_tree(options) == way::grid && wants_grid<Space>(spheres.size()));
-      if (!wants_index) return way::all_pairs;
-      return prefers_tree<Space>(options, spheres) ? way::tree : way::grid;
+          has_grid_ || has_tree_ || (best_without_tree(options) == strategy::grid && wants_grid<Space>(spheres.size()));
+      if (!wants_index) return strategy::all_pairs;
+      return prefers_tree<Space>(options, spheres) ? strategy::tree : strategy::grid;
     }
 
     template <class Space>
@@ -171,15 +207,15 @@ struct automatic {
       return false;
     }
 
-    /// Makes what the way of this query needs, for a radius or for spheres.
+    /// Makes what the strategy of this query needs, for a radius or for spheres.
     template <class Space, class RadiusOrSpheres>
     void make_index(Space& space, automatic const& options, RadiusOrSpheres const& what) {
-      if (way_ == way::tree) {
+      if (strategy_ == strategy::tree) {
         if constexpr (bvh_tuning<Space>::divides_by_area) {
           if (!has_tree_) tree_.build(space, bvh(), mesh_);
           has_tree_ = true;
         }
-      } else if (way_ == way::grid) {
+      } else if (strategy_ == strategy::grid) {
         if (!has_grid_) grid_.build(space, options.grid, mesh_);
         has_grid_ = true;
         grid_.prepare(space, options.grid, what);
@@ -196,7 +232,7 @@ struct automatic {
     bool has_grid_ = false, has_bounds_ = false, has_tree_ = false;
     bool is_given_ = false;                         ///< made for a radius, until the next build
     bool is_sampled_ = false, is_slender_ = false;  ///< the mesh
-    way way_ = way::all_pairs;                      ///< of this query
+    strategy strategy_ = strategy::all_pairs;       ///< of this query
     double spent_ = 0;                              ///< nanoseconds that a grid would have saved so far
     double spent_on_boxes_ = 0;                     ///< nanoseconds that a tree would have saved so far
   };

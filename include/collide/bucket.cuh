@@ -22,7 +22,7 @@
 #include <collide/broad/detail/grid/plan.hpp>
 #include <collide/detector.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #if defined(COLLIDE_COMPILED)
 #include <collide/detectors/compiled.hpp>
 #endif
@@ -236,8 +236,8 @@ class bucket::index {
   static constexpr std::size_t fixed_bytes =
       sizeof(detail::mesh_statistics<S>) + detail::max_grids * sizeof(detail::grid<S>) + sizeof(detail::size_histogram);
 
-  /// Up to so many triangles entries have memory for as many as there may be; the device is asked how many there are if
-  /// there are more triangles, or several grids.
+  /// For at most this many triangles the lists of cells get memory for the largest possible number of entries; for more
+  /// triangles, or several grids, the host reads the number back first.
   static constexpr std::size_t max_without_readback = std::size_t{1} << 18;
 
   /// True if boxes of triangles are kept: a thread that works alone asks them before it reads a triangle, and a

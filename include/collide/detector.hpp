@@ -20,16 +20,35 @@
 #include <collide/spheres.hpp>
 #if defined(__CUDACC__)
 #include <collide/cuda.cuh>
-#else
-#include <collide/spaces/detail/cuda_without_nvcc.hpp>
 #endif
 
 namespace collide {
 
+#if !defined(__CUDACC__)
+
+namespace detail {
+
+/// Cannot be made.
+struct cuda_without_nvcc {
+  template <class... Argument>
+  explicit cuda_without_nvcc(Argument&&...) {
+    static_assert(sizeof...(Argument) > 1000,
+                  "collide: the spaces cuda and cuda_shared need nvcc: compile this source as CUDA, as name.cu or with "
+                  "nvcc -x cu; with CMake, as LANGUAGE CUDA");
+  }
+};
+
+}  // namespace detail
+
+using cuda = detail::cuda_without_nvcc;
+using cuda_shared = detail::cuda_without_nvcc;
+
+#endif
+
 /// Finds all colliding (sphere, triangle) pairs of a scene.
 ///
-/// \tparam BroadPhase      which triangles a sphere could touch: `bucket` (bucket.cuh), `all_pairs` (all_pairs.cuh) or
-///                         `automatic` (automatic.cuh)
+/// \tparam BroadPhase      which triangles a sphere could touch: `bucket` (bucket.cuh), `bvh` (bvh.cuh), `all_pairs`
+///                         (all_pairs.cuh) or `automatic` (automatic.cuh)
 /// \tparam NarrowPhase     whether a sphere touches a triangle: `karabassi<Precision>`, or `karabassi_swept<Precision>`
 ///                         for spheres that move
 /// \tparam ExecutionSpace  where and how it runs: `host`, `cuda`, `cuda_shared`
@@ -115,12 +134,11 @@ class detector {
     if (mesh.size() != 0) detail::prepare_index(index_, space_, options_, radius);
   }
 
-  /// As `build`, for a mesh that has deformed since: what the broad phase knows of it stays and is moved along, on the
+  /// As `build`, for a mesh that has deformed since: the index of the broad phase stays and its boxes follow, on the
   /// host in a sixth to an eighth of the time. Queries give the same; the farther triangles have moved from each other
   /// the longer they take, until the next `build`. For `bvh`.
   ///
-  /// \param mesh  triangles in memory of the space, not copied, as for `build`: as many as that of the last build, in
-  /// the
+  /// \param mesh  triangles in memory of the space, not copied, as for `build`: as many as the last build had, in the
   ///              same order, at the same or another place
   /// \throws error  if there was no `build`, the last one failed, or it was of another number of triangles
   /// \throws cuda_error  if a CUDA call fails
@@ -164,7 +182,8 @@ class detector {
   /// \param spheres  n spheres in memory of the space: valid and unchanged until the work is done, at the latest when
   ///                 the sink is read. There may be none.
   /// \param sink     where pairs go: `count`, `any_hit`, `pairs`, `csr`, `contacts`, `impacts`, `closest`, `earliest`,
-  ///                 `visit`, or one of your own
+  ///                 `visit`, or one of your own; or a search of the mesh for each sphere: `nearest`, `k_nearest`,
+  ///                 `contains`, `signed_distance`, `winding_number`
   /// \return the sink: by reference if it was given as an lvalue (its memory is then used again), else by value
   /// \throws error  if there was no `build`, or the last one failed
   /// \throws cuda_error  if a CUDA call fails

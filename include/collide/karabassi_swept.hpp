@@ -4,13 +4,49 @@
 
 #include <collide/core/impact.hpp>
 #include <collide/core/precision.hpp>
+#include <collide/exact/detail/geometry/local_sweep.hpp>
+#include <collide/exact/detail/predicates/filter_swept.hpp>
+#include <collide/karabassi.hpp>
+#include <collide/narrow/detail/contact.hpp>
 #include <collide/narrow/detail/contact_in_precision.hpp>
-#include <collide/narrow/detail/contact_swept.hpp>
 #include <collide/narrow/detail/intersects_swept.hpp>
-#include <collide/narrow/detail/karabassi_swept_test.hpp>
-#include <collide/narrow/detail/time_of_impact.hpp>
 
 namespace collide {
+
+namespace detail {
+
+/// The swept test in coordinates local to the start of the path and scaled by a power of two. A hit is reported only
+/// for a point of the triangle and a point of the path that were found within the radius of each other.
+template <class T, class S>
+COLLIDE_HD_INLINE bool karabassi_swept_local(triangle<S> const& of, moving_sphere<S> const& s) {
+  using W = std::common_type_t<S, T>;
+  local_sweep<W> const l = to_local<W>(of, s);
+  if (!aabb_within(l, l.shape.radius + swept_error<W> * max_norm(l))) return false;
+  if (!is_valid_radius(s.radius) || !is_finite(s.centre) || !is_finite(s.displacement) || !is_finite(of)) return false;
+  if (is_infinite(s.radius)) return true;
+  if (max_norm(s.displacement) < std::numeric_limits<S>::min()) {
+    return karabassi_local<T>(of, static_cast<sphere<S> const&>(s));
+  }
+  local_sweep<T> const t = narrow_to<T>(to_unit_range(l, of, s));
+  return approach(t).distance_squared <= mul_rn(t.shape.radius, t.shape.radius);
+}
+
+/// The contact at a time within the step. At the time of impact its depth is next to zero, and accurate to absolute
+/// rounding only.
+COLLIDE_HD_NOINLINE inline contact<double> contact_at_time(triangle<double> const& t, moving_sphere<double> const& s,
+                                                           double time, digits wanted) {
+  if (time == 0) return contact_of_pair(t, static_cast<sphere<double> const&>(s), wanted, true);
+  moving_sphere<double> const centre{{s.centre, 0}, s.displacement};
+  local_sweep<double> const l = to_unit_range(to_local<double>(t, centre), t, centre);
+  return contact_with_fallback(at_time(l, time), s.centre + scaled(s.displacement, time), t, s, time, wanted, false);
+}
+
+template <class S>
+COLLIDE_HD contact<S> contact_at_time(triangle<S> const& t, moving_sphere<S> const& s, S time) {
+  return narrow_to<S>(contact_at_time(widened(t), widened(s), static_cast<double>(time), digits_of<S>));
+}
+
+}  // namespace detail
 
 /// Narrow phase: the particle/triangle test of E.-A. Karabassi, G. Papaioannou, T. Theoharis and A. Boehm,
 /// "Intersection test for collision detection in particle systems", J. Graphics Tools 4(1), 1999: a sphere sweeps out a

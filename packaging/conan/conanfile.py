@@ -13,6 +13,9 @@ class CollideConan(ConanFile):
     name = "collide"
     description = "Collision detection between a triangle mesh and very many spheres, on CPU and GPU"
     license = "BSD-3-Clause"
+    author = "the collide authors"
+    url = "https://github.com/OWNER/collide"
+    homepage = "https://OWNER.github.io/collide"
     topics = ("collision-detection", "simulation", "cuda")
     package_type = "static-library"
     settings = "os", "arch", "compiler", "build_type"
@@ -23,11 +26,11 @@ class CollideConan(ConanFile):
         return os.path.join(self.recipe_folder, os.pardir, os.pardir)
 
     def set_version(self):
-        header = load(self, os.path.join(self._tree, "include", "collide", "version.hpp"))
+        header = load(self, os.path.join(self._tree, "include", "collide", "core", "version.hpp"))
         self.version = ".".join(re.findall(r"#define COLLIDE_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header))
 
     def export_sources(self):
-        for pattern in ("CMakeLists.txt", "LICENSE", "CHANGELOG.md", "cmake/*", "include/*", "src/*"):
+        for pattern in ("CMakeLists.txt", "LICENSE", "CHANGELOG.md", "cmake/*", "include/*", "packaging/identity.json", "src/*"):
             copy(self, pattern, self._tree, self.export_sources_folder)
 
     def requirements(self):

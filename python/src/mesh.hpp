@@ -13,6 +13,8 @@
 #include <collide/bucket.cuh>
 #include <collide/bvh.cuh>
 #include <collide/checks/validate.hpp>
+#include <collide/checks/validate_surface.hpp>
+#include <collide/detectors/posed.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>
 #include <collide/sinks/csr.hpp>
@@ -20,8 +22,53 @@
 #include <collide/sinks/impacts.hpp>
 #include <collide/sinks/k_nearest.hpp>
 #include <collide/sinks/signed_distance.hpp>
+#include <collide/sinks/winding_number.hpp>
 
+#include "closed.hpp"
 #include "runtime.hpp"
+
+namespace collide_python {
+
+/// A sink that puts a search of the library's on the stream.
+template <class Find>
+struct searcher {
+  Find find;
+  auto data() const { return find.to; }
+  template <class Space, class Query>
+  void run(Space&, Query const& query) {
+    collide::detail::search_mesh(query, find);
+  }
+};
+template <class S>
+struct searcher<collide::detail::find_winding<S>> {
+  collide::detail::find_winding<S> find;
+  template <class Space, class Query>
+  void run(Space&, Query const& query) {
+    if (query.mesh.size() != 0) find.tree = query.windings();
+    collide::detail::search_mesh(query, find);
+  }
+};
+
+/// Whether a search is one of bodies in poses, too.
+template <class Find>
+inline constexpr bool takes_poses = std::is_same<Find, collide::detail::find_inside>::value;
+template <class S, class Precision>
+inline constexpr bool takes_poses<collide::detail::find_nearest<S, Precision>> = true;
+template <class S, class Precision>
+inline constexpr bool takes_poses<collide::detail::find_signed_distance<S, Precision>> = true;
+
+/// Kernel functor of `for_each` over points: takes the distance out of what was found.
+template <class Record, class S>
+struct take_distance {
+  Record const* from;
+  S* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i].distance; }
+};
+
+}  // namespace collide_python
+
+template <class Find>
+inline constexpr bool collide::detail::searches_bodies<collide_python::searcher<Find>> = true;
 
 namespace collide_python {
 
@@ -30,9 +77,10 @@ struct question {
   std::string_view precision;
   nb::object radius, displacements;  ///< the last one is None for spheres at rest
   collide::order order;
-  nb::object capacity;  ///< None, or for how many results there is room at most
-  nb::object out;       ///< None, or an array for them
-  bool numpy;           ///< whether results are numpy arrays
+  nb::object capacity;                      ///< None, or for how many results there is room at most
+  nb::object out;                           ///< None, or an array for them
+  bool numpy;                               ///< whether results are numpy arrays
+  std::vector<collide::pose> const& poses;  ///< of all bodies, or none where they are as they lie in memory
 };
 
 template <class Space, class S>
@@ -62,6 +110,13 @@ class mesh : public called<Space> {
     is_built_ = {};
   }
 
+  /// Parts of the mesh that take poses: the first triangle of each, and how many. None: all is one.
+  void divide(std::vector<std::pair<std::size_t, std::size_t>> const& bodies) {
+    bodies_.clear();
+    for (auto const& one : bodies) bodies_.push_back({one.first, one.second, {}});
+    is_built_[5] = false;
+  }
+
   std::size_t size() const { return view_.size(); }
   collide::mesh_view<S> const& view() const { return view_; }
   /// What keeps the memory of the view.
@@ -74,14 +129,45 @@ class mesh : public called<Space> {
     return given<std::int32_t>(triangles_.data, {triangles_.size, 3}, owner_of(std::move(own)), numpy);
   }
 
+  /// Checks a mesh of the host. `what` is closed: a sentence, whether it is closed and oriented, and triangles and
+  /// edges of each kind of problem; surface: a sentence, and pairs of triangles of each kind; or intersections: pairs.
+  nb::object check(std::string_view what, double tolerance) {
+    if (what == "intersections")
+      return two_columns(without_the_gil([&] { return collide::self_intersections(view_, on_host()); }));
+    nb::list parts;
+    if (what == "closed") {
+      auto const report = without_the_gil([&] { return collide::validate_closed(view_); });
+      for (int k = 0; k < collide::seam_problem_count; ++k)
+        parts.append(two_columns(report.where(static_cast<collide::seam_problem>(k))));
+      return nb::make_tuple(report.message(), report.closed(), report.oriented(), parts);
+    }
+    auto const report = without_the_gil([&] { return collide::validate_surface(view_, tolerance, on_host()); });
+    for (int k = 0; k < collide::surface_problem_count; ++k)
+      parts.append(two_columns(report.where(static_cast<collide::surface_problem>(k))));
+    return nb::make_tuple(report.message(), parts);
+  }
+
+  /// Whether each edge has an even number of triangles, as far as a number of 64 bits tells; on a GPU it does not look.
+  bool seems_closed() {
+    if constexpr (Space::host_accessible) {
+      without_gil const others_run;
+      return collide_python::seems_closed(view_, runtime_.space());
+    } else {
+      return true;
+    }
+  }
+
   /// What spheres touch. `what` is pairs, contacts, impacts, or closest or earliest, which are one for each sphere:
   /// records as rows of int32, how many there are, and how many in all; or count, a number; any, flags; csr, offsets
   /// and triangles.
   /// `results` are whether they are sorted, the capacity, `out`, and whether they are numpy's.
   nb::object query(std::string_view what, nb::object const& centres, nb::object const& radius,
-                   nb::object const& displacements, std::string_view precision, nb::tuple const& results) {
+                   nb::object const& displacements, std::string_view precision,
+                   std::vector<std::vector<double>> const& poses, nb::tuple const& results) {
+    auto const placed = poses_of(poses);
     auto const order = nb::cast<bool>(results[0]) ? collide::order::canonical : collide::order::unspecified;
-    question const q{precision, radius, displacements, order, results[1], results[2], nb::cast<bool>(results[3])};
+    question const q{precision, radius, displacements, order, results[1], results[2], nb::cast<bool>(results[3]),
+                     placed};
     array const x = runtime_.keep(import_array(centres, "centres", runtime_.at()));
     if (what == "pairs") return records<collide::pair, collide::pairs>(q, x);
     if (what == "contacts") return records<collide::contact<S>, collide::contacts<S>>(q, x);
@@ -100,33 +186,51 @@ class mesh : public called<Space> {
     return found;
   }
 
-  /// What is near each point, in `out` or in memory of its own: `what` is nearest, k_nearest or signed_distance, one
-  /// record or k of them, and how many points there are; or contains, flags.
-  nb::object search(std::string_view what, nb::object const& from, int k, double max_distance,
-                    nb::tuple const& results) {
+  /// What is near each point, in `out` or in memory of its own: `what` is nearest, k_nearest, signed_distance or
+  /// winding, one record or k of them, and how many points there are; contains, flags; or distance or sides, numbers,
+  /// which have a sign in the latter. `number` is k, or beta of winding numbers.
+  nb::object search(std::string_view what, nb::object const& from, double number, double max_distance,
+                    std::vector<std::vector<double>> const& poses, nb::tuple const& results) {
+    using namespace collide::detail;
+    using collide::exact;
+    using nearest_record = collide::nearest_triangle<S>;
+    using signed_record = collide::signed_nearest_triangle<S>;
     nb::object const out = results[2];
     bool const numpy = nb::cast<bool>(results[3]);
+    auto const placed = poses_of(poses);
     array const kept_points = runtime_.keep(import_array(from, "points", runtime_.at()));
     auto const points = points_of<S>(kept_points, "points");
     std::size_t const n = points.size();
     if (!(max_distance >= 0)) refuse("max_distance", "is negative or NaN");
-    if (k < 1 || k > collide::detail::most_nearest) refuse("k", "is " + std::to_string(k) + ", expected 1 to 32");
     S const farthest = static_cast<S>(max_distance);
-    using collide::exact;
     nb::object found;
     if (what == "contains") {
-      look(points, collide::detail::find_inside{each<std::uint8_t>(found, {n}, out, numpy)});
+      look(points, placed, find_inside{each<std::uint8_t>(found, {n}, out, numpy)});
+      return found;
+    }
+    if (what == "distance") {
+      S* const to = each<S>(found, {n}, out, numpy);
+      distances<nearest_record>(points, placed, to, [&](auto* room) { return find_nearest<S, exact>{farthest, room}; });
+      return found;
+    }
+    if (what == "sides") {
+      S* const to = each<S>(found, {n}, out, numpy);
+      distances<signed_record>(points, placed, to, [&](auto* room) {
+        return find_signed_distance<S, exact>{farthest, room};
+      });
       return found;
     }
     if (what == "signed_distance") {
-      auto* const to = each<collide::signed_nearest_triangle<S>>(found, {n}, out, numpy);
-      look(points, collide::detail::find_signed_distance<S, exact>{farthest, to});
+      look(points, placed, find_signed_distance<S, exact>{farthest, each<signed_record>(found, {n}, out, numpy)});
     } else if (what == "nearest") {
-      auto* const to = each<collide::nearest_triangle<S>>(found, {n}, out, numpy);
-      look(points, collide::detail::find_nearest<S, exact>{farthest, to});
+      look(points, placed, find_nearest<S, exact>{farthest, each<nearest_record>(found, {n}, out, numpy)});
+    } else if (what == "winding") {
+      find_winding<S> const find{{}, number, each<collide::winding<S>>(found, {n}, out, numpy)};
+      look(points, {}, find);
     } else {
-      auto* const to = each<collide::nearest_triangle<S>>(found, {n, static_cast<std::size_t>(k)}, out, numpy);
-      look(points, collide::detail::find_k_nearest<S, exact>{farthest, k, to});
+      auto const k = static_cast<int>(number);
+      auto* const to = each<nearest_record>(found, {n, static_cast<std::size_t>(k)}, out, numpy);
+      look(points, {}, find_k_nearest<S, exact>{farthest, k, to});
     }
     return nb::make_tuple(found, n);
   }
@@ -222,6 +326,10 @@ class mesh : public called<Space> {
     if (radii.is_valid()) runtime_.keep(radii);
     if (q.displacements.is_none()) {
       if constexpr (!needs_motion<Sink>) {
+        if (!q.poses.empty()) {
+          if (q.precision != "exact") refuse("precision", "of a mesh in poses is 'exact'");
+          return run_posed(spheres, q.poses, sink);
+        }
         if (q.precision == "exact") return run<0>(std::get<0>(at_rest_), spheres, sink);
         if (q.precision == "single") return run<1>(std::get<1>(at_rest_), spheres, sink);
         if (q.precision == "double") return run<2>(std::get<2>(at_rest_), spheres, sink);
@@ -232,6 +340,7 @@ class mesh : public called<Space> {
     } else if constexpr (needs_rest<Sink>) {
       refuse("displacements", "the closest triangle is of spheres at rest: ask for impacts");
     } else {
+      if (!q.poses.empty()) refuse("displacements", "a mesh in poses takes none: use collide.Simulation");
       displacements = runtime_.keep(import_array(q.displacements, "displacements", runtime_.at()));
       auto const paths = points_of<S>(displacements, "displacements");
       if (paths.size() != points.size())
@@ -242,34 +351,88 @@ class mesh : public called<Space> {
     }
   }
 
-  /// A sink that puts a search of the library's on the stream.
+  /// Has a search look at points, while other threads run.
   template <class Find>
-  struct searcher {
-    Find find;
-    template <class Query>
-    void run(Space&, Query const& query) {
-      collide::detail::search_mesh(query, find);
-    }
-  };
-  template <class Find>
-  void look(collide::point_view<S> const& points, Find const& find) {
+  void look(collide::point_view<S> const& points, std::vector<collide::pose> const& poses, Find const& find) {
     searcher<Find> sink{find};
+    if constexpr (takes_poses<Find>) {
+      if (!poses.empty()) return run_posed(points, poses, sink);
+    }
     run<4>(nearby_, points, sink);
+  }
+
+  /// Distances alone, by way of records for some points at a time. `find(records)` is the search.
+  template <class Record, class Find>
+  void distances(collide::point_view<S> const& points, std::vector<collide::pose> const& poses, S* to,
+                 Find const& find) {
+    std::size_t const n = points.size(), most = Space::host_accessible ? 1u << 16 : 1u << 20;
+    auto const room = std::make_unique<kept<nothing>>(runtime_.memory());
+    Record* const records = room->template records<Record>(runtime_, std::min(n, most));
+    for (std::size_t first = 0; first < n; first += most) {
+      std::size_t const m = std::min(n - first, most);
+      look(points.subview(first, m), poses, find(records));
+      runtime_.space().for_each(m, take_distance<Record, S>{records, to + first});
+    }
   }
 
   /// Where records go, each `shape` of them, and in `found` the array that shows them: `out`, or of memory of its own.
   template <class Record>
   Record* each(nb::object& found, std::vector<std::size_t> shape, nb::object const& out, bool numpy) {
-    using word = std::conditional_t<sizeof(Record) == 1, std::uint8_t, std::int32_t>;
+    constexpr bool is_number = sizeof(Record) == 1 || std::is_same<Record, S>::value;
+    using word = std::conditional_t<is_number, Record, std::int32_t>;
     std::size_t n = 1;
     for (std::size_t const m : shape) n *= m;
-    if (sizeof(Record) != 1) shape.push_back(sizeof(Record) / sizeof(word));
+    if (!is_number) shape.push_back(sizeof(Record) / sizeof(word));
     found = out;
     if (!out.is_none()) return reinterpret_cast<Record*>(room_of<word>(out, runtime_.at(), shape));
     auto own = std::make_unique<kept<nothing>>(runtime_.memory());
     Record* const to = own->template records<Record>(runtime_, n);
     found = given<word>(to, shape, owner_of(std::move(own)), numpy);
     return to;
+  }
+
+  /// The bodies' poses, or none; each is a position, and a unit quaternion w, x, y, z.
+  std::vector<collide::pose> poses_of(std::vector<std::vector<double>> const& numbers) {
+    std::size_t const expected = bodies_.empty() ? 1 : bodies_.size();
+    if (!numbers.empty() && numbers.size() != expected)
+      refuse("poses", "there are " + std::to_string(numbers.size()) + ", expected " + std::to_string(expected) +
+                          ", one for each body");
+    std::vector<collide::pose> poses;
+    for (std::vector<double> const& from : numbers) {
+      if (from.size() != 7) refuse("poses", "has rows of other than 7 numbers: a position and a quaternion w, x, y, z");
+      collide::pose one;
+      std::copy(from.begin(), from.begin() + 3, one.position);
+      std::copy(from.begin() + 3, from.end(), one.rotation);
+      poses.push_back(one);
+    }
+    return poses;
+  }
+
+  template <class Spheres, class Sink>
+  void run_posed(Spheres const& spheres, std::vector<collide::pose> const& poses, Sink& sink) {
+    without_gil const others_run;
+    posed_.space() = runtime_.space();
+    if (!is_built_[5]) {
+      posed_.build(view_, bodies_.empty() ? std::vector<collide::body>{{0, view_.size(), {}}} : bodies_);
+      is_built_[5] = true;
+    }
+    posed_.query(spheres, poses, sink);
+  }
+
+  template <class Check>
+  static auto without_the_gil(Check const& check) {
+    without_gil const others_run;
+    return check();
+  }
+  collide::host on_host() const { return collide::host(runtime_.where().threads); }
+
+  /// Pairs of numbers of 32 bits as an array of numpy.
+  template <class Pair>
+  nb::object two_columns(std::vector<Pair> const& pairs) {
+    static_assert(sizeof(Pair) == 2 * sizeof(std::int32_t));
+    auto own = std::make_unique<std::vector<Pair>>(pairs);
+    void const* const data = own->data();
+    return give(data, nb::dtype<std::int32_t>(), {pairs.size(), 2}, owner_of(std::move(own)), {}, true);
   }
 
   template <std::size_t number, class Detector, class Spheres, class Sink>
@@ -308,9 +471,11 @@ class mesh : public called<Space> {
       at_rest<collide::double_precision>(runtime_.space())};
   swept swept_{runtime_.space()};
   collide::detector<collide::bvh, collide::karabassi<>, Space, S> nearby_{runtime_.space()};
+  collide::posed<collide::detector<collide::bvh, collide::karabassi<>, Space, S>> posed_{runtime_.space()};
+  std::vector<collide::body> bodies_;
   bool is_set_ = false;
   double pairs_a_sphere_ = 0;  ///< of the last query
-  std::array<bool, 5> is_built_{};
+  std::array<bool, 6> is_built_{};
 };
 
 }  // namespace collide_python

@@ -52,6 +52,9 @@ void bind_mesh(nb::module_& m, char const* name) {
   bind_call(c, "query", &type::query);
   bind_call(c, "search", &type::search);
   bind_call(c, "triangles", &type::triangles);
+  bind_call(c, "divide", &type::divide);
+  bind_call(c, "check", &type::check);
+  bind_call(c, "seems_closed", &type::seems_closed);
 }
 
 template <class Space, class S>
@@ -72,6 +75,10 @@ void bind_simulation(nb::module_& m, char const* name) {
   bind_call(c, "energy", &simulation_base::energy);
   bind_call(c, "sums", &simulation_base::sums);
   bind_call(c, "clear", &simulation_base::clear);
+  bind_call(c, "births", &simulation_base::births);
+  bind_call(c, "contact_report", &simulation_base::contact_report);
+  bind_call(c, "contacts", &type::contacts);
+  bind_call(c, "drive", &simulation_base::drive);
   bind_call(c, "save", &simulation_base::save);
   bind_call(c, "load", &type::load);
 }

@@ -10,6 +10,7 @@
 
 #include <dlfcn.h>
 
+#include <collide/detectors/sphere_pairs.cuh>
 #include <collide/effects/bodies.hpp>
 
 #include "mesh.hpp"
@@ -92,6 +93,25 @@ class simulation : public called<Space> {
     return done;
   }
 
+  /// Pairs of particles that touch, as (n, 2) int32.
+  nb::object contacts(bool numpy) {
+    struct owned {
+      std::shared_ptr<void> memory;
+      collide::pairs sink{collide::order::canonical};
+    };
+    auto own = std::make_unique<owned>(owned{runtime_.memory(), collide::pairs(collide::order::canonical)});
+    {
+      without_gil const others_run;
+      collide::sphere_view<S> particles;
+      one().spheres(&particles);
+      pairs_.space() = runtime_.space();
+      pairs_.query(particles, own->sink);
+    }
+    auto const* const data = own->sink.data();
+    std::size_t const n = own->sink.size();
+    return give(data, nb::dtype<std::int32_t>(), {n, 2}, owner_of(std::move(own)), runtime_.at(), numpy);
+  }
+
   bool load(std::string const& path) {
     if (is_shown()) return false;
     without_gil const others_run;
@@ -147,6 +167,7 @@ class simulation : public called<Space> {
   bool is_shown() const { return one_.use_count() > 1; }
 
   make_simulation* make_ = nullptr;
+  collide::sphere_pairs<Space, S> pairs_{runtime_.space()};
   std::shared_ptr<simulation_base> one_;
   std::pair<array, std::shared_ptr<void>> mesh_;  ///< the memory that it reads
 };

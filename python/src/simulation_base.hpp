@@ -47,6 +47,14 @@ class simulation_base {
   /// What the effect of a number has summed up since `clear`; nothing if it does not.
   virtual std::vector<double> sums(std::size_t effect) = 0;
   virtual void clear(std::size_t effect) = 0;
+  /// What has come due, what of it overlapped, and what was not born; nothing without a source.
+  virtual std::vector<double> births() = 0;
+  /// The numbers of collide::contact_counts, in their order.
+  virtual std::vector<double> contact_report() = 0;
+  /// Writes the particles to a collide::sphere_view.
+  virtual void spheres(void* to) = 0;
+  /// The states of all driven bodies, 16 numbers each: those of collide::body_state. False if none is driven.
+  virtual bool drive(std::vector<double> const& states) = 0;
   virtual std::vector<column> columns() = 0;
   virtual void assign(std::size_t column, void const* values) = 0;
   virtual void save(std::string const& path) = 0;

@@ -3,6 +3,7 @@
 /// `parameters(effect, f)` for each, which calls f(name, member).
 #pragma once
 
+#include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -110,6 +111,30 @@ class simulation_of final : public simulation_base {
   void clear(std::size_t effect) override {
     std::size_t number = 0;
     ((number++ == effect ? std::get<sums_of<Effect>>(sums_).clear(one_.space()) : void()), ...);
+  }
+
+  std::vector<double> births() override {
+    if constexpr (type::effects_type::makes) {
+      collide::birth_counts const n = one_.births();
+      return {static_cast<double>(n.due), static_cast<double>(n.overlapping), static_cast<double>(n.not_born)};
+    }
+    return {};
+  }
+  std::vector<double> contact_report() override {
+    collide::contact_counts const n = collide::contact_report(one_);
+    return {static_cast<double>(n.contacts), n.coordination, static_cast<double>(n.deep), n.largest_overlap,
+            n.longest_good_step};
+  }
+  void spheres(void* to) override { *static_cast<collide::sphere_view<S>*>(to) = one_.spheres(); }
+  bool drive(std::vector<double> const& states) override {
+    if constexpr ((std::is_same<Effect, collide::moving_bodies<collide::driven>>::value || ...)) {
+      static_assert(sizeof(collide::body_state) == 16 * sizeof(double));
+      std::vector<collide::body_state> of(states.size() / 16);
+      std::memcpy(static_cast<void*>(of.data()), states.data(), 16 * of.size() * sizeof(double));
+      one_.space().copy_from_host(one_.bodies().states(), of.data(), of.size());
+      return true;
+    }
+    return false;
   }
 
   std::vector<column> columns() override { return describe(typename type::columns{}); }

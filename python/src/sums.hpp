@@ -1,5 +1,5 @@
 /// \file
-/// The memory of `reaction` and `mass_flow`, which belongs to the simulation.
+/// The memory of `reaction`, `mass_flow` and `wear`, which belongs to the simulation.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include <collide/effects/mass_flow.hpp>
 #include <collide/effects/reaction.hpp>
+#include <collide/effects/wear.hpp>
 
 #include "simulation_base.hpp"
 
@@ -57,6 +58,22 @@ struct sums_of<collide::mass_flow<>> : sums_in_memory<collide::flow_sums> {
   std::vector<double> read(Space const& space) const {
     collide::flow_counts const found = sums->read(space);
     return {static_cast<double>(found.particles), found.mass};
+  }
+};
+
+template <>
+struct sums_of<collide::wear<>> : sums_in_memory<collide::wear_sums> {
+  template <class Space>
+  void make(Space const& space, collide::wear<>& e, std::size_t, std::size_t triangles) {
+    sums = collide::wear_sums(space, triangles, e.unit_of_impulse, e.unit_of_work);
+    e = sums->effect(e.made_of);
+  }
+  /// Two numbers of each triangle.
+  template <class Space>
+  std::vector<double> read(Space const& space) const {
+    std::vector<double> found;
+    for (auto const& load : sums->read(space)) found.insert(found.end(), {load.normal_impulse, load.sliding_work});
+    return found;
   }
 };
 

@@ -15,7 +15,7 @@ HERE = pathlib.Path(collide.__file__).parent
 INF = float("inf")
 REQUIRED = {  # arguments that have no defaults in Python, as C++ has them
     "emit": (0, (0, 0, 0)), "absorbing_box": ((0,) * 3, (0,) * 3), "box_walls": ((-INF,) * 3, (INF,) * 3),
-    "periodic_box": ((0,) * 3, (1,) * 3), "reaction": (0,), "mass_flow": ((0, 0, 0), (0, 0, 1), 0),
+    "periodic_box": ((0,) * 3, (1,) * 3), "reaction": (0,), "mass_flow": ((0, 0, 0), (0, 0, 1), 0), "wear": (0, 0),
 }
 THREE = granular.materials([granular.Solid()] * 3, granular.SurfacePair())
 GRANULAR = [
@@ -138,6 +138,24 @@ def test_reaction_of_other_bodies():
 
 
 @compiles
+def test_wear_is_the_weight_of_what_lies_on_a_floor():
+    mesh = collide.Mesh(SQUARE.astype(float), TRIANGLES)
+    density, radius = 1000, 0.05
+    contact = collide.granular_contact(granular.hertz(), granular.mindlin(), materials=granular.materials(
+        granular.Solid(1e6, 0.3, density), granular.SurfacePair(0.2, 0.5)))
+    effects = [collide.gravity(), contact, collide.wear(1e-12, 1e-12, density), collide.velocity_verlet()]
+    sim = collide.Simulation(mesh, effects)
+    sim.set(numpy.array([[0.3, 0.2, radius]]), radius)
+    sim.steps(4000, 5e-5)
+    sim.clear("wear")
+    sim.steps(2000, 5e-5)
+    loads = sim.sums("wear")
+    assert loads.normal_impulse.shape == (len(TRIANGLES),)
+    assert abs(loads.normal_impulse.sum() / (sphere_mass(radius, density) * 9.81 * 0.1) - 1) < 0.01
+    assert abs(loads.sliding_work).max() < 1e-6
+
+
+@compiles
 def test_mass_flow_counts_what_passes():
     """Particles that fall through a plane, and those that pass its disc; back again they count backwards. In float32."""
     mesh = collide.Mesh(SQUARE, TRIANGLES)
@@ -162,7 +180,7 @@ def test_mass_flow_counts_what_passes():
 
 def test_only_sums_are_read():
     sim = collide.Simulation(collide.Mesh(SQUARE, TRIANGLES), [collide.gravity(), collide.bounce()])
-    with pytest.raises(ValueError, match="effect: gravity has no sums; reaction and mass_flow have"):
+    with pytest.raises(ValueError, match="effect: gravity has no sums; reaction, mass_flow and wear have"):
         sim.sums("gravity")
     with pytest.raises(ValueError, match="effect: there is no 'reaction' in the list gravity, bounce"):
         sim.sums("reaction")

@@ -328,7 +328,7 @@ UNALIGNED = numpy.frombuffer(bytes(61), numpy.uint8)[1:].view(numpy.float32).res
 
 
 BAD = [
-    (dict(centres=[[0, 0, 0]]), TypeError, "centres: expected an array"),
+    (dict(centres={}), TypeError, "centres: expected an array"),
     (dict(centres=None), TypeError, "centres: expected an array"),
     (dict(centres=NoArray()), TypeError, "centres: expected an array"),
     (dict(centres=Liar()), TypeError, "centres: "),
@@ -387,7 +387,7 @@ def test_read_only_out():
     [
         (VERTICES.astype(numpy.float16), TRIANGLES, TypeError, "vertices: has dtype float16"),
         (VERTICES, TRIANGLES.astype(numpy.int16), TypeError, "triangles: has dtype int16, expected integers of 32 or 64 bits"),
-        (VERTICES, TRIANGLES + 2**32, ValueError, "triangles: 4 triangle.* not a vertex"),
+        (VERTICES, TRIANGLES.astype(numpy.int64) + 2**32, ValueError, "triangles: 4 triangle.* not a vertex"),
         (VERTICES, TRIANGLES.astype(float), TypeError, "triangles: has dtype float64"),
         (VERTICES, TRIANGLES[:, :2], ValueError, r"triangles: has shape \(4, 2\)"),
         (VERTICES, TRIANGLES + 1, ValueError, "triangles: 3 triangle.* not a vertex"),

@@ -143,7 +143,7 @@ def test_out(dtype):
 
 
 BAD = [
-    (lambda m, p: m.nearest([[0, 0, 0]]), TypeError, "points: expected an array"),
+    (lambda m, p: m.nearest({}), TypeError, "points: expected an array"),
     (lambda m, p: m.nearest(p.astype(float)), TypeError, "points: has dtype float64, expected float32"),
     (lambda m, p: m.contains(p[:, :2]), ValueError, r"points: has shape \(5, 2\), expected \(n, 3\)"),
     (lambda m, p: m.signed_distance(p[::-1]), ValueError, "points: has rows in reverse order"),

@@ -10,7 +10,7 @@ glossary  Each name in docs/glossary.md and docs/development/words.md is in the 
 members   The tables of members in docs/guide.md have all that the headers have, and nothing else; the pages of docs/api/
           are as scripts/members writes them.
 english   Pages have none of the words of FOREIGN, and no line of text longer than LONGEST; the README is short; no docstring of include/ begins with
-          a word of FOREIGN_BEGINNINGS, which name nothing.
+          a word of FOREIGN_BEGINNINGS, which name nothing. No sentence of a user's page begins with a word of NAMELESS, but a question.
 numbers   Times, rates, percentages and gigabytes in prose of MEASURED are numbers that bench/report has written.
 """
 import pathlib
@@ -63,6 +63,11 @@ FOREIGN = {
 }
 LONGEST = 120
 README_WORDS = 850
+USER_WORDS = 25_000     # all pages of docs/ but api/ and development/
+CHANGELOG_LINES = 60  # before the first release: its head says what its lines are
+
+# A sentence names its subject: none of these stands at its beginning.
+NAMELESS = r"(What|That|Those|Whoever)\b"
 
 # Docstrings name what follows: "The result of ...", and not "What ... gives".
 FOREIGN_BEGINNINGS = r"(What|Where|Of)\b"
@@ -204,6 +209,19 @@ def english():
     length = len((ROOT / "README.md").read_text().split())
     if length > README_WORDS:
         yield f"README.md has {length} words: at most {README_WORDS}, so that it is read"
+    users = [p for p in PAGES if p.is_relative_to(ROOT / "docs") and not {"api", "development"} & set(p.parts)]
+    words = sum(len(p.read_text().split()) for p in users)
+    if words > USER_WORDS:
+        yield f"docs/ has {words} words for users: at most {USER_WORDS}"
+    if "\n## [0.1.0]\n" in (changelog := (ROOT / "CHANGELOG.md").read_text()) and changelog.count("\n") > CHANGELOG_LINES:
+        yield f"CHANGELOG.md has {changelog.count(chr(10))} lines: at most {CHANGELOG_LINES} before the first release"
+    for page in [ROOT / "README.md", *users]:
+        text = re.sub(r"<!-- table: .*?<!-- end -->|^```.*?^```|^    .*?$", lambda m: "\n" * m[0].count("\n"), page.read_text(), flags=re.M | re.S)
+        for sentence in re.finditer(rf"(?:^(?:[-*] |\d+\. |\*\*.*?\*\* )?|[.:!?] )({NAMELESS}[^.?!]*[.?!]?)", text, flags=re.M):
+            before = text[:sentence.start()].rstrip(" ")
+            goes_on = before.endswith("\n") and not before.endswith("\n\n") and not re.search(r"[.:!?]\s*$", before) and sentence[0][0] not in "-*"
+            if not (sentence[1].endswith("?") or goes_on):
+                yield f"{page}:{text.count(chr(10), 0, sentence.start(1)) + 1}: {sentence[1][:40]!r} does not name its subject"
     for page in PAGES:
         if page.parent.name == "api":
             continue

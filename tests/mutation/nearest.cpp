@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <collide/narrow/detail/nearest_search.hpp>
-#include <collide/narrow/detail/ray_parity.hpp>
+#include <collide/sinks/contains.hpp>
 
 #include "../flush_to_zero.hpp"
 #include "rows.hpp"

@@ -6,7 +6,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
-header = (ROOT / "include" / "collide" / "version.hpp").read_text()
+header = (ROOT / "include" / "collide" / "core" / "version.hpp").read_text()
 version = ".".join(re.findall(r"^#define COLLIDE_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)$", header, re.M))
 said = {
     "CITATION.cff": re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(), re.M)[1],

@@ -26,7 +26,7 @@ EFFECTS = """velocity_verlet gravity drag wind bounce friction spin adhesion sph
     granular_contact external_forces mass_flow""".split()
 BY_FORCES = "granular_contact"  # makes the mesh solid by forces
 ACTS_BY_IMPULSES = ["bounce", "friction", "spin", "adhesion", "absorb", "warms"]  # these do not compile beside it
-TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms", "external_forces": "tests::pairs::stirs", "mass_flow": "mass_flow<>"}
+TYPES = {"wind": "wind<>", "warms": "tests::pairs::warms", "external_forces": "tests::pairs::stirs", "mass_flow": "mass_flow<>", "wear": "wear<>"}
 LAWS = {  # of contact by forces, of which the lists of a scalar take turns: one that remembers nothing, and those that do
     "float": ["granular_contact<collide::linear, collide::dashpot>",
               "granular_contact<collide::linear, collide::cundall_strack, collide::marshall<collide::epsd>>"],
@@ -73,6 +73,11 @@ FIRST = [
 FOUND = [
     ("sphere_contact sleep granular_contact mesh_forces lost absorbing_box lost_motion emit reaction",
      ("driven", "karabassi", "double")),
+]
+# Behind all others, of effects that only go with few: they are in no pair that must be covered.
+LAST = [
+    ("velocity_verlet gravity granular_contact wear mesh_forces reaction polydisperse lost", ("moving", "karabassi", "double")),
+    ("sleep gravity emit granular_contact wear lost reaction periodic_box", ("driven", "karabassi", "float")),
 ]
 # Pairs that do not compile: the test of tests/compile_fail, and the reason.
 REFUSED = {
@@ -190,6 +195,8 @@ def make_lists():
         files = sorted(TESTS, key=lambda t: sum((one.narrow, one.scalar) == t for one in lists))[:2]
         tries = [try_list(left, ordered, rng.choice(files), rng) for _ in range(TRIES)]
         add_in_order(max(tries, key=lambda t: t[0])[1])
+    for names, (kind, narrow, scalar) in LAST:
+        add(List(names.split(), kind, narrow, scalar))
     return lists
 
 

@@ -14,6 +14,7 @@
 #include <collide/effects/lost.hpp>
 #include <collide/effects/lost_motion.hpp>
 #include <collide/effects/mass_flow.hpp>
+#include <collide/effects/wear.hpp>
 #include <collide/simulation/energy.hpp>
 
 #include "ranks/simulations.hpp"
@@ -97,9 +98,11 @@ constexpr std::size_t steps = 400, newborns = 12;
 /// The sums of a list's effects: on bodies, of which there is one, and of mass that flows down between the layers.
 struct list_sums : collide::reaction_sums {
   collide::flow_sums flow;
+  collide::wear_sums worn;
 
   template <class Space>
-  list_sums(Space const& space, double unit) : reaction_sums(space, 1, unit), flow(space, unit) {}
+  list_sums(Space const& space, double unit)
+      : reaction_sums(space, 1, unit), flow(space, unit), worn(space, 100, unit, unit) {}
 };
 
 /// The parameters of an effect.
@@ -145,6 +148,8 @@ E parameters(trial const& t, list_sums const& sums, bool several_sizes) {
     return {{{density}}, t.draw(0.2, 0.01, 2, 29)};
   } else if constexpr (std::is_same<E, collide::mass_flow<>>::value) {
     return sums.flow.through({0, 0, 0.1}, {0, 0, -1}, collide::one_density{density});
+  } else if constexpr (std::is_same<E, collide::wear<>>::value) {
+    return sums.worn.effect(collide::one_density{density});
   } else if constexpr (std::is_same<E, collide::reaction>::value) {
     return sums.effect(density);
   } else {

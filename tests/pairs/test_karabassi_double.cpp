@@ -19,3 +19,5 @@ TEST_CASE("pairs: list 17") { check_list<list_17>(); }
 static bool const list_17_is_hunted = hunt<list_17>("17", "granular_contact mass_flow emit external_forces polydisperse wind periodic_box gravity velocity_verlet lost_motion box_walls drag");
 TEST_CASE("pairs: list 25") { check_list<list_25>(); }
 static bool const list_25_is_hunted = hunt<list_25>("25", "sphere_contact sleep polydisperse reaction wind gravity absorb warms velocity_verlet absorbing_box");
+TEST_CASE("pairs: list 30") { check_list<list_30>(); }
+static bool const list_30_is_hunted = hunt<list_30>("30", "velocity_verlet gravity granular_contact wear mesh_forces reaction polydisperse lost");

@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FAULTS = [
     ("effects/drag.hpp", "  ///< per time, not negative", "", "Member linear"),
     ("sinks/count.hpp", "  /// How many pairs collide; 0 before the first query.\n", "", "Member total"),
-    ("sinks/detail/pair_records.hpp", "  /// True if all of them are stored.\n", "", "Member complete"),
+    ("sinks/detail/array_in_space.hpp", "  /// True if all of them are stored.\n", "", "Member complete"),
     ("simulation.cuh", "  void step(S dt) {", "  void other() {}\n  void step(S dt) {", "Member step("),
     ("detector.hpp", "\\param sink     where", "\\param sinc     where", "argument 'sinc'"),
 ]

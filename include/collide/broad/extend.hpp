@@ -7,7 +7,6 @@
 #include <type_traits>
 #include <utility>
 
-#include <collide/broad/detail/grid/mesh_statistics.hpp>
 #include <collide/broad/detail/per_sphere.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/exact/detail/geometry/bounding_sphere.hpp>
@@ -15,7 +14,6 @@
 #include <collide/spaces/atomic_add.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 #include <collide/spaces/detail/block.hpp>
-#include <collide/spaces/detail/launch.hpp>
 #include <collide/spaces/detail/tuning.hpp>
 
 namespace collide {
@@ -114,51 +112,6 @@ COLLIDE_HD conservative_box<S> conservative(triangle<S> const& t) {
   return detail::inflated<S>(b, b.padding);
 }
 
-/// Tells if a sphere can touch a mesh at all: a plain value for kernels, see `mesh_bounds`.
-template <class S>
-class mesh_bounds_ref {
- public:
-  /// Bounds that no sphere reaches.
-  mesh_bounds_ref() = default;
-  /// Bounds whose numbers are at `summary`, in memory of the space.
-  explicit mesh_bounds_ref(detail::mesh_statistics<S> const* summary) : summary_{summary} {}
-
-  /// True if the sphere can touch the box around the mesh. Rounding never makes it false.
-  COLLIDE_HD bool is_reached_by(sphere<S> const& s) const {
-    if (summary_ == nullptr || summary_->extents.empty()) return false;
-    detail::aabb<S> box;
-    for (int k = 0; k < 3; ++k) {
-      box.lower[k] = summary_->lower_of(k);
-      box.upper[k] = summary_->upper_of(k);
-    }
-    S const padding = 16 * S(detail::ieee_traits<float>::unit_roundoff) * box.max_extent();
-    return detail::triangle_aabb<S>{box, padding}.overlaps(s.centre, s.radius);
-  }
-
- private:
-  detail::mesh_statistics<S> const* summary_ = nullptr;
-};
-
-/// The box around a mesh, in memory of a space.
-template <class S>
-class mesh_bounds {
- public:
-  /// Puts the computation on the space's stream. O(triangles). Allocates the first time.
-  template <class Space>
-  void build(Space& space, mesh_view<S> mesh) {
-    auto* const summary = summary_.reserve(space.resource(), 1);
-    detail::mesh_statistics<S>::clear(space, summary);
-    detail::compute_mesh_statistics<S> const kernel{mesh, summary, nullptr};
-    space.launch(detail::grid_size<Space>(mesh.size(), kernel), kernel);
-  }
-
-  /// The bounds for kernels; valid as long as this object, until the next build.
-  mesh_bounds_ref<S> ref() const { return mesh_bounds_ref<S>(summary_.data()); }
-
- private:
-  buffer<detail::mesh_statistics<S>> summary_;
-};
-
 /// Broad phase made of one that only enumerates: for all spaces, spheres at rest and moving ones, and simulations.
 ///
 /// `Policy` holds the options, and a class template `index<S>` with
@@ -183,8 +136,7 @@ class mesh_bounds {
 ///     squared distance from the point is at most `bound`, and for others as it likes. The bound only falls: to begin
 ///     with what is near saves most;
 ///   - `for_each_on_ray(vec3<S> point, F f) const`, which calls f(triangle) for all triangles whose box the ray from
-///   the
-///     point along +z meets, each once, and for others as it likes, as long as that returns true.
+///     the point along +z meets, each once, and for others as it likes, as long as that returns true.
 template <class Policy>
 struct per_sphere {
   Policy policy{};  ///< its options

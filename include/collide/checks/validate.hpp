@@ -90,7 +90,7 @@ class report {
 
 namespace detail {
 
-/// Common part of the kernel bodies: where findings go.
+/// Common part of the kernels: where findings go.
 struct inspection {
   report::finding* findings;
 

@@ -55,6 +55,33 @@
 #define COLLIDE_COLD
 #endif
 
+#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__SANITIZE_ADDRESS__)
+/// Marks a function or a lambda that a step or a query calls for each candidate: the host inlines it at every level of
+/// optimisation, a device's compiler as it sees fit.
+#define COLLIDE_HOT __attribute__((always_inline))
+#else
+/// Marks a function or a lambda that a step or a query calls for each candidate.
+#define COLLIDE_HOT
+#endif
+
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
+/// Before a loop over axes or corners: g++ unrolls it with -O2 as with -O3; other compilers do so by themselves.
+#define COLLIDE_UNROLL _Pragma("GCC unroll 16")
+#else
+/// Before a loop over axes or corners.
+#define COLLIDE_UNROLL
+#endif
+
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__) && defined(__OPTIMIZE__) && \
+    !defined(__OPTIMIZE_SIZE__) && !defined(COLLIDE_PLAIN_INLINE)
+/// Marks a function with the loops of a kernel, which g++ compiles with -O2 as with -O3; clang++ does nearly so by
+/// itself.
+#define COLLIDE_AS_O3 __attribute__((optimize("O3")))
+#else
+/// Marks a function with the loops of a kernel.
+#define COLLIDE_AS_O3
+#endif
+
 #if defined(__CUDA_ARCH__)
 /// Before a loop that the device does not unroll.
 #define COLLIDE_NO_UNROLL _Pragma("unroll 1")

@@ -66,14 +66,14 @@ struct lookup_space;
   COLLIDE_QUERY(PREFIX, closest<SCALAR>, BROAD_PHASE, NARROW_PHASE, SPACE, SCALAR) \
   COLLIDE_QUERY(PREFIX, closest_contact<SCALAR>, BROAD_PHASE, NARROW_PHASE, SPACE, SCALAR)
 
-/// all of them,
+/// The linked functions of a broad phase in a space, for spheres at rest.
 #define COLLIDE_ALL_AT_REST(PREFIX, BROAD_PHASE, SPACE, SCALAR)                            \
   COLLIDE_INDEX(PREFIX, BROAD_PHASE, SPACE, SCALAR)                                        \
   COLLIDE_QUERIES_AT_REST(PREFIX, BROAD_PHASE, karabassi<exact>, SPACE, SCALAR)            \
   COLLIDE_QUERIES_AT_REST(PREFIX, BROAD_PHASE, karabassi<single_precision>, SPACE, SCALAR) \
   COLLIDE_QUERIES_AT_REST(PREFIX, BROAD_PHASE, karabassi<double_precision>, SPACE, SCALAR)
 
-/// and of spheres that move.
+/// The linked functions of a broad phase in a space, for spheres that move.
 #define COLLIDE_ALL_IN_MOTION(PREFIX, BROAD_PHASE, SPACE, SCALAR)                             \
   PREFIX void detail::prepare_index(BROAD_PHASE::index<SCALAR>&, SPACE&, BROAD_PHASE const&,  \
                                     moving_sphere_view<SCALAR> const&);                       \

@@ -13,7 +13,6 @@
 #include <collide/core/nearest_triangle.hpp>
 #include <collide/detector.hpp>
 #include <collide/detectors/detail/found_query.hpp>
-#include <collide/detectors/detail/pair_list.hpp>
 #include <collide/sinks/detail/search_mesh.hpp>
 #include <collide/spaces/detail/check_memory.hpp>
 #include <collide/spaces/detail/host_array.hpp>
@@ -91,7 +90,8 @@ class in_passes {
     if (passes_ == 1) {
       detector_.query(spheres, sink);
     } else if constexpr (detail::sink_joins_parts<std::remove_reference_t<Sink>>::value) {
-      run(sink, search_query{*this, spheres});
+      auto const search_parts = [this](spheres_type const& of, auto const& f) { search(of, f); };
+      run(sink, detail::search_query<Detector, decltype(search_parts)>{spheres, search_parts});
     } else {
       find(spheres, !detail::sink_keeps_ids_alone<std::remove_reference_t<Sink>>::value);
       hand_over(spheres, sink);
@@ -152,19 +152,6 @@ class in_passes {
     }
   }
 
-  /// The query of a sink that searches the mesh.
-  struct search_query {
-    using narrow_phase = typename Detector::narrow_phase;
-    using scalar = typename Detector::scalar;
-    in_passes& passes;
-    spheres_type const& spheres;
-
-    template <class F>
-    void search(F const& f) const {
-      passes.search(spheres, f);
-    }
-  };
-
   /// Searches all parts, and joins what is found.
   template <class F>
   void search(spheres_type const& spheres, F const& f) {
@@ -179,7 +166,7 @@ class in_passes {
       detector_.build(triangles);
       detector_.query(spheres, each);
       space().for_each(n, typename F::join{{f.max_distance, spheres, f.to, corners},
-                                           {triangles, static_cast<id>(first), nullptr},
+                                           {triangles, {static_cast<id>(first), nullptr}},
                                            each.f.to,
                                            pass == 0});
     }
@@ -195,7 +182,8 @@ class in_passes {
       detector_.build(part(first, size));
       detector_.query(spheres, hits_);
       pair* const to = found_.append(space(), hits_.size());
-      space().for_each(hits_.size(), detail::shift_triangles{hits_.data(), static_cast<id>(first), to});
+      space().for_each(hits_.size(),
+                       detail::renumber_pairs{hits_.data(), {0, nullptr}, {static_cast<id>(first), nullptr}, to});
       if constexpr (!reads_host) {
         if (with_triangles) keep_hit_triangles(first, size);
       }
@@ -209,9 +197,7 @@ class in_passes {
     for (pair const& p : hits_.to_host()) is_hit[p.triangle] = true;
     for (std::size_t t = 0; t < size; ++t) {
       if (!is_hit[t]) continue;
-      hit_.emplace_back();
-      hit_.back().number = static_cast<id>(first + t);
-      detail::pack_triangles<scalar>{mesh_.subview(first + t, 1), hit_.back().corners}(0);
+      hit_.push_back(detail::numbered_triangle<scalar>::of(static_cast<id>(first + t), mesh_[first + t]));
     }
   }
 

@@ -14,7 +14,6 @@
 
 #include <collide/detector.hpp>
 #include <collide/detectors/detail/found_query.hpp>
-#include <collide/detectors/detail/pair_list.hpp>
 #include <collide/detectors/detail/posed_hit.hpp>
 #include <collide/effects/bodies.hpp>
 #include <collide/simulation/detail/bodies/body_memory.hpp>
@@ -199,13 +198,12 @@ class posed {
       for (std::size_t k = 0; k < parts_.size(); ++k) {
         part const& p = parts_[k];
         space_.for_each(n, detail::see_from_body<scalar>{mesh(), p.frame, from, centres, radii});
-        detectors_[k].query(view_of(from, centres, radii, n), detail::run_search<decltype(of_part)>{of_part});
+        detectors_[k].query(view_of(from, centres, radii, n), detail::search_part<decltype(of_part)>{of_part});
         space_.for_each(
             n, detail::take_first<scalar, result>{mesh(), p.frame, static_cast<id>(p.first), of_part.to, f.to, k == 0});
       }
     };
-    using query_type = detail::search_over_bodies<typename Detector::narrow_phase, scalar, decltype(search)>;
-    sink.run(space_, query_type{spheres, search});
+    sink.run(space_, detail::search_query<Detector, decltype(search)>{spheres, search});
   }
 
   /// Spheres as a body sees them.
@@ -217,7 +215,7 @@ class posed {
   /// Finds the pairs of all parts.
   void find(spheres_type const& spheres) {
     auto* const resource = space_.resource();
-    constexpr int group = execution_space::host_accessible ? 64 : 1;
+    constexpr unsigned group = execution_space::host_accessible ? 64 : 1;
     std::size_t const n = spheres.size();
     auto* const count = clear_count();
     id* const near = near_.reserve(resource, n);
@@ -240,7 +238,8 @@ class posed {
     if (size == 0) return;
     detector.query(view_of(spheres, centres_.data(), radii, size), hits_);
     pair* const to = found_.append(space_, hits_.size());
-    space_.for_each(hits_.size(), detail::number_pairs{hits_.data(), numbers_.data(), static_cast<id>(p.first), to});
+    space_.for_each(hits_.size(), detail::renumber_pairs{
+                                      hits_.data(), {0, numbers_.data()}, {static_cast<id>(p.first), nullptr}, to});
   }
 
   std::uint32_t* clear_count() {

@@ -23,7 +23,7 @@ struct find_sphere_pairs {
   sphere_cells<S> cells;
   output to;
 
-  COLLIDE_HD void operator()(std::size_t place) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t place) const {
     if (place >= cells.counts[1]) return;
     constexpr std::uint32_t room = 16;
     pair found[room];
@@ -31,7 +31,7 @@ struct find_sphere_pairs {
     auto const i = static_cast<std::uint32_t>(place);
     id const own = cells.numbers[i];
     std::uint32_t const level = sphere_size(cells.spheres[i]).level();
-    cells.for_each_touching(i, [&](std::uint32_t k) {
+    cells.for_each_touching(i, [&](std::uint32_t k) COLLIDE_HOT {
       id const other = cells.numbers[k];
       bool const is_found_by_other = sphere_size(cells.spheres[k]).level() == level;
       if (BothWays) {

@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include <collide/effects/effect.hpp>
-#include <collide/exact/detail/numeric/sin_cos.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 
 namespace collide {
 

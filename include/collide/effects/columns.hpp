@@ -39,10 +39,6 @@ COLLIDE_HD_INLINE int steps_in_mean(int slow_steps) {
   return slow == 0 ? 1 : slow - power + 1;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// `N` numbers of a column.
 template <class T, std::size_t N>
 struct several {
@@ -50,6 +46,22 @@ struct several {
   COLLIDE_HD explicit several(T all = T(0)) {
     for (T& one : of) one = all;
   }
+};
+
+/// Column of a vector for each particle.
+struct vector_column {
+  template <class S>
+  using value = vec3<S>;
+};
+/// Column of a number of the simulation's scalar.
+struct number_column {
+  template <class S>
+  using value = S;
+};
+/// Column of a small integer.
+struct byte_column {
+  template <class S>
+  using value = std::uint8_t;
 };
 
 }  // namespace detail
@@ -68,87 +80,52 @@ struct contact_columns {
 };
 
 /// The centre, in the units of the scene.
-struct position {
-  template <class S>
-  using value = vec3<S>;
-};
+struct position : detail::vector_column {};
 
 /// The velocity, in units of length per unit of time.
-struct velocity {
-  template <class S>
-  using value = vec3<S>;
-};
+struct velocity : detail::vector_column {};
 
 /// The radius, in the units of the scene, where each particle has its own; see `polydisperse`.
-struct radius {
-  template <class S>
-  using value = S;
-};
+struct radius : detail::number_column {};
 
 /// The material of a particle, as a number: see `materials`. Scenes have it that name `granular_contact` with
 /// `materials`.
-struct material {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct material : detail::byte_column {};
 
 /// Radians per unit of time, around the axis that it points along; see `spin`.
-struct angular_velocity {
-  template <class S>
-  using value = vec3<S>;
-};
+struct angular_velocity : detail::vector_column {};
 
 /// 1 if the particle is there, 0 if its place is free; see `emit` and `absorb`. An effect of your own makes a particle
 /// in its `begin_step` by writing 1 at a free place. No contact remembers what was there, and columns that no such
 /// effect writes have their first values again, but for position, velocity and radius.
-struct alive {
-  template <class S>
-  using value = std::uint8_t;
+struct alive : detail::byte_column {
   template <class S>
   static constexpr std::uint8_t initial = 1;
 };
 
 /// For how many steps the particle has been slow, or 128 and more if it lies on what moves; see `sleep`.
-struct slow_steps {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct slow_steps : detail::byte_column {};
 
 /// 1 if the particle has touched something in this step: only then does it come closer to sleep. 2 if it has been woken
 /// between steps and forces on it are not known yet. See `sleep`.
-struct in_contact {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct in_contact : detail::byte_column {};
 
 /// 1 if the particle sticks to what rests of the mesh, 2 + k if to body number k, 0 if it is free; 255 if it is free
 /// and touched the mesh too fast to stick when it last came to it. See `adhesion`.
-struct adhered {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct adhered : detail::byte_column {};
 
 /// 1 if the mesh held the particle at the end of the last step, whose second half kick is then part of the next one; 2
 /// if it stuck to the mesh all the time. Scenes have it that name `velocity_verlet` and an effect that touches the
 /// mesh.
-struct held {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct held : detail::byte_column {};
 
 /// Acceleration by other particles, in length per time squared. Scenes have it that name an effect with
 /// `on_pair_contact`, and `velocity_verlet`, `adhesion`, or `sleep` with `reaction` or `mesh_forces`.
-struct pair_acceleration {
-  template <class S>
-  using value = vec3<S>;
-};
+struct pair_acceleration : detail::vector_column {};
 
 /// Angular acceleration by other particles, in radians per time squared. Scenes have it that name an effect with
 /// `on_pair_contact`, `spin`, and `velocity_verlet` or `sleep` with an effect with `on_mesh_impulse`.
-struct pair_angular_acceleration {
-  template <class S>
-  using value = vec3<S>;
-};
+struct pair_angular_acceleration : detail::vector_column {};
 
 /// Accelerations by the mesh and angular accelerations, of up to four contacts, six numbers each: what they were when
 /// particles last met, for the half kick with which the next step begins. The last one has those of all others with it.
@@ -167,48 +144,27 @@ struct mesh_kicks_by {
 };
 
 /// How many `mesh_kicks` there are.
-struct mesh_kick_count {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct mesh_kick_count : detail::byte_column {};
 
 /// Acceleration by the mesh, on the mean over the steps in which the particle has been slow: so it is known on what a
 /// particle presses that sleeps. Scenes have it that name `sleep` and an effect with `on_mesh_impulse`.
-struct support {
-  template <class S>
-  using value = vec3<S>;
-};
+struct support : detail::vector_column {};
 
 /// Which surface `support` is of: 0 none, 1 what rests of the mesh, 2 + k body number k.
-struct supported_by {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct supported_by : detail::byte_column {};
 
 /// Acceleration by a second surface, in the corner of two. Scenes have it, and the next three, that have `support` and
 /// name `moving_bodies`.
-struct second_support {
-  template <class S>
-  using value = vec3<S>;
-};
+struct second_support : detail::vector_column {};
 
 /// Which surface `second_support` is of.
-struct second_supported_by {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct second_supported_by : detail::byte_column {};
 
 /// Acceleration by a third surface, and all others.
-struct third_support {
-  template <class S>
-  using value = vec3<S>;
-};
+struct third_support : detail::vector_column {};
 
 /// Which surface `third_support` is of: the first of them.
-struct third_supported_by {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct third_supported_by : detail::byte_column {};
 
 /// The number of the particle among those of all ranks, where there are several; see distributed_simulation.cuh.
 struct global_number {

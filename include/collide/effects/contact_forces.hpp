@@ -12,16 +12,10 @@ struct spin;
 struct adhesion;
 
 /// Force of the mesh on a particle, in mass times length per time squared; see `mesh_forces`.
-struct mesh_force {
-  template <class S>
-  using value = vec3<S>;
-};
+struct mesh_force : detail::vector_column {};
 
 /// Force of other particles on a particle, in mass times length per time squared; see `pair_forces`.
-struct pair_force {
-  template <class S>
-  using value = vec3<S>;
-};
+struct pair_force : detail::vector_column {};
 
 namespace detail {
 

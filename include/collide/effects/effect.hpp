@@ -23,8 +23,7 @@
 /// - `on_pair_contact(particle&, self, other, dt)`, for each other particle that overlaps it, with what effects before
 ///   it in the list have changed of the particle. Only with such an effect are neighbours listed.
 /// - `on_mesh_overlap(particle&, self, mesh_overlap const&, dt)`, for each point of the mesh that a particle presses
-/// on,
-///   when particles meet: forces that grow with the overlap, in place of the impulses of `on_mesh_contact`.
+///   on, when particles meet: forces that grow with the overlap, in place of the impulses of `on_mesh_contact`.
 /// - With `remembers`, these two get what the contact remembers before `dt`, and return true if the contact goes on:
 ///   `memory[column{}]` is a value, which begins as a particle's would, and `memory.elapsed()` the time since the
 ///   contact was looked at before. `on_pair_contact` is then called as long as the contact goes on, also of particles

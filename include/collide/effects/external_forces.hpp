@@ -10,10 +10,7 @@ namespace collide {
 
 /// Force on a particle in mass times length per time squared, which someone else writes between steps; 0 to begin with.
 /// See `external_forces`.
-struct external_force {
-  template <class S>
-  using value = vec3<S>;
-};
+struct external_force : detail::vector_column {};
 
 /// Accelerates each particle by its `external_force` over its mass. The force is the same all through a step; between
 /// steps a solver writes it: `assign<external_force>(values)`, or a kernel on the space's stream to

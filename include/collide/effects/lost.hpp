@@ -8,10 +8,7 @@
 namespace collide {
 
 /// 1 once the particle's position or velocity has been NaN or infinite at the end of a step; see `lost`.
-struct is_lost {
-  template <class S>
-  using value = std::uint8_t;
-};
+struct is_lost : detail::byte_column {};
 
 /// Marks particles whose position or velocity is NaN or infinite at the end of a step. Such a particle touches nothing
 /// from then on, neither the mesh nor others, and stays what it is; the others go on. `lost_count(simulation)` reads

@@ -16,10 +16,7 @@ namespace collide {
 
 /// On which side of the surface of `mass_flow` the particle was at the end of the last step: 0 not known; else how far
 /// it then came in a step, below 0 if it was behind; the largest number if the surface was farther away.
-struct side_of_surface {
-  template <class S>
-  using value = S;
-};
+struct side_of_surface : detail::number_column {};
 
 /// The result of `flow_sums::read`: what went through the surface, forwards minus backwards.
 struct flow_counts {

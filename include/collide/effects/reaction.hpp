@@ -69,8 +69,15 @@ struct reaction {
 
   template <class Particle, class S>
   COLLIDE_HD_INLINE void on_mesh_impulse(Particle& p, mesh_impulse<S> const& t, S) const {
+    add_impulse(p, t, density);
+  }
+
+ protected:
+  /// Adds what a particle of a density has given.
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void add_impulse(Particle& p, mesh_impulse<S> const& t, double of_density) const {
     using namespace detail;
-    double const radius = static_cast<double>(p.radius()), mass = div_rn(sphere_mass(density, radius), unit);
+    double const radius = static_cast<double>(p.radius()), mass = div_rn(sphere_mass(of_density, radius), unit);
     vec3<double> const change = t.change.template cast<double>(), turn = t.spin_change.template cast<double>();
     vec3<double> const centre = t.centre.template cast<double>(), shift = t.shift.template cast<double>();
     vec3<double> const velocity = t.velocity.template cast<double>(), impulse = scaled(change, -mass);
@@ -102,6 +109,19 @@ struct reaction {
   }
 };
 
+/// `reaction` of particles of several materials, those of `granular_contact`.
+template <class Materials>
+struct reaction_of : reaction {
+  using reads = typename Materials::reads;
+
+  Materials made_of{};  ///< densities
+
+  template <class Particle, class S>
+  COLLIDE_HD_INLINE void on_mesh_impulse(Particle& p, mesh_impulse<S> const& t, S) const {
+    add_impulse(p, t, made_of.template density_of<double>(p));
+  }
+};
+
 /// The memory in which `reaction` sums up: of each body, and of what rests; of each triangle, if asked. The same
 /// contacts give the same bits, in any order. Sums hold 9e18 units: `error` if what is read is more, but one of the 256
 /// parts of a sum that alone gets more is wrong. It must outlive the steps of the simulation that has its effect.
@@ -121,6 +141,12 @@ class reaction_sums {
   /// The effect, for particles of a density.
   reaction effect(double density) const {
     return {density, unit_, sums_.data(), sums_.data() + of_bodies(), triangles_, bodies_, refused_count()};
+  }
+
+  /// The effect, for particles of materials.
+  template <class Materials, class = typename Materials::reads>
+  reaction_of<Materials> effect(Materials const& made_of) const {
+    return {effect(1.0), made_of};
   }
 
   /// Begins anew, after the work that is on the stream of a space. Does not wait.

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <collide/io/detail/bytes.hpp>
 #include <collide/io/detail/text.hpp>
 #include <collide/io/mesh_data.hpp>
 

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include <collide/io/detail/bytes.hpp>
 #include <collide/io/detail/text.hpp>
 #include <collide/io/mesh_data.hpp>
 

@@ -52,10 +52,10 @@ enum class vtk_cells {
 };
 
 /// Writes points (x0, y0, z0, x1, ...), what is known of each, and cells between them, whose points are listed in
-/// `corners`, to a stream `out` that takes `<<` of text and numbers.
+/// `corners`, and what is known of each cell, to a stream `out` that takes `<<` of text and numbers.
 template <class Out, class S>
 void write_vtp(Out& out, std::vector<S> const& points, std::vector<vtk_array> const& of_points, vtk_cells kind,
-               std::vector<std::uint32_t> const& corners) {
+               std::vector<std::uint32_t> const& corners, std::vector<vtk_array> const& of_cells = {}) {
   static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the header says so");
   std::size_t const width = kind == vtk_cells::dots    ? std::max<std::size_t>(corners.size(), 1)
                             : kind == vtk_cells::lines ? 2
@@ -79,6 +79,7 @@ void write_vtp(Out& out, std::vector<S> const& points, std::vector<vtk_array> co
          "<PolyData>\n<Piece NumberOfPoints=\""
       << points.size() / 3 << "\" NumberOf" << name << "=\"" << ends.size() << "\">\n";
   section("PointData", of_points);
+  if (!of_cells.empty()) section("CellData", of_cells);
   section("Points", {{"position", points, 3}});
   section(name, {{"connectivity", corners}, {"offsets", ends}});
   out << "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" << data << "\n</AppendedData>\n</VTKFile>\n";
@@ -129,10 +130,11 @@ inline void write_vtk_film(std::string const& path, std::vector<vtk_frame> const
   detail::write_file(path, [&](std::ofstream& out) { write_pvd(out, frames); });
 }
 
-/// Writes a mesh, which is in host memory, as the file `path` (.vtp). Throws `error` if it cannot be written.
-/// O(triangles).
+/// Writes a mesh, which is in host memory, as the file `path` (.vtp), with numbers of each triangle, such as pressures.
+/// Throws `error` if it cannot be written. O(triangles).
 template <class S>
-void write_vtk_mesh(std::string const& path, mesh_view<S> const& mesh) {
+void write_vtk_mesh(std::string const& path, mesh_view<S> const& mesh,
+                    std::vector<vtk_array> const& of_triangles = {}) {
   std::vector<S> points;
   std::vector<std::uint32_t> corners;
   for (std::size_t i = 0; i < mesh.vertices().size(); ++i) {
@@ -141,7 +143,8 @@ void write_vtk_mesh(std::string const& path, mesh_view<S> const& mesh) {
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     for (unsigned k = 0; k < 3; ++k) corners.push_back(static_cast<std::uint32_t>(mesh.corner(i, k)));
   }
-  detail::write_file(path, [&](std::ofstream& out) { write_vtp(out, points, {}, vtk_cells::triangles, corners); });
+  detail::write_file(
+      path, [&](std::ofstream& out) { write_vtp(out, points, {}, vtk_cells::triangles, corners, of_triangles); });
 }
 
 /// Writes contacts, as `to_host()` of a sink gives them, as the file `path` (.vtp): the point of each on the mesh, with

@@ -169,7 +169,7 @@ constexpr bool check_broad_phase() {
 template <class Index, class Space>
 using index_reserve = decltype(std::declval<Index&>().reserve(std::declval<Space&>(), std::size_t{}));
 
-/// Another: moves to a mesh whose triangles have moved.
+/// An optional member of an index: follows a mesh whose triangles have moved.
 template <class Index, class Space, class Options, class S>
 using index_refit = decltype(std::declval<Index&>().refit(std::declval<Space&>(), std::declval<Options const&>(),
                                                           std::declval<mesh_view<S>>()));
@@ -192,10 +192,10 @@ using output_store = decltype(std::declval<H const&>().store(std::uint64_t{}, st
 template <class H>
 inline constexpr bool is_plain = std::is_trivially_destructible<H>::value;
 
-/// The member of a sink,
+/// The member that each sink has: runs a query.
 template <class Sink, class Space, class Query>
 using sink_run = decltype(std::declval<Sink&>().run(std::declval<Space&>(), std::declval<Query const&>()));
-/// and an optional one.
+/// An optional member of a sink: makes room for queries of so many spheres and pairs.
 template <class Sink, class Space>
 using sink_reserve =
     decltype(std::declval<Sink&>().reserve(std::declval<Space const&>(), std::size_t{}, std::size_t{}));

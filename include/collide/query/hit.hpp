@@ -22,7 +22,7 @@ class hit {
 
   /// A hit of `p`, whose geometry is in `mesh` and `spheres`: both must outlive it.
   COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres) : hit(p, mesh, spheres, p.triangle) {}
-  /// A hit of the triangle that is number `at` in the mesh here, and p.triangle in a whole of which that is a part.
+  /// A hit of triangle p.triangle of a whole mesh, which is triangle `at` of `mesh`, a part of it.
   COLLIDE_HD hit(pair p, mesh_view<S> const& mesh, spheres_type const& spheres, id at)
       : sphere{p.sphere}, triangle{p.triangle}, at_{at}, mesh_{mesh}, spheres_{spheres} {}
 

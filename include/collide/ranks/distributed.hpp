@@ -139,26 +139,16 @@ class distributed {
   execution_space& space() { return detector_.space(); }
 
  private:
-  /// The query of a sink that searches the mesh: the search is for all ranks together, once the sink has its memory.
-  struct search_query {
-    using narrow_phase = typename Detector::narrow_phase;
-    using scalar = typename Detector::scalar;
-    distributed& self;
-    spheres_type const& spheres;
-    std::function<void()>& next;
-
-    template <class F>
-    void search(F const& f) const {
-      next = [this_ = &self, &on = spheres, f] {
-        this_->nearest_.search(this_->ranks_, this_->detector_, this_->mesh_, on, this_->chunk_, f);
-      };
-    }
-  };
-
+  /// The search is for all ranks together, once the sink has its memory.
   template <class Sink>
   void search_divided(spheres_type const& spheres, Sink& sink) {
     std::function<void()> search;
-    together(ranks_, [&] { sink.run(detector_.space(), search_query{*this, spheres, search}); });
+    auto const put_off = [&](spheres_type const& of, auto const& f) {
+      search = [this, &of, f] { nearest_.search(ranks_, detector_, mesh_, of, chunk_, f); };
+    };
+    together(ranks_, [&] {
+      sink.run(detector_.space(), detail::search_query<Detector, decltype(put_off)>{spheres, put_off});
+    });
     search();
   }
 
@@ -168,7 +158,7 @@ class distributed {
     constexpr bool with_triangles = !detail::sink_keeps_ids_alone<std::remove_reference_t<Sink>>::value;
     remote_.find(ranks_, detector_, mesh_, spheres, chunk_, with_triangles);
     together(ranks_, [&] {
-      found_.keep(detector_.space(), remote_.found(), remote_.size(), {mesh_.view(), mesh_.numbers()},
+      found_.keep(detector_.space(), remote_.found(), remote_.size(), {mesh_.view(), {0, mesh_.numbers()}},
                   remote_.triangles(), mesh_.size());
       auto const query = found_.template query<narrow_phase>(detector_.space(), spheres);
       static_assert(detail::is_valid<detail::sink_run, std::remove_reference_t<Sink>, execution_space, decltype(query)>,

@@ -140,7 +140,7 @@ class mpi_ranks {
 #endif
   }
 
-  /// As `exchange`, of memory of devices, which MPI must take. If the space of a rank fails, that one throws.
+  /// As `exchange`, of memory of devices, which MPI must accept. If the space of a rank fails, that rank throws.
   template <class Space>
   auto exchange_in_space(Space const& space, void const* from, std::uint64_t const* to_each, void* to,
                          std::uint64_t const* of_each, std::size_t bytes) const

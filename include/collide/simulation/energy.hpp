@@ -109,15 +109,17 @@ struct particles_on_host {
   /// As materials see a particle.
   struct made_of {
     std::uint8_t number;
-    std::uint8_t operator[](material) const { return number; }
+    COLLIDE_HD std::uint8_t operator[](material) const { return number; }
   };
   made_of solid_of(std::size_t i) const { return {solid[i]}; }
 
-  /// The overlap of two spheres; below 0 if they are apart.
-  double overlap_of(std::size_t i, std::size_t k) const {
+  /// From the centre of one sphere to that of another.
+  vec3<double> way(std::size_t i, std::size_t k) const {
     auto const in_space = [&](std::size_t n) { return vec3<S>(x[3 * n], x[3 * n + 1], x[3 * n + 2]); };
-    return radius_of(i) + radius_of(k) - apart(space, in_space(i), in_space(k)).template cast<double>().norm();
+    return apart(space, in_space(i), in_space(k)).template cast<double>();
   }
+  /// The overlap of two spheres; below 0 if they are apart.
+  double overlap_of(std::size_t i, std::size_t k) const { return radius_of(i) + radius_of(k) - way(i, k).norm(); }
   /// Two spheres, as springs see them.
   granular_pair<double> pair_of(std::size_t i, std::size_t k, double overlap) const {
     granular_pair<double> p{};

@@ -2,7 +2,7 @@
 /// Sink: all colliding pairs with their contacts.
 #pragma once
 
-#include <collide/sinks/detail/pair_records.hpp>
+#include <collide/sinks/detail/array_in_space.hpp>
 
 namespace collide {
 

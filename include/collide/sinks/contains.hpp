@@ -5,13 +5,57 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <collide/narrow/detail/ray_parity.hpp>
+#include <collide/exact/detail/predicates/exact_ray.hpp>
+#include <collide/narrow/detail/intersects.hpp>
 #include <collide/sinks/detail/array_in_space.hpp>
 #include <collide/sinks/detail/search_mesh.hpp>
 
 namespace collide {
 
 namespace detail {
+
+/// Counts the triangles that the ray from a point along +z crosses: exactly, whatever the precision of the detector.
+/// Triangles may come in any order, each once. Those whose box the ray does not meet may be left out: it meets one if
+///
+///     lower.x <= p.x <= upper.x,  lower.y <= p.y <= upper.y  and  p.z <= upper.z
+template <class S>
+class ray_parity {
+ public:
+  COLLIDE_HD explicit ray_parity(vec3<S> const& point) : point_(point), done_(!is_finite(point)) {}
+
+  /// Looks at a triangle; one that is not finite is not there. False if nothing that is still to come makes a
+  /// difference.
+  COLLIDE_HD bool consider(triangle<S> const& t) {
+    if (done_ || !box_meets_ray(t) || !is_finite(t)) return !done_;
+    bool on_line;
+    ray_crossing const crossing = cross(t, on_line);
+    if (crossing == ray_crossing::above) odd_ = !odd_;
+    // guard: ray-surface
+    if (crossing == ray_crossing::at_point || (on_line && intersects_exact(t, sphere<S>{point_, 0}).hit))
+      on_surface_ = done_ = true;
+    return !done_;
+  }
+
+  /// True if the point is on a triangle.
+  COLLIDE_HD bool on_surface() const { return on_surface_; }
+  /// True if the point is inside or on the surface.
+  COLLIDE_HD bool inside() const { return on_surface_ || odd_; }
+
+ private:
+  vec3<S> point_;
+  bool odd_ = false, on_surface_ = false, done_;
+
+  /// Comparisons in which subnormal numbers are taken for zero leave more to be looked at.
+  COLLIDE_HD_INLINE bool box_meets_ray(triangle<S> const& t) const {
+    auto const all_below = [&](int k) { return (t.a[k] < point_[k]) & (t.b[k] < point_[k]) & (t.c[k] < point_[k]); };
+    auto const all_above = [&](int k) { return (t.a[k] > point_[k]) & (t.b[k] > point_[k]) & (t.c[k] > point_[k]); };
+    return !(all_below(0) | all_above(0) | all_below(1) | all_above(1) | all_below(2));
+  }
+
+  COLLIDE_HD_NOINLINE ray_crossing cross(triangle<S> const& t, bool& on_line) const {
+    return cross_ray(widened(t), widened(point_), on_line);
+  }
+};
 
 /// The parity that tells if a point is inside the mesh. `Search` is a `mesh_search`.
 template <class S, class Search>
@@ -36,10 +80,10 @@ struct find_inside {
 /// A flag per point: 1 if it is inside the mesh or on its surface, else 0. Of spheres it is that of the centre. A point
 /// that is not finite is outside.
 ///
-/// It is inside if a ray from it crosses the mesh an odd number of times: exactly, whatever the precision of the narrow
-/// phase, and with no special case for rays through edges and corners. Of a closed mesh that is the inside, however its
-/// triangles are oriented, and triangle soups are meshes whose corners are one where their coordinates are equal. Where
-/// a mesh is not closed the result depends on which way the ray goes, along +z: see `validate_closed`, and
+/// A point is inside if a ray from it crosses the mesh an odd number of times: exactly, whatever the precision of the
+/// narrow phase, and with no special case for rays through edges and corners. Of a closed mesh that is the inside,
+/// however its triangles are oriented, and triangle soups are meshes whose corners are one where their coordinates are
+/// equal. Where a mesh is not closed the result depends on which way the ray goes, along +z: see `validate_closed`, and
 /// `winding_number`.
 ///
 /// Needs a broad phase that finds what is above a point: `bvh`, or `all_pairs`. O(triangles above or below the point)

@@ -2,7 +2,7 @@
 /// Sink: all colliding pairs of spheres that move, with the times of impact and the contacts then.
 #pragma once
 
-#include <collide/sinks/detail/pair_records.hpp>
+#include <collide/sinks/detail/array_in_space.hpp>
 
 namespace collide {
 

@@ -44,7 +44,7 @@ class k_nearest_search {
     if (size_ == k_) reach_ = min(reach_, distances_[k_ - 1] * (1 + doubt) + std::numeric_limits<S>::min());
   }
 
-  /// As that of `nearest_search`.
+  /// The square of a distance, rounded down, beyond which no triangle counts; see `nearest_search`.
   COLLIDE_HD S squared_bound() const { return nearest_search<S, Precision>(point_, reach_).squared_bound(); }
 
   COLLIDE_HD int size() const { return size_; }
@@ -107,8 +107,8 @@ class k_nearest : public detail::array_per_sphere<nearest_triangle<S>> {
   using base = detail::array_per_sphere<nearest_triangle<S>>;
 
  public:
-  /// So many triangles of each point, at most 32, up to `max_distance` from it, inclusive. Throws `error` if `k` is not
-  /// 1 to 32, or the distance negative or NaN.
+  /// The k nearest triangles of each point, k at most 32, up to `max_distance` from it, inclusive. Throws `error` if
+  /// `k` is not 1 to 32, or the distance negative or NaN.
   explicit k_nearest(int k, std::common_type_t<S> max_distance = std::numeric_limits<S>::infinity())
       : base{nullptr, static_cast<std::size_t>(k)}, k_{k}, max_distance_{max_distance} {
     if (k < 1 || k > detail::most_nearest) throw error("collide: k_nearest: k is not from 1 to 32");

@@ -26,16 +26,6 @@ struct nearest_precision<karabassi<Precision>> {
   using type = std::conditional_t<std::is_same<Precision, baseline>::value, single_precision, Precision>;
 };
 
-/// Some triangles of a mesh, and their numbers in the whole: a plain value.
-template <class S>
-struct numbered_part {
-  mesh_view<S> triangles;
-  id first;           ///< the number of the first; they follow each other,
-  id const* numbers;  ///< unless they are here
-
-  COLLIDE_HD id number_of(id t) const { return numbers != nullptr ? numbers[t] : first + t; }
-};
-
 /// The nearest triangles of spheres in the parts of a mesh that have been searched so far: a plain value. What is kept
 /// is alike in any order of the parts.
 template <class S, class Precision>
@@ -63,14 +53,14 @@ struct nearest_so_far {
 template <class S, class Precision>
 struct join_nearest {
   nearest_so_far<S, Precision> so_far;
-  numbered_part<S> part;
+  mesh_subset<S> part;
   nearest_triangle<S> const* found;  ///< in the part
   bool is_first;                     ///< nothing was found before
 
   COLLIDE_HD void operator()(std::size_t i) const {
     id const t = found[i].triangle;
     if (is_first) so_far.to[i] = no_nearest_triangle<S>();
-    if (t != no_id) so_far.consider(i, part.triangles[t], part.number_of(t));
+    if (t != no_id) so_far.consider(i, part.triangles[t], part.number_of[t]);
   }
 };
 

@@ -3,19 +3,9 @@
 #pragma once
 
 #include <collide/sinks/detail/array_in_space.hpp>
+#include <collide/spaces/detail/algorithms.hpp>
 
 namespace collide {
-
-namespace detail {
-
-/// Kernel functor of `for_each` over pairs.
-struct copy_pairs {
-  pair const* from;
-  pair* to;
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
-};
-
-}  // namespace detail
 
 /// Every colliding (sphere, triangle) pair, each exactly once. `query` waits once, for their number;
 /// where there are more than its memory has room for, it makes room and runs a second time. Memory: 8 bytes for each
@@ -63,7 +53,7 @@ class pairs : public detail::array_in_space<pair> {
     collected_.sort(space, query);
     if (!fixed_) return;
     if (size_ > capacity_) size_ = capacity_;
-    space.for_each(size_, detail::copy_pairs{data_, external_});
+    space.for_each(size_, detail::copy_values<pair>{data_, external_});
     data_ = external_;
   }
 

@@ -3,12 +3,14 @@
 import importlib
 import os
 
+import numpy
+
 from . import _host
-from ._errors import refuse
+from ._errors import refuse, shown
 
 _why_no_cuda = ""
 try:
-    from . import _cuda  # in the package collide-cu13 only
+    from . import _cuda  # in the package collide-spheres-cu13 only
 except ImportError as reason:
     _cuda = None
     _why_no_cuda = str(reason)
@@ -31,12 +33,47 @@ def device_of(array, name):
         ) from None
 
 
+MOST_LISTED = 1000  # numbers of a list: a larger one is slow, and better an array
+
+
+def of_list(values, name, dtype):
+    """Lists and tuples as an array of numpy, if they are short; everything else as it is."""
+    if not isinstance(values, (list, tuple)):
+        return values
+    try:
+        array = numpy.array(values, dtype)
+    except Exception:  # noqa: BLE001: numpy's own errors have no name of the argument
+        raise TypeError(f"{name}: expected an array, or a list of numbers such as numpy takes, got {shown(values)}") from None
+    refuse(array.size >= MOST_LISTED, name, f"is a list of {array.size} numbers, which is slow: make an array of it, such as numpy's")
+    return array
+
+
+def arrays_of(mesh):
+    """Vertices and triangles of a mesh of another library."""
+    if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):  # Open3D's tensors
+        return mesh.vertex.positions, mesh.triangle.indices
+    if hasattr(mesh, "vertices"):  # trimesh; Open3D's older class
+        triangles = mesh.faces if hasattr(mesh, "faces") else getattr(mesh, "triangles", None)
+        if triangles is not None:
+            return numpy.asarray(mesh.vertices), numpy.asarray(triangles)
+    if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):  # meshio
+        others = sorted(mesh.cells_dict.keys() - {"triangle", "line", "vertex"})
+        refuse(others, "mesh", f"has cells that are no triangles: {', '.join(others)}")
+        return numpy.asarray(mesh.points), numpy.asarray(mesh.cells_dict.get("triangle", numpy.zeros((0, 3), int)))
+    if hasattr(mesh, "points") and hasattr(mesh, "faces"):  # PyVista: each face is how many corners, and these
+        faces = numpy.asarray(mesh.faces)
+        wrong = len(faces) % 4 != 0 or (faces[::4] != 3).any()
+        refuse(wrong, "mesh", "has faces that are no triangles: call its triangulate() first")
+        return numpy.asarray(mesh.points), faces.reshape(-1, 4)[:, 1:]
+    raise TypeError(f"mesh: expected one of trimesh, meshio, PyVista or Open3D, got {shown(mesh)}")
+
+
 def module_for(device, name):
     """The compiled module for a device."""
     if device[0] in CPU_TYPES:
         return _host
     refuse(device[0] != CUDA, name, f"is on a device of DLPack's type {device[0]}; there are the host and NVIDIA GPUs")
-    refuse(_cuda is None, name, f"is on a GPU, which needs the package collide-cu13 ({_why_no_cuda})")
+    refuse(_cuda is None, name, f"is on a GPU, which needs the package collide-spheres-cu13 ({_why_no_cuda})")
     return _cuda
 
 

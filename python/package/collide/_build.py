@@ -46,7 +46,8 @@ def _command(space, capability):
     flags = ["-std=c++17", "-O2", "-shared", f"-I{_HERE / 'include'}", f"-I{_HERE / 'src'}"]
     if space == "host":
         compiler = _find("CXX", ("g++", "clang++", "c++"))
-        return [*compiler, *flags, "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-fopenmp"]
+        compiled = ["-DCOLLIDE_COMPILED", "-Wl,--no-as-needed", str(_HERE / "libcollide_python.so")]
+        return [*compiler, *flags, "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-fopenmp", *compiled]
     compiler = _find("CUDACXX", ("nvcc", "/usr/local/cuda/bin/nvcc"))
     host = "-Xcompiler=-fPIC,-fvisibility=hidden,-ffp-contract=off,-fopenmp"
     cuda = ["--expt-relaxed-constexpr", "--diag-suppress=20012", "-fmad=false", "-cudart=static", f"-arch=sm_{capability}"]
@@ -61,7 +62,7 @@ def _find(variable, names):
     lists = "\n".join("  " + _names(effects) for effects in BUILT_IN)
     raise Error(
         f"collide: this list of effects is not in the package, and there is no compiler for it ({' or '.join(names)}; "
-        f"the environment variable {variable} may name one). Without one there are, of float32 and exact:\n{lists}"
+        f"the environment variable {variable} may name one). Without one there are, exact, of float32 and for grains float64:\n{lists}"
     )
 
 
@@ -90,6 +91,8 @@ def _compile(text, command, path, names, space):
         done = subprocess.run([*command, str(file), "-o", str(made)], capture_output=True, text=True, check=False)
         if done.returncode != 0:
             print(" failed", file=sys.stderr)
+            if sentence := re.search(r"static assertion failed: collide: ([^\n]*)", done.stderr):
+                raise Error(f"collide: the effects {names}: {sentence[1]}")
             raise Error(f"collide: {tool} does not compile this simulation:\n{_what_matters(done.stderr, text)}")
         os.replace(made, path)  # another process may have been as fast: the same file
     print(f" {time.monotonic() - began:.0f} s, kept in {path.parent}", file=sys.stderr)

@@ -30,14 +30,15 @@ def whole(name, value, least=0, most=2**31 - 1):
         number = operator.index(value)
     except Exception:  # noqa: BLE001: arrays of several numbers have errors of their own
         raise TypeError(f"{name}: expected a whole number, got {shown(value)}") from None
-    refuse(not least <= number <= most, name, f"is {shown(number)}, expected {least:,} to {most:,}")
+    if not least <= number <= most:
+        raise ValueError(f"{name}: is {shown(number)}, expected {least:,} to {most:,}")
     return number
 
 
 def choice(name, value, among):
     """An argument that is one of some words."""
-    wrong = not isinstance(value, str) or value not in among
-    refuse(wrong, name, f"is {shown(value)}, expected {', '.join(map(repr, among[:-1]))} or {among[-1]!r}")
+    if not isinstance(value, str) or value not in among:
+        raise ValueError(f"{name}: is {shown(value)}, expected {', '.join(map(repr, among[:-1]))} or {among[-1]!r}")
     return value
 
 

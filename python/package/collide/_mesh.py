@@ -3,14 +3,18 @@
 import math
 import os
 import re
-from typing import Any, Literal, NamedTuple, Optional, Union
+import warnings
+from typing import Any, Iterable, Iterator, Literal, NamedTuple, Optional, Tuple, Union, overload
 
-from ._arrays import CUDA, device_of, library_of, module_for, stream_of
+import numpy
+
+from ._arrays import CUDA, arrays_of, device_of, library_of, module_for, of_list, stream_of
 from ._errors import choice, real, refuse, whole
 
 Array = Any  #: an array of numpy, torch, cupy, jax or warp, or anything with __dlpack__
 Precision = Literal["exact", "double", "single"]
 Order = Literal["unspecified", "canonical"]
+Poses = Any  #: (bodies, 7) numbers of numpy or in lists: of each a position, and a unit quaternion w, x, y, z
 PRECISIONS = ("exact", "double", "single")
 
 
@@ -69,7 +73,7 @@ class Pairs(_Records):
     sphere: Array = _field(0)
     triangle: Array = _field(1)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Array]:
         return iter((self.sphere, self.triangle))
 
     def __repr__(self):
@@ -134,6 +138,39 @@ class SignedDistance(Nearest):
     gradient: Array = _field(3, 7, 3)
 
 
+class Winding(_Records):
+    """How often a mesh winds around each point.
+
+    value          (n,): 1 inside of a closed mesh whose normals point outwards, 0 outside; where closed parts overlap their
+                   sum, so that above 1/2 is in their union. NaN of a point that is not finite
+    error          (n,): how far the value may be from that of real arithmetic, at most
+    """
+
+    value: Array = _field(0, 0, 1)
+    error: Array = _field(0, 1, 1)
+
+
+class Seams(NamedTuple):
+    """What `Mesh.validate_closed` has found, as arrays of numpy: rows of a triangle and its edge, 0 = ab, 1 = bc, 2 = ca."""
+
+    message: str  #: a sentence on each problem; empty if there is none
+    is_closed: bool  #: every edge has an even number of triangles: there is an inside
+    is_oriented: bool  #: all normals point to one side
+    open_edges: Array  #: (k, 2) int32: edges of one triangle only
+    crowded_edges: Array  #: (k, 2): of three triangles or more
+    flipped_edges: Array  #: (k, 2): of two triangles whose normals disagree
+    duplicate_faces: Array  #: (k, 2): triangles that are there twice; the edge is 0
+
+
+class Surface(NamedTuple):
+    """What `Mesh.validate_surface` has found, as arrays of numpy: rows of two triangles."""
+
+    message: str  #: a sentence on each problem; empty if there is none
+    hanging_nodes: Array  #: (k, 2) int32: a corner of one lies in an edge of the other
+    cracks: Array  #: (k, 2): a corner of each lie next to each other
+    overlaps: Array  #: (k, 2): the two lie on each other in one plane
+
+
 class Csr(NamedTuple):
     """Rows of triangles: those of sphere i are ``triangle[offsets[i]:offsets[i + 1]]``."""
 
@@ -146,8 +183,10 @@ class Mesh:
 
     vertices   (n, 3) float32 or float64, of warp also (n,) vec3 or vec3d, in any unit of length. They are read where they
                are, not copied: keep them as they are while the mesh is used, or call `update` when they have changed.
+               Here and in queries short lists (fewer than 1,000 numbers) are taken on the host, too; as float64.
     triangles  (m, 3) integers of 32 or 64 bits, of any strides: numbers of vertices, from 0. They are copied. None: rows
                3 i, 3 i + 1, 3 i + 2 of vertices are triangle i.
+    bodies     parts that move as a whole, (first triangle, how many) of each, at most 64: queries take ``poses=`` of them
     validate   refuse triangles of vertices that are not there. O(m); on a GPU it waits for the result. Without it such
                a corner is the last vertex.
     threads    on the host: how many at most, and no more than there are cores. 0: as many as that where it pays.
@@ -156,11 +195,18 @@ class Mesh:
     there. The first query of a kind (at rest, moving, and each precision) prepares what depends on the mesh, O(m).
 
     Other Python threads run while a call works; two meshes may be used by two threads at once, calls to one mesh wait
-    for each other. Ctrl-C ends a call on the host within a second. Pickle and copy.deepcopy copy the arrays. On a GPU work is put on the current stream of the library that the centres are of, and a call waits
-    only as far as it must read a number back: `any` with one radius does not, after a first call.
+    for each other. A call from within another one to the same mesh, as from a signal's handler, is an `Error`. In a forked
+    process calls on the host use one thread; calls on a GPU are an `Error`, and so is a mesh that another thread was using
+    at the fork. Ctrl-C ends a call on the host within a second, but for a sort of 10^8 pairs. Pickle and copy.deepcopy copy
+    the arrays. On a GPU work is put on the current stream of the library that the centres are of, and a call waits only as
+    far as it must read a number back: `any` with one radius does not, after a first call.
     """
 
-    def __init__(self, vertices: Array, triangles: Optional[Array] = None, *, validate: bool = True, threads: int = 0):
+    def __init__(
+        self, vertices: Array, triangles: Optional[Array] = None, *, bodies: Iterable[Tuple[int, int]] = (),
+        validate: bool = True, threads: int = 0,
+    ) -> None:
+        vertices, triangles = of_list(vertices, "vertices", "float64"), of_list(triangles, "triangles", "int64")
         self._device = device_of(vertices, "vertices")
         self._library = library_of(vertices, self._device)
         module = module_for(self._device, "vertices")
@@ -169,14 +215,25 @@ class Mesh:
         make = module.MeshDouble if self._is_wide else module.MeshFloat
         self._mesh = make(self._threads, self._device[1])
         self._mesh.take(stream_of(self._library, self._device), vertices, triangles, bool(validate))
-        self._vertices, self._version = vertices, 0
+        self._vertices, self._version, self._is_known_closed = vertices, 0, False
+        self._bodies = _parts(bodies)
+        if self._bodies:
+            self._mesh.divide(stream_of(self._library, self._device), self._bodies)
+
+    @classmethod
+    def of(cls, mesh: Any, **options: Any) -> "Mesh":
+        """The mesh of an object of trimesh, meshio, PyVista (PolyData) or Open3D, with the options of `Mesh`: of its
+        vertices, as they are, and its triangles. Raises ValueError where it has other faces or cells than triangles."""
+        return cls(*arrays_of(mesh), **options)
+
+    from_trimesh = of  #: the same
 
     def __reduce__(self):
         stream = stream_of(self._library, self._device)
         triangles = self._mesh.triangles(stream, self._library.is_numpy)
         if triangles is not None:
             triangles = self._library.array(triangles, stream)
-        return _mesh_of, (self._vertices, triangles, self._threads)
+        return _mesh_of, (self._vertices, triangles, self._threads, self._bodies)
 
     def __len__(self) -> int:
         """How many triangles there are."""
@@ -191,32 +248,72 @@ class Mesh:
         changed, too, which are copied and checked as by the constructor. What depends on them is prepared again by the
         next query, and by simulations in their next steps; without triangles nothing is allocated. Raises as the
         constructor does; the mesh is then as it was."""
+        vertices = of_list(vertices, "vertices", self._dtype)
+        triangles = of_list(triangles, "triangles", "int64")
         stream = stream_of(library_of(vertices, self._device), self._device)
         self._mesh.take(stream, vertices, triangles, bool(validate))
         self._vertices, self._version = vertices, self._version + 1
+        self._is_known_closed = self._is_known_closed and triangles is None
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether every edge has an even number of triangles, so that there is an inside; see `validate_closed`."""
+        return self.validate_closed().is_closed
+
+    def validate_closed(self) -> Seams:
+        """Whether a mesh of the host is the boundary of a solid, and where it is not: `Seams`. Vertices of equal
+        coordinates are one. O(m log m), on one thread. Raises `Error` on a GPU."""
+        message, is_closed, is_oriented, parts = self._mesh.check(self._stream(), "closed", 0)
+        return Seams(message, is_closed, is_oriented, *parts)
+
+    def validate_surface(self, tolerance: float) -> Surface:
+        """Where the triangles of a surface, on the host, do not share whole edges: `Surface`. Points no farther apart
+        than the tolerance, a length, are one. Raises `Error` for a negative one, and on a GPU."""
+        message, parts = self._mesh.check(self._stream(), "surface", real("tolerance", tolerance))
+        return Surface(message, *parts)
+
+    def self_intersections(self) -> Array:
+        """(k, 2) int32 of numpy, sorted: pairs of triangles that cut through each other, touch where they share no corner
+        or edge, or overlap. Exact. Where a closed mesh cuts itself, `contains` takes what is inside twice for outside:
+        `winding_number` above 1/2 is the union. O(m log m + pairs). Raises `Error` on a GPU."""
+        return self._mesh.check(self._stream(), "intersections", 0)
 
     def count(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
-        precision: Precision = "exact"
+        precision: Precision = "exact", poses: Optional[Poses] = None
     ) -> int:
         """How many pairs of a sphere and a triangle touch. Arguments as for `query`."""
-        return self._ask(self._mesh.query, int, None, "count", centres, radius, displacements, precision)
+        return self._ask(self._mesh.query, int, None, "count", centres, radius, displacements, precision, poses=poses)
 
     def any(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
-        precision: Precision = "exact", out: Optional[Array] = None
+        precision: Precision = "exact", poses: Optional[Poses] = None, out: Optional[Array] = None
     ) -> Array:
         """(n,) bool: whether each sphere touches anything. Arguments as for `query`.
 
         out  (n,) uint8 or bool: where flags go. On a GPU such a call, with one radius, allocates nothing and does not
              wait, once a first one has been made: it can be captured in a CUDA graph.
         """
-        return self._ask(self._mesh.query, bool, out, "any", centres, radius, displacements, precision)
+        return self._ask(self._mesh.query, bool, out, "any", centres, radius, displacements, precision, poses=poses)
+
+    @overload
+    def query(
+        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
+        precision: Precision = "exact", order: Order = "unspecified", output: Literal["pairs"] = "pairs",
+        capacity: Optional[int] = None, poses: Optional[Poses] = None, out: Optional[Array] = None
+    ) -> Pairs: ...
+
+    @overload
+    def query(
+        self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
+        precision: Precision = "exact", order: Order = "unspecified", output: Literal["csr"],
+        poses: Optional[Poses] = None
+    ) -> Csr: ...
 
     def query(
         self, centres: Array, radius: Union[float, Array], *, displacements: Optional[Array] = None,
         precision: Precision = "exact", order: Order = "unspecified", output: Literal["pairs", "csr"] = "pairs",
-        capacity: Optional[int] = None, out: Optional[Array] = None
+        capacity: Optional[int] = None, poses: Optional[Poses] = None, out: Optional[Array] = None
     ) -> Union[Pairs, Csr]:
         """All pairs of a sphere and a triangle that touch, each exactly once.
 
@@ -229,6 +326,8 @@ class Mesh:
         order          'canonical': by sphere, then by triangle; costs a sort. 'unspecified': any.
         output         'csr': offsets and triangles, a row for each sphere
         capacity       room for so many results at most; ``total`` tells how many there are all the same
+        poses          (bodies, 7): where the mesh's bodies are, of one without them the whole mesh. Spheres are taken to the
+                       frame of each, and rounded there.
         out            (capacity, 2) int32, packed: where results go, in place of memory of their own
 
         Returns `Pairs`, or `Csr`. Results own their memory. Raises TypeError or ValueError for arguments that do not
@@ -238,12 +337,12 @@ class Mesh:
             refuse(capacity is not None, "capacity", "rows have no capacity: take output='pairs'")
             refuse(out is not None, "out", "rows are not written to an array: take output='pairs'")
         kind, asked = Csr if output == "csr" else Pairs, (output, centres, radius, displacements, precision)
-        return self._ask(self._mesh.query, kind, out, *asked, order=order, capacity=capacity)
+        return self._ask(self._mesh.query, kind, out, *asked, order=order, capacity=capacity, poses=poses)
 
     def contacts(
         self, centres: Array, radius: Union[float, Array], *, closest: bool = False,
         displacements: Optional[Array] = None, precision: Precision = "exact", order: Order = "unspecified",
-        capacity: Optional[int] = None, out: Optional[Array] = None
+        capacity: Optional[int] = None, poses: Optional[Poses] = None, out: Optional[Array] = None
     ) -> Contacts:
         """The contact of every pair that touches: closest point, normal, distance, depth, feature. With displacements,
         at the time of impact.
@@ -257,7 +356,7 @@ class Mesh:
         refuse(closest and out is not None, "out", "of the closest contacts is not taken")
         refuse(closest and capacity is not None, "capacity", "there is a contact for each sphere")
         asked = "closest" if closest else "contacts", centres, radius, displacements, precision
-        return self._ask(self._mesh.query, Contacts, out, *asked, order=order, capacity=capacity)
+        return self._ask(self._mesh.query, Contacts, out, *asked, order=order, capacity=capacity, poses=poses)
 
     def impacts(
         self, centres: Array, displacements: Array, radius: Union[float, Array], *, first: bool = False,
@@ -278,11 +377,15 @@ class Mesh:
         asked = "earliest" if first else "impacts", centres, radius, displacements, "exact"
         return self._ask(self._mesh.query, Impacts, out, *asked, order=order, capacity=capacity)
 
-    def nearest(self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None) -> Nearest:
+    def nearest(
+        self, points: Array, *, max_distance: float = math.inf, poses: Optional[Poses] = None,
+        out: Optional[Array] = None
+    ) -> Nearest:
         """The nearest triangle of each point, and the nearest point of it.
 
         points        (n, 3), of the dtype of the vertices and on the same device. One that is not finite has no triangle.
         max_distance  triangles farther away do not count; not negative
+        poses         where the mesh's bodies are, as for `query`
         out           (n, 10) int32, of float64 (n, 18), packed: where ``records`` go, in place of memory of their own
 
         Returns `Nearest`. Which triangle is nearest is as with real arithmetic on the numbers as given, and of equally near
@@ -290,7 +393,7 @@ class Mesh:
         arguments that do not fit, `Error` if the library or CUDA fails. It does not wait on a GPU. The first call prepares a
         tree, O(m log m) for m triangles; O(log m) for a point near the mesh.
         """
-        return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, _reach(max_distance))
+        return self._ask(self._mesh.search, Nearest, out, "nearest", points, 1, _reach(max_distance), poses=poses)
 
     def k_nearest(
         self, points: Array, k: int, *, max_distance: float = math.inf, out: Optional[Array] = None
@@ -306,47 +409,108 @@ class Mesh:
         asked = points, whole("k", k, 1, 32), _reach(max_distance)
         return self._ask(self._mesh.search, Nearest, out, "k_nearest", *asked)
 
+    def distance(
+        self, points: Array, *, signed: bool = False, max_distance: float = math.inf, poses: Optional[Poses] = None,
+        out: Optional[Array] = None
+    ) -> Array:
+        """(n,) of the vertices' dtype: the distances of `nearest`, or with ``signed`` of `signed_distance`, without the
+        memory of all else that these find.
+
+        out  (n,) of that dtype: where they go
+
+        Other arguments, errors and costs as for `nearest`.
+        """
+        if signed:
+            self._look_for_holes()
+        what = "sides" if signed else "distance"
+        return self._ask(self._mesh.search, float, out, what, points, 1, _reach(max_distance), poses=poses)
+
+    def winding_number(self, points: Array, *, beta: float = 3, out: Optional[Array] = None) -> Winding:
+        """How often the mesh winds around each point: `Winding`, whose ``value`` is above 1/2 inside. For meshes with
+        holes, triangle soups, and closed parts that overlap, of which `contains` makes no sense; normals must point
+        outwards. Barill et al., 2018.
+
+        beta  2 or more: triangles in a sphere are seen as one from farther away than so many of its radii; twice as
+              much makes the error a tenth, and takes four times as long
+        out   (n, 2) int32, of float64 (n, 4)
+
+        Errors as for `nearest`. O(log m) a point.
+        """
+        refuse(not real("beta", beta) >= 2, "beta", "is below 2")
+        return self._ask(self._mesh.search, Winding, out, "winding", points, float(beta), math.inf)
+
     def signed_distance(
-        self, points: Array, *, max_distance: float = math.inf, out: Optional[Array] = None
+        self, points: Array, *, max_distance: float = math.inf, poses: Optional[Poses] = None,
+        out: Optional[Array] = None
     ) -> SignedDistance:
         """How far each point is from the surface of a closed mesh: ``distance`` is negative inside, 0 on the surface. It
         is what `nearest` finds, with the side that `contains` finds; each says what it needs. Farther away than
-        ``max_distance`` it is infinite, with the sign.
+        ``max_distance`` it is infinite, with the sign. A mesh of the host that is not closed gives a warning, once.
 
         out  (n, 13) int32, of float64 (n, 24)
 
         Other arguments, errors and costs as for `nearest`.
         """
-        return self._ask(self._mesh.search, SignedDistance, out, "signed_distance", points, 1, _reach(max_distance))
+        self._look_for_holes()
+        asked = "signed_distance", points, 1, _reach(max_distance)
+        return self._ask(self._mesh.search, SignedDistance, out, *asked, poses=poses)
 
-    def contains(self, points: Array, *, out: Optional[Array] = None) -> Array:
+    def contains(self, points: Array, *, poses: Optional[Poses] = None, out: Optional[Array] = None) -> Array:
         """(n,) bool: whether each point is inside of a closed mesh or on its surface. Exact, however triangles are
         oriented: a ray from the point along +z crosses the mesh an odd number of times. Where the mesh is not closed
-        the answer depends on that ray. A point that is not finite is outside. O(triangles above or below the point).
+        the answer depends on that ray, and there is a warning, once. A point that is not finite is outside. O(triangles above or below the point).
 
         points  (n, 3), of the dtype of the vertices and on the same device
         out     (n,) uint8 or bool: where flags go
 
         Errors as for `nearest`.
         """
-        return self._ask(self._mesh.search, bool, out, "contains", points, 1, math.inf)
+        self._look_for_holes()
+        return self._ask(self._mesh.search, bool, out, "contains", points, 1, math.inf, poses=poses)
 
-    def _ask(self, function, kind, out, what, centres, *asked, order="unspecified", capacity=None):
-        """What a function of the compiled mesh finds, as a ``kind``; bool stands for flags. It works on the stream of the
-        library that the centres, or points, are of."""
+    def _look_for_holes(self):
+        """Warns of a mesh that has no inside, once for its triangles."""
+        if self._is_known_closed:
+            return
+        self._is_known_closed = True
+        if not self._mesh.seems_closed(self._stream()):
+            warnings.warn(
+                "collide: the mesh is not closed, so that its inside is a matter of where its holes are: validate_closed() "
+                "names them, and winding_number(points).value > 0.5 makes sense of such a mesh",
+                stacklevel=3,
+            )
+
+    def _stream(self):
+        return stream_of(self._library, self._device)
+
+    @property
+    def _dtype(self):
+        return "float64" if self._is_wide else "float32"
+
+    def _ask(self, function, kind, out, what, centres, *asked, order="unspecified", capacity=None, poses=None):
+        """What a function of the compiled mesh finds, as a ``kind``; bool stands for flags, float for numbers. It works on
+        the stream of the library that the centres, or points, are of."""
+        if isinstance(centres, (list, tuple)):
+            centres = of_list(centres, "centres" if len(asked) == 3 else "points", self._dtype)
+        if len(asked) == 3:  # of spheres
+            choice("precision", asked[2], PRECISIONS)
+            if isinstance(asked[0], (list, tuple)) or isinstance(asked[1], (list, tuple)):
+                names = "radius", "displacements", "precision"
+                asked = [of_list(one, name, self._dtype) for name, one in zip(names, asked)]
         library = library_of(centres, self._device)
         stream = stream_of(library, self._device)
         if capacity is not None:
             capacity = whole("capacity", capacity, 0, 2**63 - 1)
-        if len(asked) == 3:  # of spheres
-            choice("precision", asked[2], PRECISIONS)
-        is_canonical = choice("order", order, ("unspecified", "canonical")) == "canonical"
-        results = is_canonical, capacity, out, library.is_numpy
-        found = function(stream, what, centres, *asked, results)
+        is_sorted = choice("order", order, ("unspecified", "canonical")) == "canonical"
+        results = is_sorted, capacity, out, library.is_numpy
+        found = function(stream, what, centres, *asked, [] if poses is None else _rows(poses), results)
         if kind is int:
             return found
-        if kind is bool:
-            return found if out is not None else library.flags(library.array(found, stream))
+        if kind is bool or kind is float:
+            if out is not None:
+                return found
+            found = library.array(found, stream)
+            return library.flags(found) if kind is bool else found
         if kind is Csr:
             return Csr(*(library.array(a, stream) for a in found))
         records, size, *total = found
@@ -361,9 +525,25 @@ def how_many_threads(threads):
     return min(whole("threads", threads), os.cpu_count() or 1)
 
 
-def _mesh_of(vertices, triangles, threads):
+def _mesh_of(vertices, triangles, threads, bodies=()):
     """A mesh that was pickled."""
-    return Mesh(vertices, triangles, threads=threads)
+    return Mesh(vertices, triangles, bodies=bodies, threads=threads)
+
+
+def _parts(bodies):
+    """Bodies as pairs of numbers."""
+    try:
+        return [(whole("bodies", first), whole("bodies", size)) for first, size in bodies]
+    except (TypeError, ValueError):
+        raise TypeError("bodies: expected pairs of numbers such as [(0, 12), (12, 24)]") from None
+
+
+def _rows(poses):
+    """Poses as lists of numbers."""
+    try:
+        return numpy.asarray(poses, "float64").reshape(-1, 7).tolist()
+    except Exception:  # noqa: BLE001
+        raise TypeError("poses: expected numbers of shape (bodies, 7), of each a position and a quaternion w, x, y, z") from None
 
 
 def _reach(max_distance):

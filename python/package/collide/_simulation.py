@@ -3,12 +3,12 @@
 import dataclasses
 import os
 import tempfile
-from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, Union, overload
 
 import numpy
 
 from . import _build
-from ._arrays import CUDA, library_of, module_for, stream_of
+from ._arrays import CUDA, library_of, module_for, of_list, stream_of
 from ._mesh import PRECISIONS, Array, Mesh, how_many_threads
 from ._errors import choice, real, refuse, shown, whole
 from .effects import Effect, Vector, _numbers
@@ -20,7 +20,8 @@ class Body:
 
     At time t, with s = sin(2 pi (frequency t + phase)), the pivot is at pivot + velocity t + amplitude s, and the body is
     turned around ``axis`` through it by the angle rate t + swing s, in radians. ``belt`` is the velocity of the surface of
-    a belt that stays where it is. At most 64 bodies; the simulation's list has `moving_bodies`.
+    a belt that stays where it is. At most 64 bodies; the simulation's list has `moving_bodies`, or `driven_bodies`: then
+    only ``first``, ``size``, ``pivot`` and ``axis`` count, and `Simulation.drive` moves them.
     """
 
     first: int
@@ -35,8 +36,20 @@ class Body:
     phase: float = 0
     belt: Vector = (0, 0, 0)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         self._numbers()
+
+    def _state(self, angle, rate, shift, velocity, belt):
+        """The 16 numbers of a body_state: the body turned around its axis through the pivot, and shifted."""
+        axis = numpy.array(_numbers("axis", self.axis, 3))
+        length = numpy.linalg.norm(axis)
+        axis = axis / length if length > 0 else axis
+        pivot, half = numpy.array(_numbers("pivot", self.pivot, 3)), real("angle", angle) / 2
+        turned = axis * (axis @ pivot) + numpy.cos(2 * half) * (pivot - axis * (axis @ pivot)) + numpy.sin(2 * half) * numpy.cross(axis, pivot)
+        angular = axis * real("rate", rate)
+        linear = _numbers("velocity", velocity, 3) - numpy.cross(angular, turned)
+        position = pivot - turned + _numbers("shift", shift, 3)
+        return [*position, numpy.cos(half), *(numpy.sin(half) * axis), *linear, *angular, *_numbers("belt", belt, 3)]
 
     def _numbers(self):
         numbers = [float(whole(name, getattr(self, name))) for name in ("first", "size")]
@@ -55,11 +68,36 @@ class Impulses(NamedTuple):
     refused: int  #: contacts that are in no sum: what they gave is not finite, or 2e18 units or more
 
 
+class ContactReport(NamedTuple):
+    """How the contacts between particles are: what to look at when a scene is new."""
+
+    contacts: int  #: pairs that overlap
+    coordination: float  #: contacts of a particle, the mean
+    deep: int  #: contacts whose overlap is above a fifth of the smaller radius: too soft
+    largest_overlap: float  #: over the smaller radius
+    longest_good_step: float  #: for these springs; infinite without any
+
+
+class Births(NamedTuple):
+    """What a source has made since `Simulation.set`."""
+
+    due: int  #: particles that have come due: time times rate
+    overlapping: int  #: of these, those that overlapped another one
+    not_born: int  #: with ``only_where_free`` those, and those whose place was taken
+
+
 class Flow(NamedTuple):
     """What went through the surface of `mass_flow`, forwards minus backwards."""
 
     particles: int
     mass: float
+
+
+class Loads(NamedTuple):
+    """What `wear` has summed up of each triangle, on the host."""
+
+    normal_impulse: numpy.ndarray  #: (triangles,) float64: over area and time the mean pressure
+    sliding_work: numpy.ndarray  #: (triangles,): work of friction
 
 
 class Simulation:
@@ -72,7 +110,7 @@ class Simulation:
 
     mesh       what particles touch, and where it runs: host or GPU, float32 or float64
     effects    of `collide.effects`, or `Effect`s of your own
-    bodies     parts of the mesh that move, with `moving_bodies` in the list
+    bodies     parts of the mesh that move, with `moving_bodies` or `driven_bodies` in the list
     swept      particles pass through nothing, however fast: several times a step's cost
     precision  of contacts with the mesh, as for `Mesh.query`
     threads    on the host, as for `Mesh`
@@ -85,9 +123,9 @@ class Simulation:
     """
 
     def __init__(
-        self, mesh: Mesh, effects: Sequence[Effect], *, bodies: Sequence[Body] = (), swept: bool = False,
+        self, mesh: Mesh, effects: Iterable[Effect], *, bodies: Iterable[Body] = (), swept: bool = False,
         precision: str = "exact", threads: int = 0,
-    ):
+    ) -> None:
         refuse(not isinstance(mesh, Mesh), "mesh", f"expected a collide.Mesh, got {shown(mesh)}", TypeError)
         self.effects = _listed("effects", effects, Effect, "collide.gravity()")
         names = [effect.name for effect in self.effects]
@@ -125,6 +163,7 @@ class Simulation:
     def _give_mesh(self, simulation):
         self._version = self._mesh._version  # before its arrays are taken
         simulation.set_mesh(self._stream(), self._mesh._mesh, [body._numbers() for body in self._bodies])
+        self._states = [body._state(0, 0, (0, 0, 0), (0, 0, 0), (0, 0, 0)) for body in self._bodies]
 
     def _replace(self, function, *arguments):
         """Calls a function of the compiled simulation that replaces all particles, or of another one where arrays show its
@@ -143,7 +182,7 @@ class Simulation:
                     state = file.read()
         return _simulation_of, (self._mesh, self.effects, self._bodies, self._threads, self._options, state)
 
-    def set_mesh(self, mesh: Optional[Mesh] = None, bodies: Optional[Sequence[Body]] = None) -> None:
+    def set_mesh(self, mesh: Optional[Mesh] = None, bodies: Optional[Iterable[Body]] = None) -> None:
         """Gives another mesh, or other bodies. After `Mesh.update` the next step calls it. O(triangles)."""
         if mesh is not None:
             refuse(not isinstance(mesh, Mesh), "mesh", f"expected a collide.Mesh, got {shown(mesh)}", TypeError)
@@ -168,7 +207,12 @@ class Simulation:
         radius      a number, or with `polydisperse` in the list (n,); not negative
         velocities  (n, 3), packed; None: at rest
         capacity    for how many there is room, if an effect makes some
+
+        On the host short lists are taken, too.
         """
+        dtype = self._mesh._dtype
+        centres, radius = of_list(centres, "centres", dtype), of_list(radius, "radius", dtype)
+        velocities = of_list(velocities, "velocities", dtype)
         self._library = library_of(centres, self._device)
         self._replace("set", centres, radius, velocities, whole("capacity", capacity, 0, 2**32 - 2))
         self._is_set = True
@@ -177,13 +221,46 @@ class Simulation:
         """Advances by the time dt, above 0."""
         self.steps(1, dt)
 
-    def steps(self, n: int, dt: float) -> None:
-        """Advances n times by dt. On a GPU it does not wait. Ctrl-C ends it between two steps; `time` says which."""
+    def steps(
+        self, n: int, dt: float, *, call: Optional[Callable[[int], Any]] = None, every: Optional[int] = None
+    ) -> None:
+        """Advances n times by dt. On a GPU it does not wait. Ctrl-C ends it between two steps; `time` says which.
+
+        call   is called with the number of steps done, after ``every`` so many (a hundredth of n), and at the end: to show
+               progress, or to write files
+        """
         n, dt = whole("n", n, 0, 2**63 - 1), real("dt", dt)
+        refuse(call is not None and not callable(call), "call", f"expected a function, got {shown(call)}", TypeError)
+        refuse(every is not None and call is None, "every", "is for a function to call")
+        share = whole("every", every if every is not None else max(1, n // 100), 1, 2**63 - 1)
         if self._version != self._mesh._version:
             self._give_mesh(self._simulation)
-        while n > 0:  # each call takes a tenth of a second, or a step
-            n -= self._simulation.steps(self._stream(), n, dt)
+        done = 0
+        while done < n:  # each call takes a tenth of a second, or a step
+            end = min(n, done - done % share + share) if call is not None else n
+            done += self._simulation.steps(self._stream(), end - done, dt)
+            if call is not None and done == end:
+                call(done)
+
+    def drive(
+        self, body: int, angle: float = 0, rate: float = 0, *, shift: Vector = (0, 0, 0), velocity: Vector = (0, 0, 0),
+        belt: Vector = (0, 0, 0),
+    ) -> None:
+        """Says where a body is at the end of the next step, and how it moves then, with `driven_bodies` in the list: a
+        servo calls it before each step. A body that is not driven again stays there, and its surface goes on moving.
+
+        body      its number
+        angle     radians around ``axis`` through the pivot, from where it lies in memory; ``rate``: radians per time
+        shift     of the pivot, from where it lies in memory; ``velocity``: of the pivot
+        belt      velocity of the surface of a belt that stays where it is
+
+        In the first step after `set` or `set_mesh` a body is all the time where it is said to be. Does not wait.
+        """
+        number = whole("body", body, 0, max(len(self._bodies) - 1, 0))
+        refuse(not self._bodies, "body", "the simulation has none: give it bodies=[collide.Body(first, size)]")
+        self._states[number] = self._bodies[number]._state(angle, rate, shift, velocity, belt)
+        done = self._simulation.drive(self._stream(), [x for state in self._states for x in state])
+        refuse(not done, "body", "bodies of this list move by themselves: name driven_bodies instead of moving_bodies")
 
     def __getitem__(self, name: str) -> Array:
         """A column of the particles: (n, 3) for ``position`` and ``velocity``, (n, 3) or (n,) for those of `columns`. It
@@ -233,19 +310,52 @@ class Simulation:
         of_all = self._simulation.energy(self._stream(), real("density", density))
         return dict(zip(("kinetic", "rotational", "elastic", "potential", "tangential"), of_all))
 
-    def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow]:
-        """What `reaction` or `mass_flow`, by its name or its place in the list, has summed up since `set`, `load`, `clear`,
+    def contacts(self) -> Array:
+        """(n, 2) int32, sorted: pairs of particles that touch, the smaller number first. Exact; not across the sides of
+        `periodic_box`. Of particles and the mesh `Mesh.contacts` has them. O(n + pairs)."""
+        pairs = self._library.array(self._simulation.contacts(self._stream(), self._library.is_numpy), self._stream())
+        if "alive" not in self:
+            return pairs
+        is_there = self["alive"] != 0
+        return pairs[is_there[pairs[:, 0]] & is_there[pairs[:, 1]]]
+
+    def contact_report(self) -> ContactReport:
+        """How particles overlap, and which step is short enough: `ContactReport`. Waits; O(n log n)."""
+        found = self._simulation.contact_report(self._stream())
+        return ContactReport(int(found[0]), found[1], int(found[2]), found[3], found[4])
+
+    @property
+    def births(self) -> Births:
+        """Counts of the list's source, such as `emit`: `Births`. Waits. Raises ValueError without one."""
+        found = self._simulation.births(self._stream())
+        refuse(not found, "births", "no effect of the list makes particles")
+        return Births(*(int(x) for x in found))
+
+    @overload
+    def sums(self, effect: Literal["reaction"]) -> Impulses: ...
+    @overload
+    def sums(self, effect: Literal["mass_flow"]) -> Flow: ...
+    @overload
+    def sums(self, effect: Literal["wear"]) -> Loads: ...
+    @overload
+    def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow, Loads]: ...
+
+    def sums(self, effect: Union[int, str]) -> Union[Impulses, Flow, Loads]:
+        """What `reaction`, `mass_flow` or `wear`, by its name or its place in the list, has summed up since `set`, `load`, `clear`,
         a change of its parameters, or of the numbers of bodies and triangles. Waits."""
         number = self._number(effect)
         found = self._simulation.sums(self._stream(), number)
-        refuse(not found, "effect", f"{self.effects[number].name} has no sums; reaction and mass_flow have")
+        name = self.effects[number].name
+        if name == "wear":
+            return Loads(*numpy.reshape(found, (-1, 2)).T)
+        refuse(not found, "effect", f"{name} has no sums; reaction, mass_flow and wear have")
         if len(found) == 2:
             return Flow(int(found[0]), found[1])
         parts = numpy.reshape(found[:-1], (-1, 2, 3))
         return Impulses(*numpy.swapaxes(parts, 0, 1), bodies=len(self._bodies), refused=int(found[-1]))
 
     def clear(self, effect: Union[int, str]) -> None:
-        """Begins the sums of `reaction` or `mass_flow` anew. Does not wait."""
+        """Begins the sums of `reaction`, `mass_flow` or `wear` anew. Does not wait."""
         self._simulation.clear(self._stream(), self._number(effect))
 
     def save(self, path: Union[str, os.PathLike]) -> None:

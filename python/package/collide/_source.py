@@ -3,12 +3,15 @@
 import hashlib
 
 try:
-    from .effects import bounce, emit, friction, gravity, moving_bodies, polydisperse, sphere_contact, spin
+    from . import granular
+    from .effects import bounce, emit, friction, gravity, moving_bodies, polydisperse, sphere_contact, spin, velocity_verlet
 except ImportError:  # CMake runs this file by itself
-    from effects import bounce, emit, friction, gravity, moving_bodies, polydisperse, sphere_contact, spin
+    import granular
+    from effects import bounce, emit, friction, gravity, moving_bodies, polydisperse, sphere_contact, spin, velocity_verlet
 
 _CONTACTS = [gravity(), sphere_contact(), bounce(), friction()]
-#: The lists that are compiled in the package, float32 and exact, with karabassi.
+_GRAINS = granular.granular_contact(granular.hertz(), granular.mindlin(), granular.epsd())
+#: The lists that are compiled in the package, exact, with karabassi; float32, those with granular contact float64.
 BUILT_IN = [
     [gravity()],
     [gravity(), bounce()],
@@ -20,6 +23,8 @@ BUILT_IN = [
     [emit(10, (0, 0, 1)), *_CONTACTS, spin()],
     [polydisperse(), *_CONTACTS],
     [*_CONTACTS, moving_bodies()],
+    [gravity(), _GRAINS, velocity_verlet()],
+    [gravity(), _GRAINS, moving_bodies(), velocity_verlet()],
 ]
 
 _PRECISIONS = {"exact": "exact", "double": "double_precision", "single": "single_precision"}
@@ -56,7 +61,7 @@ if __name__ == "__main__":  # FOLDER SPACE SUFFIX COUNT: writes the first lists 
     import sys
 
     for effects in BUILT_IN[: int(sys.argv[4])]:
-        text = source(effects, sys.argv[2])
+        text = source(effects, sys.argv[2], "double" if _GRAINS in effects else "float")
         path = pathlib.Path(sys.argv[1]) / (name_of(text) + sys.argv[3])
         if not path.exists() or path.read_text() != text:
             path.write_text(text)

@@ -6,14 +6,14 @@ The functions here are the table of effects: their arguments are the parameters,
 import copy
 import functools
 import inspect
-from typing import Callable, Dict, List, Optional, Tuple, TypeVar
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, TypeVar
 
 try:
     from ._errors import real, refuse, shown
 except ImportError:  # CMake runs _source.py by itself
     from _errors import real, refuse, shown
 
-Vector = Tuple[float, float, float]
+Vector = Sequence[float]  #: three numbers
 
 
 class Effect:
@@ -27,11 +27,11 @@ class Effect:
     Raises TypeError or ValueError, which name the parameter, for what is no number.
     """
 
-    def __init__(self, name: str, parameters: Optional[Dict[str, object]] = None, code: str = ""):
+    def __init__(self, name: str, parameters: Optional[Mapping[str, Any]] = None, code: str = "") -> None:
         refuse(not isinstance(name, str) or not name.isidentifier(), "name", f"expected that of a struct, got {shown(name)}")
         refuse(not isinstance(code, str), "code", f"expected C++, got {shown(code)}", TypeError)
         self.name, self.code = name, code
-        self.parameters = {key: _numbers(key, value) for key, value in (parameters or {}).items()}
+        self.parameters: Dict[str, List[float]] = {key: _numbers(key, value) for key, value in (parameters or {}).items()}
         self._type, self._is_own = name, True  # in C++
         self._members = {key: f"e.{key}" for key in self.parameters}  # what sets each of them
 
@@ -77,7 +77,7 @@ def _numbers(name, value, size=None) -> List[float]:
     return numbers
 
 
-Function = TypeVar("Function", bound=Callable)
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def _describes(kind, header="", type="", memory="", part="", **members) -> Callable[[Function], Function]:
@@ -226,6 +226,12 @@ def mass_flow(
     minus backwards: `Simulation.sums`. ``unit``: mass that each particle's is rounded to; ``density``: mass per volume."""
 
 
+@_describes(Effect, "effects/wear", type="wear<>", density="made_of.density", memory="sums.hpp")
+def wear(unit_of_impulse: float, unit_of_work: float, density: float = 1) -> Effect:
+    """Sums up the impulse along normals that `granular_contact`, before it in the list, gives to each triangle, and the
+    work of friction there: `Simulation.sums`. Each contact is rounded to the units; ``density``: mass per volume."""
+
+
 @_describes(Effect, memory="sums.hpp")
 def reaction(unit: float, density: float = 1, triangles: bool = False) -> Effect:
     """Sums up what particles give to bodies and to what rests, and to each triangle if asked, last in the list:
@@ -237,9 +243,18 @@ def moving_bodies() -> Effect:
     """Parts of the mesh move: see `Body`."""
 
 
+@_describes(Effect, "effects/bodies", type="moving_bodies<collide::driven>")
+def driven_bodies() -> Effect:
+    """Parts of the mesh move as `Simulation.drive` says before each step."""
+
+
 @_describes(Effect, "effects/integrators")
 def velocity_verlet() -> Effect:
     """The integrator of second order; without it semi-implicit Euler, of first."""
 
 
-__all__ = [name for name, value in globals().items() if hasattr(value, "__wrapped__")]
+__all__ = [  # all functions above, as words for type checkers
+    "gravity", "drag", "external_forces", "wind", "bounce", "friction", "spin", "adhesion", "sphere_contact",
+    "sleep", "emit", "absorb", "absorbing_box", "box_walls", "periodic_box", "polydisperse", "lost", "lost_motion",
+    "mesh_forces", "pair_forces", "mass_flow", "reaction", "moving_bodies", "driven_bodies", "velocity_verlet",
+]

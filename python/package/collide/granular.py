@@ -8,8 +8,12 @@
 import dataclasses
 from typing import List, Mapping, Optional, Sequence, Tuple, Union
 
-from ._errors import refuse, shown
-from .effects import Effect, Law, _describes, _numbers
+try:
+    from ._errors import refuse, shown
+    from .effects import Effect, Law, _describes, _numbers
+except ImportError:  # CMake runs _source.py by itself
+    from _errors import refuse, shown
+    from effects import Effect, Law, _describes, _numbers
 
 
 @_describes(Law, "effects/granular/linear", part="normal")

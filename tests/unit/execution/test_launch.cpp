@@ -7,7 +7,7 @@
 #include <collide/effects/bounce.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/simulation.cuh>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 
 #include "execution/lockstep.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/exact/detail/geometry/closest_approach.hpp>
+#include <collide/exact/detail/predicates/filter_swept.hpp>
 
 using namespace collide::detail;
 

@@ -203,6 +203,17 @@ TEST_CASE("read_ply: a file that is not as its header says is refused, and why")
   CHECK(ply("plx\n") == "line 1: 'plx' in place of 'ply'");
 }
 
+TEST_CASE("files in text may begin with a byte order mark, as editors of Windows write") {
+  std::string const mark = "\xef\xbb\xbf", corners = "0 0 0\n1 0 0\n0 1 0\n";
+  CHECK(read(mark + square + "f 1 2 3\n").vertices.size() == 12);
+  CHECK(read(mark + "# comment\n" + square + "f 1 2 3\n").vertices.size() == 12);
+  CHECK(off(mark + "OFF\n3 1 0\n" + corners + "3 0 1 2\n") == "read");
+  CHECK(ply(mark + "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+            "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + corners + "3 0 1 2\n") == "read");
+  CHECK(stl(mark + "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n" +
+            "endfacet\nendsolid\n") == "read");
+}
+
 TEST_CASE("read_stl: whole, or refused in one line") {
   std::string const facet =
       " facet normal 0 0 1\n  OUTER LOOP\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1e0 -0\n  endloop\n endfacet\n";

@@ -89,6 +89,11 @@ TEST_CASE("vtk: contacts of a query are a point each") {
   CHECK(numbers(file.text(), "position") == vertices);
   CHECK(numbers(file.text(), "connectivity") == std::vector<double>{0, 1, 2});
   CHECK(numbers(file.text(), "offsets") == std::vector<double>{3});
+  CHECK(file.text().find("CellData") == std::string::npos);
+  collide::write_vtk_mesh(file.path, mesh, {{"pressure", std::vector<double>{7}}});
+  CHECK(file.text().find("<CellData>\n<DataArray type=\"Float64\" Name=\"pressure\"") != std::string::npos);
+  CHECK(numbers(file.text(), "pressure") == std::vector<double>{7});
+  CHECK(numbers(file.text(), "connectivity") == std::vector<double>{0, 1, 2});
   collide::write_vtk_contacts(file.path, std::vector<collide::contact<float>>{});
   CHECK(attribute(file.text(), "NumberOfPoints") == "0");
 }

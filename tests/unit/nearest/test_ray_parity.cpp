@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/narrow/detail/ray_parity.hpp>
+#include <collide/sinks/contains.hpp>
 
 #include "compared.hpp"
 #include "nearest/point_cases.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <collide/core/error.hpp>
-#include <collide/exact/detail/numeric/angle.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 
 #include "compared.hpp"
 #include "execution/lockstep.hpp"

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/exact/detail/numeric/decay.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 
 using collide::detail::decay_after;
 

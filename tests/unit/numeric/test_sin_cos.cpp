@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/exact/detail/numeric/sin_cos.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 
 using collide::detail::sin_cos_near_zero;
 using collide::detail::sin_cos_of_turns;

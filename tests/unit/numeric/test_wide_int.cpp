@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/exact/detail/numeric/wide_int.hpp>
+#include <collide/exact/detail/numeric/exact_number.hpp>
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include <collide/broad/detail/per_sphere.hpp>
 #include <collide/karabassi.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 
 #include "execution/lockstep.hpp"
 #include "query/pair_output.hpp"

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include <collide/ranks/detail/coarse_grid.hpp>
+#include <collide/ranks/detail/rank_map.hpp>
 
 #include "ranks/boxes.hpp"
 
@@ -49,7 +49,7 @@ TEST_CASE("coarse grid: of two boxes that share a point, one has a cell that is 
   for (int i = 0; i < 100000; ++i) {
     auto const a = box_at(1 + uniform(engine), 2 + uniform(engine), 3 + uniform(engine), std::exp2(size(engine))),
                b = box_at(1 + uniform(engine), 2 + uniform(engine), 3 + uniform(engine), std::exp2(size(engine)));
-    CHECK(grid.meets(a) == overlap(a, grid.frame()));
+    CHECK(grid.meets(a) == overlap(a, grid.bounds()));
     if (!grid.meets(a) || !grid.meets(b)) continue;
     auto const of_a = cells_of(grid, a), of_b = cells_of(grid, b);
     is_right = is_right && of_a.size() <= 8 && of_b.size() <= 8;

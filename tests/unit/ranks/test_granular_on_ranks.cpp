@@ -5,6 +5,7 @@
 #include <collide/simulation/energy.hpp>
 
 #include "ranks/on_threads.hpp"
+#include "simulation/surfaces.hpp"
 
 namespace {
 
@@ -45,6 +46,27 @@ auto belt() {
   return scene;
 }
 
+/// Grains of a lattice, of which planes lie just where ranks meet, and in the bounds of the box that repeats.
+auto lattice() {
+  using law = granular_contact<hertz, mindlin>;
+  tests::world<double> w;
+  w.radius = 0.0625;
+  for (int i = 0; i < 512; ++i)
+    w.particle(0.125 * (i / 64 - 4), 0.125 * (i / 8 % 8 - 4), 0.125 * (i % 8 - 4), 0.01 * (i % 5), 0.01 * (i % 3));
+  tests::add_floor(w, 2, 4, -0.55);
+  return tests::scene_of<simulation<tests::discrete<host, double>, velocity_verlet, law, periodic_box>>(
+      "a lattice where ranks meet", w, 100, 2e-4, velocity_verlet{}, law{one_material(soft, rough)},
+      periodic_box{{-0.5, -0.5, -2}, {0.5, 0.5, 2}});
+}
+
+/// Grains on a wall of many pieces, to which they stick.
+auto pieces() {
+  using law = granular_contact<hertz, mindlin, none, jkr>;
+  return tests::scene_of<simulation<tests::discrete<host, double>, velocity_verlet, gravity, law>>(
+      "pieces of a wall", tests::grains_on_pieces<double>(16, 60), 150, 1e-5, velocity_verlet{}, gravity{},
+      law{one_material({1e7, 0.2, 2500}, {0.5, 0.5, 0, 0.05})});
+}
+
 /// A plate runs into a layer of grains that sleep, and touch each other.
 template <class Integrator>
 auto plate() {
@@ -79,6 +101,12 @@ TEST_CASE("granular contact on ranks: contacts remember as on one") {
   tests::check_on_threads<tests::late_ranks>(sizes(), {2, 3}, {tests::split::odd});
   tests::check_on_threads<tests::late_ranks>(plate<velocity_verlet>(), {2, 3}, {tests::split::odd});
   tests::check_on_threads(belt(), {1, 2, 3, 7}, {tests::split::last});
+}
+
+TEST_CASE("granular contact on ranks: grains where ranks meet, and on a wall of many pieces, are as on one") {
+  tests::check_on_threads(lattice(), {2, 4}, {tests::split::odd});
+  tests::check_on_threads(pieces(), {2, 3}, {tests::split::odd});
+  tests::check_checkpoints(pieces());
 }
 
 TEST_CASE("granular contact on ranks: checkpoints have what contacts remember") { tests::check_checkpoints(belt()); }

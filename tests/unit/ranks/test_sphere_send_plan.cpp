@@ -64,7 +64,7 @@ class test_map {
       for (auto const& box : mine) mark(box);
     });
     lookup = map_.lookup(collide::host(1), memory_);
-    extent = grid.meets(grid.frame()) ? grid.frame().max_extent() : 0;
+    extent = grid.meets(grid.bounds()) ? grid.bounds().max_extent() : 0;
   }
 
   collide::detail::rank_lookup lookup{};
@@ -164,7 +164,7 @@ tests::moving_scene<S> spheres_at_borders(collide::detail::coarse_grid const& gr
     if (i % 16 == 0) radius = one_of(std::vector<S>{S(0), S(-0.), S(-1), nan, infinite, huge});
     made.radii.push_back(radius);
     for (int k = 0; k < 3; ++k) {
-      double const w = width(k, level), low = grid.frame().lower[k];
+      double const w = width(k, level), low = grid.bounds().lower[k];
       double const border = w * std::uniform_int_distribution<int>(-3, (1 << level) + 3)(engine);
       double const r = std::abs(static_cast<double>(radius)) < 1e30 ? static_cast<double>(radius) : 0;
       S at = next_to(low + border + r * one_of(std::vector<double>{-1, 0, 1}));
@@ -190,7 +190,7 @@ TEST_CASE("sphere routes: those that the map says, by rank and sphere, in any nu
     auto const spheres = made.moving();
     collide::detail::sphere_send_plan routes;
     routes.find(space, mesh.lookup(), spheres, ranks.rank(), ranks.size());
-    double const extent = mesh.map().grid().frame().max_extent();
+    double const extent = mesh.map().grid().bounds().max_extent();
     std::size_t all = 0;
     int& mine = wrong[static_cast<std::size_t>(ranks.rank())];
     for (int r = 0; r < 3; ++r) {

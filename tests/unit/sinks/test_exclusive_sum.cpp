@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include <collide/host.hpp>
-#include <collide/sinks/detail/exclusive_sum.hpp>
+#include <collide/sinks/csr.hpp>
 
 TEST_CASE("exclusive sum: as a loop has it, whatever the number of values and of threads") {
   std::mt19937_64 engine(1);

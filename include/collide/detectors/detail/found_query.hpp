@@ -1,44 +1,57 @@
 /// \file
-/// Pairs that are known, as a query that a sink runs.
+/// Pairs that were found by several queries, and the query of them that a sink runs.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
-#include <collide/detectors/detail/numbered_triangle.hpp>
 #include <collide/query/concepts.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>
 #include <collide/query/hit.hpp>
 #include <collide/sinks/detail/output.hpp>
+#include <collide/sinks/detail/search_mesh.hpp>
+#include <collide/sinks/pairs.hpp>
 #include <collide/spaces/detail/host_array.hpp>
 
 namespace collide::detail {
 
-/// Some triangles of a mesh, with the numbers that they have in the whole: a plain value.
-template <class S>
-struct mesh_part {
-  mesh_view<S> triangles;
-  id const* numbers;  ///< of its triangles; they rise
+/// An array of pairs in memory of a space, to which more are appended.
+class pair_list {
+ public:
+  /// Forgets the pairs.
+  void clear() { size_ = 0; }
 
-  /// The last place whose triangle has a number up to `t`; 0 if there is none.
-  COLLIDE_HD id find(id t) const {
-    std::size_t low = 0, high = triangles.size();
-    while (high - low > 1) {
-      std::size_t const middle = (low + high) / 2;
-      (numbers[middle] <= t ? low : high) = middle;
+  /// Room for `n` more pairs; returns where.
+  template <class Space>
+  pair* append(Space const& space, std::size_t n) {
+    std::size_t const before = size_;
+    if (before + n > memory_.capacity()) {
+      buffer<pair> larger;
+      pair* const to = make_room(larger, space.resource(), before + n);
+      space.for_each(before, copy_values<pair>{memory_.data(), to});
+      space.synchronize();  // the old memory goes
+      memory_ = std::move(larger);
     }
-    return static_cast<id>(low);
+    size_ += n;
+    return memory_.data() + before;
   }
-  COLLIDE_HD bool has_at(id place, id t) const { return place < triangles.size() && numbers[place] == t; }
+
+  pair const* data() const { return memory_.data(); }
+  std::size_t size() const { return size_; }
+
+ private:
+  buffer<pair> memory_;
+  std::size_t size_ = 0;
 };
 
 /// A mesh of which some triangles are here, some of its own and others that were hit: a plain value.
 template <class S>
 struct partial_mesh {
-  mesh_part<S> own, others;
+  mesh_subset<S> own, others;
   std::size_t all;  ///< how many the whole mesh has
 
   COLLIDE_HD std::size_t size() const { return all; }
@@ -109,7 +122,7 @@ class found_pairs {
  public:
   /// The pairs are in memory of the space, `others` on the host. `all`: how many triangles the whole mesh has.
   template <class Space>
-  void keep(Space const& space, pair const* pairs, std::size_t size, mesh_part<S> const& own,
+  void keep(Space const& space, pair const* pairs, std::size_t size, mesh_subset<S> const& own,
             std::vector<numbered_triangle<S>> const& others, std::size_t all) {
     numbers_.resize(others.size());
     corners_.resize(9 * others.size());
@@ -119,7 +132,7 @@ class found_pairs {
     }
     pairs_ = pairs;
     size_ = size;
-    mesh_ = {own, {{}, in_space(space, numbers_, number_memory_)}, all};
+    mesh_ = {own, {{}, {0, in_space(space, numbers_, number_memory_)}}, all};
     if (!others.empty()) {
       mesh_.others.triangles = triangle_soup(in_space(space, corners_, corner_memory_), others.size());
     }

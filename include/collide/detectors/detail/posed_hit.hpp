@@ -14,10 +14,6 @@
 #include <collide/spaces/detail/atomic.hpp>
 #include <collide/spheres.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide {
 
 namespace detail {
@@ -68,7 +64,7 @@ COLLIDE_HD hit<NarrowPhase, S> hit_of(pair p, moving_mesh<S> const& mesh, sphere
 
 /// Kernel functor of `for_each` over groups of spheres: lists those that may touch something. A host tries a group at a
 /// time in the lanes of its vector unit.
-template <class S, int Group>
+template <class S, unsigned Group>
 struct list_near_bodies {
   moving_mesh<S> mesh;
   S room;  ///< how far rounding may move what a body sees
@@ -78,19 +74,19 @@ struct list_near_bodies {
 
   COLLIDE_HD void operator()(std::size_t group) const {
     std::size_t const first = group * Group, left = spheres.size() - first;
-    int const n = left < Group ? static_cast<int>(left) : Group;
+    unsigned const n = left < Group ? static_cast<unsigned>(left) : Group;
     S x[Group] = {}, y[Group] = {}, z[Group] = {}, reach[Group] = {};
     std::uint32_t near[Group] = {};
-    for (int k = 0; k < n; ++k) {
-      sphere<S> const own = spheres[first + static_cast<std::size_t>(k)];
+    for (unsigned k = 0; k < n; ++k) {
+      sphere<S> const own = spheres[first + k];
       x[k] = own.centre.x(), y[k] = own.centre.y(), z[k] = own.centre.z(), reach[k] = own.radius;
     }
     for (int frame = mesh.first_frame; frame < mesh.frame_count; ++frame) {
       body_frame<S> const& f = mesh.frames[frame];
-      for (int k = 0; k < Group; ++k) near[k] |= f.is_far(vec3<S>(x[k], y[k], z[k]), reach[k], room) ? 0u : 1u;
+      for (unsigned k = 0; k < Group; ++k) near[k] |= f.is_far(vec3<S>(x[k], y[k], z[k]), reach[k], room) ? 0u : 1u;
     }
-    for (int k = 0; k < n; ++k) {
-      if (near[k] != 0) numbers[fetch_add(count, 1u)] = static_cast<id>(first + static_cast<std::size_t>(k));
+    for (unsigned k = 0; k < n; ++k) {
+      if (near[k] != 0) numbers[fetch_add(count, 1u)] = static_cast<id>(first + k);
     }
   }
 };
@@ -118,17 +114,6 @@ struct list_near_body {
     for (unsigned k = 0; k < 3; ++k) centres[3 * slot + k] = seen.centre[k];
     if (radii != nullptr) radii[slot] = own.radius;
   }
-};
-
-/// Kernel functor of `for_each` over pairs of listed spheres and a part of a mesh that begins with triangle `first`: as
-/// pairs of the whole.
-struct number_pairs {
-  pair const* from;
-  id const* spheres;
-  id first;
-  pair* to;
-
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {spheres[from[i].sphere], from[i].triangle + first}; }
 };
 
 /// Kernel functor of `for_each` over spheres: how a body sees them.
@@ -191,34 +176,6 @@ inline constexpr bool searches_bodies<nearest<S>> = true;
 template <class S>
 inline constexpr bool searches_bodies<signed_distance<S>> = true;
 
-/// Sink: runs a search, and keeps nothing.
-template <class F>
-struct run_search {
-  F f;
-
-  template <class Space, class Query>
-  void run(Space&, Query const& query) {
-    search_mesh(query, f);
-  }
-};
-
-/// The query of `nearest` and its like over bodies, as the sink sees it. `Bodies` is a function bodies(spheres, f).
-template <class NarrowPhase, class S, class Bodies>
-struct search_over_bodies {
-  using narrow_phase = NarrowPhase;
-  using scalar = S;
-
-  sphere_view<S> spheres;
-  Bodies const& bodies;
-
-  template <class F>
-  void search(F const& f) const {
-    bodies(spheres, f);
-  }
-};
-
 }  // namespace detail
 
 }  // namespace collide
-
-#pragma GCC diagnostic pop

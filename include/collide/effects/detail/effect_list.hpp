@@ -8,10 +8,6 @@
 #include <collide/effects/detail/resistance.hpp>
 #include <collide/exact/detail/numeric/repeating_box.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Why particles meet: in a step, or between two, to know the forces with which the next begins. Then nothing else is
@@ -236,27 +232,27 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
     }
   }
   /// Accelerates some particles, each for its own time, on a CPU; those for 0 are left out.
-  template <class P, int N>
+  template <class P, unsigned N>
   COLLIDE_HD_INLINE void accelerate_together(P (&p)[N], S const (&dt)[N]) const {
     auto const& r = this->resistance;
     S const time = S(r.time);
     bool ready = !r.is_none();
-    for (int k = 0; k < N; ++k) ready = ready && (dt[k] == time || dt[k] == 0);
+    for (unsigned k = 0; k < N; ++k) ready = ready && (dt[k] == time || dt[k] == 0);
     if (!ready) {
-      for (int k = 0; k < N; ++k) {
+      for (unsigned k = 0; k < N; ++k) {
         if (dt[k] != 0) accelerate(p[k], dt[k]);
       }
       return;
     }
     velocities_in<S, N, flows> velocities;
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       velocities.set_before(k, flow_around(p[k]), p[k][velocity{}]);
       if (dt[k] != 0) accelerate_without_resistance(p[k], time);
       velocities.set_pushed(k, p[k][velocity{}]);
     }
     multiversioned([&] { r.quadratic == 0 ? velocities.ease(r) : velocities.find(r); });
     velocities.keep();
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       if (dt[k] != 0) velocities.get(k, p[k][velocity{}], r);
     }
   }
@@ -477,5 +473,3 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -242,6 +242,7 @@ struct particle_state<S, columns<C...>>
   COLLIDE_HD_INLINE void end_load(Block& block, pack_scratch<Block>& s, pack_of<columns<D...>>& read,
                                   particle<S, columns<D...>>* p, std::size_t first) const {
     (take_values(block, s, D{}, static_cast<column_pack<D>&>(read).of, p), ...);
+    COLLIDE_UNROLL
     for (int k = 0; k < particles_per_pack; ++k) {
       p[k].number = static_cast<id>(first) + static_cast<id>(k);
       p[k].the_radius = radius_of(p[k]);
@@ -267,6 +268,7 @@ struct particle_state<S, columns<C...>>
   template <class D>
   COLLIDE_HD_INLINE void load_value(D, column_value<D, S>& v, std::size_t i) const {
     using layout = column_layout<D, S>;
+    COLLIDE_UNROLL
     for (int k = 0; k < layout::width; ++k) {
       layout::at(v, k) = at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)];
     }
@@ -275,6 +277,7 @@ struct particle_state<S, columns<C...>>
   template <class D>
   COLLIDE_HD_INLINE void store_value(D, column_value<D, S> const& v, std::size_t i) const {
     using layout = column_layout<D, S>;
+    COLLIDE_UNROLL
     for (int k = 0; k < layout::width; ++k) {
       at(D{})[i * std::size_t(layout::width) + static_cast<std::size_t>(k)] = layout::at(v, k);
     }
@@ -289,7 +292,9 @@ struct particle_state<S, columns<C...>>
   template <class Block, class D, class Q, int N, class P>
   COLLIDE_HD_INLINE void take_values(Block& block, pack_scratch<Block>& s, D, Q (&read)[N], P* p) const {
     block.striped_to_blocked(s, read);
+    COLLIDE_UNROLL
     for (int k = 0; k < particles_per_pack; ++k) {
+      COLLIDE_UNROLL
       for (int c = 0; c < N; ++c) column_layout<D, S>::at(p[k][D{}], c) = read[(k * N + c) / 4].v[(k * N + c) % 4];
     }
   }
@@ -300,7 +305,9 @@ struct particle_state<S, columns<C...>>
     using pack_type = pack4<column_element<D, S>>;
     constexpr int width = layout::width;
     pack_type write[width];
+    COLLIDE_UNROLL
     for (int k = 0; k < particles_per_pack; ++k) {
+      COLLIDE_UNROLL
       for (int c = 0; c < width; ++c) write[(k * width + c) / 4].v[(k * width + c) % 4] = layout::at(p[k][D{}], c);
     }
     block.store_transposed(s, reinterpret_cast<pack_type*>(at(D{})),

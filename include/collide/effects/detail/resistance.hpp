@@ -3,12 +3,8 @@
 /// Below, velocities are relative to the medium, and the step is the unit of time.
 #pragma once
 
-#include <collide/exact/detail/numeric/decay.hpp>
+#include <collide/exact/detail/numeric/elementary.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
-
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
 
 namespace collide::detail {
 
@@ -174,22 +170,22 @@ COLLIDE_HD_INLINE vec3<S> velocity_in(resistance_in_step const& r, vec3<double> 
 }
 
 /// Velocities of `N` particles after a step, for the vector unit of a CPU; `Flows`: the medium does not rest.
-template <class S, int N, bool Flows>
+template <class S, unsigned N, bool Flows>
 class velocities_in {
  public:
   // number by number: what has been written in fours is not read in eights, which takes as long as all of the rest
-  COLLIDE_HD_INLINE void set_before(int k, [[maybe_unused]] vec3<double> const& flow, vec3<S> const& velocity) {
+  COLLIDE_HD_INLINE void set_before(unsigned k, [[maybe_unused]] vec3<double> const& flow, vec3<S> const& velocity) {
     for (int d = 0; d < 3; ++d) {
       if constexpr (Flows) flow_[d][k] = flow[d];
       before_[d][k] = velocity[d];
     }
   }
-  COLLIDE_HD_INLINE void set_pushed(int k, vec3<S> const& velocity) {
+  COLLIDE_HD_INLINE void set_pushed(unsigned k, vec3<S> const& velocity) {
     for (int d = 0; d < 3; ++d) pushed_[d][k] = velocity[d];
   }
   COLLIDE_HD_INLINE void find(resistance_in_step const& r) {
     resistance_in_step const in = r;
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       double v[3], push[3];
       for (int d = 0; d < 3; ++d) {
         double const from = static_cast<double>(before_[d][k]);
@@ -206,15 +202,15 @@ class velocities_in {
   COLLIDE_HD_INLINE void ease(resistance_in_step const& r) {
     double const left = r.left, gained = r.gained;
     for (int d = 0; d < 3; ++d) {
-      for (int k = 0; k < N; ++k) {
+      for (unsigned k = 0; k < N; ++k) {
         double const from = static_cast<double>(before_[d][k]), v = from - flow(d, k);
         double const push = static_cast<double>(pushed_[d][k]) - from;
         after_[d][k] = static_cast<S>(flow(d, k) + (mul_rn(v, left) + mul_rn(push, gained)));
       }
     }
-    for (int k = 0; k < N; ++k) margin_[k] = 0;
+    for (unsigned k = 0; k < N; ++k) margin_[k] = 0;
   }
-  COLLIDE_HD_INLINE void get(int k, vec3<S>& velocity, resistance_in_step const& r) const {
+  COLLIDE_HD_INLINE void get(unsigned k, vec3<S>& velocity, resistance_in_step const& r) const {
     if (margin_[k] >= 0) {
       for (int d = 0; d < 3; ++d) velocity[d] = after_[d][k];
     } else {
@@ -232,14 +228,14 @@ class velocities_in {
   static COLLIDE_HD_INLINE double product(double const (&a)[3], double const (&b)[3]) {
     return mul_rn(a[0], b[0]) + mul_rn(a[1], b[1]) + mul_rn(a[2], b[2]);
   }
-  COLLIDE_HD_INLINE double flow([[maybe_unused]] int d, [[maybe_unused]] int k) const {
+  COLLIDE_HD_INLINE double flow([[maybe_unused]] int d, [[maybe_unused]] unsigned k) const {
     if constexpr (Flows) return flow_[d][k];
     return 0;
   }
-  COLLIDE_HD_NOINLINE vec3<S> alone(int k, resistance_in_step const& r) const {
+  COLLIDE_HD_NOINLINE vec3<S> alone(unsigned k, resistance_in_step const& r) const {
     return velocity_in(r, vec3<double>(flow(0, k), flow(1, k), flow(2, k)), of(before_, k), of(pushed_, k));
   }
-  static COLLIDE_HD_INLINE vec3<S> of(S const (&a)[3][N], int k) { return {a[0][k], a[1][k], a[2][k]}; }
+  static COLLIDE_HD_INLINE vec3<S> of(S const (&a)[3][N], unsigned k) { return {a[0][k], a[1][k], a[2][k]}; }
 
   S before_[3][N], pushed_[3][N], after_[3][N];
   double flow_[3][Flows ? N : 1], margin_[N];
@@ -258,7 +254,7 @@ class media {
     sum_.flow = m.flow;
     ++count_;
   }
-  /// How it flows; it is as strong as all are together.
+  /// The velocity of the one medium that resists as all of them do together.
   COLLIDE_HD_INLINE vec3<double> flow() const {
     if (count_ == 1) return sum_.flow;
     double const force = length_of(resisting_),
@@ -274,5 +270,3 @@ class media {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

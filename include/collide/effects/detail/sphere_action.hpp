@@ -14,7 +14,8 @@ struct meeting_sphere {
   P radius, density;
 };
 
-/// The action of another sphere on a sphere: a force, the torque of its tangential part for an arm of 1, and another torque.
+/// The action of another sphere on a sphere: a force, the torque of its tangential part for an arm of 1, and another
+/// torque.
 template <class P>
 struct sphere_action {
   vec3<P> force, twist, torque;

@@ -10,10 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <collide/io/detail/bytes.hpp>
+#include <collide/io/detail/text.hpp>
 
-namespace collide {
-namespace detail {
+namespace collide::detail {
 
 /// A glTF 2 file, in text (.gltf) or binary (.glb). Members throw an error that names it.
 class gltf_file {
@@ -158,5 +157,4 @@ class gltf_file {
   json file_;
 };
 
-}  // namespace detail
-}  // namespace collide
+}  // namespace collide::detail

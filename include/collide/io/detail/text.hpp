@@ -1,10 +1,13 @@
 /// \file
-/// The lines, words and numbers of a text.
+/// The bytes of a file, the numbers in them, and the lines, words and numbers of a text.
 #pragma once
 
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -12,8 +15,35 @@
 
 #include <collide/core/error.hpp>
 
-namespace collide {
-namespace detail {
+namespace collide::detail {
+
+/// All bytes of a file. Throws unless it can be read.
+inline std::string bytes_of_file(std::string const& path, std::string const& what) {
+  std::ifstream file(path, std::ios::binary);
+  std::string all;
+  char part[1 << 14];
+  while (file.read(part, sizeof part), file.gcount() > 0) all.append(part, static_cast<std::size_t>(file.gcount()));
+  if (!file.eof()) throw error(what + ": the file cannot be read");
+  return all;
+}
+
+/// The number of type T in the bytes from `at` on, all of which are there.
+template <class T>
+T number_in_bytes(std::string_view bytes, std::size_t at, bool big_endian) {
+  using bits_t = std::conditional_t<sizeof(T) <= 4, std::uint32_t, std::uint64_t>;
+  bits_t bits = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    bits = static_cast<bits_t>(bits << 8) |
+           static_cast<unsigned char>(bytes[big_endian ? at + i : at + sizeof(T) - 1 - i]);
+  }
+  if constexpr (std::is_integral<T>::value) {
+    return static_cast<T>(bits);
+  } else {
+    T value;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+  }
+}
 
 /// True if a name ends so, in whatever case; `ending` is in lower case.
 inline bool has_ending(std::string_view name, std::string_view ending) {
@@ -33,9 +63,12 @@ inline bool is_keyword(std::string_view word, std::string_view keyword) {
 /// A text, line by line. Words are what blanks are between. Errors name the file and the line.
 class text_lines {
  public:
-  /// \param comment  begins what is left out of a line; 0: nothing does
+  /// \param comment  begins what is left out of a line; 0: nothing does. A byte order mark of UTF-8 is left out, too
   text_lines(std::string_view text, std::string const& what, char comment = '\0')
-      : left_{text}, what_{what}, comment_{comment} {}
+      : left_{text}, what_{what}, comment_{comment} {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    if (left_.substr(0, mark.size()) == mark) left_.remove_prefix(mark.size());
+  }
 
   /// Goes on to the next line that has a word. False at the end of the text.
   bool next() {
@@ -121,5 +154,4 @@ class text_lines {
   char comment_;
 };
 
-}  // namespace detail
-}  // namespace collide
+}  // namespace collide::detail

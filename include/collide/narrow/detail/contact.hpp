@@ -64,6 +64,7 @@ COLLIDE_HD_INLINE contact<S> contact_at_point(contact_without_point const& m, ve
   if (!is_finite(point)) {  // the way there is longer than the largest number, or rounded up to more than that
     constexpr double most = std::numeric_limits<double>::max() / 4;
     point = scaled(centre, 0.25) + scaled(closest, div_rn(0.25, scale));
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) point[k] = mul_rn(4.0, min(max(point[k], -most), most));
   }
   return {no_id,

@@ -58,6 +58,7 @@ struct rounded_triangle {
   double length_squared[3];  ///< of the edges
 
   COLLIDE_HD_INLINE explicit rounded_triangle(long_triangle const& l) {
+    COLLIDE_UNROLL
     for (int i = 0; i < 3; ++i) {
       corner[i] = l.corner[i].rounded();
       edge[i] = l.edge[i].rounded();
@@ -78,6 +79,7 @@ COLLIDE_HD inline bool project_onto_face_compensated(long_triangle const& l, rou
   double const nn = dot(normal, normal), sine_squared = div_rn(nn, mul_rn(longest, longest));
   if (!(sine_squared > 0x1p-180)) return false;
   bool inside = true, outside = false;
+  COLLIDE_UNROLL
   for (int i = 0; i < 3; ++i) {
     double const side = dot(cross(r.corner[i], r.edge[i]), normal);
     bool const clear = mul_rn(side, side) > mul_rn(error_squared, mul_rn(r.length_squared[i], nn));
@@ -105,6 +107,7 @@ COLLIDE_HD inline void project_onto_boundary_compensated(long_triangle const& l,
   // guard: compensated-nearest
   constexpr double none = std::numeric_limits<double>::max(), error = 0x1p-43, error_squared = 0x1p-96;
   double square[6], least = none;
+  COLLIDE_UNROLL
   for (int i = 0; i < 3; ++i) {
     vec3<double> const& v = r.corner[i];
     square[i] = dot(v, v);

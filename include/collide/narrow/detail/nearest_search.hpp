@@ -7,8 +7,8 @@
 
 #include <collide/core/nearest_triangle.hpp>
 #include <collide/core/precision.hpp>
-#include <collide/narrow/detail/compare_distances.hpp>
 #include <collide/narrow/detail/contact_in_precision.hpp>
+#include <collide/narrow/detail/distance_bounds.hpp>
 #include <collide/narrow/detail/intersects.hpp>
 #include <collide/narrow/detail/measure_nearest.hpp>
 
@@ -33,8 +33,8 @@ COLLIDE_HD nearest_triangle<S> no_nearest_triangle() {
 /// A search that is exact: which triangle is nearest, whether it is within reach, and the feature; the distance is
 /// within one unit in the last place.
 ///
-/// Of the nearest triangle so far bounds of its distance are kept. What they leave open, two features that are one
-/// settle first, where triangles share a corner or an edge, and then integers.
+/// Bounds of the distance of the nearest triangle so far are kept. Where they leave a comparison open, it is first
+/// asked whether both closest features are one, where triangles share a corner or an edge; then integers decide.
 template <class S>
 class exact_nearest_search {
  public:
@@ -191,8 +191,7 @@ class plain_nearest_search {
 ///
 ///     nearest_search(point, max_distance)    triangles count up to that distance, inclusive; none if it is below 0
 ///     consider(corners, number)              looks at a triangle, which may come again; one that is not finite is
-///     never
-///                                            nearest
+///                                            never nearest
 ///     squared_bound()                        a box whose squared distance, rounded down, is above this holds no nearer
 ///                                            triangle; below 0 if no triangle counts
 ///     result()                               the nearest triangle, of equally near ones the one of the lowest number

@@ -28,6 +28,7 @@ struct candidate_batch {
   void add(pair p, triangle<S> const& t, sphere<S> const& s) {
     int const k = size++;
     ids[k] = p;
+    COLLIDE_UNROLL
     for (int c = 0; c < 3; ++c) {
       corners[c][k] = t.a[c];
       corners[3 + c][k] = t.b[c];

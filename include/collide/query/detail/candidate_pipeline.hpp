@@ -14,7 +14,7 @@
 
 namespace collide::detail {
 
-/// True for handles that want to know when all hits of a pass are stored; see concepts.hpp.
+/// True for outputs that want to know when all hits of a pass are stored; see concepts.hpp.
 template <class Output, class = void>
 struct has_end_pass : std::false_type {};
 template <class Output>
@@ -25,7 +25,7 @@ COLLIDE_HD_INLINE void end_pass([[maybe_unused]] Output const& output) {
   if constexpr (has_end_pass<Output>::value) output.end_pass();
 }
 
-/// False if the handle has no use for `end_pass` in this pass, though its type has one.
+/// False if the output has no use for `end_pass` in this pass, though its type has one.
 template <class Output>
 bool wants_end_pass(Output const&) {
   return has_end_pass<Output>::value;
@@ -119,8 +119,8 @@ struct pipeline_storage {
   std::uint64_t slot;  ///< the sink's, of the first hit
 };
 
-/// Decides candidates with the narrow phase, and writes the hits to `output`: the handle of a sink, or that of a pass
-/// which puts off what the narrow phase's filter leaves open.
+/// Decides candidates with the narrow phase, and writes the hits to `output`: that of a sink, or that of a pass which
+/// lists the pairs that the narrow phase's filter leaves open.
 template <class S, class NarrowPhase, class Output>
 struct candidate_pipeline {
   using narrow_phase = NarrowPhase;

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include <collide/core/memory.hpp>
-#include <collide/detectors/detail/numbered_triangle.hpp>
 #include <collide/mesh.hpp>
-#include <collide/ranks/detail/exchange_buffer.hpp>
+#include <collide/ranks/detail/device_exchange_buffer.hpp>
 #include <collide/ranks/detail/rank_map.hpp>
+#include <collide/sinks/detail/search_mesh.hpp>
 #include <collide/spaces/detail/host_array.hpp>
 
 namespace collide::detail {

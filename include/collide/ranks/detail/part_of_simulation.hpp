@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <collide/ranks/detail/contact_rows.hpp>
 #include <collide/ranks/detail/device_exchange_buffer.hpp>
 #include <collide/ranks/detail/divided_mesh.hpp>
 #include <collide/ranks/detail/particle_places.hpp>

@@ -11,13 +11,6 @@
 
 namespace collide::detail {
 
-/// A triangle that is nearest among those of a rank, as it is sent back.
-template <class S>
-struct nearest_answer {
-  id triangle;  ///< among those of all ranks; `no_id` if there is none
-  S corners[9];
-};
-
 /// Kernel functor of `for_each` over spheres: how far from the centre a triangle may be that is as near as the nearest
 /// so far, rounded up; below 0 if none may be.
 template <class S>
@@ -42,24 +35,21 @@ struct find_reaches {
   }
 };
 
-/// Kernel functor of `for_each` over spheres that were received: what goes back.
+/// Kernel functor of `for_each` over spheres that were received: the nearest triangle of this rank, which goes back;
+/// its number is `no_id` if there is none.
 template <class S>
 struct pack_nearest {
   mesh_view<S> mesh;
   id const* numbers;
   nearest_triangle<S> const* found;
-  nearest_answer<S>* to;
+  numbered_triangle<S>* to;
 
   COLLIDE_HD void operator()(std::size_t i) const {
     id const t = found[i].triangle;
-    to[i] = {no_id, {}};
-    if (t == no_id) return;
-    to[i].triangle = numbers[t];
-    triangle<S> const shape = mesh[t];
-    for (int k = 0; k < 3; ++k) {
-      to[i].corners[k] = shape.a[k];
-      to[i].corners[3 + k] = shape.b[k];
-      to[i].corners[6 + k] = shape.c[k];
+    if (t == no_id) {
+      to[i] = {no_id, {}};
+    } else {
+      to[i] = numbered_triangle<S>::of(numbers[t], mesh[t]);
     }
   }
 };
@@ -67,20 +57,18 @@ struct pack_nearest {
 /// Kernel functor of `for_each` over what has come back of some routes. `SoFar` is a `nearest_so_far`.
 template <class S, class SoFar>
 struct take_nearest {
-  nearest_answer<S> const* answers;
+  numbered_triangle<S> const* answers;
   pair const* routes;
   SoFar so_far;
 
   COLLIDE_HD void operator()(std::size_t i) const {
-    if (answers[i].triangle == no_id) return;
-    S const* const c = answers[i].corners;
-    so_far.consider(routes[i].triangle, {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}},
-                    answers[i].triangle);
+    if (answers[i].number == no_id) return;
+    so_far.consider(routes[i].triangle, answers[i].shape(), answers[i].number);
   }
 };
 
-/// Finds them. A rank searches its own triangles first. Spheres go to those others that may have a triangle as near,
-/// and the nearest of each comes back; about `chunk` spheres of a rank at a time.
+/// The search for these triangles. A rank searches its own first. Spheres go to those others that may have a triangle
+/// as near, and the nearest of each comes back; about `chunk` spheres of a rank at a time.
 template <class Detector>
 class remote_nearest {
   using S = typename Detector::scalar;
@@ -102,15 +90,13 @@ class remote_nearest {
       search_part<F> own{f};
       own.f.to = found_.reserve(space.resource(), n);
       detector.query(spheres, own);
-      space.for_each(n, typename F::join{so_far, {mesh.view(), 0, mesh.numbers()}, own.f.to, true});
+      space.for_each(n, typename F::join{so_far, {mesh.view(), {0, mesh.numbers()}}, own.f.to, true});
       S* const reaches = reaches_.reserve(space.resource(), n);
       space.for_each(n, find_reaches<S>{f.max_distance, spheres, f.to, reaches});
       wanted = view(spheres.centres(), reaches, 1, S(0));
       sends_.find(space, mesh.lookup(), wanted, ranks.rank(), ranks.size());
     });
-    std::uint64_t const mine = (sends_.size() + chunk - 1) / chunk;
-    std::uint64_t rounds = 0;
-    ranks.reduce(&mine, &rounds, 1, reduction::max);
+    std::uint64_t const rounds = sends_.rounds(ranks, chunk);
     for (std::uint64_t round = 0; round < rounds; ++round) {
       together(ranks, [&] { pack_round(ranks.size(), space, wanted, sends_, round, rounds, sent_); });
       deliver(ranks, space, sent_, received_);
@@ -127,7 +113,7 @@ class remote_nearest {
     space_type& space = detector.space();
     std::size_t const n = received_.size();
     answers_.counts = received_.counts;
-    nearest_answer<S>* const to = answers_.resize(space);
+    numbered_triangle<S>* const to = answers_.resize(space);
     if (n == 0) return;
     S const* const at = received_.data()->numbers;
     search_part<F> here{f};
@@ -139,7 +125,7 @@ class remote_nearest {
 
   template <class SoFar>
   void take(space_type const& space, std::uint64_t round, std::uint64_t rounds, SoFar const& so_far) {
-    nearest_answer<S> const* from = answered_.data();
+    numbered_triangle<S> const* from = answered_.data();
     for (std::size_t r = 0; r < answered_.counts.size(); ++r) {
       auto const n = static_cast<std::size_t>(answered_.counts[r]);
       space.for_each(n, take_nearest<S, SoFar>{from, sends_.of(r, round, rounds).first, so_far});
@@ -149,7 +135,7 @@ class remote_nearest {
 
   sphere_send_plan sends_;
   device_exchange_buffer<sent> sent_, received_;
-  device_exchange_buffer<nearest_answer<S>> answers_, answered_;
+  device_exchange_buffer<numbered_triangle<S>> answers_, answered_;
   buffer<nearest_triangle<S>> found_;
   buffer<triangle<S>> corners_;
   buffer<S> reaches_;

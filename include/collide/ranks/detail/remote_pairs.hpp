@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <collide/detector.hpp>
-#include <collide/detectors/detail/pair_list.hpp>
+#include <collide/detectors/detail/found_query.hpp>
 #include <collide/ranks/detail/device_exchange_buffer.hpp>
 #include <collide/ranks/detail/divided_mesh.hpp>
 #include <collide/ranks/detail/sphere_send_plan.hpp>
@@ -55,16 +55,6 @@ void pack_round(int ranks, Space const& space, Spheres const& spheres, sphere_se
   }
 }
 
-/// Kernel functor of `for_each` over pairs of spheres that were received from a rank, and triangles of this one: as
-/// they are sent back, with the sphere's place in the message and the triangle's number among those of all ranks.
-struct pack_answers {
-  pair const* hits;
-  id first;  ///< the sphere that the message begins with
-  id const* numbers;
-  pair* to;
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = {hits[i].sphere - first, numbers[hits[i].triangle]}; }
-};
-
 /// Kernel functor of `for_each` over what has come back of some routes: pairs of this rank's spheres.
 struct unpack_answers {
   pair const* answers;
@@ -73,9 +63,9 @@ struct unpack_answers {
   COLLIDE_HD void operator()(std::size_t i) const { to[i] = {routes[answers[i].sphere].triangle, answers[i].triangle}; }
 };
 
-/// Finds them. A rank queries its own triangles with its spheres where they are. Those that others may have triangles
-/// for are sent, and pairs come back. So many go at a time that no rank needs more memory than for about a `chunk` from
-/// each. Everything is in memory of the space, but for the triangles that come back.
+/// The search for these pairs. A rank queries its own triangles with its spheres where they are. Spheres near triangles
+/// of other ranks are sent there, and pairs come back. So many go at a time that no rank needs more memory than for
+/// about a `chunk` from each. Everything is in memory of the space, but for the triangles that come back.
 template <class Detector>
 class remote_pairs {
   using S = typename Detector::scalar;
@@ -96,9 +86,7 @@ class remote_pairs {
       sends_.find(space, mesh.lookup(), spheres, ranks.rank(), ranks.size());
       query_own(detector, mesh, spheres);
     });
-    std::uint64_t const mine = (sends_.size() + chunk - 1) / chunk;
-    std::uint64_t rounds = 0;
-    ranks.reduce(&mine, &rounds, 1, reduction::max);
+    std::uint64_t const rounds = sends_.rounds(ranks, chunk);
     for (std::uint64_t round = 0; round < rounds; ++round) {
       together(ranks, [&] { pack_round(ranks.size(), space, spheres, sends_, round, rounds, sent_); });
       deliver(ranks, space, sent_, received_);
@@ -127,7 +115,7 @@ class remote_pairs {
     detector.query(spheres, hits_);
     found_.clear();
     pair* const to = found_.append(space, hits_.size());
-    space.for_each(hits_.size(), pack_answers{hits_.data(), 0, mesh.numbers(), to});
+    space.for_each(hits_.size(), renumber_pairs{hits_.data(), {0, nullptr}, {0, mesh.numbers()}, to});
   }
 
   /// Finds the pairs of what was received, and which of them are of which rank.
@@ -154,9 +142,9 @@ class remote_pairs {
     for (std::size_t r = 0; r < ranks; ++r) answers_.counts[r] = ends_[r + 1] - ends_[r];
     pair* const to = answers_.resize(space);
     for (std::size_t r = 0; r < ranks; ++r) {
-      space.for_each(
-          static_cast<std::size_t>(answers_.counts[r]),
-          pack_answers{received_hits_.data() + ends_[r], static_cast<id>(starts_[r]), mesh.numbers(), to + ends_[r]});
+      numbering const in_message{0 - static_cast<id>(starts_[r]), nullptr};  // from 0 on, modulo 2^32
+      space.for_each(static_cast<std::size_t>(answers_.counts[r]),
+                     renumber_pairs{received_hits_.data() + ends_[r], in_message, {0, mesh.numbers()}, to + ends_[r]});
     }
   }
 

@@ -14,7 +14,8 @@
 
 namespace collide::detail {
 
-/// One pass over things, as a `pair_collector` sees a query. Its spheres are ranks, and its triangles things.
+/// One pass over the items of a rank, as a `pair_collector` sees a query: in place of spheres it has ranks, in place of
+/// triangles items.
 template <class Space, class Find>
 struct send_query {
   struct count {
@@ -71,12 +72,12 @@ class pair_bounds {
   buffer<std::uint64_t> numbers_, bounds_;
 };
 
-/// Pairs of a rank and the number of a thing that goes there, in canonical order, in memory of a space. 8 bytes for
-/// each, and in the space of a device twice that for the sort.
+/// Routes: pairs of a rank and the number of an item that goes there, in canonical order, in memory of a space. 8 bytes
+/// for each, and in the space of a device twice that for the sort.
 class send_plan {
  public:
-  /// Finds those of so many things. `find` is a kernel functor of `for_each`, which is called so often:
-  /// `add_send(to, rank, thing)`, with its member `to`, lists one.
+  /// Finds the routes of `things` items. `find` is a kernel functor of `for_each`, which is called `calls` times:
+  /// `add_send(to, rank, item)`, with its member `to`, lists a route.
   template <class Space, class Find>
   void find(Space& space, Find const& find, std::size_t calls, std::size_t things, int ranks) {
     ends_.resize(static_cast<std::size_t>(ranks) + 1);
@@ -89,9 +90,9 @@ class send_plan {
 
   std::size_t size() const { return list_.size(); }
   pair const* data() const { return list_.data(); }
-  /// How many go to a rank.
+  /// How many items go to a rank.
   std::uint64_t count(std::size_t rank) const { return ends_[rank + 1] - ends_[rank]; }
-  /// How many go to each.
+  /// How many items go to each rank.
   std::vector<std::uint64_t> counts() const {
     std::vector<std::uint64_t> all;
     for (std::size_t r = 0; r + 1 < ends_.size(); ++r) all.push_back(count(r));

@@ -11,7 +11,7 @@
 #include <collide/core/memory.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
 #if defined(__CUDACC__)
-#include <collide/sinks/detail/sort_pairs_cuda.cuh>
+#include <collide/spaces/detail/sort_cuda.cuh>
 #endif
 
 namespace collide::detail {

@@ -6,15 +6,11 @@
 
 #include <collide/spaces/detail/atomic.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Adds 1 to up to `N` counters a thread, which are known by their numbers. Threads of a warp that meet at a counter,
 /// as those of neighbouring triangles do in a cell, add together: a counter takes its time for each that asks it.
-template <int N>
+template <unsigned N>
 class aggregated_count {
  public:
   /// The counters `number_of(k)` whose bit k in the mask is set.
@@ -74,5 +70,3 @@ class aggregated_count {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -8,9 +8,17 @@
 #include <numeric>
 
 #include <collide/core/config.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 
 namespace collide::detail {
+
+/// Kernel functor of `for_each` over values.
+template <class T>
+struct copy_values {
+  T const* from;
+  T* to;
+  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
+};
 
 /// Kernel functor: calls f(i) for all i < n if *condition is not 0, each thread for several i.
 template <class F>

@@ -12,10 +12,9 @@
 ///     read and write what lies side by side together, so all of these rows must exist; what a thread has read is its
 ///     own row after the exchange, and not before;
 ///   - `block.for_each_balanced<ItemsPerThread>(...)` spreads work evenly over the threads. For all k < counts[i],
-///   where
-///     counts are at least 1: x = load(item(i), k), and if filter(item(i), x), then consume(item(i), x). `load` and
-///     `filter` only read, and a thread calls them for up to `ItemsPerThread` work items before it consumes, so that
-///     the loads overlap if they do not branch. After each round the whole block calls `end_round(is_last)`;
+///     where counts are at least 1: x = load(item(i), k), and if filter(item(i), x), then consume(item(i), x). `load`
+///     and `filter` only read, and a thread calls them for up to `ItemsPerThread` work items before it consumes, so
+///     that the loads overlap if they do not branch. After each round the whole block calls `end_round(is_last)`;
 ///   - `block.scan(...)` makes of at most as many values as threads the sums of those before each;
 ///   - `block.reduce(...)` combines a value per thread.
 /// `scratch` is the kernel's scratch memory of the block (shared memory on CUDA); it is not initialised.
@@ -28,11 +27,15 @@
 
 #include <collide/core/config.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
+
+/// Number of blocks that cover `n` items of a kernel functor on the space.
+template <class Space, class Kernel>
+std::size_t grid_size(std::size_t n, Kernel const&) {
+  using block = typename Space::template block<Kernel>;
+  constexpr std::size_t per_block = static_cast<std::size_t>(block::num_threads) * block::items;
+  return (n + per_block - 1) / per_block;
+}
 
 /// A block of one thread with `Items` items; `HitCapacity` hits are gathered before they go to the sink.
 template <int Items, int HitCapacity>
@@ -45,9 +48,9 @@ class serial_block {
     T value;
     COLLIDE_HD_INLINE T& operator[](int) { return value; }
   };
-  template <class T, int N>
+  template <class T, unsigned N>
   struct staging {};
-  template <class T, int N>
+  template <class T, unsigned N>
   struct warp_exchange_storage {};
   struct scan_storage {};
   struct balance_storage {};
@@ -74,22 +77,22 @@ class serial_block {
     return before;
   }
 
-  template <class T, int N>
+  template <class T, unsigned N>
   COLLIDE_HD_INLINE T const* stage(staging<T, N>&, T const* from, int) {
     return from;
   }
 
-  template <class T, int N>
+  template <class T, unsigned N>
   COLLIDE_HD_INLINE void load_striped(T const* from, std::uint32_t row, T (&to)[N]) {
-    for (int k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
+    for (unsigned k = 0; k < N; ++k) to[k] = from[std::size_t{row} * N + static_cast<std::size_t>(k)];
   }
 
-  template <class Scratch, class T, int N>
+  template <class Scratch, class T, unsigned N>
   COLLIDE_HD_INLINE void striped_to_blocked(Scratch&, T (&)[N]) {}
 
-  template <class Scratch, class T, int N>
+  template <class Scratch, class T, unsigned N>
   COLLIDE_HD_INLINE void store_transposed(Scratch&, T* to, std::uint32_t row, T const (&from)[N]) {
-    for (int k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
+    for (unsigned k = 0; k < N; ++k) to[std::size_t{row} * N + static_cast<std::size_t>(k)] = from[k];
   }
 
   COLLIDE_HD_INLINE std::uint32_t scan(scan_storage&, std::uint32_t* values, std::uint32_t) {
@@ -122,5 +125,3 @@ class serial_block {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

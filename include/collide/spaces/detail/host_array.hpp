@@ -32,7 +32,7 @@ T* make_room(buffer<T>& memory, std::pmr::memory_resource* resource, std::size_t
 template <class T>
 class host_array {
  public:
-  /// So many values, whatever they are.
+  /// Sets the size; the values are unspecified.
   template <class Space>
   void resize(Space const& space, std::size_t n) {
     make_room(memory_, host_memory_of(space), n);

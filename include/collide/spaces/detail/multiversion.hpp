@@ -9,7 +9,7 @@ namespace collide::detail {
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__) && !defined(__CUDA_ARCH__)
 
 template <class F>
-__attribute__((target("avx2"), flatten)) void run_with_avx2(F const& f) {
+COLLIDE_AS_O3 __attribute__((target("avx2"), flatten, noinline)) void run_with_avx2(F const& f) {
   f();
 }
 

@@ -1,6 +1,6 @@
 /// \file
-/// Kernel kernels that sort spheres into the cells of grids, for the CPU: those near triangles are listed, counted by
-/// cells, numbered and copied in the order of the cells.
+/// Kernels that sort spheres into the cells of grids, on the CPU: spheres near triangles are listed, counted by cells,
+/// numbered and copied in the order of the cells.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,6 @@
 #include <collide/exact/detail/geometry/sphere_pack.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
-
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
 
 namespace collide::detail {
 
@@ -45,17 +41,17 @@ struct swept_bounding_spheres {
 };
 
 /// The centres and radii of consecutive spheres.
-template <class S, int Items>
+template <class S, unsigned Items>
 void load(sphere_pack<S, Items>& batch, sphere_view<S> const& spheres, std::size_t first) {
   batch.load(spheres, first);
 }
 
 /// The bounding spheres of consecutive moving spheres. A centre that is not finite is in no cell.
-template <class S, int Items>
+template <class S, unsigned Items>
 void load(sphere_pack<S, Items>& batch, swept_bounding_spheres<S> const& bounds, std::size_t first) {
   moving_pack<S, Items> ways;
   ways.load(bounds.spheres, first);
-  for (int k = 0; k < Items; ++k) {
+  for (unsigned k = 0; k < Items; ++k) {
     batch.x[k] = ways.x[k] + S(0.5) * ways.dx[k];
     batch.y[k] = ways.y[k] + S(0.5) * ways.dy[k];
     batch.z[k] = ways.z[k] + S(0.5) * ways.dz[k];
@@ -105,7 +101,7 @@ struct place_spheres {
  private:
   template <class Block>
   void place(Block& block, scratch<Block>& s) const {
-    constexpr int n = Block::items;
+    constexpr unsigned n = Block::items;
     std::size_t const begin = block.index() * stride * batches * n;
     bool const one_radius = spheres.one_radius();
     s.count = 0;
@@ -119,7 +115,7 @@ struct place_spheres {
       };
       // where all radii are equal, one comparison stands for all
       auto const of_radii = [&](auto const& holds) {
-        if (!one_radius) return mask_of<n>([&](int k) { return holds(batch.radius[k]); });
+        if (!one_radius) return mask_of<n>([&](unsigned k) { return holds(batch.radius[k]); });
         return holds(spheres.common_radius()) ? first_bits(spheres.size() - first) : 0;
       };
       std::uint64_t open = of_radii([](S r) { return is_valid_radius(r); });
@@ -127,7 +123,7 @@ struct place_spheres {
         grid<S> const& box = grids[g];
         std::uint64_t const served = open & of_radii([&](S r) { return box.serves(r); });
         std::uint64_t const inside =
-            served & mask_of<n>([&](int k) { return box.contains(batch.x[k], batch.y[k], batch.z[k]); });
+            served & mask_of<n>([&](unsigned k) { return box.contains(batch.x[k], batch.y[k], batch.z[k]); });
         open &= ~served;
         for (int l = 0; l < box.levels && inside != 0; ++l) {
           make_room(s);
@@ -146,10 +142,10 @@ struct place_spheres {
 
   static std::uint64_t first_bits(std::size_t n) { return n < 64 ? (std::uint64_t{1} << n) - 1 : ~std::uint64_t{0}; }
 
-  template <int n, class Holds>
+  template <unsigned n, class Holds>
   static std::uint64_t mask_of(Holds const& holds) {
     unsigned char flags[n];
-    for (int k = 0; k < n; ++k) flags[k] = static_cast<unsigned char>(holds(k));
+    for (unsigned k = 0; k < n; ++k) flags[k] = static_cast<unsigned char>(holds(k));
     return bits_of_flags<n>(flags);
   }
 
@@ -284,6 +280,52 @@ struct scatter_spheres {
   }
 };
 
-}  // namespace collide::detail
+/// Kernel functor of `for_each` over groups of triangles: sets a bit for every cell that a triangle looks into, and
+/// perhaps for some more.
+template <class S>
+struct mark_occupied_cells {
+  grouped_mesh<S> mesh;
+  triangle_aabb<S> const* groups;
+  grid<S> const* grids;
+  int grid_count;
+  std::uint32_t* occupied;
 
-#pragma GCC diagnostic pop
+  void operator()(std::size_t i) const {
+    if (groups[i].is_empty()) return;
+    std::uint32_t each = 0;  // bits of grids for which a triangle is not small
+    for (int g = 0; g < grid_count; ++g) {
+      if (!is_small(groups[i], grids[g])) {
+        each |= 1u << g;
+        continue;
+      }
+      each_range_of_group(grids[g], groups[i], [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
+    }
+    if (each != 0) mark_each(i, each);
+  }
+
+ private:
+  void mark_each(std::size_t i, std::uint32_t some) const {
+    triangle_group<S> group;
+    multiversioned([&] { mesh.load(group, i); });
+    for (int g = 0; g < grid_count; ++g) {
+      if ((some >> g & 1) == 0) continue;
+      for (std::uint32_t k = 0; k < triangle_group<S>::size; ++k) {
+        if (!group.has(k)) continue;
+        each_range(
+            grids[g], group.box(k), [&] { return group[k]; },
+            [&](std::uint32_t cell, std::uint32_t count) { mark(cell, count); });
+      }
+    }
+  }
+
+  void mark(std::uint32_t first, std::uint32_t n) const {
+    for (std::uint32_t const end = first + n; first < end;) {
+      std::uint32_t const next = min((first / 32 + 1) * 32, end);
+      std::uint32_t const bits = 0xffffffffu >> (32 - (next - first)) << first % 32;
+      if ((load_relaxed(occupied + first / 32) & bits) != bits) fetch_or(occupied + first / 32, bits);
+      first = next;
+    }
+  }
+};
+
+}  // namespace collide::detail

@@ -12,10 +12,6 @@
 #include <collide/exact/detail/geometry/sphere_pack.hpp>
 #include <collide/narrow/detail/traits.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Gathers the spheres that may be near a triangle, and which grid serves each, in scratch memory.
@@ -107,7 +103,7 @@ struct compact_spheres {
   template <class Block, class OnePack>
   COLLIDE_HD_INLINE void compact_ahead(Block& block, scratch<Block>& s, std::size_t& next, S const* aligned,
                                        OnePack const& one_pack) const {
-    constexpr int n = Block::items;
+    constexpr unsigned n = Block::items;
     pack<Block> own;
     auto const load_ahead = [&](std::size_t first) { own.load_xyz4(aligned, first + n <= spheres.size() ? first : 0); };
     load_ahead(next);
@@ -118,35 +114,35 @@ struct compact_spheres {
       bool near[n];
       occupancy.test_occupied(places, near);
       std::int8_t grid_of[n];
-      for (int k = 0; k < n; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_candidates;
+      for (unsigned k = 0; k < n; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_candidates;
       return append(block, s, grid_of, first);
     });
   }
 
   /// The grids of a pack's spheres, if they may be near a triangle.
-  template <class Pack, int N>
+  template <class Pack, unsigned N>
   COLLIDE_HD_INLINE void locate(Pack const& own, std::size_t first, std::int8_t (&grid_of)[N]) const {
     bool near[N];
     if (has_one_level && first + N <= spheres.size() && occupancy.test_occupied(own, near)) {
-      for (int k = 0; k < N; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_candidates;
+      for (unsigned k = 0; k < N; ++k) grid_of[k] = near[k] ? std::int8_t{0} : no_candidates;
       return;
     }
     grids.locate(own, grid_of);
   }
 
   /// Appends those of a pack's spheres that may be near a triangle; returns how many.
-  template <class Block, int N>
+  template <class Block, unsigned N>
   COLLIDE_HD_INLINE std::uint32_t append(Block& block, scratch<Block>& s, std::int8_t const (&grid_of)[N],
                                          std::size_t first) const {
     std::uint32_t active = 0, ungridded = 0;
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       active += grid_of[k] != no_candidates;
       ungridded += grid_of[k] == no_grid;
     }
     if (active == 0) return 0;
     if (ungridded != 0) block.add(s.found.ungridded, ungridded);
     std::uint32_t slot = block.add(s.found.active, active);
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       if (grid_of[k] == no_candidates) continue;
       s.active[slot] = static_cast<id>(first) + static_cast<id>(k);
       s.grid_of[slot++] = grid_of[k];
@@ -156,5 +152,3 @@ struct compact_spheres {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -1,6 +1,5 @@
 /// \file
-/// Kernel kernels of one pass over a mesh or over radii, for the CPU: eight at a time, and histograms that are kept
-/// close.
+/// Kernels of one pass over a mesh or over radii, on the CPU: eight at a time, with histograms that stay in cache.
 #pragma once
 
 #include <cmath>
@@ -13,7 +12,7 @@
 #include <collide/broad/detail/grid/mesh_statistics.hpp>
 #include <collide/core/memory.hpp>
 #include <collide/mesh.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 #include <collide/spaces/detail/tuning.hpp>
 #include <collide/spheres.hpp>

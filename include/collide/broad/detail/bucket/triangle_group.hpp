@@ -11,10 +11,6 @@
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/mesh.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Eight triangles that follow each other in a mesh, their boxes, number by number in arrays of their own, and the box
@@ -93,6 +89,7 @@ struct triangle_group {
   /// True if all of the triangles are inside the sphere, whatever is rounded. May be false all the same.
   bool is_inside(sphere<S> const& shape) const {
     S sum = 0;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       S const far = max(shape.centre[k] - all.lower[k], all.upper[k] - shape.centre[k]);
       sum += far * far;
@@ -108,6 +105,7 @@ struct triangle_group {
   bool pays(grid<S> const& g) const {
     if (g.levels != 1) return false;
     S looked_at = 1, near_all = 1;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       S const near = all.upper[k] - all.lower[k] + 2 * g.dilation;
       looked_at *= near + g.width;
@@ -118,6 +116,7 @@ struct triangle_group {
     for (std::uint32_t i = 0; i < size; ++i) {
       if (!has(i)) continue;
       S one = 1;
+      COLLIDE_UNROLL
       for (int k = 0; k < 3; ++k) one *= upper[k][i] - lower[k][i] + 2 * g.dilation + g.width;
       each += one;
     }
@@ -178,10 +177,9 @@ void each_range_of_group(grid<S> const& g, aabb<S> const& group, F const& f) {
   grid_level<S> const& l = g.level[0];
   cell_box const r = g.range_of(l, group);
   bool turns = false;
+  COLLIDE_UNROLL
   for (int k = 0; k < 3; ++k) turns = turns || r.upper[k] - r.lower[k] > l.mask[k];
   each_range_of_box(l, turns ? triangle_cells<S>(g, l, group).range() : r, f);
 }
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

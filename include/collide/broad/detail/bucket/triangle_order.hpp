@@ -13,10 +13,6 @@
 #include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// A triangle, and where it is on a curve through space.
@@ -160,7 +156,8 @@ struct grouped_mesh {
 template <class S>
 class group_triangles {
  public:
-  /// Finds them. O(triangles); memory only if the triangles of the mesh have no such order: about 35 bytes for each.
+  /// Finds the order. O(triangles); memory only if the triangles of the mesh have no such order: about 35 bytes for
+  /// each.
   template <class Space>
   grouped_mesh<S> operator()(Space& space, mesh_view<S> const& mesh) {
     std::size_t const n = mesh.size();
@@ -224,5 +221,3 @@ class group_triangles {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

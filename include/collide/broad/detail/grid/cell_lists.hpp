@@ -15,11 +15,7 @@
 #include <collide/mesh.hpp>
 #include <collide/spaces/detail/aggregated_count.hpp>
 #include <collide/spaces/detail/atomic.hpp>
-#include <collide/spaces/detail/launch.hpp>
-
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
+#include <collide/spaces/detail/block.hpp>
 
 namespace collide::detail {
 
@@ -28,7 +24,7 @@ struct count_entries {
   item_range* cells;
 
   /// Counts the cells whose bit is set.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE void operator()(cell_ref const (&some)[N], std::uint32_t mask, id) const {
     aggregated_count<N> counters;
     counters.match([&](std::uint32_t k) { return some[k].number; }, mask);
@@ -43,7 +39,7 @@ struct fill_entries {
   std::size_t capacity;
 
   /// First all counters are asked, then all entries written: so their answers come together.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE void operator()(cell_ref const (&some)[N], std::uint32_t mask, id triangle) const {
     aggregated_count<N> counters;
     counters.match([&](std::uint32_t k) { return some[k].number; }, mask);
@@ -308,5 +304,3 @@ class cell_lists {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

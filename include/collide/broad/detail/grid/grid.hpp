@@ -11,8 +11,7 @@
 ///   - Two levels, where that costs less: triangles much larger than the rest go to wider cells; a sphere looks into
 ///     one cell per level.
 ///   - Wrapping. A level has a fixed number of cells; where the scene has more, cell coordinates wrap around (modulo a
-///   power
-///     of two). Triangles from far away then share a cell: more candidates, no wrong answer.
+///     power of two). Triangles from far away then share a cell: more candidates, no wrong answer.
 ///   - Several grids, where radii differ much: each serves the spheres of one range of radii.
 ///
 /// An entry is the number of a triangle. Beside it is which part of the cell the triangle's box covers, to a fifteenth
@@ -31,10 +30,6 @@
 #include <collide/broad/detail/grid/cell_coverage.hpp>
 #include <collide/broad/detail/grid/size_histogram.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
-
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
 
 namespace collide::detail {
 
@@ -77,6 +72,7 @@ struct grid_level {
   /// The cell that holds a point inside the grid, whose lower end this is, and the place of the point in it.
   COLLIDE_HD_INLINE cell_ref cell_at(vec3<S> const& p, S const (&lower)[3]) const {
     std::uint32_t cell[3], place = 0;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       std::uint32_t step;
       cell[k] = coordinate(p[k] - lower[k], step);
@@ -132,6 +128,7 @@ struct grid_header {
   COLLIDE_HD_INLINE cell_box cells_of(grid_level<S> const& l, aabb<S> const& b, std::uint32_t (&from)[3],
                                       std::uint32_t (&to)[3]) const {
     cell_box r;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       r.lower[k] = l.coordinate(b.lower[k] - dilation - lower[k], from[k]);
       r.upper[k] = l.coordinate(b.upper[k] + dilation - lower[k], to[k]);
@@ -160,6 +157,7 @@ struct grid : grid_header<S> {
   /// The cells that a triangle's dilated box touches.
   COLLIDE_HD_INLINE cell_box range_of(grid_level<S> const& l, aabb<S> const& b) const {
     cell_box r;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       r.lower[k] = coordinate(l, b.lower[k] - dilation, k);
       r.upper[k] = coordinate(l, b.upper[k] + dilation, k);
@@ -180,5 +178,3 @@ struct alignas(8) item_range {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -10,10 +10,6 @@
 #include <collide/broad/detail/grid/swept_cells.hpp>
 #include <collide/broad/detail/mesh_lookup.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// The lookup of `bucket`: the grids, as bucket.cuh has them.
@@ -39,10 +35,10 @@ struct bucket_ref : mesh_lookup<S> {
 
   /// Which grid serves each of the spheres of a pack, if there may be triangles near it; `no_candidates` if not,
   /// `no_grid` if no grid serves it.
-  template <class Pack, int N>
+  template <class Pack, unsigned N>
   COLLIDE_HD_INLINE void locate(Pack const& pack, std::int8_t (&number)[N]) const {
     select_grids(pack, number);
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       if (number[k] >= 0 && has_no_candidates_in(grids[number[k]], pack.shape(k))) number[k] = no_candidates;
     }
   }
@@ -99,16 +95,16 @@ struct bucket_ref : mesh_lookup<S> {
   template <class Sphere>
   struct pack_of_one {
     Sphere const& only;
-    COLLIDE_HD_INLINE Sphere const& shape(int) const { return only; }
+    COLLIDE_HD_INLINE Sphere const& shape(unsigned) const { return only; }
   };
 
   /// The tightest grid that serves each sphere; grids come by falling reach.
-  template <class Pack, int N>
+  template <class Pack, unsigned N>
   COLLIDE_HD_INLINE void select_grids(Pack const& pack, std::int8_t (&number)[N]) const {
-    for (int k = 0; k < N; ++k) number[k] = is_sound(pack.shape(k)) ? no_grid : no_candidates;
+    for (unsigned k = 0; k < N; ++k) number[k] = is_sound(pack.shape(k)) ? no_grid : no_candidates;
     COLLIDE_NO_UNROLL
     for (int g = 0; g < grid_count; ++g) {
-      for (int k = 0; k < N; ++k) {
+      for (unsigned k = 0; k < N; ++k) {
         // a sphere without candidates stays so: its radius may be NaN, and -ffast-math may compare that either way
         bool const served = (number[k] != no_candidates) & serves(grids[g], pack.shape(k));
         std::int8_t const there = meets(grids[g], pack.shape(k)) ? static_cast<std::int8_t>(g) : no_candidates;
@@ -131,6 +127,7 @@ struct bucket_ref : mesh_lookup<S> {
   static COLLIDE_HD_INLINE bool serves(grid<S> const& g, moving_sphere<S> const& shape) {
     S const inverse_width = g.levels > 0 ? g.level[0].inverse_width : S(0);
     bool served = g.serves(shape.radius);
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       served = served && swept_cells<S>::is_traversable(g.lower[k], g.upper[k], inverse_width, shape.centre[k],
                                                         shape.displacement[k]);
@@ -139,6 +136,7 @@ struct bucket_ref : mesh_lookup<S> {
   }
   static COLLIDE_HD_INLINE bool meets(grid<S> const& g, moving_sphere<S> const& shape) {
     bool inside = true;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       inside = inside && swept_cells<S>::overlaps_slab(g.lower[k], g.upper[k], shape.centre[k], shape.displacement[k]);
     }
@@ -215,5 +213,3 @@ struct bucket_ref : mesh_lookup<S> {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -39,10 +39,9 @@ struct memory_plan {
   std::uint32_t table_bits = 0;  ///< log2 of the number of cells per grid
   std::size_t entries = 0;       ///< of all grids, at most
 
-  /// As many of `wanted` grids as fit into `budget` bytes, of which `fixed` are taken, and then as many cells. No grids
-  /// if none fits. A budget of 0 is no limit.
-  /// If the width of the cells is asked for there may be many entries more. Few spheres do not pay for cells of each of
-  /// many triangles, unless the grid serves many steps.
+  /// Plans as many of `wanted` grids as fit into `budget` bytes, of which `fixed` are taken, and then as many cells as
+  /// fit. No grids if none fits. A budget of 0 is no limit. A given width of the cells may make many more entries. Few
+  /// spheres do not pay for cells of each of many triangles, unless the grid serves many steps.
   static memory_plan make(std::size_t triangles, std::size_t spheres, int wanted, bool width_is_given,
                           std::size_t fixed, std::size_t budget, bool serves_steps = false) {
     std::uint32_t most_bits = 12;

@@ -10,7 +10,7 @@
 #include <collide/core/memory.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/mesh.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {

@@ -8,10 +8,6 @@
 #include <collide/broad/detail/grid/swept_cells.hpp>
 #include <collide/exact/detail/geometry/sphere_pack.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Which cells have triangles, of the one level of the one grid that serves spheres of one radius: all that most
@@ -24,16 +20,16 @@ struct occupancy_view {
   std::uint8_t const* occupied;
 
   /// The cells of several centres, and whether each is inside the grid at all.
-  template <int N>
+  template <unsigned N>
   struct places {
     std::uint32_t cells[N], inside[N];
   };
 
   /// Without branches, for the CPU's vector unit.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE places<N> places_of(S const (&x)[N], S const (&y)[N], S const (&z)[N]) const {
     places<N> p;
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       S const dx = x[k] - lower[0], dy = y[k] - lower[1], dz = z[k] - lower[2];
       p.inside[k] = to_bits(dx) <= extent[0] ? 1u : 0u;
       p.inside[k] &= to_bits(dy) <= extent[1] ? 1u : 0u;
@@ -46,16 +42,16 @@ struct occupancy_view {
   }
 
   /// Tells for each of the centres, or spheres, if there may be triangles near it. False if that is not known.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE void test_occupied(places<N> const& p, bool (&near)[N]) const {
-    for (int k = 0; k < N; ++k) near[k] = (p.inside[k] & occupied[p.cells[k] / 8] >> p.cells[k] % 8 & 1) != 0;
+    for (unsigned k = 0; k < N; ++k) near[k] = (p.inside[k] & occupied[p.cells[k] / 8] >> p.cells[k] % 8 & 1) != 0;
   }
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE bool test_occupied(sphere_pack<S, N> const& b, bool (&near)[N]) const {
     test_occupied(places_of(b.x, b.y, b.z), near);
     return true;
   }
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE bool test_occupied(moving_pack<S, N> const& b, bool (&near)[N]) const {
     return test_swept(b, near);
   }
@@ -63,11 +59,11 @@ struct occupancy_view {
 
   /// Which of some moving spheres may be near a triangle: sets near[k]. Returns false if that is not known, since one
   /// of them is not finite or moves through many cells.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE bool test_swept(moving_pack<S, N> const& b, bool (&near)[N]) const {
     bool known = true;
     std::uint32_t first[N], apart[N][3];  // the first cell, and how far from it the second on each axis is
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       cells_on_axis const on[3] = {cells_on(0, b.x[k], b.dx[k]), cells_on(1, b.y[k], b.dy[k]),
                                    cells_on(2, b.z[k], b.dz[k])};
       bool const inside = (on[0].inside & on[1].inside & on[2].inside) != 0;
@@ -79,7 +75,7 @@ struct occupancy_view {
       for (int axis = 0; axis < 3; ++axis) apart[k][axis] = inside ? on[axis].end - on[axis].begin : 0;
     }
     if (!known) return false;
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       std::uint32_t const several =
           (apart[k][0] != 0 ? 1u : 0u) | (apart[k][1] != 0 ? 2u : 0u) | (apart[k][2] != 0 ? 4u : 0u);
       std::uint32_t found = bit_of(first[k]);
@@ -117,5 +113,3 @@ struct occupancy_view {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -89,8 +89,8 @@ struct cell_choice {
 
 /// Kernel functor of a block per grid: chooses widths, levels and table sizes such that entering the triangles and
 /// testing the candidates cost least together, from the summary of the mesh and from the distances of some triangles
-/// and some spheres. Some microseconds' work, so that a build on the device need not wait for the host. Blocks behind
-/// those empty the cells meanwhile.
+/// and some spheres. It takes some microseconds, so a build on the device does not wait for the host. The blocks behind
+/// these empty the cells meanwhile.
 template <class S, class Spheres>
 struct plan_grid {
   static constexpr int items = 1;
@@ -133,7 +133,7 @@ struct plan_grid {
     if (block.index() >= static_cast<std::size_t>(request.count)) return empty_cells(block);
     auto& g = grids[block.index()];
     block.for_each_thread([&](int thread_rank) {
-      if (thread_rank == 0) s.planned = frame(block.index(), s.extent);
+      if (thread_rank == 0) s.planned = header_of(block.index(), s.extent);
       for (auto b = static_cast<std::uint32_t>(thread_rank); b < pair_distances::bins; b += Block::num_threads) {
         s.distances.counts[b] = 0;
       }
@@ -176,7 +176,7 @@ struct plan_grid {
   }
 
   /// The grid but for its levels: of these there are none if it can hold no triangle, or serve no sphere.
-  COLLIDE_HD grid_header<S> frame(std::size_t i, S& extent) const {
+  COLLIDE_HD grid_header<S> header_of(std::size_t i, S& extent) const {
     grid_header<S> g{};
     extent = 0;
     g.reach = request.reaches[i];
@@ -317,7 +317,7 @@ struct plan_grid {
     return {useful ? both : unlimited, best.width, best_large.width, s.class_end[c]};
   }
 
-  /// One of two levels: what is best of every fourth width, and near that.
+  /// The cheapest cells of one of two levels: of every fourth width, then of the widths near the best of these.
   COLLIDE_HD_INLINE cell_choice cheapest(triangle_sums const& some, level_cost const& cost) const {
     cell_choice best{unlimited, 0, 0, 0};
     int begin = 0, end = widths, around = 0;

@@ -25,6 +25,7 @@ class swept_cells {
   /// For a sphere that `is_traversable` in the grid, or whose path is short.
   COLLIDE_HD swept_cells(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from, vec3<S> const& along)
       : grid_{&g}, level_{&l}, from_{from}, along_{along} {
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       S const to = from[k] + along[k], slack = rounding_slack(from[k], along[k]);
       box_.lower[k] = l.coordinate(offset(g, min(from[k], to) - slack, k), steps_.lower[k]);
@@ -38,6 +39,7 @@ class swept_cells {
   static COLLIDE_HD_INLINE cell_box cell_box_of_path(grid<S> const& g, grid_level<S> const& l, vec3<S> const& from,
                                                      vec3<S> const& along) {
     cell_box r;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       S const to = from[k] + along[k], slack = rounding_slack(from[k], along[k]);
       r.lower[k] = coordinate(g, l, min(from[k], to) - slack, k);
@@ -83,6 +85,7 @@ class swept_cells {
     /// True if this is the first place on the path that shares a cell with a triangle in these cells.
     COLLIDE_HD_INLINE bool owns_pair(cell_box const& r) const {
       bool here = true, earlier = true;
+      COLLIDE_UNROLL
       for (int k = 0; k < 3; ++k) {
         here = here && cell[k] == max(r.lower[k], lower[k]) && cell[k] <= r.upper[k];
         earlier = earlier && before.lower[k] <= r.upper[k] && r.lower[k] <= before.upper[k];
@@ -91,7 +94,7 @@ class swept_cells {
     }
   };
 
-  COLLIDE_HD cell_visit at(std::uint32_t step) const {
+  COLLIDE_HOT COLLIDE_HD cell_visit at(std::uint32_t step) const {
     std::uint32_t const number = step / cells_per_segment();
     std::uint32_t const rest = step % cells_per_segment();
     cell_box const piece = cells_of(number);
@@ -99,11 +102,13 @@ class swept_cells {
     if (number != 0) {
       p.before = cells_of(number - 1);
     } else {
+      COLLIDE_UNROLL
       for (int k = 0; k < 3; ++k) p.before.lower[k] = ~std::uint32_t{0}, p.before.upper[k] = 0;
     }
     std::uint32_t const offset[3] = {rest % segment_extent_[0], rest / segment_extent_[0] % segment_extent_[1],
                                      rest / (segment_extent_[0] * segment_extent_[1])};
     bool inside = true, again = true;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       p.lower[k] = piece.lower[k];
       p.cell[k] = piece.lower[k] + offset[k];
@@ -116,6 +121,7 @@ class swept_cells {
     p.later = cell_visit::unknown;
     if (is_subdivided_) return p;
     std::uint32_t coverage = 0, later = 0;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       bool const is_first = p.cell[k] == box_.lower[k], is_last = p.cell[k] == box_.upper[k];
       coverage |= cell_coverage::encode_query(is_first ? steps_.lower[k] : cell_coverage::first,
@@ -150,13 +156,14 @@ class swept_cells {
     return segment_extent_[0] * segment_extent_[1] * segment_extent_[2];
   }
 
-  COLLIDE_HD S position(std::uint32_t subdivide, int k) const {
-    return from_[k] + mul_rn(begin_ + mul_rn(static_cast<S>(subdivide), segment_dt_), along_[k]);
+  COLLIDE_HD S position(std::uint32_t segment, int k) const {
+    return from_[k] + mul_rn(begin_ + mul_rn(static_cast<S>(segment), segment_dt_), along_[k]);
   }
 
   /// Cuts a path through many cells into pieces.
   COLLIDE_HD void subdivide() {
     S end = 1, longest = 0;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       if (along_[k] == 0) continue;
       S const slack = rounding_slack(from_[k], along_[k]);
@@ -168,18 +175,21 @@ class swept_cells {
     is_subdivided_ = true;
     segments_ = 0;
     if (!(begin_ <= end)) return;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) longest = max(longest, mul_rn(abs_of(along_[k]), end - begin_));
     segments_ = static_cast<std::uint32_t>(mul_rn(longest, 2 * level_->inverse_width)) + 1;
     segment_dt_ = div_rn(end - begin_, static_cast<S>(segments_));
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       S const extent = mul_rn(abs_of(along_[k]), segment_dt_) + 2 * rounding_slack(from_[k], along_[k]);
       segment_extent_[k] = static_cast<std::uint32_t>(mul_rn(extent, level_->inverse_width) + S(0.125)) + 2;
     }
   }
 
-  COLLIDE_HD cell_box cells_of(std::uint32_t piece) const {
+  COLLIDE_HOT COLLIDE_HD cell_box cells_of(std::uint32_t piece) const {
     if (!is_subdivided_) return box_;
     cell_box r;
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       S const a = position(piece, k), b = position(piece + 1, k), slack = rounding_slack(from_[k], along_[k]);
       r.lower[k] = coordinate(*grid_, *level_, min(a, b) - slack, k);

@@ -25,6 +25,7 @@ class triangle_slab {
  public:
   /// The part of a triangle with lower <= u <= upper, where u is its coordinate on the slab's axis.
   COLLIDE_HD triangle_slab(S const (&u)[3], S const (&v)[3], S const (&x)[3], S lower, S upper) {
+    COLLIDE_UNROLL
     for (int i = 0; i < 3; ++i) {
       int const j = i == 2 ? 0 : i + 1;
       S const to_lower[2] = {u[i] - lower, u[j] - lower}, to_upper[2] = {u[i] - upper, u[j] - upper};
@@ -119,6 +120,7 @@ class triangle_cells {
       : grid_{g}, level_{l}, box_{b}, range_{g.cells_of(l, b, first_step_, last_step_)} {
     bool turns = false;
     std::uint32_t n[3];
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       turns = turns || first_step_[k] == cell_coverage::before;
       n[k] = range_.upper[k] - range_.lower[k] + 1;
@@ -248,6 +250,7 @@ void each_range(grid<S> const& g, aabb<S> const& b, GetTriangle const& get_trian
   grid_level<S> const& l = g.level_of(b);
   cell_box const r = g.range_of(l, b);
   bool few = true;  // nearly always: then nothing else has to be known
+  COLLIDE_UNROLL
   for (int k = 0; k < 3; ++k) few = few && r.upper[k] - r.lower[k] <= min(1u, l.mask[k]);
   if (few) return each_range_of_box(l, r, f);
   triangle_cells<S>(g, l, b).each_range(get_triangle, f);

@@ -8,9 +8,9 @@
 
 #include <collide/broad/detail/grid/mesh_statistics.hpp>
 #include <collide/core/memory.hpp>
-#include <collide/spaces/detail/launch.hpp>
+#include <collide/spaces/detail/block.hpp>
 #if defined(__CUDACC__)
-#include <collide/broad/detail/tree/sort_ids_cuda.cuh>
+#include <collide/spaces/detail/sort_cuda.cuh>
 #endif
 
 namespace collide::detail {
@@ -97,10 +97,10 @@ class curve_sort {
 #endif
   }
 
-  /// To be sorted,
+  /// The keys and ids to be sorted.
   std::uint64_t* places() { return places_.data(); }
   id* ids() { return ids_.data(); }
-  /// and sorted, of equal places the lowest number first.
+  /// The keys and ids in order; of equal keys the lowest id comes first.
   std::uint64_t const* places_in_order() const { return places_.data() + n_; }
   id const* ids_in_order() const { return ids_.data() + n_; }
 
@@ -146,11 +146,11 @@ class curve_order {
     sort_.sort(space, 3 * find_places<S>::bits + 1);
   }
 
-  /// The numbers of the triangles in order,
+  /// The ids of the triangles in order.
   id const* ids() const { return sort_.ids_in_order(); }
-  /// their places, which rise,
+  /// The places of the triangles on the curve, which rise.
   std::uint64_t const* places() const { return sort_.places_in_order(); }
-  /// and statistics of the mesh, in memory of the space.
+  /// The statistics of the mesh, in memory of the space.
   mesh_statistics<S> const* summary() const { return summary_.data(); }
 
  private:

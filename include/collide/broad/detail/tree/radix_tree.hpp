@@ -13,10 +13,6 @@
 #include <collide/broad/detail/tree/tree_node.hpp>
 #include <collide/spaces/detail/atomic.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// Places along the curve, in order.
@@ -54,7 +50,8 @@ struct curve_groups {
 
   std::size_t nodes() const { return std::size_t{3} * count + triangles / tree_node::width; }
   COLLIDE_HD_INLINE std::uint32_t node_of(id group) const { return count == 1 ? 0 : count + group; }
-  /// The first node of triangles of a group that begins with `first`: there is room for one more than full ones.
+  /// The first of the nodes with the triangles of a group, whose first triangle is at place `first`: each group has
+  /// room for one node more than it fills.
   COLLIDE_HD_INLINE std::uint32_t first_part_of(id group, id first) const {
     return 2 * count + group + first / tree_node::width;
   }
@@ -317,5 +314,3 @@ class radix_tree {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

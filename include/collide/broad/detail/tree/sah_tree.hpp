@@ -15,10 +15,6 @@
 #include <collide/spaces/detail/atomic.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// A box as what is largest of it: -lower, a gap, upper, a gap. So a loop of one kind merges two.
@@ -353,5 +349,3 @@ class sah_tree {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -12,10 +12,6 @@
 #include <collide/exact/detail/geometry/lifted_bounds.hpp>
 #include <collide/mesh.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// The next float above, or below; infinities stay.
@@ -54,6 +50,7 @@ COLLIDE_HD_INLINE aabb<float> tree_box_of(triangle<S> const& t, vec3<S> const& o
   if (exact.is_empty()) return aabb<float>::empty();
   float const padding = float_above(exact.padding);
   aabb<float> box;
+  COLLIDE_UNROLL
   for (int k = 0; k < 3; ++k) {
     box.lower[k] = below(float_below(exact.lower[k] - origin[k]) - padding);
     box.upper[k] = above(float_above(exact.upper[k] - origin[k]) + padding);
@@ -71,6 +68,7 @@ struct tree_point {
       : lower{b.lower[0], b.lower[1], b.lower[2]}, upper{b.upper[0], b.upper[1], b.upper[2]} {}
   template <class S>
   COLLIDE_HD_INLINE tree_point(vec3<S> const& x, vec3<S> const& origin) {
+    COLLIDE_UNROLL
     for (int k = 0; k < 3; ++k) {
       lower[k] = float_below(x[k] - origin[k]);
       upper[k] = float_above(x[k] - origin[k]);
@@ -82,6 +80,7 @@ struct tree_point {
 /// is asked.
 COLLIDE_HD_INLINE bool overlap(aabb<float> const& box, tree_point const& other) {
   bool apart = false;
+  COLLIDE_UNROLL
   for (int i = 0; i < 3; ++i) apart = apart | (box.lower[i] > other.upper[i]) | (box.upper[i] < other.lower[i]);
   return !apart;
 }
@@ -231,5 +230,3 @@ struct boxes_before {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -9,10 +9,6 @@
 #include <collide/broad/detail/tree/tree_node.hpp>
 #include <collide/spaces/detail/multiversion.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// The most levels of nodes that a tree has. On a device each is of three bits of a place on a curve and a number, but
@@ -103,6 +99,7 @@ struct tree_ref {
         radius = triangle_aabb<float>::padded_radius(float_above(s.radius));
       }
       squared = radius * radius;
+      COLLIDE_UNROLL
       for (int k = 0; k < 3; ++k) {
         around.lower[k] = below(centre.lower[k] - radius);
         around.upper[k] = above(centre.upper[k] + radius);
@@ -245,5 +242,3 @@ struct tree_ref {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -30,6 +30,7 @@ struct aabb {
   struct merge {
     COLLIDE_HD aabb operator()(aabb const& a, aabb const& b) const {
       aabb c;
+      COLLIDE_UNROLL
       for (int k = 0; k < 3; ++k) {
         c.lower[k] = min(a.lower[k], b.lower[k]);
         c.upper[k] = max(a.upper[k], b.upper[k]);

@@ -45,13 +45,13 @@ struct contact_without_point {
 template <class T>
 COLLIDE_HD inline closest_point<T> closest_to_origin(local_triangle<T> const& t, vec3<T> const& n) {
   closest_point<T> best{t.a, dot(t.a, t.a), feature::vertex, 0};
-  auto const consider = [&](vec3<T> const& p, feature kind, int index) {
+  auto const consider = [&](vec3<T> const& p, feature kind, int index) COLLIDE_HOT {
     T const d = dot(p, p);
     if (d < best.distance_squared) best = {p, d, kind, index};
   };
   consider(t.b, feature::vertex, 1);
   consider(t.c, feature::vertex, 2);
-  auto const edge = [&](vec3<T> const& a, vec3<T> const& b, int index) {
+  auto const edge = [&](vec3<T> const& a, vec3<T> const& b, int index) COLLIDE_HOT {
     vec3<T> const e = b - a;
     T const along = -dot(a, e), ee = dot(e, e);
     if (along > 0 && along < ee) consider(a + scaled(e, div_rn(along, ee)), feature::edge, index);

@@ -65,7 +65,7 @@ struct lifted_batch {
 
   template <class Spheres>
   COLLIDE_HD_INLINE void load(Spheres const& spheres, std::size_t first, vec3<S> const& origin) {
-    sphere_pack<S, Items> batch;
+    sphere_pack<S, unsigned(Items)> batch;
     batch.load(spheres, first);
     for (int k = 0; k < Items; ++k) {
       x[k] = batch.x[k] - origin.x();

@@ -7,15 +7,11 @@
 #include <collide/core/moving_spheres.hpp>
 #include <collide/exact/detail/geometry/swept_bounds.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// `Items` consecutive spheres: in registers on CUDA, eight or sixteen to a vector register on a CPU. Spheres beyond
 /// the end of the set are far from everything, and have a NaN radius.
-template <class S, int Items>
+template <class S, unsigned Items>
 struct sphere_pack {
   static_assert(Items % 4 == 0, "packed centres are loaded four at a time");
 
@@ -28,8 +24,8 @@ struct sphere_pack {
 
   /// Loads the swept bounding spheres of moving spheres.
   COLLIDE_HD_INLINE void load(moving_sphere_view<S> const& spheres, std::size_t first) {
-    for (int k = 0; k < Items; ++k) {
-      std::size_t const i = first + static_cast<std::size_t>(k);
+    for (unsigned k = 0; k < Items; ++k) {
+      std::size_t const i = first + k;
       bool const there = i < spheres.size();
       sphere<S> const s = there ? swept_bounding_sphere(spheres[i]) : none();
       x[k] = s.centre.x();
@@ -43,16 +39,16 @@ struct sphere_pack {
     if (first + Items <= spheres.size()) {
       load_centres(spheres, first);
       if (spheres.one_radius()) {
-        for (int k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
+        for (unsigned k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
       } else {
-        for (int k = 0; k < Items; ++k) radius[k] = spheres.radius(first + static_cast<std::size_t>(k));
+        for (unsigned k = 0; k < Items; ++k) radius[k] = spheres.radius(first + k);
       }
     } else {
       load_tail(spheres, first);
     }
   }
 
-  COLLIDE_HD_INLINE sphere<S> shape(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
+  COLLIDE_HD_INLINE sphere<S> shape(unsigned k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 
   /// The packed centres if the device can load four at a time with 16-byte loads; else null.
   static COLLIDE_HD_INLINE S const* aligned_centres(sphere_view<S> const& spheres) {
@@ -75,7 +71,7 @@ struct sphere_pack {
 #if defined(__CUDA_ARCH__)
     if constexpr (sizeof(S) == 4) {  // four packed vectors are three 16-byte loads
       auto const* const from = reinterpret_cast<float4 const*>(aligned + 3 * first);
-      for (int k = 0; k < Items; k += 4) {
+      for (unsigned k = 0; k < Items; k += 4) {
         float4 const read[3] = {from[3 * k / 4], from[3 * k / 4 + 1], from[3 * k / 4 + 2]};
         x[k] = read[0].x, y[k] = read[0].y, z[k] = read[0].z;
         x[k + 1] = read[0].w, y[k + 1] = read[1].x, z[k + 1] = read[1].y;
@@ -94,8 +90,8 @@ struct sphere_pack {
  private:
   /// Loads the spheres that exist of the last pack; the others are `none()`.
   COLLIDE_HD_INLINE void load_tail(sphere_view<S> const& spheres, std::size_t first) {
-    for (int k = 0; k < Items; ++k) {
-      std::size_t const i = first + static_cast<std::size_t>(k);
+    for (unsigned k = 0; k < Items; ++k) {
+      std::size_t const i = first + k;
       bool const there = i < spheres.size();
       sphere<S> const s = there ? spheres[i] : none();
       x[k] = s.centre.x();
@@ -110,14 +106,14 @@ struct sphere_pack {
       load_xyz4(aligned, first);
     } else if (spheres.centres().packed()) {  // a stride that the compiler knows
       S const* const from = spheres.centres().address(first);
-      for (int k = 0; k < Items; ++k) {
+      for (unsigned k = 0; k < Items; ++k) {
         x[k] = from[3 * k];
         y[k] = from[3 * k + 1];
         z[k] = from[3 * k + 2];
       }
     } else {
-      for (int k = 0; k < Items; ++k) {
-        std::size_t const i = first + static_cast<std::size_t>(k);
+      for (unsigned k = 0; k < Items; ++k) {
+        std::size_t const i = first + k;
         vec3<S> const c = spheres.centre(i);
         x[k] = c.x(), y[k] = c.y(), z[k] = c.z();
       }
@@ -126,7 +122,7 @@ struct sphere_pack {
 };
 
 /// `Items` consecutive moving spheres; those beyond the end of the set have a NaN radius.
-template <class S, int Items>
+template <class S, unsigned Items>
 struct moving_pack {
   S x[Items], y[Items], z[Items], dx[Items], dy[Items], dz[Items], radius[Items];
 
@@ -134,11 +130,11 @@ struct moving_pack {
     if (first + Items <= spheres.size() && spheres.centres().packed() && spheres.displacements().packed() &&
         spheres.one_radius()) {
       load_packed(spheres, first);
-      for (int k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
+      for (unsigned k = 0; k < Items; ++k) radius[k] = spheres.common_radius();
       return;
     }
-    for (int k = 0; k < Items; ++k) {
-      std::size_t const i = first + static_cast<std::size_t>(k);
+    for (unsigned k = 0; k < Items; ++k) {
+      std::size_t const i = first + k;
       bool const there = i < spheres.size();
       moving_sphere<S> const s =
           there ? spheres[i] : moving_sphere<S>{{{0, 0, 0}, std::numeric_limits<S>::quiet_NaN()}, {0, 0, 0}};
@@ -148,9 +144,9 @@ struct moving_pack {
     }
   }
 
-  COLLIDE_HD_INLINE vec3<S> centre(int k) const { return {x[k], y[k], z[k]}; }
-  COLLIDE_HD_INLINE vec3<S> displacement(int k) const { return {dx[k], dy[k], dz[k]}; }
-  COLLIDE_HD_INLINE moving_sphere<S> shape(int k) const { return {{centre(k), radius[k]}, displacement(k)}; }
+  COLLIDE_HD_INLINE vec3<S> centre(unsigned k) const { return {x[k], y[k], z[k]}; }
+  COLLIDE_HD_INLINE vec3<S> displacement(unsigned k) const { return {dx[k], dy[k], dz[k]}; }
+  COLLIDE_HD_INLINE moving_sphere<S> shape(unsigned k) const { return {{centre(k), radius[k]}, displacement(k)}; }
 
  private:
   COLLIDE_HD_INLINE void load_packed(moving_sphere_view<S> const& spheres, std::size_t first) {
@@ -166,7 +162,7 @@ struct moving_pack {
     }
 #endif
     S const *const from = spheres.centres().address(first), *const along = spheres.displacements().address(first);
-    for (int k = 0; k < Items; ++k) {  // strides that the compiler knows
+    for (unsigned k = 0; k < Items; ++k) {  // strides that the compiler knows
       x[k] = from[3 * k], y[k] = from[3 * k + 1], z[k] = from[3 * k + 2];
       dx[k] = along[3 * k], dy[k] = along[3 * k + 1], dz[k] = along[3 * k + 2];
     }
@@ -174,5 +170,3 @@ struct moving_pack {
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

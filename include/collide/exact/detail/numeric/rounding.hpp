@@ -122,6 +122,7 @@ COLLIDE_HD_INLINE T opaque_value(T x) {
 template <class S>
 COLLIDE_HD_INLINE vec3<S> rounded_to(vec3<double> const& x) {
   S r[3];
+  COLLIDE_UNROLL
   for (int k = 0; k < 3; ++k) {
     r[k] = static_cast<S>(x[k]);
 #if !defined(__CUDA_ARCH__) && defined(__GNUC__) && !defined(__clang__)

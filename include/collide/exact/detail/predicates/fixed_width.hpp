@@ -20,7 +20,6 @@
 #pragma once
 
 #include <collide/exact/detail/numeric/exact_number.hpp>
-#include <collide/exact/detail/numeric/wide_int.hpp>
 
 namespace collide::detail {
 

@@ -8,10 +8,6 @@
 #include <collide/simulation/detail/bodies/float_frames.hpp>
 #include <collide/simulation/detail/bodies/moving_mesh.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 /// How far the candidates of a sphere have been gone through.
@@ -39,7 +35,7 @@ struct bodies_ref {
 
   COLLIDE_HD_INLINE bodies_ref opened() const { return {whole.opened(), mesh, quick}; }
 
-  /// True if `mark` can tell of spheres of this radius whether they may touch a triangle.
+  /// True if `test_occupied` can tell of spheres of this radius whether they may touch a triangle.
   COLLIDE_HD_INLINE bool has_single_cell_lookup(S radius) const {
     return whole.has_single_cell_lookup(radius + quick.room) && quick.serve(radius);
   }
@@ -47,7 +43,7 @@ struct bodies_ref {
 
   /// Sets near[k] for those of some spheres at rest, of one radius, that may touch a triangle at the end of the step.
   /// False if that is not known. `occupancy` is `occupancy()`.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE bool test_occupied(occupancy_view<S> const& occupancy, S const (&x)[N], S const (&y)[N],
                                        S const (&z)[N], S radius, bool (&near)[N]) const {
     return quick.test_occupied(occupancy, mesh.first_frame, mesh.frame_count, x, y, z, radius, near);
@@ -129,5 +125,3 @@ template <class S, class Triangles>
 inline constexpr bool has_moving_mesh<bodies_ref<S, Triangles>> = true;
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -25,10 +25,6 @@
 #include <collide/broad/detail/grid/occupancy.hpp>
 #include <collide/simulation/detail/bodies/moving_mesh.hpp>
 
-// the numbers of elements of small arrays are int
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-
 namespace collide::detail {
 
 template <class S>
@@ -80,12 +76,12 @@ struct alignas(16) float_frame {
   }
 
   /// Which of some particles of one radius are not far, and how many. Without branches, for the CPU's vector unit.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE std::uint32_t find_close(S const (&x)[N], S const (&y)[N], S const (&z)[N], S radius,
                                              std::uint32_t (&close)[N]) const {
     S const at_least = mul_rn(reach + radius, S(1 + 2e-5)), limit = mul_rn(at_least, at_least);
     std::uint32_t count = 0;
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       S const dx = x[k] - centre[0], dy = y[k] - centre[1], dz = z[k] - centre[2];
       close[k] = mul_add(dx, dx, mul_add(dy, dy, mul_rn(dz, dz))) > limit ? 0u : 1u;
       count += close[k];
@@ -94,9 +90,9 @@ struct alignas(16) float_frame {
   }
 
   /// The places of some particles in the frame.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE void to_local(S const (&x)[N], S const (&y)[N], S const (&z)[N], S (&at)[3][N]) const {
-    for (int k = 0; k < N; ++k) {
+    for (unsigned k = 0; k < N; ++k) {
       S const dx = x[k] - centre[0], dy = y[k] - centre[1], dz = z[k] - centre[2];
       at[0][k] = place(0, dx, dy, dz), at[1][k] = place(1, dx, dy, dz), at[2][k] = place(2, dx, dy, dz);
     }
@@ -121,11 +117,11 @@ struct float_frames {
 
   /// Sets near[k] for those of some particles that may touch a triangle of the frames from `first` to before `end`:
   /// those in cells with triangles (`occupancy`). False if that is not known, as a place may be too far off.
-  template <int N>
+  template <unsigned N>
   COLLIDE_HD_INLINE bool test_occupied(occupancy_view<S> const& occupancy, int first, int end, S const (&x)[N],
                                        S const (&y)[N], S const (&z)[N], S radius, bool (&near)[N]) const {
     S const most = room - mul_rn(float_frame_error<S>, radius);
-    for (int k = 0; k < N; ++k) near[k] = false;
+    for (unsigned k = 0; k < N; ++k) near[k] = false;
     COLLIDE_NO_UNROLL
     for (int i = first; i < end; ++i) {
       float_frame<S> const& f = frames[i];
@@ -142,8 +138,8 @@ struct float_frames {
       S at[3][N];
       f.to_local(x, y, z, at);
       auto const places = occupancy.places_of(at[0], at[1], at[2]);
-      for (int k = 0; k < N; ++k) close[k] &= places.inside[k];
-      for (int k = 0; k < N; ++k) {
+      for (unsigned k = 0; k < N; ++k) close[k] &= places.inside[k];
+      for (unsigned k = 0; k < N; ++k) {
         if (close[k] != 0 && occupancy.is_occupied(places.cells[k])) near[k] = true;
       }
     }
@@ -152,28 +148,26 @@ struct float_frames {
 
  private:
   /// Marks those that are close, of which there are at most `M`: they are gathered first.
-  template <int M, int N>
+  template <unsigned M, unsigned N>
   COLLIDE_HD_INLINE static void test_few(float_frame<S> const& f, occupancy_view<S> const& occupancy, S const (&x)[N],
                                          S const (&y)[N], S const (&z)[N], std::uint32_t const (&close)[N],
                                          bool (&near)[N]) {
-    int numbers[M + 1], n = 0;  // one more: each is written, and kept if it is close
-    for (int k = 0; k < N; ++k) {
+    unsigned numbers[M + 1], n = 0;  // one more: each is written, and kept if it is close
+    for (unsigned k = 0; k < N; ++k) {
       numbers[n] = k;
-      n += static_cast<int>(close[k]);
+      n += close[k];
     }
     S few[3][M], at[3][M];
-    for (int j = 0; j < M; ++j) {
-      int const k = numbers[j < n ? j : 0];
+    for (unsigned j = 0; j < M; ++j) {
+      unsigned const k = numbers[j < n ? j : 0];
       few[0][j] = x[k], few[1][j] = y[k], few[2][j] = z[k];
     }
     f.to_local(few[0], few[1], few[2], at);
     auto const places = occupancy.places_of(at[0], at[1], at[2]);
-    for (int j = 0; j < n; ++j) {
+    for (unsigned j = 0; j < n; ++j) {
       if (places.inside[j] != 0 && occupancy.is_occupied(places.cells[j])) near[numbers[j]] = true;
     }
   }
 };
 
 }  // namespace collide::detail
-
-#pragma GCC diagnostic pop

@@ -40,7 +40,7 @@ struct pair_interaction {
   COLLIDE_HD_INLINE void interact(pair_state& p, std::uint32_t place) const {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_other = !is_inactive(other);
-    side_by_side(p, other, [&] {
+    side_by_side(p, other, [&]() COLLIDE_HOT {
       if (p.woken ? is_other : is_active) effects.on_pair_contact(p.changed, p.self, other, dt);
       mark_contact(p.changed);
       if (is_other && !p.woken) effects.try_wake(p.changed, other);
@@ -62,7 +62,7 @@ struct pair_interaction {
     interaction other = order.load(place);
     bool const is_active = takes_part(p.self), is_awake = !is_inactive(other), is_other = overlap && is_awake;
     bool goes_on = was;
-    side_by_side(p, other, [&] {
+    side_by_side(p, other, [&]() COLLIDE_HOT {
       if (p.woken ? is_other : is_active) {
         contact_values<S, typename Effects::remembered> values;
         if (was) values = record.values();
@@ -137,7 +137,7 @@ struct pair_interaction {
 /// Kernel functor of `for_each` over places in the order: a particle meets those on its list that overlap it.
 template <class S, class Effects>
 struct interact_listed : pair_interaction<S, Effects> {
-  COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
     if (i == 0) places.header->rebuild = 0;  // not read again in this step
     if (i < places.header->count && !this->is_left_out(i)) meet_listed(i);
@@ -218,7 +218,7 @@ struct interact_listed : pair_interaction<S, Effects> {
 /// Kernel functor of `for_each` over places in the order: the same for particles that meet none of other ranks.
 template <class S, class Effects>
 struct interact_inside : interact_listed<S, Effects> {
-  COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
     if (i >= places.header->count || places.is_at_border[i] != 0 || this->is_left_out(i)) return;
     this->meet_listed(i);
@@ -227,7 +227,7 @@ struct interact_inside : interact_listed<S, Effects> {
 /// Kernel functor of `for_each` over the others.
 template <class S, class Effects>
 struct interact_at_border : interact_listed<S, Effects> {
-  COLLIDE_HD void operator()(std::size_t k) const { this->meet_listed(this->order.border[k]); }
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const { this->meet_listed(this->order.border[k]); }
 };
 
 /// Kernel functor of `for_each_if_nonzero` over places in the order: particles with more neighbours than lists have
@@ -237,7 +237,7 @@ template <class S, class Effects>
 struct interact_overflowed : pair_interaction<S, Effects> {
   using ordered = sorted_particles<S, Effects>;
 
-  COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
     auto const& places = this->order;
     if (i >= places.header->count || places.list(0, i) != places.overflow_mark) return;
     if (this->is_left_out(i)) return;

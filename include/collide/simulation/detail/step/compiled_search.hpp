@@ -3,8 +3,8 @@
 /// device a step is one kernel.
 #pragma once
 
-#include <collide/broad/detail/all_pairs_ref.hpp>
 #include <collide/broad/detail/grid/grid_ref.hpp>
+#include <collide/broad/detail/mesh_lookup.hpp>
 #include <collide/host.hpp>
 #include <collide/karabassi.hpp>
 #include <collide/karabassi_swept.hpp>

@@ -49,7 +49,7 @@ struct contact_search {
 
   /// Finds the next contact of each active particle of the first `n`. `seen` is what `s.spans` was before, and is then.
   template <class Block>
-  COLLIDE_HD void find(Block& block, scratch<Block>& s, std::uint32_t n, span_counts& seen) const {
+  COLLIDE_HD_INLINE void find(Block& block, scratch<Block>& s, std::uint32_t n, span_counts& seen) const {
     using queues = contact_queues<Block>;
     for (bool more = true; more;) {
       span_counts const before = seen;
@@ -302,8 +302,8 @@ struct contact_search {
 /// Finds the next contact of each active particle; see `contact_search::find`. Not inline: what does not depend on the
 /// effects of a scene is in collide::compiled; see compiled.hpp.
 template <class Search, class Block, class Scratch>
-COLLIDE_HD_LINKED void find_contacts(Search const& search, Block& block, Scratch& s, std::uint32_t n,
-                                     span_counts& seen) {
+COLLIDE_AS_O3 COLLIDE_HD_LINKED void find_contacts(Search const& search, Block& block, Scratch& s, std::uint32_t n,
+                                                   span_counts& seen) {
   search.find(block, s, n, seen);
 }
 

@@ -5,7 +5,7 @@
 
 #include <collide/exact/detail/geometry/local_sweep.hpp>
 #include <collide/narrow/detail/contact.hpp>
-#include <collide/narrow/detail/time_of_impact.hpp>
+#include <collide/narrow/detail/intersects_swept.hpp>
 
 namespace collide {
 
@@ -47,6 +47,7 @@ COLLIDE_HD_INLINE verdict try_contact_double(triangle<S> const& t, sphere<S> con
 template <class S>
 COLLIDE_HD_INLINE sphere<S> sphere_at(moving_sphere<S> const& s, S time) {
   vec3<S> at;
+  COLLIDE_UNROLL
   for (int k = 0; k < 3; ++k) at[k] = fma_rn(s.displacement[k], time, s.centre[k]);
   return {at, s.radius};
 }

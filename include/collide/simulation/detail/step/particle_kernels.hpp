@@ -7,6 +7,7 @@
 #include <collide/effects/detail/particle.hpp>
 #include <collide/simulation/detail/step/integrate.hpp>
 #include <collide/simulation/detail/step/mesh_contact.hpp>
+#include <collide/spaces/detail/algorithms.hpp>
 #include <collide/spheres.hpp>
 
 namespace collide::detail {
@@ -201,14 +202,6 @@ init_particles<S, All> initial(particle_state<S, All> const& state, sphere_view<
                                Effects const& effects) {
   return {state, spheres, velocities, effects.source_radius()};
 }
-
-/// Kernel functor of `for_each`.
-template <class T>
-struct copy_values {
-  T const* from;
-  T* to;
-  COLLIDE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
-};
 
 /// Kernel functor of `for_each` over one item.
 struct advance_time {

@@ -84,7 +84,7 @@ struct step_kernel {
   using scratch = scratch_of<Block, Context::any_mesh_contact>;
 
   template <class Block>
-  COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(Block& block, scratch<Block>& s) const {
     static_assert(Block::warp_size == 1 || particle_padding % tile<Block> == 0, "there is room for whole tiles");
     if constexpr (Context::any_mesh_contact) {
       advance_and_enqueue(block, s);

@@ -75,7 +75,7 @@ struct list_pressing {
   pressing_list found;
   meeting what;
 
-  COLLIDE_HD void operator()(std::size_t i) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t i) const {
     if (what == meeting::of_woken && !(is_just_woken(state, i) && has_no_mesh_kicks(state, i))) return;
     forget_mesh_kicks(state, i);
     if constexpr (Effects::any_inactive) {
@@ -130,7 +130,7 @@ struct press_on_mesh {
   S dt;
   meeting what;
 
-  COLLIDE_HD void operator()(std::size_t k) const {
+  COLLIDE_AS_O3 COLLIDE_HD void operator()(std::size_t k) const {
     if (k < *pressing.count) press_with(pressing.numbers[k]);
   }
 

@@ -41,7 +41,7 @@ struct nearest_of_triangle {
 /// The nearest point of a finite triangle. Where it lies in an edge or a corner, but straight below the centre to
 /// rounding, normal and distance are those of the triangle's plane, which all triangles of a flat wall have in common.
 template <class S>
-COLLIDE_HD_NOINLINE nearest_of_triangle nearest_to(triangle<S> const& t, vec3<S> const& centre) {
+COLLIDE_AS_O3 COLLIDE_HD_NOINLINE nearest_of_triangle nearest_to(triangle<S> const& t, vec3<S> const& centre) {
   constexpr double straight = 1e-14;  // square of an angle
   sphere<S> const at{centre, S(0)};
   local_triangle<double> const l = to_local<double>(t, at);

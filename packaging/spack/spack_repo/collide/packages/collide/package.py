@@ -6,6 +6,9 @@ from spack.package import *
 class Collide(CMakePackage):
     """Collision detection between a triangle mesh and very many spheres, on CPU and GPU."""
 
+    homepage = "https://OWNER.github.io/collide"
+    git = "https://github.com/OWNER/collide"
+
     license("BSD-3-Clause")
 
     # For `spack dev-build` or `spack develop`, which take the sources of a folder.

@@ -1,0 +1,1 @@
+// Nothing: libcollide_python.so is what the archive of collide::compiled has.
