@@ -340,8 +340,10 @@ class simulation {
   static constexpr bool may_be_made = (may_make<Effect> || ...);
   template <class Triangles>
   using step_context = detail::step_context<S, narrow_phase, Triangles, effects_type>;
-  using neighbour_lists =
-      std::conditional_t<effects_type::any_pair_contact, detail::verlet_list<S, effects_type>, detail::absent>;
+  /// True if each pair is evaluated once: where a thread is alone in its block, as on a CPU.
+  static constexpr bool meets_once = effects_type::meets_once && detail::works_alone<execution_space>;
+  using neighbour_lists = std::conditional_t<effects_type::any_pair_contact,
+                                             detail::verlet_list<S, effects_type, meets_once>, detail::absent>;
   using surface_memory =
       std::conditional_t<effects_type::overlaps, detail::surface_memory<S, typename effects_type::remembered>,
                          detail::absent>;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <type_traits>
 
+#include <collide/effects/detail/particle_access.hpp>
+#include <collide/effects/detail/sphere_action.hpp>
 #include <collide/effects/granular/cohesion.hpp>
 #include <collide/effects/granular/cundall_strack.hpp>
 #include <collide/effects/granular/dashpot.hpp>
@@ -106,6 +108,58 @@ struct granular_contact {
     });
   }
 
+  /// True if what it does to one of two spheres is the opposite of what it does to the other.
+  static constexpr bool is_mutual = detail::is_mutual_law<Normal> && detail::is_mutual_law<Tangential> &&
+                                    detail::is_mutual_law<Rolling> && detail::is_mutual_law<Cohesion>;
+
+  /// Numbers that are kept of what two spheres do to each other.
+  static constexpr int action_width = !turns ? 3 : std::is_same<Rolling, none>::value ? 7 : 10;
+
+  /// One of two spheres, or one each of some pairs; seen(k) is that of pair k.
+  template <class P, class F>
+  COLLIDE_HD_INLINE detail::meeting_sphere<P> see(F const& seen) const {
+    using lanes = detail::from_lanes<P>;
+    using S = decltype(seen(0).radius());
+    detail::meeting_sphere<P> s;
+    for (int c = 0; c < 3; ++c) {
+      s.position[c] = lanes::of([&](int k) { return seen(k)[position{}][c]; });
+      s.velocity[c] = lanes::of([&](int k) { return seen(k)[velocity{}][c]; });
+      if constexpr (turns) s.spin[c] = lanes::of([&](int k) { return seen(k)[angular_velocity{}][c]; });
+    }
+    s.radius = lanes::of([&](int k) { return seen(k).radius(); });
+    s.density = lanes::of([&](int k) { return made_of.template density_of<S>(seen(k)); });
+    return s;
+  }
+  template <class P>
+  static COLLIDE_HD_INLINE P mass_of(detail::meeting_sphere<P> const& s) {
+    return detail::sphere_mass(1.0, s.radius) * s.density;
+  }
+  /// The action of the second spheres of some pairs of two solids on the first; `upwards` is 1 or -1, the direction
+  /// where two centres coincide.
+  template <class P, class Memory>
+  COLLIDE_HD_INLINE detail::sphere_action<P> act(detail::meeting_sphere<P> const& a, detail::meeting_sphere<P> const& b,
+                                                 P const& upwards, detail::contact_material const& of,
+                                                 Memory const& memory) const {
+    granular_pair<P> const c = pair_of(a, b, upwards);
+    normal_force<P> n = normal.force(c, of);
+    cohesion.pull(n, c, of, memory);
+    detail::mask_of<P> const goes_on = c.overlap > 0 || n.goes_on;
+    detail::sphere_action<P> action = act_with(n, c, of, memory);
+    action.is_there = goes_on;
+    return action;
+  }
+  /// Adds an action to a particle's velocity and spin; `impulse` is the time over its mass.
+  template <class S>
+  COLLIDE_HD_INLINE void give(vec3<S>& v, [[maybe_unused]] vec3<S>& spin, detail::sphere_action<S> const& by,
+                              [[maybe_unused]] S radius, S impulse) const {
+    if constexpr (turns) {
+      S const arm = radius - S(arm_shortening) * by.overlap;
+      vec3<S> const torque = by.twist * arm + by.torque;
+      spin += torque * (S(2.5) * impulse / (radius * radius));
+    }
+    v += by.force * impulse;
+  }
+
   template <class Particle, class Seen, class S, std::enable_if_t<is_memoryless && sizeof(S) != 0, int> = 0>
   COLLIDE_HD_INLINE void on_pair_contact(Particle& p, Seen const& self, Seen const& other, S dt) const {
     meet(p, self, other, no_memory<S>{dt}, dt);
@@ -137,32 +191,37 @@ struct granular_contact {
   /// Two spheres. True if the contact goes on.
   template <class Particle, class Seen, class Memory, class S>
   COLLIDE_HD_INLINE bool meet(Particle& p, Seen const& self, Seen const& other, Memory const& memory, S dt) const {
-    S const r = self.radius(), other_r = other.radius();
-    vec3<S> const between = self[position{}] - other[position{}];
-    S const distance = detail::length_of(between);
-    granular_pair<S> c;
-    c.normal = distance > 0 ? vec3<S>(between * (1 / distance))
-                            : vec3<S>(S(0), S(0), self.number() < other.number() ? S(-1) : S(1));
-    c.overlap = (r + other_r) - distance;
-    c.radius = r * other_r / (r + other_r);
-    c.own_radius = r;
-    S const m = detail::sphere_mass(S(1), r) * made_of.template density_of<S>(self);
-    S const other_m = detail::sphere_mass(S(1), other_r) * made_of.template density_of<S>(other);
+    auto const a = see<S>([&](int) { return self; }), b = see<S>([&](int) { return other; });
+    granular_pair<S> const c = pair_of(a, b, self.number() < other.number() ? S(-1) : S(1));
+    return apply(p, c, mass_of(a), made_of.between(self, other), memory, dt);
+  }
+
+  template <class P>
+  COLLIDE_HD_INLINE granular_pair<P> pair_of(detail::meeting_sphere<P> const& a, detail::meeting_sphere<P> const& b,
+                                             P const& upwards) const {
+    vec3<P> const between = a.position - b.position;
+    P const distance = detail::length_of(between);
+    granular_pair<P> c;
+    c.normal = detail::either(distance > 0, vec3<P>(between * (1 / distance)), vec3<P>(P(0), P(0), upwards));
+    c.overlap = (a.radius + b.radius) - distance;
+    c.radius = a.radius * b.radius / (a.radius + b.radius);
+    c.own_radius = a.radius;
+    P const m = mass_of(a), other_m = mass_of(b);
     c.mass = m * other_m / (m + other_m);
-    vec3<S> turned(S(0), S(0), S(0));
+    vec3<P> turned(P(0), P(0), P(0));
     c.own_turning = c.turning = turned;
     c.rolling_inertia = 0;
     if constexpr (turns) {
-      vec3<S> const &w = self[angular_velocity{}], &other_w = other[angular_velocity{}];
-      turned = w * slip_arm(r, c.overlap) + other_w * slip_arm(other_r, c.overlap);
+      vec3<P> const &w = a.spin, &other_w = b.spin;
+      turned = w * slip_arm(a.radius, c.overlap) + other_w * slip_arm(b.radius, c.overlap);
       c.own_turning = along_surface(w, c.normal);
-      c.turning = along_surface(vec3<S>(w - other_w), c.normal);
+      c.turning = along_surface(vec3<P>(w - other_w), c.normal);
       set_spins(c, w, other_w);
-      S const inertia = m * r * r, other_inertia = other_m * other_r * other_r;
-      c.rolling_inertia = S(1.4) * (inertia * other_inertia / (inertia + other_inertia));
+      P const inertia = m * a.radius * a.radius, other_inertia = other_m * b.radius * b.radius;
+      c.rolling_inertia = P(1.4) * (inertia * other_inertia / (inertia + other_inertia));
     }
-    set_velocity(c, vec3<S>(self[velocity{}] - other[velocity{}]), turned);
-    return apply(p, c, m, made_of.between(self, other), memory, dt);
+    set_velocity(c, vec3<P>(a.velocity - b.velocity), turned);
+    return c;
   }
 
   /// A sphere and a wall. Of a contact that joins a deeper one, all forces are less by those at the saddle, which has
@@ -239,19 +298,29 @@ struct granular_contact {
     normal_force<S> n = normal.force(c, of);
     cohesion.pull(n, c, of, memory);
     if (!(c.overlap > 0) && !n.goes_on) return false;
-    n.secant = S(Normal::is_hertzian ? 2.0 / 3 : 1) * n.stiffness;
-    n.damping = S(Normal::damping_factor * of.damping) * detail::sqrt_rn(n.stiffness * c.mass);
-    vec3<S> force = c.normal * n.total(c);
-    S const impulse = dt / m;
+    auto const action = act_with(n, c, of, memory);
     if constexpr (turns) {
-      vec3<S> const aside = tangential.force(c, of, n, memory), resistance = rolling.torque(c, of, n, memory);
-      force += aside;
-      S const arm = c.own_radius - S(arm_shortening) * c.overlap;
-      vec3<S> const torque = detail::cross(aside, c.normal) * arm + resistance;
-      p[angular_velocity{}] += torque * (S(2.5) * impulse / (c.own_radius * c.own_radius));
+      give(p[velocity{}], p[angular_velocity{}], action, c.own_radius, dt / m);
+    } else {
+      give(p[velocity{}], p[velocity{}], action, c.own_radius, dt / m);
     }
-    p[velocity{}] += force * impulse;
     return true;
+  }
+  template <class P, class Memory>
+  COLLIDE_HD_INLINE detail::sphere_action<P> act_with(normal_force<P>& n, granular_pair<P> const& c,
+                                                      detail::contact_material const& of, Memory const& memory) const {
+    n.secant = P(Normal::is_hertzian ? 2.0 / 3 : 1) * n.stiffness;
+    n.damping = P(Normal::damping_factor * of.damping) * detail::sqrt_rn(P(n.stiffness * c.mass));
+    detail::sphere_action<P> a;
+    a.force = c.normal * n.total(c);
+    a.overlap = c.overlap;
+    if constexpr (turns) {
+      vec3<P> const aside = tangential.force(c, of, n, memory);
+      a.torque = rolling.torque(c, of, n, memory);
+      a.force += aside;
+      a.twist = detail::cross(aside, c.normal);
+    }
+    return a;
   }
 };
 

@@ -34,6 +34,14 @@ struct contact_values<S, columns<C...>> : contact_value<C, S>... {
   using list = columns<C...>;
   static constexpr int width = (column_layout<C, S>::width + ... + 0);
 
+  /// f(number, k, sign) for all numbers of all columns, number k; the sign is -1 of what has the opposite sign for the
+  /// other particle, where both remember the same.
+  template <class F>
+  COLLIDE_HD_INLINE void for_each_number([[maybe_unused]] F const& f) {
+    [[maybe_unused]] int n = 0;
+    (for_each_of<C>(n, f), ...);
+  }
+
   template <class D>
   COLLIDE_HD_INLINE column_value<D, S>& operator[](D) {
     return static_cast<contact_value<D, S>&>(*this).value;
@@ -42,38 +50,27 @@ struct contact_values<S, columns<C...>> : contact_value<C, S>... {
   COLLIDE_HD_INLINE column_value<D, S> const& operator[](D) const {
     return static_cast<contact_value<D, S> const&>(*this).value;
   }
+
+ private:
+  template <class D, class F>
+  COLLIDE_HD_INLINE void for_each_of(int& n, F const& f) {
+    using layout = column_layout<D, S>;
+    for (int k = 0; k < layout::width; ++k) f(layout::at((*this)[D{}], k), n++, layout::width == 3 ? -1 : 1);
+  }
 };
 
 /// The memory of a contact as it is stored: to be read at once.
 template <class S, class List>
 struct alignas(contact_values<S, List>::width > 2 ? 4 * sizeof(S) : sizeof(S)) contact_record {
-  S numbers[contact_values<S, List>::width];
+  S numbers[contact_values<S, List>::width > 0 ? contact_values<S, List>::width : 1];
 
   COLLIDE_HD_INLINE contact_values<S, List> values() const {
     contact_values<S, List> v;
-    read(v, List{});
+    v.for_each_number([&](S& x, int k, int) { x = numbers[k]; });
     return v;
   }
-  COLLIDE_HD_INLINE void set(contact_values<S, List> const& v) { write(v, List{}); }
-
- private:
-  template <class... C>
-  COLLIDE_HD_INLINE void read(contact_values<S, List>& v, columns<C...>) const {
-    int n = 0;
-    auto const each = [&](auto column) {
-      using layout = column_layout<decltype(column), S>;
-      for (int k = 0; k < layout::width; ++k) layout::at(v[column], k) = numbers[n++];
-    };
-    (each(C{}), ...);
-  }
-  template <class... C>
-  COLLIDE_HD_INLINE void write(contact_values<S, List> const& v, columns<C...>) {
-    int n = 0;
-    auto const each = [&](auto column) {
-      using layout = column_layout<decltype(column), S>;
-      for (int k = 0; k < layout::width; ++k) numbers[n++] = layout::at(v[column], k);
-    };
-    (each(C{}), ...);
+  COLLIDE_HD_INLINE void set(contact_values<S, List> v) {
+    v.for_each_number([&](S& x, int k, int) { numbers[k] = x; });
   }
 };
 

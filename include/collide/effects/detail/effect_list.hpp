@@ -161,6 +161,22 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
                writes_if<E, overlaps_in<E, S> || (overlaps && has_on_mesh_impulse<E, S>::value)>...>,
       union_of<columns_if<keeps_pair_forces, velocity>, columns_if<keeps_pair_torques, angular_velocity>>>;
 
+  /// On a CPU particles meet once a pair, for the one effect that is between them; see pair_actions.hpp.
+  static constexpr bool meets_once = (int(pairs_in<E, S>) + ... + 0) == 1 && (is_mutual_effect<E> || ...) &&
+                                     !any_inactive && !contains<all, global_number> &&
+                                     !(has_try_wake<E, S>::value || ...);
+  template <class F>
+  static constexpr int action_width_of() {
+    if constexpr (is_mutual_effect<F>) return F::action_width;
+    return 0;
+  }
+  static constexpr int action_width = (action_width_of<E>() + ... + 0);
+  /// Calls f(effect) for the one.
+  template <class F>
+  COLLIDE_HD_INLINE void for_mutual(F const& f) const {
+    (for_mutual_of<E>(f), ...);
+  }
+
   explicit effect_list(E... e) : effect_slot<E>{std::move(e)}... {}
 
   /// How many particles a source makes in the time `dt`, and their radius; -1 if there is none.
@@ -285,6 +301,10 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
   }
 
  private:
+  template <class F, class G>
+  COLLIDE_HD_INLINE void for_mutual_of([[maybe_unused]] G const& f) const {
+    if constexpr (is_mutual_effect<F>) f(of<F>());
+  }
   template <class F>
   void find_box_of([[maybe_unused]] space_type& found) const {
     if constexpr (repeats && repeats_space<F>) {

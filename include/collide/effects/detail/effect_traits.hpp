@@ -11,6 +11,12 @@
 
 namespace collide::detail {
 
+/// True of an effect whose particles do the opposite to each other; see pair_actions.hpp.
+template <class E, class = void>
+inline constexpr bool is_mutual_effect = false;
+template <class E>
+inline constexpr bool is_mutual_effect<E, std::void_t<decltype(E::is_mutual)>> = E::is_mutual;
+
 /// Sees all that an effect names; only to ask what members the effect has.
 template <class E, class S>
 using archetype = particle<S, union_of<typename reads_of<E>::type, typename writes_of<E>::type,

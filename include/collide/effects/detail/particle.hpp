@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <collide/effects/detail/column_list.hpp>
+#include <collide/exact/detail/numeric/pack.hpp>
 
 // the numbers of elements of small arrays are int
 #pragma GCC diagnostic push
@@ -15,7 +16,7 @@ namespace collide::detail {
 /// A value of a column is `width` numbers of type `element`, one after the other.
 template <class V>
 struct layout_of {
-  static_assert(std::is_arithmetic<V>::value, "collide: a column holds vec3<S>, S or an integer");
+  static_assert(is_number<V>, "collide: a column holds vec3<S>, S or an integer");
   using element = V;
   static constexpr int width = 1;
   static COLLIDE_HD_INLINE V& at(V& v, int) { return v; }

@@ -11,7 +11,8 @@ namespace collide {
 /// A pull of `cohesion` times the area in which two spheres overlap, 2 pi overlap 2 R*: the simplified JKR model of
 /// LIGGGHTS, second form (`sjkr2`). Friction has the limits that it has without the pull.
 struct sjkr {
-  double wall_factor = 0.5;  ///< of 4 pi R overlap at walls, not negative; LIGGGHTS: 0.5
+  static constexpr bool is_mutual = true;  ///< see law.hpp
+  double wall_factor = 0.5;                ///< of 4 pi R overlap at walls, not negative; LIGGGHTS: 0.5
 
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(wall_factor), "sjkr: wall_factor is not negative, and finite");
@@ -30,6 +31,7 @@ struct sjkr {
 /// Hertz' force less a constant pull, 4 pi gamma R*, of hard grains: B. V. Derjaguin, V. M. Muller and Y. P. Toporov,
 /// Journal of Colloid and Interface Science 53, 1975.
 struct dmt {
+  static constexpr bool is_mutual = true;          ///< see law.hpp
   static constexpr bool needs_hertz = true;        ///< the normal law must be `hertz`
   static constexpr double farthest_saddle = 1e-3;  ///< from a sphere, in its radii, so that a shallow fold is a plane
 
@@ -54,6 +56,7 @@ struct dmt {
 /// Technology 99, 1998. LAMMPS parts them where the pull is largest, 3 pi gamma R*, at about half that distance, so
 /// that slow impacts stick less there. Farther apart than a twentieth of its radius a sphere loses a wall.
 struct jkr {
+  static constexpr bool is_mutual = true;             ///< see law.hpp
   using remembers = contact_columns<contact_radius>;  ///< so that a contact goes on where the two are apart
   static constexpr double farther = 0.05;             ///< than its radius a sphere sees the mesh, in radii
   static constexpr double farthest_saddle = farther + dmt::farthest_saddle;  ///< from a sphere, in its radii
@@ -63,19 +66,18 @@ struct jkr {
   COLLIDE_HD_INLINE void pull(normal_force<S>& n, granular_pair<S> const& p, detail::contact_material const& m,
                               Memory const&) const {
     S const gamma = S(m.cohesion), young = S(m.young);
-    if (!(gamma > 0)) return;
+    if (!detail::any(gamma > 0)) return;
     S const k = detail::sqrt_rn(S(3.141592653589793) * gamma / young);
-    S const x = root(p.radius, k, p.overlap);
-    if (!(x > 0)) {  // they have parted
-      n.elastic = n.stiffness = n.contact_radius = 0;
-      return;
-    }
+    auto const larger_root = [](auto r, auto of, auto overlap) { return root(r, of, overlap); };
+    S const x = detail::in_each_lane(larger_root, p.radius, k, p.overlap);
+    auto const holds = x > 0;  // else they have parted
     S const a = x * x, cube = a * a * a;
-    n.contact_radius = a;
-    n.stiffness = 2 * young * a;
-    n.elastic = S(4.0 / 3) * young * cube / p.radius - 4 * k * young * detail::sqrt_rn(cube);
-    n.pull_off = S(9.42477796076938) * gamma * p.radius;
-    n.goes_on = true;
+    n.contact_radius = detail::either(holds, a, S(0));
+    n.stiffness = detail::either(holds, S(2 * young * a), S(0));
+    n.elastic =
+        detail::either(holds, S(S(4.0 / 3) * young * cube / p.radius - 4 * k * young * detail::sqrt_rn(cube)), S(0));
+    n.pull_off = detail::either(holds, S(S(9.42477796076938) * gamma * p.radius), n.pull_off);
+    n.goes_on = holds;
   }
 
   /// The least overlap that holds: -3/2 k x with x^3 = k R* / 2 and k^2 = pi gamma / E*, less what rounding takes.

@@ -12,6 +12,7 @@ namespace collide {
 /// `granular hooke ... tangential linear_history`, MercuryDPM's LinearViscoelasticFriction (2/7, 2/7) or LIGGGHTS'
 /// `hooke tangential history` (1, 1, `slip_test::spring`). With `hertz` the stiffnesses are 2 E* a and a part of it.
 struct cundall_strack {
+  static constexpr bool is_mutual = true;  ///< see law.hpp
   using remembers = contact_columns<tangential_displacement>;
 
   double stiffness_ratio = 2.0 / 7;                ///< k_t / k_n, above 0

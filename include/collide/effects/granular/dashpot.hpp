@@ -8,7 +8,8 @@ namespace collide {
 
 /// A dashpot up to Coulomb's limit. Nothing is remembered: a pile creeps.
 struct dashpot {
-  double damping = 0;  ///< force per slip, not negative
+  static constexpr bool is_mutual = true;  ///< see law.hpp
+  double damping = 0;                      ///< force per slip, not negative
 
   void check_parameters() const {
     detail::check_parameter(detail::is_amount(damping), "dashpot: damping is not negative, and finite");
@@ -18,8 +19,8 @@ struct dashpot {
   COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const& p, detail::contact_material const& m,
                                   normal_force<S> const& n, Memory const&) const {
     S const speed = detail::length_of(p.slip);
-    if (!(speed > 0)) return {S(0), S(0), S(0)};
-    return p.slip * (-detail::min(S(damping) * speed, detail::friction_limit(p, m, n)) / speed);
+    S const force = detail::min(S(S(damping) * speed), detail::friction_limit(p, m, n));
+    return detail::either(speed > 0, vec3<S>(p.slip * (-force / speed)), vec3<S>(S(0), S(0), S(0)));
   }
 };
 

@@ -10,6 +10,7 @@ namespace collide {
 /// beta sqrt(2 E* a m*), gives the same coefficient of restitution at any speed: Y. Tsuji, T. Tanaka and T. Ishida,
 /// Powder Technology 71, 1992; T. Antypov and J. A. Elliott, EPL 94, 2011. At the end of a contact it may pull.
 struct hertz {
+  static constexpr bool is_mutual = true;                       ///< see law.hpp
   static constexpr bool is_hertzian = true;                     ///< the two touch as Hertz says
   static constexpr double damping_factor = 1.8257418583505538;  ///< 2 sqrt(5/6), of beta sqrt(stiffness m*)
 

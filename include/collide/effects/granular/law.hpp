@@ -12,12 +12,16 @@
 ///     Memory const&)`, on the particle, at right angles to the normal; and, if it has a spring, `S energy(...)` with
 ///     the same arguments, for `energy` of a simulation;
 ///   - rolling: `vec3<S> torque(...)` with the same arguments, on the particle.
-/// `memory[column{}]` is what the contact remembers, `memory.elapsed()` for how long the contact has moved since it was
-/// looked at before.
+/// A law that does to one of two spheres the opposite of what it does to the other says so: `static constexpr bool
+/// is_mutual = true`. On a CPU it is asked once a pair then, and some pairs at a time: S may be a `detail::pack`, for
+/// which `any` and `either` take the place of branches (exact/detail/numeric/pack.hpp). What such a law remembers as
+/// vec3<S> has the opposite sign for the other sphere, what it remembers as S the same. `memory[column{}]` is what the
+/// contact remembers, `memory.elapsed()` for how long the contact has moved since it was looked at before.
 #pragma once
 
 #include <collide/effects/detail/particle_access.hpp>
 #include <collide/effects/granular/materials.hpp>
+#include <collide/exact/detail/numeric/pack.hpp>
 
 namespace collide {
 
@@ -48,14 +52,14 @@ struct normal_force {
   S damping = 0;     ///< force per closing speed: damping_factor beta sqrt(stiffness m*), after cohesion
   S pull_off = 0;    ///< the largest pull of cohesion (`sjkr`: half its pull), twice of which friction does not feel
   S secant = 0;      ///< elastic force over overlap, as of the normal law without cohesion; of `jkr` as of its area
-  bool goes_on = false;  ///< the two hold each other, though apart
+  detail::mask_of<S> goes_on = false;  ///< the two hold each other, though apart
 
   /// The force along the normal, with damping.
   COLLIDE_HD_INLINE S total(granular_pair<S> const& p) const { return elastic + damping * p.closing; }
   /// The force by which sliding and rolling friction are limited: |total + 2 pull_off|.
   COLLIDE_HD_INLINE S holding(granular_pair<S> const& p) const {
     S const force = total(p) + 2 * pull_off;
-    return force < 0 ? -force : force;
+    return detail::either(force < 0, S(-force), force);
   }
 };
 
@@ -67,6 +71,8 @@ struct contact_radius {
 
 /// In place of a law: no force, no torque, nothing that is remembered.
 struct none {
+  static constexpr bool is_mutual = true;  ///< see law.hpp
+
   template <class S, class Memory>
   COLLIDE_HD_INLINE void pull(normal_force<S>&, granular_pair<S> const&, detail::contact_material const&,
                               Memory const&) const {}
@@ -108,6 +114,11 @@ double stiffness_ratio_of([[maybe_unused]] L const& law) {
   else
     return 0;
 }
+template <class L, class = void>
+inline constexpr bool is_mutual_law = false;
+template <class L>
+inline constexpr bool is_mutual_law<L, std::void_t<decltype(L::is_mutual)>> = L::is_mutual;
+
 template <class S>
 COLLIDE_HD_INLINE S length_of(vec3<S> const& v) {
   return sqrt_rn(dot(v, v));

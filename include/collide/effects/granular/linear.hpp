@@ -10,6 +10,7 @@ namespace collide {
 /// Cundall and O. D. L. Strack, "A discrete numerical model for granular assemblies", Geotechnique 29(1), 1979; damping
 /// 2 beta sqrt(k m*).
 struct linear {
+  static constexpr bool is_mutual = true;      ///< see law.hpp
   static constexpr bool is_hertzian = false;   ///< the two touch as Hertz says
   static constexpr double damping_factor = 2;  ///< of beta sqrt(stiffness m*)
 

@@ -105,6 +105,13 @@ class one_material {
   COLLIDE_HD_INLINE S density_of(Particle const&) const {
     return S(solid_.density);
   }
+  static constexpr int pairs = 1;  ///< of solids
+  /// The number of the pair of two particles' solids, from 0.
+  template <class Particle>
+  COLLIDE_HD_INLINE int pair_of(Particle const&, Particle const&) const {
+    return 0;
+  }
+  COLLIDE_HD_INLINE detail::contact_material const& of_pair(int) const { return pair_; }
   template <class Particle>
   COLLIDE_HD_INLINE detail::contact_material const& between(Particle const&, Particle const&) const {
     return pair_;
@@ -199,9 +206,16 @@ class materials {
   COLLIDE_HD_INLINE S density_of(Particle const& p) const {
     return S(solids_[number_of(p)].density);
   }
+  static constexpr int pairs = N * (N + 1) / 2;  ///< of solids
+  /// The number of the pair of two particles' solids, from 0.
+  template <class Particle>
+  COLLIDE_HD_INLINE int pair_of(Particle const& p, Particle const& other) const {
+    return place(number_of(p), number_of(other));
+  }
+  COLLIDE_HD_INLINE detail::contact_material const& of_pair(int number) const { return pairs_[number]; }
   template <class Particle>
   COLLIDE_HD_INLINE detail::contact_material const& between(Particle const& p, Particle const& other) const {
-    return pairs_[place(number_of(p), number_of(other))];
+    return of_pair(pair_of(p, other));
   }
   template <class Particle>
   COLLIDE_HD_INLINE detail::contact_material const& with_wall(Particle const& p, id triangle, id body) const {

@@ -37,7 +37,7 @@ COLLIDE_HD_INLINE void turn_spring(Law const& law, vec3<S>& spring, granular_pai
   if (law.turns_about_normal) turn_about_normal(spring, p, elapsed);
   if (!law.keeps_length) return;
   S const after = dot(spring, spring);
-  if (after > 0) spring = spring * sqrt_rn(before / after);
+  spring = either(after > 0, vec3<S>(spring * sqrt_rn(before / after)), spring);
 }
 
 /// The force of a spring that grows with slip and slides at Coulomb's limit, and of its dashpot.
@@ -52,10 +52,12 @@ COLLIDE_HD_INLINE vec3<S> spring_force(Law const& law, granular_pair<S> const& p
   bool const with_dashpot = law.test == slip_test::spring_and_dashpot;
   vec3<S> const tested = with_dashpot ? pull : vec3<S>(spring * stiffness);
   S const tested_length = length_of(tested);
-  if (!(tested_length > limit)) return -pull;
+  auto const slides = tested_length > limit;
+  if (!any(slides)) return -pull;
   vec3<S> const sliding = tested * (limit / tested_length);
-  if (stiffness > 0) spring = (with_dashpot ? vec3<S>(sliding - damped) : sliding) * (1 / stiffness);
-  return -sliding;
+  vec3<S> const left = (with_dashpot ? vec3<S>(sliding - damped) : sliding) * (1 / stiffness);
+  spring = either(slides && stiffness > 0, left, spring);
+  return either(slides, vec3<S>(-sliding), vec3<S>(-pull));
 }
 
 }  // namespace detail
@@ -64,6 +66,7 @@ COLLIDE_HD_INLINE vec3<S> spring_force(Law const& law, granular_pair<S> const& p
 /// Mindlin, Journal of Applied Mechanics 16, 1949; A. Di Renzo and F. P. Di Maio, Chemical Engineering Science 59,
 /// 2004. As it is by default, it is that of LIGGGHTS; the members are where other codes differ.
 struct mindlin {
+  static constexpr bool is_mutual = true;  ///< see law.hpp
   using remembers = contact_columns<tangential_displacement>;
   static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
 
@@ -118,7 +121,8 @@ struct mindlin_rescale : mindlin {
   COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const& p, detail::contact_material const& m,
                                   normal_force<S> const& n, Memory const& memory) const {
     S& before = memory[contact_radius{}];
-    if (n.contact_radius < before) memory[tangential_displacement{}] *= n.contact_radius / before;
+    vec3<S>& spring = memory[tangential_displacement{}];
+    spring = detail::either(n.contact_radius < before, vec3<S>(spring * (n.contact_radius / before)), spring);
     before = n.contact_radius;
     return mindlin::force(p, m, n, memory);
   }
@@ -144,7 +148,8 @@ struct mindlin_force : mindlin {
   COLLIDE_HD_INLINE vec3<S> force(granular_pair<S> const& p, detail::contact_material const& m,
                                   normal_force<S> const& n, Memory const& memory) const {
     S const a = n.contact_radius, before = memory[contact_radius{}];
-    if (a > before || (a > 0 && !rescales)) memory[tangential_displacement{}] *= before / a;
+    vec3<S>& spring = memory[tangential_displacement{}];
+    spring = detail::either(a > before || (a > 0 && !rescales), vec3<S>(spring * (before / a)), spring);
     memory[contact_radius{}] = a;
     return mindlin::force(p, m, n, memory);
   }

@@ -17,13 +17,14 @@ struct rolling_torque {
 /// is nearly at rest trembles. Twist, which is turning about the normal, does not change it; LIGGGHTS' `cdt` divides by
 /// the rate of rolling and twist together, so that what twists rolls more easily there.
 struct constant_torque {
+  static constexpr bool is_mutual = true;  ///< see law.hpp
   template <class S, class Memory>
   COLLIDE_HD_INLINE vec3<S> torque(granular_pair<S> const& p, detail::contact_material const& m,
                                    normal_force<S> const& n, Memory const&) const {
     S const rate = detail::length_of(p.turning);
-    if (!(rate > 0)) return {S(0), S(0), S(0)};
-    S const force = detail::max(n.elastic + 2 * n.pull_off, S(0));
-    return p.turning * (-S(m.rolling_friction) * p.radius * force / rate);
+    S const force = detail::max(S(n.elastic + 2 * n.pull_off), S(0));
+    return detail::either(rate > 0, vec3<S>(p.turning * (-S(m.rolling_friction) * p.radius * force / rate)),
+                          vec3<S>(S(0), S(0), S(0)));
   }
 };
 
@@ -32,15 +33,15 @@ namespace detail {
 /// Turns a spring that resists rolling into the plane of contact, and about the normal if it is to, winds it up, and
 /// cuts it to its limit, rolling friction times R* times the normal force. True if it was longer.
 template <class S>
-COLLIDE_HD_INLINE bool wind_up(vec3<S>& spring, granular_pair<S> const& p, contact_material const& m,
-                               normal_force<S> const& n, S stiffness, S elapsed, bool turns_about_normal) {
+COLLIDE_HD_INLINE mask_of<S> wind_up(vec3<S>& spring, granular_pair<S> const& p, contact_material const& m,
+                                     normal_force<S> const& n, S stiffness, S elapsed, bool turns_about_normal) {
   spring -= p.normal * dot(spring, p.normal);
   if (turns_about_normal) turn_about_normal(spring, p, elapsed);
   spring -= p.turning * (stiffness * elapsed);
   S const limit = S(m.rolling_friction) * p.radius * n.holding(p), length = length_of(spring);
-  if (!(length > limit)) return false;
-  spring = spring * (limit / length);
-  return true;
+  mask_of<S> const was_longer = length > limit;
+  spring = either(was_longer, vec3<S>(spring * (limit / length)), spring);
+  return was_longer;
 }
 
 }  // namespace detail
@@ -49,6 +50,7 @@ COLLIDE_HD_INLINE bool wind_up(vec3<S>& spring, granular_pair<S> const& p, conta
 /// Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi, Powder Technology 206, 2011; `epsd` of LIGGGHTS. The stiffness is 2.25
 /// k_n (mu_r R*)^2, with k_n the secant of the normal law. So piles stand still.
 struct epsd {
+  static constexpr bool is_mutual = true;  ///< see law.hpp
   using remembers = contact_columns<rolling_torque>;
 
   double damping = 0.3;             ///< ratio to critical damping, not negative
@@ -69,14 +71,16 @@ struct epsd {
     S const arm = S(m.rolling_friction) * p.radius;
     S const stiffness = S(2.25) * n.secant * arm * arm;
     vec3<S>& spring = memory[rolling_torque{}];
-    if (detail::wind_up(spring, p, m, n, stiffness, memory.elapsed(), turns_about_normal)) return spring;
-    return spring - p.turning * (S(2 * damping) * detail::sqrt_rn(p.rolling_inertia * stiffness));
+    auto const was_longer = detail::wind_up(spring, p, m, n, stiffness, memory.elapsed(), turns_about_normal);
+    vec3<S> const damped = spring - p.turning * (S(2 * damping) * detail::sqrt_rn(p.rolling_inertia * stiffness));
+    return detail::either(was_longer, spring, damped);
   }
 };
 
 /// `epsd` without the dashpot, and of stiffness k_t R*^2, with k_t = 8 G* a that of `mindlin`: EPSD2 of LIGGGHTS, after
 /// K. Iwashita and M. Oda, Journal of Engineering Mechanics 124, 1998.
 struct epsd2 {
+  static constexpr bool is_mutual = true;  ///< see law.hpp
   using remembers = contact_columns<rolling_torque>;
   static constexpr bool needs_hertz = true;  ///< the normal law must be `hertz`
 

@@ -74,6 +74,13 @@ struct for_each_block_kernel {
   }
 };
 
+/// True of a space on the host whose blocks are one thread each.
+template <class Space, class = void>
+inline constexpr bool works_alone = false;
+template <class Space>
+inline constexpr bool works_alone<Space, std::enable_if_t<Space::host_accessible>> =
+    Space::template block<for_each_block_kernel<int>>::num_threads == 1;
+
 /// Calls f(i) for all i < n, where each is much work.
 template <class Space, class F>
 void for_each_block(Space const& space, std::size_t n, F const& f) {

@@ -107,7 +107,8 @@ struct count_or_scatter {
     vec3<S> const c = order.inside(p[position{}]);
     S own = 0;
     if constexpr (contains<placing, radius>) own = p[radius{}];
-    std::uint32_t const slot = fetch_add(order.ends + order.place_in_table(c, own) + 1, 1u);
+    std::uint32_t const place = order.place_in_table(c, own), slot = fetch_add(order.ends + place + 1, 1u);
+    if constexpr (!Fill) order.keep_on_curve(place, c);
     if constexpr (Fill) {
       order.numbers[slot] = static_cast<id>(i);
       order.keep_place(i, slot);

@@ -80,7 +80,8 @@ struct sorted_particles {
   typename Effects::space_type space;
   spatial_hash<S> cells;
   small_cells<S> small;
-  std::uint32_t* ends;  ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
+  std::uint32_t* curve;  ///< where each block is along a curve through all of space; null where it does not matter
+  std::uint32_t* ends;   ///< of the cell at place c: ends[c] .. ends[c + 1]; the first of a block begins where it does
   state_of_lists* header;
   id* numbers;
   packed_sphere<S>* spheres;               ///< as they are in this step
@@ -148,6 +149,12 @@ struct sorted_particles {
     return p;
   }
 
+  /// On a CPU: what is loaded soon is on its way.
+  void fetch(std::size_t i) const {
+    __builtin_prefetch(spheres + i);
+    fetch_columns(i, copied{});
+  }
+
   /// The number of the particle at a place, in the order of which its neighbours meet it.
   COLLIDE_HD_INLINE id number_at(std::uint32_t place) const {
     if constexpr (contains<copied, global_number>) {
@@ -213,6 +220,11 @@ struct sorted_particles {
     return is_in(grid, k, first_of(cell_of(grid, i, row), row), 3);
   }
 
+  /// Says of the block at a place in the table that the cell there, at a point, is in it.
+  COLLIDE_HD_INLINE void keep_on_curve(std::uint32_t place, vec3<S> const& x) const {
+    if (curve != nullptr) store_relaxed(curve + place / cells.stride, cells.on_curve(cells.of(x.x(), x.y(), x.z())));
+  }
+
   /// Place of a particle's cell in the table.
   COLLIDE_HD_INLINE std::uint32_t place_in_table(vec3<S> const& x, [[maybe_unused]] S own_radius) const {
     if constexpr (sizes_differ) {
@@ -245,6 +257,11 @@ struct sorted_particles {
   }
 
  private:
+  template <class... C>
+  void fetch_columns([[maybe_unused]] std::size_t i, columns<C...>) const {
+    (__builtin_prefetch(copies.at(C{}) + i * std::size_t(column_layout<C, S>::width)), ...);
+  }
+
   COLLIDE_HD_INLINE bool is_small([[maybe_unused]] std::uint32_t i) const {
     if constexpr (sizes_differ) return references[i].radius <= small.largest;
     return false;

@@ -40,6 +40,17 @@ struct spatial_hash {
     return ((mixed ^ mixed >> 13) & mask) * stride + ((u(c.z) & 1) << 5 | (u(c.y) & 1) << 4 | (u(c.x) & 15));
   }
 
+  /// The place of the block of a cell along a curve, on which near blocks are near: G. M. Morton, "A computer oriented
+  /// geodetic data base", 1966.
+  static COLLIDE_HD_INLINE std::uint32_t on_curve(cell c) {
+    std::uint32_t along = 0;
+    for (std::uint32_t k = 0; k < 10; ++k) {
+      auto const bit = [&](std::int32_t v) { return static_cast<std::uint32_t>(v) >> k & 1; };
+      along |= (bit(c.x >> 4) | bit(c.y >> 1) << 1 | bit(c.z >> 1) << 2) << 3 * k;
+    }
+    return along;
+  }
+
  private:
   /// Rounded down; NaN and what is too far away are somewhere.
   COLLIDE_HD_INLINE std::int32_t coordinate(S x) const {

@@ -22,6 +22,7 @@
 /// when the lists were made.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -33,6 +34,7 @@
 #include <collide/exact/detail/numeric/rounding.hpp>
 #include <collide/simulation/detail/neighbours/births.hpp>
 #include <collide/simulation/detail/neighbours/build_lists.hpp>
+#include <collide/simulation/detail/neighbours/pair_actions.hpp>
 #include <collide/simulation/detail/neighbours/pair_interaction.hpp>
 #include <collide/simulation/detail/neighbours/particle_order.hpp>
 #include <collide/spaces/detail/algorithms.hpp>
@@ -41,8 +43,11 @@
 namespace collide::detail {
 
 /// The lists, the grid and their memory.
-template <class S, class Effects>
+///
+/// \tparam Once  particles meet once a pair; see pair_actions.hpp
+template <class S, class Scene, bool Once = false>
 class verlet_list {
+  using Effects = std::conditional_t<Once, without_memory<Scene>, Scene>;
   using state_type = particle_state<S, typename Effects::all>;
 
  public:
@@ -59,6 +64,7 @@ class verlet_list {
     lists_.reserve(resource, order::listed * n);
     runs_.reserve(resource, n);
     contacts_.reserve(resource, n, order::listed, runs_.capacity());
+    if constexpr (Once) pairs_.reserve(resource, n);
   }
 
   /// For `n` particles, for which there is room, the last `copies` of them other ranks', which at most `border` meet:
@@ -68,11 +74,13 @@ class verlet_list {
              std::size_t border = 0) {
     make_room(places_of_copies_, space.resource(), copies);
     make_room(border_, space.resource(), border);
+    if constexpr (works_alone<Space>) curve_.reserve(space.resource(), cells::blocks_for(numbers_.capacity()));
     space.fill(header_.data(), 0, sizeof(state_of_lists));
     inside_is_done_ = false;
     fit(space, n, radii);
     if constexpr (order::has_absent) space.fill(known_.data(), 0, n * sizeof(*known_.data()));
     contacts_.clear(space, n);
+    if constexpr (Once) pairs_.clear();
   }
 
   /// For the same `n` particles with such radii: lists are made anew. The smallest keep the skin so thin that small
@@ -103,51 +111,27 @@ class verlet_list {
   /// Waits.
   template <class Space>
   saved_contacts<S> save_contacts(Space const& space, std::size_t n) const {
-    saved_contacts<S> saved;
-    saved.counts.assign(n, 0);
-    list_state const header = copied(space, header_.data(), 1)[0];
-    if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
-
-    std::size_t const all = listed_;  // copies of other ranks' particles are behind
-    auto const numbers = copied(space, numbers_.data(), header.count);
-    auto others = numbers;
-    if constexpr (contains<typename Effects::interaction_copies, global_number>)
-      others = copied(space, memory_.state(all, all, S(0)).at(global_number{}), header.count);
-    auto const lists = copied(space, lists_.data(), order::listed * all),
-               runs = copied(space, runs_.data(), runs_.capacity());
-    auto const memory = contacts_.template copied<order::listed>(space, all, header.count, runs.size());
-    std::vector<std::uint32_t> place_of(all, order::overflow_mark);
-    for (std::uint32_t i = 0; i < header.count; ++i) place_of[numbers[i]] = i;
-    for (std::size_t number = 0; number < n; ++number) {
-      std::uint32_t const i = place_of[number];
-      if (i == order::overflow_mark) continue;
-      auto const add = [&](std::uint32_t place, std::size_t item) {
-        saved.others.push_back(others[place]);
-        memory.append(saved.values, item);
-        ++saved.counts[number];
-      };
-      if (lists[i] != order::overflow_mark) {
-        for (std::uint32_t k = 0; k < order::listed; ++k)
-          if ((memory.touching[i] >> k & 1) != 0) add(lists[k * all + i], k * all + i);
-      } else if (lists[all + i] != order::overflow_mark) {
-        std::size_t const first = lists[all + i], size = lists[2 * all + i];
-        for (std::size_t k = first; k < first + size; ++k)
-          if (memory.run_touching[k] != 0) add(runs[k], order::listed * all + k);
-      }
+    if constexpr (Once) {
+      return pairs_.saved(*header_.data(), numbers_.data(), n);
+    } else {
+      return save_listed(space, n);
     }
-    return saved;
   }
   /// After `clear`: lists that are made have what was saved. May wait.
   template <class Space>
   void restore_contacts(Space& space, saved_contacts<S> const& saved) {
-    contacts_.restore(space, saved);
+    if constexpr (Once) {
+      pairs_.restore(space.resource(), saved);
+    } else {
+      contacts_.restore(space, saved);
+    }
   }
 
   /// Memory taken from the resource.
   std::size_t bytes() const {
-    return header_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
+    return header_.bytes() + curve_.bytes() + ends_.bytes() + lists_.bytes() + numbers_.bytes() + spheres_.bytes() +
            references_.bytes() + known_.bytes() + memory_.bytes() + runs_.bytes() + places_of_copies_.bytes() +
-           is_at_border_.bytes() + border_.bytes() + contacts_.bytes();
+           is_at_border_.bytes() + border_.bytes() + contacts_.bytes() + pairs_.bytes();
   }
 
   /// The first part of `renew`: finds out whether lists are to be made anew for particles where they now are, but for
@@ -188,14 +172,24 @@ class verlet_list {
     std::size_t const n = state.size;
     std::uint32_t const* const rebuild = &o.header->rebuild;
     if constexpr (order::has_memory) for_each_if_nonzero(space, rebuild, n, keep_contacts<S, Effects>{o});
+    if constexpr (Once) {
+      if (*rebuild != 0) pairs_.keep(o);
+    }
     for_each_if_nonzero(space, rebuild, blocks_ * cells::stride, clear_cells<S, Effects>{o});
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, false>{state, o});
-    for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
+    if constexpr (works_alone<Space>) {
+      if (*rebuild != 0) scan_along_curve(o);
+    } else {
+      for_each_if_nonzero(space, rebuild, blocks_, scan_cells{o.ends, &o.header->count});
+    }
     for_each_if_nonzero(space, rebuild, n, count_or_scatter<S, Effects, true>{state, o});
     for_each_if_nonzero(space, rebuild, n, gather<S, Effects>{state, o});
     for_each_if_nonzero(space, rebuild, n, build_lists<S, Effects>{o, skin_});
-    if constexpr (order::has_memory && Space::host_accessible) {
+    if constexpr (Once || (order::has_memory && Space::host_accessible)) {
       if (header_.data()->in_runs > runs_.capacity()) grow_runs(space, state);
+    }
+    if constexpr (Once) {
+      if (*rebuild != 0) pairs_.build(space, order_of(state));
     }
   }
 
@@ -228,11 +222,15 @@ class verlet_list {
 
   /// After `renew`: one pass of `on_pair_contact` over all pairs.
   template <class Space>
-  void interact(Space& space, state_type const& state, Effects const& effects, S dt, meeting what) {
+  void interact(Space& space, state_type const& state, Scene const& effects, S dt, meeting what) {
     order const o = order_of(state);
     std::size_t const n = state.size;
     std::uint32_t const* const overflowed = &o.header->overflowed;
-    if constexpr (order::on_ranks) {
+    if constexpr (Once) {
+      pairs_.interact(space, meet_once<S, Scene>{o, pairs_.items(), effects, dt, what},
+                      sum_actions<S, Scene>{{state, o, Effects(effects), dt, what}, pairs_.items()});
+      o.header->rebuild = 0;  // not read again in this step
+    } else if constexpr (order::on_ranks) {
       if (inside_is_done_) {
         inside_is_done_ = false;
         space.for_each(at_border_, interact_at_border<S, Effects>{{{state, o, effects, dt, what}}});
@@ -242,7 +240,8 @@ class verlet_list {
     } else {
       space.for_each(n, interact_listed<S, Effects>{{state, o, effects, dt, what}});
     }
-    for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, what}});
+    if constexpr (!Once)
+      for_each_if_nonzero(space, overflowed, n, interact_overflowed<S, Effects>{{state, o, effects, dt, what}});
   }
 
  private:
@@ -259,15 +258,52 @@ class verlet_list {
     return max((2 * radius + skin) * (1 + S(0.00390625)), std::numeric_limits<S>::min());
   }
 
+  template <class Space>
+  saved_contacts<S> save_listed(Space const& space, std::size_t n) const {
+    saved_contacts<S> saved;
+    saved.counts.assign(n, 0);
+    list_state const header = copied(space, header_.data(), 1)[0];
+    if (header.count == 0) return contacts_.saved_for_lists(space, n);  // there are no lists since it was restored
+
+    std::size_t const all = listed_;  // copies of other ranks' particles are behind
+    auto const numbers = copied(space, numbers_.data(), header.count);
+    auto others = numbers;
+    if constexpr (contains<typename Effects::interaction_copies, global_number>)
+      others = copied(space, memory_.state(all, all, S(0)).at(global_number{}), header.count);
+    auto const lists = copied(space, lists_.data(), order::listed * all),
+               runs = copied(space, runs_.data(), runs_.capacity());
+    auto const memory = contacts_.template copied<order::listed>(space, all, header.count, runs.size());
+    std::vector<std::uint32_t> place_of(all, order::overflow_mark);
+    for (std::uint32_t i = 0; i < header.count; ++i) place_of[numbers[i]] = i;
+    for (std::size_t number = 0; number < n; ++number) {
+      std::uint32_t const i = place_of[number];
+      if (i == order::overflow_mark) continue;
+      auto const add = [&](std::uint32_t place, std::size_t item) {
+        saved.others.push_back(others[place]);
+        memory.append(saved.values, item);
+        ++saved.counts[number];
+      };
+      if (lists[i] != order::overflow_mark) {
+        for (std::uint32_t k = 0; k < order::listed; ++k)
+          if ((memory.touching[i] >> k & 1) != 0) add(lists[k * all + i], k * all + i);
+      } else if (lists[all + i] != order::overflow_mark) {
+        std::size_t const first = lists[all + i], size = lists[2 * all + i];
+        for (std::size_t k = first; k < first + size; ++k)
+          if (memory.run_touching[k] != 0) add(runs[k], order::listed * all + k);
+      }
+    }
+    return saved;
+  }
+
   /// Makes room for all runs, and then those for which there was none. Allocates, but only where a step waits anyhow.
   template <class Space>
   COLLIDE_COLD void grow_runs(Space& space, state_type const& state) {
     std::size_t const before = runs_.capacity(), in_runs = header_.data()->in_runs,
                       more = in_runs + in_runs / 4 - before;
     runs_ = grown(space, runs_, before, more);
-    contacts_.grow(space, order::listed * state.size, before, more);
+    if constexpr (order::has_memory) contacts_.grow(space, order::listed * state.size, before, more);
     space.for_each(state.size, build_missing_runs<S, Effects>{{order_of(state), skin_}});
-    contacts_.grow_kept(space, more);
+    if constexpr (order::has_memory) contacts_.grow_kept(space, more);
   }
 
   template <class Space, class T>
@@ -281,6 +317,7 @@ class verlet_list {
     return {around_,
             cells_,
             small_,
+            curve_.data(),
             ends_.data(),
             header_.data(),
             numbers_.data(),
@@ -303,6 +340,18 @@ class verlet_list {
     if constexpr (order::on_ranks) return state.own;
     return state.size;
   }
+  /// As `scan_cells`, for blocks one after the other along the curve.
+  void scan_along_curve(order const& o) {
+    auto const has_any = [&](std::uint32_t b) {
+      std::uint32_t const* const counts = o.ends + b * cells::stride + 1;
+      return std::any_of(counts, counts + cells::cells_per_block, [](std::uint32_t n) { return n != 0; });
+    };
+    along_.clear();
+    for (std::uint32_t b = 0; b < blocks_; ++b)
+      if (has_any(b)) along_.push_back(b);
+    std::sort(along_.begin(), along_.end(), [&](auto a, auto b) { return o.curve[a] < o.curve[b]; });
+    for (std::uint32_t const b : along_) scan_cells{o.ends, &o.header->count}(b);
+  }
   S most_moved() const { return S(0.495) * skin_; }  ///< half of the skin, but for rounding
 
   typename Effects::space_type around_{};
@@ -312,9 +361,10 @@ class verlet_list {
   std::size_t blocks_ = 0, listed_ = 0;  ///< how many particles have lists
   bool are_complete_ = false;            ///< for particles where they are: `check` has just found that
   buffer<state_of_lists> header_;
-  std::size_t at_border_ = 0;    ///< particles that copies of other ranks' may meet, while lists are complete
-  bool inside_is_done_ = false;  ///< all others have met
-  buffer<std::uint32_t> ends_, lists_, runs_, places_of_copies_, border_;
+  std::size_t at_border_ = 0;         ///< particles that copies of other ranks' may meet, while lists are complete
+  bool inside_is_done_ = false;       ///< all others have met
+  std::vector<std::uint32_t> along_;  ///< blocks that have particles
+  buffer<std::uint32_t> curve_, ends_, lists_, runs_, places_of_copies_, border_;
   buffer<std::uint8_t> is_at_border_;
   buffer<id> numbers_;
   buffer<packed_sphere<S>> spheres_;
@@ -322,6 +372,7 @@ class verlet_list {
   buffer<column_element<alive, S>> known_;
   column_buffers<S, typename Effects::interaction_copies> memory_;
   contact_memory<S, typename Effects::remembered> contacts_;
+  std::conditional_t<Once, pair_actions<S, Scene>, no_pair_actions> pairs_;
 };
 
 }  // namespace collide::detail
