@@ -32,8 +32,8 @@ struct granular_pair {
   S overlap;            ///< by how much the two are in each other; below 0: they are apart
   S closing;            ///< speed at which the overlap grows
   vec3<S> slip;         ///< velocity of the particle's surface against the other's, at right angles to the normal
-  vec3<S> turning;      ///< angular velocity of the particle minus that of the other particle, without the part along the
-                        ///< normal; of a wall `own_turning`, also if the wall turns, as in LIGGGHTS
+  vec3<S> turning;      ///< angular velocity of the particle minus that of the other, without the part along the normal;
+                        ///< of a wall `own_turning`, also if the wall turns, as in LIGGGHTS
   vec3<S> own_turning;  ///< angular velocity of the particle, without the part along the normal
   S radius;             ///< effective: 1/R* = 1/R_i + 1/R_j; of a wall R
   S mass;               ///< effective: 1/m* = 1/m_i + 1/m_j; of a wall m
