@@ -28,17 +28,17 @@ namespace collide {
 /// Two spheres in contact, or a sphere and a wall, as laws see them.
 template <class S>
 struct granular_pair {
-  vec3<S> normal;       ///< unit vector from the other to the particle
-  S overlap;            ///< by how much the two are in each other; below 0: they are apart
-  S closing;            ///< speed at which the overlap grows
-  vec3<S> slip;         ///< velocity of the particle's surface against the other's, at right angles to the normal
-  vec3<S> turning;      ///< angular velocity of the particle minus that of the other, without the part along the normal;
-                        ///< of a wall `own_turning`, also if the wall turns, as in LIGGGHTS
-  vec3<S> own_turning;  ///< angular velocity of the particle, without the part along the normal
-  S radius;             ///< effective: 1/R* = 1/R_i + 1/R_j; of a wall R
-  S mass;               ///< effective: 1/m* = 1/m_i + 1/m_j; of a wall m
-  S rolling_inertia;    ///< 1.4 (m_i R_i^2 m_j R_j^2) / (m_i R_i^2 + m_j R_j^2); of a wall 1.4 m R^2
-  S own_radius;         ///< of the particle
+  vec3<S> normal;   ///< unit vector from the other to the particle
+  S overlap;        ///< by how much the two are in each other; below 0: they are apart
+  S closing;        ///< speed at which the overlap grows
+  vec3<S> slip;     ///< velocity of the particle's surface against the other's, at right angles to the normal
+  vec3<S> turning;  ///< angular velocity of the particle minus that of the other, without the part along the normal;
+                    ///< of a wall `own_turning`, also if the wall turns, as in LIGGGHTS
+  vec3<S> own_turning;   ///< angular velocity of the particle, without the part along the normal
+  S radius;              ///< effective: 1/R* = 1/R_i + 1/R_j; of a wall R
+  S mass;                ///< effective: 1/m* = 1/m_i + 1/m_j; of a wall m
+  S rolling_inertia;     ///< 1.4 (m_i R_i^2 m_j R_j^2) / (m_i R_i^2 + m_j R_j^2); of a wall 1.4 m R^2
+  S own_radius;          ///< of the particle
   bool is_wall = false;  ///< the other is a wall
   S twist = 0;           ///< angular velocity of the particle minus that of the other, along the normal
   S spin = 0;            ///< the mean of both angular velocities along the normal: by which the contact turns
