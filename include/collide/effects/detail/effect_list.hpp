@@ -171,9 +171,9 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
     return 0;
   }
   static constexpr int action_width = (action_width_of<E>() + ... + 0);
-  /// Calls f(effect) for the one.
+  /// Calls f(effect) for the one, on the host.
   template <class F>
-  COLLIDE_HD_INLINE void for_mutual(F const& f) const {
+  void for_mutual(F const& f) const {
     (for_mutual_of<E>(f), ...);
   }
 
@@ -302,7 +302,7 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
 
  private:
   template <class F, class G>
-  COLLIDE_HD_INLINE void for_mutual_of([[maybe_unused]] G const& f) const {
+  void for_mutual_of([[maybe_unused]] G const& f) const {
     if constexpr (is_mutual_effect<F>) f(of<F>());
   }
   template <class F>
