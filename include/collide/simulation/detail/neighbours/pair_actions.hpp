@@ -84,7 +84,7 @@ struct meet_once {
       std::uint32_t const last = items.firsts[i + 1];
       for (std::uint32_t k = items.firsts[i]; k < last; ++k) {
         std::uint32_t const other = items.others[k];
-        __builtin_prefetch(order.spheres + items.others[min(k + 16, most)]);
+        prefetch(order.spheres + items.others[min(k + 16, most)]);
         bool const overlap = order.within_skin(own, order.spheres[other], S(0));
         auto const was = static_cast<std::uint8_t>(items.marks[k] & items.remembers);
         found[size] = {static_cast<std::uint32_t>(i), other, k};
@@ -135,7 +135,7 @@ struct meet_once {
   }
 
   template <class Effect>
-  static particle_access<Effect, interaction> seen(Effect const&, interaction& p) {
+  static COLLIDE_HD_INLINE particle_access<Effect, interaction> seen(Effect const&, interaction& p) {
     return particle_access<Effect, interaction>(p);
   }
 
@@ -161,8 +161,8 @@ struct meet_once {
         touching_pair const& pair = pairs[l] = found[min(first + l, last)];  // the last fill their pack
         touching_pair const& soon = found[min(first + 3 * lanes + l, last)];
         order.fetch(soon.other);
-        __builtin_prefetch(items.actions + soon.item, 1);
-        if constexpr (remembered::size != 0) __builtin_prefetch(items.records + soon.item, 1);
+        prefetch<true>(items.actions + soon.item);
+        if constexpr (remembered::size != 0) prefetch<true>(items.records + soon.item);
         self[l] = order.load(pair.place), other[l] = order.load(pair.other);
         if constexpr (Effects::repeats) order.space.bring_together(self[l][position{}], other[l][position{}]);
         bool const was = (items.marks[pair.item] & items.remembers) != 0;
@@ -215,12 +215,12 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
     fetch_kicks(min(i + 24, std::size_t{places.header->count} - 1), typename Effects::interaction_kicks{});
     std::size_t const soon = min(i + 6, std::size_t{places.header->count} - 1);
     if (places.list(0, soon) != places.overflow_mark)
-      for_each_entry(places, soon, [&](std::uint32_t entry) { __builtin_prefetch(items.actions + (entry >> 1)); });
+      for_each_entry(places, soon, [&](std::uint32_t entry) { prefetch(items.actions + (entry >> 1)); });
     pair_state p(places.load(i));
     std::uint32_t entries[64], size = 0;
     this->effects.for_mutual([&](auto const& effect) {
       using effect_type = std::decay_t<decltype(effect)>;
-      auto const own = effect.template see<S>([&](int) { return particle_access<effect_type, interaction>(p.self); });
+      auto const own = as_met(effect, p);
       vec3<S> v = own.velocity, spin = own.spin;
       S const impulse = this->dt / effect_type::mass_of(own);
       auto const take = [&] {
@@ -250,10 +250,15 @@ struct sum_actions : pair_interaction<S, without_memory<Effects>> {
   using interaction = typename base::interaction;
   using pair_state = typename base::pair_state;
 
+  template <class Effect>
+  static COLLIDE_HD_INLINE meeting_sphere<S> as_met(Effect const& effect, pair_state& p) {
+    return effect.template see<S>([&](int) { return particle_access<Effect, interaction>(p.self); });
+  }
+
   /// Asks for memory that is written soon.
   template <class... Kick>
   void fetch_kicks([[maybe_unused]] std::size_t i, columns<Kick...>) const {
-    (__builtin_prefetch(this->state.at(Kick{}) + 3 * std::size_t{this->order.numbers[i]}, 1), ...);
+    (prefetch<true>(this->state.at(Kick{}) + 3 * std::size_t{this->order.numbers[i]}), ...);
   }
 };
 

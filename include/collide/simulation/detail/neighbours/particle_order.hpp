@@ -16,6 +16,14 @@
 
 namespace collide::detail {
 
+/// On a CPU: a value that is read, or `Written`, soon comes into the cache.
+template <bool Written = false>
+COLLIDE_HD_INLINE void prefetch([[maybe_unused]] void const* value) {
+#if !defined(__CUDA_ARCH__)
+  __builtin_prefetch(value, Written);
+#endif
+}
+
 /// Centre and radius of a particle, which decide whether two overlap, to be read at once.
 template <class S>
 struct alignas(4 * sizeof(S)) packed_sphere {
@@ -150,8 +158,8 @@ struct sorted_particles {
   }
 
   /// On a CPU: what is loaded soon is on its way.
-  void fetch(std::size_t i) const {
-    __builtin_prefetch(spheres + i);
+  COLLIDE_HD_INLINE void fetch(std::size_t i) const {
+    prefetch(spheres + i);
     fetch_columns(i, copied{});
   }
 
@@ -258,8 +266,8 @@ struct sorted_particles {
 
  private:
   template <class... C>
-  void fetch_columns([[maybe_unused]] std::size_t i, columns<C...>) const {
-    (__builtin_prefetch(copies.at(C{}) + i * std::size_t(column_layout<C, S>::width)), ...);
+  COLLIDE_HD_INLINE void fetch_columns([[maybe_unused]] std::size_t i, columns<C...>) const {
+    (prefetch(copies.at(C{}) + i * std::size_t(column_layout<C, S>::width)), ...);
   }
 
   COLLIDE_HD_INLINE bool is_small([[maybe_unused]] std::uint32_t i) const {
