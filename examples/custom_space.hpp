@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstring>
 #include <limits>
+#include <memory_resource>
 #include <mutex>
 #include <thread>
 #include <vector>

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <collide/broad/detail/per_sphere.hpp>
+#include <collide/core/memory.hpp>
 #include <collide/exact/detail/geometry/aabb.hpp>
 #include <collide/exact/detail/geometry/bounding_sphere.hpp>
 #include <collide/query/detail/candidate_pipeline.hpp>

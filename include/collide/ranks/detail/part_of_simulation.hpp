@@ -300,7 +300,7 @@ class part_of_simulation {
   /// Takes the rows of particles that leave.
   void pack_all(send_plan const& leaving, device_exchange_buffer<particle_row<S, all_columns>>& to) {
     to.counts = leaving.counts();
-    detail::pack(space(), state(), routed_places{leaving.data()}, leaving.size(), to.resize(space()));
+    detail::pack_particles(space(), state(), routed_places{leaving.data()}, leaving.size(), to.resize(space()));
   }
 
   /// Takes particles away that have left, and adds others.
@@ -339,12 +339,12 @@ class part_of_simulation {
   /// Writes what others know of particles.
   template <class Space>
   void pack_seen(Space const& on, send_plan const& copied, particle_row<S, seen_columns>* to) {
-    detail::pack(on, state(), routed_places{copied.data()}, copied.size(), to);
+    detail::pack_particles(on, state(), routed_places{copied.data()}, copied.size(), to);
   }
   /// Takes over what is known of all copies.
   template <class Space>
   void unpack_seen(Space const& on, particle_row<S, seen_columns> const* from) {
-    detail::unpack(on, state(), places_from{own()}, copies_, from);
+    detail::unpack_particles(on, state(), places_from{own()}, copies_, from);
     if constexpr (any_pair_contact) {
       if (lists_tell_ && own() != 0) simulation_.neighbours_.check_copies(on, with_copies());
     }
@@ -363,7 +363,7 @@ class part_of_simulation {
   /// Puts rows, in memory of the space, to places that the host knows.
   void unpack(std::vector<std::uint32_t> const& places, particle_row<S, all_columns> const* from) {
     listed_places const listed{in_space(space(), places, place_memory_)};
-    detail::unpack(space(), state(), listed, places.size(), from);
+    detail::unpack_particles(space(), state(), listed, places.size(), from);
   }
 
   /// The places of particles that go to ranks, by rising number. Those that go to a rank are so already.
@@ -413,7 +413,7 @@ class part_of_simulation {
     buffer<particle_row<S, all_columns>> moved;
     auto* const between = moved.reserve(space().resource(), from.size());
     listed_places const listed{in_space(space(), from, place_memory_)};
-    detail::pack(space(), state(), listed, from.size(), between);
+    detail::pack_particles(space(), state(), listed, from.size(), between);
     space().synchronize();  // the list goes
     unpack(to, between);
     space().synchronize();  // the rows go

@@ -79,12 +79,12 @@ struct unpack_rows<State, Places, particle_row<S, columns<C...>>> {
 
 /// Copies the particles at some places to rows, all in memory of the space.
 template <class Space, class State, class Places, class Row>
-void pack(Space const& space, State const& state, Places const& places, std::size_t n, Row* rows) {
+void pack_particles(Space const& space, State const& state, Places const& places, std::size_t n, Row* rows) {
   space.for_each(n, pack_rows<State, Places, Row>{state, places, rows});
 }
 /// Copies rows to some places, all in memory of the space.
 template <class Space, class State, class Places, class Row>
-void unpack(Space const& space, State const& state, Places const& places, std::size_t n, Row const* rows) {
+void unpack_particles(Space const& space, State const& state, Places const& places, std::size_t n, Row const* rows) {
   space.for_each(n, unpack_rows<State, Places, Row>{state, places, rows});
 }
 
@@ -93,11 +93,11 @@ template <class Space, class State, class Places, class Row>
 void pack_on_host(Space const& space, State const& state, Places const& places, std::size_t n, std::vector<Row>& to) {
   to.resize(n);
   if constexpr (Space::host_accessible) {
-    pack(space, state, places, n, to.data());
+    pack_particles(space, state, places, n, to.data());
   } else {
     buffer<Row> memory;
     Row* const rows = memory.reserve(space.resource(), n);
-    pack(space, state, places, n, rows);
+    pack_particles(space, state, places, n, rows);
     space.copy_to_host(to.data(), rows, n);
   }
 }
@@ -106,7 +106,7 @@ void pack_on_host(Space const& space, State const& state, Places const& places, 
 template <class Space, class State, class Places, class Row>
 void unpack_from_host(Space const& space, State const& state, Places const& places, std::vector<Row> const& from) {
   buffer<Row> memory;
-  unpack(space, state, places, from.size(), in_space(space, from, memory));
+  unpack_particles(space, state, places, from.size(), in_space(space, from, memory));
   space.synchronize();  // the memory goes
 }
 
