@@ -22,7 +22,8 @@ inline constexpr bool has_twist_angle<columns<C...>> = (std::is_same_v<C, twist_
 /// A law of rolling, and a spring, a dashpot and a slider about the normal.
 template <class Rolling>
 struct with_torsion {
-  static_assert(!has_twist_angle<typename remembers_of<Rolling>::type>, "one law of torsion: the other is one, too");
+  static_assert(!has_twist_angle<typename remembers_of<Rolling>::type>,
+                "collide: torsion and marshall contain a law of rolling, and not a second law of torsion");
   using remembers =
       typename contact_columns_of<union_of<columns<twist_angle>, typename remembers_of<Rolling>::type>>::type;
   static constexpr bool needs_hertz = detail::needs_hertz<Rolling>;  ///< the normal law must be `hertz`
