@@ -1,4 +1,4 @@
-// expect: use of deleted function
+// expect: deleted function
 #include <collide/simulation/fill.hpp>
 
 collide::cylinder_region const inner({0, 0, 0}, {0, 0, 1}, 0.1);
