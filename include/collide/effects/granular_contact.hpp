@@ -113,7 +113,7 @@ struct granular_contact {
                                     detail::is_mutual_law<Rolling> && detail::is_mutual_law<Cohesion>;
 
   /// Numbers that are kept of what two spheres do to each other.
-  static constexpr int action_width = !turns ? 3 : std::is_same<Rolling, none>::value ? 7 : 10;
+  static constexpr unsigned action_width = !turns ? 3 : std::is_same<Rolling, none>::value ? 7 : 10;
 
   /// One of two spheres, or one each of some pairs; seen(k) is that of pair k.
   template <class P, class F>

@@ -166,11 +166,11 @@ struct effect_list : effect_slot<E>..., resistance_slot<(has_resistance<E, S>::v
                                      !any_inactive && !contains<all, global_number> &&
                                      !(has_try_wake<E, S>::value || ...);
   template <class F>
-  static constexpr int action_width_of() {
+  static constexpr unsigned action_width_of() {
     if constexpr (is_mutual_effect<F>) return F::action_width;
     return 0;
   }
-  static constexpr int action_width = (action_width_of<E>() + ... + 0);
+  static constexpr unsigned action_width = (action_width_of<E>() + ... + 0u);
   /// Calls f(effect) for the one, on the host.
   template <class F>
   void for_mutual(F const& f) const {

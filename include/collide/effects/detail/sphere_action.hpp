@@ -23,7 +23,7 @@ struct sphere_action {
   mask_of<P> is_there;  ///< the two do anything to each other
 
   /// f(number, k) for the first `Width` numbers, number k: 3 without torques, 7 without the other torque, or 10.
-  template <int Width, class F>
+  template <unsigned Width, class F>
   COLLIDE_HD_INLINE void for_each_number(F const& f) {
     for (int k = 0; k < 3; ++k) {
       f(force[k], k);
@@ -35,7 +35,7 @@ struct sphere_action {
 };
 
 /// An action in memory.
-template <class S, int Width>
+template <class S, unsigned Width>
 struct alignas(Width == 7 ? 8 * sizeof(S) : sizeof(S)) stored_action {
   S numbers[Width];
 

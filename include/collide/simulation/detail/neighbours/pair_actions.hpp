@@ -111,7 +111,7 @@ struct meet_once {
   /// Pairs of the same two solids are together.
   void meet(touching_pair* found, std::uint32_t size) const {
     effects.for_mutual([&](auto const& effect) {
-      constexpr int kinds = std::decay_t<decltype(effect.made_of)>::pairs;
+      constexpr unsigned kinds = std::decay_t<decltype(effect.made_of)>::pairs;
       if constexpr (kinds == 1) {
         meet_alike(effect, found, size, 0);
       } else {
@@ -123,11 +123,11 @@ struct meet_once {
           kind_of[k] = static_cast<std::uint16_t>(effect.made_of.pair_of(seen(effect, a), seen(effect, b)));
           ++ends[kind_of[k] + 1];
         }
-        for (int kind = 0; kind < kinds; ++kind) ends[kind + 1] += ends[kind];
+        for (unsigned kind = 0; kind < kinds; ++kind) ends[kind + 1] += ends[kind];
         std::uint32_t begin = 0;
         for (std::uint32_t k = 0; k < size; ++k) sorted[ends[kind_of[k]]++] = found[k];
-        for (int kind = 0; kind < kinds; ++kind) {
-          meet_alike(effect, sorted + begin, ends[kind] - begin, kind);
+        for (unsigned kind = 0; kind < kinds; ++kind) {
+          meet_alike(effect, sorted + begin, ends[kind] - begin, static_cast<int>(kind));
           begin = ends[kind];
         }
       }
@@ -147,7 +147,7 @@ struct meet_once {
   template <class Effect, class Material>
   COLLIDE_HD_INLINE void meet_together(Effect const& effect, touching_pair const* found, std::uint32_t size,
                                        Material const& of) const {
-    constexpr int lanes = lanes_of<P>;
+    constexpr unsigned lanes = lanes_of<P>;
     contact_values<S, remembered> initial;
     S at_first[contact_values<S, remembered>::width + 1];
     initial.for_each_number([&](S& x, int c, int) { at_first[c] = x; });
