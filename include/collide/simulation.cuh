@@ -138,7 +138,7 @@ class simulation {
         overflow_.reserve(resource, detail::padded_size(particles));
       }
     }
-    if constexpr (effects_type::any_pair_contact) neighbours_.reserve(resource, particles);
+    if constexpr (effects_type::any_pair_contact) neighbours_.reserve(space_, particles);
     if constexpr (effects_type::overlaps) {
       surfaces_.reserve(resource, particles);
       pressing_.reserve(resource, particles);

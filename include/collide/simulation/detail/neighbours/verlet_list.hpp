@@ -52,8 +52,11 @@ class verlet_list {
 
  public:
   /// Takes all memory that steps of up to `n` particles need.
-  void reserve(std::pmr::memory_resource* resource, std::size_t n) {
+  template <class Space>
+  void reserve(Space const& space, std::size_t n) {
+    std::pmr::memory_resource* const resource = space.resource();
     header_.reserve(resource, 1);
+    if constexpr (works_alone<Space>) curve_.reserve(resource, cells::blocks_for(n));
     ends_.reserve(resource, cells::blocks_for(n) * cells::stride);
     numbers_.reserve(resource, n);
     memory_.reserve(resource, n);
@@ -74,7 +77,6 @@ class verlet_list {
              std::size_t border = 0) {
     make_room(places_of_copies_, space.resource(), copies);
     make_room(border_, space.resource(), border);
-    if constexpr (works_alone<Space>) curve_.reserve(space.resource(), cells::blocks_for(numbers_.capacity()));
     space.fill(header_.data(), 0, sizeof(state_of_lists));
     inside_is_done_ = false;
     fit(space, n, radii);
