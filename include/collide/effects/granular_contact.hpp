@@ -130,6 +130,7 @@ struct granular_contact {
     s.density = lanes::of([&](int k) { return made_of.template density_of<S>(seen(k)); });
     return s;
   }
+  /// The mass of a sphere.
   template <class P>
   static COLLIDE_HD_INLINE P mass_of(detail::meeting_sphere<P> const& s) {
     return detail::sphere_mass(1.0, s.radius) * s.density;

@@ -28,7 +28,9 @@ struct box_region {
   double lower[3];  ///< its corner with the lowest coordinates
   double upper[3];  ///< that with the highest
 
+  /// The volume, of the unit of length cubed.
   double volume() const { return (upper[0] - lower[0]) * (upper[1] - lower[1]) * (upper[2] - lower[2]); }
+  /// How far points, x, y, z of each, are inside of the surface; below 0 outside.
   std::vector<double> depths(std::vector<double> const& xyz) const {
     std::vector<double> found(xyz.size() / 3, std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < xyz.size(); ++i)
@@ -39,11 +41,13 @@ struct box_region {
 
 /// A cylinder.
 struct cylinder_region {
-  double from[3];  ///< the middle of one end
-  double to[3];    ///< that of the other
-  double radius;   ///< of the ends
-  double lower[3] = {}, upper[3] = {};
+  double from[3];        ///< the middle of one end
+  double to[3];          ///< that of the other
+  double radius;         ///< of the ends
+  double lower[3] = {};  ///< lowest coordinates
+  double upper[3] = {};  ///< highest coordinates
 
+  /// From the middle of one end to the middle of the other.
   cylinder_region(double const (&a)[3], double const (&b)[3], double r) : radius{r} {
     for (int k = 0; k < 3; ++k) from[k] = a[k], to[k] = b[k];
     vec3<double> const axis = along();
@@ -52,11 +56,14 @@ struct cylinder_region {
       lower[k] = std::min(a[k], b[k]) - wide, upper[k] = std::max(a[k], b[k]) + wide;
     }
   }
+  /// The distance between the two ends.
   double length() const {
     return std::sqrt(detail::dot(vec3<double>(to[0] - from[0], to[1] - from[1], to[2] - from[2]),
                                  vec3<double>(to[0] - from[0], to[1] - from[1], to[2] - from[2])));
   }
+  /// The volume, of the unit of length cubed.
   double volume() const { return 3.14159265358979324 * radius * radius * length(); }
+  /// How far points, x, y, z of each, are inside of the surface; below 0 outside.
   std::vector<double> depths(std::vector<double> const& xyz) const {
     std::vector<double> found(xyz.size() / 3);
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -75,8 +82,10 @@ struct cylinder_region {
 /// triangles do not turn outwards as one, so that the volume is not above 0. The mesh must outlive it.
 class mesh_region {
  public:
-  double lower[3], upper[3];  ///< a box around it
+  double lower[3];  ///< lowest coordinates
+  double upper[3];  ///< highest coordinates
 
+  /// O(triangles log triangles). `error` if the volume is not above 0.
   explicit mesh_region(mesh_view<double> const& mesh) {
     for (int k = 0; k < 3; ++k) lower[k] = std::numeric_limits<double>::infinity(), upper[k] = -lower[k];
     for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -89,7 +98,9 @@ class mesh_region {
     detail::check_parameter(volume_ > 0, "mesh_region: the mesh is closed, and its triangles turn outwards");
     tree_.build(mesh);
   }
+  /// The volume, of the unit of length cubed.
   double volume() const { return volume_; }
+  /// How far points, x, y, z of each, are inside of the surface; below 0 outside.
   std::vector<double> depths(std::vector<double> const& xyz) const {
     signed_distance<double> sink;
     auto const found = tree_.query(points(xyz.data(), xyz.size() / 3), std::move(sink)).to_host();
@@ -106,12 +117,14 @@ class mesh_region {
 /// The space inside of a region and outside of another, which is inside of that.
 template <class Outer, class Inner>
 struct region_between {
-  Outer const& outer;  ///< must outlive it
-  Inner const& inner;  ///< must outlive it
-  double const (&lower)[3] = outer.lower;
-  double const (&upper)[3] = outer.upper;
+  Outer const& outer;                      ///< must outlive it
+  Inner const& inner;                      ///< must outlive it
+  double const (&lower)[3] = outer.lower;  ///< lowest coordinates
+  double const (&upper)[3] = outer.upper;  ///< highest coordinates
 
+  /// The volume, of the unit of length cubed.
   double volume() const { return outer.volume() - inner.volume(); }
+  /// How far points, x, y, z of each, are inside of the surface; below 0 outside.
   std::vector<double> depths(std::vector<double> const& xyz) const {
     auto found = outer.depths(xyz), of_inner = inner.depths(xyz);
     for (std::size_t i = 0; i < found.size(); ++i) found[i] = std::min(found[i], -of_inner[i]);

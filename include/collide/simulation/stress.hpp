@@ -36,6 +36,7 @@ struct stress_grid {
   int count[3];     ///< cells along each axis, above 0
   double reach;     ///< of the kernel, above 0: what is farther from a point does not count there; 2 to 4 diameters
 
+  /// The number of points.
   std::size_t size() const { return std::size_t(count[0]) * std::size_t(count[1]) * std::size_t(count[2]); }
   /// The middle of a cell; x goes fastest.
   vec3<double> point(std::size_t cell) const {

@@ -47,9 +47,13 @@ class ray_parity {
 
   /// Comparisons in which subnormal numbers are taken for zero leave more to be looked at.
   COLLIDE_HD_INLINE bool box_meets_ray(triangle<S> const& t) const {
-    auto const all_below = [&](int k) { return (t.a[k] < point_[k]) & (t.b[k] < point_[k]) & (t.c[k] < point_[k]); };
-    auto const all_above = [&](int k) { return (t.a[k] > point_[k]) & (t.b[k] > point_[k]) & (t.c[k] > point_[k]); };
-    return !(all_below(0) | all_above(0) | all_below(1) | all_above(1) | all_below(2));
+    auto const all_below = [&](int k) {
+      return unsigned{t.a[k] < point_[k]} & unsigned{t.b[k] < point_[k]} & unsigned{t.c[k] < point_[k]};
+    };
+    auto const all_above = [&](int k) {
+      return unsigned{t.a[k] > point_[k]} & unsigned{t.b[k] > point_[k]} & unsigned{t.c[k] > point_[k]};
+    };
+    return (all_below(0) | all_above(0) | all_below(1) | all_above(1) | all_below(2)) == 0;
   }
 
   COLLIDE_HD_NOINLINE ray_crossing cross(triangle<S> const& t, bool& on_line) const {

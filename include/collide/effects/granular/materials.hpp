@@ -111,6 +111,7 @@ class one_material {
   COLLIDE_HD_INLINE int pair_of(Particle const&, Particle const&) const {
     return 0;
   }
+  /// Constants of the pair of solids of a number.
   COLLIDE_HD_INLINE detail::contact_material const& of_pair(int) const { return pair_; }
   template <class Particle>
   COLLIDE_HD_INLINE detail::contact_material const& between(Particle const&, Particle const&) const {
@@ -212,6 +213,7 @@ class materials {
   COLLIDE_HD_INLINE int pair_of(Particle const& p, Particle const& other) const {
     return place(number_of(p), number_of(other));
   }
+  /// Constants of the pair of solids of a number.
   COLLIDE_HD_INLINE detail::contact_material const& of_pair(int number) const { return pairs_[number]; }
   template <class Particle>
   COLLIDE_HD_INLINE detail::contact_material const& between(Particle const& p, Particle const& other) const {
