@@ -178,7 +178,7 @@ class Calls:
             k = (self.whole(1, 3, 32),) if what == "k_nearest" else ()
             found = self.call(getattr(mesh, what), x, *k, max_distance=self.number(float("inf"), 1.0), out=self.out(n))
         if found is not None and what in ("any", "closest", "first", "nearest", "k_nearest", "contains", "signed_distance", "distance"):
-            assert len(found) == (n if isinstance(x, numpy.ndarray) else len(x.array))
+            assert len(found) == (n if isinstance(x, numpy.ndarray) else len(x if isinstance(x, list) else x.array))
         if found is not None and what not in ("count",) and self.data.draw(st.integers(0, 5)) == 0:
             self.call(pickle.dumps, found)
 

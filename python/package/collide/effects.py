@@ -256,5 +256,5 @@ def velocity_verlet() -> Effect:
 __all__ = [  # all functions above, as words for type checkers
     "gravity", "drag", "external_forces", "wind", "bounce", "friction", "spin", "adhesion", "sphere_contact",
     "sleep", "emit", "absorb", "absorbing_box", "box_walls", "periodic_box", "polydisperse", "lost", "lost_motion",
-    "mesh_forces", "pair_forces", "mass_flow", "reaction", "moving_bodies", "driven_bodies", "velocity_verlet",
+    "mesh_forces", "pair_forces", "mass_flow", "reaction", "wear", "moving_bodies", "driven_bodies", "velocity_verlet",
 ]
