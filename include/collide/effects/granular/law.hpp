@@ -15,8 +15,8 @@
 /// A law that does to one of two spheres the opposite of what it does to the other says so: `static constexpr bool
 /// is_mutual = true`. On a CPU it is asked once a pair then, and some pairs at a time: S may be a `detail::pack`, for
 /// which `any` and `either` take the place of branches (exact/detail/numeric/pack.hpp). What such a law remembers as
-/// `vec3<S>` has the opposite sign for the other sphere, what it remembers as S the same. `memory[column{}]` is what the
-/// contact remembers, `memory.elapsed()` for how long the contact has moved since it was looked at before.
+/// `vec3<S>` has the opposite sign for the other sphere, what it remembers as S the same. `memory[column{}]` is what
+/// the contact remembers, `memory.elapsed()` for how long the contact has moved since it was looked at before.
 #pragma once
 
 #include <collide/effects/detail/particle_access.hpp>
