@@ -185,7 +185,7 @@ struct press_on_mesh {
 #endif
   }
 
-  COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
+  COLLIDE_AS_O3 COLLIDE_HD void list_overlaps(Triangles const& open, sphere<S> const& shape, overlap_list& near) const {
     auto cursor = open.begin(shape);
     candidate_range range{};
     while (next(open, shape, cursor, range)) {
@@ -236,7 +236,8 @@ struct press_on_mesh {
     return t;
   }
 
-  COLLIDE_HD void press(Triangles const& open, std::size_t i, overlap_list const& near, int before) const {
+  COLLIDE_AS_O3 COLLIDE_HD void press(Triangles const& open, std::size_t i, overlap_list const& near,
+                                      int before) const {
     integrated p;
     state.load(p, i);
     integrated const self = p;
