@@ -1,9 +1,11 @@
 /// \file
-/// The film of the README: a mill of 1 m with twelve lifters, as many grains as wanted. Compiled by nvcc (-x cu) it runs
-/// on a GPU. The grains begin as a tilted bed that turns with the mill.
+/// The film of the README: a mill of 1 m with twelve lifters, as many grains as wanted. Compiled by nvcc (-x cu) it
+/// runs on a GPU. The grains begin as a tilted bed that turns with the mill.
 ///
-/// Usage: mill_film FOLDER [GRAINS [TURNS [FRAMES]]]: torque.csv has torque and power of the motor, mill.json the costs,
-/// walls.vtp the mill as it begins, and film.pvd as many frames of the last twelfth of a turn, which repeats.
+/// Usage: mill_film FOLDER [GRAINS [TURNS [FRAMES [SECONDS]]]]: torque.csv has torque and power of the motor, mill.json
+/// the costs, walls.vtp the mill as it begins, and film.pvd as many frames of the last twelfth of a turn, which
+/// repeats. It stops sooner if all steps would take longer than so many seconds. scripts/render-mill draws it.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -41,7 +43,7 @@ using mill = simulation<detector<bucket, karabassi<>, space_type, double>, polyd
 
 constexpr double outer = 0.5, half = 0.2, lifter = 0.035;  // of the mill, in metres; its axis is y
 constexpr int lifters = 12, sides = 16 * lifters;
-constexpr double tilt = 0.65, surface = -0.16;  // of the bed: its slope, how far from the axis
+constexpr double tilt = 0.65, surface = -0.13;  // of the bed: its slope, how far from the axis
 
 /// The shell, and beyond its ends squares, so that no triangles meet on the axis.
 io::scene walls() {
@@ -88,12 +90,13 @@ int main(int argc, char** argv) try {
   if (argc < 2) return 2;
   std::string const folder = std::string(argv[1]) + "/";
   auto const wanted = static_cast<std::size_t>(argc > 2 ? std::atoll(argv[2]) : 5'000);
-  double const turns = argc > 3 ? std::atof(argv[3]) : 1.5;
+  double const turns = argc > 3 ? std::atof(argv[3]) : 1;
   int const frames = argc > 4 ? std::atoi(argv[4]) : 48;
+  double const most_seconds = argc > 5 ? std::atof(argv[5]) : 1e9;
   constexpr double rate = 3.2, density = 2700;  // 0.72 of the critical speed
 
   bed_region const bed;
-  double const usual = std::cbrt(0.55 * bed.volume() / static_cast<double>(wanted) * 3 / (4 * io::pi));
+  double const usual = std::cbrt(0.48 * bed.volume() / static_cast<double>(wanted) * 3 / (4 * io::pi));
   auto const grains = fill_number(bed, size_distribution::uniform(0.8 * usual, 1.18 * usual), wanted);
   std::vector<double> moving;
   for (std::size_t i = 0; i < grains.centres.size(); i += 3)
@@ -102,7 +105,7 @@ int main(int argc, char** argv) try {
   space_type const space;
   using device = io::device_of<space_type>;
   reaction_sums forces(space, 1, 1e-13);
-  law const contact{one_material({2e6, 0.25, density}, {0.4, 0.5, 0.05})};
+  law const contact{one_material({1e6, 0.25, density}, {0.4, 0.5, 0.05})};
   mill made(space, polydisperse{}, gravity{}, contact, forces.effect(density), moving_bodies<>{}, velocity_verlet{});
   auto const s = walls();
   auto const mesh = indexed_mesh(s.vertices.data(), s.vertices.size() / 3, s.corners.data(), s.triangle_count());
@@ -123,7 +126,7 @@ int main(int argc, char** argv) try {
   double const row = 2 * io::pi / rate / rows;
   auto const every = static_cast<std::size_t>(std::ceil(row / largest_time_step(made)));
   double const dt = row / static_cast<double>(every);
-  auto const last = static_cast<int>(std::ceil(turns * rows));
+  auto last = static_cast<int>(std::ceil(turns * rows));
   std::ofstream curve(folder + "torque.csv");
   curve << "time,turns,torque,power\n";
   std::vector<vtk_frame> film;
@@ -134,6 +137,8 @@ int main(int argc, char** argv) try {
     made.steps(every, dt);
     space.synchronize();
     spent += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (k == frames / 2)
+      last = static_cast<int>(std::min<double>(last, std::max<double>(frames, k * most_seconds / spent)));
     double const torque = -forces.read(space)[0].angular[1] / row;
     curve << made.time() << "," << static_cast<double>(k) / rows << "," << torque << "," << torque * rate << std::endl;
     if (k <= last - frames) continue;
