@@ -12,6 +12,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <collide/bucket.cuh>
@@ -58,17 +60,16 @@ io::scene walls() {
   return s;
 }
 
-/// The part of the mill below a tilted plane, as `fill` takes it.
+/// The part of the mill below a level, as `fill` takes it.
 struct bed_region : cylinder_region {
-  bed_region() : cylinder_region({0, -half, 0}, {0, half, 0}, outer - lifter) {}
+  bed_region() : cylinder_region({0, -half, 0}, {0, half, 0}, outer - lifter) { upper[2] = surface; }
   double volume() const {
     double const part = std::acos(-surface / radius);  // of the angle of a segment, a half
     return (radius * radius * part + surface * std::sqrt(radius * radius - surface * surface)) * length();
   }
   std::vector<double> depths(std::vector<double> const& xyz) const {
     auto found = cylinder_region::depths(xyz);
-    for (std::size_t i = 0; i < found.size(); ++i)
-      found[i] = std::min(found[i], surface - xyz[3 * i + 2] * std::cos(tilt) - xyz[3 * i] * std::sin(tilt));
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = std::min(found[i], surface - xyz[3 * i + 2]);
     return found;
   }
 };
@@ -97,10 +98,13 @@ int main(int argc, char** argv) try {
 
   bed_region const bed;
   double const usual = std::cbrt(0.48 * bed.volume() / static_cast<double>(wanted) * 3 / (4 * io::pi));
-  auto const grains = fill_number(bed, size_distribution::uniform(0.8 * usual, 1.18 * usual), wanted);
+  auto grains = fill_number(bed, size_distribution::uniform(0.8 * usual, 1.18 * usual), wanted);
   std::vector<double> moving;
-  for (std::size_t i = 0; i < grains.centres.size(); i += 3)
-    moving.insert(moving.end(), {rate * grains.centres[i + 2], 0, -rate * grains.centres[i]});
+  for (std::size_t i = 0; i < grains.centres.size(); i += 3) {
+    double &x = grains.centres[i], &z = grains.centres[i + 2];
+    std::tie(x, z) = std::make_pair(x * std::cos(tilt) + z * std::sin(tilt), z * std::cos(tilt) - x * std::sin(tilt));
+    moving.insert(moving.end(), {rate * z, 0, -rate * x});
+  }
 
   space_type const space;
   using device = io::device_of<space_type>;
