@@ -47,6 +47,9 @@ def problems(root):
                                  ("menu of versions", r'id="versions"', 1), ("search", r'name="q"', 1)):
         if len(re.findall(pattern, index)) < least:
             yield f"index.html: there is no {what}"
+    shown = re.search(r'property="og:image" content="[^"]*/(_images/[^"]+)"', index)
+    if shown and not (root / shown[1]).exists():
+        yield f"index.html: og:image: {shown[1]} is not there"
     for sheet in root.rglob("*.css"):
         if "url(/" in sheet.read_text() and "prefers-color-scheme" in sheet.read_text():  # PyPI's theme
             yield f"{sheet.relative_to(root)}: a path of one machine"
