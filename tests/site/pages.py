@@ -1,6 +1,6 @@
 """pages.py HTML: the site in this folder is whole.
 
-Every link and picture of a page is there; pictures have a size, and all but the first of the landing page are loaded when they
+Every link and picture of a page is there; pictures have a size, and all except the first of the landing page are loaded when they
 come into view; the landing page has three doors, an icon and tags for other sites; PyPI's theme refers to
 no path of one machine (Debian's does); all together is at most 15 MB.
 """
