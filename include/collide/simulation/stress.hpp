@@ -112,11 +112,10 @@ struct load_of_mesh {
 template <class Law, class Detector, class... Effect, class F>
 void for_each_force(Law const& law, simulation<Detector, Effect...> const& of,
                     particles_on_host<Detector, Effect...> const& all, F const& f) {
-  using remembered = typename simulation<Detector, Effect...>::effects_type::remembered;
   auto const grain_of = [&](std::size_t i) {
     return lone_grain<double>{all.radius_of(i), all.at(all.x, i), all.at(all.v, i), all.at(all.w, i), all.solid[i], i};
   };
-  auto const meet = [&](std::size_t i, std::size_t k, [[maybe_unused]] auto const& memory) {
+  for_each_contact_of<Law>(of, all, [&](std::size_t i, std::size_t k, [[maybe_unused]] auto const& memory) {
     lone_grain<double> const own = grain_of(i);
     lone_grain<double> other = grain_of(k);
     vec3<double> const branch = -all.way(i, k);
@@ -129,25 +128,7 @@ void for_each_force(Law const& law, simulation<Detector, Effect...> const& of,
     }
     double const mass = sphere_mass(law.made_of.template density_of<double>(own), own.its_radius);
     f(i, k, branch, vec3<double>((pushed.v - own.v) * mass));
-  };
-  if constexpr (Law::is_memoryless) {
-    all.for_each_contact([&](std::size_t i, std::size_t k, double) { meet(i, k, 0); });
-  } else {
-    using record_type = contact_record<double, remembered>;
-    using values_type = contact_values<double, remembered>;
-    auto const saved = checkpoint<Detector, Effect...>::contacts_between_particles(of);
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < saved.counts.size(); ++i)
-      for (std::uint32_t n = 0; n < saved.counts[i]; ++n, ++at) {
-        std::size_t const k = all.place_of(saved.others[at]);
-        if (k == all.r.size() || k < i || all.is_there[i] == 0 || all.is_there[k] == 0) continue;
-        record_type record;
-        for (std::size_t w = 0; w < std::size_t(values_type::width); ++w)
-          record.numbers[w] = static_cast<double>(saved.values[at * std::size_t(values_type::width) + w]);
-        values_type values = record.values();
-        meet(i, k, contact_access<typename Law::remembers::list, values_type, double>(values, 0));
-      }
-  }
+  });
 }
 
 /// Sums of fields, of which kernels say how much of a grain, and of a line between two, counts at a point.
