@@ -24,7 +24,7 @@ struct walls_turn : vector_column {};
 // the parts of them by tangential forces
 struct slide_push : vector_column {};
 struct slide_turn : vector_column {};
-struct walls_give : vector_column {};         ///< work of walls over mass: along normals, of tangential forces, of torques
+struct walls_give : vector_column {};  ///< work of walls over mass: along normals, of tangential forces, of torques
 struct work_of_next_kick : vector_column {};  ///< over mass, of the same three
 struct walls_work_of_next_kick : number_column {};
 
@@ -56,10 +56,9 @@ template <class Materials = one_density>
 struct contact_work {
   using reads = detail::union_of<columns<position, velocity, angular_velocity>, typename Materials::reads>;
   using optional_reads = columns<radius>;
-  using writes =
-      columns<detail::pairs_push, detail::pairs_turn, detail::walls_push, detail::walls_turn, detail::slide_push,
-              detail::slide_turn, detail::walls_give, detail::work_of_next_kick, detail::walls_work_of_next_kick,
-              normal_work, sliding_work, rolling_work, wall_work>;
+  using writes = columns<detail::pairs_push, detail::pairs_turn, detail::walls_push, detail::walls_turn,
+                         detail::slide_push, detail::slide_turn, detail::walls_give, detail::work_of_next_kick,
+                         detail::walls_work_of_next_kick, normal_work, sliding_work, rolling_work, wall_work>;
   static constexpr bool follows_pair_contacts = true;  ///< in a list it comes behind what acts between particles
   static constexpr bool begins_on_ranks = true;        ///< `begin_step` does its work whatever rank a particle is on
   static constexpr bool asks_forces = true;
@@ -81,9 +80,9 @@ struct contact_work {
   template <class Space, class State, class S>
   void begin_step(Space& space, State const& state, S) const {
     using namespace detail;
-    for (S* const column : {state.at(pairs_push{}), state.at(pairs_turn{}), state.at(walls_push{}),
-                            state.at(walls_turn{}), state.at(slide_push{}), state.at(slide_turn{}),
-                            state.at(walls_give{})})
+    for (S* const column :
+         {state.at(pairs_push{}), state.at(pairs_turn{}), state.at(walls_push{}), state.at(walls_turn{}),
+          state.at(slide_push{}), state.at(slide_turn{}), state.at(walls_give{})})
       space.fill(column, 0, 3 * state.size * sizeof(S));
   }
   template <class Particle, class Seen, class S>
@@ -112,10 +111,12 @@ struct contact_work {
     constexpr double kick = has_half_kicks ? double(Forces::kick_after) : 1;
     vec3<S> behind = p[velocity{}];  // the kick of contacts
     if constexpr (!has_half_kicks) behind -= forces.change(dt);
-    double const r = static_cast<double>(p.radius()), mass = sphere_mass(1.0, r) * made_of.template density_of<double>(p);
+    double const r = static_cast<double>(p.radius()),
+                 mass = sphere_mass(1.0, r) * made_of.template density_of<double>(p);
     vec3<S> const give = p[walls_give{}];
     auto const work_of_kick = [&](double sign) {  // before `behind`, or after it
-      vec3<double> const push = exact<S>(p[pairs_push{}]) + exact<S>(p[walls_push{}]), slide = exact<S>(p[slide_push{}]);
+      vec3<double> const push = exact<S>(p[pairs_push{}]) + exact<S>(p[walls_push{}]),
+                         slide = exact<S>(p[slide_push{}]);
       vec3<double> const turn = exact<S>(p[pairs_turn{}]) + exact<S>(p[walls_turn{}]), roll = exact<S>(p[slide_turn{}]);
       vec3<double> const v = exact<S>(behind) + push * (sign * kick / 2);
       vec3<double> const spin = (exact<S>(p[angular_velocity{}]) + turn * (sign * kick / 2)) * (0.4 * r * r);
@@ -124,7 +125,8 @@ struct contact_work {
       return vec3<double>((exact<S>(give) - gained) * kick);
     };
     vec3<double> const taken = exact<S>(p[work_of_next_kick{}]) + work_of_kick(-1);
-    double const given = kick * (static_cast<double>(give[0]) + static_cast<double>(give[1]) + static_cast<double>(give[2]));
+    double const given =
+        kick * (static_cast<double>(give[0]) + static_cast<double>(give[1]) + static_cast<double>(give[2]));
     p[normal_work{}] += mass * taken[0];
     p[sliding_work{}] += mass * taken[1];
     p[rolling_work{}] += mass * taken[2];
