@@ -5,6 +5,7 @@
 #include <collide/effects/detail/column_list.hpp>
 #include <collide/effects/effect.hpp>
 #include <collide/effects/granular/materials.hpp>
+#include <collide/exact/detail/numeric/rounding.hpp>
 
 namespace collide {
 
@@ -21,35 +22,37 @@ struct pairs_push : vector_column {};
 struct pairs_turn : vector_column {};
 struct walls_push : vector_column {};
 struct walls_turn : vector_column {};
-// the parts of them by tangential forces
+// parts of them: those of tangential forces
 struct slide_push : vector_column {};
 struct slide_turn : vector_column {};
-struct walls_give : vector_column {};  ///< work of walls over mass: along normals, of tangential forces, of torques
-struct work_of_next_kick : vector_column {};  ///< over mass, of the same three
-struct walls_work_of_next_kick : number_column {};
+// work over mass: of forces along normals, of tangential ones, of other torques
+struct walls_give : vector_column {};
+struct next_kick_takes : vector_column {};  ///< the kick with which the next step begins
+struct next_kick_gives : number_column {};  ///< of walls, all three
 
 }  // namespace detail
 
-/// Work that forces along normals have taken from a particle: the energy of springs, and what damping has lost; see
+/// Work that forces along normals have taken from a particle: what springs hold, and what damping has lost; see
 /// `contact_work`.
 struct normal_work : detail::sum_column {};
 
-/// Work that tangential forces have taken from a particle: the energy of springs, and what sliding has lost; see
+/// Work that tangential forces have taken from a particle: what springs hold, and what sliding has lost; see
 /// `contact_work`.
 struct sliding_work : detail::sum_column {};
 
 /// Work that torques against rolling and torsion have taken from a particle; see `contact_work`.
 struct rolling_work : detail::sum_column {};
 
-/// Work that walls have given to a particle: minus the force and torque on a body, as `reaction` sums them up, times
-/// its motion; see `contact_work`.
+/// Work that walls have given to a particle: minus the force and the torque on a body, as `reaction` sums them up,
+/// times its motion; see `contact_work`.
 struct wall_work : detail::sum_column {};
 
-/// Sums up the work of the contacts of each particle by forces, those of `granular_contact` or `sphere_contact`, of
-/// which it is behind. `energy` makes of it what is lost. Work is force times the mean velocity of each kick, so that
-/// without drag and other forces the energy of motion and in `gravity`, and the work taken, less that given, stay the
-/// same to rounding, whatever dt is. A half kick that no step has seen is not counted: the first after `set` or
-/// `set_mesh` of what is in contact then. 25 scalars and 32 bytes a particle, and as much in the lists of neighbours.
+/// Sums up the work of each particle's contacts, of `granular_contact` or `sphere_contact` before it in the list;
+/// `energy` makes of it what was lost. A half kick of contacts has their force times the mean of the velocities before
+/// and after it, and is next to the way of the step. So with `velocity_verlet` energies of motion and in `gravity`, and
+/// the work taken, less that given, stay the same to rounding, whatever dt is. What is taken from a particle that
+/// presses on a wall is what it loses against the wall. After `set`, `assign` or `set_mesh` the first half kick is
+/// not counted. 25 scalars and 32 bytes a particle, and as much in the lists of neighbours.
 ///
 /// \tparam Materials  whose masses: `one_density`, or that of `granular_contact`
 template <class Materials = one_density>
@@ -57,15 +60,15 @@ struct contact_work {
   using reads = detail::union_of<columns<position, velocity, angular_velocity>, typename Materials::reads>;
   using optional_reads = columns<radius>;
   using writes = columns<detail::pairs_push, detail::pairs_turn, detail::walls_push, detail::walls_turn,
-                         detail::slide_push, detail::slide_turn, detail::walls_give, detail::work_of_next_kick,
-                         detail::walls_work_of_next_kick, normal_work, sliding_work, rolling_work, wall_work>;
+                         detail::slide_push, detail::slide_turn, detail::walls_give, detail::next_kick_takes,
+                         detail::next_kick_gives, normal_work, sliding_work, rolling_work, wall_work>;
   static constexpr bool follows_pair_contacts = true;  ///< in a list it comes behind what acts between particles
   static constexpr bool begins_on_ranks = true;        ///< `begin_step` does its work whatever rank a particle is on
   static constexpr bool asks_forces = true;
   static constexpr bool saves_parameters = detail::saves_parameters<Materials>;
 
   Materials made_of{};          ///< densities
-  double arm_shortening = 0.5;  ///< as of `granular_contact`, 0 to 1: which torques are those of tangential forces
+  double arm_shortening = 0.5;  ///< as of `granular_contact`: which torques are those of tangential forces
 
   void check_parameters() const {
     made_of.check_parameters();
@@ -90,78 +93,73 @@ struct contact_work {
     using namespace detail;
     vec3<S> const between = self[position{}] - other[position{}];
     S const distance = sqrt_rn(dot(between, between));
-    vec3<S> const normal = distance > 0 ? vec3<S>(between * (1 / distance))
-                                        : vec3<S>(S(0), S(0), self.number() < other.number() ? S(-1) : S(1));
-    part_of_contact(p, self, p[pairs_push{}], p[pairs_turn{}], normal, self.radius() + other.radius() - distance);
+    vec3<S> const normal = distance > 0 ? vec3<S>(between * (1 / distance)) : vec3<S>(S(0), S(0), S(1));
+    take(p, self, p[pairs_push{}], p[pairs_turn{}], normal, self.radius() + other.radius() - distance);
   }
   template <class Particle, class Seen, class S>
   COLLIDE_HD_INLINE void on_mesh_overlap(Particle& p, Seen const& self, mesh_overlap<S> const& wall, S) const {
     using namespace detail;
-    S const r = self.radius(), inertia = S(0.4) * r * r;
-    auto const by = part_of_contact(p, self, p[walls_push{}], p[walls_turn{}], wall.normal, wall.overlap);
+    S const r = self.radius(), inertia = S(0.4) * r * r;  // over mass
+    change_by<S> const by = take(p, self, p[walls_push{}], p[walls_turn{}], wall.normal, wall.overlap);
     vec3<S> const w = wall.surface_turning;
     vec3<S> const v = wall.surface_velocity + cross(w, vec3<S>(wall.normal * (r - wall.overlap)));  // at the centre
-    p[walls_give{}] += vec3<S>(dot(vec3<S>(by.push - by.slide), v), dot(by.slide, v) + inertia * dot(by.slide_turn, w),
-                               inertia * dot(vec3<S>(by.turn - by.slide_turn), w));
+    p[walls_give{}] += vec3<S>(dot(by.push - by.slide, v), dot(by.slide, v) + dot(by.slide_turn, w) * inertia,
+                               dot(by.turn - by.slide_turn, w) * inertia);
   }
   template <class Particle, class Forces, class S>
   COLLIDE_HD_INLINE void end_step(Particle& p, Forces const& forces, [[maybe_unused]] S dt) const {
     using namespace detail;
     constexpr bool has_half_kicks = Forces::kick_after != 0;
     constexpr double kick = has_half_kicks ? double(Forces::kick_after) : 1;
-    vec3<S> behind = p[velocity{}];  // the kick of contacts
-    if constexpr (!has_half_kicks) behind -= forces.change(dt);
+    vec3<S> kicked = p[velocity{}];  // by contacts, and by nothing after them
+    if constexpr (!has_half_kicks) kicked -= forces.change(dt);
+    vec3<double> const push = exact<S>(p[pairs_push{}]) + exact<S>(p[walls_push{}]),
+                       turn = exact<S>(p[pairs_turn{}]) + exact<S>(p[walls_turn{}]), slide = exact<S>(p[slide_push{}]),
+                       roll = turn - exact<S>(p[slide_turn{}]), give = exact<S>(p[walls_give{}]);
     double const r = static_cast<double>(p.radius()),
                  mass = sphere_mass(1.0, r) * made_of.template density_of<double>(p);
-    vec3<S> const give = p[walls_give{}];
-    auto const work_of_kick = [&](double sign) {  // before `behind`, or after it
-      vec3<double> const push = exact<S>(p[pairs_push{}]) + exact<S>(p[walls_push{}]),
-                         slide = exact<S>(p[slide_push{}]);
-      vec3<double> const turn = exact<S>(p[pairs_turn{}]) + exact<S>(p[walls_turn{}]), roll = exact<S>(p[slide_turn{}]);
-      vec3<double> const v = exact<S>(behind) + push * (sign * kick / 2);
-      vec3<double> const spin = (exact<S>(p[angular_velocity{}]) + turn * (sign * kick / 2)) * (0.4 * r * r);
-      vec3<double> const gained(dot(vec3<double>(push - slide), v), dot(slide, v) + dot(roll, spin),
-                                dot(vec3<double>(turn - roll), spin));
-      return vec3<double>((exact<S>(give) - gained) * kick);
+    auto const taken_by_kick = [&](double side) {  // -1: before `kicked`, 1: after it
+      vec3<double> const v = exact<S>(kicked) + push * (side * kick / 2),
+                         w = (exact<S>(p[angular_velocity{}]) + turn * (side * kick / 2)) * (0.4 * r * r);
+      return vec3<double>(
+          (give - vec3<double>(dot(push - slide, v), dot(slide, v) + dot(turn - roll, w), dot(roll, w))) * kick);
     };
-    vec3<double> const taken = exact<S>(p[work_of_next_kick{}]) + work_of_kick(-1);
-    double const given =
-        kick * (static_cast<double>(give[0]) + static_cast<double>(give[1]) + static_cast<double>(give[2]));
+    vec3<double> const taken = exact<S>(p[next_kick_takes{}]) + taken_by_kick(-1);
+    double const given = (give[0] + give[1] + give[2]) * kick;
     p[normal_work{}] += mass * taken[0];
     p[sliding_work{}] += mass * taken[1];
     p[rolling_work{}] += mass * taken[2];
-    p[wall_work{}] += mass * (static_cast<double>(p[walls_work_of_next_kick{}]) + given);
+    p[wall_work{}] += mass * (static_cast<double>(p[next_kick_gives{}]) + given);
     if constexpr (has_half_kicks) {
-      p[work_of_next_kick{}] = rounded_to<S>(work_of_kick(1));
-      p[walls_work_of_next_kick{}] = static_cast<S>(given);
+      p[next_kick_takes{}] = rounded_to<S>(taken_by_kick(1));
+      p[next_kick_gives{}] = static_cast<S>(given);
     }
   }
 
  private:
+  /// Changes of velocity and spin by a contact, and those by its tangential force.
+  template <class S>
+  struct change_by {
+    vec3<S> push, turn, slide, slide_turn;
+  };
+
   template <class S>
   static COLLIDE_HD_INLINE vec3<double> exact(vec3<S> const& x) {
     return x.template cast<double>();
   }
 
-  template <class S>
-  struct part {
-    vec3<S> push, turn, slide, slide_turn;
-  };
-
-  /// By how much a contact has changed velocity and spin since all before have changed them by `push` and `turn`.
+  /// What a contact has changed since all before it had changed velocity and spin by `push` and `turn`.
   template <class Particle, class Seen, class S>
-  COLLIDE_HD_INLINE part<S> part_of_contact(Particle& p, Seen const& self, vec3<S>& push, vec3<S>& turn,
-                                            vec3<S> const& normal, S overlap) const {
+  COLLIDE_HD_INLINE change_by<S> take(Particle& p, Seen const& self, vec3<S>& push, vec3<S>& turn,
+                                      vec3<S> const& normal, S overlap) const {
     using namespace detail;
-    S const r = self.radius();
     vec3<S> const all = p[velocity{}] - self[velocity{}], all_turn = p[angular_velocity{}] - self[angular_velocity{}];
-    part<S> by;
-    by.push = all - push, by.turn = all_turn - turn;
+    change_by<S> by{all - push, all_turn - turn, {}, {}};
     push = all, turn = all_turn;
     by.slide = by.push - normal * dot(by.push, normal);
+    S const r = self.radius(), arm = r - S(arm_shortening) * overlap;
     bool const turns = dot(by.turn, by.turn) > 0;
-    S const arm = turns ? S(2.5) * (r - S(arm_shortening) * overlap) / (r * r) : S(0);
-    by.slide_turn = cross(by.slide, normal) * arm;
+    by.slide_turn = cross(by.slide, normal) * (turns ? S(2.5) * arm / (r * r) : S(0));
     p[slide_push{}] += by.slide;
     p[slide_turn{}] += by.slide_turn;
     return by;
