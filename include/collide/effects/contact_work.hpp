@@ -148,7 +148,7 @@ struct contact_work {
     return x.template cast<double>();
   }
 
-  /// What a contact has changed since all before it had changed velocity and spin by `push` and `turn`.
+  /// Changes by a contact, since all before it had changed velocity and spin by `push` and `turn`.
   template <class Particle, class Seen, class S>
   COLLIDE_HD_INLINE change_by<S> take(Particle& p, Seen const& self, vec3<S>& push, vec3<S>& turn,
                                       vec3<S> const& normal, S overlap) const {

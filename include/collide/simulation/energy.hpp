@@ -31,7 +31,7 @@ struct energy_sums {
 
   double total() const { return kinetic + rotational + elastic + potential + tangential; }  ///< of energies
   double lost() const { return damping + sliding + rolling; }                               ///< all that is
-  /// What stays the same where nothing but contacts, walls and `gravity` acts on particles.
+  /// The sum that stays the same where only contacts, walls and `gravity` act on particles.
   double balance() const { return total() + lost() - given; }
 };
 
