@@ -70,7 +70,7 @@ using list_30 = scene_list<mesh_kind::moving, collide::karabassi<>, double,
 using list_31 = scene_list<mesh_kind::driven, collide::karabassi<>, float,
     collide::sleep, collide::gravity, collide::emit, collide::granular_contact<collide::linear, collide::cundall_strack, collide::marshall<collide::epsd>>, collide::wear<>, collide::contact_work<>, collide::lost, collide::reaction, collide::periodic_box, collide::moving_bodies<collide::driven>>;
 using list_32 = scene_list<mesh_kind::fixed, collide::karabassi<>, float,
-    collide::gravity, collide::bounce, collide::sphere_contact, collide::spin, collide::contact_work<>, collide::absorb, collide::polydisperse>;
+    collide::gravity, collide::sphere_contact, collide::contact_work<>, collide::polydisperse, collide::periodic_box, collide::lost>;
 // clang-format on
 
 }  // namespace tests::pairs

@@ -79,7 +79,7 @@ FOUND = [
 LAST = [
     ("velocity_verlet gravity granular_contact wear contact_work mesh_forces reaction polydisperse lost", ("moving", "karabassi", "double")),
     ("sleep gravity emit granular_contact wear contact_work lost reaction periodic_box", ("driven", "karabassi", "float")),
-    ("gravity bounce sphere_contact spin contact_work absorb polydisperse", ("fixed", "karabassi", "float")),
+    ("gravity sphere_contact contact_work polydisperse periodic_box lost", ("fixed", "karabassi", "float")),
 ]
 # Pairs that do not compile: the test of tests/compile_fail, and the reason.
 REFUSED = {
