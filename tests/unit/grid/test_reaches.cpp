@@ -31,7 +31,7 @@ TEST_CASE("reaches: spheres whose radii change have the pairs of all pairs, on t
 }
 
 TEST_CASE("reaches: a device that is asked for spheres of many radii is not waited for, and keeps its grids") {
-  tests::many_radii const scene(200, 3000, 1000);
+  tests::many_radii const scene(200, 1500, 1000);
   never_waits space;
   for (float const given : {-1.f, 1.f}) {
     collide::bucket::index<float> index;

@@ -197,21 +197,22 @@ struct choose_reaches {
     COLLIDE_NO_UNROLL
     for (int b = first; b <= last; ++b) left += counts[b];
     grid_reaches<S> wanted{{}, 0, makes_anew};
-    int next = last;
+    int n = 0, next = last;
     if (largest >= 0 || last < first) {
-      wanted.reaches[wanted.count++] = max(largest, S(0));
+      wanted.reaches[n++] = max(largest, S(0));
       next = static_cast<int>(size_bin(wanted.reaches[0])) - bins_per_factor_4;
     }
     COLLIDE_NO_UNROLL
-    for (int b = last; b >= first && wanted.count < most; left -= counts[b--]) {
-      if (b > next || counts[b] == 0 || (wanted.count != 0 && left <= fewest)) continue;
-      if (wanted.count != 0 && wanted.reaches[wanted.count - 1] <= enough) break;
+    for (int b = last; b >= first && n < most; left -= counts[b--]) {
+      if (b > next || counts[b] == 0 || (n != 0 && left <= fewest)) continue;
+      if (n != 0 && wanted.reaches[n - 1] <= enough) break;
       float const end = bin_end(static_cast<std::uint32_t>(b));
-      wanted.reaches[wanted.count++] = static_cast<S>(min(end, std::numeric_limits<float>::max()));
+      wanted.reaches[n++] = static_cast<S>(min(end, std::numeric_limits<float>::max()));
       next = b - bins_per_factor_4;
     }
+    wanted.count = n;
     for (int g = 0; g < max_grids; ++g) {
-      if (g >= wanted.count) wanted.reaches[g] = -1;
+      if (g >= n) wanted.reaches[g] = -1;
       wanted.are_new = wanted.are_new || wanted.reaches[g] != chosen->reaches[g];
     }
     *chosen = wanted;
