@@ -45,9 +45,9 @@ struct memory_plan {
   static memory_plan make(std::size_t triangles, std::size_t spheres, int wanted, bool width_is_given,
                           std::size_t fixed, std::size_t budget, bool serves_steps = false) {
     std::uint32_t most_bits = 12;
-    std::size_t const cells = std::max({serves_steps ? triangles : std::min(triangles, spheres),
-                                        std::min(4 * triangles, std::size_t{1} << 18),
-                                        std::min(spheres / 16, 16 * triangles)});
+    std::size_t const cells =
+        std::max({serves_steps ? triangles : std::min(triangles, spheres),
+                  std::min(4 * triangles, std::size_t{1} << 18), std::min(spheres / 16, 16 * triangles)});
     while (most_bits < 28 && (std::size_t{1} << most_bits) < cells) ++most_bits;
     for (int g = wanted; g > 0; --g) {
       auto const grids = static_cast<std::size_t>(g);
