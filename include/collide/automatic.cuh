@@ -42,8 +42,8 @@ struct grid_or_tree_ref : bucket_ref<S> {
     return asks_tree() ? tree.begin(s) : bucket_ref<S>::begin(s);
   }
   template <class Sphere>
-  COLLIDE_HD bool next(Sphere const& s, candidate_cursor& c, std::uint32_t most, candidate_range& range) const {
-    return asks_tree() ? tree.next(s, c, most, range) : bucket_ref<S>::next(s, c, most, range);
+  COLLIDE_HD bool next(Sphere const& s, candidate_cursor& c, std::uint32_t max_count, candidate_range& range) const {
+    return asks_tree() ? tree.next(s, c, max_count, range) : bucket_ref<S>::next(s, c, max_count, range);
   }
 };
 
@@ -141,7 +141,7 @@ struct automatic {
     enum class strategy { all_pairs, grid, tree };
 
     strategy best_without_tree(automatic const& options) const {
-      return detail::fits_grid(mesh_.size(), options.grid.most_triangles) ? strategy::grid : strategy::all_pairs;
+      return detail::fits_grid(mesh_.size(), options.grid.max_triangles) ? strategy::grid : strategy::all_pairs;
     }
 
     template <class Space, class Spheres>
@@ -186,8 +186,8 @@ struct automatic {
         double const pieces = pieces_of(sample, spheres);
         double const build =
             has_tree_ ? 0 : slender_costs.per_built_piece_ns * pieces * static_cast<double>(mesh_.size());
-        auto const saved_by = [&](std::size_t most) {
-          return saved_by_tree(slender_costs, sample, pieces, spheres, most, candidates);
+        auto const saved_by = [&](std::size_t max_count) {
+          return saved_by_tree(slender_costs, sample, pieces, spheres, max_count, candidates);
         };
         double saved = saved_by(8);  // mostly these tell
         if (build < 4 * (saved + spent_on_boxes_)) saved = saved_by(128);
@@ -225,9 +225,9 @@ struct automatic {
     /// Nanoseconds by which queries by a tree are faster than by a grid, from at most so many spheres.
     template <class Spheres>
     static double saved_by_tree(slender_cost_model const& c, detail::sampled_triangles<S> const& sample, double pieces,
-                                Spheres const& spheres, std::size_t most,
+                                Spheres const& spheres, std::size_t max_count,
                                 detail::planned_candidates<S> const& candidates = {}) {
-      detail::reached_by_sphere const mean = sample.reached(spheres, most, pieces, candidates);
+      detail::reached_by_sphere const mean = sample.reached(spheres, max_count, pieces, candidates);
       return static_cast<double>(spheres.size()) *
              (c.per_box_ns * mean.candidates - c.per_sphere_ns - c.per_touched_ns * mean.triangles -
               c.per_piece_ns * (mean.pieces - mean.triangles));

@@ -31,10 +31,10 @@ struct mesh_statistics {
 
   /// The largest coordinate, without its sign; 0 of no triangles.
   COLLIDE_HD S largest_coordinate() const {
-    S most = 0;
-    if (extents.empty()) return most;
-    for (int k = 0; k < 3; ++k) most = max(most, max(-lower_of(k), upper_of(k)));
-    return most;
+    S largest = 0;
+    if (extents.empty()) return largest;
+    for (int k = 0; k < 3; ++k) largest = max(largest, max(-lower_of(k), upper_of(k)));
+    return largest;
   }
 
   COLLIDE_HD S lower_of(int k) const { return from_ordered_bits<S>(static_cast<uint_for<S>>(~lower[k])); }
@@ -171,7 +171,7 @@ struct choose_reaches {
   S largest;                ///< the first reach; negative: that of the largest sphere
   S enough;
   std::uint64_t fewest;
-  int most;  ///< reaches
+  int largest;  ///< reaches
   bool makes_anew;
 
   template <class>
@@ -203,7 +203,7 @@ struct choose_reaches {
       next = static_cast<int>(size_bin(wanted.reaches[0])) - bins_per_factor_4;
     }
     COLLIDE_NO_UNROLL
-    for (int b = last; b >= first && n < most; left -= counts[b--]) {
+    for (int b = last; b >= first && n < largest; left -= counts[b--]) {
       if (b > next || counts[b] == 0 || (n != 0 && left <= fewest)) continue;
       if (n != 0 && wanted.reaches[n - 1] <= enough) break;
       float const end = bin_end(static_cast<std::uint32_t>(b));
