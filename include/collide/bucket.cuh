@@ -80,15 +80,15 @@ struct mesh_measures {
 template <class S>
 struct wanted_grids {
   S reach = 0;               ///< of the largest; negative: the radius of the largest sphere
-  int most = 0;              ///< how many there may be
+  int max_count = 0;         ///< how many there may be
   bool whole_boxes = false;  ///< spheres that move look for triangles along their paths
 
   /// True if the radii of the spheres tell how far they reach.
-  bool by_radii() const { return most > 1 || reach < 0; }
+  bool by_radii() const { return max_count > 1 || reach < 0; }
 
   /// True if these do for spheres that ask for `other`.
   bool serve(wanted_grids const& other) const {
-    return reach == other.reach && most >= other.most && whole_boxes == other.whole_boxes;
+    return reach == other.reach && max_count >= other.max_count && whole_boxes == other.whole_boxes;
   }
 };
 
@@ -114,15 +114,15 @@ struct grid_set {
 
   /// Forgets the grids.
   void clear() {
-    count = asked.most = 0;
+    count = asked.max_count = 0;
     are_filled = false;
     are_new = nullptr;
   }
 
-  /// The radius of a grid for spheres of one radius: that of the one that is there if it is at most `most` times as
-  /// wide, else `wider`.
+  /// The radius of a grid for spheres of one radius: that of the one that is there if it is at most `max_ratio` times
+  /// as wide, else `wider`.
   S reach_for(S radius, S max_ratio, S wider) const {
-    bool const serves = asked.most == 1 && radius <= asked.reach && asked.reach <= max_ratio * radius;
+    bool const serves = asked.max_count == 1 && radius <= asked.reach && asked.reach <= max_ratio * radius;
     return serves ? asked.reach : wider;
   }
 };
@@ -322,14 +322,14 @@ class bucket::index {
     detail::wanted_grids<S> wanted = given_.value_or(detail::wanted_grids<S>{});
     if (!spheres.one_radius()) {
       if (!given_) wanted = {-1, 1};
-      if (wanted.most != 0) wanted.most = most_grids<Space>(spheres.size());
+      if (wanted.max_count != 0) wanted.max_count = max_grid_count<Space>(spheres.size());
     } else if (S const radius = spheres.common_radius();
                !given_ && detail::is_valid_radius(radius) && detail::is_finite(radius)) {
       wanted = {grids_.reach_for(radius, 4, radius), 1};
     }
     wanted.whole_boxes = whole_boxes;
     detail::query_plan<S> plan;
-    plan.makes_grids = measures_.statistics.data() != nullptr && wanted.most != 0 && !grids_.asked.serve(wanted);
+    plan.makes_grids = measures_.statistics.data() != nullptr && wanted.max_count != 0 && !grids_.asked.serve(wanted);
     plan.grids = plan.makes_grids ? wanted : grids_.asked;
     plan.asks_radii = grids_.count != 0 && plan.grids.reach < 0;
     return plan;
@@ -337,7 +337,7 @@ class bucket::index {
 
   /// How many grids there may be for spheres of many radii.
   template <class Space>
-  int most_grids(std::size_t spheres) const {
+  int max_grid_count(std::size_t spheres) const {
     if (bucket_tuning<Space>::bins_spheres) return detail::max_grids;
     if (detail::serves_steps<Space> || spheres <= fewest_of_grid()) return 1;
     return mesh_.size() > max_without_readback ? detail::max_grids : grids_without_readback;
@@ -376,7 +376,7 @@ class bucket::index {
     detail::wanted_grids<S> const wanted = plan.grids;
     bool const waits = bucket_tuning<Space>::bins_spheres || waits_for_sizes(options);
     bool anew = plan.makes_grids || !(waits || grids_.are_filled);
-    int most = wanted.most;
+    int max_count = wanted.max_count;
     detail::grid_reaches<S> const* reaches = nullptr;
     if (wanted.by_radii()) {
       reaches = choose_reaches(space, spheres, wanted, anew);
@@ -384,13 +384,13 @@ class bucket::index {
         detail::grid_reaches<S> const seen = space.read(reaches);
         if (!seen.are_new) return;
         anew = true;
-        most = seen.count;
+        max_count = seen.count;
       }
     }
     std::size_t const sphere_count = std::max(spheres.size(), plan.spheres);
     if (anew) {
       forget_grids();  // until all is done: an exception leaves no half-made grid behind
-      plan_memory(space, options, most, most > 1 && !waits, sphere_count);
+      plan_memory(space, options, max_count, max_count > 1 && !waits, sphere_count);
     }
     grids_.are_filled = false;
     grids_.are_new = reaches == nullptr || waits ? nullptr : &reaches->are_new;
@@ -415,17 +415,18 @@ class bucket::index {
     auto* const measured = radii_.reserve(space.resource(), 1);
     detail::measure_radii_of(space, spheres, stride, &measured->radii);
     detail::choose_reaches<S> const kernel{&measured->radii, &measured->reaches, wanted.reach, enough,
-                                           fewest,           wanted.most,        anew};
+                                           fewest,           wanted.max_count,   anew};
     space.launch(1, kernel);
     return &measured->reaches;
   }
 
-  /// Takes memory for up to `most` grids. Where nobody knows how many there will be each may have half the entries.
+  /// Takes memory for up to `max_count` grids. Where nobody knows how many there will be each may have half the
+  /// entries.
   template <class Space>
-  void plan_memory(Space& space, bucket const& options, int most, bool may_be_fewer, std::size_t spheres) {
+  void plan_memory(Space& space, bucket const& options, int max_count, bool may_be_fewer, std::size_t spheres) {
     auto const* const boxes = measures_.boxes();
     std::size_t const taken = fixed_bytes + (boxes != nullptr ? mesh_.size() * sizeof *boxes : 0);
-    auto const plan = detail::memory_plan::make(mesh_.size(), spheres, most, options.cell_width > 0, taken,
+    auto const plan = detail::memory_plan::make(mesh_.size(), spheres, max_count, options.cell_width > 0, taken,
                                                 options.memory_budget, detail::serves_steps<Space>);
     if (plan.grids == 0) return;
     std::size_t const cells = static_cast<std::size_t>(plan.grids) << plan.table_bits;

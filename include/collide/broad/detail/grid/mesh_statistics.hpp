@@ -171,7 +171,7 @@ struct choose_reaches {
   S largest;                ///< the first reach; negative: that of the largest sphere
   S enough;
   std::uint64_t fewest;
-  int largest;  ///< reaches
+  int max_count;  ///< reaches
   bool makes_anew;
 
   template <class>
@@ -203,7 +203,7 @@ struct choose_reaches {
       next = static_cast<int>(size_bin(wanted.reaches[0])) - bins_per_factor_4;
     }
     COLLIDE_NO_UNROLL
-    for (int b = last; b >= first && n < largest; left -= counts[b--]) {
+    for (int b = last; b >= first && n < max_count; left -= counts[b--]) {
       if (b > next || counts[b] == 0 || (n != 0 && left <= fewest)) continue;
       if (n != 0 && wanted.reaches[n - 1] <= enough) break;
       float const end = bin_end(static_cast<std::uint32_t>(b));
